@@ -1,0 +1,2 @@
+//! The RCS-II/T3 controller.
+fn main() {}

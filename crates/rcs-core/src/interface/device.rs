@@ -1,0 +1,254 @@
+//! Device words: what the boards read from and write to the hardware each tick (chapter III, VI.1 to VI.3).
+//!
+//! Raw words only: counts, bits and bytes. Scaling is the business of the process that owns the device.
+
+use crate::{coded_enum, record};
+
+/// Bytes that can travel on the DEPC line in one direction in a tick: 9600 baud gives 38, rounded up with room for what
+/// has queued in a receiver.
+pub const LINK_BYTES: usize = 64;
+
+record! {
+    /// Bytes of one tick on a serial line.
+    pub struct LinkBytes {
+        /// How many of `bytes` are valid.
+        pub length: u8,
+        /// The bytes, zero after `length`.
+        pub bytes: [u8; LINK_BYTES],
+    }
+}
+
+impl LinkBytes {
+    /// The valid bytes.
+    #[must_use]
+    pub fn as_slice(&self) -> &[u8] {
+        self.bytes.get(..usize::from(self.length)).unwrap_or(&self.bytes)
+    }
+
+    /// Append a byte; false if there is no room.
+    pub fn push(&mut self, byte: u8) -> bool {
+        match self.bytes.get_mut(usize::from(self.length)) {
+            Some(slot) => {
+                *slot = byte;
+                self.length = self.length.saturating_add(1);
+                true
+            }
+            None => false,
+        }
+    }
+
+    /// Append all of `bytes`, or as many as fit; returns how many did.
+    pub fn extend(&mut self, bytes: &[u8]) -> usize {
+        bytes.iter().take_while(|&&byte| self.push(byte)).count()
+    }
+}
+
+/// Steps of a resolver turn: 17 bits (III.3.2).
+pub const RESOLVER_COUNTS: u32 = 1 << 17;
+
+record! {
+    /// The joint resolvers (III.3.2): 17-bit integers, joints 0 to 5 from the base; one turn a joint, count 0 at angle 0 (ASSUMED).
+    pub struct Resolvers {
+        /// Counts, 0 to 131071.
+        pub counts: [u32; 6],
+        /// The resolver box has power.
+        pub valid: bool,
+    }
+}
+
+/// Air valves of the parts gripper: bits of [`GripValves::bits`] (III.3.6: eight valves; the assignment is ASSUMED).
+///
+/// Opening speed with the supply on is the sum of the open flows less the sum of the close flows. With all flows off the
+/// trapped air holds fingers and force.
+pub mod valve {
+    /// Open, fine: 0.25 in/s.
+    pub const OPEN_FINE: u8 = 0x01;
+    /// Open, medium: 1 in/s.
+    pub const OPEN_MEDIUM: u8 = 0x02;
+    /// Open, coarse: 4 in/s.
+    pub const OPEN_COARSE: u8 = 0x04;
+    /// Close, fine: 0.25 in/s.
+    pub const CLOSE_FINE: u8 = 0x08;
+    /// Close, medium: 1 in/s.
+    pub const CLOSE_MEDIUM: u8 = 0x10;
+    /// Close, coarse: 4 in/s.
+    pub const CLOSE_COARSE: u8 = 0x20;
+    /// Vent both sides: no force, fingers loose.
+    pub const VENT: u8 = 0x40;
+    /// Air supply on; without it no flow.
+    pub const SUPPLY: u8 = 0x80;
+}
+
+record! {
+    /// Command bits to the eight air valves of the parts gripper (VI.3.2 `grip`); see [`valve`].
+    pub struct GripValves {
+        /// One bit a valve.
+        pub bits: u8,
+    }
+}
+
+/// Counts of a 12-bit converter at full scale.
+pub const ADC_FULL_SCALE: u16 = 4095;
+
+record! {
+    /// Sensors of the parts gripper (III.3.6): 12-bit converters and beam breaks.
+    pub struct GripSensors {
+        /// Finger potentiometer, 0 to 4095 counts; grows with the opening, offset and scale are found by UP-INIT.
+        pub potentiometer: u16,
+        /// Strain gage of the left finger, counts; grows with the force that closes on a part.
+        pub strain_left: u16,
+        /// Strain gage of the right finger, counts.
+        pub strain_right: u16,
+        /// Eight beam breaks between the fingers, one bit each, 1 is broken.
+        pub beams: u8,
+    }
+}
+
+record! {
+    /// Sensors of the quick change (VI.2): two reflectance sensors on the locking ring, and the id pins.
+    pub struct QuickChangeSensors {
+        /// The ring is seen in the locked position.
+        pub locked: bool,
+        /// The ring is seen in the unlocked position.
+        pub unlocked: bool,
+        /// `endeff-id#` of the mated gripper: 0 none, 1 parts, 2 v, 3 tool.
+        pub end_effector_id: u8,
+    }
+}
+
+record! {
+    /// Valves of the quick change (VI.2.1).
+    pub struct QuickChangeValves {
+        /// Air to the lock side of the ring.
+        pub lock: bool,
+        /// Air to the unlock side of the ring.
+        pub unlock: bool,
+        /// The control port is enabled; with it disabled the ring cannot move.
+        pub port: bool,
+    }
+}
+
+record! {
+    /// Holster proximity sensors (V.1.2): right, left, centre. Bits 0, 1: large rear sensors see the ears; bits 2, 3: small front
+    /// sensors see the ears at the seat.
+    pub struct HolsterSensors {
+        /// `hol-R-status`.
+        pub right: u8,
+        /// `hol-L-status`.
+        pub left: u8,
+        /// `hol-C-status`.
+        pub centre: u8,
+    }
+}
+
+/// Full speed of the velocity knob.
+pub const KNOB_FULL: u16 = 1000;
+
+record! {
+    /// The joystick box (III.3.3), as far as it is connected.
+    pub struct JoystickBox {
+        /// Velocity knob, 0 to 1000.
+        pub velocity: u16,
+    }
+}
+
+coded_enum! {
+    /// What the vision system is asked for (V.2.1 LOCATE-OBJ).
+    pub enum Picture {
+        /// Nothing.
+        None = "none",
+        /// Fast flood: approximate centroid.
+        FastFlood = "fast-flood",
+        /// Second picture: centroid, angle, recognition.
+        Precise = "precise",
+    }
+}
+
+record! {
+    /// Request to the vision system.
+    pub struct VisionRequest {
+        /// Changes with each request; 0 means none.
+        pub number: u32,
+        /// Which picture.
+        pub picture: Picture,
+        /// Vision id of the object (VII.7.6).
+        pub object_id: u16,
+        /// 1: grip across the widest dimension, 2: across the shortest (VII.7.6).
+        pub grip: i16,
+        /// Expected range from the image plane to the viewed surface, mm.
+        pub range_mm: u16,
+        /// Parameter set, 0 first; varied on a retry.
+        pub variation: u8,
+    }
+}
+
+coded_enum! {
+    /// Answer of the vision system.
+    pub enum VisionStatus {
+        /// No request yet.
+        Idle = "idle",
+        /// Working on it.
+        Busy = "busy",
+        /// Done: the values are valid.
+        Done = "done",
+        /// No object in the picture.
+        NothingSeen = "nothing-seen",
+        /// An object, but not the one asked for.
+        NotRecognised = "not-recognised",
+    }
+}
+
+record! {
+    /// Answer of the vision system, in the axes of the place that the camera looks at (as if the view movetable were undone):
+    /// X along the optical axis away from the camera, Y the tool's Y, Z = X x Y.
+    pub struct VisionResponse {
+        /// Number of the request that is answered.
+        pub echo: u32,
+        /// How it went.
+        pub status: VisionStatus,
+        /// Centroid from the optical axis along Y, 0.01 in.
+        pub y: i32,
+        /// Centroid from the optical axis along Z, 0.01 in.
+        pub z: i32,
+        /// Right-hand roll about X, 0.01 degree, -9000 < angle <= 9000, that brings the tool's Y onto the dimension to grip across.
+        pub angle: i32,
+        /// Vision id of what was recognised, 0 for none.
+        pub recognised: u16,
+    }
+}
+
+record! {
+    /// Everything that the controller reads from its devices in a tick.
+    pub struct DeviceInputs {
+        /// From the DEPC line.
+        pub link_rx: LinkBytes,
+        /// The line's clear-to-send (the robot's DTR, A.2).
+        pub link_ready: bool,
+        /// Joint resolvers.
+        pub resolvers: Resolvers,
+        /// Parts gripper; zeros while it is not attached.
+        pub grip: GripSensors,
+        /// Quick change.
+        pub quick_change: QuickChangeSensors,
+        /// Holsters.
+        pub holsters: HolsterSensors,
+        /// Joystick box.
+        pub joystick: JoystickBox,
+        /// Vision system.
+        pub vision: VisionResponse,
+    }
+}
+
+record! {
+    /// Everything that the controller writes to its devices in a tick.
+    pub struct DeviceOutputs {
+        /// To the DEPC line.
+        pub link_tx: LinkBytes,
+        /// Parts gripper.
+        pub grip: GripValves,
+        /// Quick change.
+        pub quick_change: QuickChangeValves,
+        /// Vision system.
+        pub vision: VisionRequest,
+    }
+}

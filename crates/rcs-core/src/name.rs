@@ -1,0 +1,183 @@
+//! Fixed-size names, as the manual's 10-, 12- and 16-character strings (V.1.2, VII).
+
+use core::{fmt, str::FromStr};
+
+use crate::record::{DecodeError, Field, Reader, Schema, Writer};
+
+/// A name of at most `N` printable ASCII characters without blanks, zero-filled so that equal names are equal bytes.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(transparent)]
+pub struct Name<const N: usize>([u8; N]);
+
+/// Names of task data: ten characters or less (VII).
+pub type Name10 = Name<10>;
+/// Status reports: twelve characters (V.1.2).
+pub type Name12 = Name<12>;
+/// Object names and the fields of a Task command: sixteen characters (VII, V.4.2).
+pub type Name16 = Name<16>;
+
+/// Why a text is not a [`Name`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NameError {
+    /// More characters than the name may have.
+    TooLong {
+        /// Characters allowed.
+        allowed: usize,
+        /// Characters found.
+        found: usize,
+    },
+    /// A character that is not printable ASCII, or a blank.
+    BadCharacter {
+        /// Position of the character in bytes from 0.
+        position: usize,
+    },
+}
+
+impl fmt::Display for NameError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooLong { allowed, found } => {
+                write!(f, "a name of at most {allowed} characters was expected, this one has {found}")
+            }
+            Self::BadCharacter { position } => {
+                write!(f, "a name has printable characters without blanks, character {} is not", position.saturating_add(1))
+            }
+        }
+    }
+}
+
+impl core::error::Error for NameError {}
+
+impl<const N: usize> Name<N> {
+    /// The empty name, a null field.
+    pub const EMPTY: Self = Self([0; N]);
+
+    /// A name from text.
+    ///
+    /// # Errors
+    /// [`NameError`] if the text is longer than `N` or holds a blank or a character that is not printable ASCII.
+    pub const fn new(text: &str) -> Result<Self, NameError> {
+        let from = text.as_bytes();
+        if from.len() > N {
+            return Err(NameError::TooLong { allowed: N, found: from.len() });
+        }
+        let mut bytes = [0; N];
+        let (mut rest_from, mut rest_to, mut position) = (from, bytes.as_mut_slice(), 0_usize);
+        while let (Some((byte, more_from)), Some((slot, more_to))) =
+            (rest_from.split_first(), rest_to.split_first_mut())
+        {
+            if !byte.is_ascii_graphic() {
+                return Err(NameError::BadCharacter { position });
+            }
+            *slot = *byte;
+            (rest_from, rest_to, position) = (more_from, more_to, position.saturating_add(1));
+        }
+        Ok(Self(bytes))
+    }
+
+    /// The first `N` characters of a text; what the manual does when a twelve-character command meets a
+    /// ten-character field (contradiction 22). Characters that a name cannot have become `?`.
+    #[must_use]
+    pub fn clipped(text: &str) -> Self {
+        let mut bytes = [0; N];
+        for (slot, byte) in bytes.iter_mut().zip(text.bytes()) {
+            *slot = if byte.is_ascii_graphic() { byte } else { b'?' };
+        }
+        Self(bytes)
+    }
+
+    /// The text of the name.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        let end = self.0.iter().position(|&b| b == 0).unwrap_or(N);
+        self.0.get(..end).and_then(|bytes| core::str::from_utf8(bytes).ok()).unwrap_or("")
+    }
+
+    /// True if the name is null.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.first().is_none_or(|&b| b == 0)
+    }
+
+    /// The bytes, zero-filled at the end.
+    #[must_use]
+    pub const fn bytes(&self) -> &[u8; N] {
+        &self.0
+    }
+
+    /// The same name in a field of another width.
+    ///
+    /// # Errors
+    /// [`NameError::TooLong`] if it does not fit.
+    pub fn resized<const M: usize>(&self) -> Result<Name<M>, NameError> {
+        Name::new(self.as_str())
+    }
+}
+
+impl<const N: usize> Default for Name<N> {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+impl<const N: usize> FromStr for Name<N> {
+    type Err = NameError;
+
+    fn from_str(text: &str) -> Result<Self, NameError> {
+        Self::new(text)
+    }
+}
+
+impl<const N: usize> fmt::Display for Name<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+impl<const N: usize> fmt::Debug for Name<N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Debug::fmt(self.as_str(), f)
+    }
+}
+
+impl<const N: usize> Field for Name<N> {
+    const SCHEMA: Schema = Schema::Text(N);
+    const ZERO: Self = Self::EMPTY;
+
+    fn encode(&self, w: &mut Writer<'_>) {
+        w.put(&self.0);
+    }
+
+    fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        let bytes: [u8; N] = r.take()?;
+        let length = bytes.iter().position(|&b| b == 0).unwrap_or(N);
+        let well_formed = bytes.iter().enumerate().all(|(i, b)| if i < length { b.is_ascii_graphic() } else { *b == 0 });
+        if well_formed { Ok(Self(bytes)) } else { Err(DecodeError::BadName) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn holds_what_was_given() {
+        let name = Name10::new("LK-GRP-FX1").unwrap();
+        assert_eq!(name.as_str(), "LK-GRP-FX1");
+        assert_eq!(Name10::new("...").unwrap().to_string(), "...");
+        assert!(Name10::EMPTY.is_empty());
+    }
+
+    #[test]
+    fn says_what_is_wrong() {
+        assert_eq!(Name10::new("TRNG-SECTORS"), Err(NameError::TooLong { allowed: 10, found: 12 }));
+        assert_eq!(Name10::new("UNIT 1"), Err(NameError::BadCharacter { position: 4 }));
+        assert_eq!(Name10::clipped("RELEASE-TOOL").as_str(), "RELEASE-TO");
+    }
+
+    #[test]
+    fn a_name_with_bytes_after_its_end_is_refused() {
+        let mut r = Reader::new(b"AB\0C\0\0\0\0\0\0");
+        assert_eq!(Name10::decode(&mut r), Err(DecodeError::BadName));
+    }
+}
