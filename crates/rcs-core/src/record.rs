@@ -441,7 +441,7 @@ mod tests {
     fn a_bad_code_is_refused() {
         let bytes = [0x34, 0x12, 7, 0, 0, 0, 0, 2, 0, 0, 0];
         assert_eq!(from_bytes::<Lamp>(&bytes), Err(DecodeError::BadCode { of: "Light", found: 7 }));
-        assert_eq!(from_bytes::<Lamp>(bytes.get(..4).unwrap()), Err(DecodeError::TooShort));
+        assert_eq!(from_bytes::<Lamp>(bytes.get(..2).unwrap()), Err(DecodeError::TooShort));
     }
 
     #[test]
