@@ -1,1 +1,36 @@
-//! levels
+//! The control processes of RCS-II/T3 (chapters V and VI): a folder each.
+//!
+//! Every process is a pure state machine ([`rcs_core::process::Process`]) in the manual's three phases: *preprocess* reads input
+//! buffers and sets state variables, a *decision table* of the current command selects one row, *postprocess* fills the
+//! output buffers. Processes read what was written in the tick before, so their order within a tick does not matter.
+//!
+//! ```text
+//!            HWSC
+//!             | TRANSFER, MOVE, POSITION, ACQUIRE, PAUSE
+//!           Task                  (V.4)
+//!             | GET-OBJECT, PLACE-OBJ ...
+//!          Subtask                (V.3)
+//!             | MOV-TO-OBJ, GRASP-OBJ ...
+//!          E-move ----- vision    (V.2)
+//!          /  |  \
+//!  Quick Change | Grip            (VI.2, VI.3)
+//!            Prim                 (V.1)
+//!             | POINT
+//!        T3 Interface             (VI.1)
+//!             | DEPC
+//! ```
+
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::as_conversions,
+        clippy::arithmetic_side_effects,
+        clippy::indexing_slicing,
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic
+    )
+)]

@@ -81,7 +81,9 @@ pub enum ReachError {
 impl fmt::Display for ReachError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::WristSingularity => f.write_str("the wrist is singular: the gripper axis is parallel to the pitch axis"),
+            Self::WristSingularity => {
+                f.write_str("the wrist is singular: the gripper axis is parallel to the pitch axis")
+            }
             Self::TooFar { by } => write!(f, "out of reach by {by:.2} in"),
             Self::TooNear { by } => write!(f, "too near to the shoulder by {by:.2} in"),
             Self::NotFinite => f.write_str("not a position"),
@@ -242,7 +244,11 @@ mod tests {
 
     fn close(found: &Joints, degrees: [f64; 6], within: f64) {
         for ((found, expected), name) in found.iter().zip(degrees).zip(JOINT_NAMES) {
-            assert!((found.to_degrees() - expected).abs() < within, "{name}: {} for {expected}", found.to_degrees());
+            assert!(
+                (found.to_degrees() - expected).abs() < within,
+                "{name}: {} for {expected}",
+                found.to_degrees()
+            );
         }
     }
 
@@ -262,7 +268,8 @@ mod tests {
     fn printed_poses_have_the_worked_joints() {
         let home = T3.inverse(&HOME.to_frame().unwrap(), &HOME_JOINTS).unwrap();
         close(&home, [-90.0, 44.99, -89.96, 0.03, 0.0, 0.0], 0.01);
-        let pose = Pose { wrist: [6497, -2366, 1569], tool: [9495, -2475, 1595], finger: [9523, -1460, -1228] };
+        let pose =
+            Pose { wrist: [6497, -2366, 1569], tool: [9495, -2475, 1595], finger: [9523, -1460, -1228] };
         let transfer = T3.inverse(&pose.to_frame().unwrap(), &HOME_JOINTS).unwrap();
         close(&transfer, [-17.38, 19.43, -15.90, -3.01, 15.30, -70.08], 0.02);
     }

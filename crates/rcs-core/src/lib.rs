@@ -29,12 +29,16 @@
     )
 )]
 
+pub mod digest;
 pub mod frame;
+pub mod handshake;
 pub mod interface;
 pub mod kinematics;
 pub mod movetable;
 pub mod name;
 pub mod pose;
+pub mod process;
 pub mod record;
+pub mod table;
 pub mod tick;
 pub mod units;

@@ -144,7 +144,10 @@ mod tests {
     fn the_vise_is_approached_with_x_in_y_left_z_up() {
         // LK-GRP-FX1 (VIII.9.5) on PFIX-P, level along +X.
         let fixture = Frame { position: Vector::new(68.0, -44.0, -4.0), rotation: Rotation::identity() };
-        let grip = Movetable::from_lines(&[line(System::Tool, [15, 19, 100]), line(System::ToolOrigin, [-300, 0, 0])]);
+        let grip = Movetable::from_lines(&[
+            line(System::Tool, [15, 19, 100]),
+            line(System::ToolOrigin, [-300, 0, 0]),
+        ]);
         let at = grip.unwrap().apply(&fixture);
         assert!((at.position - Vector::new(68.15, -43.81, -3.0)).norm() < 1e-12);
         // The fingers point up by 3 degrees: the body leans back to the robot.

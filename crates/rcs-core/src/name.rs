@@ -40,7 +40,11 @@ impl fmt::Display for NameError {
                 write!(f, "a name of at most {allowed} characters was expected, this one has {found}")
             }
             Self::BadCharacter { position } => {
-                write!(f, "a name has printable characters without blanks, character {} is not", position.saturating_add(1))
+                write!(
+                    f,
+                    "a name has printable characters without blanks, character {} is not",
+                    position.saturating_add(1)
+                )
             }
         }
     }
@@ -151,7 +155,8 @@ impl<const N: usize> Field for Name<N> {
     fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
         let bytes: [u8; N] = r.take()?;
         let length = bytes.iter().position(|&b| b == 0).unwrap_or(N);
-        let well_formed = bytes.iter().enumerate().all(|(i, b)| if i < length { b.is_ascii_graphic() } else { *b == 0 });
+        let well_formed =
+            bytes.iter().enumerate().all(|(i, b)| if i < length { b.is_ascii_graphic() } else { *b == 0 });
         if well_formed { Ok(Self(bytes)) } else { Err(DecodeError::BadName) }
     }
 }

@@ -89,7 +89,11 @@ impl Pose {
         let x = vector(self.tool) - vector(self.wrist);
         let y = vector(self.finger) - vector(self.tool);
         let lengths = norm(&x) * norm(&y);
-        if lengths > 0.0 { Ok(-libm::asin((x.dot(&y) / lengths).clamp(-1.0, 1.0))) } else { Err(PoseError::NoDirection) }
+        if lengths > 0.0 {
+            Ok(-libm::asin((x.dot(&y) / lengths).clamp(-1.0, 1.0)))
+        } else {
+            Err(PoseError::NoDirection)
+        }
     }
 }
 
@@ -120,7 +124,8 @@ mod tests {
     use super::*;
 
     /// Figure VII.1.
-    const TOOL_TRNS: Pose = Pose { wrist: [6497, -2366, 1569], tool: [9495, -2475, 1595], finger: [9523, -1460, -1228] };
+    const TOOL_TRNS: Pose =
+        Pose { wrist: [6497, -2366, 1569], tool: [9495, -2475, 1595], finger: [9523, -1460, -1228] };
 
     #[test]
     fn tool_trns_is_off_square_by_0_637_degrees() {

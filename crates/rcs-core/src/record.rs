@@ -325,6 +325,7 @@ macro_rules! coded_enum {
         #[repr(u8)]
         $vis enum $name { $( $(#[$variant_meta])* $variant, )+ }
 
+        #[allow(dead_code, reason = "not every enum needs every conversion")]
         impl $name {
             /// All variants in the order of their codes.
             pub const ALL: &'static [Self] = &[ $( Self::$variant, )+ ];

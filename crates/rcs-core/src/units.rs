@@ -33,7 +33,10 @@ pub fn hundredths_of_degree(radians: f64) -> i32 {
 
 /// The nearest integer, away from zero at a half; saturates, and is 0 for what is not a number.
 #[must_use]
-#[expect(clippy::as_conversions, reason = "a float-to-integer cast saturates and takes NaN to 0, which is what is wanted")]
+#[expect(
+    clippy::as_conversions,
+    reason = "a float-to-integer cast saturates and takes NaN to 0, which is what is wanted"
+)]
 pub fn rounded(value: f64) -> i32 {
     libm::round(value) as i32
 }

@@ -1,0 +1,205 @@
+//! Command numbers and echoes between two processes (DESIGN 16 "Handshake").
+//!
+//! A commander counts its commands; a receiver echoes the number with the status of *that* command. So a status is
+//! believed only if it answers the last command, a repeated text is a new command only if its number is new, and a
+//! process that starts in the middle of things neither executes an old command nor believes an old status.
+//!
+//! | tick | commander                     | receiver                                  |
+//! |------|-------------------------------|-------------------------------------------|
+//! | k    | writes number n               |                                           |
+//! | k+1  | reads echo n-1: `Pending`     | reads n, acts, writes echo n and status   |
+//! | k+2  | reads echo n and its status   |                                           |
+
+use crate::{coded_enum, interface::Header, record, tick::Tick};
+
+/// Ticks after which a command that is not echoed counts as lost.
+pub const ECHO_LIMIT: u64 = 3;
+
+coded_enum! {
+    /// What a commander makes of the status of the process below it.
+    pub enum Lower {
+        /// The last command is not echoed yet: neither done nor an error.
+        Pending = "pending",
+        /// The last command is being executed.
+        Executing = "executing",
+        /// The last command is done.
+        Done = "done",
+        /// The last command failed.
+        Error = "error",
+        /// The operator has the robot.
+        Joystick = "joystick-on",
+        /// The process below does not answer: its stamp is old, or it does not echo.
+        Lost = "lost",
+    }
+}
+
+record! {
+    /// The commander's side of one interface.
+    pub struct Commander {
+        /// Number of the last command; 0 before the first.
+        pub number: u32,
+        /// When it was written.
+        pub sent: Tick,
+        /// The number has been taken over from the echo of the process below.
+        pub started: bool,
+    }
+}
+
+impl Commander {
+    /// Before anything else in a tick: a commander that starts goes on from the echo of the process below, so that
+    /// its first command is new to it.
+    pub fn start(&mut self, echo: u32) {
+        if !self.started {
+            self.number = echo;
+            self.started = true;
+        }
+    }
+
+    /// Number of a new command written in this tick.
+    pub fn send(&mut self, tick: Tick) -> u32 {
+        self.number = self.number.checked_add(1).unwrap_or(1);
+        self.sent = tick;
+        self.number
+    }
+
+    /// What the status of the process below means now: `report` counts only if `echo` is the last number sent.
+    #[must_use]
+    pub fn read(&self, tick: Tick, below: &Header, echo: u32, report: Lower) -> Lower {
+        if below.stamp != tick.previous() {
+            Lower::Lost
+        } else if self.number == echo {
+            report
+        } else if !below.republished && tick.since(self.sent) > ECHO_LIMIT {
+            Lower::Lost
+        } else {
+            Lower::Pending
+        }
+    }
+}
+
+coded_enum! {
+    /// What the command buffer of a process holds now.
+    pub enum Arrival {
+        /// Nothing was ever commanded.
+        Nothing = "nothing",
+        /// A command that has not been seen before.
+        New = "new",
+        /// The command that is being executed.
+        Same = "same",
+        /// The command that stood there when this process started: never executed by it.
+        Restarted = "restarted",
+    }
+}
+
+record! {
+    /// The receiver's side of one interface.
+    pub struct Receiver {
+        /// Number of the last command seen, echoed.
+        pub echo: u32,
+        /// The process has read its command buffer at least once.
+        pub started: bool,
+        /// The echoed command was adopted at the start and never executed.
+        pub adopted: bool,
+    }
+}
+
+impl Receiver {
+    /// Read the number in the command buffer.
+    pub fn observe(&mut self, number: u32) -> Arrival {
+        if !self.started {
+            *self = Self { echo: number, started: true, adopted: number != 0 };
+        } else if number != self.echo && number != 0 {
+            *self = Self { echo: number, started: true, adopted: false };
+            return Arrival::New;
+        }
+        if self.adopted {
+            Arrival::Restarted
+        } else if self.echo == 0 {
+            Arrival::Nothing
+        } else {
+            Arrival::Same
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn header(stamp: u64) -> Header {
+        Header { stamp: Tick(stamp), ..Header::default() }
+    }
+
+    #[test]
+    fn a_repeated_text_is_new_only_with_a_new_number() {
+        let mut receiver = Receiver::default();
+        assert_eq!(receiver.observe(0), Arrival::Nothing);
+        assert_eq!(receiver.observe(1), Arrival::New);
+        assert_eq!(receiver.observe(1), Arrival::Same);
+        assert_eq!(receiver.observe(2), Arrival::New);
+    }
+
+    #[test]
+    fn a_restarted_receiver_does_not_execute_what_stands_there() {
+        let mut receiver = Receiver::default();
+        assert_eq!(receiver.observe(7), Arrival::Restarted);
+        assert_eq!(receiver.observe(7), Arrival::Restarted);
+        assert_eq!(receiver.observe(8), Arrival::New);
+    }
+
+    #[test]
+    fn an_old_status_is_not_believed() {
+        let mut commander = Commander::default();
+        commander.start(41);
+        assert_eq!(commander.send(Tick(10)), 42);
+        assert_eq!(commander.read(Tick(11), &header(10), 41, Lower::Done), Lower::Pending);
+        assert_eq!(commander.read(Tick(12), &header(11), 42, Lower::Executing), Lower::Executing);
+        assert_eq!(commander.read(Tick(14), &header(13), 41, Lower::Done), Lower::Lost);
+        assert_eq!(commander.read(Tick(14), &header(12), 42, Lower::Done), Lower::Lost);
+    }
+
+    #[test]
+    fn numbers_run_on_past_the_end_without_zero() {
+        let mut commander = Commander { number: u32::MAX, sent: Tick(1), started: true };
+        assert_eq!(commander.send(Tick(2)), 1);
+    }
+
+    proptest! {
+        /// Whatever is restarted whenever, no command is executed twice and no status of another command is believed.
+        #[test]
+        fn each_command_is_executed_at_most_once(events in prop::collection::vec(0_u8..12, 1..300)) {
+            let mut commander = Commander::default();
+            let mut receiver = Receiver::default();
+            // Tick-parity buffers: what was written in the tick before.
+            let (mut number, mut echo) = (0_u32, (0_u32, Lower::Done));
+            let mut executed = std::collections::HashSet::new();
+            for (k, event) in events.into_iter().enumerate() {
+                let tick = Tick(k as u64 + 1);
+                match event {
+                    0 => commander = Commander::default(),
+                    1 => receiver = Receiver::default(),
+                    _ => {}
+                }
+                let (old_number, old_echo) = (number, echo);
+                commander.start(old_echo.0);
+                let status = commander.read(tick, &header(k as u64), old_echo.0, old_echo.1);
+                if matches!(status, Lower::Done | Lower::Error) || (event == 2 && status != Lower::Pending) {
+                    number = commander.send(tick);
+                } else {
+                    number = commander.number;
+                }
+                let arrival = receiver.observe(old_number);
+                if arrival == Arrival::New {
+                    prop_assert!(executed.insert(old_number), "{old_number} was executed twice");
+                }
+                let report = match arrival {
+                    Arrival::Restarted => Lower::Error,
+                    Arrival::Nothing | Arrival::Same => Lower::Done,
+                    Arrival::New => Lower::Executing,
+                };
+                echo = (receiver.echo, report);
+            }
+        }
+    }
+}

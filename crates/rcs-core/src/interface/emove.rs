@@ -1,0 +1,114 @@
+//! Subtask and E-move (V.2.2).
+
+use crate::{
+    coded_enum,
+    interface::{
+        ChangingPose, Header, Reason, Report, device::VisionRequest, grip::GripCommand, prim::PrimCommand,
+        quick_change::QuickChangeCommand, subtask::LocationKind,
+    },
+    name::{Name10, Name16},
+    record,
+};
+
+coded_enum! {
+    /// Commands of E-move (V.2.1), as far as the linkbar needs them.
+    pub enum EmoveVerb {
+        /// None yet.
+        None = "",
+        /// Do nothing.
+        Pause = "E-PAUSE",
+        /// Move to a location.
+        MovToLoc = "MOV-TO-LOC",
+        /// Move to an object at a location, fingers open for it.
+        MovToObj = "MOV-TO-OBJ",
+        /// Move the held object to a location.
+        MovObjTo = "MOV-OBJ-TO",
+        /// Move to where pictures are taken.
+        MovToVu = "MOV-TO-VU",
+        /// Find the object with the vision system.
+        LocateObj = "LOCATE-OBJ",
+        /// Close the fingers on the object.
+        GraspObj = "GRASP-OBJ",
+        /// Open the fingers.
+        Release = "RELEASE",
+    }
+}
+
+record! {
+    /// Command from Subtask to E-move.
+    pub struct EmoveCommand {
+        /// `command-#-in`.
+        pub number: u32,
+        /// `"command-in"`.
+        pub command: EmoveVerb,
+        /// `"obj"`.
+        pub object: Name16,
+        /// Grip number of the object (extension: the manual has it only in the records that `obj-para-^` names).
+        pub grip: i32,
+        /// `obj-para-^`: record of END-EFF-PARA.
+        pub object_parameters: u32,
+        /// `obj-grip-loc-^`: record of OBJ-GRIPS.
+        pub object_grips: u32,
+        /// `obj-vision-para-^`: record of VISION-PARA, 0 if vision is not used.
+        pub object_vision: u32,
+        /// `locpt-name`.
+        pub location: Name10,
+        /// `locpt-type`.
+        pub location_kind: LocationKind,
+        /// `locpt-^-in`: record of LOCPT.
+        pub location_record: u32,
+        /// `pose-^-in`: the goal pose.
+        pub pose: u32,
+        /// `endeff-id#-in`.
+        pub end_effector_id: u8,
+    }
+}
+
+record! {
+    /// Status from E-move to Subtask.
+    pub struct EmoveStatus {
+        /// `command-#-echo-out`.
+        pub echo: u32,
+        /// `status-report`.
+        pub report: Report,
+        /// `status-para-out`.
+        pub reason: Reason,
+        /// `ref-pose-^`: the feedback pose.
+        pub reference_pose: u32,
+        /// `obj-held-status-out`.
+        pub object_held: bool,
+        /// `pres-endeff-id#-out`.
+        pub end_effector_id: u8,
+        /// The object that was located by vision and not moved since (extension); empty for none.
+        pub located: Name16,
+        /// Where the robot is: location of the last completed move; empty if unknown (extension).
+        pub at: Name10,
+        /// Object and grip of the last completed move (extension).
+        pub at_object: Name16,
+        /// Grip number with it (extension).
+        pub at_grip: i32,
+    }
+}
+
+/// Changing poses of E-move: the goal, the one before it, and the located object.
+pub const EMOVE_POSES: usize = 3;
+
+record! {
+    /// Output buffers of E-move.
+    pub struct EmoveOutputs {
+        /// Stamp and row.
+        pub header: Header,
+        /// To Subtask.
+        pub status: EmoveStatus,
+        /// To Prim.
+        pub prim: PrimCommand,
+        /// To Quick Change.
+        pub quick_change: QuickChangeCommand,
+        /// To Grip.
+        pub grip: GripCommand,
+        /// To the vision system.
+        pub vision: VisionRequest,
+        /// Goals and located objects.
+        pub poses: [ChangingPose; EMOVE_POSES],
+    }
+}
