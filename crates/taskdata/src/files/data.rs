@@ -1,0 +1,255 @@
+//! All files together, by record number and by name.
+
+use rcs_core::{frame::Frame, movetable::Movetable, name::Name};
+
+use super::{
+    ids::{
+        ArrayId, EndEffId, LocptId, MovtabId, ObjGripsId, ObjectId, OwnerId, PathId, PedParaId, PoseId,
+        TrajId, TrajParaId,
+    },
+    index::{Index, grip_key, name_key, object_key},
+    records::{
+        ApprDept, Array, EndEffPara, FoundEndEff, FoundPedPara, GripLoc, Locpt, Member, MovtabRecord,
+        ObjGrips, ObjLoc, Object, Owner, Path, PathPoint, PedPara, PoseRecord, Traj, TrajPara, VisionPara,
+    },
+};
+
+/// The task data of a run: a view of the files and their indexes, as cheap to copy as a few pointers.
+///
+/// It is built once before the first tick (by `load::Store`); nothing in it changes while the robot runs (DESIGN 6).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TaskData<'a> {
+    /// POSE.
+    pub poses: &'a [PoseRecord],
+    /// MOVTAB.
+    pub movetables: &'a [MovtabRecord],
+    /// LOCPT.
+    pub locpts: &'a [Locpt],
+    /// ARRAY-TABLE.
+    pub arrays: &'a [Array],
+    /// OWNER-ASCII-NAMES.
+    pub owners: &'a [Owner],
+    /// Members of the owners, those of one owner together and in their order.
+    pub members: &'a [Member],
+    /// TRAJ.
+    pub trajectories: &'a [Traj],
+    /// TRAJ-PARA.
+    pub traj_paras: &'a [TrajPara],
+    /// Runs of PATH-PTS.
+    pub paths: &'a [Path],
+    /// PATH-PTS.
+    pub path_points: &'a [PathPoint],
+    /// OBJ-ASCII-NAMES.
+    pub objects: &'a [Object],
+    /// END-EFF-PARA.
+    pub end_effs: &'a [EndEffPara],
+    /// OBJ-GRIPS.
+    pub obj_grips: &'a [ObjGrips],
+    /// The file of the object location form.
+    pub obj_locs: &'a [ObjLoc],
+    /// PED-PARA.
+    pub ped_paras: &'a [PedPara],
+    /// GRIP-LOC.
+    pub grip_locs: &'a [GripLoc],
+    /// VISION-PARA.
+    pub visions: &'a [VisionPara],
+    /// The file of the approach/depart form.
+    pub appr_depts: &'a [ApprDept],
+    /// The indexes.
+    pub indexes: Indexes<'a>,
+}
+
+/// The index of each file, and what its key is.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Indexes<'a> {
+    /// POSE by name.
+    pub poses: Index<'a>,
+    /// MOVTAB by name.
+    pub movetables: Index<'a>,
+    /// LOCPT by name.
+    pub locpts: Index<'a>,
+    /// ARRAY-TABLE by name.
+    pub arrays: Index<'a>,
+    /// OWNER-ASCII-NAMES by name.
+    pub owners: Index<'a>,
+    /// Owners by member.
+    pub members: Index<'a>,
+    /// TRAJ by name.
+    pub trajectory_names: Index<'a>,
+    /// TRAJ by start and end.
+    pub trajectories: Index<'a>,
+    /// OBJ-ASCII-NAMES by name.
+    pub objects: Index<'a>,
+    /// END-EFF-PARA by object and grip.
+    pub end_effs: Index<'a>,
+    /// OBJ-GRIPS by object.
+    pub obj_grips: Index<'a>,
+    /// Object locations by object.
+    pub obj_locs: Index<'a>,
+    /// PED-PARA by object.
+    pub ped_paras: Index<'a>,
+    /// GRIP-LOC by object, grip and location.
+    pub grip_locs: Index<'a>,
+    /// VISION-PARA by object and location.
+    pub visions: Index<'a>,
+    /// Approaches and departs by direction, subject, grip and location.
+    pub appr_depts: Index<'a>,
+}
+
+impl<'a> TaskData<'a> {
+    /// A pose (VII.1).
+    #[must_use]
+    pub fn pose(&self, id: PoseId) -> Option<&'a PoseRecord> {
+        id.of(self.poses)
+    }
+
+    /// The pose of a name.
+    #[must_use]
+    pub fn pose_named<const N: usize>(&self, name: &Name<N>) -> Option<PoseId> {
+        self.indexes.poses.find(name_key(name)).map(PoseId::new)
+    }
+
+    /// A movetable (VII.2); `None` for the null movetable.
+    #[must_use]
+    pub fn movetable(&self, id: MovtabId) -> Option<&'a Movetable> {
+        id.of(self.movetables).map(|record| &record.movetable)
+    }
+
+    /// The movetable of a name; `...` is [`MovtabId::NULL`].
+    #[must_use]
+    pub fn movetable_named<const N: usize>(&self, name: &Name<N>) -> Option<MovtabId> {
+        if name.as_str() == NULL_NAME {
+            return Some(MovtabId::NULL);
+        }
+        self.indexes.movetables.find(name_key(name)).map(MovtabId::new)
+    }
+
+    /// A frame with a movetable applied; the null movetable changes nothing.
+    #[must_use]
+    pub fn moved(&self, frame: &Frame, by: MovtabId) -> Frame {
+        self.movetable(by).map_or(*frame, |movetable| movetable.apply(frame))
+    }
+
+    /// A location point (VII.3).
+    #[must_use]
+    pub fn locpt(&self, id: LocptId) -> Option<&'a Locpt> {
+        id.of(self.locpts)
+    }
+
+    /// The location point of a name.
+    #[must_use]
+    pub fn locpt_named<const N: usize>(&self, name: &Name<N>) -> Option<LocptId> {
+        self.indexes.locpts.find(name_key(name)).map(LocptId::new)
+    }
+
+    /// An array (VII.4).
+    #[must_use]
+    pub fn array(&self, id: ArrayId) -> Option<&'a Array> {
+        id.of(self.arrays)
+    }
+
+    /// The array of a name.
+    #[must_use]
+    pub fn array_named<const N: usize>(&self, name: &Name<N>) -> Option<ArrayId> {
+        self.indexes.arrays.find(name_key(name)).map(ArrayId::new)
+    }
+
+    /// An owner (VII.5).
+    #[must_use]
+    pub fn owner(&self, id: OwnerId) -> Option<&'a Owner> {
+        id.of(self.owners)
+    }
+
+    /// The owner of a name.
+    #[must_use]
+    pub fn owner_named<const N: usize>(&self, name: &Name<N>) -> Option<OwnerId> {
+        self.indexes.owners.find(name_key(name)).map(OwnerId::new)
+    }
+
+    /// The members of an owner in their order (VII.5).
+    #[must_use]
+    pub fn members_of(&self, id: OwnerId) -> &'a [Member] {
+        self.owner(id).and_then(|owner| run(self.members, owner.first, owner.count)).unwrap_or_default()
+    }
+
+    /// A trajectory (VII.6).
+    #[must_use]
+    pub fn trajectory_record(&self, id: TrajId) -> Option<&'a Traj> {
+        id.of(self.trajectories)
+    }
+
+    /// The trajectory of a name.
+    #[must_use]
+    pub fn trajectory_named<const N: usize>(&self, name: &Name<N>) -> Option<TrajId> {
+        self.indexes.trajectory_names.find(name_key(name)).map(TrajId::new)
+    }
+
+    /// Parameters of a segment (VII.6).
+    #[must_use]
+    pub fn traj_para(&self, id: TrajParaId) -> Option<&'a TrajPara> {
+        id.of(self.traj_paras)
+    }
+
+    /// The points of a path in their order; none if the path is null.
+    #[must_use]
+    pub fn path(&self, id: PathId) -> &'a [PathPoint] {
+        id.of(self.paths).and_then(|path| run(self.path_points, path.first, path.count)).unwrap_or_default()
+    }
+
+    /// The object of a name (VII.7.1).
+    #[must_use]
+    pub fn object_named<const N: usize>(&self, name: &Name<N>) -> Option<ObjectId> {
+        self.indexes.objects.find(name_key(name)).map(ObjectId::new)
+    }
+
+    /// An object's name record (VII.7.1).
+    #[must_use]
+    pub fn object_record(&self, id: ObjectId) -> Option<&'a Object> {
+        id.of(self.objects)
+    }
+
+    /// Grasp parameters of a grip of an object (VII.7.1), with their record number for `obj-para-^` (V.2.2).
+    #[must_use]
+    pub fn object<const N: usize>(&self, object: &Name<N>, grip: i32) -> FoundEndEff<'a> {
+        let object = self.object_named(object)?;
+        let id = EndEffId::new(self.indexes.end_effs.find(grip_key(object, grip))?);
+        Some((id, id.of(self.end_effs)?))
+    }
+
+    /// Grasp parameters by record number.
+    #[must_use]
+    pub fn end_eff(&self, id: EndEffId) -> Option<&'a EndEffPara> {
+        id.of(self.end_effs)
+    }
+
+    /// The gripper and the tray grip of an object (VII.7.2).
+    #[must_use]
+    pub fn obj_grips<const N: usize>(&self, object: &Name<N>) -> Option<&'a ObjGrips> {
+        self.obj_grips_id(object)?.of(self.obj_grips)
+    }
+
+    /// The record number in OBJ-GRIPS for `obj-grip-loc-^` (V.2.2).
+    #[must_use]
+    pub fn obj_grips_id<const N: usize>(&self, object: &Name<N>) -> Option<ObjGripsId> {
+        let object = self.object_named(object)?;
+        self.indexes.obj_grips.find(object_key(object)).map(ObjGripsId::new)
+    }
+
+    /// How the Active Pedestal takes an object (VII.7.4).
+    #[must_use]
+    pub fn ped_para<const N: usize>(&self, object: &Name<N>) -> FoundPedPara<'a> {
+        let object = self.object_named(object)?;
+        let id = PedParaId::new(self.indexes.ped_paras.find(object_key(object))?);
+        Some((id, id.of(self.ped_paras)?))
+    }
+}
+
+/// The name of the null movetable, and of no pose in an array location form (VII.2, VII.4).
+pub const NULL_NAME: &str = "...";
+
+/// `count` items from position `first`.
+fn run<T>(file: &[T], first: u32, count: u32) -> Option<&[T]> {
+    let first = usize::try_from(first).ok()?;
+    let count = usize::try_from(count).ok()?;
+    file.get(first..first.checked_add(count)?)
+}

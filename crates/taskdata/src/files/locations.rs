@@ -1,0 +1,317 @@
+//! From the location and the sector of a command to a frame (VII.3 to VII.5, V.4.2).
+//!
+//! A name can be a location point, an owner, an array, or a location point and an owner at once (UNIT_1: the corner of a
+//! tray, and the owner of the ways in which that tray is divided). Sector 0 means the location point; a sector counts through
+//! the array that is assigned to the object at that owner, left to right and top to bottom as the robot sees it (VII.4).
+
+use core::fmt;
+
+use rcs_core::{
+    frame::Frame,
+    name::{Name, Name10, Name16},
+    record,
+};
+
+use super::{
+    data::TaskData,
+    ids::{ArrayId, LocptId, MovtabId, ObjLocId, ObjectId, OwnerId},
+    index::{object_key, reference_key},
+    records::{Array, RefType, Reference},
+};
+
+record! {
+    /// What decides which grips, approaches and trajectories apply: the location point, and the array on it.
+    ///
+    /// It fits into a buffer (`locpt-type-in`, `locpt-^-in`; V.2.2).
+    pub struct Place {
+        /// How the command's location was understood: `lpt`, `arr` (a static array) or `own` (a sector at an owner).
+        pub kind: RefType,
+        /// The location point; null for a static array.
+        pub locpt: LocptId,
+        /// The array in which the sector lies; null for a location point.
+        pub array: ArrayId,
+    }
+}
+
+/// A location of a command, resolved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Location {
+    /// Name of the location point, or of the static array.
+    pub name: Name10,
+    /// What grips and trajectories are looked up with.
+    pub place: Place,
+    /// Sector from 1, or 0.
+    pub sector: i32,
+    /// Where it is. World, inches.
+    pub frame: Frame,
+}
+
+/// Why a location of a command, or a grip at it, is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LookupError {
+    /// No location point, owner or array has the name.
+    UnknownLocation {
+        /// The name.
+        name: Name16,
+    },
+    /// No object form has the name.
+    UnknownObject {
+        /// The name.
+        name: Name16,
+    },
+    /// A sector of an owner with several arrays needs an object, which says how the tray is divided.
+    ObjectNeeded {
+        /// The owner.
+        location: Name16,
+        /// The sector.
+        sector: i32,
+    },
+    /// No object location form assigns the object to a member of the owner (VII.7.3).
+    NotAssigned {
+        /// The object.
+        object: Name16,
+        /// The owner.
+        location: Name16,
+    },
+    /// The location point is not divided into sectors.
+    NoSectors {
+        /// The location.
+        location: Name16,
+        /// The sector asked for.
+        sector: i32,
+    },
+    /// The array has no such sector.
+    SectorRange {
+        /// The location.
+        location: Name16,
+        /// The array.
+        array: Name10,
+        /// The sector asked for.
+        sector: i32,
+        /// The last sector; the first is 1.
+        last: i32,
+    },
+    /// The owner groups locations, and none of them is meant (UNIT).
+    OwnerOnly {
+        /// The owner.
+        location: Name16,
+    },
+    /// No grip location form names the grip of the object there, or anywhere with `$$$` (VII.7.5).
+    NoGrip {
+        /// The object.
+        object: Name16,
+        /// The grip.
+        grip: i32,
+        /// The location.
+        location: Name10,
+    },
+}
+
+impl fmt::Display for LookupError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnknownLocation { name } => write!(f, "no location point, owner or array is named {name}"),
+            Self::UnknownObject { name } => write!(f, "no object is named {name}"),
+            Self::ObjectNeeded { location, sector } => {
+                write!(f, "sector {sector} of {location} needs an object, which says how the tray is divided")
+            }
+            Self::NotAssigned { object, location } => {
+                write!(f, "no object location form assigns {object} to a member of {location}")
+            }
+            Self::NoSectors { location, sector } => {
+                write!(f, "{location} has no sectors: 0 was expected, {sector} found")
+            }
+            Self::SectorRange { location, array, sector, last } => {
+                write!(f, "{array} at {location} has sectors 1 to {last}, {sector} found")
+            }
+            Self::OwnerOnly { location } => {
+                write!(f, "{location} only groups locations: name one of its members")
+            }
+            Self::NoGrip { object, grip, location } => {
+                write!(f, "no grip location form has grip {grip} of {object} at {location} or at $$$")
+            }
+        }
+    }
+}
+
+impl core::error::Error for LookupError {}
+
+/// A name of any width in the width of an error.
+fn wide<const N: usize>(name: &Name<N>) -> Name16 {
+    Name16::clipped(name.as_str())
+}
+
+impl<'a> TaskData<'a> {
+    /// The frame and the place of a location of a command (`"src-loc-16"` with `src-sector#` and so on, V.4.2).
+    ///
+    /// # Errors
+    /// [`LookupError`] with what is missing, or with the sectors that there are.
+    pub fn resolve_location<const N: usize, const M: usize>(
+        &self,
+        name: &Name<N>,
+        sector: i32,
+        object: Option<&Name<M>>,
+    ) -> Result<Location, LookupError> {
+        let locpt = self.locpt_named(name);
+        let owner = self.owner_named(name);
+        match (locpt, owner, self.array_named(name)) {
+            (Some(locpt), _, _) if sector == 0 => self.point(locpt, name),
+            (_, Some(owner), _) => self.at_owner(owner, name, sector, object),
+            (Some(_), None, _) => Err(LookupError::NoSectors { location: wide(name), sector }),
+            (None, None, Some(array)) => self.static_array(array, name, sector),
+            (None, None, None) => Err(LookupError::UnknownLocation { name: wide(name) }),
+        }
+    }
+
+    fn point<const N: usize>(&self, id: LocptId, name: &Name<N>) -> Result<Location, LookupError> {
+        let locpt = self.locpt(id).ok_or(LookupError::UnknownLocation { name: wide(name) })?;
+        let place = Place { kind: RefType::LocationPoint, locpt: id, array: ArrayId::NULL };
+        Ok(Location { name: locpt.name, place, sector: 0, frame: locpt.frame })
+    }
+
+    /// The member that is assigned to the object: a sector of an array at the owner's location point, or a location point.
+    fn at_owner<const N: usize, const M: usize>(
+        &self,
+        owner: OwnerId,
+        name: &Name<N>,
+        sector: i32,
+        object: Option<&Name<M>>,
+    ) -> Result<Location, LookupError> {
+        let location = wide(name);
+        let assigned = match object {
+            Some(object) => self.assigned_member(owner, object, location)?,
+            None if sector == 0 => return Err(LookupError::OwnerOnly { location }),
+            None => self.only_array(owner).ok_or(LookupError::ObjectNeeded { location, sector })?,
+        };
+        if assigned.kind == RefType::LocationPoint {
+            if sector != 0 {
+                return Err(LookupError::NoSectors { location, sector });
+            }
+            return self.point(LocptId::new(assigned.number), name);
+        }
+        let array_id = ArrayId::new(assigned.number);
+        let array = self.array(array_id).ok_or(LookupError::OwnerOnly { location })?;
+        let base = self.tray_corner(owner).ok_or(LookupError::OwnerOnly { location })?;
+        let corner = self.locpt(base).ok_or(LookupError::OwnerOnly { location })?;
+        let frame = self.sector_frame(array, &corner.frame, sector).ok_or(LookupError::SectorRange {
+            location,
+            array: array.name,
+            sector,
+            last: array.sectors(),
+        })?;
+        let place = Place { kind: RefType::Owner, locpt: base, array: array_id };
+        Ok(Location { name: corner.name, place, sector, frame })
+    }
+
+    /// The first member of an owner of arrays: the location point at which the arrays are used (VII.5).
+    fn tray_corner(&self, owner: OwnerId) -> Option<LocptId> {
+        let first = self.members_of(owner).first()?.member;
+        (first.kind == RefType::LocationPoint).then_some(LocptId::new(first.number))
+    }
+
+    /// The array of an owner that has just one.
+    fn only_array(&self, owner: OwnerId) -> Option<Reference> {
+        let mut arrays = self.members_of(owner).iter().map(|m| m.member).filter(|m| m.kind == RefType::Array);
+        let only = arrays.next()?;
+        arrays.next().is_none().then_some(only)
+    }
+
+    /// The member of an owner that an object location form assigns to an object (VII.7.3).
+    fn assigned_member<const M: usize>(
+        &self,
+        owner: OwnerId,
+        object: &Name<M>,
+        location: Name16,
+    ) -> Result<Reference, LookupError> {
+        let id = self.object_named(object).ok_or(LookupError::UnknownObject { name: wide(object) })?;
+        self.object_locations(id)
+            .find(|assigned| self.is_member(owner, *assigned))
+            .ok_or(LookupError::NotAssigned { object: wide(object), location })
+    }
+
+    /// What the object location forms assign to an object, in their order (VII.7.3).
+    pub fn object_locations(&self, object: ObjectId) -> impl Iterator<Item = Reference> + use<'a> {
+        let file = self.obj_locs;
+        self.indexes
+            .obj_locs
+            .all(object_key(object))
+            .iter()
+            .filter_map(move |&n| Some(ObjLocId::new(n).of(file)?.assigned))
+    }
+
+    /// True if an owner has the member.
+    #[must_use]
+    pub fn is_member(&self, owner: OwnerId, member: Reference) -> bool {
+        self.indexes.members.all(reference_key(member)).contains(&owner.number())
+    }
+
+    fn static_array<const N: usize>(
+        &self,
+        id: ArrayId,
+        name: &Name<N>,
+        sector: i32,
+    ) -> Result<Location, LookupError> {
+        let location = wide(name);
+        let array = self.array(id).ok_or(LookupError::UnknownLocation { name: location })?;
+        // An array without a pose of its own is known only through its owners (VII.4).
+        let base = self.pose(array.pose).ok_or(LookupError::UnknownLocation { name: location })?;
+        let frame = self.sector_frame(array, &base.frame, sector).ok_or(LookupError::SectorRange {
+            location,
+            array: array.name,
+            sector,
+            last: array.sectors(),
+        })?;
+        Ok(Location {
+            name: array.name,
+            place: Place { kind: RefType::Array, locpt: LocptId::NULL, array: id },
+            sector,
+            frame,
+        })
+    }
+
+    /// The frame of a sector: the base, the offset of the first sector, then the column step and the row step as often as
+    /// needed. `None` if the array has no such sector.
+    #[must_use]
+    pub fn sector_frame(&self, array: &Array, base: &Frame, sector: i32) -> Option<Frame> {
+        if sector < 1 || sector > array.sectors() {
+            return None;
+        }
+        let from_zero = sector.checked_sub(1)?;
+        let column = from_zero.checked_rem(array.columns)?;
+        let row = from_zero.checked_div(array.columns)?;
+        let repeat =
+            |frame: Frame, step: MovtabId, times: i32| (0..times).fold(frame, |f, _| self.moved(&f, step));
+        let first = self.moved(base, array.offset);
+        Some(repeat(repeat(first, array.column_step, column), array.row_step, row))
+    }
+
+    /// The place of a location point, for look-ups that begin with one.
+    #[must_use]
+    pub fn place_of(&self, locpt: LocptId) -> Place {
+        Place { kind: RefType::LocationPoint, locpt, array: ArrayId::NULL }
+    }
+
+    /// The names under which forms can mean a place, the most exact first: the location point, the array on it, and the
+    /// owners of either (VII.5, VII.7.5).
+    pub fn aliases(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {
+        let point = Reference::location_point(place.locpt);
+        let array = Reference::array(place.array);
+        let pose = self.locpt(place.locpt).map_or(Reference::NONE, |l| Reference::pose(l.pose));
+        let members = self.indexes.members;
+        // An array on a tray does not bring in the other trays that are divided in the same way.
+        let static_array = if place.locpt.is_null() { array } else { Reference::NONE };
+        let owners = [point, static_array, pose].into_iter().filter(|r| r.number != 0).flat_map(move |r| {
+            members.all(reference_key(r)).iter().map(|&n| Reference::owner(OwnerId::new(n)))
+        });
+        [point, array].into_iter().filter(|r| r.number != 0).chain(owners)
+    }
+
+    /// Name of the location point of a place, or of its static array.
+    #[must_use]
+    pub fn place_name(&self, place: &Place) -> Name10 {
+        self.locpt(place.locpt)
+            .map(|l| l.name)
+            .or_else(|| self.array(place.array).map(|a| a.name))
+            .unwrap_or(Name10::EMPTY)
+    }
+}

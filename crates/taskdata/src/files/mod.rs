@@ -1,0 +1,31 @@
+//! The files of chapter VII and how the control processes look into them.
+//!
+//! A file is a slice of records; a record number counts from 1, and 0 is the null pointer of the manual's `…-^`
+//! variables. Beside the files stand sorted indexes ([`index::Index`]), so that a look-up by name, or by object, grip and
+//! location, is a binary search over 16-byte keys: at 100,000 records 17 comparisons, whatever the data.
+//!
+//! * [`ids`], [`records`], [`index`]: numbers, records, indexes;
+//! * [`data`]: [`TaskData`], by number and by name;
+//! * [`locations`]: from the location and sector of a command to a frame (VII.3 to VII.5);
+//! * [`paths`]: grips, views, approaches, departs and trajectories (VII.6, VII.7).
+
+#![cfg_attr(not(test), deny(clippy::as_conversions, clippy::arithmetic_side_effects))]
+
+pub mod data;
+pub mod ids;
+pub mod index;
+pub mod locations;
+pub mod paths;
+pub mod records;
+
+pub use data::TaskData;
+pub use ids::{
+    ApprDeptId, ArrayId, EndEffId, GripLocId, LocptId, MovtabId, ObjGripsId, ObjLocId, ObjectId, OwnerId,
+    PathId, PedParaId, PoseId, TrajId, TrajParaId, VisionId,
+};
+pub use index::Index;
+pub use locations::{Location, LookupError, Place};
+pub use records::{
+    ApprDept, Array, Direction, EndEffPara, GripLoc, Locpt, Member, MovtabRecord, ObjGrips, ObjLoc, Object,
+    Owner, Path, PathPoint, PedPara, PoseRecord, RefType, Reference, Target, Traj, TrajPara, VisionPara,
+};

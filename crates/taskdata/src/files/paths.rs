@@ -1,0 +1,177 @@
+//! Grips, views, approaches, departs and trajectories at a place (VII.6, VII.7).
+//!
+//! One rule serves all: the entry for the exact location point wins, then the one for the array on it, then the one for an
+//! owner, then the wild card `$$$` (VII.7.5). A trajectory needs an entry for both of its ends and has no wild card; it is
+//! flown as it is written, from start to end.
+
+use rcs_core::{
+    frame::Frame,
+    name::{Name, Name16},
+};
+
+use super::{
+    data::TaskData,
+    ids::{ApprDeptId, GripLocId, MovtabId, ObjectId, PathId, TrajId, VisionId},
+    index::{approach_key, grip_at_key, object_at_key, pair_key},
+    locations::{Location, LookupError, Place},
+    records::{Direction, PathPoint, RefType, Reference, Target, VisionPara},
+};
+
+impl<'a> TaskData<'a> {
+    /// The first of the aliases of a place, then `$$$`, for which `find` has an answer.
+    fn at_place<T>(&self, place: &Place, find: impl Fn(Reference) -> Option<T>) -> Option<T> {
+        self.aliases(place).chain(core::iter::once(Reference::ANY)).find_map(find)
+    }
+
+    /// The movetable of a grip of an object at a place (VII.7.5); null if the form names `...`.
+    #[must_use]
+    pub fn grip_movetable<const N: usize>(
+        &self,
+        object: &Name<N>,
+        grip: i32,
+        place: &Place,
+    ) -> Option<MovtabId> {
+        let object = self.object_named(object)?;
+        let number = self.at_place(place, |at| self.indexes.grip_locs.find(grip_at_key(object, grip, at)))?;
+        GripLocId::new(number).of(self.grip_locs).map(|record| record.movetable)
+    }
+
+    /// Where the tool frame is when an object at a location is held with a grip.
+    ///
+    /// # Errors
+    /// [`LookupError::NoGrip`] if no form has the grip there.
+    pub fn grip_frame<const N: usize>(
+        &self,
+        object: &Name<N>,
+        grip: i32,
+        location: &Location,
+    ) -> Result<Frame, LookupError> {
+        let movetable = self.grip_movetable(object, grip, &location.place).ok_or_else(|| {
+            LookupError::NoGrip { object: Name::clipped(object.as_str()), grip, location: location.name }
+        })?;
+        Ok(self.moved(&location.frame, movetable))
+    }
+
+    /// The view parameters of an object at a place (VII.7.6), with their record number for `obj-vision-para-^` (V.2.2).
+    #[must_use]
+    pub fn view<const N: usize>(
+        &self,
+        object: &Name<N>,
+        place: &Place,
+    ) -> Option<(VisionId, &'a VisionPara)> {
+        let object = self.object_named(object)?;
+        let id =
+            VisionId::new(self.at_place(place, |at| self.indexes.visions.find(object_at_key(object, at)))?);
+        Some((id, id.of(self.visions)?))
+    }
+
+    /// View parameters by record number.
+    #[must_use]
+    pub fn vision_para(&self, id: VisionId) -> Option<&'a VisionPara> {
+        id.of(self.visions)
+    }
+
+    /// The approach to an object with a grip at a place (VII.7.7). Its last point is [`Target::Stop`].
+    #[must_use]
+    pub fn approach<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<PathId> {
+        let subject = Reference::object(self.object_named(object)?);
+        self.appr_dept(Direction::Approach, subject, grip, place)
+    }
+
+    /// The depart from an object with a grip at a place (VII.7.7).
+    #[must_use]
+    pub fn depart<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<PathId> {
+        let subject = Reference::object(self.object_named(object)?);
+        self.appr_dept(Direction::Depart, subject, grip, place)
+    }
+
+    /// The approach to the place where the camera looks for an object (VII.7.7, type `vu`).
+    #[must_use]
+    pub fn view_approach<const N: usize>(
+        &self,
+        object: &Name<N>,
+        grip: i32,
+        place: &Place,
+    ) -> Option<PathId> {
+        let subject = Reference::view(self.object_named(object)?);
+        self.appr_dept(Direction::Approach, subject, grip, place)
+    }
+
+    /// The depart from the place where the camera looks for an object (VII.7.7, type `vu`).
+    #[must_use]
+    pub fn view_depart<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<PathId> {
+        let subject = Reference::view(self.object_named(object)?);
+        self.appr_dept(Direction::Depart, subject, grip, place)
+    }
+
+    /// The approach to a location as such (VII.7.7, types `lpt`, `arr`, `own`).
+    #[must_use]
+    pub fn approach_location(&self, place: &Place) -> Option<PathId> {
+        self.plain(Direction::Approach, place)
+    }
+
+    /// The depart from a location as such.
+    #[must_use]
+    pub fn depart_location(&self, place: &Place) -> Option<PathId> {
+        self.plain(Direction::Depart, place)
+    }
+
+    fn appr_dept(
+        &self,
+        direction: Direction,
+        subject: Reference,
+        grip: i32,
+        place: &Place,
+    ) -> Option<PathId> {
+        self.appr_dept_path(
+            self.at_place(place, |at| {
+                self.indexes.appr_depts.find(approach_key(direction, subject, grip, at))
+            })?,
+        )
+    }
+
+    fn plain(&self, direction: Direction, place: &Place) -> Option<PathId> {
+        self.appr_dept_path(
+            self.at_place(place, |at| self.indexes.appr_depts.find(approach_key(direction, at, 0, at)))?,
+        )
+    }
+
+    fn appr_dept_path(&self, number: u32) -> Option<PathId> {
+        ApprDeptId::new(number).of(self.appr_depts).map(|record| record.path)
+    }
+
+    /// The intermediate trajectory from one place to another (VII.6): exact names first, then through the owner of the
+    /// end, of the start, of both.
+    #[must_use]
+    pub fn trajectory(&self, from: &Place, to: &Place) -> Option<PathId> {
+        let ends = self.aliases(to);
+        let number = self.aliases(from).find_map(|start| {
+            ends.clone().find_map(|end| self.indexes.trajectories.find(pair_key(start, end)))
+        })?;
+        TrajId::new(number).of(self.trajectories).map(|record| record.path)
+    }
+
+    /// Where a point of a path is, with the frame that its movetables refer to: the goal of an approach, the start of a
+    /// depart, the previous point of a trajectory. `None` if the point names a record that is not there.
+    #[must_use]
+    pub fn point_frame(&self, point: &PathPoint, reference: &Frame) -> Option<Frame> {
+        match point.target {
+            Target::Pose(id) => self.pose(id).map(|record| record.frame),
+            Target::LocationPoint(id) => self.locpt(id).map(|record| record.frame),
+            Target::Movetable(id) => Some(self.moved(reference, id)),
+            Target::Stop => Some(*reference),
+        }
+    }
+
+    /// True if an entry with this type can be looked up at a place.
+    #[must_use]
+    pub const fn is_place_type(kind: RefType) -> bool {
+        matches!(kind, RefType::LocationPoint | RefType::Array | RefType::Owner | RefType::Any)
+    }
+
+    /// Name of an object for a message; empty if there is none.
+    #[must_use]
+    pub fn object_name(&self, id: ObjectId) -> Name16 {
+        self.object_record(id).map_or(Name16::EMPTY, |record| record.name)
+    }
+}

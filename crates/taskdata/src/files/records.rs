@@ -1,0 +1,373 @@
+//! The record of each file. The manual names the files and their variables but not their layouts (SPECNOTES).
+
+use rcs_core::{
+    coded_enum,
+    frame::Frame,
+    movetable::Movetable,
+    name::{Name10, Name16},
+    pose::Pose,
+    record,
+};
+
+use super::ids::{
+    ArrayId, EndEffId, LocptId, MovtabId, ObjectId, OwnerId, PathId, PedParaId, PoseId, TrajParaId,
+};
+
+coded_enum! {
+    /// What a name in a form refers to: the words of the "type" columns (VII.4 to VII.7). The manual passes them as
+    /// integers (`locpt-type`, `pose-type`) and gives no values; these codes are ASSUMED.
+    pub enum RefType {
+        /// Nothing.
+        None = "",
+        /// `lpt`: a location point.
+        LocationPoint = "lpt",
+        /// `arr`: an array.
+        Array = "arr",
+        /// `own`: an owner.
+        Owner = "own",
+        /// `pos`: a pose.
+        Pose = "pos",
+        /// `mtb`: a movetable.
+        Movetable = "mtb",
+        /// `obj`: an object.
+        Object = "obj",
+        /// `vu`: the view location of an object.
+        View = "vu",
+        /// `$$$`: every location that no other entry names (VII.7.5).
+        Any = "$$$",
+    }
+}
+
+record! {
+    /// A type and a name of a form, resolved: the record `number` of the file that `kind` means.
+    pub struct Reference {
+        /// Which file.
+        pub kind: RefType,
+        /// Record number in it; 0 for [`RefType::Any`] and [`RefType::None`].
+        pub number: u32,
+    }
+}
+
+impl Reference {
+    /// No reference.
+    pub const NONE: Self = Self { kind: RefType::None, number: 0 };
+    /// The wild card `$$$`.
+    pub const ANY: Self = Self { kind: RefType::Any, number: 0 };
+
+    /// A location point.
+    #[must_use]
+    pub const fn location_point(id: LocptId) -> Self {
+        Self { kind: RefType::LocationPoint, number: id.number() }
+    }
+
+    /// An array.
+    #[must_use]
+    pub const fn array(id: ArrayId) -> Self {
+        Self { kind: RefType::Array, number: id.number() }
+    }
+
+    /// An owner.
+    #[must_use]
+    pub const fn owner(id: OwnerId) -> Self {
+        Self { kind: RefType::Owner, number: id.number() }
+    }
+
+    /// A pose.
+    #[must_use]
+    pub const fn pose(id: PoseId) -> Self {
+        Self { kind: RefType::Pose, number: id.number() }
+    }
+
+    /// An object.
+    #[must_use]
+    pub const fn object(id: ObjectId) -> Self {
+        Self { kind: RefType::Object, number: id.number() }
+    }
+
+    /// The view of an object.
+    #[must_use]
+    pub const fn view(id: ObjectId) -> Self {
+        Self { kind: RefType::View, number: id.number() }
+    }
+}
+
+/// POSE: a pose form entry (VII.1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseRecord {
+    /// Name of the pose.
+    pub name: Name10,
+    /// The nine integers as entered, 0.01 in.
+    pub pose: Pose,
+    /// Movetable that corrects the pose, null for `...`.
+    pub movetable: MovtabId,
+    /// Effective frame: the points made square (X kept), the movetable applied. World, inches.
+    pub frame: Frame,
+}
+
+/// MOVTAB: a movetable (VII.2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MovtabRecord {
+    /// Name of the movetable.
+    pub name: Name10,
+    /// Its lines.
+    pub movetable: Movetable,
+}
+
+/// LOCPT: a location point (VII.3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Locpt {
+    /// Name of the location point.
+    pub name: Name10,
+    /// Its pose.
+    pub pose: PoseId,
+    /// Movetable applied to the pose, null for `...`.
+    pub movetable: MovtabId,
+    /// The movetable applied to the effective frame of the pose. World, inches.
+    pub frame: Frame,
+}
+
+/// ARRAY-TABLE: the array dimension and array location forms of one array together (VII.4).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Array {
+    /// Name of the array.
+    pub name: Name10,
+    /// Number of dimensions, 1 or 2.
+    pub dimensions: i32,
+    /// Elements in the first dimension: the columns, left to right.
+    pub columns: i32,
+    /// Elements in the second dimension: the rows, top to bottom; 1 if there is one dimension.
+    pub rows: i32,
+    /// Offset from column to column.
+    pub column_step: MovtabId,
+    /// Offset from row to row, null if there is one dimension.
+    pub row_step: MovtabId,
+    /// The form's `# pres`, kept as entered.
+    pub present: i32,
+    /// Base pose of a static array, null if the array belongs to owners.
+    pub pose: PoseId,
+    /// Offset of the first sector from the base pose, or from the owner's location point.
+    pub offset: MovtabId,
+}
+
+impl Array {
+    /// Number of the last sector.
+    #[must_use]
+    pub fn sectors(&self) -> i32 {
+        self.columns.saturating_mul(self.rows)
+    }
+}
+
+/// OWNER-ASCII-NAMES: an owner (VII.5). Its members stand one after the other in the file of members.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Owner {
+    /// Name of the owner.
+    pub name: Name10,
+    /// Position from 0 of its first member.
+    pub first: u32,
+    /// Number of members.
+    pub count: u32,
+}
+
+/// A member of an owner: location point, array or pose (VII.5).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Member {
+    /// The owner.
+    pub owner: OwnerId,
+    /// The member.
+    pub member: Reference,
+}
+
+/// TRAJ: the path between two locations (VII.6).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Traj {
+    /// Name of the trajectory.
+    pub name: Name10,
+    /// Location point, array or owner where it starts.
+    pub start: Reference,
+    /// Location point, array or owner where it ends.
+    pub end: Reference,
+    /// Its points.
+    pub path: PathId,
+}
+
+record! {
+    /// TRAJ-PARA: parameters of a trajectory segment (VII.6). Their units are ASSUMED where the manual has none (DESIGN 8).
+    pub struct TrajPara {
+        /// `acc-fac`, acceleration factor: counts of 0.1 in/s for each 40 ms.
+        pub acc_fac: i32,
+        /// `vel-max`, greatest velocity: counts of 0.1 in/s.
+        pub vel_max: i32,
+        /// `smooth-acc`: a greater value is less smoothing.
+        pub smooth: i32,
+        /// `brk-dst`: distance from the goal at which the next point may be begun, 0.01 in.
+        pub brk_dst: i32,
+    }
+}
+
+/// Where a point of a path is (VII.6, VII.7.7).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// A pose.
+    Pose(PoseId),
+    /// A location point.
+    LocationPoint(LocptId),
+    /// A movetable, applied to the reference: the goal of an approach, the start of a depart, the previous point of a
+    /// trajectory.
+    Movetable(MovtabId),
+    /// The goal itself: the last point of an approach.
+    Stop,
+}
+
+/// PATH-PTS: a `-ppt` line (VII.6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PathPoint {
+    /// Parameters of the segment that leads to the point.
+    pub para: TrajParaId,
+    /// The point.
+    pub target: Target,
+}
+
+/// A run of records of PATH-PTS.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Path {
+    /// Position from 0 of its first point.
+    pub first: u32,
+    /// Number of points; an empty path goes nowhere on its way.
+    pub count: u32,
+}
+
+/// OBJ-ASCII-NAMES: an object (VII.7.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Object {
+    /// Name of the object.
+    pub name: Name16,
+}
+
+record! {
+    /// END-EFF-PARA: how a grip of an object is taken (VII.7.1).
+    pub struct EndEffPara {
+        /// The object.
+        pub object: ObjectId,
+        /// Reference grip number.
+        pub grip: i32,
+        /// Opening while the object is approached, 0.01 in.
+        pub appr_size: i32,
+        /// Opening that is commanded to grasp it, 0.01 in.
+        pub grasp_size: i32,
+        /// Grasp force, lb.
+        pub grasp_force: i32,
+        /// Opening when the object is let go and left, 0.01 in.
+        pub depart_size: i32,
+    }
+}
+
+record! {
+    /// OBJ-GRIPS: which gripper handles an object (VII.7.2).
+    pub struct ObjGrips {
+        /// The object.
+        pub object: ObjectId,
+        /// `endeff-id#`: 1 parts, 2 v-blocks, 3 tool gripper.
+        pub endeff_id: i32,
+        /// `tray-grip#`: grip number at the trays.
+        pub tray_grip: i32,
+    }
+}
+
+record! {
+    /// The object location form (VII.7.3): where at an owner the object lies.
+    pub struct ObjLoc {
+        /// The object.
+        pub object: ObjectId,
+        /// Array or location point assigned to it.
+        pub assigned: Reference,
+    }
+}
+
+record! {
+    /// PED-PARA: how the Active Pedestal takes an object (VII.7.4).
+    pub struct PedPara {
+        /// `"p-object"`.
+        pub object: ObjectId,
+        /// `ped-appr`: opening before the object comes, 0.01 in.
+        pub appr: i32,
+        /// `ped-grasp-size`, 0.01 in.
+        pub grasp_size: i32,
+        /// `ped-force`, lb.
+        pub force: i32,
+        /// `ped-release-size`, 0.01 in.
+        pub release_size: i32,
+        /// `ped-table-pos`: table angle when the object is first grasped, 0.1 degree.
+        pub table_pos: i32,
+        /// `ped-flip-angle`: rotation that flips it, 0.1 degree.
+        pub flip_angle: i32,
+    }
+}
+
+record! {
+    /// GRIP-LOC: the movetable of a grip at a location (VII.7.5).
+    pub struct GripLoc {
+        /// The object.
+        pub object: ObjectId,
+        /// Grip number.
+        pub grip: i32,
+        /// Location point, array, owner or `$$$`.
+        pub at: Reference,
+        /// Movetable from the location to the grip.
+        pub movetable: MovtabId,
+    }
+}
+
+record! {
+    /// VISION-PARA: how an object is found with the camera at a location (VII.7.6).
+    pub struct VisionPara {
+        /// The object.
+        pub object: ObjectId,
+        /// Reference grip number.
+        pub grip: i32,
+        /// Number of the object in the vision system.
+        pub id: i32,
+        /// Location point, array, owner or `$$$`.
+        pub at: Reference,
+        /// `vu-offset`: movetable from the location to the place where the first picture is taken.
+        pub movetable: MovtabId,
+        /// `mov-ref`: to what the movetable is applied, location point, array or object.
+        pub offset_from: RefType,
+        /// Expected range from image plane to object, mm.
+        pub range: i32,
+        /// True if vision is used for the object.
+        pub enabled: bool,
+    }
+}
+
+coded_enum! {
+    /// Approach or depart (VII.7.7).
+    pub enum Direction {
+        /// `-appr`.
+        Approach = "-appr",
+        /// `-dept`.
+        Depart = "-dept",
+    }
+}
+
+record! {
+    /// An approach or depart trajectory (VII.7.7).
+    pub struct ApprDept {
+        /// Which of the two.
+        pub direction: Direction,
+        /// Object, view of an object, or a plain location point, array, owner or `$$$`.
+        pub subject: Reference,
+        /// Grip number; 0 for a plain location.
+        pub grip: i32,
+        /// Where it applies: location point, array, owner or `$$$`; the subject again for a plain location.
+        pub at: Reference,
+        /// Its points.
+        pub path: PathId,
+    }
+}
+
+/// A record with its number, as look-ups of parameters return it.
+pub type Numbered<'a, Id, T> = Option<(Id, &'a T)>;
+/// END-EFF-PARA with its number.
+pub type FoundEndEff<'a> = Numbered<'a, EndEffId, EndEffPara>;
+/// PED-PARA with its number.
+pub type FoundPedPara<'a> = Numbered<'a, PedParaId, PedPara>;
