@@ -1,1 +1,45 @@
-//! depc
+//! The DEPC link: "Dynamic External Path Control", the serial line over which an external computer steers a Cincinnati
+//! Milacron T3 (NBSIR 88-3692, appendix A; version 1.1, 7 Jul 82).
+//!
+//! Both ends are state machines without I/O and without a clock. Each is stepped once a tick with the bytes that arrived
+//! and hands back the bytes to send ([`rcs_core::interface::device::LinkBytes`]):
+//!
+//! ```text
+//!   host (T3 Interface)                         controller (Acramatic)
+//!   host::Host          -- 03 data, 18, 05 -->  controller::Controller -- Robot::move_to --> servos
+//!                       <-- FF FF 03, 06, 15 --
+//! ```
+//!
+//! * [`plate`]: the six words of a position, the one place that knows their coding;
+//! * [`wire`]: one file a frame, every byte shown;
+//! * [`receive`]: byte-by-byte receivers of both ends;
+//! * [`limit`]: the velocity limits, and steps that respect them;
+//! * [`host`], [`controller`]: the two ends.
+//!
+//! All that the appendix leaves open is marked ASSUMED where it is decided.
+
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::as_conversions,
+        clippy::arithmetic_side_effects,
+        clippy::indexing_slicing,
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic
+    )
+)]
+
+pub mod controller;
+pub mod error;
+pub mod limit;
+pub mod plate;
+pub mod receive;
+pub mod wire;
+
+pub use error::Error;
+pub use limit::Limits;
+pub use plate::Plate;

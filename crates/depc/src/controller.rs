@@ -1,0 +1,527 @@
+//! The controller's end of the link: the DEPC function of the T3 controller (A 2.3, A 2.4).
+//!
+//! The function is reached in auto mode, reports where the robot is, and then takes one command a period: it
+//! acknowledges, checks, and moves. What it cannot do becomes a warning on the controller's screen; the operator answers
+//! ENTER (begin again) or CANCEL (give up). The line says nothing of a warning: the host only sees that no answer comes.
+//!
+//! The state machine knows no robot; it moves whatever implements [`Robot`].
+
+use rcs_core::{
+    coded_enum,
+    interface::device::LinkBytes,
+    kinematics::{Arm, Joints, ReachError},
+    record,
+};
+
+use crate::{
+    Limits, Plate,
+    limit::Exceeded,
+    receive::{Command, CommandReceiver},
+    wire::{Control, DataCommand, FRAME_BYTES, NO_FUNCTION, Report, Response},
+};
+
+/// Why the joints cannot take a position that the limits allow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointProblem {
+    /// The shoulder would go beyond its upper limit.
+    ShoulderUp,
+    /// The roll would leave its limits.
+    Roll,
+    /// Another joint would leave its limits, or the arm is too short.
+    Joint,
+    /// The gripper axis is along the pitch axis.
+    WristSingularity,
+}
+
+/// What the controller moves.
+pub trait Robot {
+    /// The position that the robot holds, in words of the line: to command it moves nothing.
+    fn present(&self) -> Plate;
+
+    /// Make `goal` the set point that is reached within the coming period.
+    ///
+    /// # Errors
+    /// [`JointProblem`] if the joints cannot; then the set point stays as it was.
+    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem>;
+}
+
+/// The joint angles (radians) for a position of the end plate, within the limits of `arm`.
+///
+/// # Errors
+/// [`JointProblem`] as the controller would name it.
+pub fn joints_for(arm: &Arm, goal: &Plate, near: &Joints) -> Result<Joints, JointProblem> {
+    let joints = arm.inverse(&goal.to_tool(arm), near).map_err(|error| match error {
+        ReachError::WristSingularity => JointProblem::WristSingularity,
+        ReachError::TooFar { .. } | ReachError::TooNear { .. } | ReachError::NotFinite => JointProblem::Joint,
+    })?;
+    for (joint, (angle, (low, high))) in joints.iter().zip(arm.limits).enumerate() {
+        if (low..=high).contains(angle) {
+            continue;
+        }
+        return Err(match joint {
+            1 if *angle > high => JointProblem::ShoulderUp,
+            5 => JointProblem::Roll,
+            _ => JointProblem::Joint,
+        });
+    }
+    Ok(joints)
+}
+
+coded_enum! {
+    /// Codes on the controller's screen (A 2.3, "T3 controller error messages").
+    pub enum Warning {
+        /// No warning.
+        None = "",
+        /// The RS232 board is missing.
+        BoardMissing = "WD0",
+        /// The host's DTR is off.
+        CtsLow = "WD1",
+        /// The interrupt pushbutton.
+        Interrupt = "WD2",
+        /// More than 14 in/s.
+        Translation = "WD3",
+        /// More than 1.0 rad/s.
+        Orientation = "WD4",
+        /// The transmitter has failed.
+        Transmitter = "WD5",
+        /// Joint limit reached (joint 6).
+        JointLimit = "WD6",
+        /// Joint 2 reached the upward DEPC limit.
+        ShoulderUp = "P05",
+        /// Joint limit reached.
+        OtherJoint = "P0B",
+        /// Wrist singularity problem.
+        Wrist = "P9P",
+        /// DEPC link terminated (unrecoverable).
+        Terminated = "PIG",
+    }
+}
+
+impl Warning {
+    /// True if a restart command of the host clears it. The appendix recommends that for D6, and the other joint problems
+    /// are of its kind; what an operator or the wiring has caused, and a broken velocity limit, take an ENTER (ASSUMED).
+    #[must_use]
+    pub const fn host_can_restart(self) -> bool {
+        matches!(self, Self::JointLimit | Self::ShoulderUp | Self::OtherJoint | Self::Wrist)
+    }
+}
+
+impl From<JointProblem> for Warning {
+    fn from(problem: JointProblem) -> Self {
+        match problem {
+            JointProblem::ShoulderUp => Self::ShoulderUp,
+            JointProblem::Roll => Self::JointLimit,
+            JointProblem::Joint => Self::OtherJoint,
+            JointProblem::WristSingularity => Self::Wrist,
+        }
+    }
+}
+
+impl From<Exceeded> for Warning {
+    fn from(exceeded: Exceeded) -> Self {
+        match exceeded {
+            Exceeded::Translation => Self::Translation,
+            Exceeded::Orientation => Self::Orientation,
+        }
+    }
+}
+
+coded_enum! {
+    /// State of the DEPC function.
+    ///
+    /// ```text
+    ///              start               D0..D6, P05, P0B, P9P
+    ///   Off ───────────────► Running ───────────────────────► Warning
+    ///    ▲                   │    ▲        ENTER; 05 after D6    │
+    ///    │ CANCEL      18    │    └──────────────────────────────┤ CANCEL
+    ///    │          Ended ◄──┘                                   ▼
+    ///    └─────────────────────────────────────────────────── PreManual
+    /// ```
+    pub enum ControllerState {
+        /// The program has not come to the DEPC function.
+        Off = "off",
+        /// Commands are taken.
+        Running = "running",
+        /// A warning waits for ENTER or CANCEL; nothing moves.
+        Warning = "warning",
+        /// Error P-IG: the function has ended (A 2.4).
+        PreManual = "pre-manual",
+        /// Cancelled by the host; the program goes on to its next point.
+        Ended = "ended",
+    }
+}
+
+record! {
+    /// The panel and the wiring, as seen in a tick. Pushbuttons are true in the tick in which they are pressed.
+    pub struct ControllerInputs {
+        /// Bytes from the host.
+        pub rx: LinkBytes,
+        /// The host's DTR (A.2).
+        pub cts: bool,
+        /// The RS232 boards are there.
+        pub board: bool,
+        /// The transmitter has a hardware problem.
+        pub transmitter_fault: bool,
+        /// The program comes to the DEPC function.
+        pub start: bool,
+        /// Hold, while it is on: the output in progress is completed, then nothing more is taken.
+        pub hold: bool,
+        /// Interrupt pushbutton.
+        pub interrupt: bool,
+        /// ENTER on the console.
+        pub enter: bool,
+        /// CANCEL on the console.
+        pub cancel: bool,
+    }
+}
+
+record! {
+    /// What the controller does in a tick, beside moving the robot.
+    pub struct ControllerOutputs {
+        /// Bytes to the host.
+        pub tx: LinkBytes,
+        /// DTR, the host's CTS (A.2).
+        pub dtr: bool,
+        /// A command was executed in this tick: the robot moves to [`Controller::commanded`].
+        pub moving: bool,
+        /// Function to run now, that of the command reached in the previous tick.
+        pub function: [u8; 2],
+    }
+}
+
+record! {
+    /// The DEPC function of the controller.
+    pub struct Controller {
+        limits: Limits,
+        state: ControllerState,
+        warning: Warning,
+        receiver: CommandReceiver,
+        commanded: Plate,
+        function: [u8; 2],
+    }
+}
+
+impl Controller {
+    /// A controller whose program has not come to the DEPC function.
+    #[must_use]
+    pub fn new(limits: Limits) -> Self {
+        Self { limits, ..Self::default() }
+    }
+
+    /// State of the function.
+    #[must_use]
+    pub const fn state(&self) -> ControllerState {
+        self.state
+    }
+
+    /// What stands on the screen.
+    #[must_use]
+    pub const fn warning(&self) -> Warning {
+        self.warning
+    }
+
+    /// The position last commanded or reported: what the next command is checked against.
+    #[must_use]
+    pub const fn commanded(&self) -> Plate {
+        self.commanded
+    }
+
+    /// One period. The robot is moved at most once.
+    pub fn step(&mut self, inputs: &ControllerInputs, robot: &mut impl Robot) -> ControllerOutputs {
+        let mut out = ControllerOutputs {
+            function: core::mem::replace(&mut self.function, NO_FUNCTION),
+            ..Default::default()
+        };
+        self.receiver.accept(&inputs.rx);
+        match self.state {
+            ControllerState::Off | ControllerState::Ended => {
+                self.receiver.clear();
+                if inputs.start {
+                    self.begin(inputs, robot, &mut out);
+                }
+            }
+            ControllerState::Running => self.run(inputs, robot, &mut out),
+            ControllerState::Warning => self.wait_for_answer(inputs, robot, &mut out),
+            ControllerState::PreManual => {
+                self.receiver.clear();
+                if inputs.cancel {
+                    self.state = ControllerState::Off;
+                    self.warning = Warning::None;
+                }
+            }
+        }
+        out.dtr = matches!(self.state, ControllerState::Running | ControllerState::Warning);
+        out
+    }
+
+    /// The function begins, or begins again: the checks in their order, then the report.
+    fn begin(&mut self, inputs: &ControllerInputs, robot: &impl Robot, out: &mut ControllerOutputs) {
+        self.receiver.clear();
+        if !inputs.board {
+            self.warn(Warning::BoardMissing);
+        } else if !inputs.cts {
+            self.warn(Warning::CtsLow);
+        } else {
+            self.state = ControllerState::Running;
+            self.warning = Warning::None;
+            self.report(inputs, robot, out);
+        }
+    }
+
+    fn run(&mut self, inputs: &ControllerInputs, robot: &mut impl Robot, out: &mut ControllerOutputs) {
+        if inputs.interrupt {
+            return self.warn(Warning::Interrupt);
+        }
+        if !inputs.cts {
+            return self.warn(Warning::CtsLow);
+        }
+        if inputs.hold {
+            return;
+        }
+        match self.receiver.take() {
+            None => {}
+            Some(Command::Undecipherable) => self.send(inputs, &[Response::Nak.byte()], out),
+            Some(Command::Control(Control::Restart)) => self.report(inputs, robot, out),
+            Some(Command::Control(Control::Cancel)) => {
+                self.send(inputs, &[Response::Ack.byte()], out);
+                self.receiver.clear();
+                self.state = ControllerState::Ended;
+            }
+            Some(Command::Data(command)) => self.execute(inputs, &command, robot, out),
+        }
+    }
+
+    /// ACK says that the command is understood; whether it can be done is found out afterwards (A 2.3).
+    fn execute(
+        &mut self,
+        inputs: &ControllerInputs,
+        command: &DataCommand,
+        robot: &mut impl Robot,
+        out: &mut ControllerOutputs,
+    ) {
+        self.send(inputs, &[Response::Ack.byte()], out);
+        if self.state != ControllerState::Running {
+            return;
+        }
+        let accepted = self
+            .limits
+            .check(&self.commanded, &command.plate)
+            .map_err(Warning::from)
+            .and_then(|()| robot.move_to(&command.plate).map_err(Warning::from));
+        match accepted {
+            Ok(()) => {
+                self.commanded = command.plate;
+                self.function = command.function;
+                out.moving = true;
+            }
+            Err(warning) => self.warn(warning),
+        }
+    }
+
+    fn wait_for_answer(
+        &mut self,
+        inputs: &ControllerInputs,
+        robot: &impl Robot,
+        out: &mut ControllerOutputs,
+    ) {
+        let command = self.receiver.take();
+        let restart = command == Some(Command::Control(Control::Restart)) && self.warning.host_can_restart();
+        self.receiver.clear();
+        if inputs.cancel {
+            self.state = ControllerState::PreManual;
+            self.warning = Warning::Terminated;
+        } else if inputs.enter || restart {
+            self.begin(inputs, robot, out);
+        }
+    }
+
+    fn report(&mut self, inputs: &ControllerInputs, robot: &impl Robot, out: &mut ControllerOutputs) {
+        self.commanded = robot.present();
+        let mut frame = [0; FRAME_BYTES];
+        Report { plate: self.commanded }.emit(&mut frame);
+        self.send(inputs, &frame, out);
+    }
+
+    fn send(&mut self, inputs: &ControllerInputs, bytes: &[u8], out: &mut ControllerOutputs) {
+        if inputs.transmitter_fault || out.tx.extend(bytes) < bytes.len() {
+            self.warn(Warning::Transmitter);
+        }
+    }
+
+    fn warn(&mut self, warning: Warning) {
+        self.receiver.clear();
+        self.state = ControllerState::Warning;
+        self.warning = warning;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rcs_core::kinematics::{HOME_JOINTS, T3};
+
+    const HOME: Plate = Plate { words: [0, -6293, -636, -9000, 13500, 0] };
+
+    /// A robot that is where it is told to be.
+    struct Exact {
+        joints: Joints,
+        at: Plate,
+    }
+
+    impl Robot for Exact {
+        fn present(&self) -> Plate {
+            self.at
+        }
+
+        fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+            self.joints = joints_for(&T3, goal, &self.joints)?;
+            self.at = *goal;
+            Ok(())
+        }
+    }
+
+    fn well() -> ControllerInputs {
+        ControllerInputs { cts: true, board: true, ..Default::default() }
+    }
+
+    fn line(bytes: &[u8]) -> ControllerInputs {
+        let mut inputs = well();
+        assert_eq!(inputs.rx.extend(bytes), bytes.len());
+        inputs
+    }
+
+    fn to(words: [i16; 6], function: [u8; 2]) -> ControllerInputs {
+        let mut frame = [0; 16];
+        DataCommand { function, plate: Plate { words } }.emit(&mut frame);
+        line(&frame)
+    }
+
+    fn running() -> (Controller, Exact) {
+        let (mut controller, mut robot) =
+            (Controller::new(Limits::NBS), Exact { joints: HOME_JOINTS, at: HOME });
+        let out = controller.step(&ControllerInputs { start: true, ..well() }, &mut robot);
+        assert_eq!(Report::parse(out.tx.as_slice()), Ok(Report { plate: HOME }));
+        assert!(out.dtr);
+        (controller, robot)
+    }
+
+    #[test]
+    fn a_command_is_acknowledged_then_executed_then_its_function_runs() {
+        let (mut controller, mut robot) = running();
+        let out = controller.step(&to([10, -6293, -636, -9000, 13500, 0], [1, 2]), &mut robot);
+        assert_eq!((out.tx.as_slice(), out.moving, out.function), (&[0x06][..], true, NO_FUNCTION));
+        assert_eq!(robot.at.words[0], 10);
+        let out = controller.step(&well(), &mut robot);
+        assert_eq!((out.tx.as_slice(), out.moving, out.function), (&[][..], false, [1, 2]));
+        assert_eq!(controller.step(&well(), &mut robot).function, NO_FUNCTION);
+    }
+
+    #[test]
+    fn what_is_not_understood_is_answered_with_nak_and_forgotten() {
+        let (mut controller, mut robot) = running();
+        let mut garbled = to([10, -6293, -636, -9000, 13500, 0], NO_FUNCTION);
+        garbled.rx.bytes[15] ^= 1;
+        let out = controller.step(&garbled, &mut robot);
+        assert_eq!((out.tx.as_slice(), out.moving, robot.at), (&[0x15][..], false, HOME));
+    }
+
+    #[test]
+    fn every_limit_has_its_warning_and_nothing_moves() {
+        for (words, warning) in [
+            ([57, -6293, -636, -9000, 13500, 0], Warning::Translation),
+            ([0, -6293, -636, -9000, 13500, 230], Warning::Orientation),
+        ] {
+            let (mut controller, mut robot) = running();
+            let out = controller.step(&to(words, NO_FUNCTION), &mut robot);
+            assert_eq!((out.tx.as_slice(), out.moving), (&[0x06][..], false));
+            assert_eq!(
+                (controller.state(), controller.warning(), robot.at),
+                (ControllerState::Warning, warning, HOME)
+            );
+            // Silence, until the operator answers; then the report.
+            let out = controller.step(&line(&[0x05]), &mut robot);
+            assert!(out.tx.as_slice().is_empty() && out.dtr);
+            let out = controller.step(&ControllerInputs { enter: true, ..well() }, &mut robot);
+            assert_eq!(Report::parse(out.tx.as_slice()), Ok(Report { plate: HOME }));
+            assert_eq!((controller.state(), controller.warning()), (ControllerState::Running, Warning::None));
+        }
+    }
+
+    #[test]
+    fn joint_problems_are_told_apart() {
+        let at = |degrees: [f64; 6]| {
+            let frame = T3.forward_plate(&degrees.map(f64::to_radians));
+            joints_for(&T3, &Plate::from_frame(&frame, &HOME).unwrap(), &HOME_JOINTS).map(drop)
+        };
+        assert_eq!(at([-90.0, 45.0, -90.0, 0.0, 0.0, 0.0]), Ok(()));
+        assert_eq!(at([-90.0, 92.0, -90.0, 0.0, 0.0, 0.0]), Err(JointProblem::ShoulderUp));
+        assert_eq!(at([-90.0, -5.0, -90.0, 0.0, 0.0, 0.0]), Err(JointProblem::Joint));
+        assert_eq!(at([-90.0, 45.0, -90.0, 0.0, 0.0, 140.0]), Err(JointProblem::Roll));
+        assert_eq!(at([-90.0, 45.0, -90.0, 0.0, 90.0, 0.0]), Err(JointProblem::WristSingularity));
+        let far = Plate { words: [0, -15_000, 0, -9000, 9000, 0] };
+        assert_eq!(joints_for(&T3, &far, &HOME_JOINTS), Err(JointProblem::Joint));
+    }
+
+    #[test]
+    fn the_host_can_restart_after_a_joint_limit() {
+        let (mut controller, mut robot) = running();
+        let mut words = HOME.words;
+        let mut warned = None;
+        for _ in 0..100 {
+            words[5] += 200;
+            controller.step(&to(words, NO_FUNCTION), &mut robot);
+            if controller.state() == ControllerState::Warning {
+                warned = Some(controller.warning());
+                break;
+            }
+        }
+        assert_eq!(warned, Some(Warning::JointLimit));
+        assert_eq!(robot.at.words[5], 13_400);
+        let out = controller.step(&line(&[0x05]), &mut robot);
+        assert_eq!(Report::parse(out.tx.as_slice()), Ok(Report { plate: robot.at }));
+    }
+
+    #[test]
+    fn cancel_is_acknowledged_and_ends_the_function() {
+        let (mut controller, mut robot) = running();
+        let out = controller.step(&line(&[0x18]), &mut robot);
+        assert_eq!((out.tx.as_slice(), out.dtr), (&[0x06][..], false));
+        assert_eq!(controller.state(), ControllerState::Ended);
+    }
+
+    #[test]
+    fn hold_only_delays() {
+        let (mut controller, mut robot) = running();
+        let mut inputs = to([10, -6293, -636, -9000, 13500, 0], NO_FUNCTION);
+        inputs.hold = true;
+        assert_eq!(controller.step(&inputs, &mut robot).tx.length, 0);
+        assert_eq!(controller.step(&ControllerInputs { hold: true, ..well() }, &mut robot).tx.length, 0);
+        assert!(controller.step(&well(), &mut robot).moving);
+    }
+
+    #[test]
+    fn wiring_and_operator_have_their_warnings() {
+        let faults = [
+            (ControllerInputs { cts: false, ..well() }, Warning::CtsLow),
+            (ControllerInputs { interrupt: true, ..well() }, Warning::Interrupt),
+            (ControllerInputs { transmitter_fault: true, ..line(&[0x05]) }, Warning::Transmitter),
+        ];
+        for (inputs, warning) in faults {
+            let (mut controller, mut robot) = running();
+            controller.step(&inputs, &mut robot);
+            assert_eq!((controller.state(), controller.warning()), (ControllerState::Warning, warning));
+            let out = controller.step(&ControllerInputs { cancel: true, ..well() }, &mut robot);
+            assert_eq!(
+                (controller.state(), controller.warning()),
+                (ControllerState::PreManual, Warning::Terminated)
+            );
+            assert!(!out.dtr);
+            controller.step(&ControllerInputs { cancel: true, ..well() }, &mut robot);
+            assert_eq!(controller.state(), ControllerState::Off);
+        }
+        let (mut controller, mut robot) =
+            (Controller::new(Limits::NBS), Exact { joints: HOME_JOINTS, at: HOME });
+        controller.step(&ControllerInputs { start: true, board: false, ..well() }, &mut robot);
+        assert_eq!(controller.warning(), Warning::BoardMissing);
+    }
+}

@@ -1,0 +1,65 @@
+//! What can be wrong with a position or a frame: small, `Copy`, with what was expected and what was found.
+
+use core::fmt;
+
+/// Why a position cannot be sent, or why bytes are not a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Error {
+    /// A coordinate that sixteen bits cannot hold: the caller must not send it.
+    OutOfRange {
+        /// 0, 1, 2 for X, Y, Z.
+        axis: usize,
+        /// The coordinate, inches.
+        inches: f64,
+    },
+    /// A position that is not a number.
+    NotFinite,
+    /// A period that is not a positive multiple of 10 ms up to 1000 ms (VI.1).
+    BadPeriod {
+        /// The period asked for, milliseconds.
+        milliseconds: u16,
+    },
+    /// Too few or too many bytes for the frame.
+    BadLength {
+        /// Bytes of the frame.
+        expected: usize,
+        /// Bytes given.
+        found: usize,
+    },
+    /// The frame begins with another byte.
+    BadHead {
+        /// The byte that the frame has there.
+        expected: u8,
+        /// The byte found.
+        found: u8,
+    },
+    /// The bytes do not add up: the line has changed one.
+    BadChecksum {
+        /// The checksum of the bytes received.
+        expected: u8,
+        /// The checksum byte received.
+        found: u8,
+    },
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutOfRange { axis, inches } => {
+                let name = ["X", "Y", "Z"].get(*axis).copied().unwrap_or("?");
+                write!(f, "{name} of the end plate is {inches:.2} in, a word holds -327.68 to 327.67 in")
+            }
+            Self::NotFinite => f.write_str("not a position"),
+            Self::BadPeriod { milliseconds } => {
+                write!(f, "the period is a multiple of 10 ms from 10 to 1000, found {milliseconds} ms")
+            }
+            Self::BadLength { expected, found } => write!(f, "the frame has {expected} bytes, found {found}"),
+            Self::BadHead { expected, found } => write!(f, "expected byte {expected:02X}, found {found:02X}"),
+            Self::BadChecksum { expected, found } => {
+                write!(f, "the checksum is {found:02X}, the bytes give {expected:02X}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for Error {}

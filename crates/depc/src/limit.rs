@@ -1,0 +1,145 @@
+//! The velocity limits of the controller (A 2.3): 14 in/s and 1.0 rad/s.
+//!
+//! The controller sees only the words on the line, so the limits are those of a step from one set of words to the next:
+//! the distance that the end plate moves, and each of D, E and R by itself (ASSUMED; the appendix says "the commanded
+//! change in translation or orientation"). Both ends use the same integers, so that what one lets pass the other accepts.
+
+use core::fmt;
+
+use rcs_core::record;
+
+use crate::{Error, Plate, plate::angle_between};
+
+/// Translation limit: 1.4 counts of 0.01 in a millisecond, here in tenths of a count.
+const TRANSLATION_TENTHS_PER_MS: u64 = 14;
+/// Orientation limit: 1 rad/s = 5.72957795 counts of 0.01 degree a millisecond, here in hundred-millionths of a count.
+const ORIENTATION_PER_MS: u64 = 572_957_795;
+
+record! {
+    /// The limits for one period of the link.
+    pub struct Limits {
+        /// Time that a data command is given to be reached, milliseconds.
+        period_ms: u16,
+    }
+}
+
+/// Which limit a step exceeds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exceeded {
+    /// The end plate would move too far: warning D3.
+    Translation,
+    /// D, E or R would change too much: warning D4.
+    Orientation,
+}
+
+impl fmt::Display for Exceeded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Translation => "more than 14 in/s of the end plate",
+            Self::Orientation => "more than 1.0 rad/s in D, E or R",
+        })
+    }
+}
+
+impl Limits {
+    /// The period that NBS configured (VI.1): 40 ms; 0.56 in and 2.29 degrees.
+    pub const NBS: Self = Self { period_ms: 40 };
+
+    /// Limits for a period in milliseconds.
+    ///
+    /// # Errors
+    /// [`Error::BadPeriod`] if it is not a multiple of 10 ms from 10 to 1000 (VI.1).
+    pub const fn new(period_ms: u16) -> Result<Self, Error> {
+        if period_ms == 0 || period_ms > 1000 || !period_ms.is_multiple_of(10) {
+            return Err(Error::BadPeriod { milliseconds: period_ms });
+        }
+        Ok(Self { period_ms })
+    }
+
+    /// The period, milliseconds.
+    #[must_use]
+    pub const fn period_ms(&self) -> u16 {
+        self.period_ms
+    }
+
+    /// The longest way of the end plate in a period, squared, in (0.01 in)².
+    #[must_use]
+    pub fn translation_squared(&self) -> u64 {
+        let tenths = TRANSLATION_TENTHS_PER_MS.saturating_mul(u64::from(self.period_ms));
+        tenths.saturating_mul(tenths).checked_div(100).unwrap_or_default()
+    }
+
+    /// The largest change of D, E or R in a period, 0.01 degree.
+    #[must_use]
+    pub fn orientation(&self) -> i32 {
+        let scaled = ORIENTATION_PER_MS.saturating_mul(u64::from(self.period_ms));
+        i32::try_from(scaled.checked_div(100_000_000).unwrap_or_default()).unwrap_or(i32::MAX)
+    }
+
+    /// Whether the controller accepts a step between two positions.
+    ///
+    /// # Errors
+    /// The limit that it exceeds, translation first.
+    pub fn check(&self, from: &Plate, to: &Plate) -> Result<(), Exceeded> {
+        let ([x, y, z, d, e, r], [to_x, to_y, to_z, to_d, to_e, to_r]) = (from.words, to.words);
+        let squared: u64 = [(x, to_x), (y, to_y), (z, to_z)]
+            .iter()
+            .map(|(a, b)| u64::from(a.abs_diff(*b)))
+            .map(|way| way.saturating_mul(way))
+            .fold(0, u64::saturating_add);
+        if squared > self.translation_squared() {
+            return Err(Exceeded::Translation);
+        }
+        let too_much = |(a, b): &(i16, i16)| angle_between(*a, *b).saturating_abs() > self.orientation();
+        if [(d, to_d), (e, to_e), (r, to_r)].iter().any(too_much) {
+            return Err(Exceeded::Orientation);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HOME: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
+
+    fn moved(by: [i16; 6]) -> Plate {
+        let mut words = HOME.words;
+        for (word, by) in words.iter_mut().zip(by) {
+            *word += by;
+        }
+        Plate { words }
+    }
+
+    #[test]
+    fn limits_are_those_of_the_period() {
+        assert_eq!((Limits::NBS.translation_squared(), Limits::NBS.orientation()), (56 * 56, 229));
+        let ten = Limits::new(10).unwrap();
+        assert_eq!((ten.translation_squared(), ten.orientation()), (14 * 14, 57));
+        for bad in [0, 5, 45, 1010] {
+            assert_eq!(Limits::new(bad), Err(Error::BadPeriod { milliseconds: bad }));
+        }
+    }
+
+    #[test]
+    fn the_last_count_is_allowed_and_the_next_is_not() {
+        let check = |by| Limits::NBS.check(&HOME, &moved(by));
+        assert_eq!(check([56, 0, 0, 229, -229, 229]), Ok(()));
+        assert_eq!(check([0, 57, 0, 0, 0, 0]), Err(Exceeded::Translation));
+        assert_eq!(check([40, 40, 0, 0, 0, 0]), Err(Exceeded::Translation));
+        assert_eq!(check([32, -32, 32, 0, 0, 0]), Ok(()));
+        for place in 3..6 {
+            let mut by = [0; 6];
+            by[place] = -230;
+            assert_eq!(check(by), Err(Exceeded::Orientation));
+        }
+    }
+
+    #[test]
+    fn a_whole_turn_is_no_change() {
+        let a = Plate { words: [0, 0, 0, 18_000, 9_000, -17_950] };
+        let b = Plate { words: [0, 0, 0, -18_000, 9_000, 18_000] };
+        assert_eq!(Limits::NBS.check(&a, &b), Ok(()));
+    }
+}

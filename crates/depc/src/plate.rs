@@ -1,0 +1,246 @@
+//! The coding of a position on the line, in this one place.
+//!
+//! Appendix A gives "12 bytes of world coordinates" and no more; VI.1 says that they are those of the end plate, in
+//! Cartesian and Euler form. ASSUMED (SPECNOTES): six signed words X, Y, Z in 0.01 in and D, E, R in 0.01 degree, where
+//!
+//! ```text
+//! rotation = Rz(D) Ry(E - 90) Rx(R)      D: azimuth of the gripper axis about world +Z
+//!                                        E: angle of the gripper axis from world +Z: 0 up, 90 level, 180 down
+//!                                        R: roll about the gripper axis
+//! ```
+//!
+//! so that a vertical gripper is the pole of the angles, which is what the manual warns of.
+//!
+//! E stays within 0 to 180 degrees. D and R run on from one position to the next without jumps of 360 degrees; where a
+//! word would overflow it goes back by 360, and both ends compare modulo 360. At the pole D says nothing, and stays.
+
+use core::f64::consts::PI;
+
+use nalgebra::Rotation3;
+use rcs_core::{
+    frame::{Frame, Rotation, Vector},
+    kinematics::Arm,
+    record,
+    units::{hundredths, hundredths_of_degree, inches, radians},
+};
+
+use crate::Error;
+
+/// A whole turn, 0.01 degree.
+const TURN: i32 = 36_000;
+/// Half a turn, 0.01 degree; also E of a gripper that points straight down.
+pub const HALF_TURN: i32 = 18_000;
+
+record! {
+    /// A position of the end plate as it stands on the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (ASSUMED coding).
+    pub struct Plate {
+        /// X, Y, Z, D, E, R.
+        pub words: [i16; 6],
+    }
+}
+
+/// The shortest way from angle word `from` to angle word `to`, modulo 360 degrees: -18000 to 17999, in 0.01 degree.
+#[must_use]
+pub fn angle_between(from: i16, to: i16) -> i32 {
+    shortest(i32::from(to).saturating_sub(i32::from(from)))
+}
+
+fn shortest(difference: i32) -> i32 {
+    difference.saturating_add(HALF_TURN).rem_euclid(TURN).saturating_sub(HALF_TURN)
+}
+
+/// The word of `angle` (0.01 degree) that is nearest to `near`, or a turn further where that word would not fit.
+#[must_use]
+pub fn angle_word(angle: i32, near: i16) -> i16 {
+    let near = i32::from(near);
+    let word = near.saturating_add(shortest(angle.saturating_sub(near)));
+    [word, word.saturating_sub(TURN), word.saturating_add(TURN)]
+        .into_iter()
+        .find_map(|word| i16::try_from(word).ok())
+        .unwrap_or_default()
+}
+
+/// Rz(D) Ry(E - 90): the rotation without roll. Angles in 0.01 degree.
+fn pointing(d: i32, e: i32) -> Rotation {
+    Rotation3::from_axis_angle(&Vector::z_axis(), radians(d))
+        * Rotation3::from_axis_angle(&Vector::y_axis(), radians(e) - PI / 2.0)
+}
+
+impl Plate {
+    /// The words of an end-plate frame (inches, world), with D and R near those of `near`.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] if X, Y or Z does not fit, [`Error::NotFinite`] if a number is not one. Nothing wraps around.
+    pub fn from_frame(plate: &Frame, near: &Self) -> Result<Self, Error> {
+        if !plate.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        let word = |axis: usize, inches: f64| {
+            i16::try_from(hundredths(inches)).map_err(|_| Error::OutOfRange { axis, inches })
+        };
+        let [.., near_d, _, near_r] = near.words;
+        let axis = plate.x();
+        let across = libm::hypot(axis.x, axis.y);
+        let e = hundredths_of_degree(libm::atan2(across, axis.z));
+        let d = if e == 0 || e == HALF_TURN {
+            near_d
+        } else {
+            angle_word(hundredths_of_degree(libm::atan2(axis.y, axis.x)), near_d)
+        };
+        // The roll is what the rounded D and E leave over, so that near the pole their rounding does not add up.
+        let rolled_y = (pointing(i32::from(d), e).inverse() * plate.rotation) * Vector::y();
+        let r = angle_word(hundredths_of_degree(libm::atan2(rolled_y.z, rolled_y.y)), near_r);
+        let (x, y, z) = (word(0, plate.position.x)?, word(1, plate.position.y)?, word(2, plate.position.z)?);
+        Ok(Self { words: [x, y, z, d, i16::try_from(e).unwrap_or_default(), r] })
+    }
+
+    /// The words of a tool frame: the end plate of `arm` stands one tool length behind the tool point.
+    ///
+    /// # Errors
+    /// As [`Plate::from_frame`].
+    pub fn from_tool(tool: &Frame, arm: &Arm, near: &Self) -> Result<Self, Error> {
+        Self::from_frame(&tool.shifted(Vector::new(-arm.plate_to_tool, 0.0, 0.0)), near)
+    }
+
+    /// The end-plate frame, inches, world.
+    #[must_use]
+    pub fn to_frame(&self) -> Frame {
+        let [x, y, z, d, e, r] = self.words.map(i32::from);
+        Frame {
+            position: Vector::new(inches(x), inches(y), inches(z)),
+            rotation: pointing(d, e) * Rotation3::from_axis_angle(&Vector::x_axis(), radians(r)),
+        }
+    }
+
+    /// The tool frame, inches, world.
+    #[must_use]
+    pub fn to_tool(&self, arm: &Arm) -> Frame {
+        self.to_frame().shifted(Vector::new(arm.plate_to_tool, 0.0, 0.0))
+    }
+
+    /// True if E is within 0 to 180 degrees, as every position of this coding has it.
+    #[must_use]
+    pub fn is_canonical(&self) -> bool {
+        let [.., e, _] = self.words;
+        (0..=HALF_TURN).contains(&i32::from(e))
+    }
+
+    /// True if the two are the same position on the line: equal words, the angles modulo 360 degrees.
+    #[must_use]
+    pub fn same(&self, other: &Self) -> bool {
+        let ([x, y, z, d, e, r], [ox, oy, oz, od, oe, or]) = (self.words, other.words);
+        [x, y, z] == [ox, oy, oz]
+            && [(d, od), (e, oe), (r, or)].iter().all(|(a, b)| angle_between(*a, *b) == 0)
+    }
+
+    /// The twelve bytes, each word high byte first.
+    #[must_use]
+    pub fn to_bytes(&self) -> [u8; 12] {
+        let mut bytes = [0; 12];
+        for (pair, word) in bytes.chunks_exact_mut(2).zip(self.words) {
+            pair.copy_from_slice(&word.to_be_bytes());
+        }
+        bytes
+    }
+
+    /// The position that twelve bytes give; any twelve bytes are one.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8; 12]) -> Self {
+        let mut words = [0; 6];
+        let (pairs, _) = bytes.as_chunks::<2>();
+        for (word, pair) in words.iter_mut().zip(pairs) {
+            *word = i16::from_be_bytes(*pair);
+        }
+        Self { words }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use rcs_core::{
+        kinematics::T3,
+        pose::{Pose, WireFrame},
+    };
+
+    const HOME: WireFrame =
+        WireFrame { tool: [0, -7145, -1483], wrist_to_tool: [0, -2123, -2119], tool_to_finger: [3000, 0, 0] };
+
+    fn plate(words: [i16; 6]) -> Plate {
+        Plate { words }
+    }
+
+    #[test]
+    fn home_has_the_worked_words() {
+        let home = Plate::from_tool(&HOME.to_frame().unwrap(), &T3, &Plate::default()).unwrap();
+        assert_eq!(home, plate([0, -6296, -635, -9000, 13495, 0]));
+        assert_eq!(home.to_bytes(), [0, 0, 0xE7, 0x68, 0xFD, 0x85, 0xDC, 0xD8, 0x34, 0xB7, 0, 0]);
+        assert_eq!(Plate::from_bytes(&home.to_bytes()), home);
+    }
+
+    #[test]
+    fn tool_trns_has_the_worked_angles() {
+        let pose =
+            Pose { wrist: [6497, -2366, 1569], tool: [9495, -2475, 1595], finger: [9523, -1460, -1228] };
+        let [.., d, e, r] =
+            Plate::from_tool(&pose.to_frame().unwrap(), &T3, &Plate::default()).unwrap().words;
+        assert_eq!([d, e, r], [-208, 8950, -7022]);
+    }
+
+    #[test]
+    fn angles_run_on_and_go_back_where_the_word_ends() {
+        assert_eq!(angle_word(-17_900, 17_900), 18_100);
+        assert_eq!(angle_word(17_900, -17_900), -18_100);
+        assert_eq!(angle_word(-3_000, 32_700), -3_000);
+        assert_eq!(angle_between(32_767, -3_233), 0);
+        assert_eq!(angle_between(17_900, -17_900), 200);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let mut frame = Frame::identity();
+        frame.position.y = 327.68;
+        assert_eq!(
+            Plate::from_frame(&frame, &Plate::default()),
+            Err(Error::OutOfRange { axis: 1, inches: 327.68 })
+        );
+        frame.position.y = f64::NAN;
+        assert_eq!(Plate::from_frame(&frame, &Plate::default()), Err(Error::NotFinite));
+    }
+
+    #[test]
+    fn at_the_pole_d_stays_and_the_roll_follows() {
+        let down = plate([100, 200, 300, 4000, 18_000, 1000]);
+        assert_eq!(Plate::from_frame(&down.to_frame(), &down), Ok(down));
+        // Straight down only R - D counts, straight up only R + D.
+        let near = plate([0, 0, 0, 5000, 0, 0]);
+        assert_eq!(
+            Plate::from_frame(&down.to_frame(), &near).unwrap().words,
+            [100, 200, 300, 5000, 18_000, 2000]
+        );
+        let up = plate([100, 200, 300, 4000, 0, 1000]);
+        assert_eq!(Plate::from_frame(&up.to_frame(), &near).unwrap().words, [100, 200, 300, 5000, 0, 0]);
+    }
+
+    proptest! {
+        #[test]
+        fn words_come_back(words: [i16; 6], e in 0_i16..=18_000) {
+            let mut here = plate(words);
+            here.words[4] = e;
+            prop_assert_eq!(Plate::from_frame(&here.to_frame(), &here), Ok(here));
+            prop_assert!(here.is_canonical() && here.same(&here));
+            prop_assert_eq!(Plate::from_bytes(&here.to_bytes()), here);
+        }
+
+        #[test]
+        fn a_rounded_position_is_near(words: [i16; 6], near: [i16; 6], dx in -0.005_f64..0.005) {
+            let mut frame = plate(words).to_frame();
+            frame.position.x = (frame.position.x + dx).clamp(-327.0, 327.0);
+            let back = Plate::from_frame(&frame, &plate(near)).unwrap();
+            let off = back.to_frame().distance(&frame);
+            prop_assert!(off.inches < 0.0051 && off.radians < 2.7e-4, "{:?}", off);
+            prop_assert!(back.is_canonical());
+        }
+    }
+}

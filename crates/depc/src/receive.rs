@@ -1,0 +1,377 @@
+//! The receivers of both ends: bytes in, frames out.
+//!
+//! A byte may be changed, lost, doubled or late. Each receiver holds a bounded number of bytes, finds the next frame after
+//! any garbage, and never waits for the end of a frame that does not come: a tick in which nothing arrives ends whatever
+//! was begun (a frame takes 17 ms, a tick 40 ms).
+
+use rcs_core::{interface::device::LinkBytes, record};
+
+use crate::{
+    Error, Plate,
+    wire::{Control, DataCommand, FRAME_BYTES, Report, Response, START},
+};
+
+/// Bytes that the controller's receiver board holds (ASSUMED; the appendix expects one command in it).
+pub const BOARD_BYTES: usize = 64;
+/// Ticks after which garbage is answered even if the line is not quiet.
+const GARBLED_TICKS: u8 = 3;
+
+/// What the controller has received.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// A data command with a right checksum.
+    Data(DataCommand),
+    /// Cancel or restart.
+    Control(Control),
+    /// Bytes that are no command: to be answered with a NAK. The buffer is empty.
+    Undecipherable,
+}
+
+record! {
+    /// The receiver of the controller, with its buffer (A 2.3 "the buffer on the RS232 board").
+    ///
+    /// What follows a bad byte must not be read as commands: a data frame that has lost its first byte may hold a cancel.
+    /// So everything is discarded until the line is quiet, and only then comes the NAK.
+    pub struct CommandReceiver {
+        bytes: [u8; BOARD_BYTES],
+        length: u8,
+        /// Nothing arrived in this tick.
+        quiet: bool,
+        /// Ticks since a bad byte, 0 for none.
+        garbled: u8,
+    }
+}
+
+impl CommandReceiver {
+    /// Take in the bytes of a tick; call it once a tick, also when there are none. Bytes that find no room are a fault.
+    pub fn accept(&mut self, rx: &LinkBytes) {
+        let bytes = rx.as_slice();
+        self.quiet = bytes.is_empty();
+        for byte in bytes {
+            match self.bytes.get_mut(usize::from(self.length)) {
+                Some(slot) => {
+                    *slot = *byte;
+                    self.length = self.length.saturating_add(1);
+                }
+                None => self.garbled = self.garbled.max(1),
+            }
+        }
+    }
+
+    /// The next command, if one is complete.
+    pub fn take(&mut self) -> Option<Command> {
+        if self.garbled > 0 {
+            self.clear();
+            if self.quiet || self.garbled >= GARBLED_TICKS {
+                self.garbled = 0;
+                return Some(Command::Undecipherable);
+            }
+            self.garbled = self.garbled.saturating_add(1);
+            return None;
+        }
+        let held = self.bytes.get(..usize::from(self.length)).unwrap_or_default();
+        let first = *held.first()?;
+        if first == START {
+            return self.data();
+        }
+        // Several restarts in a row are one: the host has only become impatient. A command may follow, nothing else.
+        let same = held.iter().take_while(|byte| **byte == first).count();
+        let next = held.get(same);
+        match Control::from_byte(first) {
+            Some(control) if next.is_none_or(|byte| *byte == START) => {
+                self.drop_first(same);
+                Some(Command::Control(control))
+            }
+            _ => {
+                self.clear();
+                self.garbled = 1;
+                None
+            }
+        }
+    }
+
+    /// Forget everything received.
+    pub fn clear(&mut self) {
+        self.drop_first(BOARD_BYTES);
+    }
+
+    fn data(&mut self) -> Option<Command> {
+        let held = self.bytes.get(..usize::from(self.length)).unwrap_or_default();
+        let Some(frame) = held.first_chunk::<FRAME_BYTES>() else {
+            if self.quiet {
+                self.clear();
+                return Some(Command::Undecipherable);
+            }
+            return None;
+        };
+        if let Ok(command) = DataCommand::parse(frame) {
+            self.drop_first(FRAME_BYTES);
+            return Some(Command::Data(command));
+        }
+        let more = held.len() > FRAME_BYTES;
+        self.clear();
+        if more {
+            self.garbled = 1;
+            return None;
+        }
+        Some(Command::Undecipherable)
+    }
+
+    fn drop_first(&mut self, count: usize) {
+        let length = usize::from(self.length);
+        let count = count.min(length);
+        self.bytes.rotate_left(count);
+        let left = length.saturating_sub(count);
+        self.bytes.iter_mut().skip(left).for_each(|byte| *byte = 0);
+        self.length = u8::try_from(left).unwrap_or(u8::MAX);
+    }
+}
+
+/// What the host has received.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reply {
+    /// ACK or NAK.
+    Response(Response),
+    /// A report with a right checksum.
+    Report(Plate),
+    /// A report with a wrong checksum.
+    BadChecksum,
+    /// A byte that belongs to nothing.
+    Garbage,
+}
+
+record! {
+    /// The receiver of the host: one report long.
+    pub struct ReplyReceiver {
+        bytes: [u8; FRAME_BYTES],
+        length: u8,
+    }
+}
+
+impl ReplyReceiver {
+    /// Take in one byte.
+    pub fn push(&mut self, byte: u8) -> Option<Reply> {
+        if self.length == 0
+            && let Some(response) = Response::from_byte(byte)
+        {
+            return Some(Reply::Response(response));
+        }
+        if let Some(slot) = self.bytes.get_mut(usize::from(self.length)) {
+            *slot = byte;
+            self.length = self.length.saturating_add(1);
+        }
+        if !self.may_begin(0) {
+            // A third FF leaves the last two standing; anything else ends the search.
+            self.resynchronise();
+            return Some(Reply::Garbage);
+        }
+        if usize::from(self.length) < FRAME_BYTES {
+            return None;
+        }
+        let report = Report::parse(&self.bytes);
+        match report {
+            Ok(Report { plate }) => {
+                self.clear();
+                Some(Reply::Report(plate))
+            }
+            Err(Error::BadChecksum { .. }) => {
+                self.resynchronise();
+                Some(Reply::BadChecksum)
+            }
+            Err(_) => {
+                self.resynchronise();
+                Some(Reply::Garbage)
+            }
+        }
+    }
+
+    /// A tick without bytes: what was begun does not go on. True if something was.
+    pub fn idle(&mut self) -> bool {
+        let begun = self.length > 0;
+        self.clear();
+        begun
+    }
+
+    /// Forget everything received.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// True if the bytes from `place` on can be the beginning of a report.
+    fn may_begin(&self, place: usize) -> bool {
+        let held = self.bytes.iter().take(usize::from(self.length)).skip(place);
+        held.zip(Report::HEAD).all(|(byte, head)| *byte == head)
+    }
+
+    /// Drop the first byte, and all up to the next that can begin a report.
+    fn resynchronise(&mut self) {
+        let length = usize::from(self.length);
+        let place = (1..length).find(|place| self.may_begin(*place)).unwrap_or(length);
+        self.bytes.rotate_left(place.min(FRAME_BYTES));
+        let left = length.saturating_sub(place);
+        self.bytes.iter_mut().skip(left).for_each(|byte| *byte = 0);
+        self.length = u8::try_from(left).unwrap_or_default();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::NO_FUNCTION;
+    use proptest::prelude::*;
+
+    const HOME: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
+
+    fn bytes(of: &[u8]) -> LinkBytes {
+        let mut link = LinkBytes::default();
+        assert_eq!(link.extend(of), of.len());
+        link
+    }
+
+    fn command() -> [u8; 16] {
+        let mut frame = [0xA5; 16];
+        DataCommand { function: NO_FUNCTION, plate: HOME }.emit(&mut frame);
+        frame
+    }
+
+    fn report() -> [u8; 16] {
+        let mut frame = [0xA5; 16];
+        Report { plate: HOME }.emit(&mut frame);
+        frame
+    }
+
+    fn tick(receiver: &mut CommandReceiver, of: &[u8]) -> Option<Command> {
+        receiver.accept(&bytes(of));
+        receiver.take()
+    }
+
+    fn all(receiver: &mut ReplyReceiver, of: &[u8]) -> Vec<Reply> {
+        of.iter().filter_map(|byte| receiver.push(*byte)).collect()
+    }
+
+    #[test]
+    fn a_command_may_come_in_two_ticks() {
+        let mut receiver = CommandReceiver::default();
+        assert_eq!(tick(&mut receiver, &command()[..7]), None);
+        assert_eq!(
+            tick(&mut receiver, &command()[7..]),
+            Some(Command::Data(DataCommand { function: NO_FUNCTION, plate: HOME }))
+        );
+        assert_eq!(receiver.take(), None);
+    }
+
+    #[test]
+    fn a_frame_that_does_not_end_is_answered_in_the_next_tick() {
+        let mut receiver = CommandReceiver::default();
+        assert_eq!(tick(&mut receiver, &command()[..15]), None);
+        assert_eq!(tick(&mut receiver, &[]), Some(Command::Undecipherable));
+        assert_eq!(tick(&mut receiver, &[0x05]), Some(Command::Control(Control::Restart)));
+    }
+
+    #[test]
+    fn a_wrong_checksum_is_answered_at_once() {
+        let mut receiver = CommandReceiver::default();
+        let mut frame = command();
+        frame[4] ^= 0x10;
+        assert_eq!(tick(&mut receiver, &frame), Some(Command::Undecipherable));
+        assert!(matches!(tick(&mut receiver, &command()), Some(Command::Data(_))));
+    }
+
+    #[test]
+    fn a_frame_without_its_first_byte_is_not_read_as_commands() {
+        // Its function bytes are a cancel and a restart.
+        let mut frame = [0; 16];
+        DataCommand { function: [0x18, 0x05], plate: Plate { words: [0x1805; 6] } }.emit(&mut frame);
+        let mut receiver = CommandReceiver::default();
+        receiver.accept(&bytes(&frame[2..]));
+        assert_eq!(receiver.take(), None);
+        assert_eq!(tick(&mut receiver, &[0x18, 0x05]), None);
+        assert_eq!(tick(&mut receiver, &[]), Some(Command::Undecipherable));
+        assert_eq!(tick(&mut receiver, &[0x18]), Some(Command::Control(Control::Cancel)));
+    }
+
+    #[test]
+    fn restarts_in_a_row_are_one_and_a_command_behind_them_is_kept() {
+        let mut receiver = CommandReceiver::default();
+        let mut line = vec![0x05; 3];
+        line.extend(command());
+        assert_eq!(tick(&mut receiver, &line), Some(Command::Control(Control::Restart)));
+        assert!(matches!(receiver.take(), Some(Command::Data(_))));
+        assert_eq!(receiver, CommandReceiver::default());
+    }
+
+    #[test]
+    fn more_than_the_board_holds_is_a_fault() {
+        let mut receiver = CommandReceiver::default();
+        receiver.accept(&bytes(&[0x03; 60]));
+        receiver.accept(&bytes(&[0x03; 60]));
+        assert_eq!(receiver.take(), None);
+        assert_eq!(tick(&mut receiver, &[]), Some(Command::Undecipherable));
+    }
+
+    #[test]
+    fn a_report_is_found_behind_garbage_that_looks_like_one() {
+        let mut receiver = ReplyReceiver::default();
+        let mut line = vec![0x41, 0xFF, 0xFF, 0x03, 0x06, 0xFF];
+        line.extend(report());
+        let replies = all(&mut receiver, &line);
+        assert_eq!(replies.last(), Some(&Reply::Report(HOME)), "{replies:?}");
+        assert!(replies.contains(&Reply::BadChecksum));
+        assert_eq!(receiver, ReplyReceiver::default());
+    }
+
+    #[test]
+    fn one_ff_too_many_does_not_hide_a_report() {
+        let mut receiver = ReplyReceiver::default();
+        let mut line = vec![0xFF];
+        line.extend(report());
+        assert_eq!(all(&mut receiver, &line), [Reply::Garbage, Reply::Report(HOME)]);
+    }
+
+    #[test]
+    fn responses_are_read_between_reports_and_not_in_them() {
+        let mut receiver = ReplyReceiver::default();
+        let mut frame = [0; 16];
+        Report { plate: Plate { words: [0x0615, 0x1506, 0, 0, 0, 0] } }.emit(&mut frame);
+        assert_eq!(all(&mut receiver, &frame).len(), 1);
+        assert_eq!(receiver.push(0x06), Some(Reply::Response(Response::Ack)));
+        assert_eq!(receiver.push(0x15), Some(Reply::Response(Response::Nak)));
+    }
+
+    #[test]
+    fn a_report_that_stops_is_dropped() {
+        let mut receiver = ReplyReceiver::default();
+        assert_eq!(all(&mut receiver, &report()[..9]), []);
+        assert!(receiver.idle());
+        assert!(!receiver.idle());
+        assert_eq!(all(&mut receiver, &report()), [Reply::Report(HOME)]);
+    }
+
+    proptest! {
+        #[test]
+        fn after_any_garbage_and_a_quiet_tick_a_command_is_understood(
+            ticks in proptest::collection::vec(proptest::collection::vec(any::<u8>(), 0..=64), 0..8),
+        ) {
+            let mut receiver = CommandReceiver::default();
+            for line in &ticks {
+                receiver.accept(&bytes(line));
+                while receiver.take().is_some() {}
+            }
+            for _ in 0..2 {
+                receiver.accept(&LinkBytes::default());
+                while receiver.take().is_some() {}
+            }
+            prop_assert!(matches!(tick(&mut receiver, &command()), Some(Command::Data(_))));
+        }
+
+        #[test]
+        fn after_any_garbage_a_report_is_found(garbage in proptest::collection::vec(any::<u8>(), 0..100)) {
+            let mut receiver = ReplyReceiver::default();
+            for byte in garbage {
+                receiver.push(byte);
+            }
+            receiver.idle();
+            prop_assert_eq!(all(&mut receiver, &report()), [Reply::Report(HOME)]);
+        }
+    }
+}

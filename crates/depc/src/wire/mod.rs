@@ -1,0 +1,42 @@
+//! The frames of appendix A 2.3, one file each; all numbers in them are hexadecimal.
+//!
+//! | from | frame | bytes |
+//! |---|---|---|
+//! | controller | [`Report`] | `FF FF 03`, 12 of position, checksum |
+//! | host | [`DataCommand`] | `03`, 2 of function, 12 of position, checksum |
+//! | host | [`Control`] | `18` cancel, `05` restart; no checksum |
+//! | controller | [`Response`] | `06` ACK, `15` NAK; no checksum |
+
+mod control;
+mod data;
+mod report;
+
+pub use control::{Control, Response};
+pub use data::{DataCommand, NO_FUNCTION};
+pub use report::Report;
+
+/// Bytes of a report and of a data command.
+pub const FRAME_BYTES: usize = 16;
+
+/// First byte of a data command, third of a report (A 2.3).
+pub const START: u8 = 0x03;
+/// First two bytes of a report (A 2.3).
+pub const FILL: u8 = 0xFF;
+
+/// The checksum: all bytes exclusive-ored, beginning with zero (A 2.3). Over a frame with its checksum it is zero.
+#[must_use]
+pub fn checksum(bytes: &[u8]) -> u8 {
+    bytes.iter().fold(0, |sum, byte| sum ^ byte)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_checksum_of_nothing_is_zero_and_the_fill_bytes_do_not_count() {
+        assert_eq!(checksum(&[]), 0);
+        assert_eq!(checksum(&[0xFF, 0xFF, 0x03]), checksum(&[0x03]));
+        assert_eq!(checksum(&[0x03, 0xE7, 0x68, 0xFD, 0x85, 0xDC, 0xD8, 0x34, 0xB7]), 0x73);
+    }
+}
