@@ -8,6 +8,7 @@ use core::fmt;
 
 use rcs_core::{
     frame::Frame,
+    interface::subtask::LocationKind,
     name::{Name, Name10, Name16},
     record,
 };
@@ -24,8 +25,8 @@ record! {
     ///
     /// It fits into a buffer (`locpt-type-in`, `locpt-^-in`; V.2.2).
     pub struct Place {
-        /// How the command's location was understood: `lpt`, `arr` (a static array) or `own` (a sector at an owner).
-        pub kind: RefType,
+        /// How the command's location was understood: a location point, a static array, or a sector at an owner.
+        pub kind: LocationKind,
         /// The location point; null for a static array.
         pub locpt: LocptId,
         /// The array in which the sector lies; null for a location point.
@@ -165,7 +166,7 @@ impl<'a> TaskData<'a> {
 
     fn point<const N: usize>(&self, id: LocptId, name: &Name<N>) -> Result<Location, LookupError> {
         let locpt = self.locpt(id).ok_or(LookupError::UnknownLocation { name: wide(name) })?;
-        let place = Place { kind: RefType::LocationPoint, locpt: id, array: ArrayId::NULL };
+        let place = Place { kind: LocationKind::Point, locpt: id, array: ArrayId::NULL };
         Ok(Location { name: locpt.name, place, sector: 0, frame: locpt.frame })
     }
 
@@ -199,7 +200,7 @@ impl<'a> TaskData<'a> {
             sector,
             last: array.sectors(),
         })?;
-        let place = Place { kind: RefType::Owner, locpt: base, array: array_id };
+        let place = Place { kind: LocationKind::Owner, locpt: base, array: array_id };
         Ok(Location { name: corner.name, place, sector, frame })
     }
 
@@ -263,7 +264,7 @@ impl<'a> TaskData<'a> {
         })?;
         Ok(Location {
             name: array.name,
-            place: Place { kind: RefType::Array, locpt: LocptId::NULL, array: id },
+            place: Place { kind: LocationKind::Array, locpt: LocptId::NULL, array: id },
             sector,
             frame,
         })
@@ -285,10 +286,28 @@ impl<'a> TaskData<'a> {
         Some(repeat(repeat(first, array.column_step, column), array.row_step, row))
     }
 
-    /// The place of a location point, for look-ups that begin with one.
+    /// The place that a location and an object mean together, for a process that is told both but not the sector: below
+    /// Task the sector is only a goal pose (V.3.2, V.2.2).
+    ///
+    /// An object that an object location form assigns to an array there brings the array in; any other is at the location
+    /// point. `None` if nothing has the name.
     #[must_use]
-    pub fn place_of(&self, locpt: LocptId) -> Place {
-        Place { kind: RefType::LocationPoint, locpt, array: ArrayId::NULL }
+    pub fn place_named<const N: usize, const M: usize>(
+        &self,
+        name: &Name<N>,
+        object: Option<&Name<M>>,
+    ) -> Option<Place> {
+        let locpt = self.locpt_named(name);
+        let array = self.owner_named(name).zip(object).and_then(|(owner, object)| {
+            let assigned = self.assigned_member(owner, object, wide(name)).ok()?;
+            (assigned.kind == RefType::Array).then_some(ArrayId::new(assigned.number))
+        });
+        match (locpt, array, self.array_named(name)) {
+            (Some(locpt), Some(array), _) => Some(Place { kind: LocationKind::Owner, locpt, array }),
+            (Some(locpt), None, _) => Some(Place { kind: LocationKind::Point, locpt, array: ArrayId::NULL }),
+            (None, _, Some(array)) => Some(Place { kind: LocationKind::Array, locpt: LocptId::NULL, array }),
+            (None, _, None) => None,
+        }
     }
 
     /// The names under which forms can mean a place, the most exact first: the location point, the array on it, and the
