@@ -57,6 +57,8 @@ record! {
         pub location_kind: LocationKind,
         /// `locpt-^-in`: record of LOCPT.
         pub location_record: u32,
+        /// Record of ARRAY-TABLE if the location is a sector (extension); 0 for none.
+        pub location_array: u32,
         /// `pose-^-in`: the goal pose.
         pub pose: u32,
         /// `endeff-id#-in`.
@@ -79,19 +81,15 @@ record! {
         pub object_held: bool,
         /// `pres-endeff-id#-out`.
         pub end_effector_id: u8,
-        /// The object that was located by vision and not moved since (extension); empty for none.
-        pub located: Name16,
+        /// Name of the object held (extension).
+        pub held_object: Name16,
         /// Where the robot is: location of the last completed move; empty if unknown (extension).
         pub at: Name10,
-        /// Object and grip of the last completed move (extension).
-        pub at_object: Name16,
-        /// Grip number with it (extension).
-        pub at_grip: i32,
     }
 }
 
-/// Changing poses of E-move: the goal, the one before it, and the located object.
-pub const EMOVE_POSES: usize = 3;
+/// Changing poses of E-move: the pose departed from, the goal, a point between, and the located object.
+pub const EMOVE_POSES: usize = 4;
 
 record! {
     /// Output buffers of E-move.
@@ -108,7 +106,7 @@ record! {
         pub grip: GripCommand,
         /// To the vision system.
         pub vision: VisionRequest,
-        /// Goals and located objects.
+        /// Departure, goal, point between, located object.
         pub poses: [ChangingPose; EMOVE_POSES],
     }
 }

@@ -70,6 +70,8 @@ record! {
         pub location_kind: LocationKind,
         /// `locpt-^-in`: record of LOCPT.
         pub location_record: u32,
+        /// Record of ARRAY-TABLE if the location is a sector (extension); 0 for none.
+        pub location_array: u32,
         /// `pose-^-in`: the goal, a T-POSE of Task.
         pub pose: u32,
     }
@@ -88,6 +90,8 @@ record! {
         pub reference_pose: u32,
         /// `obj-held-status-out`.
         pub object_held: bool,
+        /// Name of the object held (extension).
+        pub held_object: Name16,
         /// `pres-endeff-id#-out`.
         pub end_effector_id: u8,
     }
