@@ -13,7 +13,7 @@
 //! * [`plate`]: the six words of a position, the one place that knows their coding;
 //! * [`wire`]: one file a frame, every byte shown;
 //! * [`receive`]: byte-by-byte receivers of both ends;
-//! * [`limit`]: the velocity limits, and steps that respect them;
+//! * [`limit`], [`step`]: the velocity limits, and steps that respect them;
 //! * [`host`], [`controller`]: the two ends.
 //!
 //! All that the appendix leaves open is marked ASSUMED where it is decided.
@@ -35,9 +35,11 @@
 
 pub mod controller;
 pub mod error;
+pub mod host;
 pub mod limit;
 pub mod plate;
 pub mod receive;
+pub mod step;
 pub mod wire;
 
 pub use error::Error;

@@ -1,0 +1,540 @@
+//! The host's end of the link: what the T3 Interface process uses to talk to the robot controller (A 2.3, VI.1).
+//!
+//! Each tick has two halves: [`Host::receive`] takes in what arrived and moves the state, [`Host::transmit`] sends at most one
+//! frame. One frame is outstanding at a time. An answer bears no number, so a frame that got none is never sent again:
+//! it may have been executed. The host then sends a restart, discards everything until a report with a right checksum
+//! comes, and goes on from there. Only a NAK, which says that nothing was executed, is answered with the same bytes.
+
+use rcs_core::{
+    coded_enum,
+    interface::{
+        device::LinkBytes,
+        t3i::{LinkCounters, LinkFault},
+    },
+    record,
+};
+
+use crate::{
+    Plate,
+    receive::{Reply, ReplyReceiver},
+    wire::{Control, DataCommand, FRAME_BYTES, NO_FUNCTION, Response},
+};
+
+/// Ticks without an answer after which a frame counts as lost (DESIGN 16). Hold on the controller's panel only delays, and
+/// looks the same.
+pub const ANSWER_TICKS: u16 = 3;
+/// Repetitions of one data command after NAKs; then the link is restarted.
+pub const MOST_RETRIES: u8 = 3;
+/// Unanswered attempts to start after which the link counts as not responding.
+pub const START_ATTEMPTS: u8 = 3;
+
+coded_enum! {
+    /// State of the host's end.
+    ///
+    /// ```text
+    ///         DTR on             report             position
+    ///   Down ────────► Starting ────────► Ready ───────────────► Waiting ─┐ NAK: same bytes
+    ///    ▲               ▲  └─ 05 ─┘        ▲         ACK           │  ▲  │
+    ///    │ DTR off       │ no answer,       └───────────────────────┤  └──┘
+    ///   (any)            └──────────────────────────────────────────┘
+    ///                      unasked report            18: Cancelling ──ACK──► Ended
+    /// ```
+    pub enum HostState {
+        /// The controller's DTR is off: the DEPC function does not run.
+        Down = "down",
+        /// Waiting for a report.
+        Starting = "starting",
+        /// The position is known and no frame is outstanding.
+        Ready = "ready",
+        /// A data command is outstanding.
+        Waiting = "waiting",
+        /// A cancel is outstanding.
+        Cancelling = "cancelling",
+        /// The function was cancelled.
+        Ended = "ended",
+    }
+}
+
+coded_enum! {
+    /// What has happened since the last tick, as far as the user of the link must know.
+    pub enum HostEvent {
+        /// Nothing.
+        None = "nothing",
+        /// The outstanding data command is acknowledged.
+        Acknowledged = "acknowledged",
+        /// A report has come; the robot holds [`Host::position`].
+        Started = "started",
+        /// The link was lost while it ran: what was sent last may or may not have been executed.
+        Lost = "lost",
+    }
+}
+
+/// What the user of the link wants to send in this tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Intent {
+    /// Nothing.
+    Idle,
+    /// Move to the position; run the function there.
+    Position(DataCommand),
+    /// Begin again.
+    Restart,
+    /// End the DEPC function.
+    Cancel,
+}
+
+record! {
+    /// The host's end of the link.
+    pub struct Host {
+        state: HostState,
+        receiver: ReplyReceiver,
+        /// Where the robot was last known to be commanded: reported or acknowledged.
+        position: Plate,
+        /// The outstanding data command, for a NAK.
+        frame: [u8; FRAME_BYTES],
+        restart_due: bool,
+        resend_due: bool,
+        /// Ticks since the last byte was sent, or since the wait began.
+        waited: u16,
+        answer_ticks: u16,
+        retries: u8,
+        attempts: u8,
+        fault: LinkFault,
+        lost_function: [u8; 2],
+        counters: LinkCounters,
+    }
+}
+
+fn count(counter: &mut u32) {
+    *counter = counter.saturating_add(1);
+}
+
+impl Host {
+    /// A host that gives a frame `answer_ticks` ticks to be answered (at least 1); usually [`ANSWER_TICKS`].
+    #[must_use]
+    pub fn new(answer_ticks: u16) -> Self {
+        Self { answer_ticks: answer_ticks.max(1), ..Self::default() }
+    }
+
+    /// State of this end.
+    #[must_use]
+    pub const fn state(&self) -> HostState {
+        self.state
+    }
+
+    /// The position last reported or acknowledged. Meaningless before the first report.
+    #[must_use]
+    pub const fn position(&self) -> Plate {
+        self.position
+    }
+
+    /// The position is known and commands are answered.
+    #[must_use]
+    pub const fn is_running(&self) -> bool {
+        matches!(self.state, HostState::Ready | HostState::Waiting)
+    }
+
+    /// [`Host::transmit`] would send a position now.
+    #[must_use]
+    pub const fn can_send(&self) -> bool {
+        matches!(self.state, HostState::Ready)
+    }
+
+    /// `status-arg-out` (VI.1.2): the first fault since [`Host::forgive`].
+    #[must_use]
+    pub const fn fault(&self) -> LinkFault {
+        self.fault
+    }
+
+    /// Forget the fault.
+    pub const fn forgive(&mut self) {
+        self.fault = LinkFault::None;
+        self.attempts = 0;
+    }
+
+    /// Function bytes of the last data command that was lost with a function: it may or may not have run, and is not
+    /// repeated. [`NO_FUNCTION`] if there was none.
+    #[must_use]
+    pub const fn lost_function(&self) -> [u8; 2] {
+        self.lost_function
+    }
+
+    /// Counters since the start.
+    #[must_use]
+    pub const fn counters(&self) -> &LinkCounters {
+        &self.counters
+    }
+
+    /// Count a point that was scaled back to the limits.
+    pub fn count_limited(&mut self) {
+        count(&mut self.counters.limited);
+    }
+
+    /// First half of a tick: the bytes that arrived, and the controller's DTR (`ready`).
+    pub fn receive(&mut self, rx: &LinkBytes, ready: bool) -> HostEvent {
+        self.waited = self.waited.saturating_add(1);
+        if !ready {
+            return self.without_dtr();
+        }
+        if self.state == HostState::Down {
+            self.state = HostState::Starting;
+            self.waited = 0;
+        }
+        let bytes = rx.as_slice();
+        if bytes.is_empty() {
+            self.receiver.idle();
+        }
+        let mut event = HostEvent::None;
+        for byte in bytes {
+            if let Some(reply) = self.receiver.push(*byte) {
+                event = event.max(self.take(reply));
+            }
+        }
+        if self.waited >= self.answer_ticks { event.max(self.without_answer()) } else { event }
+    }
+
+    /// Second half of a tick: send what is due, or what is wanted. True if `intent` was sent.
+    pub fn transmit(&mut self, intent: &Intent, tx: &mut LinkBytes) -> bool {
+        match intent {
+            Intent::Restart => self.restart(),
+            Intent::Cancel if self.is_running() => {
+                self.state = HostState::Cancelling;
+                self.resend_due = true;
+            }
+            _ => {}
+        }
+        if self.state == HostState::Down {
+            return false;
+        }
+        if self.restart_due {
+            self.restart_due = false;
+            count(&mut self.counters.restarts);
+            self.send(&[Control::Restart.byte()], tx);
+            return *intent == Intent::Restart;
+        }
+        if self.resend_due {
+            return self.resend(tx) && *intent == Intent::Cancel;
+        }
+        match intent {
+            Intent::Position(command) if self.state == HostState::Ready => {
+                command.emit(&mut self.frame);
+                self.retries = 0;
+                self.state = HostState::Waiting;
+                count(&mut self.counters.frames);
+                let frame = self.frame;
+                self.send(&frame, tx)
+            }
+            _ => false,
+        }
+    }
+
+    fn resend(&mut self, tx: &mut LinkBytes) -> bool {
+        self.resend_due = false;
+        if self.state == HostState::Cancelling {
+            return self.send(&[Control::Cancel.byte()], tx);
+        }
+        count(&mut self.counters.frames);
+        count(&mut self.counters.retries);
+        let frame = self.frame;
+        self.send(&frame, tx)
+    }
+
+    fn send(&mut self, bytes: &[u8], tx: &mut LinkBytes) -> bool {
+        self.waited = 0;
+        let sent = tx.extend(bytes) == bytes.len();
+        if !sent {
+            self.blame(LinkFault::NotTransmitted);
+            self.restart();
+        }
+        sent
+    }
+
+    /// What one reply means in the present state. What has no meaning is noise, and ignored: if it took the place of
+    /// an answer, no answer comes.
+    fn take(&mut self, reply: Reply) -> HostEvent {
+        if reply == Reply::BadChecksum {
+            count(&mut self.counters.checksum_errors);
+        }
+        if reply == Reply::Response(Response::Nak) {
+            count(&mut self.counters.naks);
+        }
+        match (self.state, reply) {
+            (HostState::Starting, Reply::Report(plate)) if !self.restart_due && plate.is_canonical() => {
+                self.position = plate;
+                self.state = HostState::Ready;
+                self.attempts = 0;
+                HostEvent::Started
+            }
+            (HostState::Waiting, Reply::Response(Response::Ack)) => {
+                if let Ok(command) = DataCommand::parse(&self.frame) {
+                    self.position = command.plate;
+                }
+                count(&mut self.counters.acknowledged);
+                self.resend_due = false;
+                self.state = HostState::Ready;
+                HostEvent::Acknowledged
+            }
+            (HostState::Waiting, Reply::Response(Response::Nak)) => self.refused(),
+            (HostState::Cancelling, Reply::Response(Response::Ack)) => {
+                self.state = HostState::Ended;
+                HostEvent::None
+            }
+            (HostState::Cancelling, Reply::Response(Response::Nak)) => {
+                self.resend_due = true;
+                HostEvent::None
+            }
+            // Nobody asked for it: the controller has stopped with a warning and begun again (A 2.4).
+            (HostState::Ready | HostState::Waiting, Reply::Report(_)) => self.lost(LinkFault::DepcError),
+            (HostState::Ready | HostState::Waiting, Reply::BadChecksum) => self.lost(LinkFault::Checksum),
+            (HostState::Starting, Reply::BadChecksum) => {
+                self.restart_due = true;
+                self.attempt_failed(LinkFault::Checksum);
+                HostEvent::None
+            }
+            _ => HostEvent::None,
+        }
+    }
+
+    fn refused(&mut self) -> HostEvent {
+        if self.retries >= MOST_RETRIES {
+            return self.lost(LinkFault::NotTransmitted);
+        }
+        self.retries = self.retries.saturating_add(1);
+        self.resend_due = true;
+        self.waited = 0;
+        HostEvent::None
+    }
+
+    fn without_answer(&mut self) -> HostEvent {
+        match self.state {
+            HostState::Waiting => {
+                count(&mut self.counters.timeouts);
+                self.lost(LinkFault::NotResponding)
+            }
+            HostState::Starting => {
+                count(&mut self.counters.timeouts);
+                self.restart_due = true;
+                self.attempt_failed(LinkFault::NotResponding);
+                HostEvent::None
+            }
+            HostState::Cancelling => {
+                count(&mut self.counters.timeouts);
+                self.resend_due = true;
+                HostEvent::None
+            }
+            HostState::Down | HostState::Ready | HostState::Ended => HostEvent::None,
+        }
+    }
+
+    fn without_dtr(&mut self) -> HostEvent {
+        let was_running = self.is_running();
+        if was_running {
+            self.note_lost_function();
+            self.blame(LinkFault::NotResponding);
+        } else if self.waited >= self.answer_ticks {
+            self.waited = 0;
+            self.attempt_failed(LinkFault::NotResponding);
+        }
+        self.receiver.clear();
+        self.state = HostState::Down;
+        (self.restart_due, self.resend_due) = (false, false);
+        if was_running { HostEvent::Lost } else { HostEvent::None }
+    }
+
+    fn lost(&mut self, fault: LinkFault) -> HostEvent {
+        self.blame(fault);
+        self.restart();
+        HostEvent::Lost
+    }
+
+    /// Nothing is outstanding any more; a restart goes out in this tick.
+    fn restart(&mut self) {
+        self.note_lost_function();
+        self.resend_due = false;
+        if self.state != HostState::Down {
+            self.receiver.clear();
+            self.state = HostState::Starting;
+            self.restart_due = true;
+        }
+    }
+
+    fn note_lost_function(&mut self) {
+        if self.state == HostState::Waiting
+            && let Ok(command) = DataCommand::parse(&self.frame)
+            && command.function != NO_FUNCTION
+        {
+            self.lost_function = command.function;
+        }
+    }
+
+    fn attempt_failed(&mut self, fault: LinkFault) {
+        self.attempts = self.attempts.saturating_add(1);
+        if self.attempts >= START_ATTEMPTS {
+            self.blame(fault);
+        }
+    }
+
+    fn blame(&mut self, fault: LinkFault) {
+        if self.fault == LinkFault::None {
+            self.fault = fault;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::Report;
+
+    const HOME: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
+    const HOME_FRAME: [u8; 16] =
+        [0x03, 0, 0, 0, 0, 0xE7, 0x68, 0xFD, 0x85, 0xDC, 0xD8, 0x34, 0xB7, 0, 0, 0x73];
+
+    fn position(function: [u8; 2]) -> Intent {
+        Intent::Position(DataCommand { function, plate: HOME })
+    }
+
+    /// One tick: bytes in, bytes out.
+    fn tick(host: &mut Host, rx: &[u8], intent: &Intent) -> (HostEvent, Vec<u8>) {
+        let (mut line, mut tx) = (LinkBytes::default(), LinkBytes::default());
+        assert_eq!(line.extend(rx), rx.len());
+        let event = host.receive(&line, true);
+        host.transmit(intent, &mut tx);
+        (event, tx.as_slice().to_vec())
+    }
+
+    fn report() -> [u8; 16] {
+        let mut frame = [0xA5; 16];
+        Report { plate: HOME }.emit(&mut frame);
+        frame
+    }
+
+    fn running() -> Host {
+        let mut host = Host::new(ANSWER_TICKS);
+        assert_eq!(tick(&mut host, &report(), &Intent::Idle), (HostEvent::Started, vec![]));
+        assert_eq!((host.position(), host.can_send()), (HOME, true));
+        host
+    }
+
+    #[test]
+    fn one_frame_a_tick_is_kept_up() {
+        let mut host = running();
+        assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)).1, HOME_FRAME);
+        for _ in 0..10 {
+            let (event, tx) = tick(&mut host, &[0x06], &position(NO_FUNCTION));
+            assert_eq!((event, tx.as_slice()), (HostEvent::Acknowledged, &HOME_FRAME[..]));
+        }
+        assert_eq!((host.counters().frames, host.counters().acknowledged), (11, 10));
+    }
+
+    #[test]
+    fn one_frame_is_outstanding() {
+        let mut host = running();
+        tick(&mut host, &[], &position(NO_FUNCTION));
+        assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)).1, []);
+        assert!(!host.can_send());
+    }
+
+    #[test]
+    fn a_nak_brings_the_same_bytes_and_not_for_ever() {
+        let mut host = running();
+        let other = Intent::Position(DataCommand { function: NO_FUNCTION, plate: Plate::default() });
+        tick(&mut host, &[], &position(NO_FUNCTION));
+        for _ in 0..MOST_RETRIES {
+            assert_eq!(tick(&mut host, &[0x15], &other), (HostEvent::None, HOME_FRAME.to_vec()));
+        }
+        assert_eq!(tick(&mut host, &[0x15], &other), (HostEvent::Lost, vec![0x05]));
+        assert_eq!(host.fault(), LinkFault::NotTransmitted);
+        assert_eq!((host.counters().retries, host.counters().naks), (3, 4));
+    }
+
+    #[test]
+    fn without_an_answer_the_link_is_restarted_and_nothing_is_repeated() {
+        let mut host = running();
+        tick(&mut host, &[], &position([7, 9]));
+        assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::None, vec![]));
+        assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::None, vec![]));
+        assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::Lost, vec![0x05]));
+        assert_eq!((host.fault(), host.lost_function()), (LinkFault::NotResponding, [7, 9]));
+        // Late answers are discarded, the report is not.
+        assert_eq!(tick(&mut host, &[0x06, 0x15, 0x41], &position(NO_FUNCTION)).1, []);
+        assert_eq!(host.state(), HostState::Starting);
+        assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
+        assert_eq!(host.fault(), LinkFault::NotResponding);
+        host.forgive();
+        assert_eq!(host.fault(), LinkFault::None);
+    }
+
+    #[test]
+    fn a_start_without_answer_is_tried_again_and_blamed_the_third_time() {
+        let mut host = Host::new(ANSWER_TICKS);
+        let mut sent = Vec::new();
+        for _ in 0..10 {
+            sent.push(tick(&mut host, &[], &Intent::Idle).1.len());
+        }
+        assert_eq!(sent, [0, 0, 0, 1, 0, 0, 1, 0, 0, 1]);
+        assert_eq!((host.fault(), host.counters().restarts), (LinkFault::NotResponding, 3));
+    }
+
+    #[test]
+    fn a_wrong_report_is_asked_for_again_at_once() {
+        let mut host = running();
+        assert_eq!(tick(&mut host, &[], &Intent::Restart).1, [0x05]);
+        let mut wrong = report();
+        wrong[8] ^= 0x40;
+        assert_eq!(tick(&mut host, &wrong, &Intent::Idle), (HostEvent::None, vec![0x05]));
+        assert_eq!((host.counters().checksum_errors, host.fault()), (1, LinkFault::None));
+        assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
+    }
+
+    #[test]
+    fn a_report_that_nobody_asked_for_is_an_error_of_depc() {
+        let mut host = running();
+        tick(&mut host, &[], &position(NO_FUNCTION));
+        assert_eq!(tick(&mut host, &report(), &Intent::Idle), (HostEvent::Lost, vec![0x05]));
+        assert_eq!(host.fault(), LinkFault::DepcError);
+        let mut host = running();
+        let mut wrong = report();
+        wrong[15] ^= 1;
+        assert_eq!(tick(&mut host, &wrong, &Intent::Idle).0, HostEvent::Lost);
+        assert_eq!(host.fault(), LinkFault::Checksum);
+    }
+
+    #[test]
+    fn a_report_outside_the_coding_is_not_believed() {
+        let mut host = Host::new(ANSWER_TICKS);
+        let mut frame = [0; 16];
+        Report { plate: Plate { words: [0, 0, 0, 0, -1, 0] } }.emit(&mut frame);
+        assert_eq!(tick(&mut host, &frame, &Intent::Idle).0, HostEvent::None);
+        assert_eq!(host.state(), HostState::Starting);
+    }
+
+    #[test]
+    fn dtr_is_watched() {
+        let mut host = running();
+        assert_eq!(host.receive(&LinkBytes::default(), false), HostEvent::Lost);
+        assert_eq!((host.state(), host.fault()), (HostState::Down, LinkFault::NotResponding));
+        let mut tx = LinkBytes::default();
+        assert!(!host.transmit(&Intent::Restart, &mut tx));
+        assert_eq!(tx.length, 0);
+        assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
+    }
+
+    #[test]
+    fn cancel_is_repeated_until_it_is_acknowledged() {
+        let mut host = running();
+        assert_eq!(tick(&mut host, &[], &Intent::Cancel).1, [0x18]);
+        assert_eq!(tick(&mut host, &[0x15], &Intent::Idle).1, [0x18]);
+        assert_eq!(tick(&mut host, &[0x06], &Intent::Idle).1, []);
+        assert_eq!(host.state(), HostState::Ended);
+    }
+
+    #[test]
+    fn a_full_line_is_said_to_be_full() {
+        let mut host = running();
+        let mut tx = LinkBytes::default();
+        tx.extend(&[0; 60]);
+        host.receive(&LinkBytes::default(), true);
+        assert!(!host.transmit(&position(NO_FUNCTION), &mut tx));
+        assert_eq!((host.fault(), host.state()), (LinkFault::NotTransmitted, HostState::Starting));
+    }
+}
