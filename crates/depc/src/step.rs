@@ -111,7 +111,7 @@ pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result
         arm,
         from: &from.plate,
     };
-    if let Some(position) = turn_at_the_pole(&line, limits)? {
+    if let Some(position) = turn_at_the_pole(&line, limits, limits.orientation())? {
         return Ok(Step { position, reached: false });
     }
     let (mut allowed, mut refused, mut position) = (0.0, 1.0, *from);
@@ -124,19 +124,25 @@ pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result
             refused = middle;
         }
     }
+    if position.plate == from.plate
+        && let Some(turned) = turn_at_the_pole(&line, limits, 0)?
+    {
+        position = turned;
+    }
     Ok(Step { position, reached: false })
 }
 
-/// At the pole, and D not yet near the direction in which the line leaves it: the position with D and R turned.
-fn turn_at_the_pole(line: &Line<'_>, limits: &Limits) -> Result<Option<Position>, Error> {
+/// At the pole, and D more than `near` (0.01 degree) from the direction in which the line leaves it: the position with D and
+/// R turned.
+fn turn_at_the_pole(line: &Line<'_>, limits: &Limits, near: i32) -> Result<Option<Position>, Error> {
     let [.., d, e, r] = line.from.words;
     let Some((pole, sense)) = pole_near(e) else { return Ok(None) };
     let [.., way_out, _, _] = way_out(line)?.words;
     let missing = angle_between(d, way_out);
-    let most = limits.orientation();
-    if missing.saturating_abs() <= most {
+    if missing.saturating_abs() <= near {
         return Ok(None);
     }
+    let most = limits.orientation();
     let turn = missing.clamp(most.saturating_neg(), most);
     let turned = |word: i16, by: i32| angle_word(i32::from(word).saturating_add(by), word);
     let angles = Plate { words: [0, 0, 0, turned(d, turn), pole, turned(r, turn.saturating_mul(sense))] };
