@@ -34,3 +34,9 @@
         clippy::panic
     )
 )]
+
+pub mod emove;
+pub mod execution;
+pub mod places;
+pub mod subtask;
+pub mod task;

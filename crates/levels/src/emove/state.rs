@@ -1,0 +1,114 @@
+//! What E-move remembers from tick to tick.
+
+use rcs_core::{
+    coded_enum,
+    handshake::Commander,
+    interface::subtask::LocationKind,
+    name::{Name10, Name16},
+    pose::Pose,
+    record,
+};
+use taskdata::files::{EndEffId, Place};
+
+use super::route::Route;
+use crate::{execution::Execution, places::place_of};
+
+coded_enum! {
+    /// What the last completed move went to.
+    pub enum Sort {
+        /// A location as such.
+        Location = "location",
+        /// An object at a location, or a held object's destination.
+        Object = "object",
+        /// The place from which pictures of an object are taken.
+        View = "view",
+    }
+}
+
+record! {
+    /// Where the robot is (DESIGN 16): location, object and grip of the last completed move. It decides how the robot departs.
+    pub struct Stance {
+        /// The robot is there.
+        pub known: bool,
+        /// What was gone to.
+        pub sort: Sort,
+        /// Name of the location.
+        pub location: Name10,
+        /// Its type.
+        pub kind: LocationKind,
+        /// Record of LOCPT.
+        pub record: u32,
+        /// Record of ARRAY-TABLE.
+        pub array: u32,
+        /// The object; empty for none.
+        pub object: Name16,
+        /// Its grip.
+        pub grip: i32,
+        /// Where the move ended.
+        pub pose: Pose,
+    }
+}
+
+impl Stance {
+    /// The place as task data knows it.
+    #[must_use]
+    pub const fn place(&self) -> Place {
+        place_of(self.kind, self.record, self.array)
+    }
+}
+
+record! {
+    /// What the gripper holds.
+    pub struct Held {
+        /// The object; empty for none.
+        pub object: Name16,
+        /// Its record of END-EFF-PARA.
+        pub parameters: EndEffId,
+        /// Opening, 0.01 in, at or below which nothing is between the fingers.
+        pub grasp_size: i32,
+    }
+}
+
+record! {
+    /// An object that vision has located and that has not been grasped since.
+    pub struct Located {
+        /// The object; empty for none.
+        pub object: Name16,
+        /// Record of LOCPT where it is.
+        pub record: u32,
+        /// Record of ARRAY-TABLE where it is.
+        pub array: u32,
+        /// Its part frame.
+        pub pose: Pose,
+    }
+}
+
+record! {
+    /// State of E-move.
+    pub struct State {
+        /// The command of Subtask and how far it has come.
+        pub execution: Execution,
+        /// Commands to Prim.
+        pub prim: Commander,
+        /// Commands to Grip.
+        pub grip: Commander,
+        /// Commands to Quick Change.
+        pub quick_change: Commander,
+        /// Requests to vision: number and tick of the last one.
+        pub vision: Commander,
+        /// Pictures taken in vain in this step.
+        pub tries: u8,
+        /// The way to the goal of the current command.
+        pub route: Route,
+        /// Where the robot is.
+        pub stance: Stance,
+        /// How many location points have been looked at to find out where the robot is.
+        pub searched: u32,
+        /// What the gripper holds.
+        pub held: Held,
+        /// What vision has located.
+        pub located: Located,
+        /// Last record number given to a changing pose.
+        pub last_pose: u32,
+    }
+}
