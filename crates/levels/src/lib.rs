@@ -38,5 +38,6 @@
 pub mod emove;
 pub mod execution;
 pub mod places;
+pub mod prim;
 pub mod subtask;
 pub mod task;

@@ -1,0 +1,236 @@
+//! The trajectory generator: the manual's Traj-program, of which it says nothing (V.1).
+//!
+//! Each segment is a straight line with its own jerk-limited [`profile`]. A profile always stops at the end of its
+//! line, through points included, so that a stop is possible at any time and nothing depends on a next goal that may
+//! never come. At a through point two motions are superposed: the old segment goes on braking (the *residual*) while
+//! the new one already starts from rest *at the through point*:
+//!
+//! ```text
+//!  velocity   old ________                       frame = new segment's frame, displaced by what
+//!                         \      ________ new            the residual still lacks to its goal
+//!                          \    /
+//!                           \  /
+//!                            \/
+//!                            /\
+//!   ________________________/__\__________ time
+//!                          ^ handed over: not before the old segment brakes
+//! ```
+//!
+//! * The new segment starts no earlier than the old one brakes, and no faster than it brakes: the sum of both velocities
+//!   never exceeds the larger of their limits, and a straight passage that is handed over in time runs at full speed.
+//! * Braking towards a through point and starting over a residual use half of acceleration and jerk each: the vector sum keeps the
+//!   limits whatever the angle between the segments. Lone starts and the stop at a last point use all.
+//! * At most two motions are superposed: a through point counts as passed only when no older residual is left.
+//! * Knob, PAUSE and a new goal before its time are the same thing: a new velocity for the running profile. After a stop the
+//!   next segment starts from where the stop ended.
+//!
+//! Rotations are superposed as world rotations; their acceleration then has a small extra term, at most the product of
+//! both angular velocities.
+
+pub mod limits;
+pub mod profile;
+pub mod segment;
+#[cfg(test)]
+mod tests;
+
+use rcs_core::{frame::Frame, record, tick::TICK_S};
+
+use self::{
+    limits::Limits,
+    profile::{Along, Profile},
+    segment::{FrameData, Order, Segment},
+};
+
+record! {
+    /// The commanded motion of the tool frame.
+    pub struct Motion {
+        /// The commanded frame.
+        pub at: FrameData,
+        /// Goal of the last order; the commanded frame after a halt.
+        pub goal: FrameData,
+        /// The last order is a GO-THRU with this brake distance, inches.
+        pub brake_distance: f64,
+        /// The segment before, braking into its through point.
+        pub residual: Segment,
+        /// The segment under way.
+        pub current: Segment,
+        /// What comes after it.
+        pub next: Order,
+        /// Everything is to come to rest before the next segment starts.
+        pub halting: bool,
+    }
+}
+
+impl Motion {
+    /// At rest at a frame.
+    #[must_use]
+    pub fn at_rest(frame: &Frame) -> Self {
+        let at = FrameData::from(frame);
+        Self { at, goal: at, ..Self::default() }
+    }
+
+    /// The commanded frame.
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        self.at.frame()
+    }
+
+    /// [`rcs_core::frame::Distance::path`] from the commanded frame to the goal of the last order, inches.
+    #[must_use]
+    pub fn distance(&self) -> f64 {
+        self.frame().distance(&self.goal.frame()).path()
+    }
+
+    /// Nothing moves and nothing waits to move.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        !(self.current.active || self.residual.active || self.next.given || self.halting)
+    }
+
+    /// The last order was a GO-THRU and the next one may be given: no older residual is left, and the point is nearer
+    /// than the brake distance.
+    #[must_use]
+    pub fn is_passing(&self) -> bool {
+        let alone = !(self.residual.active || self.next.given || self.halting);
+        alone
+            && (!self.current.active || (self.current.order.through && self.distance() < self.brake_distance))
+    }
+
+    /// Go to a goal, by the shortest way that is continuous: on from a through point that [`is_passing`](Self::is_passing), else
+    /// after a halt.
+    pub fn go(&mut self, goal: &Frame, limits: &Limits, through: Option<f64>) {
+        self.halting = !self.is_passing();
+        let goal = FrameData::from(goal);
+        self.goal = goal;
+        self.brake_distance = through.unwrap_or(0.0);
+        self.next = Order {
+            given: true,
+            goal,
+            through: through.is_some(),
+            brake_distance: self.brake_distance,
+            limits: *limits,
+        };
+    }
+
+    /// Come to rest as soon as the limits allow, and forget the goal.
+    pub fn halt(&mut self) {
+        self.next = Order::default();
+        self.halting = self.current.active || self.residual.active;
+        if !self.halting {
+            self.goal = self.at;
+        }
+    }
+
+    /// Let a tick pass on the path clock; `knob` is the velocity knob, 0 to 1000.
+    pub fn step(&mut self, knob: u16) {
+        if self.next.given && !self.current.active && !self.residual.active {
+            self.start_from_rest(knob);
+        }
+        self.follow(knob);
+        let before = self.current.profile.clock;
+        for segment in [&mut self.residual, &mut self.current] {
+            segment.profile.clock += TICK_S;
+        }
+        if self.next.given && !self.halting {
+            self.hand_over(before, knob);
+        }
+        self.at = FrameData::from(&self.superposed());
+        self.retire();
+    }
+
+    /// The frame on the current line, displaced by what the residual lacks.
+    fn superposed(&self) -> Frame {
+        let mut frame = self.at.frame();
+        if self.current.active {
+            frame = self.current.order.goal.frame();
+            frame = self.current.missing().apply(&frame);
+        }
+        if self.residual.active {
+            frame = self.residual.missing().apply(&frame);
+        }
+        frame
+    }
+
+    /// Take up the next order at rest, with all of its limits.
+    fn start_from_rest(&mut self, knob: u16) {
+        self.current = Segment::new(&self.at.frame(), &self.next);
+        self.next = Order::default();
+        self.halting = false;
+        self.plan(&Along::default(), knob);
+    }
+
+    /// Plan the current profile anew if the velocity is another than it was planned for.
+    fn follow(&mut self, knob: u16) {
+        let current = &self.current;
+        if current.active && !current.profile.is_braking() && self.velocity(knob) != current.velocity {
+            self.plan(&current.profile.now(), knob);
+        }
+    }
+
+    /// Velocity that the current segment may have now.
+    fn velocity(&self, knob: u16) -> f64 {
+        if self.halting { 0.0 } else { self.current.order.limits.velocity_at(knob) }
+    }
+
+    /// Plan the current segment from a state on it. What cannot be planned is left as it was: it ends at the goal,
+    /// and the next tick tries again.
+    fn plan(&mut self, from: &Along, knob: u16) {
+        let velocity = self.velocity(knob);
+        let order = &self.current.order;
+        let (up, overlap) = if self.residual.active {
+            let share = order.limits.share().within(&self.residual.order.limits.share());
+            (share, self.residual.profile.remaining())
+        } else {
+            (order.limits, 0.0)
+        };
+        let length = self.current.length;
+        let plan = if velocity > 0.0 {
+            let stop = |down: &Limits| Profile::to_goal(from, length, velocity, &up, down);
+            // All of the limits for a last stop, unless the residual still needs its share when it begins.
+            let whole = if order.through { None } else { stop(&order.limits) };
+            whole
+                .filter(|plan| plan.braking_point().is_some_and(|begin| begin >= overlap))
+                .or_else(|| stop(&order.limits.share()))
+        } else {
+            Profile::to_rest(from, length, &up)
+        };
+        if let Some(profile) = plan {
+            self.current.profile = profile;
+            self.current.velocity = velocity;
+        }
+    }
+
+    /// Start the next segment as soon as the current one brakes. `before` is the clock of the current one a tick ago.
+    fn hand_over(&mut self, before: f64, knob: u16) {
+        let old = &self.current;
+        let Some(braking_point) = old.profile.braking_point().filter(|begin| old.profile.clock >= *begin)
+        else {
+            return;
+        };
+        let begin = before.max(braking_point);
+        let late = old.profile.clock - begin;
+        self.residual = *old;
+        self.current = Segment::new(&old.order.goal.frame(), &self.next);
+        self.next = Order::default();
+        // Plan for the moment at which the new segment begins, which may lie between two ticks.
+        self.residual.profile.clock = begin;
+        self.plan(&Along::default(), knob);
+        self.residual.profile.clock = begin + late;
+        self.current.profile.clock = late;
+    }
+
+    /// Let go of what has come to rest.
+    fn retire(&mut self) {
+        self.residual.active &= !self.residual.is_at_rest();
+        if self.residual.active || !self.current.active || !self.current.is_at_rest() {
+            return;
+        }
+        if self.current.profile.to_goal || self.halting {
+            self.current.active = false;
+            self.halting &= self.next.given;
+            if !self.next.given {
+                self.goal = self.at;
+            }
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! A straight line from one frame to another, with the rotation about one axis in step.
+
+use nalgebra::Matrix3;
+use rcs_core::{
+    frame::{Distance, Frame, Rotation, Vector, norm, rotation_by, rotation_vector},
+    record,
+};
+
+use super::{
+    limits::Limits,
+    profile::{NO_PATH, Profile},
+};
+
+record! {
+    /// A [`Frame`] as plain data.
+    pub struct FrameData {
+        /// Tool point, inches.
+        pub position: [f64; 3],
+        /// Rotation matrix, row by row.
+        pub rotation: [f64; 9],
+    }
+}
+
+impl From<&Frame> for FrameData {
+    fn from(frame: &Frame) -> Self {
+        let m = frame.rotation.matrix();
+        Self {
+            position: frame.position.into(),
+            rotation: [m.m11, m.m12, m.m13, m.m21, m.m22, m.m23, m.m31, m.m32, m.m33],
+        }
+    }
+}
+
+impl FrameData {
+    /// The frame.
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        let [a, b, c, d, e, f, g, h, i] = self.rotation;
+        Frame {
+            position: self.position.into(),
+            rotation: Rotation::from_matrix_unchecked(Matrix3::new(a, b, c, d, e, f, g, h, i)),
+        }
+    }
+}
+
+record! {
+    /// Where to go, and how.
+    pub struct Order {
+        /// There is one.
+        pub given: bool,
+        /// The goal.
+        pub goal: FrameData,
+        /// GO-THRU: the next segment may start before this one has ended.
+        pub through: bool,
+        /// Path to a through point at which the next segment may be given, inches; 0 for at the point itself.
+        pub brake_distance: f64,
+        /// Limits of TRAJ-PARA.
+        pub limits: Limits,
+    }
+}
+
+record! {
+    /// A segment under way.
+    pub struct Segment {
+        /// There is one.
+        pub active: bool,
+        /// Where it goes.
+        pub order: Order,
+        /// From start to goal, inches.
+        pub translation: [f64; 3],
+        /// From start to goal, axis times angle, radians.
+        pub rotation: [f64; 3],
+        /// [`Distance::path`] from start to goal, inches.
+        pub length: f64,
+        /// The motion along it.
+        pub profile: Profile,
+        /// Velocity that the profile was planned for, in/s.
+        pub velocity: f64,
+    }
+}
+
+/// A small displacement: inches, and axis times angle in radians.
+#[derive(Clone, Copy, Debug)]
+pub struct Displacement {
+    translation: Vector,
+    rotation: Vector,
+}
+
+impl Displacement {
+    /// The frame, displaced in world coordinates.
+    #[must_use]
+    pub fn apply(&self, frame: &Frame) -> Frame {
+        Frame {
+            position: frame.position + self.translation,
+            rotation: rotation_by(&self.rotation) * frame.rotation,
+        }
+    }
+}
+
+impl Segment {
+    /// The line from `start` to the goal of `order`, without a profile.
+    #[must_use]
+    pub fn new(start: &Frame, order: &Order) -> Self {
+        let goal = order.goal.frame();
+        let translation = goal.position - start.position;
+        let rotation = rotation_vector(&(goal.rotation * start.rotation.inverse()));
+        Self {
+            active: true,
+            order: *order,
+            translation: translation.into(),
+            rotation: rotation.into(),
+            length: Distance { inches: norm(&translation), radians: norm(&rotation) }.path(),
+            profile: Profile::default(),
+            velocity: 0.0,
+        }
+    }
+
+    /// What is still missing to the goal: the frame on the line is the goal less this.
+    ///
+    /// Nothing once the profile has ended at the goal, so that the last point is the goal to the bit.
+    #[must_use]
+    pub fn missing(&self) -> Displacement {
+        let over = self.profile.to_goal && self.profile.remaining() <= 0.0;
+        let share =
+            if over || self.length < NO_PATH { 0.0 } else { self.profile.now().position / self.length - 1.0 };
+        Displacement {
+            translation: Vector::from(self.translation) * share,
+            rotation: Vector::from(self.rotation) * share,
+        }
+    }
+
+    /// At rest, at the goal or where a profile to rest ended.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        self.profile.remaining() <= 0.0
+    }
+}

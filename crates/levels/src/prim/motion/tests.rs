@@ -1,0 +1,404 @@
+//! Random moves, watched from outside: only the sampled frames are judged, as T3I sees them.
+
+use std::collections::VecDeque;
+
+use proptest::prelude::*;
+use rcs_core::{
+    frame::{Frame, INCHES_PER_RADIAN, Rotation, Vector, norm, rotation_by, rotation_vector},
+    movetable::straight_down,
+    tick::TICK_S,
+};
+
+use super::{Motion, limits::Limits};
+
+/// A small generator (SplitMix64), so that a seed names a run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, n: u64) -> u64 {
+        self.next() % n
+    }
+
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn vector(&mut self) -> Vector {
+        Vector::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5)
+    }
+
+    fn limits(&mut self) -> Limits {
+        let mut count = |high: u64| 1 + self.below(high) as i32;
+        Limits::from_counts(3 + count(12), 4 + count(140), 4 + count(60)).unwrap()
+    }
+
+    /// A goal near a frame: one in four does not turn, one in eight does not move.
+    fn goal(&mut self, from: &Frame) -> Frame {
+        let size = [0.02, 0.5, 3.0, 12.0][self.below(4) as usize];
+        let translation = if self.below(8) == 0 { Vector::zeros() } else { self.vector() * size };
+        let turn = if self.below(4) == 0 { Vector::zeros() } else { self.vector() * (size / 8.0) };
+        let rotation = rotation_by(&turn) * from.rotation;
+        // Orthonormal to the bit, as poses from forms are.
+        let rotation = rcs_core::frame::rotation_from_x_y(
+            &rotation.matrix().column(0).into_owned(),
+            &rotation.matrix().column(1).into_owned(),
+        );
+        Frame { position: from.position + translation, rotation: rotation.unwrap() }
+    }
+}
+
+/// A rate of change: of the position in in/s^n, and of the orientation in rad/s^n.
+#[derive(Clone, Copy, Debug)]
+struct Rate {
+    linear: Vector,
+    angular: Vector,
+}
+
+impl Rate {
+    fn between(a: &Frame, b: &Frame) -> Self {
+        let turn: Rotation = b.rotation * a.rotation.inverse();
+        Self { linear: (b.position - a.position) / TICK_S, angular: rotation_vector(&turn) / TICK_S }
+    }
+
+    fn change(&self, later: &Self) -> Self {
+        Self {
+            linear: (later.linear - self.linear) / TICK_S,
+            angular: (later.angular - self.angular) / TICK_S,
+        }
+    }
+}
+
+/// Limits of all segments that were under way in a tick, and whether two were.
+#[derive(Clone, Copy, Debug, Default)]
+struct Allowed {
+    limits: Limits,
+    superposed: bool,
+}
+
+impl Allowed {
+    fn with(self, b: &Limits) -> Self {
+        let a = self.limits;
+        let limits = Limits {
+            velocity: a.velocity.max(b.velocity),
+            acceleration: a.acceleration.max(b.acceleration),
+            jerk: a.jerk.max(b.jerk),
+        };
+        Self { limits, ..self }
+    }
+
+    fn and(self, other: &Self) -> Self {
+        Self { superposed: self.superposed || other.superposed, ..self.with(&other.limits) }
+    }
+}
+
+/// Judges samples.
+struct Watch {
+    frames: VecDeque<Frame>,
+    allowed: VecDeque<Allowed>,
+    ticks: u64,
+}
+
+impl Watch {
+    fn new(motion: &Motion) -> Self {
+        Self {
+            frames: VecDeque::from([motion.frame(); 4]),
+            allowed: VecDeque::from([Allowed::default(); 3]),
+            ticks: 0,
+        }
+    }
+
+    fn step(&mut self, motion: &mut Motion, knob: u16) -> Result<(), String> {
+        let before = *motion;
+        motion.step(knob);
+        let mut allowed = Allowed::default();
+        for segment in [&before.residual, &before.current, &motion.residual, &motion.current] {
+            if segment.active {
+                allowed = allowed.with(&segment.order.limits);
+            }
+        }
+        if before.next.given && !motion.next.given {
+            // A short move may be over in the tick in which it starts.
+            allowed = allowed.with(&before.next.limits);
+        }
+        allowed.superposed = before.residual.active || motion.residual.active;
+        self.frames.pop_front();
+        self.frames.push_back(motion.frame());
+        self.allowed.pop_front();
+        self.allowed.push_back(allowed);
+        self.ticks += 1;
+        self.judge().and_then(|()| on_the_line(motion)).map_err(|text| format!("{text} in {motion:#?}"))
+    }
+
+    fn judge(&self) -> Result<(), String> {
+        let allowed = self.allowed.iter().fold(Allowed::default(), |all, one| all.and(one));
+        let f = &self.frames;
+        let v = [Rate::between(&f[0], &f[1]), Rate::between(&f[1], &f[2]), Rate::between(&f[2], &f[3])];
+        let a = [v[0].change(&v[1]), v[1].change(&v[2])];
+        let j = a[0].change(&a[1]);
+        // Two rotations at once: an extra acceleration of the product of their velocities, twice that while it changes.
+        let product =
+            if allowed.superposed { allowed.limits.velocity.powi(2) / INCHES_PER_RADIAN } else { 0.0 };
+        let limits = allowed.limits;
+        for (what, rate, limit, extra, rounding) in [
+            ("velocity", v[2], limits.velocity, 0.0, 1e-9),
+            ("acceleration", a[1], limits.acceleration, product / 2.0, 1e-7),
+            ("jerk", j, limits.jerk, if allowed.superposed { f64::INFINITY } else { 0.0 }, 1e-5),
+        ] {
+            let rounding = rounding + limit * 1e-9;
+            if norm(&rate.linear) > limit + rounding {
+                return Err(format!("{what} {} over {limit}", norm(&rate.linear)));
+            }
+            let angular = norm(&rate.angular) * INCHES_PER_RADIAN;
+            // A rotation vector is exact to 1e-9 rad or so.
+            if angular > limit + extra + rounding * 1e3 {
+                return Err(format!("angular {what} {angular} over {limit} + {extra}"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// While one segment is under way alone, the tool point is on its line and not beyond its goal.
+fn on_the_line(motion: &Motion) -> Result<(), String> {
+    let segment = &motion.current;
+    if motion.residual.active || !segment.active {
+        return Ok(());
+    }
+    let line = Vector::from(segment.translation);
+    let missing = segment.order.goal.frame().position - motion.frame().position;
+    let length = norm(&line);
+    if length < 1e-9 {
+        return if norm(&missing) < 1e-8 { Ok(()) } else { Err("left the point".into()) };
+    }
+    let along = missing.dot(&line) / length;
+    let off = norm(&(missing - line * (along / length)));
+    if off > 1e-9 || along < -1e-9 || along > length + 1e-9 {
+        return Err(format!("{off} in off the line, {along} in to go of {length}"));
+    }
+    Ok(())
+}
+
+/// `moves` random moves under random interference; returns the ticks it took.
+fn run(seed: u64, moves: u32) -> Result<u64, String> {
+    let mut random = Random(seed);
+    let mut motion = Motion::at_rest(&straight_down(Vector::new(-66.5, -5.5, -14.0)));
+    let mut watch = Watch::new(&motion);
+    let (mut knob, mut goal) = (1000_u16, motion.frame());
+    for number in 0..moves {
+        let at = |text: String| format!("seed {seed}, move {number}: {text}");
+        let limits = random.limits();
+        goal = random.goal(&goal);
+        let through = (random.below(3) > 0).then(|| [0.0, 0.05, 0.5, 3.0, 20.0][random.below(5) as usize]);
+        motion.go(&goal, &limits, through);
+        let trouble = random.below(4) == 0;
+        if !trouble {
+            knob = 1000;
+        }
+        let (mut patience, mut nearest) = (100_000_u32, f64::INFINITY);
+        loop {
+            if trouble && random.below(20) == 0 {
+                knob = [0, 1, 100, 500, 1000, 1000][random.below(6) as usize];
+            }
+            watch.step(&mut motion, knob).map_err(&at)?;
+            nearest = nearest.min(motion.frame().distance(&goal).path());
+            if trouble && random.below(60) == 0 {
+                motion.halt();
+                rest(&mut motion, &mut watch, knob).map_err(&at)?;
+                goal = motion.frame();
+                break;
+            }
+            if trouble && random.below(60) == 0 {
+                break; // the next goal comes before its time
+            }
+            if through.is_some() && motion.is_passing() {
+                let within = through.unwrap_or(0.0);
+                if nearest > within {
+                    return Err(at(format!("passed at {nearest} of {within}")));
+                }
+                break;
+            }
+            if motion.is_at_rest() {
+                if motion.frame() != goal {
+                    return Err(at(format!("came to rest at {:?} for {goal:?}", motion.frame())));
+                }
+                break;
+            }
+            patience -= 1;
+            if patience == 0 {
+                return Err(at(format!("never ends: {motion:#?}")));
+            }
+            if trouble && patience % 500 == 0 {
+                knob = 1000;
+            }
+        }
+    }
+    Ok(watch.ticks)
+}
+
+/// After a halt everything comes to rest, soon, and stays.
+fn rest(motion: &mut Motion, watch: &mut Watch, knob: u16) -> Result<(), String> {
+    let all = [&motion.residual, &motion.current];
+    let longest = all.iter().filter(|s| s.active).map(|s| {
+        let slow = s.order.limits.share();
+        slow.velocity / slow.acceleration + 2.0 * slow.acceleration / slow.jerk
+    });
+    // A residual and the segment over it stop one after the other at worst, within the smaller of both limits.
+    let slowest = 4.0 * longest.fold(0.0, f64::max) + 1.0;
+    let mut left = (slowest / TICK_S) as u32 + 2;
+    while !motion.is_at_rest() {
+        watch.step(motion, knob)?;
+        left = left.checked_sub(1).ok_or_else(|| format!("does not come to rest: {motion:#?}"))?;
+    }
+    let frame = motion.frame();
+    for _ in 0..5 {
+        watch.step(motion, knob)?;
+    }
+    if motion.frame() == frame { Ok(()) } else { Err("creeps after a halt".into()) }
+}
+
+/// Moves of the ordinary test; `RCS_MOVES` asks for more (DESIGN 14: a million).
+fn moves() -> u32 {
+    std::env::var("RCS_MOVES").ok().and_then(|text| text.parse().ok()).unwrap_or(200_000)
+}
+
+#[test]
+fn random_moves_break_no_limit() {
+    let shares = 8;
+    let ticks: u64 = std::thread::scope(|scope| {
+        let all: Vec<_> =
+            (0..shares).map(|seed| scope.spawn(move || run(seed, moves() / shares as u32))).collect();
+        all.into_iter().map(|one| one.join().unwrap().unwrap_or_else(|text| panic!("{text}"))).sum()
+    });
+    println!("{} moves, {ticks} ticks", moves());
+    assert!(ticks > u64::from(moves()));
+}
+
+fn printed() -> Limits {
+    Limits::from_counts(4, 100, 8).unwrap()
+}
+
+fn shifted(frame: &Frame, x: f64, y: f64) -> Frame {
+    Frame { position: frame.position + Vector::new(x, y, 0.0), ..*frame }
+}
+
+#[test]
+fn a_straight_passage_runs_at_full_speed() {
+    let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
+    let (via, end) = (shifted(&start, 20.0, 0.0), shifted(&start, 40.0, 0.0));
+    let mut motion = Motion::at_rest(&start);
+    motion.go(&via, &printed(), Some(12.0));
+    let (mut slowest, mut last) = (f64::INFINITY, start);
+    while !motion.is_at_rest() {
+        if motion.is_passing() && motion.goal.frame() == via {
+            motion.go(&end, &printed(), None);
+        }
+        motion.step(1000);
+        let speed = norm(&(motion.frame().position - last.position)) / TICK_S;
+        last = motion.frame();
+        if (via.position - last.position).x.abs() < 8.0 {
+            slowest = slowest.min(speed);
+        }
+    }
+    assert_eq!(last, end);
+    assert!(slowest > 10.0 - 1e-6, "{slowest}");
+}
+
+#[test]
+fn a_corner_is_cut_within_the_brake_distance() {
+    let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
+    let (via, end) = (shifted(&start, 20.0, 0.0), shifted(&start, 20.0, 20.0));
+    let mut motion = Motion::at_rest(&start);
+    motion.go(&via, &printed(), Some(3.0));
+    let mut nearest = f64::INFINITY;
+    while !motion.is_at_rest() {
+        if motion.is_passing() && motion.goal.frame() == via {
+            motion.go(&end, &printed(), None);
+        }
+        motion.step(1000);
+        nearest = nearest.min(motion.frame().distance(&via).path());
+    }
+    assert!(nearest > 0.1 && nearest < 2.0, "{nearest}");
+    assert_eq!(motion.frame(), end);
+}
+
+#[test]
+fn zero_knob_holds_and_full_knob_goes_on() {
+    let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
+    let goal = shifted(&start, 20.0, 0.0);
+    let mut motion = Motion::at_rest(&start);
+    motion.go(&goal, &printed(), None);
+    let mut watch = Watch::new(&motion);
+    for tick in 0..200 {
+        watch.step(&mut motion, if tick < 20 { 1000 } else { 0 }).unwrap();
+    }
+    let held = motion.frame();
+    assert!(!motion.is_at_rest() && held.distance(&goal).inches > 5.0);
+    for _ in 0..25 {
+        watch.step(&mut motion, 0).unwrap();
+        assert_eq!(motion.frame(), held);
+    }
+    while !motion.is_at_rest() {
+        watch.step(&mut motion, 1000).unwrap();
+    }
+    assert_eq!(motion.frame(), goal);
+}
+
+#[test]
+fn a_point_without_brake_distance_is_passed_at_rest() {
+    let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
+    let via = shifted(&start, 5.0, 0.0);
+    let mut motion = Motion::at_rest(&start);
+    motion.go(&via, &printed(), Some(0.0));
+    while !motion.is_passing() {
+        motion.step(1000);
+    }
+    assert_eq!(motion.frame(), via);
+    assert!(motion.is_at_rest());
+}
+
+#[test]
+fn a_halt_forgets_the_goal() {
+    let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
+    let mut motion = Motion::at_rest(&start);
+    motion.go(&shifted(&start, 20.0, 0.0), &printed(), None);
+    for _ in 0..30 {
+        motion.step(1000);
+    }
+    motion.halt();
+    while !motion.is_at_rest() {
+        motion.step(1000);
+    }
+    assert_eq!(motion.goal, motion.at);
+    assert!(motion.distance() < 1e-12);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// Shrinks to the shortest run that breaks something.
+    #[test]
+    fn short_runs_break_no_limit(seed in any::<u64>(), moves in 1_u32..40) {
+        run(seed, moves).map_err(TestCaseError::fail)?;
+    }
+
+    /// Counts at their extremes neither hang nor leave the numbers.
+    #[test]
+    fn extreme_counts_stay_finite(a in prop::sample::select(vec![1, 1000, i32::MAX]), v in prop::sample::select(vec![1, i32::MAX]),
+                                  s in prop::sample::select(vec![1, 1000, i32::MAX]), x in -3e7_f64..3e7) {
+        let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
+        let mut motion = Motion::at_rest(&start);
+        motion.go(&shifted(&start, x, 0.0), &Limits::from_counts(a, v, s).unwrap(), None);
+        for tick in 0..200 {
+            motion.step(if tick % 70 < 60 { 1000 } else { 0 });
+            prop_assert!(motion.frame().is_finite());
+        }
+    }
+}
