@@ -1,0 +1,346 @@
+//! The cell as a whole: one tick of it is one call.
+
+mod handling;
+mod picture;
+mod workstation;
+
+use std::fmt;
+
+use depc::controller::ControllerState;
+use rapier3d_f64::prelude::*;
+use rcs_core::{
+    frame::{Frame, Vector as Inches},
+    interface::device::{
+        DeviceInputs, DeviceOutputs, HolsterSensors, JoystickBox, KNOB_FULL, LinkBytes, QuickChangeSensors,
+        RESOLVER_COUNTS, Resolvers,
+    },
+    kinematics::Joints,
+    tick::TICK_S,
+};
+
+pub use picture::Link;
+pub use workstation::{Placement, WorkstationAction, WorkstationError};
+
+use crate::{
+    arm::Arm,
+    camera::{Camera, Subject},
+    clearance::{Clearance, Contact},
+    convert::{GRAVITY, to_frame, to_pose},
+    description::{CellDescription, DescriptionError},
+    gripper::Gripper,
+    noise::{Noise, Stream},
+    part::{Part, PartState},
+    scene::{Block, Obstacle, furniture},
+    t3::{Button, DriveError, T3Controller},
+    vise::Vise,
+};
+
+/// Why a cell cannot be built.
+#[derive(Debug, thiserror::Error)]
+pub enum CellError {
+    /// The description has faults.
+    #[error(transparent)]
+    Description(#[from] DescriptionError),
+    /// The arm cannot begin where the description says.
+    #[error("robot.start: {0}")]
+    Start(#[from] DriveError),
+}
+
+/// Something that should not happen, or that a person wants to know.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CellEvent {
+    /// The robot, or what it carries, has run into something.
+    Contact(Contact),
+    /// A part slides between the fingers: more was asked of them than their force and friction give.
+    Slipped {
+        /// The part.
+        part: String,
+        /// How far it has slid since it was gripped, in.
+        distance: f64,
+    },
+    /// The fingers have lost a part that they had.
+    Dropped {
+        /// The part.
+        part: String,
+    },
+    /// A part lies on the floor.
+    Fell {
+        /// The part.
+        part: String,
+    },
+    /// The T3 controller shows a warning.
+    Warning(&'static str),
+    /// A body has left the realm of numbers and was taken out of the simulation.
+    Quarantined,
+}
+
+impl fmt::Display for CellEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Contact(contact) => {
+                write!(f, "{} runs into {}, {:.3} in deep", contact.mover, contact.obstacle, contact.depth)
+            }
+            Self::Slipped { part, distance } => write!(f, "{part} slides in the fingers, {distance:.3} in so far"),
+            Self::Dropped { part } => write!(f, "{part} is lost from the fingers"),
+            Self::Fell { part } => write!(f, "{part} lies on the floor"),
+            Self::Warning(code) => write!(f, "the T3 controller shows {code}"),
+            Self::Quarantined => f.write_str("a body is no longer anywhere: the simulation has failed"),
+        }
+    }
+}
+
+/// The simulated cell: everything outside the controller.
+pub struct Cell {
+    description: CellDescription,
+    world: PhysicsWorld,
+    arm: Arm,
+    t3: T3Controller,
+    gripper: Gripper,
+    vise: Vise,
+    camera: Camera,
+    parts: Vec<Part>,
+    next_part: u32,
+    furniture: Vec<Block>,
+    obstacles: Vec<Obstacle>,
+    clearance: Clearance,
+    gripper_noise: Noise,
+    placement_noise: Noise,
+    events: Vec<CellEvent>,
+    slip_reported: bool,
+    inputs: DeviceInputs,
+}
+
+impl Cell {
+    /// Build the cell of a description; the seed sets the noise of the sensors and where parts are put down at random.
+    ///
+    /// # Errors
+    /// [`CellError`] if the description cannot be used.
+    pub fn new(description: &CellDescription, seed: u64) -> Result<Self, CellError> {
+        description.validate()?;
+        let mut world = physics(description);
+        let furniture = furniture(description);
+        let ground = world.insert_body(RigidBodyBuilder::fixed());
+        for block in &furniture {
+            world.insert_collider(block.collider(), Some(ground));
+        }
+        let arm = Arm::new(&description.robot);
+        let tool = to_pose(&arm.tool());
+        let gripper = Gripper::new(&mut world, &description.gripper, description.robot.stiffness, &tool);
+        let vise = Vise::new(&mut world, &description.vise);
+        let mut cell = Self {
+            t3: T3Controller::new(arm.joints())?,
+            camera: Camera::new(&description.camera, Noise::new(seed, Stream::Camera)),
+            obstacles: furniture.iter().map(Obstacle::from).collect(),
+            description: description.clone(),
+            world,
+            arm,
+            gripper,
+            vise,
+            parts: Vec::new(),
+            next_part: 1,
+            furniture,
+            clearance: Clearance::default(),
+            gripper_noise: Noise::new(seed, Stream::Gripper),
+            placement_noise: Noise::new(seed, Stream::Placement),
+            events: Vec::new(),
+            slip_reported: false,
+            inputs: DeviceInputs::default(),
+        };
+        cell.inputs = cell.sense(LinkBytes::default(), false);
+        Ok(cell)
+    }
+
+    /// What the devices show: before the first tick as the cell was built, then as the last tick left it.
+    #[must_use]
+    pub fn inputs(&self) -> DeviceInputs {
+        self.inputs
+    }
+
+    /// Advance the cell by exactly one tick of 40 ms with what the controller wrote in the last one.
+    pub fn step(&mut self, outputs: &DeviceOutputs) -> DeviceInputs {
+        let tick = self.t3.step(&outputs.link_tx);
+        if let Some(warning) = tick.warning {
+            self.events.push(CellEvent::Warning(warning.text()));
+        }
+        self.arm.begin_tick(Some(tick.command));
+        let steps = self.description.physics.substeps;
+        for step in 1..=steps {
+            self.substep(f64::from(step) / f64::from(steps), outputs.grip.bits);
+        }
+        self.after_tick();
+        self.look(outputs);
+        self.inputs = self.sense(tick.tx, tick.dtr);
+        self.inputs
+    }
+
+    /// One step of the simulation, up to the given fraction of the tick.
+    fn substep(&mut self, fraction: f64, valves: u8) {
+        let dt = self.world.integration_parameters.dt;
+        self.arm.advance(fraction, dt);
+        let tool = to_pose(&self.arm.tool());
+        self.world.bodies[self.gripper.hand()].set_next_kinematic_position(tool);
+        self.drive_fingers(dt, valves);
+        self.drive_jaw(dt);
+        self.world.step();
+        self.let_holds_give_way();
+    }
+
+    /// Once a tick: what has been run into, what has fallen.
+    fn after_tick(&mut self) {
+        let movers = self.movers();
+        let jaw = self.jaw_obstacles();
+        let begun = self.clearance.check(&movers, self.obstacles.iter().chain(&jaw));
+        self.events.extend(begun.into_iter().map(CellEvent::Contact));
+        if !self.world.quarantine().is_empty() {
+            self.events.push(CellEvent::Quarantined);
+        }
+        self.note_falls();
+    }
+
+    /// Take a picture if one is asked for.
+    fn look(&mut self, outputs: &DeviceOutputs) {
+        if !self.camera.wants_picture(&outputs.vision) {
+            return;
+        }
+        let frame = self.camera.frame(&self.tool());
+        let lens = to_pose(&frame).translation;
+        let seen: Vec<Subject> = self
+            .parts
+            .iter()
+            .filter_map(|part| {
+                let subject = Subject {
+                    frame: frame.inverse().compose(&part.frame(&self.world)),
+                    size: Inches::from(part.kind.size),
+                };
+                let surface = to_pose(&frame).transform_point(crate::convert::to_metres(&subject.surface()));
+                let ray = Ray::new(lens, surface - lens);
+                let hit = self.world.cast_ray(&ray, 1.01, true, QueryFilter::default());
+                hit.is_some_and(|(collider, _)| collider == part.collider).then_some(subject)
+            })
+            .collect();
+        let id = outputs.vision.object_id;
+        let expected = self.description.part.iter().find(|kind| kind.vision_id == id && id != 0);
+        self.camera.expose(&outputs.vision, &seen, expected);
+    }
+
+    /// Read all sensors.
+    fn sense(&mut self, link_rx: LinkBytes, link_ready: bool) -> DeviceInputs {
+        let beams = self.broken_beams();
+        DeviceInputs {
+            link_rx,
+            link_ready,
+            resolvers: Resolvers { counts: self.arm.joints().map(resolver), valid: true },
+            grip: self.gripper.sensors(&mut self.gripper_noise, beams),
+            quick_change: QuickChangeSensors { locked: true, unlocked: false, end_effector_id: 1 },
+            // ASSUMED: the holsters of the other grippers are full, so that all their ears are seen at the seat.
+            holsters: HolsterSensors { right: 0, left: 0x0F, centre: 0x0F },
+            joystick: JoystickBox { velocity: KNOB_FULL },
+            vision: self.camera.answer(),
+        }
+    }
+
+    /// True joint angles, radians: base, shoulder, elbow, pitch, yaw, roll.
+    #[must_use]
+    pub fn joints(&self) -> Joints {
+        *self.arm.joints()
+    }
+
+    /// The tool frame as the loaded arm and the fingers have it, inches: the middle between the fingertips.
+    #[must_use]
+    pub fn tool(&self) -> Frame {
+        to_frame(&self.gripper.loaded_tool(&self.world))
+    }
+
+    /// Finger opening, in, and force of a finger, lb: the truth behind the sensors.
+    #[must_use]
+    pub fn fingers(&self) -> (f64, f64) {
+        (self.gripper.air.opening(), self.gripper.air.force())
+    }
+
+    /// Distance of the vise's clamping faces, in.
+    #[must_use]
+    pub fn vise_opening(&self) -> f64 {
+        self.vise.opening()
+    }
+
+    /// All parts.
+    #[must_use]
+    pub fn parts(&self) -> Vec<PartState> {
+        (0..self.parts.len()).map(|index| self.part_state(index)).collect()
+    }
+
+    /// The frame of a part, in, by its number.
+    #[must_use]
+    pub fn part_frame(&self, id: u32) -> Option<Frame> {
+        self.parts.iter().find(|part| part.id == id).map(|part| part.frame(&self.world))
+    }
+
+    /// What has happened since this was last asked.
+    pub fn events(&mut self) -> Vec<CellEvent> {
+        std::mem::take(&mut self.events)
+    }
+
+    /// Press a button of the T3 controller's panel.
+    pub fn press(&mut self, button: Button) {
+        self.t3.press(button);
+    }
+
+    /// The controller's DTR line as the T3 controller sees it (A.2); on at the start.
+    pub fn set_host_ready(&mut self, ready: bool) {
+        self.t3.set_host_ready(ready);
+    }
+
+    /// State of the DEPC function of the T3 controller.
+    #[must_use]
+    pub fn depc(&self) -> ControllerState {
+        self.t3.state()
+    }
+
+    /// Lead the arm to an end-plate frame (inches) by the end of the next tick, as the teach pendant does: past the line.
+    ///
+    /// # Errors
+    /// [`DriveError`] if the arm cannot take the position; then it stays.
+    pub fn drive(&mut self, plate: &Frame) -> Result<(), DriveError> {
+        self.t3.drive(plate)
+    }
+}
+
+/// Counts of a resolver at an angle in radians: 17 bits a turn, 0 at 0.
+fn resolver(angle: f64) -> u32 {
+    let turns = angle / (2.0 * core::f64::consts::PI);
+    let counts = libm::round((turns - libm::floor(turns)) * f64::from(RESOLVER_COUNTS));
+    counts as u32 % RESOLVER_COUNTS
+}
+
+/// An empty world with the steps and stiffness of the description.
+fn physics(description: &CellDescription) -> PhysicsWorld {
+    let physics = &description.physics;
+    let mut world = PhysicsWorld::new();
+    world.gravity = Vector::new(0.0, 0.0, -GRAVITY);
+    let stiffness = SpringCoefficients::new(physics.contact_frequency, physics.contact_damping);
+    let parameters = &mut world.integration_parameters;
+    parameters.dt = TICK_S / f64::from(physics.substeps);
+    parameters.num_solver_iterations = physics.solver_iterations;
+    parameters.contact_softness = stiffness;
+    parameters.static_contact_softness = stiffness;
+    // The job lives on gaps of a millimetre: rapier's defaults leave 5 mm of penetration, and keep contacts unexamined
+    // until something has moved by 50 mm.
+    parameters.normalized_allowed_linear_error = 1e-5;
+    parameters.normalized_prediction_distance = 2e-3;
+    parameters.contact_recycling = false;
+    parameters.warmstart_joints = true;
+    world
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_resolver_counts_up_from_zero_and_around() {
+        assert_eq!(resolver(0.0), 0);
+        assert_eq!(resolver(core::f64::consts::PI), 65_536);
+        assert_eq!(resolver(-core::f64::consts::FRAC_PI_2), 98_304);
+        assert_eq!(resolver(-1e-9), 0, "rounded up to a whole turn");
+    }
+}

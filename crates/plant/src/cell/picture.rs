@@ -1,0 +1,333 @@
+//! The cell as viewers and the clearance check see it: links with poses, and a URDF made of boxes and cylinders.
+//!
+//! Every link hangs in the URDF by the same parent that its pose is given in, so that a stream of transforms, a stream of
+//! joint angles and the URDF agree.
+
+use std::fmt::Write as _;
+
+use rapier3d_f64::prelude::*;
+use rcs_core::{
+    frame::{Frame, Rotation, Vector as Inches, rotation_by},
+    kinematics::{JOINT_NAMES, T3},
+};
+
+use super::Cell;
+use crate::{
+    clearance::Mover,
+    convert::{metres, to_frame, to_metres, to_pose},
+    gripper::body_opening,
+    scene::{Block, Obstacle, along_x, jaw_blocks},
+};
+
+/// A moving body, metres, in the coordinates of its parent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    /// Its name: that of the URDF link.
+    pub name: String,
+    /// The link that the pose is given in; `world` for the world.
+    pub parent: &'static str,
+    /// x, y, z in metres.
+    pub position: [f64; 3],
+    /// Quaternion x, y, z, w.
+    pub rotation: [f64; 4],
+}
+
+/// Links of the arm from the base, their parents and the axes of their joints.
+const ARM: [(&str, &str, [f64; 3]); 6] = [
+    ("turret", "world", [0.0, 0.0, 1.0]),
+    ("upper_arm", "turret", [0.0, -1.0, 0.0]),
+    ("forearm", "upper_arm", [0.0, -1.0, 0.0]),
+    ("wrist_pitch", "forearm", [0.0, -1.0, 0.0]),
+    ("wrist_yaw", "wrist_pitch", [0.0, 0.0, 1.0]),
+    ("end_plate", "wrist_yaw", [1.0, 0.0, 0.0]),
+];
+
+/// Where each arm link begins in its parent, along the parent's X, in.
+const STARTS: [f64; 6] = [0.0, 0.0, T3.upper_arm, T3.forearm, T3.pitch_to_yaw, 0.0];
+
+/// A shape of a link for the picture, in the link's frame.
+enum Outline {
+    Box(Inches),
+    /// Along the X axis: radius and length.
+    Cylinder(f64, f64),
+}
+
+impl Cell {
+    /// Frames of the arm's links in the world, in.
+    fn arm_frames(&self) -> [Frame; 6] {
+        let mut frame = Frame::identity();
+        let mut frames = [frame; 6];
+        for (joint, angle) in self.joints().into_iter().enumerate() {
+            let (_, _, axis) = ARM[joint];
+            frame = frame
+                .shifted(Inches::new(STARTS[joint], 0.0, 0.0))
+                .turned(&rotation_by(&(Inches::from(axis) * angle)));
+            frames[joint] = frame;
+        }
+        frames
+    }
+
+    /// The outline of the robot and what it carries, for the clearance check.
+    pub(super) fn movers(&self) -> Vec<Mover> {
+        let [_, upper, fore, _, _, plate] = self.arm_frames().map(|frame| to_pose(&frame));
+        let robot = &self.description.robot;
+        let capsule = |name: &str, pose: Pose, from: f64, to: f64, radius: f64| Mover {
+            name: name.into(),
+            pose,
+            shape: SharedShape::capsule(Vector::X * metres(from), Vector::X * metres(to), metres(radius)),
+        };
+        let mut movers = vec![
+            capsule("upper_arm", upper, T3.upper_arm / 4.0, T3.upper_arm, robot.upper_arm_radius),
+            capsule("forearm", fore, 0.0, T3.forearm, robot.forearm_radius),
+            capsule("wrist", plate, 0.0, T3.yaw_to_plate, robot.wrist_radius),
+        ];
+        let hand = &self.world.bodies[self.gripper.hand()];
+        for (name, body) in [
+            ("gripper", self.gripper.hand()),
+            ("left_finger", self.gripper.finger_bodies()[0]),
+            ("right_finger", self.gripper.finger_bodies()[1]),
+        ] {
+            for collider in self.world.bodies[body].colliders() {
+                let collider = &self.world.colliders[*collider];
+                movers.push(Mover { name: name.into(), pose: *collider.position(), shape: collider.shared_shape().clone() });
+            }
+        }
+        let camera = to_metres(&Inches::from(self.description.camera.position));
+        movers.push(Mover {
+            name: "camera".into(),
+            pose: *hand.position() * Pose::from_translation(camera),
+            shape: SharedShape::cuboid(metres(1.0), metres(1.0), metres(0.75)),
+        });
+        movers
+    }
+
+    /// The movable jaw where it is now.
+    pub(super) fn jaw_obstacles(&self) -> Vec<Obstacle> {
+        let jaw = to_frame(self.world.bodies[self.vise.jaw()].position());
+        jaw_blocks(&self.description.vise).iter().map(|block| Obstacle::from(&block.moved(&jaw))).collect()
+    }
+
+    /// Names and poses of all moving bodies.
+    #[must_use]
+    pub fn links(&self) -> Vec<Link> {
+        let mut links = Vec::with_capacity(12 + self.parts.len());
+        for (joint, angle) in self.joints().into_iter().enumerate() {
+            let (name, parent, axis) = ARM[joint];
+            let pose = Pose::new(Vector::X * metres(STARTS[joint]), Vector::from_array(axis) * angle);
+            links.push(link(name, parent, &pose));
+        }
+        let hand = *self.world.bodies[self.gripper.hand()].position();
+        for (name, body) in ["left_finger", "right_finger"].into_iter().zip(self.gripper.finger_bodies()) {
+            links.push(link(name, "parts_gripper", &hand.inv_mul(self.world.bodies[body].position())));
+        }
+        let vise = to_pose(self.vise.frame());
+        let jaw = vise.inv_mul(self.world.bodies[self.vise.jaw()].position());
+        links.push(link("movable_jaw", "vise", &jaw));
+        for part in &self.parts {
+            links.push(link(&part_link(part.id), "world", &part.pose(&self.world)));
+        }
+        links
+    }
+
+    /// Names and values of all joints of the URDF that are one number: radians, or metres for fingers and jaw.
+    #[must_use]
+    pub fn joint_states(&self) -> Vec<(&'static str, f64)> {
+        let mut states: Vec<_> = JOINT_NAMES.into_iter().zip(self.joints()).collect();
+        let half = metres(body_opening(&self.world, &self.gripper) / 2.0);
+        states.extend([("left_finger_slide", half), ("right_finger_slide", half)]);
+        states.push(("jaw_slide", metres(self.vise.opening())));
+        states
+    }
+
+    /// A URDF of the whole cell as it is now; parts that are put down later are not in it.
+    #[must_use]
+    pub fn urdf(&self) -> String {
+        let mut urdf = Urdf::new(&self.description.name);
+        self.urdf_arm(&mut urdf);
+        self.urdf_gripper(&mut urdf);
+        let mut last = "";
+        for block in &self.furniture {
+            let in_vise = ["vise_body", "fixed_jaw_notch", "fixed_jaw"].contains(&block.name.as_str());
+            if !in_vise && block.name != last {
+                urdf.begin_link(&block.name);
+                urdf.block(&Block { frame: Frame::identity(), ..block.clone() }, STEEL);
+                urdf.end_link();
+                urdf.joint(&format!("{}_mount", block.name), "fixed", "world", &block.name, &block.frame, None);
+            }
+            last = &block.name;
+        }
+        self.urdf_vise(&mut urdf);
+        for part in &self.parts {
+            let name = part_link(part.id);
+            urdf.begin_link(&name);
+            urdf.shape(&Frame::identity(), &Outline::Box(Inches::from(part.kind.size)), PART);
+            urdf.end_link();
+            urdf.joint(&format!("{name}_free"), "floating", "world", &name, &Frame::identity(), None);
+        }
+        urdf.finish()
+    }
+
+    fn urdf_arm(&self, urdf: &mut Urdf) {
+        let robot = &self.description.robot;
+        let outlines = [
+            (robot.upper_arm_radius * 1.5, 8.0, -4.0),
+            (robot.upper_arm_radius * 0.8, T3.upper_arm, 0.0),
+            (robot.forearm_radius, T3.forearm, 0.0),
+            (robot.wrist_radius, T3.pitch_to_yaw, 0.0),
+            (robot.wrist_radius, 2.0, -1.0),
+            (robot.wrist_radius, T3.yaw_to_plate, 0.0),
+        ];
+        for (joint, (radius, length, from)) in outlines.into_iter().enumerate() {
+            let (name, parent, axis) = ARM[joint];
+            let middle = Frame { position: Inches::new(from + length / 2.0, 0.0, 0.0), rotation: Rotation::identity() };
+            urdf.begin_link(name);
+            urdf.shape(&middle, &Outline::Cylinder(radius, length), ROBOT);
+            urdf.end_link();
+            let start = Frame { position: Inches::new(STARTS[joint], 0.0, 0.0), rotation: Rotation::identity() };
+            urdf.joint(JOINT_NAMES[joint], "revolute", parent, name, &start, Some((axis, T3.limits[joint])));
+        }
+    }
+
+    fn urdf_gripper(&self, urdf: &mut Urdf) {
+        let gripper = &self.description.gripper;
+        let [length, thickness, width] = gripper.fingers;
+        let at = |x: f64, y: f64, z: f64| Frame { position: Inches::new(x, y, z), rotation: Rotation::identity() };
+        urdf.begin_link("parts_gripper");
+        let change = -T3.plate_to_tool + gripper.quick_change_length / 2.0;
+        urdf.shape(&at(change, 0.0, 0.0), &Outline::Cylinder(gripper.quick_change_radius, gripper.quick_change_length), DARK);
+        urdf.shape(&at(-length - gripper.body[0] / 2.0, 0.0, 0.0), &Outline::Box(Inches::from(gripper.body)), DARK);
+        let [x, y, z] = self.description.camera.position;
+        urdf.shape(&at(x, y, z), &Outline::Box(Inches::new(2.0, 2.0, 1.5)), DARK);
+        urdf.end_link();
+        let plate_to_tool = at(T3.yaw_to_plate + T3.plate_to_tool, 0.0, 0.0);
+        urdf.joint("quick_change", "fixed", "end_plate", "parts_gripper", &plate_to_tool, None);
+        for (name, side) in [("left_finger", 1.0), ("right_finger", -1.0)] {
+            urdf.begin_link(name);
+            urdf.shape(&Frame::identity(), &Outline::Box(Inches::new(length, thickness, width)), STEEL);
+            urdf.end_link();
+            let start = at(-length / 2.0, side * thickness / 2.0, 0.0);
+            let range = (metres(0.0), metres(gripper.opening[1] / 2.0));
+            let slide = format!("{name}_slide");
+            urdf.joint(&slide, "prismatic", "parts_gripper", name, &start, Some(([0.0, side, 0.0], range)));
+        }
+    }
+
+    fn urdf_vise(&self, urdf: &mut Urdf) {
+        let vise = &self.description.vise;
+        urdf.begin_link("vise");
+        let inverse = self.vise.frame().inverse();
+        for block in &self.furniture {
+            if ["vise_body", "fixed_jaw_notch", "fixed_jaw"].contains(&block.name.as_str()) {
+                urdf.block(&block.moved(&inverse), DARK);
+            }
+        }
+        urdf.end_link();
+        urdf.joint("vise_mount", "fixed", "world", "vise", self.vise.frame(), None);
+        urdf.begin_link("movable_jaw");
+        for block in jaw_blocks(vise) {
+            urdf.block(&block, STEEL);
+        }
+        urdf.end_link();
+        let start = Frame { position: Inches::new(0.0, -vise.notch_depth, 0.0), rotation: Rotation::identity() };
+        let range = (0.0, metres(vise.opening_open));
+        urdf.joint("jaw_slide", "prismatic", "vise", "movable_jaw", &start, Some(([0.0, 1.0, 0.0], range)));
+    }
+}
+
+fn part_link(id: u32) -> String {
+    format!("part_{id}")
+}
+
+fn link(name: &str, parent: &'static str, pose: &Pose) -> Link {
+    Link {
+        name: name.into(),
+        parent,
+        position: pose.translation.to_array(),
+        rotation: pose.rotation.to_array(),
+    }
+}
+
+const ROBOT: &str = "0.85 0.35 0.10 1";
+const STEEL: &str = "0.60 0.62 0.65 1";
+const DARK: &str = "0.25 0.27 0.30 1";
+const PART: &str = "0.15 0.45 0.80 1";
+
+/// Writes URDF text.
+struct Urdf(String);
+
+impl Urdf {
+    fn new(name: &str) -> Self {
+        Self(format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n  <link name=\"world\"/>\n", escaped(name)))
+    }
+
+    fn line(&mut self, text: std::fmt::Arguments<'_>) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.0, "  {text}");
+    }
+
+    fn begin_link(&mut self, name: &str) {
+        self.line(format_args!("<link name=\"{}\">", escaped(name)));
+    }
+
+    fn end_link(&mut self) {
+        self.line(format_args!("</link>"));
+    }
+
+    fn block(&mut self, block: &Block, colour: &str) {
+        self.shape(&block.frame, &Outline::Box(block.size), colour);
+    }
+
+    fn shape(&mut self, frame: &Frame, outline: &Outline, colour: &str) {
+        let (frame, geometry) = match outline {
+            Outline::Box(size) => {
+                let size = to_metres(size);
+                (*frame, format!("<box size=\"{} {} {}\"/>", size.x, size.y, size.z))
+            }
+            Outline::Cylinder(radius, length) => {
+                let geometry = format!("<cylinder radius=\"{}\" length=\"{}\"/>", metres(*radius), metres(*length));
+                (frame.turned(&along_x()), geometry)
+            }
+        };
+        self.line(format_args!(
+            "  <visual>{}<geometry>{geometry}</geometry><material name=\"{1}\"><color rgba=\"{1}\"/></material></visual>",
+            origin(&frame),
+            colour
+        ));
+    }
+
+    fn joint(
+        &mut self,
+        name: &str,
+        kind: &str,
+        parent: &str,
+        child: &str,
+        start: &Frame,
+        motion: Option<([f64; 3], (f64, f64))>,
+    ) {
+        let motion = motion.map_or_else(String::new, |([x, y, z], (low, high))| {
+            format!("<axis xyz=\"{x} {y} {z}\"/><limit lower=\"{low}\" upper=\"{high}\" effort=\"0\" velocity=\"0\"/>")
+        });
+        self.line(format_args!(
+            "<joint name=\"{}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{}\"/>{}{motion}</joint>",
+            escaped(name),
+            escaped(child),
+            origin(start),
+        ));
+    }
+
+    fn finish(mut self) -> String {
+        self.0.push_str("</robot>\n");
+        self.0
+    }
+}
+
+/// An origin element: metres, and fixed-axis roll, pitch, yaw.
+fn origin(frame: &Frame) -> String {
+    let p = to_metres(&frame.position);
+    let (roll, pitch, yaw) = frame.rotation.euler_angles();
+    format!("<origin xyz=\"{} {} {}\" rpy=\"{roll} {pitch} {yaw}\"/>", p.x, p.y, p.z)
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}

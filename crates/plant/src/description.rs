@@ -1,0 +1,530 @@
+//! The cell description: one TOML file that says where things stand, how large and how strong they are.
+//!
+//! Everything in the file is in inches, degrees, pounds and seconds, in world coordinates. Reading checks what the
+//! format can check (missing and misspelt entries, types), [`CellDescription::validate`] checks what the numbers must
+//! fulfil, and reports all faults at once, each with the name of the entry, what was expected and what was found.
+
+use std::{collections::BTreeSet, fmt, path::Path};
+
+use rcs_core::{
+    frame::{Frame, Vector},
+    kinematics::{JOINT_NAMES, Joints, T3},
+    movetable::straight_down,
+    name::Name16,
+};
+use serde::Deserialize;
+
+/// Why a cell description cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum DescriptionError {
+    /// The file cannot be read.
+    #[error("cell description {path}: {source}")]
+    Unreadable {
+        /// The file.
+        path: String,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is not TOML, or an entry is missing, misspelt or of another type.
+    #[error("cell description: {0}")]
+    Syntax(#[from] Box<toml::de::Error>),
+    /// Numbers that do not make a cell.
+    #[error("cell description: {0}")]
+    Values(Faults),
+}
+
+/// All faults of a description.
+#[derive(Debug)]
+pub struct Faults(Vec<Fault>);
+
+/// One value that cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Which entry.
+    pub entry: String,
+    /// What was expected.
+    pub expected: String,
+    /// What was found.
+    pub found: String,
+}
+
+impl Faults {
+    /// The faults in the order of the file.
+    #[must_use]
+    pub fn all(&self) -> &[Fault] {
+        &self.0
+    }
+}
+
+impl fmt::Display for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (number, fault) in self.0.iter().enumerate() {
+            let separator = if number == 0 { "" } else { "; " };
+            write!(f, "{separator}{}: expected {}, found {}", fault.entry, fault.expected, fault.found)?;
+        }
+        Ok(())
+    }
+}
+
+/// The whole cell.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct CellDescription {
+    /// A name for people.
+    pub name: String,
+    /// Steps and stiffness of the simulation.
+    pub physics: Physics,
+    /// The arm's servos and outline.
+    pub robot: Robot,
+    /// The parts gripper.
+    pub gripper: Gripper,
+    /// The camera on the wrist.
+    pub camera: Camera,
+    /// The programmable vise.
+    pub vise: Vise,
+    /// The trays.
+    pub tray: Vec<Tray>,
+    /// What all trays have in common.
+    pub tray_shape: TrayShape,
+    /// Boxes that stand still.
+    #[serde(default)]
+    pub fixture: Vec<Fixture>,
+    /// Parts that can be in the cell.
+    pub part: Vec<PartType>,
+}
+
+/// Steps and stiffness of the simulation.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Physics {
+    /// Steps in a tick of 40 ms.
+    pub substeps: u32,
+    /// Solver iterations in a step.
+    pub solver_iterations: usize,
+    /// Natural frequency of contacts, Hz.
+    pub contact_frequency: f64,
+    /// Damping ratio of contacts.
+    pub contact_damping: f64,
+}
+
+/// The arm's servos and outline; its lengths are [`T3`].
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Robot {
+    /// First-order lag of the joint servos, s.
+    pub servo_lag_s: f64,
+    /// Greatest speed of each joint, degrees/s.
+    pub joint_speeds: [f64; 6],
+    /// Joint angles at the start, degrees.
+    pub start: [f64; 6],
+    /// Stiffness of arm, wrist and fingers together at the fingertips, lb/in.
+    pub stiffness: f64,
+    /// Radius of the upper arm, in.
+    pub upper_arm_radius: f64,
+    /// Radius of the forearm, in.
+    pub forearm_radius: f64,
+    /// Radius of the wrist, in.
+    pub wrist_radius: f64,
+}
+
+/// The parts gripper.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Gripper {
+    /// Length of the quick change, from the end plate, in.
+    pub quick_change_length: f64,
+    /// Radius of the quick change, in.
+    pub quick_change_radius: f64,
+    /// Size of the body along tool X, Y, Z, in.
+    pub body: [f64; 3],
+    /// Length, thickness and width of a finger, in.
+    pub fingers: [f64; 3],
+    /// Moving mass of a finger, lb.
+    pub finger_weight: f64,
+    /// Least and greatest opening, in.
+    pub opening: [f64; 2],
+    /// Opening at the start, in.
+    pub initial_opening: f64,
+    /// Coefficient of friction of the pads.
+    pub friction: f64,
+    /// Force that a blocked finger gains for each inch that the air would have moved it, lb/in.
+    pub compressibility: f64,
+    /// Force of a finger at full pressure, lb.
+    pub greatest_force: f64,
+    /// Time in which the force is gone when both sides are vented, s.
+    pub vent_time_s: f64,
+    /// Its sensors.
+    pub sensors: GripperSensors,
+}
+
+/// Offsets and scales of the gripper's sensors, in counts of 12-bit converters; UP-INIT has to find them.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct GripperSensors {
+    /// Counts of the potentiometer at opening 0.
+    pub potentiometer_offset: f64,
+    /// Counts of the potentiometer for an inch.
+    pub potentiometer_scale: f64,
+    /// Counts of the left and right strain gages without force.
+    pub strain_offsets: [f64; 2],
+    /// Counts of the left and right strain gages for a pound.
+    pub strain_scales: [f64; 2],
+    /// Greatest noise, counts.
+    pub noise: f64,
+}
+
+/// The camera on the wrist.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Camera {
+    /// Centre of the image plane in the tool frame, in.
+    pub position: [f64; 3],
+    /// Angle of the optical axis to tool X, towards the fingers, degrees.
+    pub tilt: f64,
+    /// Half width of the picture at the reference range, in.
+    pub view: f64,
+    /// Range at which `view` holds, mm.
+    pub reference_range_mm: f64,
+    /// Greatest error of the centroid from the fast flood, in.
+    pub flood_noise: f64,
+    /// Greatest error of the centroid from the second picture, in.
+    pub precise_noise: f64,
+    /// Greatest error of the angle, degrees.
+    pub angle_noise: f64,
+    /// Greatest error of a measured length, in.
+    pub shape_noise: f64,
+    /// How much a measured length may differ from that of the part asked for, in.
+    pub shape_tolerance: f64,
+    /// Ticks until the answer to a fast flood.
+    pub flood_ticks: u32,
+    /// Ticks until the answer to a second picture.
+    pub precise_ticks: u32,
+}
+
+/// The programmable vise; its frame has X into the vise, Y to the left, Z up, parallel to the world's axes.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Vise {
+    /// Name of the location.
+    pub location: String,
+    /// Front plane of the jaws, inner face of the fixed jaw, top of the jaws; world, in.
+    pub position: [f64; 3],
+    /// Depth, thickness and height of a jaw, in.
+    pub jaw: [f64; 3],
+    /// How far the clamping face stands back from the inner face, in.
+    pub notch_depth: f64,
+    /// Back of the notch, from the front plane, in.
+    pub notch_back: f64,
+    /// Extent of the body in X, in.
+    pub body_x: [f64; 2],
+    /// Extent of the body in Y, in.
+    pub body_y: [f64; 2],
+    /// Height of the body under the ledge, in.
+    pub body_height: f64,
+    /// Distance of the clamping faces when open, in.
+    pub opening_open: f64,
+    /// Distance of the clamping faces when partially closed, in.
+    pub opening_partial: f64,
+    /// Speed of the jaw, in/s.
+    pub speed: f64,
+    /// Closing force, lb.
+    pub force: f64,
+    /// Coefficient of friction of the jaws.
+    pub friction: f64,
+}
+
+/// A tray at an MBD unit.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Tray {
+    /// Name of the location.
+    pub unit: String,
+    /// Centre, x and y, in.
+    pub centre: [f64; 2],
+    /// Top of the floor, z, in.
+    pub floor: f64,
+    /// Centres of the sectors, x and y, in, from sector 1.
+    pub sectors: Vec<[f64; 2]>,
+}
+
+/// What all trays have in common.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct TrayShape {
+    /// Inner side of the square, in.
+    pub inside: f64,
+    /// Thickness of the walls, in.
+    pub wall: f64,
+    /// Height of the rim above the floor, in.
+    pub rim: f64,
+    /// Thickness of the floor, in.
+    pub floor_thickness: f64,
+    /// Greatest offset in x and y at which a part is put down at random, in.
+    pub random_offset: f64,
+}
+
+/// A box that stands still.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Fixture {
+    /// Its name, also that of its link in the picture.
+    pub name: String,
+    /// Centre, x, y, z, in.
+    pub centre: [f64; 3],
+    /// Size, x, y, z, in.
+    pub size: [f64; 3],
+    /// Turn about +Z, degrees.
+    #[serde(default)]
+    pub azimuth: f64,
+    /// Lean of the top along the turned +X, degrees.
+    #[serde(default)]
+    pub tilt: f64,
+}
+
+/// A kind of part: a box.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct PartType {
+    /// Object name of the task data.
+    pub name: String,
+    /// Size in the part frame (X down as presented, Z along the part), in.
+    pub size: [f64; 3],
+    /// Weight, lb.
+    pub weight: f64,
+    /// Vision id (VII.7.6); 0 for none.
+    #[serde(default)]
+    pub vision_id: u16,
+}
+
+impl Tray {
+    /// Frame of a sector on the tray floor: tool axes straight down, Y to the robot's left (VIII.6), counted from 1.
+    #[must_use]
+    pub fn sector(&self, number: u16) -> Option<Frame> {
+        let [x, y] = *self.sectors.get(usize::from(number).checked_sub(1)?)?;
+        Some(straight_down(Vector::new(x, y, self.floor)))
+    }
+}
+
+impl Robot {
+    /// Joint angles at the start, radians.
+    #[must_use]
+    pub fn start_joints(&self) -> Joints {
+        self.start.map(f64::to_radians)
+    }
+}
+
+impl CellDescription {
+    /// Read a description from TOML text and check it.
+    ///
+    /// # Errors
+    /// [`DescriptionError::Syntax`] with line and column, or [`DescriptionError::Values`] with all faults.
+    pub fn from_toml(text: &str) -> Result<Self, DescriptionError> {
+        let description: Self = toml::from_str(text).map_err(Box::new)?;
+        description.validate()?;
+        Ok(description)
+    }
+
+    /// Read a description from a file and check it.
+    ///
+    /// # Errors
+    /// [`DescriptionError`].
+    pub fn load(path: &Path) -> Result<Self, DescriptionError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| DescriptionError::Unreadable { path: path.display().to_string(), source })?;
+        Self::from_toml(&text)
+    }
+
+    /// The part of a name.
+    #[must_use]
+    pub fn part(&self, name: &str) -> Option<&PartType> {
+        self.part.iter().find(|part| part.name == name)
+    }
+
+    /// The tray at a unit.
+    #[must_use]
+    pub fn tray(&self, unit: &str) -> Option<&Tray> {
+        self.tray.iter().find(|tray| tray.unit == unit)
+    }
+
+    /// Check all numbers.
+    ///
+    /// # Errors
+    /// [`DescriptionError::Values`] with all faults.
+    pub fn validate(&self) -> Result<(), DescriptionError> {
+        let mut check = Check(Vec::new());
+        self.check_robot(&mut check);
+        self.check_gripper_and_camera(&mut check);
+        self.check_vise_and_trays(&mut check);
+        self.check_names_and_boxes(&mut check);
+        if check.0.is_empty() { Ok(()) } else { Err(DescriptionError::Values(Faults(check.0))) }
+    }
+
+    fn check_robot(&self, check: &mut Check) {
+        check.within("physics.substeps", f64::from(self.physics.substeps), 4.0, 1000.0);
+        check.that(
+            (1..=64).contains(&self.physics.solver_iterations),
+            "physics.solver_iterations",
+            "1 to 64",
+            self.physics.solver_iterations,
+        );
+        check.within("physics.contact_frequency", self.physics.contact_frequency, 10.0, 2000.0);
+        check.within("physics.contact_damping", self.physics.contact_damping, 0.1, 100.0);
+        check.within("robot.servo_lag_s", self.robot.servo_lag_s, 1e-3, 1.0);
+        check.positive("robot.stiffness", &[self.robot.stiffness]);
+        check.positive("robot.joint_speeds", &self.robot.joint_speeds);
+        let outline = [self.robot.upper_arm_radius, self.robot.forearm_radius, self.robot.wrist_radius];
+        check.positive("robot.*_radius", &outline);
+        let limits = T3.limits.iter().map(|(low, high)| (low.to_degrees(), high.to_degrees()));
+        for ((angle, (low, high)), joint) in self.robot.start.iter().zip(limits).zip(JOINT_NAMES) {
+            check.within(&format!("robot.start ({joint})"), *angle, low, high);
+        }
+    }
+
+    fn check_gripper_and_camera(&self, check: &mut Check) {
+        let gripper = &self.gripper;
+        check.positive("gripper.body", &gripper.body);
+        check.positive("gripper.fingers", &gripper.fingers);
+        check.positive("gripper.quick_change_length, quick_change_radius", &[gripper.quick_change_length, gripper.quick_change_radius]);
+        let length = gripper.quick_change_length + gripper.body[0] + gripper.fingers[0];
+        check.that(
+            (length - T3.plate_to_tool).abs() < 1e-6,
+            "gripper: quick_change_length + body[0] + fingers[0]",
+            format!("the tool length of the arm, {} in", T3.plate_to_tool),
+            length,
+        );
+        let [least, greatest] = gripper.opening;
+        check.within("gripper.opening", greatest, least.max(0.0) + 0.1, 20.0);
+        check.within("gripper.opening[0]", least, 0.0, greatest);
+        check.within("gripper.initial_opening", gripper.initial_opening, least, greatest);
+        check.within("gripper.friction", gripper.friction, 0.01, 2.0);
+        check.positive(
+            "gripper: finger_weight, compressibility, greatest_force, vent_time_s",
+            &[gripper.finger_weight, gripper.compressibility, gripper.greatest_force, gripper.vent_time_s],
+        );
+        let sensors = &gripper.sensors;
+        let full = sensors.potentiometer_offset + sensors.potentiometer_scale * greatest;
+        check.within("gripper.sensors: potentiometer at the greatest opening", full, 1.0, 4095.0);
+        for (offset, scale) in sensors.strain_offsets.iter().zip(sensors.strain_scales) {
+            check.within("gripper.sensors: strain gage at the greatest force", offset + scale * gripper.greatest_force, 1.0, 4095.0);
+        }
+        check.within("gripper.sensors.noise", sensors.noise, 0.0, 100.0);
+        let camera = &self.camera;
+        check.positive("camera: view, reference_range_mm", &[camera.view, camera.reference_range_mm]);
+        let noises = [camera.flood_noise, camera.precise_noise, camera.angle_noise, camera.shape_noise, camera.shape_tolerance];
+        for noise in noises {
+            check.within("camera.*_noise, shape_tolerance", noise, 0.0, 10.0);
+        }
+        check.within("camera.tilt", camera.tilt, -90.0, 90.0);
+    }
+
+    fn check_vise_and_trays(&self, check: &mut Check) {
+        let vise = &self.vise;
+        check.positive("vise.jaw", &vise.jaw);
+        check.positive("vise: speed, force, friction, body_height", &[vise.speed, vise.force, vise.friction, vise.body_height]);
+        check.within("vise.notch_back", vise.notch_back, 0.0, vise.jaw[0]);
+        check.within("vise.notch_depth", vise.notch_depth, 0.0, vise.jaw[1]);
+        let closed = 2.0 * vise.notch_depth;
+        check.within("vise.opening_partial", vise.opening_partial, closed, vise.opening_open);
+        check.within("vise.opening_open", vise.opening_open, closed, 20.0);
+        check.that(vise.body_x[0] < vise.body_x[1], "vise.body_x", "ascending", format!("{:?}", vise.body_x));
+        check.that(vise.body_y[0] < vise.body_y[1], "vise.body_y", "ascending", format!("{:?}", vise.body_y));
+        let shape = &self.tray_shape;
+        check.positive("tray_shape", &[shape.inside, shape.wall, shape.rim, shape.floor_thickness]);
+        check.within("tray_shape.random_offset", shape.random_offset, 0.0, shape.inside / 2.0);
+        for tray in &self.tray {
+            check.that(!tray.sectors.is_empty(), &format!("tray {}: sectors", tray.unit), "at least one", "none");
+            for (number, [x, y]) in tray.sectors.iter().enumerate() {
+                let [cx, cy] = tray.centre;
+                let away = (x - cx).abs().max((y - cy).abs());
+                let entry = format!("tray {}: sector {}, distance from the centre", tray.unit, number + 1);
+                check.within(&entry, away, 0.0, shape.inside / 2.0);
+            }
+        }
+    }
+
+    fn check_names_and_boxes(&self, check: &mut Check) {
+        let mut names = BTreeSet::new();
+        let parts = self.part.iter().map(|p| ("part", &p.name));
+        let trays = self.tray.iter().map(|t| ("tray", &t.unit));
+        let fixtures = self.fixture.iter().map(|f| ("fixture", &f.name));
+        for (kind, name) in parts.chain(trays).chain(fixtures).chain([("vise", &self.vise.location)]) {
+            check.that(!name.is_empty(), kind, "a name", "an empty one");
+            check.that(names.insert((kind, name)), &format!("{kind} {name}"), "one entry for a name", "two");
+            if kind == "part" || kind == "tray" {
+                let fits = Name16::new(name);
+                check.that(fits.is_ok(), &format!("{kind} {name}"), "a name of at most 16 printable characters", name);
+            }
+        }
+        check.that(!self.part.is_empty(), "part", "at least one", "none");
+        for part in &self.part {
+            check.positive(&format!("part {}: size", part.name), &part.size);
+            check.positive(&format!("part {}: weight", part.name), &[part.weight]);
+        }
+        for fixture in &self.fixture {
+            check.positive(&format!("fixture {}: size", fixture.name), &fixture.size);
+        }
+    }
+}
+
+/// Collects faults.
+struct Check(Vec<Fault>);
+
+impl Check {
+    fn that(&mut self, holds: bool, entry: &str, expected: impl fmt::Display, found: impl fmt::Display) {
+        if !holds {
+            self.0.push(Fault { entry: entry.into(), expected: expected.to_string(), found: found.to_string() });
+        }
+    }
+
+    fn within(&mut self, entry: &str, value: f64, low: f64, high: f64) {
+        self.that((low..=high).contains(&value), entry, format!("{low} to {high}"), value);
+    }
+
+    fn positive(&mut self, entry: &str, values: &[f64]) {
+        let holds = values.iter().all(|v| v.is_finite() && *v > 0.0);
+        self.that(holds, entry, "more than 0", format!("{values:?}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = include_str!("../../../data/cell.toml");
+
+    #[test]
+    fn the_cell_of_the_project_is_sound() {
+        let cell = CellDescription::from_toml(TEXT).unwrap();
+        assert_eq!(cell.part("LINKBAR1_BH").unwrap().vision_id, 17);
+        let sector = cell.tray("UNIT_1").unwrap().sector(4).unwrap();
+        assert!((sector.position - Vector::new(-50.75, 10.25, -16.55)).norm() < 1e-12);
+        assert!((sector.y() - Vector::new(0.0, -1.0, 0.0)).norm() < 1e-12, "tool Y is the robot's left: -Y");
+        assert!(cell.tray("UNIT_1").unwrap().sector(0).is_none() && cell.tray("UNIT_1").unwrap().sector(5).is_none());
+    }
+
+    #[test]
+    fn a_misspelt_entry_is_named() {
+        let error = CellDescription::from_toml(&TEXT.replace("servo_lag_s", "servo_lag")).unwrap_err().to_string();
+        assert!(error.contains("servo_lag"), "{error}");
+    }
+
+    #[test]
+    fn all_faults_are_reported_at_once() {
+        let text = TEXT
+            .replace("speed = 0.5 ", "speed = -0.5 ")
+            .replace("quick_change_length = 3.0", "quick_change_length = 4.0")
+            .replace("name = \"LINKBAR1\"", "name = \"LINKBAR1_BH\"");
+        let Err(DescriptionError::Values(faults)) = CellDescription::from_toml(&text) else {
+            panic!("accepted");
+        };
+        let entries: Vec<&str> = faults.all().iter().map(|f| f.entry.as_str()).collect();
+        assert_eq!(entries.len(), 3, "{faults}");
+        assert!(faults.to_string().contains("expected the tool length of the arm, 12 in, found 13"), "{faults}");
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        let error = CellDescription::load(Path::new("/nowhere/cell.toml")).unwrap_err().to_string();
+        assert!(error.contains("/nowhere/cell.toml"), "{error}");
+    }
+}

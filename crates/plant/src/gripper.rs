@@ -1,0 +1,344 @@
+//! The parts gripper: two fingers that move oppositely, driven by air, and what they hold.
+//!
+//! [`Air`] turns the valve bits into an opening and a force: free fingers move by the sum of the flows, blocked fingers
+//! gain force instead, and with all flows off both stay. The fingers are two bodies that hang on the hand by springs: the
+//! stiffness of arm, wrist and fingers together. So whatever the gripper runs into meets a finite force, and an arm that
+//! over-travels by 0.015 in against the vise presses with 30 lb and not with the world's weight. Fingers are blocked when
+//! the geometry says so ([`crate::squeeze`]); what they hold then is a [`Hold`].
+
+use rapier3d_f64::prelude::*;
+use rcs_core::{
+    interface::device::{ADC_FULL_SCALE, GripSensors, valve},
+};
+
+use crate::{
+    convert::{KILOGRAMS_PER_POUND, inches, metres, newtons},
+    description::Gripper as Description,
+    hold::Hold,
+    noise::Noise,
+    scene::{FINGER, groups},
+    squeeze::Pads,
+};
+
+/// Speeds of the six flow valves, in/s, opening positive ([`valve`]).
+const FLOWS: [(u8, f64); 6] = [
+    (valve::OPEN_FINE, 0.25),
+    (valve::OPEN_MEDIUM, 1.0),
+    (valve::OPEN_COARSE, 4.0),
+    (valve::CLOSE_FINE, -0.25),
+    (valve::CLOSE_MEDIUM, -1.0),
+    (valve::CLOSE_COARSE, -4.0),
+];
+
+/// Opening, force and air of the fingers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Air {
+    opening: f64,
+    force: f64,
+    speed: f64,
+    range: [f64; 2],
+    compressibility: f64,
+    greatest_force: f64,
+    vent_time: f64,
+}
+
+impl Air {
+    /// Fingers at rest at the initial opening.
+    #[must_use]
+    pub fn new(gripper: &Description) -> Self {
+        Self {
+            opening: gripper.initial_opening,
+            force: 0.0,
+            speed: 0.0,
+            range: gripper.opening,
+            compressibility: gripper.compressibility,
+            greatest_force: gripper.greatest_force,
+            vent_time: gripper.vent_time_s,
+        }
+    }
+
+    /// Distance of the finger pads, in.
+    #[must_use]
+    pub fn opening(&self) -> f64 {
+        self.opening
+    }
+
+    /// Force of each finger on what blocks it, lb.
+    #[must_use]
+    pub fn force(&self) -> f64 {
+        self.force
+    }
+
+    /// Opening speed in the last step, in/s.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Let the air flow for `dt` seconds; `stop` is the opening at which something between the fingers blocks them.
+    pub fn advance(&mut self, dt: f64, bits: u8, stop: Option<f64>) {
+        let before = self.opening;
+        let [least, greatest] = self.range;
+        if bits & valve::VENT != 0 {
+            self.force = (self.force - self.greatest_force * dt / self.vent_time).max(0.0);
+        }
+        let flow: f64 = if bits & valve::SUPPLY != 0 {
+            FLOWS.iter().filter(|(bit, _)| bits & bit != 0).map(|(_, flow)| flow).sum()
+        } else {
+            0.0
+        };
+        let stop = stop.map_or(least, |stop| stop.max(least));
+        let wanted = flow * dt;
+        if wanted < 0.0 {
+            let free = (self.opening - stop).max(0.0).min(-wanted);
+            self.opening -= free;
+            if self.opening <= stop {
+                self.force = (self.force + (-wanted - free) * self.compressibility).min(self.greatest_force);
+            }
+        } else if wanted > 0.0 {
+            let relieved = self.force.min(wanted * self.compressibility);
+            self.force -= relieved;
+            self.opening = (self.opening + wanted - relieved / self.compressibility).min(greatest);
+        }
+        self.speed = (self.opening - before) / dt;
+    }
+
+    /// The part has been pushed aside between the fingers and has spread them to `opening`.
+    pub fn spread(&mut self, opening: f64) {
+        self.opening = opening.clamp(self.range[0], self.range[1]);
+    }
+}
+
+/// The gripper's bodies, air and hold.
+#[derive(Debug)]
+pub struct Gripper {
+    description: Description,
+    /// Opening and force.
+    pub air: Air,
+    /// What is held, by the index of the part.
+    pub hold: Option<(usize, Hold)>,
+    hand: RigidBodyHandle,
+    fingers: [Finger; 2],
+    shown: (f64, f64),
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Finger {
+    /// +1 left (tool +Y), -1 right.
+    side: Real,
+    body: RigidBodyHandle,
+    collider: ColliderHandle,
+    joint: ImpulseJointHandle,
+}
+
+impl Gripper {
+    /// Build the gripper at a tool pose, metres. `stiffness` is that of both fingers together at the tips, lb/in.
+    pub fn new(world: &mut PhysicsWorld, description: &Description, stiffness: f64, tool: &Pose) -> Self {
+        let [body_x, body_y, body_z] = description.body.map(metres);
+        let [finger_x, ..] = description.fingers.map(metres);
+        let hand = world.insert_body(RigidBodyBuilder::kinematic_position_based().pose(*tool));
+        let body = ColliderBuilder::cuboid(body_x / 2.0, body_y / 2.0, body_z / 2.0)
+            .translation(Vector::new(-finger_x - body_x / 2.0, 0.0, 0.0))
+            .collision_groups(groups(FINGER, Group::ALL & !FINGER));
+        world.insert_collider(body, Some(hand));
+        let air = Air::new(description);
+        let fingers = [1.0, -1.0].map(|side| Finger::new(world, description, stiffness, hand, tool, side, air.opening()));
+        let shown = (air.opening(), 0.0);
+        Self { description: description.clone(), air, hold: None, hand, fingers, shown }
+    }
+
+    /// The body that the fingers hang on; its pose is the tool frame without load.
+    #[must_use]
+    pub fn hand(&self) -> RigidBodyHandle {
+        self.hand
+    }
+
+    /// Bodies of the left and the right finger.
+    #[must_use]
+    pub fn finger_bodies(&self) -> [RigidBodyHandle; 2] {
+        self.fingers.map(|finger| finger.body)
+    }
+
+    /// Colliders of the left and the right finger.
+    #[must_use]
+    pub fn finger_colliders(&self) -> [ColliderHandle; 2] {
+        self.fingers.map(|finger| finger.collider)
+    }
+
+    /// The pads in the tool frame.
+    #[must_use]
+    pub fn pads(&self) -> Pads {
+        let [length, _, width] = self.description.fingers.map(metres);
+        Pads { x: [-length, 0.0], z: [-width / 2.0, width / 2.0] }
+    }
+
+    /// Let the springs of the fingers rest where the air wants the fingers.
+    pub fn move_fingers(&mut self, world: &mut PhysicsWorld) {
+        let now = (self.air.opening(), self.air.speed());
+        if now == self.shown {
+            return;
+        }
+        self.shown = now;
+        for finger in &self.fingers {
+            if let Some(joint) = world.impulse_joints.get_mut(finger.joint, false) {
+                joint.data.set_local_frame1(finger_rest(&self.description, finger.side, now.0));
+                let axis = JointAxis::LinY;
+                if let Some(motor) = joint.data.motor(axis).copied() {
+                    let speed = metres(finger.side * now.1 / 2.0);
+                    joint.data.set_motor(axis, 0.0, speed, motor.stiffness, motor.damping);
+                }
+            }
+        }
+    }
+
+    /// The true tool frame under load, metres: the middle between the fingertips.
+    #[must_use]
+    pub fn loaded_tool(&self, world: &PhysicsWorld) -> Pose {
+        let [left, right] = self.fingers.map(|finger| *world.bodies[finger.body].position());
+        let offset = |side| finger_rest(&self.description, side, self.air.opening()).inverse();
+        (left * offset(1.0)).lerp(&(right * offset(-1.0)), 0.5)
+    }
+
+    /// Read the sensors; `beams` are the broken light beams.
+    pub fn sensors(&self, noise: &mut Noise, beams: u8) -> GripSensors {
+        let sensors = &self.description.sensors;
+        let mut counts = |value: f64| {
+            let noisy = value + noise.within(sensors.noise);
+            libm::round(noisy).clamp(0.0, f64::from(ADC_FULL_SCALE)) as u16
+        };
+        let [left_offset, right_offset] = sensors.strain_offsets;
+        let [left_scale, right_scale] = sensors.strain_scales;
+        GripSensors {
+            potentiometer: counts(sensors.potentiometer_offset + sensors.potentiometer_scale * self.air.opening()),
+            strain_left: counts(left_offset + left_scale * self.air.force()),
+            strain_right: counts(right_offset + right_scale * self.air.force()),
+            beams,
+        }
+    }
+
+    /// The light beams in the tool frame: pairs of end points on the pads, metres. ASSUMED: two columns of four, 0.5 in to
+    /// either side of the middle of a finger, 0.10 to 1.20 in behind the tips.
+    pub fn beams(&self) -> impl Iterator<Item = (Vector, Vector)> + use<> {
+        let half = metres(self.air.opening() / 2.0);
+        let columns = [metres(-0.5), metres(0.5)];
+        columns.into_iter().flat_map(move |z| {
+            [0.10, 0.30, 0.60, 1.20].map(move |behind| {
+                let x = -metres(behind);
+                (Vector::new(x, -half, z), Vector::new(x, half, z))
+            })
+        })
+    }
+
+    /// Coefficient of friction of the pads.
+    #[must_use]
+    pub fn friction(&self) -> Real {
+        self.description.friction
+    }
+
+    /// Force of each finger, N.
+    #[must_use]
+    pub fn force(&self) -> Real {
+        newtons(self.air.force())
+    }
+}
+
+/// Where a finger's middle stands in the tool frame, metres.
+fn finger_rest(description: &Description, side: Real, opening: f64) -> Pose {
+    let [length, thickness, _] = description.fingers;
+    Pose::from_translation(Vector::new(-metres(length / 2.0), side * metres((opening + thickness) / 2.0), 0.0))
+}
+
+impl Finger {
+    fn new(
+        world: &mut PhysicsWorld,
+        description: &Description,
+        stiffness: f64,
+        hand: RigidBodyHandle,
+        tool: &Pose,
+        side: Real,
+        opening: f64,
+    ) -> Self {
+        let rest = finger_rest(description, side, opening);
+        let mass = description.finger_weight * KILOGRAMS_PER_POUND;
+        let [x, y, z] = description.fingers.map(|size| metres(size / 2.0));
+        // The weight of the fingers is part of the arm's calibration: resting springs are not loaded by it.
+        let body = world.insert_body(RigidBodyBuilder::dynamic().pose(*tool * rest).gravity_scale(0.0).can_sleep(false));
+        let collider = ColliderBuilder::cuboid(x, y, z)
+            .mass(mass)
+            .friction(description.friction)
+            .collision_groups(groups(FINGER, Group::ALL & !FINGER));
+        let collider = world.insert_collider(collider, Some(body));
+        let linear = newtons(stiffness) / metres(1.0) / 2.0;
+        // The moment arm of a fingertip is half the finger's length: the springs about the middle are made so stiff that
+        // they add a hundredth to what the tip gives way.
+        let angular = 100.0 * linear * x * x;
+        let inertia = mass / 3.0 * (x * x + z * z);
+        let mut data = GenericJointBuilder::new(JointAxesMask::empty()).local_frame1(rest).contacts_enabled(false).build();
+        for axis in [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ] {
+            let damping = 2.0 * libm::sqrt(linear * mass);
+            data.set_motor_model(axis, MotorModel::ForceBased).set_motor(axis, 0.0, 0.0, linear, damping);
+        }
+        for axis in [JointAxis::AngX, JointAxis::AngY, JointAxis::AngZ] {
+            let damping = 2.0 * libm::sqrt(angular * inertia);
+            data.set_motor_model(axis, MotorModel::ForceBased).set_motor(axis, 0.0, 0.0, angular, damping);
+        }
+        let joint = world.insert_impulse_joint(hand, body, data);
+        Self { side, body, collider, joint }
+    }
+}
+
+/// Opening of the fingers as their bodies stand, in: differs from the air's by what the springs give way.
+#[must_use]
+pub fn body_opening(world: &PhysicsWorld, gripper: &Gripper) -> f64 {
+    let [left, right] = gripper.finger_bodies().map(|body| *world.bodies[body].position());
+    let across = left.inv_mul(&right).translation;
+    inches(across.y.abs()) - gripper.description.fingers[1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::CellDescription;
+
+    fn air() -> Air {
+        let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
+        Air::new(&cell.gripper)
+    }
+
+    fn run(air: &mut Air, seconds: f64, bits: u8, stop: Option<f64>) {
+        for _ in 0..(seconds / 0.0025).round() as u32 {
+            air.advance(0.0025, bits, stop);
+        }
+    }
+
+    #[test]
+    fn flows_add_up() {
+        let mut air = air();
+        run(&mut air, 0.5, valve::SUPPLY | valve::OPEN_COARSE | valve::OPEN_FINE | valve::CLOSE_MEDIUM, None);
+        assert!((air.opening() - (0.10 + 0.5 * 3.25)).abs() < 1e-9, "{}", air.opening());
+        run(&mut air, 9.0, valve::SUPPLY | valve::OPEN_COARSE, None);
+        assert_eq!(air.opening(), 5.0);
+    }
+
+    #[test]
+    fn without_supply_nothing_flows() {
+        let mut air = air();
+        run(&mut air, 1.0, valve::OPEN_COARSE, None);
+        assert_eq!(air.opening(), 0.10);
+    }
+
+    #[test]
+    fn blocked_fingers_gain_force_and_keep_it() {
+        let mut air = air();
+        run(&mut air, 0.5, valve::SUPPLY | valve::OPEN_MEDIUM, None);
+        run(&mut air, 0.3, valve::SUPPLY | valve::CLOSE_MEDIUM, Some(0.5));
+        assert!((air.opening() - 0.5).abs() < 1e-9);
+        assert!((air.force() - 20.0).abs() < 1e-6, "0.1 in of air at 0.2 in of lost way: {}", air.force());
+        run(&mut air, 60.0, valve::SUPPLY, Some(0.5));
+        assert!((air.force() - 20.0).abs() < 1e-6);
+        run(&mut air, 9.0, valve::SUPPLY | valve::CLOSE_COARSE, Some(0.5));
+        assert_eq!(air.force(), 80.0);
+        run(&mut air, 0.1, valve::SUPPLY | valve::VENT, Some(0.5));
+        assert_eq!((air.force(), air.opening()), (0.0, 0.5));
+    }
+}

@@ -1,0 +1,53 @@
+//! Seeded noise: one stream of numbers a device, so that a device that is used more often does not shift the others'.
+
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Which device draws from the stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stream {
+    /// Sensors of the parts gripper.
+    Gripper = 1,
+    /// The camera.
+    Camera = 2,
+    /// Where a part is put down at random.
+    Placement = 3,
+}
+
+/// A stream of uniform noise.
+#[derive(Clone, Debug)]
+pub struct Noise(ChaCha8Rng);
+
+impl Noise {
+    /// The stream of a device for the seed of a run.
+    #[must_use]
+    pub fn new(seed: u64, stream: Stream) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(stream as u64);
+        Self(generator)
+    }
+
+    /// The next number, uniform in -greatest..greatest.
+    pub fn within(&mut self, greatest: f64) -> f64 {
+        // 53 random bits make the fraction of an f64 in 0..1.
+        let fraction = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        greatest * (2.0 * fraction - 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn streams_differ_and_repeat() {
+        let draw = |seed, stream| {
+            let mut noise = Noise::new(seed, stream);
+            (0..8).map(|_| noise.within(1.0)).collect::<Vec<f64>>()
+        };
+        assert_eq!(draw(7, Stream::Camera), draw(7, Stream::Camera));
+        assert_ne!(draw(7, Stream::Camera), draw(7, Stream::Gripper));
+        assert_ne!(draw(7, Stream::Camera), draw(8, Stream::Camera));
+        assert!(draw(7, Stream::Placement).iter().all(|v| v.abs() <= 1.0));
+    }
+}

@@ -1,0 +1,161 @@
+//! Parts: boxes that move, and what is said of them.
+
+use rapier3d_f64::prelude::*;
+use rcs_core::frame::{Frame, Vector as Inches};
+
+use crate::{
+    convert::{KILOGRAMS_PER_POUND, metres, to_frame, to_pose},
+    description::PartType,
+    hold::Load,
+    scene::{FINGER, PART, groups},
+};
+
+/// Coefficient of friction of a part's surface.
+const FRICTION: Real = 0.30;
+
+/// A part in the cell.
+#[derive(Debug)]
+pub struct Part {
+    /// What it is at present.
+    pub kind: PartType,
+    /// Its number in this cell, from 1; it stays the same when the part is machined.
+    pub id: u32,
+    /// Its body.
+    pub body: RigidBodyHandle,
+    /// Its collider.
+    pub collider: ColliderHandle,
+    /// It was last seen lying on the floor.
+    pub fallen: bool,
+}
+
+impl Part {
+    /// Put a part into the world.
+    pub fn new(world: &mut PhysicsWorld, id: u32, kind: &PartType, frame: &Frame) -> Self {
+        let body = world.insert_body(RigidBodyBuilder::dynamic().pose(to_pose(frame)));
+        let collider = world.insert_collider(collider(kind), Some(body));
+        Self { kind: kind.clone(), id, body, collider, fallen: false }
+    }
+
+    /// Make it another kind of part, its middle moved by `shift` (in its own axes, in).
+    pub fn become_kind(&mut self, world: &mut PhysicsWorld, kind: &PartType, shift: Inches) {
+        let frame = self.frame(world).shifted(shift);
+        world.remove_collider(self.collider);
+        self.collider = world.insert_collider(collider(kind), Some(self.body));
+        world.bodies[self.body].set_position(to_pose(&frame), true);
+        self.kind = kind.clone();
+    }
+
+    /// Half its size, metres.
+    #[must_use]
+    pub fn half(&self) -> Vector {
+        half(&self.kind)
+    }
+
+    /// Where it is, metres.
+    #[must_use]
+    pub fn pose(&self, world: &PhysicsWorld) -> Pose {
+        *world.bodies[self.body].position()
+    }
+
+    /// Where it is, inches.
+    #[must_use]
+    pub fn frame(&self, world: &PhysicsWorld) -> Frame {
+        to_frame(&self.pose(world))
+    }
+
+    /// Its mass and inertia.
+    #[must_use]
+    pub fn load(&self) -> Load {
+        let mass = mass(&self.kind);
+        let squares = self.half() * self.half();
+        let inertia = mass / 3.0 * (squares.element_sum() - squares.min_element());
+        Load { mass, inertia }
+    }
+
+    /// Whether the fingers collide with it: not while they hold it.
+    pub fn meet_fingers(&self, world: &mut PhysicsWorld, meets: bool) {
+        if let Some(collider) = world.colliders.get_mut(self.collider) {
+            let filter = if meets { Group::ALL } else { Group::ALL & !FINGER };
+            collider.set_collision_groups(groups(PART, filter));
+        }
+    }
+
+    /// Its corners lie within this distance of its middle, metres.
+    #[must_use]
+    pub fn radius(&self) -> Real {
+        self.half().length()
+    }
+}
+
+fn half(kind: &PartType) -> Vector {
+    Vector::from_array(kind.size.map(|size| metres(size / 2.0)))
+}
+
+fn mass(kind: &PartType) -> Real {
+    kind.weight * KILOGRAMS_PER_POUND
+}
+
+fn collider(kind: &PartType) -> ColliderBuilder {
+    let half = half(kind);
+    ColliderBuilder::cuboid(half.x, half.y, half.z)
+        .mass(mass(kind))
+        .friction(FRICTION)
+        .collision_groups(groups(PART, Group::ALL))
+}
+
+/// What is reported of a part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartState {
+    /// Its number in this cell, from 1.
+    pub id: u32,
+    /// Its name at present.
+    pub name: String,
+    /// Where it is: a unit, the vise's location, `gripper`, `floor` or `elsewhere`.
+    pub location: String,
+    /// The nearest sector of the unit, 0 elsewhere.
+    pub sector: u16,
+    /// The gripper holds it.
+    pub held: bool,
+    /// The vise holds it.
+    pub clamped: bool,
+    /// Its middle in world coordinates, in.
+    pub position: [f64; 3],
+    /// Distance of its middle from the centre of its sector (in x and y) or from its seat in the vise; in.
+    pub error: Option<f64>,
+}
+
+/// True if the segment from `from` to `to` meets a box at `pose`, metres.
+#[must_use]
+pub fn segment_meets_box(from: Vector, to: Vector, pose: &Pose, half: Vector) -> bool {
+    let start = pose.inverse_transform_point(from).to_array();
+    let end = pose.inverse_transform_point(to).to_array();
+    let half = half.to_array();
+    let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+    for axis in 0..3 {
+        let way = end[axis] - start[axis];
+        if way.abs() < 1e-12 {
+            if start[axis].abs() > half[axis] {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = ((-half[axis] - start[axis]) / way, (half[axis] - start[axis]) / way);
+        enters = enters.max(a.min(b));
+        leaves = leaves.min(a.max(b));
+    }
+    enters <= leaves
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_beam_is_broken_by_what_crosses_it() {
+        let half = Vector::new(0.01, 0.01, 0.05);
+        let across = |z: Real| segment_meets_box(Vector::new(0.0, -0.1, z), Vector::new(0.0, 0.1, z), &Pose::IDENTITY, half);
+        assert!(across(0.049) && !across(0.051));
+        let short = segment_meets_box(Vector::new(0.0, -0.1, 0.0), Vector::new(0.0, -0.02, 0.0), &Pose::IDENTITY, half);
+        assert!(!short, "the part is behind the receiver");
+    }
+}

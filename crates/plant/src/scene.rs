@@ -1,0 +1,193 @@
+//! What stands still, as boxes: the furniture of the description, the trays, the vise.
+//!
+//! One list of [`Block`]s feeds the simulation, the clearance check and the picture, so that the three cannot differ.
+
+use core::f64::consts::FRAC_PI_2;
+
+use rapier3d_f64::prelude::*;
+use rcs_core::frame::{Frame, Rotation, Vector as Inches};
+
+use crate::{
+    convert::{metres, to_metres, to_pose},
+    description::{CellDescription, Fixture, Tray, TrayShape, Vise},
+};
+
+/// Collision group of what stands still and of the vise jaw.
+pub const WORLD: Group = Group::GROUP_1;
+/// Collision group of the gripper.
+pub const FINGER: Group = Group::GROUP_2;
+/// Collision group of parts.
+pub const PART: Group = Group::GROUP_3;
+
+/// Coefficient of friction of steel on trays, vise and floor.
+const FRICTION: Real = 0.30;
+
+/// Membership and filter of a collider.
+#[must_use]
+pub const fn groups(member: Group, meets: Group) -> InteractionGroups {
+    InteractionGroups::new(member, meets, InteractionTestMode::And)
+}
+
+/// A box that is part of something.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// What it belongs to; the name of its link.
+    pub name: String,
+    /// Its middle and its axes, world (or the jaw's frame), in.
+    pub frame: Frame,
+    /// Its size along its axes, in.
+    pub size: Inches,
+    /// Parts that are carried may touch it: it is there to work on.
+    pub work_surface: bool,
+}
+
+impl Block {
+    fn between(name: &str, low: Inches, high: Inches, work_surface: bool) -> Self {
+        let frame = Frame { position: (low + high) / 2.0, rotation: Rotation::identity() };
+        Self { name: name.into(), frame, size: high - low, work_surface }
+    }
+
+    /// Half the size, metres.
+    #[must_use]
+    pub fn half(&self) -> Vector {
+        to_metres(&self.size) / 2.0
+    }
+
+    /// The same block in the frame that its own frame is given in.
+    #[must_use]
+    pub fn moved(&self, by: &Frame) -> Self {
+        Self { frame: by.compose(&self.frame), ..self.clone() }
+    }
+
+    /// A collider of this block, at its place.
+    #[must_use]
+    pub fn collider(&self) -> ColliderBuilder {
+        let half = self.half();
+        ColliderBuilder::cuboid(half.x, half.y, half.z)
+            .position(to_pose(&self.frame))
+            .friction(FRICTION)
+            .collision_groups(groups(WORLD, Group::ALL))
+    }
+}
+
+/// All that never moves.
+#[must_use]
+pub fn furniture(cell: &CellDescription) -> Vec<Block> {
+    let mut blocks: Vec<Block> = cell.fixture.iter().map(fixture).collect();
+    for tray in &cell.tray {
+        blocks.extend(tray_blocks(tray, &cell.tray_shape));
+    }
+    let vise = vise_frame(&cell.vise);
+    blocks.extend(vise_blocks(&cell.vise).iter().map(|block| block.moved(&vise)));
+    blocks
+}
+
+fn fixture(fixture: &Fixture) -> Block {
+    let rotation = Rotation::from_axis_angle(&Inches::z_axis(), fixture.azimuth.to_radians())
+        * Rotation::from_axis_angle(&Inches::y_axis(), fixture.tilt.to_radians());
+    Block {
+        name: fixture.name.clone(),
+        frame: Frame { position: Inches::from(fixture.centre), rotation },
+        size: Inches::from(fixture.size),
+        work_surface: false,
+    }
+}
+
+/// Floor and four walls.
+fn tray_blocks(tray: &Tray, shape: &TrayShape) -> Vec<Block> {
+    let [x, y] = tray.centre;
+    let inner = shape.inside / 2.0;
+    let outer = inner + shape.wall;
+    let (bottom, floor, rim) = (tray.floor - shape.floor_thickness, tray.floor, tray.floor + shape.rim);
+    let name = |what: &str| format!("{}_{what}", tray.unit);
+    let centre = Inches::new(x, y, 0.0);
+    let block = |what: &str, low: Inches, high: Inches, work| Block::between(&name(what), centre + low, centre + high, work);
+    vec![
+        block("floor", Inches::new(-outer, -outer, bottom), Inches::new(outer, outer, floor), true),
+        block("far_wall", Inches::new(-outer, -outer, floor), Inches::new(-inner, outer, rim), false),
+        block("near_wall", Inches::new(inner, -outer, floor), Inches::new(outer, outer, rim), false),
+        block("left_wall", Inches::new(-inner, -outer, floor), Inches::new(inner, -inner, rim), false),
+        block("right_wall", Inches::new(-inner, inner, floor), Inches::new(inner, outer, rim), false),
+    ]
+}
+
+/// The frame of the vise: X into it, Y left, Z up.
+#[must_use]
+pub fn vise_frame(vise: &Vise) -> Frame {
+    Frame { position: Inches::from(vise.position), rotation: Rotation::identity() }
+}
+
+/// Body and fixed jaw, in the frame of the vise. The jaw has a notch that is open to the front and to the top.
+fn vise_blocks(vise: &Vise) -> Vec<Block> {
+    let [depth, thickness, height] = vise.jaw;
+    let [body_back, body_front] = [vise.body_x[1], vise.body_x[0]];
+    vec![
+        Block::between(
+            "vise_body",
+            Inches::new(body_front, vise.body_y[0], -height - vise.body_height),
+            Inches::new(body_back, vise.body_y[1], -height),
+            true,
+        ),
+        Block::between(
+            "fixed_jaw_notch",
+            Inches::new(0.0, -thickness, -height),
+            Inches::new(vise.notch_back, -vise.notch_depth, 0.0),
+            true,
+        ),
+        Block::between(
+            "fixed_jaw",
+            Inches::new(vise.notch_back, -thickness, -height),
+            Inches::new(depth, 0.0, 0.0),
+            true,
+        ),
+    ]
+}
+
+/// The movable jaw in its own frame, whose Y is that of its clamping face.
+#[must_use]
+pub fn jaw_blocks(vise: &Vise) -> Vec<Block> {
+    let [depth, thickness, height] = vise.jaw;
+    let outer = thickness - vise.notch_depth;
+    vec![
+        Block::between("movable_jaw_notch", Inches::new(0.0, 0.0, -height), Inches::new(vise.notch_back, outer, 0.0), true),
+        Block::between(
+            "movable_jaw",
+            Inches::new(vise.notch_back, -vise.notch_depth, -height),
+            Inches::new(depth, outer, 0.0),
+            true,
+        ),
+    ]
+}
+
+/// A box with its place and its surrounding axis-parallel box, for the clearance check, metres.
+#[derive(Clone, Debug)]
+pub struct Obstacle {
+    /// What it belongs to.
+    pub name: String,
+    /// Its place.
+    pub pose: Pose,
+    /// Its shape.
+    pub shape: Cuboid,
+    /// Its surroundings.
+    pub aabb: Aabb,
+}
+
+impl From<&Block> for Obstacle {
+    fn from(block: &Block) -> Self {
+        let (pose, shape) = (to_pose(&block.frame), Cuboid::new(block.half()));
+        Self { name: block.name.clone(), pose, aabb: shape.aabb(&pose), shape }
+    }
+}
+
+/// The rotation of a cylinder along Z, as a URDF draws it, onto the X axis of a link.
+#[must_use]
+pub fn along_x() -> Rotation {
+    Rotation::from_axis_angle(&Inches::y_axis(), FRAC_PI_2)
+}
+
+/// The least size of a cell that holds everything, for the fall of parts: z below which nothing stands, metres.
+#[must_use]
+pub fn lowest(blocks: &[Block]) -> Real {
+    let bottoms = blocks.iter().map(|block| block.frame.position.z - block.size.z / 2.0);
+    metres(bottoms.fold(0.0, f64::min))
+}

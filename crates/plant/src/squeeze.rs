@@ -1,0 +1,180 @@
+//! What two parallel faces hold when they close on a box: fingers on a part, vise jaws on a part.
+//!
+//! Both grips are the same geometry: two rectangular pads face each other along Y. The box turns the face that is most
+//! nearly parallel to the pads towards them; that face, clipped to the pad, gives the width at which the pads are stopped,
+//! the point and area where friction acts, and the position in which the box lies flush.
+
+use rapier3d_f64::math::{Pose, Real, Rotation, Vector};
+
+/// Faces within this angle of the pads are drawn flush when the pads close (10 degrees, its cosine).
+const FLUSH_COSINE: Real = 0.984_807_753;
+/// Contact below this area does not stop a pad (0.01 square inch), m².
+const LEAST_AREA: Real = 6.45e-6;
+
+/// The rectangle that each of two pads covers, in the axes of the grip, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pads {
+    /// Extent along X.
+    pub x: [Real; 2],
+    /// Extent along Z.
+    pub z: [Real; 2],
+}
+
+/// A box between two pads, in the axes of the grip, metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Squeeze {
+    /// Distance of the pads when both touch.
+    pub width: Real,
+    /// Where the box has its centre along Y.
+    pub centre: Real,
+    /// Centre of the touched area.
+    pub point: Vector,
+    /// Touched area, m².
+    pub area: Real,
+    /// Extent of the touched area along X and Z.
+    pub span: [Real; 2],
+    /// The box turned so that its face lies on the pads.
+    pub flush: Pose,
+}
+
+impl Squeeze {
+    /// Lever arm of friction about Y: two thirds of the radius of a disc of the touched area.
+    #[must_use]
+    pub fn friction_arm(&self) -> Real {
+        2.0 / 3.0 * libm::sqrt(self.area / core::f64::consts::PI)
+    }
+}
+
+/// What the pads hold of a box at `pose` (in the axes of the grip) with the given half sizes; `None` if nothing.
+#[must_use]
+pub fn squeeze(pose: &Pose, half: Vector, pads: &Pads) -> Option<Squeeze> {
+    let half = half.to_array();
+    let axes = [Vector::X, Vector::Y, Vector::Z].map(|axis| pose.rotation * axis);
+    let across = (0..3).max_by(|a, b| axes[*a].y.abs().total_cmp(&axes[*b].y.abs()))?;
+    let cosine = axes[across].y;
+    let (a, b) = ((across + 1) % 3, (across + 2) % 3);
+    let corner = |sa: Real, sb: Real| {
+        let at = pose.translation + axes[a] * (sa * half[a]) + axes[b] * (sb * half[b]);
+        [at.x, at.z]
+    };
+    let face = [corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0), corner(-1.0, 1.0)];
+    let touched = clip(&face, pads);
+    let (area, centroid) = area_and_centroid(&touched)?;
+    if area < LEAST_AREA {
+        return None;
+    }
+    let flush = cosine.abs() >= FLUSH_COSINE;
+    let width = if flush {
+        2.0 * half[across]
+    } else {
+        2.0 * (0..3).map(|axis| half[axis] * axes[axis].y.abs()).sum::<Real>()
+    };
+    let turned = if flush {
+        let normal = if cosine < 0.0 { -Vector::Y } else { Vector::Y };
+        turn_about(pose, &Rotation::from_rotation_arc(axes[across], normal))
+    } else {
+        *pose
+    };
+    let extent = |axis: usize| {
+        let values = touched.iter().map(|p| p[axis]);
+        values.clone().fold(Real::NEG_INFINITY, Real::max) - values.fold(Real::INFINITY, Real::min)
+    };
+    Some(Squeeze {
+        width,
+        centre: pose.translation.y,
+        point: Vector::new(centroid[0], pose.translation.y, centroid[1]),
+        area,
+        span: [extent(0), extent(1)],
+        flush: turned,
+    })
+}
+
+/// The pose turned about its own origin, in the axes it is given in.
+fn turn_about(pose: &Pose, turn: &Rotation) -> Pose {
+    Pose::from_parts(pose.translation, (*turn * pose.rotation).normalize())
+}
+
+/// The part of a convex polygon that lies in the rectangle.
+fn clip(polygon: &[[Real; 2]], pads: &Pads) -> Vec<[Real; 2]> {
+    let bounds = [(0, pads.x[0], 1.0), (0, pads.x[1], -1.0), (1, pads.z[0], 1.0), (1, pads.z[1], -1.0)];
+    let mut left = polygon.to_vec();
+    for (axis, bound, sign) in bounds {
+        let inside = |p: &[Real; 2]| (p[axis] - bound) * sign;
+        let mut kept = Vec::with_capacity(8);
+        for (index, from) in left.iter().enumerate() {
+            let to = &left[(index + 1) % left.len()];
+            let (start, end) = (inside(from), inside(to));
+            if start >= 0.0 {
+                kept.push(*from);
+            }
+            if (start >= 0.0) != (end >= 0.0) {
+                let share = start / (start - end);
+                kept.push([from[0] + (to[0] - from[0]) * share, from[1] + (to[1] - from[1]) * share]);
+            }
+        }
+        left = kept;
+    }
+    left
+}
+
+/// Area and centroid of a polygon; `None` if it is a line or less.
+fn area_and_centroid(polygon: &[[Real; 2]]) -> Option<(Real, [Real; 2])> {
+    let (mut twice, mut x, mut z) = (0.0, 0.0, 0.0);
+    for (index, from) in polygon.iter().enumerate() {
+        let to = polygon[(index + 1) % polygon.len()];
+        let cross = from[0] * to[1] - to[0] * from[1];
+        twice += cross;
+        x += (from[0] + to[0]) * cross;
+        z += (from[1] + to[1]) * cross;
+    }
+    if twice.abs() < 1e-12 {
+        return None;
+    }
+    Some((twice.abs() / 2.0, [x / (3.0 * twice), z / (3.0 * twice)]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::convert::{inches, metres};
+
+    const FINGERS: Pads = Pads { x: [-0.1397, 0.0], z: [-0.01905, 0.01905] };
+
+    fn bar() -> Vector {
+        Vector::new(metres(0.3125), metres(0.3125), metres(2.0))
+    }
+
+    #[test]
+    fn fingers_cover_what_the_manual_lets_stand_out() {
+        // Picked as LK-GRP-1 has it: finger centre 2.10 in from the centroid, tips 0.20 above the tray (VIII.9.5).
+        let part = Pose::from_translation(Vector::new(metres(0.20 - 0.3125), metres(0.1), metres(-2.10)));
+        let held = squeeze(&part, bar(), &FINGERS).unwrap();
+        assert!((inches(held.width) - 0.625).abs() < 1e-9);
+        assert!((inches(held.span[1]) - 0.65).abs() < 1e-9, "0.65 of the length");
+        assert!((inches(held.span[0]) - 0.425).abs() < 1e-9, "0.42 of the height");
+        assert!((inches(held.point.z) + 0.425).abs() < 1e-9);
+        assert!((held.area - metres(0.65) * metres(0.425)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_face_that_is_nearly_parallel_is_drawn_flush() {
+        let turned = Pose::new(Vector::ZERO, Vector::new(0.05, 0.0, 0.0));
+        let held = squeeze(&turned, bar(), &FINGERS).unwrap();
+        assert!((inches(held.width) - 0.625).abs() < 1e-9);
+        assert!((held.flush.rotation * Vector::Y - Vector::Y).length() < 1e-12);
+    }
+
+    #[test]
+    fn a_box_on_its_edges_is_wider_and_is_not_turned() {
+        let turned = Pose::new(Vector::ZERO, Vector::new(0.0, 0.0, core::f64::consts::FRAC_PI_4));
+        let held = squeeze(&turned, bar(), &FINGERS).unwrap();
+        assert!((inches(held.width) - 0.625 * libm::sqrt(2.0)).abs() < 1e-9);
+        assert_eq!(held.flush, turned);
+    }
+
+    #[test]
+    fn beside_the_pads_there_is_nothing() {
+        let part = Pose::from_translation(Vector::new(metres(0.32), 0.0, 0.0));
+        assert_eq!(squeeze(&part, bar(), &FINGERS), None);
+    }
+}

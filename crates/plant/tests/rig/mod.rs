@@ -1,0 +1,192 @@
+//! A rig that leads the arm by hand: straight lines of the tool frame, and the gripper's valves, without a controller.
+#![allow(dead_code)]
+
+use plant::{Cell, CellDescription, CellEvent, PartState, Placement, WorkstationAction};
+use rcs_core::{
+    frame::{Frame, INCHES_PER_RADIAN, Vector, rotation_by, rotation_vector},
+    interface::device::{DeviceInputs, DeviceOutputs, valve},
+    kinematics::T3,
+    movetable::{Line, Movetable, System},
+    pose::Pose,
+};
+
+pub const CELL: &str = include_str!("../../../../data/cell.toml");
+
+/// Poses of the cell proposal, §4.
+pub const UT_1: Pose = Pose { wrist: [-6650, -550, 1600], tool: [-6650, -550, -1400], finger: [-6650, -3550, -1400] };
+pub const PFIX: Pose = Pose { wrist: [3800, -4400, -400], tool: [6800, -4400, -400], finger: [6800, -1400, -400] };
+pub const UNIT_V1: Pose =
+    Pose { wrist: [-4040, -1471, 3398], tool: [-5450, -1984, 800], finger: [-4424, -4803, 800] };
+pub const HOM_SAF_3: Pose =
+    Pose { wrist: [-2454, -3505, 2521], tool: [-3671, -5243, 400], finger: [-1214, -6964, 400] };
+pub const HOM_SAF_1: Pose = Pose { wrist: [0, -4279, 2521], tool: [0, -6400, 400], finger: [3000, -6400, 400] };
+pub const FIX_V1: Pose = Pose { wrist: [1473, -3098, 1426], tool: [3285, -5258, 400], finger: [5583, -3330, 400] };
+
+pub struct Rig {
+    pub cell: Cell,
+    pub outputs: DeviceOutputs,
+    pub inputs: DeviceInputs,
+    pub log: Vec<CellEvent>,
+    at: Frame,
+}
+
+pub fn description() -> CellDescription {
+    CellDescription::from_toml(CELL).unwrap()
+}
+
+pub fn table(lines: &[(System, [i32; 3])]) -> Movetable {
+    let lines: Vec<Line> = lines.iter().map(|&(system, values)| Line { system, values }).collect();
+    Movetable::from_lines(&lines).unwrap()
+}
+
+impl Rig {
+    pub fn new(description: &CellDescription, seed: u64) -> Self {
+        let cell = Cell::new(description, seed).unwrap();
+        let (inputs, at) = (cell.inputs(), T3.forward(&cell.joints()));
+        Self { cell, outputs: DeviceOutputs::default(), inputs, log: Vec::new(), at }
+    }
+
+    pub fn place(&mut self, part: &str, sector: u16, x: f64, y: f64, angle: f64) {
+        let placement = Placement::At { x, y, angle };
+        let action = WorkstationAction::Place { part: part.into(), unit: "UNIT_1".into(), sector, placement };
+        self.cell.workstation(&action).unwrap();
+    }
+
+    pub fn tick(&mut self) {
+        self.inputs = self.cell.step(&self.outputs);
+        self.log.extend(self.cell.events());
+    }
+
+    pub fn ticks(&mut self, count: u32) {
+        for _ in 0..count {
+            self.tick();
+        }
+    }
+
+    /// Lead the tool to a frame in a straight line at `speed` in/s; a radian counts as 14 in.
+    pub fn go(&mut self, to: Frame, speed: f64) {
+        let from = self.at;
+        let turn = rotation_vector(&(from.rotation.inverse() * to.rotation));
+        let way = (to.position - from.position).norm().max(turn.norm() * INCHES_PER_RADIAN);
+        let steps = (way / (speed * 0.04)).ceil().max(1.0);
+        for step in 1..=steps as u32 {
+            let share = f64::from(step) / steps;
+            let frame = Frame {
+                position: from.position + (to.position - from.position) * share,
+                rotation: from.rotation * rotation_by(&(turn * share)),
+            };
+            self.lead(&frame);
+            self.tick();
+        }
+        self.at = to;
+    }
+
+    fn lead(&mut self, tool: &Frame) {
+        let plate = tool.shifted(Vector::new(-T3.plate_to_tool, 0.0, 0.0));
+        if let Err(error) = self.cell.drive(&plate) {
+            panic!("{error} at {tool:?}");
+        }
+    }
+
+    /// Lead the tool and wait until the servos have caught up.
+    pub fn go_and_stop(&mut self, to: Frame, speed: f64) {
+        self.go(to, speed);
+        self.ticks(30);
+    }
+
+    /// Close until the force of the fingers is at least `force` lb; then trap the air.
+    pub fn close(&mut self, force: f64) {
+        self.outputs.grip.bits = valve::SUPPLY | valve::CLOSE_MEDIUM;
+        for _ in 0..1000 {
+            self.tick();
+            if self.cell.fingers().1 >= force {
+                self.outputs.grip.bits = valve::SUPPLY;
+                self.tick();
+                return;
+            }
+        }
+        panic!("the fingers find nothing to press on: {:?}", self.cell.fingers());
+    }
+
+    /// Open to at least `opening` in.
+    pub fn open(&mut self, opening: f64) {
+        self.outputs.grip.bits = valve::SUPPLY | valve::OPEN_MEDIUM;
+        for _ in 0..1000 {
+            self.tick();
+            if self.cell.fingers().0 >= opening {
+                self.outputs.grip.bits = valve::SUPPLY;
+                self.tick();
+                return;
+            }
+        }
+        panic!("the fingers do not open: {:?}", self.cell.fingers());
+    }
+
+    pub fn vise(&mut self, action: WorkstationAction) {
+        self.cell.workstation(&action).unwrap();
+        while self.cell.workstation_busy() {
+            self.tick();
+        }
+        self.ticks(20);
+    }
+
+    pub fn part(&self) -> PartState {
+        self.cell.parts()[0].clone()
+    }
+
+    pub fn part_frame(&self) -> Frame {
+        self.cell.part_frame(self.part().id).unwrap()
+    }
+
+    /// Frame of the first part in the frame of the fixture.
+    pub fn in_fixture(&self) -> Frame {
+        PFIX.to_frame().unwrap().inverse().compose(&self.part_frame())
+    }
+
+    /// Over a part in a tray as the controller would stand there: LK-GRP-1 on the part's place, backed off by `up` in.
+    pub fn grip_frame(&self, sector: u16, x: f64, y: f64, angle: f64, up: f64) -> Frame {
+        let sector = description().tray("UNIT_1").unwrap().sector(sector).unwrap();
+        let place = Frame {
+            position: sector.position + Vector::new(x, y, 0.0),
+            rotation: sector.rotation * rotation_by(&Vector::new(angle.to_radians(), 0.0, 0.0)),
+        };
+        let grip = table(&[(System::Tool, [-20, 0, 210]), (System::ToolOrigin, [-300, 0, 0])]).apply(&place);
+        grip.shifted(Vector::new(-up, 0.0, 0.0))
+    }
+
+    /// Pick the blank out of UNIT_1, sector 4.
+    pub fn pick(&mut self, x: f64, y: f64, angle: f64, force: f64) {
+        self.go(UNIT_V1.to_frame().unwrap(), 10.0);
+        self.open(3.0);
+        self.go(self.grip_frame(4, x, y, angle, 8.0), 10.0);
+        self.go_and_stop(self.grip_frame(4, x, y, angle, 0.0), 4.0);
+        self.close(force);
+        self.go(self.grip_frame(4, x, y, angle, 8.0), 4.0);
+    }
+
+    /// Carry to the front of the fixture.
+    pub fn carry(&mut self) {
+        for via in [UNIT_V1, HOM_SAF_3, HOM_SAF_1, FIX_V1] {
+            self.go(via.to_frame().unwrap(), 10.0);
+        }
+    }
+
+    /// A grip frame at the fixture, backed off by `back` in and lifted by `up` in.
+    pub fn fixture(lines: &[(System, [i32; 3])], back: f64, up: f64) -> Frame {
+        let frame = table(lines).apply(&PFIX.to_frame().unwrap()).shifted(Vector::new(-back, 0.0, 0.0));
+        Frame { position: frame.position + Vector::new(0.0, 0.0, up), ..frame }
+    }
+
+    /// Into the vise as LK-GRP-FX1 has it.
+    pub fn insert(&mut self) {
+        self.go(Self::fixture(&FX1, 10.0, 0.0), 10.0);
+        self.go(Self::fixture(&FX1, 5.0, 0.0), 4.0);
+        self.go(Self::fixture(&FX1, 0.0, 0.25), 1.0);
+        self.go_and_stop(Self::fixture(&FX1, 0.0, 0.0), 0.5);
+    }
+}
+
+pub const FX1: [(System, [i32; 3]); 2] = [(System::Tool, [15, 19, 100]), (System::ToolOrigin, [-300, 0, 0])];
+pub const FX2: [(System, [i32; 3]); 2] = [(System::Tool, [25, 15, 100]), (System::ToolOrigin, [-300, 0, 0])];
+pub const HOLD: [(System, [i32; 3]); 2] = [(System::Tool, [-35, 5, -90]), (System::Roll, [9000, 0, 0])];
+pub const SEAT: [(System, [i32; 3]); 2] = [(System::Tool, [-20, 5, -90]), (System::Roll, [9000, 0, 0])];
