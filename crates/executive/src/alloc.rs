@@ -1,0 +1,113 @@
+//! An allocator that counts what the controller allocates.
+//!
+//! Nothing may be allocated after the start (DESIGN 14). The levels cannot allocate, since they are built without `alloc`; what
+//! stands around them in a tick could. So the program installs [`Counting`] as its allocator, each tick runs inside a
+//! [`Section`], and what is allocated there is counted: over the whole run, in production as in tests. Other threads, and what the
+//! same thread does between ticks, are not counted.
+//!
+//! This is the only module of the executive with unsafe code: an allocator cannot be written without it. It does nothing but
+//! count and hand over to the system's allocator.
+
+#![allow(unsafe_code, reason = "GlobalAlloc is an unsafe trait; every call is passed on unchanged")]
+
+use std::{
+    alloc::{GlobalAlloc, Layout, System},
+    cell::Cell,
+    marker::PhantomData,
+    sync::atomic::{AtomicU64, Ordering},
+};
+
+static IN_SECTIONS: AtomicU64 = AtomicU64::new(0);
+
+thread_local! {
+    // Constant initialisation and no destructor: an access never allocates and works at any time of a thread's life.
+    static DEPTH: Cell<u32> = const { Cell::new(0) };
+}
+
+/// The system's allocator, with a count of the allocations that are made inside a [`Section`].
+///
+/// ```
+/// #[global_allocator]
+/// static ALLOCATOR: executive::alloc::Counting = executive::alloc::Counting;
+/// # fn main() {
+/// assert!(executive::alloc::is_installed());
+/// # }
+/// ```
+pub struct Counting;
+
+/// While it lives, allocations of this thread are counted.
+pub struct Section {
+    // A section belongs to the thread that entered it.
+    not_send: PhantomData<*const ()>,
+}
+
+impl Section {
+    /// Count from here until the section is dropped. Sections may be nested.
+    #[must_use]
+    pub fn enter() -> Self {
+        DEPTH.with(|depth| depth.set(depth.get().saturating_add(1)));
+        Self { not_send: PhantomData }
+    }
+}
+
+impl Drop for Section {
+    fn drop(&mut self) {
+        DEPTH.with(|depth| depth.set(depth.get().saturating_sub(1)));
+    }
+}
+
+/// Allocations that were made inside sections, by all threads, since the program started. Without [`Counting`] as the
+/// program's allocator it stays 0: ask [`is_installed`] first.
+#[must_use]
+pub fn allocations() -> u64 {
+    IN_SECTIONS.load(Ordering::Relaxed)
+}
+
+/// True if the program runs on [`Counting`]. Makes one allocation to find out, and takes it off the count again.
+#[must_use]
+pub fn is_installed() -> bool {
+    let before = allocations();
+    {
+        let _section = Section::enter();
+        drop(std::hint::black_box(Box::new(0_u64)));
+    }
+    let counted = allocations() > before;
+    if counted {
+        IN_SECTIONS.fetch_sub(1, Ordering::Relaxed);
+    }
+    counted
+}
+
+fn count() {
+    let inside = DEPTH.try_with(|depth| depth.get() > 0).unwrap_or(false);
+    if inside {
+        IN_SECTIONS.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+// SAFETY: every method passes its arguments unchanged to `System`, which upholds the contract of `GlobalAlloc`; `count` neither
+// allocates nor unwinds.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller keeps the contract of `alloc`, which is that of `System::alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count();
+        // SAFETY: the caller keeps the contract of `alloc_zeroed`, which is that of `System::alloc_zeroed`.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
+        count();
+        // SAFETY: `block` came from this allocator, hence from `System`, with `layout`; the caller vouches for the rest.
+        unsafe { System.realloc(block, layout, new_size) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        // SAFETY: `block` came from this allocator, hence from `System`, with `layout`.
+        unsafe { System.dealloc(block, layout) }
+    }
+}

@@ -1,0 +1,220 @@
+//! When ticks are run (DESIGN 4).
+//!
+//! The controller itself has no clock; somebody has to say "now". [`Clock::Fast`] says it at once: the simulated cell advances
+//! 40 ms a tick, however long that takes. [`Clock::Real`] says it on an absolute 40 ms [`Grid`]: slot `n` starts 40 ms x `n` after the
+//! start of the run, a late wake-up does not shift the slots after it, and a slot whose start has passed is skipped and
+//! counted. So this holds at every wake-up, by construction:
+//!
+//! ```text
+//! ticks run + slots skipped = time elapsed / 40 ms    (rounded down)
+//! ```
+
+use std::time::Duration;
+
+use rcs_core::tick::TICK_MS;
+use rustix::{
+    io::Errno,
+    thread::{ClockId, clock_nanosleep_absolute},
+    time::{Timespec, clock_gettime},
+};
+
+/// Length of a slot.
+const SLOT: Duration = Duration::from_millis(TICK_MS);
+
+/// Where time comes from; tests bring their own.
+pub trait Time {
+    /// Time since some fixed moment; never goes back.
+    fn now(&mut self) -> Duration;
+
+    /// Return as soon as [`now`](Self::now) is at least `at`; may return late, and early if a signal comes.
+    fn sleep_until(&mut self, at: Duration);
+}
+
+/// `CLOCK_MONOTONIC`, slept on with `TIMER_ABSTIME`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Monotonic;
+
+impl Time for Monotonic {
+    fn now(&mut self) -> Duration {
+        Duration::try_from(clock_gettime(ClockId::Monotonic)).unwrap_or_default()
+    }
+
+    fn sleep_until(&mut self, at: Duration) {
+        let Ok(request) = Timespec::try_from(at) else { return };
+        // EINTR is the only error of a valid request: a signal, after which the caller looks at the time again.
+        match clock_nanosleep_absolute(ClockId::Monotonic, &request) {
+            Ok(()) | Err(Errno::INTR) => {}
+            Err(error) => debug_assert!(false, "clock_nanosleep: {error}"),
+        }
+    }
+}
+
+/// The absolute 40 ms grid.
+#[derive(Debug)]
+pub struct Grid<T> {
+    time: T,
+    start: Duration,
+    slot: u64,
+    ticks: u64,
+    skipped: u64,
+}
+
+impl<T: Time> Grid<T> {
+    /// A grid that starts now; slot 1, the first to be run, begins 40 ms from now.
+    pub fn new(mut time: T) -> Self {
+        let start = time.now();
+        Self { time, start, slot: 0, ticks: 0, skipped: 0 }
+    }
+
+    /// Sleep until the next slot begins; returns how many slots were skipped on the way to it.
+    pub fn wait(&mut self) -> u64 {
+        let next = self.slot_now() + 1;
+        let begins = self.start + SLOT * u32::try_from(next).unwrap_or(u32::MAX);
+        while self.time.now() < begins {
+            self.time.sleep_until(begins);
+        }
+        let arrived = self.slot_now();
+        let skipped = arrived - self.slot - 1;
+        self.slot = arrived;
+        self.ticks += 1;
+        self.skipped += skipped;
+        skipped
+    }
+
+    fn slot_now(&mut self) -> u64 {
+        let elapsed = self.time.now().saturating_sub(self.start);
+        u64::try_from(elapsed.as_nanos() / SLOT.as_nanos()).unwrap_or(u64::MAX)
+    }
+
+    /// Slots in which a tick was run.
+    #[must_use]
+    pub const fn ticks(&self) -> u64 {
+        self.ticks
+    }
+
+    /// Slots that were skipped.
+    #[must_use]
+    pub const fn skipped(&self) -> u64 {
+        self.skipped
+    }
+
+    /// The slot that runs: time elapsed at the last wake-up, in 40 ms.
+    #[must_use]
+    pub const fn slot(&self) -> u64 {
+        self.slot
+    }
+}
+
+/// How ticks follow each other.
+#[derive(Debug)]
+pub enum Clock {
+    /// At once.
+    Fast,
+    /// Every 40 ms.
+    Real(Grid<Monotonic>),
+}
+
+impl Clock {
+    /// A clock that starts to wait for 40 ms slots now.
+    #[must_use]
+    pub fn real() -> Self {
+        Self::Real(Grid::new(Monotonic))
+    }
+
+    /// Wait until the next tick is due; returns how many slots were skipped before it.
+    pub fn wait(&mut self) -> u64 {
+        match self {
+            Self::Fast => 0,
+            Self::Real(grid) => grid.wait(),
+        }
+    }
+
+    /// Slots skipped since the start.
+    #[must_use]
+    pub const fn skipped(&self) -> u64 {
+        match self {
+            Self::Fast => 0,
+            Self::Real(grid) => grid.skipped(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::time::Instant;
+
+    /// Time that a test moves: each sleep ends late by the next entry of `late`, or early by a signal if the entry is `None`.
+    struct Scripted {
+        now: Duration,
+        late: Vec<Option<Duration>>,
+    }
+
+    impl Time for Scripted {
+        fn now(&mut self) -> Duration {
+            self.now
+        }
+
+        fn sleep_until(&mut self, at: Duration) {
+            match self.late.pop() {
+                None => self.now = at,
+                Some(Some(late)) => self.now = at + late,
+                Some(None) => self.now += (at - self.now) / 2,
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn ticks_and_skipped_slots_are_the_time_elapsed(
+            late in prop::collection::vec(prop::option::of(0_u64..200_000_000), 0..60),
+            work in prop::collection::vec(0_u64..150_000_000, 1..80),
+        ) {
+            let late = late.into_iter().map(|n| n.map(Duration::from_nanos)).collect();
+            let mut grid = Grid::new(Scripted { now: Duration::from_secs(7), late });
+            for work in work {
+                grid.wait();
+                let elapsed = grid.time.now - Duration::from_secs(7);
+                prop_assert_eq!(u128::from(grid.ticks() + grid.skipped()), elapsed.as_nanos() / 40_000_000);
+                grid.time.now += Duration::from_nanos(work);
+            }
+        }
+    }
+
+    #[test]
+    fn work_that_fits_skips_nothing_and_work_that_does_not_skips_what_it_covers() {
+        let mut grid = Grid::new(Scripted { now: Duration::ZERO, late: Vec::new() });
+        assert_eq!(grid.wait(), 0);
+        grid.time.now += Duration::from_millis(39);
+        assert_eq!((grid.wait(), grid.slot()), (0, 2));
+        grid.time.now += Duration::from_millis(81);
+        assert_eq!((grid.wait(), grid.slot()), (2, 5));
+        assert_eq!((grid.ticks(), grid.skipped()), (3, 2));
+    }
+
+    #[test]
+    fn the_identity_holds_on_the_real_clock_with_a_stall() {
+        let before = Instant::now();
+        let mut grid = Grid::new(Monotonic);
+        let after = Instant::now();
+        for tick in 0..6 {
+            grid.wait();
+            let (least, most) = (after.elapsed(), before.elapsed());
+            let sum = u128::from(grid.ticks() + grid.skipped());
+            // The test reads the time a little after the grid did; a slot may begin in between.
+            assert!(sum <= most.as_nanos() / 40_000_000, "{sum} slots in {most:?}");
+            assert!(u128::from(grid.slot()) * 40_000_000 <= most.as_nanos());
+            assert_eq!(sum, u128::from(grid.slot()));
+            if tick == 2 {
+                std::thread::sleep(Duration::from_millis(100));
+                assert!(least < most);
+            }
+        }
+        assert!(
+            grid.skipped() >= 2,
+            "a stall of 100 ms covers two slots at least, {} were skipped",
+            grid.skipped()
+        );
+    }
+}

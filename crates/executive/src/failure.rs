@@ -1,0 +1,366 @@
+//! Says why something failed: which process, which decision table, which row, in one sentence.
+//!
+//! A reason travels up the ladder unchanged, a tick a level, so the process that knows most is the lowest one that bears the
+//! reason which arrived at Task. By the time it arrives there the lower processes have moved on: [`Watch`] therefore keeps, for each
+//! process, common memory as it was in the tick when the process began to report its reason.
+
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs, Header, HwsCommand, Reason, t3i::LinkFault},
+    record::Field,
+    table::RowText,
+    tick::Tick,
+};
+
+use crate::runner::ProcessText;
+
+/// Processes of [`CommonMemory`], in its order.
+pub const PROCESSES: usize = 7;
+
+/// Processes from the lowest upward, as positions in [`CommonMemory`]: T3I, Grip, Quick Change, Prim, E-move, Subtask, Task.
+const UPWARD: [usize; PROCESSES] = [4, 6, 5, 3, 2, 1, 0];
+
+/// Position of Task.
+const TASK: usize = 0;
+
+/// Why a run failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// Tick in which it began.
+    pub tick: Tick,
+    /// The process that knows why; the manual's name.
+    pub process: String,
+    /// Its decision table; empty if none was used.
+    pub table: String,
+    /// The row that fired, 0 for none.
+    pub row: u8,
+    /// The whole in one sentence.
+    pub text: String,
+    /// The link to the robot is lost, or the robot was stopped: not a matter of the job.
+    pub stopped: bool,
+}
+
+/// What a process reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Report {
+    Reason(Reason),
+    Link(LinkFault),
+}
+
+impl Report {
+    const fn is_none(self) -> bool {
+        matches!(self, Self::Reason(Reason::None) | Self::Link(LinkFault::None))
+    }
+}
+
+/// The beginning of a report that lasts.
+#[derive(Clone, Copy)]
+struct Cause {
+    tick: Tick,
+    report: Report,
+    external: HwsCommand,
+    before: CommonMemory,
+    header: Header,
+}
+
+/// Looks at every tick and keeps when, and amid what, each process began to report what it reports now.
+pub struct Watch {
+    last: [Report; PROCESSES],
+    causes: [Option<Cause>; PROCESSES],
+}
+
+impl Default for Watch {
+    fn default() -> Self {
+        Self { last: reports(&CommonMemory::ZERO), causes: [None; PROCESSES] }
+    }
+}
+
+impl Watch {
+    /// Look at a tick: what came from outside, what the processes read, and what they wrote. Does not allocate.
+    pub fn observe(
+        &mut self,
+        tick: Tick,
+        external: &ExternalInputs,
+        before: &CommonMemory,
+        after: &CommonMemory,
+    ) {
+        let now = reports(after);
+        let headers = headers(after);
+        for (process, cause) in self.causes.iter_mut().enumerate() {
+            let report = now[process];
+            if report.is_none() {
+                *cause = None;
+            } else if report != self.last[process] {
+                *cause = Some(Cause {
+                    tick,
+                    report,
+                    external: external.hws,
+                    before: *before,
+                    header: headers[process],
+                });
+            }
+        }
+        self.last = now;
+    }
+
+    /// Why Task reports an error; `None` while it reports none. `processes` are the names and tables in the order of
+    /// [`CommonMemory`].
+    #[must_use]
+    pub fn failure(&self, processes: &[ProcessText; PROCESSES]) -> Option<Failure> {
+        let task = self.causes[TASK].as_ref()?;
+        let Report::Reason(reason) = task.report else { return None };
+        let link = matches!(reason, Reason::LinkOff | Reason::LinkError);
+        let root = UPWARD.into_iter().find(|&process| {
+            self.causes[process].as_ref().is_some_and(|cause| match cause.report {
+                Report::Reason(other) => other == reason && cause.tick <= task.tick,
+                Report::Link(_) => link,
+            })
+        })?;
+        let cause = self.causes[root].as_ref()?;
+        let why = match cause.report {
+            Report::Reason(reason) => reason.text(),
+            Report::Link(fault) => fault.text(),
+        };
+        let process = &processes[root];
+        let row = row_text(process, &cause.header);
+        let text = format!(
+            "{}: {why}, {}{}",
+            process.name,
+            while_doing(root, cause),
+            row.map_or_else(String::new, |(table, row)| format!(
+                " (table {table}, row {row})",
+                row = describe(row)
+            ))
+        );
+        Some(Failure {
+            tick: cause.tick,
+            process: process.name.to_owned(),
+            table: row.map_or_else(String::new, |(table, _)| table.to_owned()),
+            row: cause.header.row,
+            text,
+            stopped: link,
+        })
+    }
+}
+
+fn describe(row: &RowText) -> String {
+    format!("{}: {} => {}", row.number, row.conditions, row.action)
+}
+
+/// Name of the table and the row that a header names.
+fn row_text(process: &ProcessText, header: &Header) -> Option<(&'static str, &'static RowText)> {
+    let table = process.tables.get(usize::from(header.table).checked_sub(1)?)?;
+    Some((table.name, table.row(header.row)?))
+}
+
+fn reports(memory: &CommonMemory) -> [Report; PROCESSES] {
+    [
+        Report::Reason(memory.task.status.reason),
+        Report::Reason(memory.subtask.status.reason),
+        Report::Reason(memory.emove.status.reason),
+        Report::Reason(memory.prim.status.reason),
+        Report::Link(memory.t3i.status.fault),
+        Report::Reason(memory.quick_change.status.reason),
+        Report::Reason(memory.grip.status.reason),
+    ]
+}
+
+/// Headers of all processes in the order of common memory.
+#[must_use]
+pub const fn headers(memory: &CommonMemory) -> [Header; PROCESSES] {
+    [
+        memory.task.header,
+        memory.subtask.header,
+        memory.emove.header,
+        memory.prim.header,
+        memory.t3i.header,
+        memory.quick_change.header,
+        memory.grip.header,
+    ]
+}
+
+fn while_doing(process: usize, cause: &Cause) -> String {
+    let command = command(process, &cause.external, &cause.before);
+    if command.is_empty() { "without a command".to_owned() } else { format!("while it executed {command}") }
+}
+
+/// The command that a process has, as a person says it; empty for none.
+#[must_use]
+pub fn command(process: usize, hws: &HwsCommand, memory: &CommonMemory) -> String {
+    let words = |words: &[&dyn std::fmt::Display]| {
+        let words: Vec<String> =
+            words.iter().map(ToString::to_string).filter(|word| !word.is_empty()).collect();
+        words.join(" ")
+    };
+    match process {
+        0 => words(&[
+            &hws.command,
+            &hws.object,
+            &at(&hws.source, hws.source_sector),
+            &to(&hws.destination, hws.destination_sector),
+        ]),
+        1 => {
+            let command = &memory.task.subtask;
+            words(&[&command.command, &command.object, &at(&command.location, 0)])
+        }
+        2 => {
+            let command = &memory.subtask.emove;
+            words(&[&command.command, &command.object, &at(&command.location, 0)])
+        }
+        3 => {
+            let command = &memory.emove.prim;
+            words(&[&command.command, &command.sensor])
+        }
+        4 => words(&[&memory.prim.t3i.command]),
+        5 => words(&[&memory.emove.quick_change.command]),
+        6 => {
+            let command = &memory.emove.grip;
+            if command.command.text().is_empty() {
+                return String::new();
+            }
+            let (inches, pounds) = (f64::from(command.position) / 100.0, command.force);
+            format!("{} (opening {inches:.2} in, force {pounds} lb)", command.command)
+        }
+        _ => String::new(),
+    }
+}
+
+fn at(location: &dyn std::fmt::Display, sector: i32) -> String {
+    place("at", location, sector)
+}
+
+fn to(location: &dyn std::fmt::Display, sector: i32) -> String {
+    place("to", location, sector)
+}
+
+fn place(word: &str, location: &dyn std::fmt::Display, sector: i32) -> String {
+    match (location.to_string(), sector) {
+        (name, _) if name.is_empty() => String::new(),
+        (name, 0) => format!("{word} {name}"),
+        (name, sector) => format!("{word} {name} sector {sector}"),
+    }
+}
+
+/// What each level is doing, from Task down, for a failure that no process reports: a command that takes too long.
+#[must_use]
+pub fn present_commands(
+    processes: &[ProcessText; PROCESSES],
+    hws: &HwsCommand,
+    memory: &CommonMemory,
+) -> String {
+    let headers = headers(memory);
+    let lines = processes.iter().enumerate().filter_map(|(index, process)| {
+        let command = command(index, hws, memory);
+        let row = row_text(process, &headers[index])?;
+        (!command.is_empty())
+            .then(|| format!("{} executes {command} (table {}, row {})", process.name, row.0, row.1.number))
+    });
+    lines.collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rcs_core::{
+        coded_enum, decision_table,
+        interface::{grip::GripVerb, subtask::SubtaskVerb},
+        name::Name10,
+    };
+
+    coded_enum! { enum Step { Start = "start", Wait = "wait", } }
+    coded_enum! { enum Fingers { Apart = "apart", Shut = "shut", } }
+    coded_enum! { enum Action { Close = "close", Report = "report", } }
+    decision_table! {
+        /// CLOSE-GRIP for the test.
+        CLOSE_GRIP: fn close_grip(step: Step, fingers: Fingers) -> (Action, Step) {
+            1: ( _    , Apart ) => Close , Wait ;
+            2: ( Start, Shut  ) => Close , Wait ;
+            3: ( Wait , Shut  ) => Report, Start;
+        }
+    }
+
+    const TABLES: &[&rcs_core::table::Table] = &[&CLOSE_GRIP];
+
+    fn processes() -> [ProcessText; PROCESSES] {
+        ["Task", "Subtask", "E-move", "Prim", "T3I", "Quick Change", "Grip"]
+            .map(|name| ProcessText { name, tables: if name == "Grip" { TABLES } else { &[] } })
+    }
+
+    /// Plays ticks: each closure changes common memory, the watch looks on.
+    fn watched(changes: &[fn(&mut CommonMemory)]) -> Watch {
+        let (mut watch, mut memory) = (Watch::default(), CommonMemory::default());
+        for (tick, change) in (1..).zip(changes) {
+            let before = memory;
+            change(&mut memory);
+            watch.observe(Tick(tick), &ExternalInputs::default(), &before, &memory);
+        }
+        watch
+    }
+
+    #[test]
+    fn no_failure_without_a_reason_at_task() {
+        assert_eq!(Watch::default().failure(&processes()), None);
+        let watch = watched(&[|memory| memory.grip.status.reason = Reason::GraspMissed]);
+        assert_eq!(watch.failure(&processes()), None);
+    }
+
+    #[test]
+    fn the_lowest_process_explains_with_the_row_of_its_own_tick() {
+        let watch = watched(&[
+            |memory| memory.emove.grip.command = GripVerb::CloseGrip,
+            |memory| memory.emove.grip.force = 25,
+            |memory| {
+                memory.grip.header = Header { stamp: Tick(3), republished: false, table: 1, row: 3 };
+                memory.grip.status.reason = Reason::GraspMissed;
+            },
+            |memory| {
+                memory.emove.status.reason = Reason::GraspMissed;
+                memory.grip.header.row = 1;
+            },
+            |memory| {
+                memory.subtask.status.reason = Reason::GraspMissed;
+                memory.emove.grip.command = GripVerb::Pause;
+            },
+            |memory| memory.task.status.reason = Reason::GraspMissed,
+        ]);
+        let failure = watch.failure(&processes()).expect("Task reports a reason");
+        assert_eq!((failure.tick, failure.row, failure.stopped), (Tick(3), 3, false));
+        assert_eq!((failure.process.as_str(), failure.table.as_str()), ("Grip", "close_grip"));
+        assert_eq!(
+            failure.text,
+            "Grip: the fingers closed on nothing, while it executed CLOSE-GRIP (opening 0.00 in, force 25 lb) \
+             (table close_grip, row 3: (Wait, Shut) => Report)"
+        );
+    }
+
+    #[test]
+    fn an_older_failure_of_a_lower_process_that_has_passed_is_not_blamed() {
+        let watch = watched(&[
+            |memory| memory.grip.status.reason = Reason::GraspMissed,
+            |memory| memory.grip.status.reason = Reason::None,
+            |memory| {
+                memory.task.subtask.command = SubtaskVerb::GetObject;
+                memory.task.subtask.location = Name10::new("UNIT_1").unwrap();
+            },
+            |memory| memory.subtask.status.reason = Reason::UnknownGrip,
+            |memory| memory.task.status.reason = Reason::UnknownGrip,
+        ]);
+        let failure = watch.failure(&processes()).expect("Task reports a reason");
+        assert_eq!((failure.tick, failure.process.as_str(), failure.row), (Tick(4), "Subtask", 0));
+        assert_eq!(
+            failure.text,
+            "Subtask: the object has no such grip, while it executed GET-OBJECT at UNIT_1"
+        );
+    }
+
+    #[test]
+    fn a_lost_link_is_explained_by_the_interface() {
+        let watch = watched(&[
+            |memory| memory.t3i.status.fault = LinkFault::NotResponding,
+            |memory| memory.prim.status.reason = Reason::LinkOff,
+            |memory| memory.task.status.reason = Reason::LinkOff,
+        ]);
+        let failure = watch.failure(&processes()).expect("Task reports a reason");
+        assert_eq!((failure.tick, failure.process.as_str(), failure.stopped), (Tick(1), "T3I", true));
+        assert_eq!(failure.text, "T3I: not responding, without a command");
+    }
+}

@@ -1,0 +1,485 @@
+//! The workstation controller (HWSC), emulated: plays a job.
+//!
+//! A job is a list of steps: commands for Task, and actions of the workstation itself (vise, machining) between them. The
+//! emulator first sends PAUSE, as the startup sequence does (V.4.1), and then one step after the other: a command is over when Task
+//! answers its number with `finished`, an action when the workstation is no longer busy. An error, a lost Task, a fault of the
+//! workstation or a step that takes too long end the job with a [`JobFailure`].
+//!
+//! ```text
+//!           PAUSE           command finished, or workstation idle
+//!  Waiting -------> Sent ----------------------------------------> next step ... -> Over
+//!                     |
+//!                     +---- error, lost, fault, time limit -------------------------> Failed
+//! ```
+
+use rcs_core::{
+    handshake::{Commander, Lower},
+    interface::{HwsCommand, Reason, TaskOutputs, hws::HwsReport},
+    name::Name16,
+    tick::{TICK_MS, Tick},
+};
+
+/// What the workstation can do by itself. `Action` is an action of a job.
+pub trait Workstation<Action> {
+    /// Begin an action.
+    ///
+    /// # Errors
+    /// A sentence, if the workstation cannot do it.
+    fn begin(&mut self, action: &Action) -> Result<(), String>;
+
+    /// True while an action goes on.
+    fn busy(&self) -> bool;
+
+    /// What is wrong with the workstation, in a sentence; `None` if nothing is.
+    fn fault(&self) -> Option<String>;
+}
+
+/// A step of a job.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step<Action> {
+    /// A command for Task.
+    Command {
+        /// The line as it stands in the job.
+        text: String,
+        /// Its fields; the number is filled in when it is sent.
+        command: HwsCommand,
+    },
+    /// An action of the workstation.
+    Workstation {
+        /// The line as it stands in the job.
+        text: String,
+        /// What to do.
+        action: Action,
+    },
+}
+
+impl<Action> Step<Action> {
+    /// The line as it stands in the job.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        match self {
+            Self::Command { text, .. } | Self::Workstation { text, .. } => text,
+        }
+    }
+}
+
+/// How a step ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It is going on.
+    Executing,
+    /// As it should.
+    Finished,
+    /// It failed.
+    Failed,
+}
+
+impl Outcome {
+    /// The word in reports.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Executing => HwsReport::Executing.text(),
+            Self::Finished => HwsReport::Finished.text(),
+            Self::Failed => HwsReport::Error.text(),
+        }
+    }
+}
+
+/// A step that was begun.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// The line as it stands in the job; `PAUSE` for the first one.
+    pub text: String,
+    /// It was a command for Task, not an action of the workstation.
+    pub is_command: bool,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Ticks from the one in which it was begun to the one in which its end was seen.
+    pub ticks: u64,
+}
+
+/// Why a job ended before its last step.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum JobFailure {
+    /// Task reports an error.
+    #[error("{}", .0.text())]
+    Command(Reason),
+    /// Task does not answer.
+    #[error("Task does not answer")]
+    Lost,
+    /// The operator has the robot.
+    #[error("the joystick box is on")]
+    Joystick,
+    /// A step took too long.
+    #[error("not finished within {} s", .0 * TICK_MS / 1000)]
+    TimeLimit(u64),
+    /// The workstation cannot do an action, or has a fault.
+    #[error("{0}")]
+    Workstation(String),
+}
+
+/// Where the job stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Going on.
+    Running,
+    /// All steps are finished.
+    Over,
+    /// It ended in failure.
+    Failed(JobFailure),
+}
+
+/// Ticks that a step may take: five minutes. The longest of the linkbar, a transfer across the cell at a tenth of full speed,
+/// stays below four.
+pub const TIME_LIMIT: u64 = 5 * 60 * 1000 / TICK_MS;
+
+/// The emulator of the workstation controller.
+#[derive(Debug)]
+pub struct Hwsc<Action> {
+    steps: Vec<Step<Action>>,
+    /// The step that is going on: 0 is the first PAUSE, `n` is `steps[n - 1]`.
+    current: usize,
+    began: Option<Tick>,
+    commander: Commander,
+    command: HwsCommand,
+    records: Vec<Record>,
+    progress: Progress,
+    time_limit: u64,
+}
+
+impl<Action> Hwsc<Action> {
+    /// An emulator that will play `steps`, each within `time_limit` ticks.
+    #[must_use]
+    pub fn new(steps: Vec<Step<Action>>, time_limit: u64) -> Self {
+        let records = Vec::with_capacity(steps.len() + 1);
+        Self {
+            steps,
+            current: 0,
+            began: None,
+            commander: Commander::default(),
+            command: HwsCommand::default(),
+            records,
+            progress: Progress::Running,
+            time_limit,
+        }
+    }
+
+    /// What stands in Task's command buffer now.
+    #[must_use]
+    pub const fn command(&self) -> &HwsCommand {
+        &self.command
+    }
+
+    /// All steps that were begun, the first PAUSE included.
+    #[must_use]
+    pub fn records(&self) -> &[Record] {
+        &self.records
+    }
+
+    /// Where the job stands.
+    #[must_use]
+    pub const fn progress(&self) -> &Progress {
+        &self.progress
+    }
+
+    /// Number of steps, the first PAUSE included.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.steps.len() + 1
+    }
+
+    /// A job has one step at least.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Once a tick, after the controller: read what Task wrote in `tick`, write what it will read in the next one.
+    pub fn step(
+        &mut self,
+        tick: Tick,
+        task: &TaskOutputs,
+        workstation: &mut impl Workstation<Action>,
+    ) -> &Progress {
+        if self.progress != Progress::Running {
+            return &self.progress;
+        }
+        self.commander.start(task.status.echo);
+        let ended = match self.began {
+            None => Some(Ok(())),
+            Some(began) => self.end_of_step(tick, began, task, workstation),
+        };
+        match ended {
+            None => {}
+            Some(Err(failure)) => self.fail(failure),
+            Some(Ok(())) => {
+                if self.began.is_some() {
+                    self.finish(Outcome::Finished);
+                    self.current += 1;
+                }
+                self.begin(tick, workstation);
+            }
+        }
+        &self.progress
+    }
+
+    /// How the step that is going on ended; `None` while it goes on.
+    fn end_of_step(
+        &mut self,
+        tick: Tick,
+        began: Tick,
+        task: &TaskOutputs,
+        workstation: &impl Workstation<Action>,
+    ) -> Option<Result<(), JobFailure>> {
+        let ticks = tick.since(began);
+        if let Some(record) = self.records.last_mut() {
+            record.ticks = ticks;
+        }
+        if let Some(fault) = workstation.fault() {
+            return Some(Err(JobFailure::Workstation(fault)));
+        }
+        let lower =
+            self.commander.read(tick.next(), &task.header, task.status.echo, lower(task.status.report));
+        let finished = match lower {
+            Lower::Lost => return Some(Err(JobFailure::Lost)),
+            Lower::Error => return Some(Err(JobFailure::Command(task.status.reason))),
+            Lower::Joystick => return Some(Err(JobFailure::Joystick)),
+            Lower::Pending | Lower::Executing => false,
+            Lower::Done => true,
+        };
+        let waits_for_workstation =
+            self.step_at(self.current).is_some_and(|s| matches!(s, Step::Workstation { .. }));
+        if finished && !(waits_for_workstation && workstation.busy()) {
+            Some(Ok(()))
+        } else if ticks >= self.time_limit {
+            Some(Err(JobFailure::TimeLimit(self.time_limit)))
+        } else {
+            None
+        }
+    }
+
+    fn step_at(&self, position: usize) -> Option<&Step<Action>> {
+        self.steps.get(position.checked_sub(1)?)
+    }
+
+    /// Begin the current step; after the last one the job is over.
+    fn begin(&mut self, tick: Tick, workstation: &mut impl Workstation<Action>) {
+        self.began = Some(tick);
+        let (text, command, refused) = match self.step_at(self.current) {
+            None if self.current == 0 => {
+                let pause = HwsCommand { command: Name16::clipped("PAUSE"), ..HwsCommand::default() };
+                ("PAUSE".to_owned(), Some(pause), None)
+            }
+            None => {
+                self.progress = Progress::Over;
+                return;
+            }
+            Some(Step::Command { text, command }) => (text.clone(), Some(*command), None),
+            Some(Step::Workstation { text, action }) => (text.clone(), None, workstation.begin(action).err()),
+        };
+        self.records.push(Record {
+            text,
+            is_command: command.is_some(),
+            outcome: Outcome::Executing,
+            ticks: 0,
+        });
+        if let Some(command) = command {
+            self.command = HwsCommand { number: self.commander.send(tick.next()), ..command };
+        }
+        if let Some(refused) = refused {
+            self.fail(JobFailure::Workstation(refused));
+        }
+    }
+
+    fn fail(&mut self, failure: JobFailure) {
+        self.finish(Outcome::Failed);
+        self.progress = Progress::Failed(failure);
+    }
+
+    fn finish(&mut self, outcome: Outcome) {
+        if let Some(record) = self.records.last_mut() {
+            record.outcome = outcome;
+        }
+    }
+}
+
+const fn lower(report: HwsReport) -> Lower {
+    match report {
+        HwsReport::Idle | HwsReport::Finished => Lower::Done,
+        HwsReport::Executing => Lower::Executing,
+        HwsReport::Error => Lower::Error,
+        HwsReport::JoystickOn => Lower::Joystick,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rcs_core::{
+        handshake::{Arrival, Receiver},
+        interface::Header,
+    };
+
+    /// A Task that executes each command for some ticks.
+    #[derive(Default)]
+    struct Task {
+        receiver: Receiver,
+        left: u64,
+        received: Vec<String>,
+        fails_at: Option<usize>,
+        silent: bool,
+    }
+
+    impl Task {
+        fn step(&mut self, tick: Tick, command: &HwsCommand) -> TaskOutputs {
+            let mut outputs =
+                TaskOutputs { header: Header { stamp: tick, ..Header::default() }, ..TaskOutputs::default() };
+            if self.silent {
+                return outputs;
+            }
+            match self.receiver.observe(command.number) {
+                Arrival::New => {
+                    self.received.push(command.command.to_string());
+                    self.left = 4;
+                }
+                _ => self.left = self.left.saturating_sub(1),
+            }
+            outputs.status.echo = self.receiver.echo;
+            outputs.status.report = match self.left {
+                0 if self.receiver.echo == 0 => HwsReport::Idle,
+                0 if self.fails_at == Some(self.received.len()) => HwsReport::Error,
+                0 => HwsReport::Finished,
+                _ => HwsReport::Executing,
+            };
+            if outputs.status.report == HwsReport::Error {
+                outputs.status.reason = Reason::GraspMissed;
+            }
+            outputs
+        }
+    }
+
+    /// A vise that takes six looks, and what it was told.
+    #[derive(Default)]
+    struct Vise {
+        busy: std::cell::Cell<u32>,
+        told: Vec<&'static str>,
+        fault: Option<&'static str>,
+    }
+
+    impl Workstation<&'static str> for Vise {
+        fn begin(&mut self, action: &&'static str) -> Result<(), String> {
+            if *action == "jam" {
+                return Err("the vise is jammed".into());
+            }
+            self.told.push(action);
+            self.busy.set(6);
+            Ok(())
+        }
+
+        fn busy(&self) -> bool {
+            self.busy.set(self.busy.get().saturating_sub(1));
+            self.busy.get() > 0
+        }
+
+        fn fault(&self) -> Option<String> {
+            self.fault.map(str::to_owned)
+        }
+    }
+
+    fn command(verb: &str) -> Step<&'static str> {
+        let command = HwsCommand { command: Name16::clipped(verb), ..HwsCommand::default() };
+        Step::Command { text: format!("== {verb}"), command }
+    }
+
+    fn action(name: &'static str) -> Step<&'static str> {
+        Step::Workstation { text: name.to_owned(), action: name }
+    }
+
+    /// Plays a job for at most 200 ticks; the last tick comes back.
+    fn play(hwsc: &mut Hwsc<&'static str>, task: &mut Task, vise: &mut Vise) -> u64 {
+        for tick in 1..200 {
+            let outputs = task.step(Tick(tick), hwsc.command());
+            if *hwsc.step(Tick(tick), &outputs, vise) != Progress::Running {
+                return tick;
+            }
+        }
+        200
+    }
+
+    #[test]
+    fn a_job_is_played_in_order_and_pause_comes_first() {
+        let steps = vec![action("partial"), command("MOVE"), action("close"), command("MOVE")];
+        let (mut hwsc, mut task, mut vise) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
+        play(&mut hwsc, &mut task, &mut vise);
+        assert_eq!(*hwsc.progress(), Progress::Over);
+        assert_eq!(task.received, ["PAUSE", "MOVE", "MOVE"]);
+        assert_eq!(vise.told, ["partial", "close"]);
+        let texts: Vec<_> =
+            hwsc.records().iter().map(|r| (r.text.as_str(), r.is_command, r.outcome)).collect();
+        let finished = Outcome::Finished;
+        assert_eq!(
+            texts,
+            [
+                ("PAUSE", true, finished),
+                ("partial", false, finished),
+                ("== MOVE", true, finished),
+                ("close", false, finished),
+                ("== MOVE", true, finished)
+            ]
+        );
+        // A command is written in one tick, read in the next, executed for four, and its end is seen in the tick that writes it.
+        assert!(hwsc.records().iter().filter(|r| r.is_command).all(|r| r.ticks == 5), "{:?}", hwsc.records());
+        assert!(
+            hwsc.records().iter().filter(|r| !r.is_command).all(|r| r.ticks == 6),
+            "{:?}",
+            hwsc.records()
+        );
+    }
+
+    #[test]
+    fn an_error_of_task_ends_the_job_with_its_reason_and_nothing_more_is_sent() {
+        let steps = vec![command("MOVE"), command("ACQUIRE")];
+        let mut task = Task { fails_at: Some(2), ..Task::default() };
+        let mut hwsc = Hwsc::new(steps, 100);
+        let last = play(&mut hwsc, &mut task, &mut Vise::default());
+        assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Command(Reason::GraspMissed)));
+        assert_eq!(task.received, ["PAUSE", "MOVE"]);
+        assert_eq!(hwsc.records().last().map(|r| r.outcome), Some(Outcome::Failed));
+        let number = hwsc.command().number;
+        let outputs = task.step(Tick(last + 1), hwsc.command());
+        hwsc.step(Tick(last + 1), &outputs, &mut Vise::default());
+        assert_eq!(hwsc.command().number, number);
+    }
+
+    #[test]
+    fn a_task_that_does_not_answer_is_lost_after_three_ticks() {
+        let mut task = Task { silent: true, ..Task::default() };
+        let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
+        let last = play(&mut hwsc, &mut task, &mut Vise::default());
+        assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Lost));
+        assert!(last <= 6, "{last}");
+    }
+
+    #[test]
+    fn time_runs_out_for_a_command_and_for_an_action() {
+        let mut hwsc = Hwsc::new(vec![command("MOVE")], 3);
+        play(&mut hwsc, &mut Task::default(), &mut Vise::default());
+        assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::TimeLimit(3)));
+        let mut hwsc = Hwsc::new(vec![action("close")], 5);
+        play(&mut hwsc, &mut Task::default(), &mut Vise::default());
+        assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::TimeLimit(5)));
+        assert_eq!(hwsc.records().len(), 2, "PAUSE is finished within five ticks");
+    }
+
+    #[test]
+    fn what_the_workstation_cannot_do_ends_the_job() {
+        let mut hwsc = Hwsc::new(vec![action("jam")], 100);
+        play(&mut hwsc, &mut Task::default(), &mut Vise::default());
+        assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Workstation("the vise is jammed".into())));
+        let mut vise = Vise { fault: Some("no oil pressure"), ..Vise::default() };
+        let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
+        play(&mut hwsc, &mut Task::default(), &mut vise);
+        assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Workstation("no oil pressure".into())));
+    }
+}

@@ -1,0 +1,171 @@
+//! The side of the others: look into a run without disturbing it.
+
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs},
+    record::DecodeError,
+};
+
+use super::{
+    buffers::{
+        DevicesReader, EmoveReader, ExecutiveReader, GripReader, HwscReader, PrimReader, Pulse,
+        QuickChangeReader, SubtaskReader, T3iReader, TaskReader,
+    },
+    publish::FIRST_EPOCH,
+    runs::{self, RunName, SharedMemoryError},
+};
+
+/// How often a reader looks again when it meets the writer at work. Writing takes microseconds of a tick.
+const ATTEMPTS: usize = 1000;
+
+/// Why nothing was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ReadError {
+    /// The bytes are not legal records.
+    #[error("shared memory holds something that no process writes: {0}")]
+    Decode(#[from] DecodeError),
+    /// The writer was in the middle of a tick at every attempt; the next call may succeed.
+    #[error("the buffers were being written at every attempt")]
+    Busy,
+}
+
+/// A reader that is attached to a run. Dropping it detaches.
+pub struct Attached {
+    name: RunName,
+    // Taken out before the files are removed, if this is the last one out.
+    ports: Option<Ports>,
+}
+
+struct Ports {
+    task: TaskReader,
+    subtask: SubtaskReader,
+    emove: EmoveReader,
+    prim: PrimReader,
+    t3i: T3iReader,
+    quick_change: QuickChangeReader,
+    grip: GripReader,
+    hwsc: HwscReader,
+    devices: DevicesReader,
+    executive: ExecutiveReader,
+    _node: iceoryx2::node::Node<iceoryx2::prelude::ipc::Service>,
+}
+
+impl Attached {
+    /// Attach to a run by its name.
+    ///
+    /// # Errors
+    /// [`SharedMemoryError::NoSuchRun`] if no living run has the name, [`SharedMemoryError::OtherLayout`] if it comes from other
+    /// sources, else what iceoryx2 says.
+    pub fn open(name: &RunName) -> Result<Self, SharedMemoryError> {
+        let ours = runs::layout();
+        let runs = runs::list()?;
+        let mut named = runs.iter().filter(|run| run.name == *name && run.alive);
+        match named.clone().find(|run| run.layout == ours).or_else(|| named.next()) {
+            None => return Err(SharedMemoryError::NoSuchRun(name.to_string())),
+            Some(run) if run.layout != ours => {
+                return Err(SharedMemoryError::OtherLayout {
+                    run: name.to_string(),
+                    theirs: run.layout.clone(),
+                    ours,
+                });
+            }
+            Some(_) => {}
+        }
+        let node = runs::node(name, "reader")?;
+        let epoch = FIRST_EPOCH;
+        let ports = Ports {
+            task: TaskReader::open(&node, epoch)?,
+            subtask: SubtaskReader::open(&node, epoch)?,
+            emove: EmoveReader::open(&node, epoch)?,
+            prim: PrimReader::open(&node, epoch)?,
+            t3i: T3iReader::open(&node, epoch)?,
+            quick_change: QuickChangeReader::open(&node, epoch)?,
+            grip: GripReader::open(&node, epoch)?,
+            hwsc: HwscReader::open(&node, epoch)?,
+            devices: DevicesReader::open(&node, epoch)?,
+            executive: ExecutiveReader::open(&node, epoch)?,
+            _node: node,
+        };
+        Ok(Self { name: name.clone(), ports: Some(ports) })
+    }
+
+    /// The run.
+    #[must_use]
+    pub const fn name(&self) -> &RunName {
+        &self.name
+    }
+
+    /// Common memory as one tick left it: all processes bear the same stamp.
+    ///
+    /// # Errors
+    /// [`ReadError`].
+    pub fn memory(&self) -> Result<CommonMemory, ReadError> {
+        self.settled(|ports| {
+            let memory = CommonMemory {
+                task: unfinished(ports.task.read()?)?,
+                subtask: unfinished(ports.subtask.read()?)?,
+                emove: unfinished(ports.emove.read()?)?,
+                prim: unfinished(ports.prim.read()?)?,
+                t3i: unfinished(ports.t3i.read()?)?,
+                quick_change: unfinished(ports.quick_change.read()?)?,
+                grip: unfinished(ports.grip.read()?)?,
+            };
+            let stamp = memory.task.header.stamp;
+            let others = [
+                &memory.subtask.header,
+                &memory.emove.header,
+                &memory.prim.header,
+                &memory.t3i.header,
+                &memory.quick_change.header,
+                &memory.grip.header,
+            ];
+            if others.iter().all(|header| header.stamp == stamp) { Ok(memory) } else { Err(ReadError::Busy) }
+        })
+    }
+
+    /// What came from outside for the last tick.
+    ///
+    /// # Errors
+    /// [`ReadError`].
+    pub fn external(&self) -> Result<ExternalInputs, ReadError> {
+        self.settled(|ports| {
+            let (hwsc, devices) = (unfinished(ports.hwsc.read()?)?, unfinished(ports.devices.read()?)?);
+            if hwsc.header.stamp == devices.header.stamp {
+                Ok(ExternalInputs { hws: hwsc.command, devices: devices.inputs })
+            } else {
+                Err(ReadError::Busy)
+            }
+        })
+    }
+
+    /// What the executive says of the run.
+    ///
+    /// # Errors
+    /// [`ReadError`].
+    pub fn pulse(&self) -> Result<Pulse, ReadError> {
+        self.settled(|ports| Ok(unfinished(ports.executive.read()?)?.pulse))
+    }
+
+    /// Reads until nobody writes in between.
+    fn settled<T>(&self, read: impl Fn(&Ports) -> Result<T, ReadError>) -> Result<T, ReadError> {
+        let Some(ports) = &self.ports else { return Err(ReadError::Busy) };
+        for _ in 0..ATTEMPTS {
+            match read(ports) {
+                Err(ReadError::Busy) => std::thread::yield_now(),
+                other => return other,
+            }
+        }
+        Err(ReadError::Busy)
+    }
+}
+
+fn unfinished<T>(outputs: Option<T>) -> Result<T, ReadError> {
+    outputs.ok_or(ReadError::Busy)
+}
+
+impl Drop for Attached {
+    fn drop(&mut self) {
+        drop(self.ports.take());
+        // A living run or another reader keeps the files; a failure is left to `rcs-run clean`.
+        let _ = runs::remove_if_deserted(&self.name, &runs::layout());
+    }
+}

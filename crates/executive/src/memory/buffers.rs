@@ -1,0 +1,351 @@
+//! The buffers in shared memory, service by service.
+//!
+//! [`services!`] turns the list at the end of this file into one pair of structures a service: the writer's ends of its buffers and
+//! the readers' ends. A buffer travels as header and byte image; all buffers of a service that bear the same stamp belong
+//! together, and a reader that finds different stamps looks again.
+
+use std::marker::PhantomData;
+
+use iceoryx2::{
+    port::{reader::EntryHandle, writer::EntryHandleMut},
+    prelude::ipc,
+};
+use rcs_core::{
+    digest::Digest,
+    interface::{
+        ChangingPose, EmoveOutputs, GripOutputs, Header, HwsCommand, PrimOutputs, QuickChangeOutputs,
+        SubtaskOutputs, T3iOutputs, TaskOutputs,
+        device::{DeviceInputs, GripValves, LinkBytes, QuickChangeValves, VisionRequest},
+        emove::{EMOVE_POSES, EmoveCommand, EmoveStatus},
+        grip::{GripCommand, GripStatus},
+        hws::{HwsStatus, TASK_POSES},
+        prim::{PRIM_POSES, PrimCommand, PrimStatus},
+        quick_change::{QuickChangeCommand, QuickChangeStatus},
+        subtask::{SubtaskCommand, SubtaskStatus},
+        t3i::{T3iCommand, T3iStatus},
+    },
+    record,
+    record::{DecodeError, Field, Reader, Schema, Writer},
+    tick::Tick,
+};
+
+use super::runs::SharedMemoryError;
+
+/// Epoch of a service: 1 for the first writer, the next number for a writer that takes over from a killed one, because a
+/// blackboard cannot be reopened for writing while a reader holds it. Part of the service's name.
+pub type Epoch = u32;
+
+record! {
+    /// What the executive says about a run, once a tick. Holds counts of this machine: not part of the digest.
+    pub struct Pulse {
+        /// The tick that was run last.
+        pub tick: Tick,
+        /// Slots of the 40 ms grid that were skipped so far.
+        pub skipped: u64,
+        /// Heap allocations of the controller since the start.
+        pub allocations: u64,
+        /// Nanoseconds that the controller took for the tick.
+        pub controller_ns: u64,
+        /// The run is over: nothing will be written any more.
+        pub over: bool,
+    }
+}
+
+record! {
+    /// Buffers of the workstation controller.
+    pub struct HwscOutputs {
+        /// Stamp: the tick that reads the buffers.
+        pub header: Header,
+        /// To Task.
+        pub command: HwsCommand,
+    }
+}
+
+record! {
+    /// Buffers of the devices.
+    pub struct DevicesOutputs {
+        /// Stamp: the tick that reads the buffers.
+        pub header: Header,
+        /// To the processes that own the devices.
+        pub inputs: DeviceInputs,
+    }
+}
+
+record! {
+    /// Buffers of the executive.
+    pub struct ExecutiveOutputs {
+        /// Stamp.
+        pub header: Header,
+        /// To everybody.
+        pub pulse: Pulse,
+    }
+}
+
+/// Bytes of a buffer in shared memory.
+const fn image_size<T: Field>() -> usize {
+    Header::SIZE + T::SIZE
+}
+
+/// The writer's end of a buffer whose image has `N` bytes, header included.
+struct BufferWriter<const N: usize, T> {
+    entry: EntryHandleMut<ipc::Service, u32, [u8; N]>,
+    holds: PhantomData<T>,
+}
+
+impl<const N: usize, T: Field> BufferWriter<N, T> {
+    fn write(&self, header: &Header, value: &T) {
+        let mut image = [0; N];
+        let mut w = Writer::new(&mut image);
+        header.encode(&mut w);
+        value.encode(&mut w);
+        debug_assert_eq!(w.missing(), 0);
+        self.entry.update_with_copy(image);
+    }
+}
+
+/// A reader's end of a buffer.
+struct BufferReader<const N: usize, T> {
+    entry: EntryHandle<ipc::Service, u32, [u8; N]>,
+    holds: PhantomData<T>,
+}
+
+impl<const N: usize, T: Field> BufferReader<N, T> {
+    fn read(&self) -> Result<(Header, T), DecodeError> {
+        let image: [u8; N] = *self.entry.get();
+        let mut r = Reader::new(&image);
+        Ok((Header::decode(&mut r)?, T::decode(&mut r)?))
+    }
+}
+
+macro_rules! services {
+    ($(
+        $(#[doc = $doc:literal])*
+        $service:ident ( $writer:ident, $reader:ident ) = $outputs:ident { $( $key:literal $buffer:ident : $type:ty, )+ }
+    )+) => {
+        /// The services of a run: for each, its name, and the names and schemas of its buffers in the order of their keys.
+        pub const SERVICES: &[(&str, &[(&str, Schema)])] = &[ $(
+            (stringify!($service), &[ $( (stringify!($buffer), <$type as Field>::SCHEMA), )+ ]),
+        )+ ];
+
+        $(
+            $(#[doc = $doc])*
+            ///
+            /// The writer's ends of the buffers.
+            pub struct $writer {
+                $( $buffer: BufferWriter<{ image_size::<$type>() }, $type>, )+
+            }
+
+            impl $writer {
+                /// Create the service and its buffers, zeroed.
+                pub(super) fn create(node: &iceoryx2::node::Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
+                    let failed = |what: &dyn std::fmt::Debug| SharedMemoryError::service(stringify!($service), what);
+                    let name = super::runs::service_name(stringify!($service), epoch)?;
+                    let service = node
+                        .service_builder(&name)
+                        .blackboard_creator::<u32>()
+                        .max_readers(super::runs::MAX_READERS)
+                        .max_nodes(super::runs::MAX_READERS + 1)
+                        $( .add($key, rcs_core::record::to_bytes::<{ image_size::<$type>() }, _>(&<$outputs>::ZERO.header)) )+
+                        .create()
+                        .map_err(|error| failed(&error))?;
+                    let port = service.writer_builder().create().map_err(|error| failed(&error))?;
+                    Ok(Self { $(
+                        $buffer: BufferWriter {
+                            entry: port.entry(&$key).map_err(|error| failed(&error))?,
+                            holds: PhantomData,
+                        },
+                    )+ })
+                }
+
+                /// Write all buffers.
+                pub fn write(&self, outputs: &$outputs) {
+                    $( self.$buffer.write(&outputs.header, &outputs.$buffer); )+
+                }
+            }
+
+            $(#[doc = $doc])*
+            ///
+            /// A reader's ends of the buffers.
+            pub struct $reader {
+                $( $buffer: BufferReader<{ image_size::<$type>() }, $type>, )+
+            }
+
+            impl $reader {
+                /// Open the service.
+                pub(super) fn open(node: &iceoryx2::node::Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
+                    let failed = |what: &dyn std::fmt::Debug| SharedMemoryError::service(stringify!($service), what);
+                    let name = super::runs::service_name(stringify!($service), epoch)?;
+                    let service = node
+                        .service_builder(&name)
+                        .blackboard_opener::<u32>()
+                        .open()
+                        .map_err(|error| failed(&error))?;
+                    let port = service.reader_builder().create().map_err(|error| failed(&error))?;
+                    Ok(Self { $(
+                        $buffer: BufferReader {
+                            entry: port.entry(&$key).map_err(|error| failed(&error))?,
+                            holds: PhantomData,
+                        },
+                    )+ })
+                }
+
+                /// The latest buffers; `None` if they were being written meanwhile.
+                pub fn read(&self) -> Result<Option<$outputs>, DecodeError> {
+                    let mut outputs = <$outputs>::default();
+                    let mut stamps = [ $( { let (header, value) = self.$buffer.read()?; outputs.$buffer = value; header }, )+ ].into_iter();
+                    let first = stamps.next().unwrap_or_default();
+                    outputs.header = first;
+                    Ok(stamps.all(|header| header == first).then_some(outputs))
+                }
+            }
+        )+
+    };
+}
+
+services! {
+    /// Task (V.4.2).
+    task(TaskWriter, TaskReader) = TaskOutputs {
+        0 status: HwsStatus,
+        1 subtask: SubtaskCommand,
+        2 poses: [ChangingPose; TASK_POSES],
+    }
+    /// Subtask (V.3.2).
+    subtask(SubtaskWriter, SubtaskReader) = SubtaskOutputs {
+        0 status: SubtaskStatus,
+        1 emove: EmoveCommand,
+    }
+    /// E-move (V.2.2).
+    emove(EmoveWriter, EmoveReader) = EmoveOutputs {
+        0 status: EmoveStatus,
+        1 prim: PrimCommand,
+        2 quick_change: QuickChangeCommand,
+        3 grip: GripCommand,
+        4 vision: VisionRequest,
+        5 poses: [ChangingPose; EMOVE_POSES],
+    }
+    /// Prim (V.1.2).
+    prim(PrimWriter, PrimReader) = PrimOutputs {
+        0 status: PrimStatus,
+        1 t3i: T3iCommand,
+        2 poses: [ChangingPose; PRIM_POSES],
+    }
+    /// T3 Interface (VI.1.2).
+    t3i(T3iWriter, T3iReader) = T3iOutputs {
+        0 status: T3iStatus,
+        1 link_tx: LinkBytes,
+    }
+    /// Quick Change (VI.2.2).
+    quick_change(QuickChangeWriter, QuickChangeReader) = QuickChangeOutputs {
+        0 status: QuickChangeStatus,
+        1 valves: QuickChangeValves,
+    }
+    /// Grip (VI.3.2).
+    grip(GripWriter, GripReader) = GripOutputs {
+        0 status: GripStatus,
+        1 valves: GripValves,
+    }
+    /// The workstation controller.
+    hwsc(HwscWriter, HwscReader) = HwscOutputs {
+        0 command: HwsCommand,
+    }
+    /// The devices of the cell.
+    devices(DevicesWriter, DevicesReader) = DevicesOutputs {
+        0 inputs: DeviceInputs,
+    }
+    /// The executive.
+    executive(ExecutiveWriter, ExecutiveReader) = ExecutiveOutputs {
+        0 pulse: Pulse,
+    }
+}
+
+/// Version of the layout: a hash of the names and schemas of all services and buffers. Programs that were built with different
+/// layouts never read each other's bytes.
+#[must_use]
+pub fn layout_version() -> u32 {
+    let mut digest = Digest::new();
+    add_schema(&mut digest, &Header::SCHEMA);
+    for (service, buffers) in SERVICES {
+        add_text(&mut digest, service);
+        for (buffer, schema) in *buffers {
+            add_text(&mut digest, buffer);
+            add_schema(&mut digest, schema);
+        }
+    }
+    let hash = digest.value().to_le_bytes();
+    u32::from_le_bytes([hash[0] ^ hash[4], hash[1] ^ hash[5], hash[2] ^ hash[6], hash[3] ^ hash[7]])
+}
+
+fn add_text(digest: &mut Digest, text: &str) {
+    digest.add(text.as_bytes());
+    digest.add(&[0]);
+}
+
+fn add_schema(digest: &mut Digest, schema: &Schema) {
+    match schema {
+        Schema::U8 => add_text(digest, "u8"),
+        Schema::U16 => add_text(digest, "u16"),
+        Schema::U32 => add_text(digest, "u32"),
+        Schema::U64 => add_text(digest, "u64"),
+        Schema::I16 => add_text(digest, "i16"),
+        Schema::I32 => add_text(digest, "i32"),
+        Schema::F64 => add_text(digest, "f64"),
+        Schema::Bool => add_text(digest, "bool"),
+        Schema::Text(length) => add_text(digest, &format!("text {length}")),
+        Schema::Array(of, length) => {
+            add_text(digest, &format!("array {length}"));
+            add_schema(digest, of);
+        }
+        Schema::Enum(of) => {
+            add_text(digest, of.name);
+            for (code, text) in of.variants {
+                digest.add(&[*code]);
+                add_text(digest, text);
+            }
+        }
+        Schema::Record(of) => {
+            add_text(digest, of.name);
+            for field in of.fields {
+                add_text(digest, field.name);
+                add_schema(digest, &field.schema);
+            }
+            digest.add(&[0]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rcs_core::interface::{CommonMemory, ExternalInputs};
+
+    /// The services together carry every field of common memory and of the external inputs: their schemas, headers apart,
+    /// are those of the records.
+    #[test]
+    fn every_buffer_of_common_memory_is_published() {
+        let processes = CommonMemory::RECORD.fields.len();
+        for (process, (service, buffers)) in CommonMemory::RECORD.fields.iter().zip(SERVICES) {
+            assert_eq!(process.name, *service);
+            let Schema::Record(outputs) = process.schema else { panic!("{service} is a record") };
+            let names: Vec<_> =
+                outputs.fields.iter().map(|field| (field.name, field.schema)).skip(1).collect();
+            assert_eq!(outputs.fields[0].schema, Header::SCHEMA);
+            assert_eq!(names, buffers.to_vec());
+        }
+        let external: Vec<_> = ExternalInputs::RECORD.fields.iter().map(|field| field.schema).collect();
+        let published: Vec<_> = SERVICES[processes..].iter().map(|(_, buffers)| buffers[0].1).collect();
+        assert_eq!(external, published[..2]);
+    }
+
+    #[test]
+    fn the_layout_version_depends_on_every_word() {
+        let version = |schema: &Schema| {
+            let mut digest = Digest::new();
+            add_schema(&mut digest, schema);
+            digest.value()
+        };
+        assert_ne!(version(&Schema::Text(10)), version(&Schema::Text(12)));
+        assert_ne!(version(&Schema::Array(&Schema::U8, 3)), version(&Schema::Array(&Schema::I16, 3)));
+        assert_ne!(version(&HwsStatus::SCHEMA), version(&SubtaskStatus::SCHEMA));
+        assert_eq!(layout_version(), layout_version());
+    }
+}

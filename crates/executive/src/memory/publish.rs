@@ -1,0 +1,106 @@
+//! The side of the run: creates all services before the first tick and writes them once a tick, without allocating.
+
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs, Header},
+    tick::Tick,
+};
+
+use super::{
+    buffers::{
+        DevicesOutputs, DevicesWriter, EmoveWriter, Epoch, ExecutiveOutputs, ExecutiveWriter, GripWriter,
+        HwscOutputs, HwscWriter, PrimWriter, Pulse, QuickChangeWriter, SubtaskWriter, T3iWriter, TaskWriter,
+    },
+    runs::{self, RunName, SharedMemoryError},
+};
+
+/// Epoch of a run whose writers were never restarted.
+pub const FIRST_EPOCH: Epoch = 1;
+
+/// The writers of all buffers of a run. Dropping it ends the run in shared memory: readers that are still attached see
+/// [`Pulse::over`], and whoever leaves last removes the files.
+pub struct Publisher {
+    name: RunName,
+    // Taken out before the files are removed: iceoryx2 must have let go of them by then.
+    ports: Option<Ports>,
+    pulse: Pulse,
+}
+
+struct Ports {
+    task: TaskWriter,
+    subtask: SubtaskWriter,
+    emove: EmoveWriter,
+    prim: PrimWriter,
+    t3i: T3iWriter,
+    quick_change: QuickChangeWriter,
+    grip: GripWriter,
+    hwsc: HwscWriter,
+    devices: DevicesWriter,
+    executive: ExecutiveWriter,
+    // Last: the services are closed before their node.
+    _node: iceoryx2::node::Node<iceoryx2::prelude::ipc::Service>,
+}
+
+impl Publisher {
+    /// Set up all services of a run. What killed runs left behind is removed first.
+    ///
+    /// # Errors
+    /// [`SharedMemoryError`] with what iceoryx2 says, if this machine does not give the memory or the name is taken.
+    pub fn create(name: &RunName) -> Result<Self, SharedMemoryError> {
+        runs::clean()?;
+        let node = runs::node(name, "rcs-run")?;
+        let epoch = FIRST_EPOCH;
+        let ports = Ports {
+            task: TaskWriter::create(&node, epoch)?,
+            subtask: SubtaskWriter::create(&node, epoch)?,
+            emove: EmoveWriter::create(&node, epoch)?,
+            prim: PrimWriter::create(&node, epoch)?,
+            t3i: T3iWriter::create(&node, epoch)?,
+            quick_change: QuickChangeWriter::create(&node, epoch)?,
+            grip: GripWriter::create(&node, epoch)?,
+            hwsc: HwscWriter::create(&node, epoch)?,
+            devices: DevicesWriter::create(&node, epoch)?,
+            executive: ExecutiveWriter::create(&node, epoch)?,
+            _node: node,
+        };
+        Ok(Self { name: name.clone(), ports: Some(ports), pulse: Pulse::default() })
+    }
+
+    /// The name under which readers find the run.
+    #[must_use]
+    pub const fn name(&self) -> &RunName {
+        &self.name
+    }
+
+    /// Write the buffers of a tick: what came in, what the processes wrote, and the pulse, in this order. Does not allocate.
+    pub fn publish(&mut self, external: &ExternalInputs, memory: &CommonMemory, pulse: Pulse) {
+        let Some(ports) = &self.ports else { return };
+        let header = stamp(pulse.tick);
+        ports.hwsc.write(&HwscOutputs { header, command: external.hws });
+        ports.devices.write(&DevicesOutputs { header, inputs: external.devices });
+        ports.task.write(&memory.task);
+        ports.subtask.write(&memory.subtask);
+        ports.emove.write(&memory.emove);
+        ports.prim.write(&memory.prim);
+        ports.t3i.write(&memory.t3i);
+        ports.quick_change.write(&memory.quick_change);
+        ports.grip.write(&memory.grip);
+        ports.executive.write(&ExecutiveOutputs { header, pulse });
+        self.pulse = pulse;
+    }
+}
+
+const fn stamp(tick: Tick) -> Header {
+    Header { stamp: tick, republished: false, table: 0, row: 0 }
+}
+
+impl Drop for Publisher {
+    fn drop(&mut self) {
+        if let Some(ports) = self.ports.take() {
+            let pulse = Pulse { over: true, ..self.pulse };
+            ports.executive.write(&ExecutiveOutputs { header: stamp(pulse.tick), pulse });
+            drop(ports);
+        }
+        // Nothing can be done about a failure here; `rcs-run clean` tries again and reports.
+        let _ = runs::remove_if_deserted(&self.name, &runs::layout());
+    }
+}

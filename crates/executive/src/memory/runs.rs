@@ -1,0 +1,334 @@
+//! Where runs live in shared memory, and how they are found and removed.
+//!
+//! Every run has a name and a directory of its own, `<temporary directory>/rcs-ii-<user>/<name>@<layout>`, in which iceoryx2 keeps its
+//! files, and its own prefix of names in shared memory. So parallel runs and tests never meet, users do not disturb each
+//! other, and what a killed run left behind is found by looking, and removed when nobody who is alive uses it.
+
+use std::{
+    fmt::{self, Debug},
+    fs::{self, File},
+    io,
+    path::PathBuf,
+    str::FromStr,
+    time::Duration,
+};
+
+use iceoryx2::{
+    config::Config,
+    node::{Node, NodeBuilder, NodeState},
+    prelude::{CallbackProgression, FileName, LogLevel, Path, SemanticString, ipc, set_log_level},
+    service::service_name::ServiceName,
+};
+use rustix::process::geteuid;
+
+use super::buffers::{Epoch, layout_version};
+
+/// Readers of a run at a time: consoles, monitors, recorders.
+pub(super) const MAX_READERS: usize = 16;
+/// Where Linux keeps shared memory objects.
+const SHARED_MEMORY: &str = "/dev/shm";
+/// How long a clean-up waits for another program that is cleaning up the same run.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Why common memory is not shared.
+#[derive(Debug, thiserror::Error)]
+pub enum SharedMemoryError {
+    /// A name that no run can have.
+    #[error(
+        "a run's name has 1 to {RUN_NAME_MAX} letters, digits, dots, hyphens or underscores, {0:?} is not one"
+    )]
+    BadName(String),
+    /// A path that iceoryx2 does not take.
+    #[error("{0:?} cannot be used for shared memory: the path is too long or has unusual characters")]
+    BadPath(PathBuf),
+    /// No run of that name, or of any.
+    #[error(
+        "there is no run named {0:?}; `rcs-run` prints the name at the start when its shared memory is on"
+    )]
+    NoSuchRun(String),
+    /// A run whose program has another layout of buffers.
+    #[error(
+        "run {run:?} has layout {theirs}, this program has {ours}: they were built from different sources"
+    )]
+    OtherLayout {
+        /// Name of the run.
+        run: String,
+        /// Its layout version.
+        theirs: String,
+        /// The layout version of this program.
+        ours: String,
+    },
+    /// The node could not be created.
+    #[error("iceoryx2 could not be started in {place:?}: {what}")]
+    Node {
+        /// Directory of the run.
+        place: PathBuf,
+        /// What iceoryx2 says.
+        what: String,
+    },
+    /// A service could not be created or opened.
+    #[error("the buffers of {service} could not be set up in shared memory: {what}")]
+    Service {
+        /// Name of the service.
+        service: &'static str,
+        /// What iceoryx2 says.
+        what: String,
+    },
+    /// A file could not be removed or a directory not be read.
+    #[error("{path:?}: {source}")]
+    Io {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+impl SharedMemoryError {
+    pub(super) fn service(service: &'static str, what: &dyn Debug) -> Self {
+        Self::Service { service, what: format!("{what:?}") }
+    }
+}
+
+/// Most characters of a run's name.
+pub const RUN_NAME_MAX: usize = 40;
+
+/// Name of a run: letters, digits, dots, hyphens and underscores.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct RunName(String);
+
+impl RunName {
+    /// A name that no other living run of this machine has: the job and the number of this operating system process. Characters of the
+    /// job that a name cannot have become hyphens.
+    #[must_use]
+    pub fn unique(job: &str) -> Self {
+        let suffix = format!("-{}", std::process::id());
+        let room = RUN_NAME_MAX - suffix.len();
+        let job: String =
+            job.chars().take(room).map(|c| if is_name_character(c) { c } else { '-' }).collect();
+        Self(job + &suffix)
+    }
+
+    /// The name as text.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+fn is_name_character(c: char) -> bool {
+    c.is_ascii_alphanumeric() || "-_.".contains(c)
+}
+
+impl FromStr for RunName {
+    type Err = SharedMemoryError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let good = (1..=RUN_NAME_MAX).contains(&text.len())
+            && text.chars().all(is_name_character)
+            && text.starts_with(|c: char| c.is_ascii_alphanumeric());
+        if good { Ok(Self(text.to_owned())) } else { Err(SharedMemoryError::BadName(text.to_owned())) }
+    }
+}
+
+impl fmt::Display for RunName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.0)
+    }
+}
+
+/// A run as found in shared memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// Its name.
+    pub name: RunName,
+    /// Layout version of the program that runs it.
+    pub layout: String,
+    /// Somebody alive uses it: the run itself, or a reader that has not left yet.
+    pub alive: bool,
+}
+
+/// What [`clean`] did.
+#[derive(Debug, Default)]
+pub struct Cleaned {
+    /// Runs that were removed.
+    pub removed: Vec<RunName>,
+    /// Runs that live and were left alone.
+    pub alive: Vec<RunName>,
+    /// What could not be removed.
+    pub failed: Vec<SharedMemoryError>,
+}
+
+/// Directory of all runs of this user.
+#[must_use]
+pub fn root() -> PathBuf {
+    std::env::temp_dir().join(format!("rcs-ii-{}", geteuid().as_raw()))
+}
+
+/// The layout version of this program as it stands in names.
+#[must_use]
+pub fn layout() -> String {
+    format!("{:08x}", layout_version())
+}
+
+fn place(name: &RunName, layout: &str) -> PathBuf {
+    root().join(format!("{name}@{layout}"))
+}
+
+/// What the names of a run's objects in shared memory start with.
+fn prefix(name: &RunName, layout: &str) -> String {
+    format!("rcs-{}-{layout}-{name}_", geteuid().as_raw())
+}
+
+/// Held while a run's directory is made or removed, so that nobody clears away what another program is just setting up. The system
+/// releases it when its holder ends, however that happens.
+fn lock() -> Result<File, SharedMemoryError> {
+    let root = root();
+    let path = root.join("lock");
+    let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
+    fs::create_dir_all(&root).map_err(failed)?;
+    let file = File::options().create(true).append(true).open(&path).map_err(failed)?;
+    file.lock().map_err(failed)?;
+    Ok(file)
+}
+
+/// The configuration under which all of a run's files and objects are its own.
+fn config(name: &RunName, layout: &str) -> Result<Config, SharedMemoryError> {
+    let place = place(name, layout);
+    let bad = || SharedMemoryError::BadPath(place.clone());
+    let mut config = Config::default();
+    config.global.prefix = FileName::new(prefix(name, layout).as_bytes()).map_err(|_| bad())?;
+    let path = place.to_str().ok_or_else(bad)?;
+    config.global.set_root_path(&Path::new(path.as_bytes()).map_err(|_| bad())?);
+    Ok(config)
+}
+
+/// A node of iceoryx2 in a run of this layout.
+pub(super) fn node(name: &RunName, role: &str) -> Result<Node<ipc::Service>, SharedMemoryError> {
+    // iceoryx2 warns on standard error where this program has its own words for the same.
+    set_log_level(LogLevel::Fatal);
+    let config = config(name, &layout())?;
+    let place = place(name, &layout());
+    let failed = |what: String| SharedMemoryError::Node { place: place.clone(), what };
+    let _lock = lock()?;
+    fs::create_dir_all(&place).map_err(|source| SharedMemoryError::Io { path: place.clone(), source })?;
+    let role = role.try_into().map_err(|error| failed(format!("{error:?}")))?;
+    NodeBuilder::new().name(&role).config(&config).create().map_err(|error| failed(format!("{error:?}")))
+}
+
+pub(super) fn service_name(service: &'static str, epoch: Epoch) -> Result<ServiceName, SharedMemoryError> {
+    ServiceName::new(&format!("rcs-ii/{service}/{epoch}"))
+        .map_err(|error| SharedMemoryError::service(service, &error))
+}
+
+/// All runs of this user that left something in shared memory, alive or not, in the order of their names.
+///
+/// # Errors
+/// [`SharedMemoryError::Io`] if the directory of runs cannot be read.
+pub fn list() -> Result<Vec<Found>, SharedMemoryError> {
+    set_log_level(LogLevel::Fatal);
+    let root = root();
+    let entries = match fs::read_dir(&root) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(source) => return Err(SharedMemoryError::Io { path: root, source }),
+    };
+    let mut found = Vec::new();
+    for entry in entries.flatten() {
+        let file_name = entry.file_name();
+        let Some((name, layout)) = file_name.to_str().and_then(|text| text.rsplit_once('@')) else {
+            continue;
+        };
+        let Ok(name) = name.parse::<RunName>() else { continue };
+        let alive = config(&name, layout).is_ok_and(|config| is_alive(&config));
+        found.push(Found { name, layout: layout.to_owned(), alive });
+    }
+    found.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(found)
+}
+
+/// True if a node of a program that is alive, or that may be, is in the run.
+fn is_alive(config: &Config) -> bool {
+    let mut alive = false;
+    let listed = Node::<ipc::Service>::list(config, |node| {
+        alive |= !matches!(node, NodeState::Dead(_));
+        CallbackProgression::Continue
+    });
+    alive || listed.is_err()
+}
+
+/// Remove what killed runs left in shared memory; living runs are left alone.
+///
+/// # Errors
+/// [`SharedMemoryError::Io`] if the directory of runs cannot be read. What could not be removed is in the answer.
+pub fn clean() -> Result<Cleaned, SharedMemoryError> {
+    let mut cleaned = Cleaned::default();
+    for run in list()? {
+        match remove_if_deserted(&run.name, &run.layout) {
+            Ok(true) => cleaned.removed.push(run.name),
+            Ok(false) => cleaned.alive.push(run.name),
+            Err(error) => cleaned.failed.push(error),
+        }
+    }
+    Ok(cleaned)
+}
+
+/// The last one out: removes a run's directory and objects if no living node is left in it; false if there is one.
+pub(super) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, SharedMemoryError> {
+    let config = config(name, layout)?;
+    let _lock = lock()?;
+    if is_alive(&config) {
+        return Ok(false);
+    }
+    let mut dead = Vec::new();
+    let _ = Node::<ipc::Service>::list(&config, |node| {
+        if let NodeState::Dead(view) = node {
+            dead.push(view);
+        }
+        CallbackProgression::Continue
+    });
+    for view in dead {
+        // Whatever iceoryx2 cannot remove in an orderly way goes with the directory and the prefix below.
+        let _ = view.blocking_remove_stale_resources(PATIENCE);
+    }
+    remove_objects(&prefix(name, layout))?;
+    let place = place(name, layout);
+    match fs::remove_dir_all(&place) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => {
+            Err(SharedMemoryError::Io { path: place, source })
+        }
+        _ => Ok(true),
+    }
+}
+
+/// Removes the objects in shared memory whose names start with a run's prefix. iceoryx2 itself leaves one of 16 bytes behind even
+/// after an orderly end.
+fn remove_objects(prefix: &str) -> Result<(), SharedMemoryError> {
+    let Ok(entries) = fs::read_dir(SHARED_MEMORY) else { return Ok(()) };
+    for entry in entries.flatten() {
+        if entry.file_name().to_str().is_some_and(|name| name.starts_with(prefix)) {
+            match fs::remove_file(entry.path()) {
+                Err(source) if source.kind() != io::ErrorKind::NotFound => {
+                    return Err(SharedMemoryError::Io { path: entry.path(), source });
+                }
+                _ => {}
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_checked() {
+        assert!("linkbar-17".parse::<RunName>().is_ok());
+        for bad in ["", "a/b", "..", "-x", "ab cd", &"x".repeat(41)] {
+            assert!(matches!(bad.parse::<RunName>(), Err(SharedMemoryError::BadName(_))), "{bad:?}");
+        }
+        let long = RunName::unique(&"job with blanks ".repeat(5));
+        assert!(long.as_str().len() <= RUN_NAME_MAX && long.as_str().parse::<RunName>().is_ok(), "{long}");
+    }
+}

@@ -1,0 +1,222 @@
+//! Steps the ladder, one tick after the other, and sums up what it did.
+//!
+//! Common memory is doubled by tick parity: the processes read what stands in one half and write the other, so that their order
+//! within a tick cannot matter. After every tick the buffers go into the digest, the statuses are watched for the first
+//! sign of a failure, and, if asked for, the buffers are published in shared memory.
+
+use std::time::Instant;
+
+use rcs_core::{
+    digest::Digest,
+    interface::{CommonMemory, ExternalInputs},
+    record::Field,
+    table::Table,
+    tick::Tick,
+};
+
+use crate::{
+    alloc::{self, Section},
+    failure::Watch,
+    histogram::Histogram,
+    memory::{Publisher, buffers::Pulse},
+};
+
+/// A ladder of control processes that can be stepped: [`levels::ladder::Ladder`], or a test's own.
+pub trait Levels<Data: ?Sized> {
+    /// One tick of all processes: read `before` and `external`, write `after`. `after` holds the same as `before` at first.
+    fn step(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &Data,
+        after: &mut CommonMemory,
+    );
+}
+
+/// What is known of a control process besides its buffers.
+#[derive(Clone, Copy, Debug)]
+pub struct ProcessText {
+    /// The manual's name.
+    pub name: &'static str,
+    /// Its decision tables; a header names one by position from 1.
+    pub tables: &'static [&'static Table],
+}
+
+/// Runs a ladder.
+pub struct Runner<L> {
+    levels: L,
+    tick: Tick,
+    halves: [CommonMemory; 2],
+    digest: Digest,
+    scratch: Box<[u8]>,
+    watch: Box<Watch>,
+    times: Box<Histogram>,
+    publisher: Option<Publisher>,
+    allocations_at_start: u64,
+    last_ns: u64,
+}
+
+impl<L> Runner<L> {
+    /// A runner before its first tick. With a publisher it writes every tick to shared memory.
+    #[must_use]
+    pub fn new(levels: L, publisher: Option<Publisher>) -> Self {
+        Self {
+            levels,
+            tick: Tick::BEFORE_START,
+            halves: [CommonMemory::ZERO; 2],
+            digest: Digest::new(),
+            scratch: vec![0; CommonMemory::SIZE].into_boxed_slice(),
+            watch: Box::default(),
+            times: Box::default(),
+            publisher,
+            allocations_at_start: alloc::allocations(),
+            last_ns: 0,
+        }
+    }
+
+    /// Run the next tick on what came from outside for it. `skipped` are the slots of the grid that were skipped so far; they are
+    /// published, and change nothing else.
+    ///
+    /// Allocations are counted from here to the end of the call. The time that counts as the controller's is that of the processes
+    /// and of publishing; the digest and the watch for failures belong to the bookkeeping of a run and are not in it.
+    pub fn step<Data: ?Sized>(
+        &mut self,
+        external: &ExternalInputs,
+        data: &Data,
+        skipped: u64,
+    ) -> &CommonMemory
+    where
+        L: Levels<Data>,
+    {
+        let _section = Section::enter();
+        let started = Instant::now();
+        self.tick = self.tick.next();
+        let [even, odd] = &mut self.halves;
+        let (before, after) = if self.tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
+        *after = *before;
+        self.levels.step(self.tick, before, external, data, after);
+        if let Some(publisher) = &mut self.publisher {
+            let pulse = Pulse {
+                tick: self.tick,
+                skipped,
+                allocations: alloc::allocations() - self.allocations_at_start,
+                controller_ns: self.last_ns,
+                over: false,
+            };
+            publisher.publish(external, after, pulse);
+        }
+        self.last_ns = u64::try_from(started.elapsed().as_nanos()).unwrap_or(u64::MAX);
+        self.times.add(self.last_ns);
+        self.watch.observe(self.tick, external, before, after);
+        self.digest.add_record(after, &mut self.scratch);
+        after
+    }
+
+    /// The ladder.
+    #[must_use]
+    pub const fn levels(&self) -> &L {
+        &self.levels
+    }
+
+    /// The tick that was run last.
+    #[must_use]
+    pub const fn tick(&self) -> Tick {
+        self.tick
+    }
+
+    /// Common memory as the last tick left it.
+    #[must_use]
+    pub const fn memory(&self) -> &CommonMemory {
+        let [even, odd] = &self.halves;
+        if self.tick.0.is_multiple_of(2) { even } else { odd }
+    }
+
+    /// Fingerprint of all output buffers of all ticks so far.
+    #[must_use]
+    pub const fn digest(&self) -> Digest {
+        self.digest
+    }
+
+    /// Who failed first, if anybody did.
+    #[must_use]
+    pub const fn watch(&self) -> &Watch {
+        &self.watch
+    }
+
+    /// Times of the controller part of all ticks.
+    #[must_use]
+    pub const fn times(&self) -> &Histogram {
+        &self.times
+    }
+
+    /// Nanoseconds of the controller part of the last tick.
+    #[must_use]
+    pub const fn last_ns(&self) -> u64 {
+        self.last_ns
+    }
+
+    /// Heap allocations of the controller since the runner was made; `None` if the program does not count them.
+    #[must_use]
+    pub fn allocations(&self) -> Option<u64> {
+        alloc::is_installed().then(|| alloc::allocations() - self.allocations_at_start)
+    }
+
+    /// The writer of shared memory, if there is one.
+    #[must_use]
+    pub const fn publisher(&self) -> Option<&Publisher> {
+        self.publisher.as_ref()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Adds one to the echo of Task and copies it one process further down a tick.
+    #[derive(Default)]
+    struct Chain;
+
+    impl Levels<u32> for Chain {
+        fn step(
+            &mut self,
+            tick: Tick,
+            before: &CommonMemory,
+            _: &ExternalInputs,
+            data: &u32,
+            after: &mut CommonMemory,
+        ) {
+            after.task.header.stamp = tick;
+            after.task.status.echo = before.task.status.echo + *data;
+            after.subtask.status.echo = before.task.status.echo;
+            after.emove.status.echo = before.subtask.status.echo;
+        }
+    }
+
+    #[test]
+    fn each_hop_takes_a_tick() {
+        let mut runner = Runner::new(Chain, None);
+        let external = ExternalInputs::default();
+        for tick in 1..=10_u32 {
+            let memory = *runner.step(&external, &3, 0);
+            assert_eq!(memory, *runner.memory());
+            let echoes = (memory.task.status.echo, memory.subtask.status.echo, memory.emove.status.echo);
+            assert_eq!(echoes, (3 * tick, 3 * (tick - 1), 3 * tick.saturating_sub(2)));
+        }
+        assert_eq!((runner.tick(), runner.times().count()), (Tick(10), 10));
+    }
+
+    #[test]
+    fn the_digest_is_that_of_all_buffers_of_all_ticks() {
+        let (mut one, mut other) = (Runner::new(Chain, None), Runner::new(Chain, None));
+        let external = ExternalInputs::default();
+        let mut expected = Digest::new();
+        let mut scratch = vec![0; CommonMemory::SIZE];
+        for _ in 0..5 {
+            expected.add_record(one.step(&external, &1, 0), &mut scratch);
+            other.step(&external, &2, 0);
+        }
+        assert_eq!(one.digest(), expected);
+        assert_ne!(one.digest(), other.digest());
+    }
+}

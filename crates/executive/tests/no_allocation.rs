@@ -1,0 +1,79 @@
+//! Nothing is allocated in a tick: counted, with everything that the executive does in one.
+//!
+//! This file holds one test only, because all of it runs on the counting allocator.
+
+use executive::{
+    alloc::{self, Counting, Section},
+    memory::{Publisher, RunName},
+    runner::{Levels, Runner},
+};
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs, Reason},
+    tick::Tick,
+};
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Fails every tenth tick and recovers, so that the watch for failures has work.
+struct Failing;
+
+impl Levels<()> for Failing {
+    fn step(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        _: &ExternalInputs,
+        _: &(),
+        after: &mut CommonMemory,
+    ) {
+        after.grip.header.stamp = tick;
+        after.grip.status.reason = if tick.0 % 10 < 5 { Reason::GraspMissed } else { Reason::None };
+        after.emove.status.reason = before.grip.status.reason;
+    }
+}
+
+/// Allocates in every hundredth tick.
+struct Careless;
+
+impl Levels<()> for Careless {
+    fn step(&mut self, tick: Tick, _: &CommonMemory, _: &ExternalInputs, _: &(), after: &mut CommonMemory) {
+        after.task.header.stamp = tick;
+        if tick.0.is_multiple_of(100) {
+            drop(std::hint::black_box(vec![1_u8]));
+        }
+    }
+}
+
+#[test]
+fn a_tick_does_not_allocate_and_one_that_does_is_noticed() {
+    assert!(alloc::is_installed());
+    let before = alloc::allocations();
+    drop(std::hint::black_box(Box::new(1)));
+    assert_eq!(alloc::allocations(), before, "outside of a section nothing is counted");
+    {
+        let _section = Section::enter();
+        drop(std::hint::black_box(Box::new(1)));
+    }
+    assert_eq!(alloc::allocations(), before + 1);
+
+    let name = RunName::unique("allocation");
+    let publisher = Publisher::create(&name).expect("this machine has shared memory");
+    let mut runner = Runner::new(Failing, Some(publisher));
+    let external = ExternalInputs::default();
+    for _ in 0..10_000 {
+        runner.step(&external, &(), 0);
+    }
+    assert_eq!(runner.allocations(), Some(0));
+    let times = runner.times().summary();
+    println!(
+        "controller part with publishing: p50 {} us, p99 {} us, max {} us",
+        times.p50, times.p99, times.max
+    );
+
+    let mut careless = Runner::new(Careless, None);
+    for _ in 0..1_000 {
+        careless.step(&external, &(), 0);
+    }
+    assert_eq!(careless.allocations(), Some(10));
+}

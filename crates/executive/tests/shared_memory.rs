@@ -1,0 +1,177 @@
+//! Common memory in shared memory: what is published is read, by readers that come and go, and nothing stays behind.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use executive::memory::{Attached, Publisher, RunName, SharedMemoryError, buffers::Pulse, list, runs};
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport},
+    name::Name16,
+    record::{Field, Schema, from_bytes},
+    tick::Tick,
+};
+
+fn name(test: &str) -> RunName {
+    RunName::unique(test)
+}
+
+fn with_stamp(tick: u64) -> (ExternalInputs, CommonMemory, Pulse) {
+    let tick = Tick(tick);
+    let header = Header { stamp: tick, republished: false, table: 2, row: 7 };
+    let mut memory = CommonMemory::default();
+    memory.task.header = header;
+    memory.subtask.header = header;
+    memory.emove.header = header;
+    memory.prim.header = header;
+    memory.t3i.header = header;
+    memory.quick_change.header = header;
+    memory.grip.header = header;
+    memory.task.status.report = HwsReport::Executing;
+    memory.subtask.emove.command = EmoveVerb::MovToObj;
+    memory.prim.status.distance = i32::try_from(tick.0).unwrap();
+    memory.grip.status.position = -i32::try_from(tick.0).unwrap();
+    let mut external = ExternalInputs::default();
+    external.hws.number = u32::try_from(tick.0).unwrap();
+    external.hws.object = Name16::new("LINKBAR1_BH").unwrap();
+    external.devices.joystick.velocity = 1000;
+    (external, memory, Pulse { tick, skipped: 3, allocations: 0, controller_ns: 4711, over: false })
+}
+
+fn traces(name: &RunName) -> Vec<String> {
+    let objects = std::fs::read_dir("/dev/shm").unwrap().flatten().map(|entry| entry.path());
+    let places = std::fs::read_dir(runs::root()).into_iter().flatten().flatten().map(|entry| entry.path());
+    let all = objects.chain(places).map(|path| path.to_string_lossy().into_owned());
+    all.filter(|path| path.contains(name.as_str())).collect()
+}
+
+#[test]
+fn a_reader_sees_what_was_published_last() {
+    let name = name("sees");
+    let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
+    let reader = Attached::open(&name).expect("the run lives");
+    assert_eq!(reader.memory(), Ok(CommonMemory::default()));
+    for tick in 1..100 {
+        let (external, memory, pulse) = with_stamp(tick);
+        publisher.publish(&external, &memory, pulse);
+        assert_eq!(reader.memory(), Ok(memory));
+        assert_eq!(reader.external(), Ok(external));
+        assert_eq!(reader.pulse(), Ok(pulse));
+    }
+}
+
+#[test]
+fn a_reader_meets_no_torn_tick() {
+    let name = name("torn");
+    let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
+    let stop = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let reader = scope.spawn(|| {
+            let reader = Attached::open(&name).expect("the run lives");
+            let (mut last, mut reads) = (0, 0_u32);
+            while !stop.load(Ordering::Relaxed) {
+                let Ok(memory) = reader.memory() else { continue };
+                let tick = memory.task.header.stamp.0;
+                assert!(tick >= last, "{tick} after {last}");
+                if tick > 0 {
+                    assert_eq!(memory, with_stamp(tick).1);
+                }
+                (last, reads) = (tick, reads + 1);
+            }
+            reads
+        });
+        for tick in 1..20_000 {
+            let (external, memory, pulse) = with_stamp(tick);
+            publisher.publish(&external, &memory, pulse);
+            if tick % 100 == 0 {
+                std::thread::yield_now();
+            }
+        }
+        // Writing has ended, so the next attempt of the reader succeeds whatever it met before.
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        stop.store(true, Ordering::Relaxed);
+        assert!(reader.join().expect("no tick was torn") > 0);
+    });
+}
+
+#[test]
+fn readers_come_and_go_and_the_last_one_out_removes_everything() {
+    let name = name("last");
+    let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
+    drop(Attached::open(&name).expect("the run lives"));
+    let reader = Attached::open(&name).expect("the run still lives");
+    let (external, memory, pulse) = with_stamp(41);
+    publisher.publish(&external, &memory, pulse);
+    assert!(list().unwrap().iter().any(|run| run.name == name && run.alive));
+    drop(publisher);
+    assert_eq!(reader.pulse(), Ok(Pulse { over: true, ..pulse }));
+    assert_eq!(reader.memory(), Ok(memory));
+    assert!(!traces(&name).is_empty());
+    drop(reader);
+    assert_eq!(traces(&name), Vec::<String>::new());
+    assert!(matches!(Attached::open(&name), Err(SharedMemoryError::NoSuchRun(_))));
+}
+
+#[test]
+fn runs_with_other_names_do_not_meet_and_the_same_name_is_refused() {
+    let (one, other) = (name("one"), name("other"));
+    let mut first = Publisher::create(&one).unwrap();
+    let mut second = Publisher::create(&other).unwrap();
+    assert!(matches!(Publisher::create(&one), Err(SharedMemoryError::Service { service: "task", .. })));
+    let (external, memory, pulse) = with_stamp(1);
+    first.publish(&external, &memory, pulse);
+    let (external, memory, pulse) = with_stamp(2);
+    second.publish(&external, &memory, pulse);
+    assert_eq!(Attached::open(&one).unwrap().memory().unwrap().prim.status.distance, 1);
+    assert_eq!(Attached::open(&other).unwrap().memory().unwrap().prim.status.distance, 2);
+}
+
+/// A stream of numbers, the same in every run.
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, limit: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        usize::try_from(self.0 >> 33).unwrap() % limit
+    }
+}
+
+/// Appends the image of some legal value.
+fn some_value(schema: &Schema, numbers: &mut Numbers, image: &mut Vec<u8>) {
+    match schema {
+        Schema::Bool => image.push(u8::try_from(numbers.below(2)).unwrap()),
+        Schema::Enum(of) => image.push(of.variants[numbers.below(of.variants.len())].0),
+        Schema::F64 => image.extend((numbers.below(100_000) as f64 / 7.0).to_le_bytes()),
+        Schema::Text(length) => {
+            let used = numbers.below(length + 1);
+            image.extend(
+                (0..*length)
+                    .map(|at| if at < used { b'!' + u8::try_from(numbers.below(94)).unwrap() } else { 0 }),
+            );
+        }
+        Schema::Array(of, length) => (0..*length).for_each(|_| some_value(of, numbers, image)),
+        Schema::Record(of) => of.fields.iter().for_each(|field| some_value(&field.schema, numbers, image)),
+        number => image.extend((0..number.size()).map(|_| u8::try_from(numbers.below(256)).unwrap())),
+    }
+}
+
+#[test]
+fn any_common_memory_survives_the_way_through_shared_memory() {
+    let name = name("any");
+    let mut publisher = Publisher::create(&name).unwrap();
+    let reader = Attached::open(&name).unwrap();
+    let mut numbers = Numbers(1987);
+    for tick in 1..500 {
+        let mut image = Vec::new();
+        some_value(&CommonMemory::SCHEMA, &mut numbers, &mut image);
+        let mut memory: CommonMemory = from_bytes(&image).expect("legal by construction");
+        let (external, stamped, pulse) = with_stamp(tick);
+        memory.task.header = stamped.task.header;
+        memory.subtask.header = stamped.subtask.header;
+        memory.emove.header = stamped.emove.header;
+        memory.prim.header = stamped.prim.header;
+        memory.t3i.header = stamped.t3i.header;
+        memory.quick_change.header = stamped.quick_change.header;
+        memory.grip.header = stamped.grip.header;
+        publisher.publish(&external, &memory, pulse);
+        assert_eq!(reader.memory(), Ok(memory));
+    }
+}
