@@ -17,3 +17,5 @@
 )]
 
 pub mod files;
+#[cfg(feature = "load")]
+pub mod load;

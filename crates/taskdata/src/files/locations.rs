@@ -310,6 +310,12 @@ impl<'a> TaskData<'a> {
         }
     }
 
+    /// The place of a location point.
+    #[must_use]
+    pub const fn place_of(&self, locpt: LocptId) -> Place {
+        Place { kind: LocationKind::Point, locpt, array: ArrayId::NULL }
+    }
+
     /// The names under which forms can mean a place, the most exact first: the location point, the array on it, and the
     /// owners of either (VII.5, VII.7.5).
     pub fn aliases(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {

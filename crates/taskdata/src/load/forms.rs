@@ -1,0 +1,363 @@
+//! The forms of chapter VII, one function each, in the order of the chapter.
+//!
+//! The ranges are ASSUMED where the manual gives none (SPECNOTES); they are wide enough for every figure.
+
+use std::ops::RangeInclusive;
+
+use rcs_core::movetable::{Line, MAX_LINES, System};
+
+use crate::files::{Direction, RefType, TrajPara};
+
+use super::{
+    entries::{
+        ApprDeptEntry, ArrayEntry, Entry, GripEntry, MovetableEntry, ObjLocEntry, ObjectEntry, OwnerEntry,
+        PointAt, PointEntry, PoseEntry, ShowEntry, TrajEntry, ViewEntry,
+    },
+    lex::Word,
+    names::nearest,
+    parse::{Parser, Skip, is_integer},
+    source::At,
+};
+
+/// A coordinate or a translation: twice the reach of the arm, 0.01 in.
+const COORDINATE: RangeInclusive<i32> = -20_000..=20_000;
+/// A rotation, 0.01 degree.
+const ANGLE: RangeInclusive<i32> = -18_000..=18_000;
+/// A grip number.
+const GRIP: RangeInclusive<i32> = -99..=99;
+/// An opening of a gripper: the parts gripper opens to 5.00 in.
+const OPENING: RangeInclusive<i32> = 0..=500;
+/// A grasp force, lb.
+const FORCE: RangeInclusive<i32> = 0..=200;
+/// Elements of a dimension of an array.
+const ELEMENTS: RangeInclusive<i32> = 1..=100;
+/// `vel-max`: 140 counts are the 14 in/s of the link (A 2.3).
+const VELOCITY: RangeInclusive<i32> = 1..=140;
+/// `acc-fac` and `smooth-acc`.
+const FACTOR: RangeInclusive<i32> = 1..=1000;
+/// `brk-dst`, 0.01 in.
+const BREAK_DISTANCE: RangeInclusive<i32> = 0..=5000;
+
+const PLACES: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Owner, RefType::Any];
+const ENDS: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Owner];
+const MEMBERS: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Pose];
+const ASSIGNED: &[RefType] = &[RefType::Array, RefType::LocationPoint];
+const POINTS: &[RefType] = &[RefType::Pose, RefType::LocationPoint, RefType::Movetable];
+const OFFSET_FROM: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Object];
+const SUBJECTS: &[RefType] =
+    &[RefType::Object, RefType::View, RefType::LocationPoint, RefType::Array, RefType::Owner, RefType::Any];
+
+/// Nine numbers, `-pose-`, movetable, name (VII.1).
+pub fn pose(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    pose_entry(p).inspect_err(|_| p.skip_past("-pose-", 2))
+}
+
+fn pose_entry(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    let mut points = [[0; 3]; 3];
+    let from = p.peek().map_or_else(|| p.last_at(), |w| w.at);
+    for (point, name) in points.iter_mut().zip(["wrist", "tool", "finger"]) {
+        for (value, axis) in point.iter_mut().zip(["x", "y", "z"]) {
+            *value = p.integer(&format!("{axis} of the {name} point"), COORDINATE)?;
+        }
+    }
+    let at = from.to(p.last_at());
+    if p.take_if("-pose-").is_none() {
+        return Err(p.expected("-pose- after nine numbers"));
+    }
+    Ok(Entry::Pose(PoseEntry {
+        points,
+        at,
+        movetable: p.name("movetable")?,
+        name: p.name("name of the pose")?,
+    }))
+}
+
+/// Numbered lines that end with `----`, and with `-mtb-` and a name (VII.2).
+pub fn movetable(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    movetable_entry(p).inspect_err(|_| p.skip_past("-mtb-", 1))
+}
+
+fn movetable_entry(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    let mut lines = Vec::new();
+    let mut ninth = None;
+    loop {
+        let number_at = p.peek().map_or_else(|| p.last_at(), |w| w.at);
+        let number = p.integer("number of a line", 1..=99)?;
+        let expected = i32::try_from(lines.len() + 1).unwrap_or(i32::MAX);
+        if number != expected {
+            p.flaw(
+                "movetable.number",
+                number_at,
+                format!("line number {expected} was expected, {number} found"),
+                None,
+            );
+        }
+        lines.push(movetable_line(p)?);
+        if lines.len() == MAX_LINES + 1 {
+            ninth = Some(number_at);
+        }
+        if p.take_if("-mtb-").is_some() {
+            break;
+        }
+        if p.take_if("----").is_none() {
+            return Err(p.expected("---- or -mtb- after the values of a line"));
+        }
+    }
+    let name = p.name("name of the movetable")?;
+    if let Some(at) = ninth {
+        let message = format!("a movetable has at most {MAX_LINES} lines, {} has {}", name.name, lines.len());
+        p.flaw("movetable.lines", at, message, None);
+    }
+    Ok(Entry::Movetable(MovetableEntry { lines, name }))
+}
+
+/// A coordinate system and its one to three values (Table VII.1).
+fn movetable_line(p: &mut Parser<'_, '_>) -> Result<Line, Skip> {
+    let word = p.peek().map_or("", |w| w.text);
+    let Some(system) = System::from_text(word).filter(|s| *s != System::None) else {
+        return Err(p.expected("a coordinate system (rw, t, to, wo, ro)"));
+    };
+    p.take();
+    let (range, names): (_, &[&str]) = match system {
+        System::None | System::World | System::Tool => (COORDINATE, &["x", "y", "z"]),
+        System::ToolOrigin | System::WristOrigin => (ANGLE, &["pit", "yaw"]),
+        System::Roll => (ANGLE, &["roll"]),
+    };
+    let mut values = [0; 3];
+    for (value, name) in values.iter_mut().zip(names) {
+        *value = p.integer(name, range.clone())?;
+    }
+    // The columns that a rotation does not use hold zeros.
+    for _ in names.len()..values.len() {
+        if p.peek().is_some_and(|w| is_integer(w.text)) {
+            p.integer(&format!("unused column of {system}"), 0..=0)?;
+        }
+    }
+    Ok(Line { system, values })
+}
+
+/// `-pt-` and `-ar-`: name, pose, movetable (VII.3, VII.4).
+pub fn point_at(p: &mut Parser<'_, '_>, what: &str) -> Result<PointAt, Skip> {
+    Ok(PointAt {
+        name: p.name(&format!("name of the {what}"))?,
+        pose: p.name("pose")?,
+        movetable: p.name("movetable")?,
+    })
+}
+
+/// `-arr-` (VII.4): the second dimension is left out if there is none (Figure VII.5, TL-SECTORS).
+pub fn array(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    let name = p.name("name of the array")?;
+    let dimensions = p.integer("number of dimensions", 1..=2)?;
+    let columns = p.integer("elements in the first dimension", ELEMENTS)?;
+    let rows = if dimensions == 2 { p.integer("elements in the second dimension", ELEMENTS)? } else { 1 };
+    let column_step = p.name("movetable of the first dimension")?;
+    let row_step = if dimensions == 2 { Some(p.name("movetable of the second dimension")?) } else { None };
+    let present = p.integer("# pres", 0..=columns.saturating_mul(rows))?;
+    Ok(Entry::Array(ArrayEntry { name, dimensions, columns, rows, column_step, row_step, present }))
+}
+
+/// `-own-` with its `-m-` (VII.5).
+pub fn owner(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    let name = p.name("name of the owner")?;
+    let mut members = Vec::new();
+    while p.take_if("-m-").is_some() {
+        members.push(p.typed("member", MEMBERS)?);
+    }
+    if members.is_empty() {
+        return Err(p.expected("-m- with a member of the owner"));
+    }
+    Ok(Entry::Owner(OwnerEntry { name, members }))
+}
+
+/// `-traj` with its `-ppt` (VII.6).
+pub fn trajectory(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    let name = p.name("name of the trajectory")?;
+    let start = p.typed("start", ENDS)?;
+    let end = p.typed("end", ENDS)?;
+    let points = points(p)?;
+    for point in points.iter().filter(|point| point.target.is_none()) {
+        p.flaw("path.stop", point.at, "only an approach has a stop point", None);
+    }
+    Ok(Entry::Traj(TrajEntry { name, start, end, points }))
+}
+
+/// `-ppt` lines (VII.6).
+fn points(p: &mut Parser<'_, '_>) -> Result<Vec<PointEntry>, Skip> {
+    let mut points = Vec::new();
+    while let Some(word) = p.take_if("-ppt") {
+        let para = TrajPara {
+            acc_fac: p.integer("acc-fac", FACTOR)?,
+            vel_max: p.integer("vel-max", VELOCITY)?,
+            smooth: p.integer("smooth-acc", FACTOR)?,
+            brk_dst: p.integer("brk-dst", BREAK_DISTANCE)?,
+        };
+        let target = if p.take_if("stop").is_some() { None } else { Some(p.typed("path point", POINTS)?) };
+        points.push(PointEntry { para, target, at: word.at.to(p.last_at()) });
+    }
+    Ok(points)
+}
+
+/// `-obj-` (VII.7.1).
+pub fn object(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    let name = p.name("name of the object")?;
+    let grip = p.integer("grip number", GRIP)?;
+    let at = name.at.to(p.last_at());
+    let values = [
+        p.integer("approach size", OPENING)?,
+        p.integer("grasp size", OPENING)?,
+        p.integer("grasp force", FORCE)?,
+        p.integer("depart size", OPENING)?,
+    ];
+    Ok(Entry::Object(ObjectEntry { name, grip, at, values }))
+}
+
+/// `-o-loc-` (VII.7.3).
+pub fn object_location(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    Ok(Entry::ObjLoc(ObjLocEntry {
+        object: p.name("object")?,
+        assigned: p.typed("assigned location", ASSIGNED)?,
+    }))
+}
+
+/// `-grip-` (VII.7.5).
+pub fn grip(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    Ok(Entry::Grip(GripEntry {
+        object: p.name("object")?,
+        grip: p.integer("grip number", GRIP)?,
+        place: p.typed("location", PLACES)?,
+        movetable: p.name("grip movetable")?,
+    }))
+}
+
+/// `-vu-` (VII.7.6).
+pub fn view(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    Ok(Entry::View(ViewEntry {
+        object: p.name("object")?,
+        grip: p.integer("grip number", GRIP)?,
+        id: p.integer("vision id", 0..=255)?,
+        place: p.typed("location", PLACES)?,
+        movetable: p.name("view movetable")?,
+        offset_from: p.kind("type of the movetable's reference", OFFSET_FROM)?.0,
+        range: p.integer("range in mm", 1..=3000)?,
+        enabled: p.integer("en", 0..=1)? == 1,
+    }))
+}
+
+/// `-appr` and `-dept` (VII.7.7).
+pub fn approach_depart(p: &mut Parser<'_, '_>, word: Word<'_>) -> Result<Entry, Skip> {
+    let direction =
+        if word.text == Direction::Approach.text() { Direction::Approach } else { Direction::Depart };
+    let subject = p.typed("what is approached or departed", SUBJECTS)?;
+    let of_object = matches!(subject.kind, RefType::Object | RefType::View);
+    let (grip, place) = if of_object {
+        (p.integer("grip number", GRIP)?, Some(p.typed("location", PLACES)?))
+    } else {
+        (0, None)
+    };
+    let at = word.at.to(p.last_at());
+    let points = points(p)?;
+    check_stop(p, direction, at, &points);
+    Ok(Entry::ApprDept(ApprDeptEntry { direction, subject, grip, place, points, at }))
+}
+
+/// An approach ends with its only stop point; a depart has none (VII.7.7).
+fn check_stop(p: &mut Parser<'_, '_>, direction: Direction, at: At, points: &[PointEntry]) {
+    if direction == Direction::Depart {
+        for point in points.iter().filter(|point| point.target.is_none()) {
+            p.flaw("path.stop", point.at, "a depart has no stop point", None);
+        }
+        return;
+    }
+    match points.split_last() {
+        Some((last, before)) if last.target.is_none() => {
+            for point in before.iter().filter(|point| point.target.is_none()) {
+                p.flaw("path.stop", point.at, "the stop point is the last point of an approach", None);
+            }
+        }
+        _ => {
+            let help = "add a last line such as `-ppt 04 05 40 0 stop`".to_owned();
+            p.flaw("path.stop", at, "an approach ends with a stop point, this one does not", Some(help));
+        }
+    }
+}
+
+/// Variables of OBJ-GRIPS (VII.7.2).
+const OBJ_GRIPS: &[(&str, RangeInclusive<i32>)] = &[("endeff-id#", 1..=3), ("tray-grip#", GRIP)];
+/// Variables of PED-PARA (VII.7.4).
+const PED_PARA: &[(&str, RangeInclusive<i32>)] = &[
+    ("ped-appr", OPENING),
+    ("ped-grasp-size", OPENING),
+    ("ped-force", FORCE),
+    ("ped-release-size", OPENING),
+    ("ped-table-pos", -3600..=3600),
+    ("ped-flip-angle", -3600..=3600),
+];
+
+/// `:S variable <= value … :R >FILE name` (VII.7.2, VII.7.4).
+pub fn show(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    let mut settings: Vec<(Word<'_>, Word<'_>)> = Vec::new();
+    while p.take_if(":R").is_none() {
+        let Some(variable) = p.peek().filter(|w| !w.text.starts_with([':', '>', '<', '-'])) else {
+            return Err(p.expected("a variable or :R"));
+        };
+        p.take();
+        if p.take_if("<=").is_none() {
+            return Err(p.expected(&format!("<= after {}", variable.text)));
+        }
+        let Some(value) = p.peek() else { return Err(p.expected("a value")) };
+        p.take();
+        settings.push((variable, value));
+    }
+    if p.take_if(">FILE").is_none() {
+        return Err(p.expected(">FILE after :R"));
+    }
+    let Some(file) = p.peek() else { return Err(p.expected("OBJ-GRIPS or PED-PARA")) };
+    match file.text {
+        "OBJ-GRIPS" => {
+            p.take();
+            let (object, values) = settings_of::<2>(p, &settings, file, "\"object\"", OBJ_GRIPS)?;
+            Ok(Entry::ObjGrips(ShowEntry { object, values }))
+        }
+        "PED-PARA" => {
+            p.take();
+            let (object, values) = settings_of::<6>(p, &settings, file, "\"p-object\"", PED_PARA)?;
+            Ok(Entry::PedPara(ShowEntry { object, values }))
+        }
+        _ => Err(p.expected("OBJ-GRIPS or PED-PARA")),
+    }
+}
+
+/// Put the settings into the order of a record; each variable is set once.
+fn settings_of<const N: usize>(
+    p: &mut Parser<'_, '_>,
+    settings: &[(Word<'_>, Word<'_>)],
+    file: Word<'_>,
+    name_variable: &str,
+    variables: &[(&str, RangeInclusive<i32>)],
+) -> Result<(super::entries::Named<16>, [i32; N]), Skip> {
+    let known = || std::iter::once(name_variable).chain(variables.iter().map(|v| v.0));
+    for (i, (variable, _)) in settings.iter().enumerate() {
+        if !known().any(|k| k == variable.text) {
+            let message = format!("{} has no variable {}", file.text, variable.text);
+            let help = nearest(variable.text, known()).map(|n| format!("the nearest variable is {n}"));
+            p.flaw("show.variable", variable.at, message, help);
+        } else if settings.iter().take(i).any(|(v, _)| v.text == variable.text) {
+            p.flaw("show.twice", variable.at, format!("{} is set twice", variable.text), None);
+        }
+    }
+    let value_of = |name: &str| settings.iter().find(|(v, _)| v.text == name).map(|(_, value)| *value);
+    let missing: Vec<&str> = known().filter(|k| value_of(k).is_none()).collect();
+    let Some(object) = value_of(name_variable).filter(|_| missing.is_empty()) else {
+        p.flaw("show.missing", file.at, format!("{} needs {}", file.text, missing.join(", ")), None);
+        return Err(Skip);
+    };
+    let object = p.at_word(object, |q| q.name("object"))?;
+    let mut values = [0; N];
+    for (slot, (name, range)) in values.iter_mut().zip(variables) {
+        if let Some(word) = value_of(name) {
+            *slot = p.at_word(word, |q| q.integer(name, range.clone()))?;
+        }
+    }
+    Ok((object, values))
+}

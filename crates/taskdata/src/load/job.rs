@@ -1,0 +1,463 @@
+//! Job files: what the workstation controller sends, and what the workstation does in between.
+//!
+//! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the variables of
+//! V.4.2 without the serial number (contradiction 25): object, source grip, location and sector, destination grip, location
+//! and sector, end-at location and sector; `--` is a null field. The manual's own forms of lines end there: vise, trays and
+//! machine belong to the HWSC, not to the robot. Lines that begin with `**` say what they do:
+//!
+//! ```text
+//! ** tray UNIT_1 4 LINKBAR1_BH            a part is delivered into a sector, somewhere (a seed decides)
+//! ** tray UNIT_1 4 LINKBAR1_BH 50 -20 1500   or at an x, y (0.01 in) and an angle (0.01 degree) from its centre
+//! ** vise partial|close|open PFIXTURE      the jaws of a vise move
+//! ** machine LINKBAR1_BH LINKBAR1 PFIXTURE  the blank in a vise becomes the finished part
+//! ```
+//!
+//! Commands are checked against the task data, so that a job which cannot run is refused before the first tick.
+
+use std::path::Path;
+
+use rcs_core::{interface::hws::HwsCommand, name::Name16};
+
+use crate::files::{Location, LookupError, TaskData};
+
+use super::{
+    Store,
+    lex::{Word, words_of_line},
+    names::nearest,
+    parse::is_integer,
+    report::{Problems, Report, Severity},
+    source::{At, Line, Source, lines_of, read},
+};
+
+/// Input commands of Task (V.4.1).
+pub const TASK_COMMANDS: &[&str] = &[
+    "TRANSFER",
+    "MOVE",
+    "POSITION",
+    "ACQUIRE",
+    "REFIXTURE",
+    "PAUSE",
+    "INSERT-TOOL",
+    "RELEASE-TOOL",
+    "ACQUIRE-TOOL",
+    "REMOVE-TOOL",
+    "STARTUP",
+    "SHUTDOWN",
+];
+
+/// How far a vise is to open or close (VIII.2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViseOpening {
+    /// Far enough to put a blank in, near enough to hold it upright.
+    Partial,
+    /// On the part.
+    Close,
+    /// Wide enough to take the part out, or to let it drop onto the ledge.
+    Open,
+}
+
+/// Where a part lies in its sector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Offset {
+    /// From the centre of the sector along world X, 0.01 in.
+    pub x: i32,
+    /// From the centre of the sector along world Y, 0.01 in.
+    pub y: i32,
+    /// Angle about world Z, 0.01 degree.
+    pub angle: i32,
+}
+
+/// What the workstation itself does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Workstation {
+    /// A part is delivered into a sector of a tray.
+    Tray {
+        /// The sector, resolved for the part.
+        location: Location,
+        /// The part.
+        object: Name16,
+        /// Where in the sector; `None` leaves it to the seed of the run.
+        offset: Option<Offset>,
+    },
+    /// A vise moves its jaws.
+    Vise {
+        /// How far.
+        opening: ViseOpening,
+        /// The vise.
+        location: Location,
+    },
+    /// A part is machined in a vise.
+    Machine {
+        /// What goes in.
+        blank: Name16,
+        /// What comes out.
+        part: Name16,
+        /// The vise.
+        location: Location,
+    },
+}
+
+/// A step of a job.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// A command to Task, its number still 0.
+    Command(HwsCommand),
+    /// Something that the workstation does.
+    Workstation(Workstation),
+}
+
+/// A step with its line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JobLine {
+    /// The step.
+    pub step: Step,
+    /// The line as written, without its comment.
+    pub text: String,
+    /// Line of the file from 1.
+    pub line: u32,
+}
+
+/// A job.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// Name of the job: the file's name without its extension.
+    pub name: String,
+    /// Its steps in order.
+    pub steps: Vec<JobLine>,
+    source: Source,
+}
+
+impl Job {
+    /// Read a job file and check it against the task data.
+    ///
+    /// # Errors
+    /// The report, if it holds an error; every error of the job is in it.
+    pub fn load(path: &Path, store: &Store) -> Result<(Self, Report), Box<Report>> {
+        match read(path, &path.display().to_string()) {
+            Ok(source) => Self::from_source(source, store),
+            Err(error) => {
+                let mut problems = Problems::default();
+                problems.unreadable(&path.display().to_string(), &error);
+                Err(Box::new(Report::new(problems, &[], 0, Vec::new())))
+            }
+        }
+    }
+
+    /// Check a job that was read elsewhere, such as the attachment of a log.
+    ///
+    /// # Errors
+    /// The report, if it holds an error.
+    pub fn from_source(source: Source, store: &Store) -> Result<(Self, Report), Box<Report>> {
+        let mut problems = Problems::default();
+        let mut reader = Reader { data: store.view(), problems: &mut problems };
+        let steps = source_lines(&source).filter_map(|line| reader.line(&line)).collect();
+        let failed = problems.has_errors();
+        let report = Report::new(problems, std::slice::from_ref(&source), 0, Vec::new());
+        if failed {
+            return Err(Box::new(report));
+        }
+        let file = Path::new(&source.name).file_stem().map(|s| s.to_string_lossy().into_owned());
+        Ok((Self { name: file.unwrap_or_default(), steps, source }, report))
+    }
+
+    /// The text that the job was read from.
+    #[must_use]
+    pub const fn source(&self) -> &Source {
+        &self.source
+    }
+}
+
+fn source_lines(source: &Source) -> impl Iterator<Item = Line<'_>> {
+    let short = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
+    lines_of(&source.text).enumerate().filter(|(_, (_, text))| !text.starts_with("BLOCK#")).map(
+        move |(number, (start, text))| {
+            let line = short(number).saturating_add(1);
+            let at = At {
+                source: 0,
+                block: None,
+                line,
+                column: 1,
+                start: short(start),
+                length: short(text.len()),
+            };
+            Line { text, at }
+        },
+    )
+}
+
+/// The words of one line, taken from left to right.
+struct Fields<'a, 'w> {
+    words: &'w [Word<'a>],
+    next: usize,
+}
+
+impl<'a> Fields<'a, '_> {
+    fn take(&mut self) -> Option<Word<'a>> {
+        let word = self.words.get(self.next).copied();
+        self.next += 1;
+        word
+    }
+
+    /// Where the next word is, or the last one if there is no next.
+    fn at(&self) -> At {
+        self.words.get(self.next).or_else(|| self.words.last()).map_or_else(At::default, |w| w.at)
+    }
+}
+
+/// A name field and where it stands; empty for `--`.
+#[derive(Clone, Copy)]
+struct Field {
+    name: Name16,
+    at: At,
+}
+
+impl Field {
+    fn given(&self) -> bool {
+        !self.name.is_empty()
+    }
+}
+
+struct Reader<'s, 'p> {
+    data: TaskData<'s>,
+    problems: &'p mut Problems,
+}
+
+impl Reader<'_, '_> {
+    fn line(&mut self, line: &Line<'_>) -> Option<JobLine> {
+        let words = words_of_line(line);
+        let first = words.first()?;
+        let mut fields = Fields { words: &words, next: 1 };
+        let step = match first.text {
+            "==" => self.command(&mut fields).map(Step::Command),
+            "**" => self.workstation(&mut fields).map(Step::Workstation),
+            _ => {
+                self.problems.error_help(
+                    "job.line",
+                    first.at,
+                    format!("a line begins with == or **, {} found", first.text),
+                    "== sends a command to Task, ** says what the workstation does, % begins a comment",
+                );
+                None
+            }
+        }?;
+        if let Some(extra) = fields.take() {
+            self.problems.error("job.fields", extra.at, format!("the line should end before {}", extra.text));
+            return None;
+        }
+        let end = words.last().map_or(0, |w| w.at.column.saturating_add(w.at.length).saturating_sub(1));
+        let text = line.text.get(..usize::try_from(end).unwrap_or(0)).unwrap_or(line.text);
+        Some(JobLine { step, text: text.trim().to_owned(), line: line.at.line })
+    }
+
+    fn missing(&mut self, what: &str, at: At) {
+        self.problems.error("job.fields", at, format!("{what} was expected, the line ends"));
+    }
+
+    fn field(&mut self, fields: &mut Fields<'_, '_>, what: &str) -> Option<Field> {
+        let at = fields.at();
+        let Some(word) = fields.take() else {
+            self.missing(what, at);
+            return None;
+        };
+        if word.text == "--" {
+            return Some(Field { name: Name16::EMPTY, at: word.at });
+        }
+        if is_integer(word.text) {
+            let help = "a command has nine fields: object, grip, location, sector, grip, location, sector, end-at, sector; -- is null";
+            self.problems.error_help(
+                "job.fields",
+                word.at,
+                format!("{what} or -- was expected, {} found", word.text),
+                help,
+            );
+            return None;
+        }
+        match Name16::new(word.text) {
+            Ok(name) => Some(Field { name, at: word.at }),
+            Err(error) => {
+                self.problems.error("name.length", word.at, format!("{what}: {error}"));
+                None
+            }
+        }
+    }
+
+    fn integer(&mut self, fields: &mut Fields<'_, '_>, what: &str) -> Option<i32> {
+        let at = fields.at();
+        let Some(word) = fields.take() else {
+            self.missing(what, at);
+            return None;
+        };
+        let value = word.text.parse::<i32>().ok().filter(|v| v.abs() <= MOST);
+        if value.is_none() {
+            let message =
+                format!("{what} was expected, a whole number from -{MOST} to {MOST}; {} found", word.text);
+            self.problems.error("job.fields", word.at, message);
+        }
+        value
+    }
+
+    /// The command and its nine fields (V.4.2, Figure VIII.4).
+    fn command(&mut self, fields: &mut Fields<'_, '_>) -> Option<HwsCommand> {
+        let verb = self.field(fields, "a command")?;
+        let object = self.field(fields, "object")?;
+        let source_grip = self.integer(fields, "source grip")?;
+        let source = self.field(fields, "source location")?;
+        let source_sector = self.integer(fields, "source sector")?;
+        let destination_grip = self.integer(fields, "destination grip")?;
+        let destination = self.field(fields, "destination location")?;
+        let destination_sector = self.integer(fields, "destination sector")?;
+        let end_at = self.field(fields, "end-at location")?;
+        let end_at_sector = self.integer(fields, "end-at sector")?;
+        if !TASK_COMMANDS.contains(&verb.name.as_str()) {
+            self.unknown("command of Task", verb, TASK_COMMANDS.iter().copied().map(str::to_owned).collect());
+        }
+        let known = !object.given() || self.object(object);
+        let thing = object.given().then_some(object.name).filter(|_| known);
+        if known {
+            self.place(source, source_sector, thing, source_grip);
+            self.place(destination, destination_sector, thing, destination_grip);
+            self.place(end_at, end_at_sector, None, 0);
+        }
+        Some(HwsCommand {
+            number: 0,
+            command: verb.name,
+            object: object.name,
+            serial: Name16::EMPTY,
+            source_grip,
+            source: source.name,
+            source_sector,
+            destination_grip,
+            destination: destination.name,
+            destination_sector,
+            end_at: end_at.name,
+            end_at_sector,
+        })
+    }
+
+    fn workstation(&mut self, fields: &mut Fields<'_, '_>) -> Option<Workstation> {
+        let verb = self.field(fields, "tray, vise or machine")?;
+        match verb.name.as_str() {
+            "tray" => {
+                let place = self.field(fields, "a tray")?;
+                let sector = self.integer(fields, "a sector")?;
+                let object = self.field(fields, "an object")?;
+                let offset = if fields.next < fields.words.len() {
+                    let x = self.integer(fields, "x in 0.01 in")?;
+                    let y = self.integer(fields, "y in 0.01 in")?;
+                    Some(Offset { x, y, angle: self.integer(fields, "an angle in 0.01 degree")? })
+                } else {
+                    None
+                };
+                self.object(object).then_some(())?;
+                let location = self.place(place, sector, Some(object.name), 0)?;
+                Some(Workstation::Tray { location, object: object.name, offset })
+            }
+            "vise" => {
+                let opening = self.field(fields, "partial, close or open")?;
+                let place = self.field(fields, "a vise")?;
+                let location = self.place(place, 0, None, 0);
+                let opening = match opening.name.as_str() {
+                    "partial" => ViseOpening::Partial,
+                    "close" => ViseOpening::Close,
+                    "open" => ViseOpening::Open,
+                    _ => {
+                        self.unknown(
+                            "opening of a vise",
+                            opening,
+                            ["partial", "close", "open"].map(str::to_owned).to_vec(),
+                        );
+                        return None;
+                    }
+                };
+                Some(Workstation::Vise { opening, location: location? })
+            }
+            "machine" => {
+                let blank = self.field(fields, "the blank")?;
+                let part = self.field(fields, "the finished part")?;
+                let place = self.field(fields, "a vise")?;
+                let both = [blank, part].map(|field| self.object(field));
+                let location = self.place(place, 0, None, 0)?;
+                both.iter().all(|known| *known).then_some(Workstation::Machine {
+                    blank: blank.name,
+                    part: part.name,
+                    location,
+                })
+            }
+            _ => {
+                self.unknown(
+                    "step of the workstation",
+                    verb,
+                    ["tray", "vise", "machine"].map(str::to_owned).to_vec(),
+                );
+                None
+            }
+        }
+    }
+
+    fn unknown(&mut self, what: &str, field: Field, known: Vec<String>) {
+        let near = nearest(field.name.as_str(), known.iter().map(String::as_str));
+        let help =
+            near.map_or_else(|| format!("there are {}", known.join(", ")), |n| format!("the nearest is {n}"));
+        let message = format!("no {what} is named {}", shown(&field));
+        self.problems.error_help("name.unknown", field.at, message, help);
+    }
+
+    /// True if the object is known; else it is noted.
+    fn object(&mut self, field: Field) -> bool {
+        if self.data.object_named(&field.name).is_some() {
+            return true;
+        }
+        let known: Vec<String> = self.data.objects.iter().map(|o| o.name.to_string()).collect();
+        let near = nearest(field.name.as_str(), known.iter().map(String::as_str));
+        let message = format!("no object is named {}", shown(&field));
+        let help = near.map(|n| format!("the nearest known name is {n}"));
+        self.problems.push(Severity::Error, "name.unknown", field.at, message, help);
+        false
+    }
+
+    /// A location with its sector, and the grip of the object there if one is given.
+    fn place(&mut self, field: Field, sector: i32, object: Option<Name16>, grip: i32) -> Option<Location> {
+        if !field.given() {
+            if sector != 0 {
+                self.problems.error("job.sector", field.at, format!("sector {sector} of no location"));
+            }
+            return None;
+        }
+        let location = match self.data.resolve_location(&field.name, sector, object.as_ref()) {
+            Ok(location) => location,
+            Err(error) => {
+                let near = matches!(error, LookupError::UnknownLocation { .. })
+                    .then(|| self.near_location(&field.name));
+                let help = near.flatten().map(|n| format!("the nearest known name is {n}"));
+                self.problems.push(Severity::Error, "job.location", field.at, error.to_string(), help);
+                return None;
+            }
+        };
+        if let Some(object) = object.filter(|_| grip != 0) {
+            self.grip(field, &object, grip, &location);
+        }
+        Some(location)
+    }
+
+    fn grip(&mut self, field: Field, object: &Name16, grip: i32, location: &Location) {
+        if self.data.object(object, grip).is_none() {
+            let message = format!("{object} has no grip {grip} in an object form");
+            self.problems.error("grip.unknown", field.at, message);
+        } else if let Err(error) = self.data.grip_frame(object, grip, location) {
+            self.problems.error("grip.unknown", field.at, error.to_string());
+        }
+    }
+
+    fn near_location(&self, name: &Name16) -> Option<String> {
+        let points = self.data.locpts.iter().map(|l| l.name.to_string());
+        let known: Vec<String> = points.chain(self.data.owners.iter().map(|o| o.name.to_string())).collect();
+        nearest(name.as_str(), known.iter().map(String::as_str)).map(str::to_owned)
+    }
+}
+
+/// Greatest number in a job line.
+const MOST: i32 = 36_000;
+
+fn shown(field: &Field) -> &str {
+    if field.given() { field.name.as_str() } else { "--" }
+}

@@ -1,0 +1,135 @@
+//! Words of a block: what is left when comments are taken out.
+//!
+//! `%` at the beginning of a word makes the rest of the line a comment (IV.3.2). A word that begins with `(` makes a
+//! comment of all up to the next `)`, over lines if need be; such comments do not nest (VIII.9, DESIGN 16). Words are
+//! separated by blanks, so `(` within a word, as in `A(B`, is part of a name.
+
+use super::{
+    report::Problems,
+    source::{At, Block, Line},
+};
+
+/// A word and where it stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Word<'a> {
+    /// The text, without blanks.
+    pub text: &'a str,
+    /// Where.
+    pub at: At,
+    /// True if it is the first word of its line.
+    pub first: bool,
+}
+
+fn short(value: usize) -> u32 {
+    u32::try_from(value).unwrap_or(u32::MAX)
+}
+
+/// A piece of a line.
+fn piece(line: &Line<'_>, from: usize, length: usize) -> At {
+    At {
+        start: line.at.start.saturating_add(short(from)),
+        column: short(from).saturating_add(1),
+        length: short(length),
+        ..line.at
+    }
+}
+
+/// The words of one line, for text that is read line by line. An open comment ends with the line.
+#[must_use]
+pub fn words_of_line<'a>(line: &Line<'a>) -> Vec<Word<'a>> {
+    let mut words = Vec::new();
+    let mut open = None;
+    scan(line, &mut open, &mut words);
+    words
+}
+
+/// The words of a block. A comment that is not closed in its block is an error.
+pub fn words<'a>(block: &Block<'a>, problems: &mut Problems) -> Vec<Word<'a>> {
+    let mut words = Vec::new();
+    let mut open = None;
+    for line in &block.lines {
+        scan(line, &mut open, &mut words);
+    }
+    if let Some(at) = open {
+        problems.error_help(
+            "comment.open",
+            at,
+            "this comment has no end in its block: `)` was expected",
+            "comments in parentheses may span lines but not blocks",
+        );
+    }
+    words
+}
+
+/// Add the words of a line; `open` is where a comment in parentheses began that is not closed yet.
+fn scan<'a>(line: &Line<'a>, open: &mut Option<At>, words: &mut Vec<Word<'a>>) {
+    let mut first = true;
+    let mut position = 0;
+    loop {
+        let Some(rest) = line.text.get(position..) else { return };
+        if open.is_some() {
+            let Some(end) = rest.find(')') else { return };
+            *open = None;
+            position += end + 1;
+            continue;
+        }
+        let Some(blanks) = rest.find(|c: char| c != ' ') else { return };
+        position += blanks;
+        let Some(rest) = line.text.get(position..) else { return };
+        match rest.as_bytes().first() {
+            Some(b'%') | None => return,
+            Some(b'(') => {
+                *open = Some(piece(line, position, rest.trim_end().len()));
+                position += 1;
+            }
+            Some(_) => {
+                let length = rest.find(' ').unwrap_or(rest.len());
+                let text = rest.get(..length).unwrap_or(rest);
+                words.push(Word { text, at: piece(line, position, length), first });
+                first = false;
+                position += length;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load::source::{Source, blocks};
+
+    fn texts(block: &str) -> (Vec<String>, bool) {
+        let source = Source { name: "t".into(), text: format!("BLOCK# 1 OFFSET 20000\n{block}").into() };
+        let (blocks, _) = blocks(0, &source);
+        let mut problems = Problems::default();
+        let words = words(&blocks[0], &mut problems);
+        for word in &words {
+            let start = word.at.start as usize;
+            assert_eq!(&source.text[start..start + word.at.length as usize], word.text);
+        }
+        (words.iter().map(|w| w.text.to_owned()).collect(), problems.has_errors())
+    }
+
+    #[test]
+    fn comments_are_no_words() {
+        let (found, bad) =
+            texts("( ARRAY-dim FORM\n  # |  % )\n -arr- A/D-5 % rest ( of it\n(x)Y (-traj\n) Z");
+        assert_eq!(found, ["-arr-", "A/D-5", "Y", "Z"]);
+        assert!(!bad);
+    }
+
+    #[test]
+    fn comments_do_not_nest() {
+        // Figure VIII.12, line 6: the second parenthesis of `( 257 load (` opens nothing.
+        let (found, bad) = texts("  256 load ( o-loc      )      ( 257 load (           )\n  252 load");
+        assert_eq!(found, ["256", "load", "252", "load"]);
+        assert!(!bad);
+    }
+
+    #[test]
+    fn an_open_comment_is_an_error() {
+        let (found, bad) = texts("A ( B\nC");
+        assert_eq!(found, ["A"]);
+        assert!(bad);
+    }
+}

@@ -1,0 +1,35 @@
+//! The nearest known name, for messages about a name that is not known.
+
+/// The candidate that differs least from `wanted`, if it is near enough to be a slip of the pen.
+///
+/// Of several that are equally near the first is taken.
+pub fn nearest<'a>(wanted: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let limit = (wanted.len() / 3).max(1);
+    let folded = wanted.to_ascii_uppercase();
+    let mut best: Option<(usize, &str)> = None;
+    for candidate in candidates {
+        if candidate.len().abs_diff(wanted.len()) > limit {
+            continue;
+        }
+        let distance = strsim::osa_distance(&folded, &candidate.to_ascii_uppercase());
+        if distance <= limit && best.is_none_or(|(least, _)| distance < least) {
+            best = Some((distance, candidate));
+        }
+    }
+    best.map(|(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_are_recognised() {
+        let known = ["LK-GRP-1", "LK-GRP-FX1", "LK-GRP-FX2", "HOME", "SAFE"];
+        let near = |name: &str| nearest(name, known.iter().copied());
+        assert_eq!(near("LK-GPR-1"), Some("LK-GRP-1"));
+        assert_eq!(near("lk-grp-fx3"), Some("LK-GRP-FX1"));
+        assert_eq!(near("HONE"), Some("HOME"));
+        assert_eq!(near("PFIXTURE"), None);
+    }
+}

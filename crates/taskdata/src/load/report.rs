@@ -1,0 +1,385 @@
+//! What a load found: every error and warning at once, each with its place, and what was loaded.
+
+use std::{fmt, io::IsTerminal, sync::Arc};
+
+use miette::{
+    GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, Severity as MietteSeverity, SourceCode,
+    SourceSpan,
+};
+
+use super::source::{At, BlockNumber, Source};
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// The data cannot be used.
+    Error,
+    /// The data can be used, but look at it.
+    Warning,
+}
+
+impl Severity {
+    /// The word in a message.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+        }
+    }
+}
+
+/// Something found, before it is tied to the text of its source.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// How bad.
+    pub severity: Severity,
+    /// Stable short name of the kind of problem.
+    pub code: &'static str,
+    /// Where; `None` for a file that could not be read.
+    pub at: Option<At>,
+    /// One sentence: what was found and what was expected.
+    pub message: String,
+    /// What to do, or the nearest known name.
+    pub help: Option<String>,
+}
+
+/// A list of problems that is filled while forms are read and checked.
+#[derive(Clone, Debug, Default)]
+pub struct Problems {
+    list: Vec<Problem>,
+}
+
+impl Problems {
+    /// Add an error.
+    pub fn error(&mut self, code: &'static str, at: At, message: impl Into<String>) {
+        self.push(Severity::Error, code, at, message.into(), None);
+    }
+
+    /// Add an error with help.
+    pub fn error_help(
+        &mut self,
+        code: &'static str,
+        at: At,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.push(Severity::Error, code, at, message.into(), Some(help.into()));
+    }
+
+    /// Add a warning.
+    pub fn warning(&mut self, code: &'static str, at: At, message: impl Into<String>, help: Option<String>) {
+        self.push(Severity::Warning, code, at, message.into(), help);
+    }
+
+    /// Add an error with help where there is some.
+    pub fn push(
+        &mut self,
+        severity: Severity,
+        code: &'static str,
+        at: At,
+        message: String,
+        help: Option<String>,
+    ) {
+        self.list.push(Problem { severity, code, at: Some(at), message, help });
+    }
+
+    /// Give the last problem a help line.
+    pub fn help_last(&mut self, help: String) {
+        if let Some(last) = self.list.last_mut() {
+            last.help = Some(help);
+        }
+    }
+
+    /// Add what the operating system said about a file.
+    pub fn unreadable(&mut self, path: &str, error: &std::io::Error) {
+        let message = format!("{path} cannot be read: {error}");
+        self.list.push(Problem { severity: Severity::Error, code: "file", at: None, message, help: None });
+    }
+
+    /// True if an error is among them.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.list.iter().any(|p| p.severity == Severity::Error)
+    }
+
+    /// The problems tied to their sources, in the order of the text.
+    #[must_use]
+    pub fn into_diagnostics(mut self, sources: &[Source]) -> Vec<Diagnostic> {
+        self.list.sort_by_key(|p| p.at.map_or((0, 0), |at| (at.source, at.start)));
+        self.list.into_iter().map(|p| Diagnostic::new(p, sources)).collect()
+    }
+}
+
+/// An error or a warning about a form or a job line.
+#[derive(Clone, Debug)]
+pub struct Diagnostic {
+    severity: Severity,
+    code: &'static str,
+    message: String,
+    help: Option<String>,
+    file: String,
+    at: Option<At>,
+    text: String,
+    line_text: String,
+    source: Option<NamedSource<Arc<str>>>,
+}
+
+impl Diagnostic {
+    fn new(problem: Problem, sources: &[Source]) -> Self {
+        let source = problem.at.and_then(|at| sources.get(usize::try_from(at.source).ok()?));
+        let text =
+            source.zip(problem.at).and_then(|(s, at)| s.text.get(range(at))).unwrap_or_default().to_owned();
+        let line_text =
+            source.zip(problem.at).map(|(s, at)| line_around(&s.text, at).to_owned()).unwrap_or_default();
+        Self {
+            severity: problem.severity,
+            code: problem.code,
+            message: problem.message,
+            help: problem.help,
+            file: source.map(|s| s.name.clone()).unwrap_or_default(),
+            at: problem.at,
+            text,
+            line_text,
+            source: source.map(|s| NamedSource::new(&s.name, Arc::clone(&s.text))),
+        }
+    }
+
+    /// How bad it is.
+    #[must_use]
+    pub const fn severity(&self) -> Severity {
+        self.severity
+    }
+
+    /// Stable short name of the kind of problem, such as `name.unknown`.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        self.code
+    }
+
+    /// One sentence: what was found and what was expected.
+    #[must_use]
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// What to do, or the nearest known name.
+    #[must_use]
+    pub fn help(&self) -> Option<&str> {
+        self.help.as_deref()
+    }
+
+    /// The file, relative to the data directory; empty if it could not be read.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// The block, if it stands in one.
+    #[must_use]
+    pub fn block(&self) -> Option<BlockNumber> {
+        self.at.and_then(|at| at.block)
+    }
+
+    /// Line of the block from 0 (as the manual counts), or of the file from 1 outside blocks.
+    #[must_use]
+    pub fn line(&self) -> Option<u32> {
+        self.at.map(|at| at.line)
+    }
+
+    /// Column from 1.
+    #[must_use]
+    pub fn column(&self) -> Option<u32> {
+        self.at.map(|at| at.column)
+    }
+
+    /// The text that is underlined.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// File, block, line and column in words.
+    #[must_use]
+    pub fn place(&self) -> String {
+        match (self.at, self.block()) {
+            (Some(at), Some(block)) => {
+                format!("{}: {block}, line {}, column {}", self.file, at.line, at.column)
+            }
+            (Some(at), None) => format!("{}: line {}, column {}", self.file, at.line, at.column),
+            (None, _) => self.file.clone(),
+        }
+    }
+
+    /// Plain text: place and message in the first line, then the line with the text underlined, then help.
+    fn plain(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = self.place();
+        let colon = if place.is_empty() { "" } else { ": " };
+        writeln!(f, "{}: {place}{colon}{}", self.severity.text(), self.message)?;
+        if let Some(at) = self.at.filter(|_| !self.line_text.is_empty()) {
+            let before = usize::try_from(at.column).unwrap_or(1).saturating_sub(1);
+            let rest = self.line_text.chars().count().saturating_sub(before);
+            let width = self.text.lines().next().unwrap_or_default().chars().count().clamp(1, rest.max(1));
+            writeln!(f, "    {}", self.line_text)?;
+            writeln!(f, "    {}{}", " ".repeat(before), "^".repeat(width))?;
+        }
+        if let Some(help) = &self.help {
+            writeln!(f, "    help: {help}")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Diagnostic {}
+
+impl miette::Diagnostic for Diagnostic {
+    fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        Some(Box::new(self.code))
+    }
+
+    fn severity(&self) -> Option<MietteSeverity> {
+        Some(match self.severity {
+            Severity::Error => MietteSeverity::Error,
+            Severity::Warning => MietteSeverity::Warning,
+        })
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        self.help.as_ref().map(|h| -> Box<dyn fmt::Display + 'a> { Box::new(h) })
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.source.as_ref().map(|s| -> &dyn SourceCode { s })
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let at = self.at?;
+        let label = at.block.map(|block| format!("{block}, line {}, column {}", at.line, at.column));
+        let range = range(at);
+        let span = SourceSpan::new(range.start.into(), range.len());
+        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(label, span))))
+    }
+}
+
+fn range(at: At) -> std::ops::Range<usize> {
+    let start = usize::try_from(at.start).unwrap_or(usize::MAX);
+    start..start.saturating_add(usize::try_from(at.length).unwrap_or(0))
+}
+
+/// The line of a block that holds the beginning of a piece; without the line number of a listing.
+fn line_around(text: &str, at: At) -> &str {
+    let start = usize::try_from(at.start.saturating_sub(at.column.saturating_sub(1))).unwrap_or(0);
+    text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default()
+}
+
+/// How many records a file has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Loaded {
+    /// The manual's name of the file.
+    pub file: &'static str,
+    /// Records in it.
+    pub records: usize,
+}
+
+/// The outcome of a load.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    diagnostics: Vec<Diagnostic>,
+    /// Files that were read.
+    pub files: usize,
+    /// Blocks that were loaded.
+    pub blocks: usize,
+    /// Records in each file; empty if there were errors.
+    pub loaded: Vec<Loaded>,
+}
+
+impl Report {
+    /// A report of what was found in the sources.
+    #[must_use]
+    pub fn new(problems: Problems, sources: &[Source], blocks: usize, loaded: Vec<Loaded>) -> Self {
+        Self { diagnostics: problems.into_diagnostics(sources), files: sources.len(), blocks, loaded }
+    }
+
+    /// Everything found, in the order of the text.
+    #[must_use]
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
+    }
+
+    /// The errors.
+    pub fn errors(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.diagnostics.iter().filter(|d| d.severity == Severity::Error)
+    }
+
+    /// The warnings.
+    pub fn warnings(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.diagnostics.iter().filter(|d| d.severity == Severity::Warning)
+    }
+
+    /// True if there is an error.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.errors().next().is_some()
+    }
+
+    /// The report for a person: with source frames and colour if `graphical`, else the plain text of [`fmt::Display`].
+    #[must_use]
+    pub fn render(&self, graphical: bool) -> String {
+        if !graphical {
+            return self.to_string();
+        }
+        let handler = GraphicalReportHandler::new_themed(GraphicalTheme::unicode());
+        let mut out = String::new();
+        for diagnostic in &self.diagnostics {
+            // Writing to a String cannot fail; a diagnostic that cannot be drawn is given as plain text.
+            if handler.render_report(&mut out, diagnostic).is_err() {
+                out.push_str(diagnostic.message());
+            }
+            out.push('\n');
+        }
+        out + &self.summary()
+    }
+
+    /// The report for standard error: graphical on a terminal.
+    #[must_use]
+    pub fn render_for_stderr(&self) -> String {
+        self.render(std::io::stderr().is_terminal())
+    }
+
+    /// What was loaded, in one or two lines.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let count = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
+        let mut out = format!(
+            "{}, {}; {} in {}\n",
+            count(self.errors().count(), "error"),
+            count(self.warnings().count(), "warning"),
+            count(self.blocks, "block"),
+            count(self.files, "file"),
+        );
+        let records: Vec<String> = self.loaded.iter().map(|l| format!("{} {}", l.file, l.records)).collect();
+        if !records.is_empty() {
+            out.push_str("records: ");
+            out.push_str(&records.join(", "));
+            out.push('\n');
+        }
+        out
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for diagnostic in &self.diagnostics {
+            diagnostic.plain(f)?;
+        }
+        f.write_str(&self.summary())
+    }
+}
+
+impl std::error::Error for Report {}

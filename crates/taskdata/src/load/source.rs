@@ -1,0 +1,315 @@
+//! Text files with blocks in them: the "disk" (IV.2.7).
+//!
+//! A file holds blocks one after the other, each under a header `BLOCK# 619 OFFSET 21000`, each of at most 16 lines of 64
+//! columns. Two liberties are taken with the disk of the manual. A line that begins with `%%` is a remark on the file: it is
+//! no line of a block and may be as long as it likes, so that a datum can be explained where it stands without disturbing
+//! its block. And a block that was copied from a listing, with the line numbers 0 to 15 in front, is read without them.
+
+use std::{fs, io, path::Path, sync::Arc};
+
+/// Lines of a block.
+pub const BLOCK_LINES: usize = 16;
+/// Columns of a line.
+pub const BLOCK_COLUMNS: usize = 64;
+/// Begins a remark on the file.
+const REMARK: &str = "%%";
+/// Begins the header of a block.
+const HEADER: &str = "BLOCK#";
+
+/// A file of blocks, or of job lines.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Path as it is shown.
+    pub name: String,
+    /// Its text.
+    pub text: Arc<str>,
+}
+
+/// A piece of a source: what a diagnostic underlines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct At {
+    /// Position of the source in the list of sources.
+    pub source: u32,
+    /// Block and offset, if it lies in a block.
+    pub block: Option<BlockNumber>,
+    /// Line in the block from 0, or line in the file from 1 if there is no block.
+    pub line: u32,
+    /// Column from 1.
+    pub column: u32,
+    /// First byte in the source.
+    pub start: u32,
+    /// Number of bytes.
+    pub length: u32,
+}
+
+impl At {
+    /// From the beginning of one piece to the end of another of the same source.
+    #[must_use]
+    pub fn to(self, end: Self) -> Self {
+        let last = end.start.saturating_add(end.length);
+        Self { length: last.saturating_sub(self.start).max(self.length), ..self }
+    }
+}
+
+/// Number of a block and the offset of its area.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct BlockNumber {
+    /// `OFFSET`: 20000 objects, 21000 system data (IV.2.7).
+    pub offset: u32,
+    /// `BLOCK#`.
+    pub number: u32,
+}
+
+impl std::fmt::Display for BlockNumber {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "block {} (offset {})", self.number, self.offset)
+    }
+}
+
+/// A line of a block, without its line number.
+#[derive(Clone, Copy, Debug)]
+pub struct Line<'a> {
+    /// The text.
+    pub text: &'a str,
+    /// Where it stands; its column is 1.
+    pub at: At,
+}
+
+/// A block.
+#[derive(Clone, Debug)]
+pub struct Block<'a> {
+    /// Its number.
+    pub number: BlockNumber,
+    /// The header.
+    pub header: At,
+    /// Its lines.
+    pub lines: Vec<Line<'a>>,
+}
+
+/// What is wrong with the blocks of a source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BlockFault {
+    /// A header without two numbers.
+    Header,
+    /// Text before the first header.
+    NoHeader,
+    /// A seventeenth line.
+    TooManyLines,
+    /// A line of more than 64 columns; how many it has.
+    TooWide(usize),
+    /// A character that is not ASCII.
+    NotAscii,
+    /// A block that the sources already have.
+    Duplicate,
+}
+
+/// Read one file.
+///
+/// # Errors
+/// What the operating system says.
+pub fn read(path: &Path, shown: &str) -> io::Result<Source> {
+    Ok(Source { name: shown.to_owned(), text: fs::read_to_string(path)?.into() })
+}
+
+/// All files `*.blk` under a directory, in the order of their paths, which are shown relative to the directory.
+///
+/// # Errors
+/// The path that could not be read, and what the operating system says.
+pub fn read_blocks_under(directory: &Path) -> Result<Vec<Source>, (String, io::Error)> {
+    let mut paths = Vec::new();
+    let mut open = vec![directory.to_path_buf()];
+    while let Some(folder) = open.pop() {
+        let shown = |e| (folder.display().to_string(), e);
+        for entry in fs::read_dir(&folder).map_err(shown)? {
+            let path = entry.map_err(shown)?.path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|e| e == "blk") {
+                paths.push(path);
+            }
+        }
+    }
+    paths.sort();
+    let one = |path: &std::path::PathBuf| {
+        let shown = path.strip_prefix(directory).unwrap_or(path).display().to_string();
+        read(path, &shown).map_err(|e| (path.display().to_string(), e))
+    };
+    paths.iter().map(one).collect()
+}
+
+fn short(value: usize) -> u32 {
+    u32::try_from(value).unwrap_or(u32::MAX)
+}
+
+/// Each line of a text with the position of its first byte.
+pub fn lines_of(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut start = 0;
+    text.split_inclusive('\n').map(move |line| {
+        let here = start;
+        start += line.len();
+        (here, line.trim_end_matches(['\n', '\r']))
+    })
+}
+
+/// The number and the offset in a header line.
+fn header_number(line: &str) -> Option<BlockNumber> {
+    let mut words = line.split_whitespace();
+    let (Some(HEADER), Some(number), Some("OFFSET"), Some(offset)) =
+        (words.next(), words.next(), words.next(), words.next())
+    else {
+        return None;
+    };
+    if words.next().is_some_and(|w| !w.starts_with('%') && !w.starts_with('(')) {
+        return None;
+    }
+    Some(BlockNumber { offset: offset.parse().ok()?, number: number.parse().ok()? })
+}
+
+/// The blocks of a source, and what is wrong with them. Blocks with a fault are kept as far as they can be read.
+#[must_use]
+pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockFault)>) {
+    let mut found: Vec<Block<'_>> = Vec::new();
+    let mut faults = Vec::new();
+    for (number, (start, text)) in lines_of(&source.text).enumerate() {
+        let at = At {
+            source: short(index),
+            block: None,
+            line: short(number).saturating_add(1),
+            column: 1,
+            start: short(start),
+            length: short(text.len()),
+        };
+        if let Some(position) = text.bytes().position(|b| !(b.is_ascii_graphic() || b == b' '))
+            && !text.starts_with(REMARK)
+        {
+            let bad = text.get(position..).and_then(|rest| rest.chars().next()).map_or(1, char::len_utf8);
+            let bad_at =
+                At { start: short(start + position), column: short(position) + 1, length: short(bad), ..at };
+            faults.push((bad_at, BlockFault::NotAscii));
+        }
+        if text.starts_with(REMARK) {
+            continue;
+        }
+        if text.starts_with(HEADER) {
+            match header_number(text) {
+                Some(number) => found.push(Block { number, header: at, lines: Vec::new() }),
+                None => faults.push((at, BlockFault::Header)),
+            }
+            continue;
+        }
+        match found.last_mut() {
+            Some(block) => {
+                let line = short(block.lines.len());
+                block.lines.push(Line { text, at: At { block: Some(block.number), line, ..at } });
+            }
+            None if text.trim().is_empty() => {}
+            None => faults.push((at, BlockFault::NoHeader)),
+        }
+    }
+    for block in &mut found {
+        settle(block, &mut faults);
+    }
+    (found, faults)
+}
+
+/// Drop empty lines after the block and the line numbers of a listing, and check the size.
+fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
+    while block.lines.last().is_some_and(|line| line.text.trim().is_empty()) {
+        block.lines.pop();
+    }
+    if is_listing(&block.lines) {
+        for line in &mut block.lines {
+            let (number, text) = line.text.split_at_checked(LISTING_WIDTH).unwrap_or((line.text, ""));
+            line.text = text;
+            line.at.start = line.at.start.saturating_add(short(number.len()));
+            line.at.length = short(text.len());
+        }
+    }
+    if let Some(line) = block.lines.get(BLOCK_LINES) {
+        faults.push((line.at, BlockFault::TooManyLines));
+        block.lines.truncate(BLOCK_LINES);
+    }
+    for line in &block.lines {
+        let columns = line.text.trim_end().len();
+        if columns > BLOCK_COLUMNS {
+            let past = short(BLOCK_COLUMNS);
+            let at = At {
+                start: line.at.start.saturating_add(past),
+                column: past + 1,
+                length: short(columns - BLOCK_COLUMNS),
+                ..line.at
+            };
+            faults.push((at, BlockFault::TooWide(columns)));
+        }
+    }
+}
+
+/// Width of ` 4 ` in front of a line.
+const LISTING_WIDTH: usize = 3;
+
+/// True if every line begins with its own number in two columns, as in the listings of the manual. No form can look so: the
+/// numbers of a movetable's lines begin at 1.
+fn is_listing(lines: &[Line<'_>]) -> bool {
+    let own_number = |(number, line): (usize, &Line<'_>)| {
+        line.text
+            .strip_prefix(format!("{number:2}").as_str())
+            .is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
+    };
+    lines.len() > 1 && lines.iter().enumerate().all(own_number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(text: &str) -> Source {
+        Source { name: "test.blk".to_owned(), text: text.into() }
+    }
+
+    #[test]
+    fn blocks_begin_at_their_headers() {
+        let s = source(
+            "%% a remark \u{b7} on the file\n\nBLOCK# 721 OFFSET 21000\n\n  -pt- A\n%% another\n  -pt- B\n\n\nBLOCK# 722 OFFSET 21000 % x\nC\n",
+        );
+        let (blocks, faults) = blocks(0, &s);
+        assert_eq!(faults, []);
+        assert_eq!(blocks.len(), 2);
+        let texts: Vec<&str> = blocks[0].lines.iter().map(|l| l.text).collect();
+        assert_eq!(texts, ["", "  -pt- A", "  -pt- B"]);
+        assert_eq!(blocks[0].lines[2].at.line, 2);
+        let at = blocks[0].lines[2].at;
+        assert_eq!(&s.text[at.start as usize..(at.start + at.length) as usize], "  -pt- B");
+        assert_eq!(blocks[1].number, BlockNumber { offset: 21_000, number: 722 });
+    }
+
+    #[test]
+    fn a_listing_is_read_without_its_line_numbers() {
+        let listing = source("BLOCK# 435 OFFSET 21000\n 0\n 1   1    t        0\n 2\n 3 x\n");
+        let texts: Vec<&str> = blocks(0, &listing).0[0].lines.iter().map(|l| l.text).collect();
+        assert_eq!(texts, ["", "  1    t        0", "", "x"]);
+        let table = source("BLOCK# 435 OFFSET 21000\n  1 t 0 0 0 ----\n  2 t 1 1 1 -mtb- A\n");
+        assert_eq!(blocks(0, &table).0[0].lines[0].text, "  1 t 0 0 0 ----");
+    }
+
+    #[test]
+    fn faults_are_found_where_they_are() {
+        let wide = "x".repeat(65);
+        let text = format!(
+            "stray\nBLOCK# one OFFSET 21000\nBLOCK# 1 OFFSET 21000\n{wide}\n{}caf\u{e9}\n",
+            "y\n".repeat(16)
+        );
+        let (_, faults) = blocks(0, &source(&text));
+        let kinds: Vec<BlockFault> = faults.iter().map(|f| f.1).collect();
+        assert_eq!(
+            kinds,
+            [
+                BlockFault::NoHeader,
+                BlockFault::Header,
+                BlockFault::NotAscii,
+                BlockFault::TooManyLines,
+                BlockFault::TooWide(65)
+            ]
+        );
+        assert_eq!((faults[3].0.line, faults[4].0.column), (16, 65));
+    }
+}
