@@ -37,7 +37,10 @@
 
 pub mod emove;
 pub mod execution;
+pub mod grip;
 pub mod places;
 pub mod prim;
+pub mod quick_change;
 pub mod subtask;
+pub mod t3i;
 pub mod task;

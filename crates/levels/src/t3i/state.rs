@@ -1,0 +1,112 @@
+//! What T3I remembers from tick to tick.
+
+use depc::{
+    Limits,
+    host::{ANSWER_TICKS, Host},
+    step::Position,
+};
+use rcs_core::{handshake::Receiver, interface::t3i::T3iVerb, pose::WireFrame, record};
+
+use super::tables::Refusal;
+
+/// Points that wait for the line (DESIGN 16 "Prim to T3I"): one that is being sent, one that was allowed, one that is on
+/// its way, and one to spare.
+pub const QUEUE_POINTS: usize = 4;
+
+record! {
+    /// Everything that T3I remembers.
+    pub struct State {
+        /// The command number and its adoption.
+        pub receiver: Receiver,
+        /// The current command.
+        pub command: T3iVerb,
+        /// A command was refused.
+        pub refusal: Refusal,
+        /// The host's end of the link.
+        pub host: Host,
+        /// The velocity limits.
+        pub limits: Limits,
+        /// The position last sent, or reported.
+        pub position: Position,
+        /// Points that wait; the first `queued` are valid, the oldest first.
+        pub queue: [WireFrame; QUEUE_POINTS],
+        /// How many.
+        pub queued: u8,
+        /// Decision table that was used last, from 1.
+        pub table: u8,
+        /// Row of it.
+        pub row: u8,
+    }
+}
+
+impl State {
+    /// Before the first tick.
+    pub(super) fn new(limits: Limits, answer_ticks: u16) -> Self {
+        Self { limits, host: Host::new(answer_ticks), ..Self::default() }
+    }
+
+    /// The configuration of NBS.
+    pub(super) fn nbs() -> Self {
+        Self::new(Limits::NBS, ANSWER_TICKS)
+    }
+
+    /// The oldest point.
+    pub(super) fn first(&self) -> Option<&WireFrame> {
+        self.queue.first().filter(|_| self.queued > 0)
+    }
+
+    /// True if another point finds room.
+    pub(super) fn has_room(&self) -> bool {
+        usize::from(self.queued) < QUEUE_POINTS
+    }
+
+    /// Append a point; without room it is left out.
+    pub(super) fn append(&mut self, point: WireFrame) {
+        if let Some(slot) = self.queue.get_mut(usize::from(self.queued)) {
+            *slot = point;
+            self.queued = self.queued.saturating_add(1);
+        }
+    }
+
+    /// Take the oldest point away.
+    pub(super) fn remove_first(&mut self) {
+        if self.queued > 0 {
+            self.queue.rotate_left(1);
+            self.queued = self.queued.saturating_sub(1);
+            self.clear_from(usize::from(self.queued));
+        }
+    }
+
+    /// Take all points away.
+    pub(super) fn empty(&mut self) {
+        self.queued = 0;
+        self.clear_from(0);
+    }
+
+    /// Equal states are equal bytes: what does not count is zero.
+    fn clear_from(&mut self, place: usize) {
+        self.queue.iter_mut().skip(place).for_each(|point| *point = WireFrame::default());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_queue_keeps_order_and_bound() {
+        let point = |x| WireFrame { tool: [x, 0, 0], ..WireFrame::default() };
+        let mut state = State::nbs();
+        assert_eq!(state.first(), None);
+        for x in 1..=5 {
+            assert_eq!(state.has_room(), x <= 4);
+            state.append(point(x));
+        }
+        for x in 1..=4 {
+            assert_eq!(state.first(), Some(&point(x)));
+            state.remove_first();
+        }
+        state.remove_first();
+        assert_eq!(state, State::nbs());
+    }
+}

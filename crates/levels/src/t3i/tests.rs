@@ -1,0 +1,472 @@
+//! T3I with the controller's end of the link behind it, tick by tick.
+
+use nalgebra::Rotation3;
+
+use depc::{
+    Limits, Plate,
+    controller::{Controller, ControllerInputs, ControllerState, JointProblem, Robot, Warning, joints_for},
+    wire::DataCommand,
+};
+use rcs_core::{
+    frame::{Frame, Vector},
+    interface::{
+        CommonMemory, ExternalInputs, T3iOutputs,
+        device::{LinkBytes, RESOLVER_COUNTS},
+        t3i::{LinkFault, T3iReport, T3iVerb},
+    },
+    kinematics::{HOME_JOINTS, Joints, T3},
+    pose::WireFrame,
+    process::{Inputs, Process},
+    tick::Tick,
+};
+
+use super::{T3i, tables};
+
+/// A robot that is where it is told to be.
+struct Exact {
+    joints: Joints,
+    at: Plate,
+}
+
+impl Robot for Exact {
+    fn present(&self) -> Plate {
+        self.at
+    }
+
+    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+        self.joints = joints_for(&T3, goal, &self.joints)?;
+        self.at = *goal;
+        Ok(())
+    }
+}
+
+/// T3I, the line, the controller; the test is Prim.
+struct Bench {
+    t3i: T3i,
+    memory: CommonMemory,
+    external: ExternalInputs,
+    tick: Tick,
+    controller: Controller,
+    robot: Exact,
+    /// Prim is stepped in the next ticks.
+    prim_runs: bool,
+    /// The line carries bytes.
+    connected: bool,
+    hold: bool,
+}
+
+fn home() -> Frame {
+    T3.forward(&HOME_JOINTS)
+}
+
+fn counts(joints: &Joints) -> [u32; 6] {
+    joints.map(|angle| {
+        let turns = (angle / (2.0 * std::f64::consts::PI)).rem_euclid(1.0);
+        (turns * f64::from(RESOLVER_COUNTS)).round() as u32 % RESOLVER_COUNTS
+    })
+}
+
+impl Bench {
+    fn new() -> Self {
+        let at = Plate::from_tool(&home(), &T3, &Plate::default()).unwrap();
+        let mut bench = Self {
+            t3i: T3i::default(),
+            memory: CommonMemory::default(),
+            external: ExternalInputs::default(),
+            tick: Tick(0),
+            controller: Controller::new(Limits::NBS),
+            robot: Exact { joints: HOME_JOINTS, at },
+            prim_runs: true,
+            connected: true,
+            hold: false,
+        };
+        bench.external.devices.resolvers.valid = true;
+        bench.cell(&LinkBytes::default(), true);
+        bench
+    }
+
+    /// A bench on which RESTART is finished.
+    fn running() -> Self {
+        let mut bench = Self::new();
+        bench.tick();
+        bench.command(T3iVerb::Restart);
+        for _ in 0..4 {
+            bench.tick();
+        }
+        assert_eq!(bench.report(), T3iReport::Finished);
+        bench
+    }
+
+    /// The cell's part of a tick.
+    fn cell(&mut self, tx: &LinkBytes, start: bool) {
+        let rx = if self.connected { *tx } else { LinkBytes::default() };
+        let inputs =
+            ControllerInputs { rx, cts: true, board: true, start, hold: self.hold, ..Default::default() };
+        let out = self.controller.step(&inputs, &mut self.robot);
+        self.external.devices.link_rx = if self.connected { out.tx } else { LinkBytes::default() };
+        self.external.devices.link_ready = out.dtr;
+        self.external.devices.resolvers.counts = counts(&self.robot.joints);
+    }
+
+    /// One tick of everything; what T3I wrote is in common memory afterwards.
+    fn tick(&mut self) -> &T3iOutputs {
+        if self.prim_runs {
+            self.memory.prim.header.stamp = self.tick;
+        }
+        self.tick = self.tick.next();
+        let mut outputs = self.memory.t3i;
+        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
+        Process::<()>::step(&mut self.t3i, &inputs, &mut outputs);
+        self.memory.t3i = outputs;
+        self.cell(&outputs.link_tx, false);
+        &self.memory.t3i
+    }
+
+    /// Prim writes a command; T3I reads it in the next tick.
+    fn command(&mut self, verb: T3iVerb) {
+        self.memory.prim.t3i.number += 1;
+        self.memory.prim.t3i.command = verb;
+        self.memory.prim.t3i.cycle = self.tick;
+    }
+
+    fn point(&mut self, frame: &Frame) {
+        self.memory.prim.t3i.frame = WireFrame::from_frame(frame);
+        self.command(T3iVerb::Point);
+    }
+
+    fn report(&self) -> T3iReport {
+        self.memory.t3i.status.report
+    }
+
+    fn fault(&self) -> LinkFault {
+        self.memory.t3i.status.fault
+    }
+
+    /// Row that fired, as table and number.
+    fn row(&self) -> (&'static str, u8) {
+        let header = &self.memory.t3i.header;
+        (tables::TABLES[usize::from(header.table) - 1].name, header.row)
+    }
+
+    fn sent(&self) -> Option<Plate> {
+        DataCommand::parse(self.memory.t3i.link_tx.as_slice()).ok().map(|command| command.plate)
+    }
+
+    fn robot_tool(&self) -> Frame {
+        self.robot.at.to_tool(&T3)
+    }
+}
+
+fn beside(x: f64) -> Frame {
+    let mut frame = home();
+    frame.position.x += x;
+    frame
+}
+
+#[test]
+fn restart_brings_the_link_up_and_holds_the_reported_position() {
+    let mut bench = Bench::new();
+    bench.tick();
+    bench.command(T3iVerb::Restart);
+    let out = bench.tick();
+    assert_eq!((out.link_tx.as_slice(), out.status.report), (&[0x05][..], T3iReport::Executing));
+    let out = bench.tick();
+    assert_eq!((out.status.report, out.status.echo, out.status.link_running), (T3iReport::Finished, 1, true));
+    assert_eq!(bench.sent(), Some(bench.robot.at));
+    for _ in 0..10 {
+        bench.tick();
+        assert_eq!((bench.sent(), bench.row()), (Some(bench.robot.at), ("restart", 4)));
+    }
+}
+
+#[test]
+fn one_point_a_tick_is_sustained() {
+    let mut bench = Bench::running();
+    let mut reports = Vec::new();
+    for n in 1..=50 {
+        bench.point(&beside(0.1 * f64::from(n)));
+        bench.tick();
+        reports.push(bench.report());
+        // Read in the tick after it was written, sent in the same, executed by the cell before the next.
+        assert!((bench.robot_tool().position.x - 0.1 * f64::from(n)).abs() < 0.01, "point {n}");
+        assert_eq!(bench.row(), ("point", 2));
+    }
+    assert!(reports.iter().all(|report| *report == T3iReport::Ready));
+    bench.tick();
+    assert_eq!(bench.report(), T3iReport::Finished);
+    assert_eq!(bench.memory.t3i.status.counters.limited, 0);
+}
+
+#[test]
+fn a_point_beyond_the_limits_is_scaled_back_on_a_straight_line() {
+    let mut bench = Bench::running();
+    let mut goal = home();
+    goal.position += Vector::new(3.0, 4.0, 0.0);
+    bench.point(&goal);
+    let mut ticks = 0;
+    loop {
+        bench.tick();
+        let moved = bench.robot_tool().position - home().position;
+        assert!((moved.x / 3.0 - moved.y / 4.0).abs() < 0.006 && moved.z.abs() < 0.006, "{moved:?}");
+        let feedback = bench.memory.t3i.status.frame_feedback;
+        assert_eq!(feedback, WireFrame::from_frame(&bench.robot_tool()));
+        if bench.report() == T3iReport::Finished {
+            break;
+        }
+        ticks += 1;
+        assert_eq!(bench.report(), T3iReport::Ready);
+    }
+    // 5 in at 0.56 in a tick.
+    assert_eq!(ticks, 9);
+    assert_eq!(bench.memory.t3i.status.counters.limited, 8);
+    assert_eq!(bench.memory.t3i.status.frame_feedback.tool, WireFrame::from_frame(&goal).tool);
+}
+
+#[test]
+fn a_queue_that_fills_asks_prim_to_wait_and_never_overflows() {
+    let mut bench = Bench::running();
+    let mut x = 0.0;
+    let mut waited = 0;
+    // Prim answers each report one tick later, as it would: two inches a point is far more than the line can do.
+    for _ in 0..200 {
+        let report = bench.report();
+        bench.tick();
+        if matches!(report, T3iReport::Ready | T3iReport::Finished) {
+            x += 0.9_f64.min(20.0 - x);
+            bench.point(&beside(x));
+        } else {
+            waited += 1;
+        }
+        assert_ne!(bench.report(), T3iReport::Error);
+    }
+    assert!(waited > 10);
+    assert!((bench.robot_tool().position.x - 20.0).abs() < 0.01);
+}
+
+#[test]
+fn a_gap_in_the_numbers_is_an_invalid_command_until_pause() {
+    let mut bench = Bench::running();
+    bench.point(&beside(0.1));
+    bench.tick();
+    bench.memory.prim.t3i.number += 1;
+    bench.point(&beside(0.3));
+    bench.tick();
+    assert_eq!(
+        (bench.report(), bench.fault(), bench.row()),
+        (T3iReport::Error, LinkFault::InvalidCommand, ("receive", 8))
+    );
+    // The next point was on its way already.
+    bench.point(&beside(0.4));
+    bench.tick();
+    assert_eq!(
+        (bench.report(), bench.fault(), bench.row()),
+        (T3iReport::Error, LinkFault::InvalidCommand, ("receive", 5))
+    );
+    assert!((bench.robot_tool().position.x - 0.1).abs() < 0.01);
+    bench.command(T3iVerb::Pause);
+    bench.tick();
+    bench.tick();
+    assert_eq!((bench.report(), bench.fault()), (T3iReport::Finished, LinkFault::None));
+    bench.point(&beside(0.2));
+    bench.tick();
+    assert!((bench.robot_tool().position.x - 0.2).abs() < 0.01);
+}
+
+#[test]
+fn a_frame_without_words_is_an_invalid_command() {
+    for frame in [WireFrame::default(), WireFrame { tool: [50_000, 0, 0], ..WireFrame::from_frame(&home()) }]
+    {
+        let mut bench = Bench::running();
+        bench.memory.prim.t3i.frame = frame;
+        bench.command(T3iVerb::Point);
+        bench.tick();
+        assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::InvalidCommand));
+    }
+}
+
+#[test]
+fn points_before_the_report_are_refused() {
+    let mut bench = Bench::new();
+    bench.connected = false;
+    bench.external.devices.link_rx = LinkBytes::default();
+    bench.tick();
+    bench.point(&beside(0.1));
+    bench.tick();
+    assert_eq!(
+        (bench.report(), bench.fault(), bench.row()),
+        (T3iReport::Error, LinkFault::InvalidCommand, ("receive", 7))
+    );
+}
+
+#[test]
+fn pause_empties_the_queue_and_holds() {
+    let mut bench = Bench::running();
+    bench.point(&beside(5.0));
+    bench.tick();
+    bench.tick();
+    bench.command(T3iVerb::Pause);
+    bench.tick();
+    let at = bench.robot.at;
+    for _ in 0..5 {
+        bench.tick();
+        assert_eq!((bench.robot.at, bench.sent(), bench.report()), (at, Some(at), T3iReport::Finished));
+    }
+}
+
+#[test]
+fn while_prim_is_held_or_lost_the_position_stands() {
+    for lost in [true, false] {
+        let mut bench = Bench::running();
+        bench.point(&beside(5.0));
+        bench.tick();
+        bench.tick();
+        let at = bench.robot.at;
+        (bench.prim_runs, bench.memory.prim.header.republished) = (!lost, !lost);
+        for _ in 0..5 {
+            bench.tick();
+            assert_eq!((bench.robot.at, bench.sent()), (at, Some(at)));
+        }
+        (bench.prim_runs, bench.memory.prim.header.republished) = (true, false);
+        for _ in 0..10 {
+            bench.tick();
+        }
+        assert!((bench.robot_tool().position.x - 5.0).abs() < 0.01);
+    }
+}
+
+#[test]
+fn a_cut_line_is_noticed_reported_and_mended_only_by_restart() {
+    let mut bench = Bench::running();
+    bench.point(&beside(5.0));
+    bench.tick();
+    bench.connected = false;
+    for _ in 0..4 {
+        bench.tick();
+    }
+    assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::NotResponding));
+    assert!(!bench.memory.t3i.status.link_running);
+    let at = bench.robot.at;
+    bench.connected = true;
+    for _ in 0..10 {
+        bench.tick();
+        assert_eq!((bench.report(), bench.robot.at), (T3iReport::Error, at));
+    }
+    assert!(bench.memory.t3i.status.link_running);
+    bench.point(&beside(5.0));
+    bench.tick();
+    assert_eq!((bench.report(), bench.row(), bench.robot.at), (T3iReport::Error, ("receive", 6), at));
+    bench.command(T3iVerb::Restart);
+    for _ in 0..3 {
+        bench.tick();
+    }
+    assert_eq!((bench.report(), bench.fault()), (T3iReport::Finished, LinkFault::None));
+    bench.point(&beside(bench.robot_tool().position.x - home().position.x));
+    bench.tick();
+    assert_eq!(bench.report(), T3iReport::Ready);
+}
+
+#[test]
+fn a_restart_without_an_answer_is_an_error_after_three_attempts() {
+    let mut bench = Bench::running();
+    bench.connected = false;
+    bench.command(T3iVerb::Restart);
+    let mut executing = 0;
+    while bench.tick().status.report == T3iReport::Executing {
+        executing += 1;
+        assert!(executing < 100);
+    }
+    assert_eq!((executing, bench.fault()), (9, LinkFault::NotResponding));
+}
+
+#[test]
+fn a_joint_limit_silences_the_controller_and_restart_mends_it() {
+    let mut bench = Bench::running();
+    let mut goal = home();
+    let mut reports = Vec::new();
+    for _ in 0..2 {
+        goal = goal.turned(&Rotation3::from_axis_angle(&Vector::x_axis(), 1.3));
+        bench.point(&goal);
+        bench.tick();
+    }
+    for _ in 0..100 {
+        bench.tick();
+        reports.push((bench.report(), bench.controller.warning()));
+    }
+    assert!(reports.iter().any(|(_, warning)| *warning == Warning::JointLimit));
+    assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::NotResponding));
+    bench.command(T3iVerb::Restart);
+    for _ in 0..3 {
+        bench.tick();
+    }
+    assert_eq!((bench.report(), bench.controller.state()), (T3iReport::Finished, ControllerState::Running));
+    // Where the robot really stands, not where it was sent.
+    assert!(bench.robot.joints[5] <= T3.limits[5].1);
+    assert_eq!(bench.memory.t3i.status.frame_feedback, WireFrame::from_frame(&bench.robot_tool()));
+}
+
+#[test]
+fn hold_on_the_panel_is_survived() {
+    let mut bench = Bench::running();
+    bench.point(&beside(1.0));
+    bench.tick();
+    bench.hold = true;
+    for _ in 0..20 {
+        bench.tick();
+    }
+    assert_eq!(bench.report(), T3iReport::Error);
+    bench.hold = false;
+    for _ in 0..10 {
+        bench.tick();
+    }
+    assert_eq!(bench.controller.state(), ControllerState::Running);
+    bench.command(T3iVerb::Restart);
+    for _ in 0..4 {
+        bench.tick();
+    }
+    assert_eq!((bench.report(), bench.fault()), (T3iReport::Finished, LinkFault::None));
+}
+
+#[test]
+fn a_restarted_t3i_does_not_move_and_says_so() {
+    let mut bench = Bench::running();
+    bench.point(&beside(0.3));
+    bench.t3i = T3i::default();
+    for _ in 0..10 {
+        bench.tick();
+        assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::InvalidCommand));
+    }
+    assert!(bench.robot_tool().position.x.abs() < 0.01);
+}
+
+#[test]
+fn feedback_is_the_resolver_frame_until_the_link_runs() {
+    let mut bench = Bench::new();
+    bench.connected = false;
+    bench.external.devices.link_rx = LinkBytes::default();
+    bench.robot.joints[0] += 0.2;
+    bench.external.devices.resolvers.counts = counts(&bench.robot.joints);
+    let expected = WireFrame::from_frame(&T3.forward(&bench.robot.joints));
+    let status = bench.tick().status;
+    assert!(!status.link_running && status.resolver_valid);
+    assert_eq!((status.frame_feedback, status.scale_factor), (status.resolver_frame, 131_072));
+    for (found, expected) in status.resolver_frame.tool.iter().zip(expected.tool) {
+        assert!((found - expected).abs() <= 1, "{found} for {expected}");
+    }
+}
+
+#[test]
+fn a_state_that_is_restored_goes_on_to_the_bit() {
+    let mut bench = Bench::running();
+    bench.point(&beside(5.0));
+    bench.tick();
+    let mut other = T3i::default();
+    Process::<()>::restore(&mut other, *Process::<()>::state(&bench.t3i));
+    bench.memory.prim.header.stamp = bench.tick;
+    let inputs =
+        Inputs { tick: bench.tick.next(), memory: &bench.memory, external: &bench.external, data: &() };
+    let (mut a, mut b) = (T3iOutputs::default(), T3iOutputs::default());
+    Process::<()>::step(&mut bench.t3i, &inputs, &mut a);
+    Process::<()>::step(&mut other, &inputs, &mut b);
+    assert_eq!(a, b);
+    assert_eq!(a.link_tx.length, 16);
+}
