@@ -8,6 +8,8 @@
 //! The gripper axis within 2 degrees of vertical is warned of: the Euler angles of the link are singular there (VIII
 //! introduction). Base poses and tray corners, which are taught vertical and not driven to, are left out (VIII.3).
 
+use std::collections::HashMap;
+
 use rcs_core::{
     frame::Frame,
     interface::subtask::LocationKind,
@@ -19,25 +21,49 @@ use crate::files::{
     TaskData, Traj,
 };
 
-use super::{link::Origins, report::Problems, source::At};
+use super::{
+    link::Origins,
+    report::{Problems, Severity},
+    source::At,
+};
 
 /// Nearer to vertical than this is warned of, degrees.
 const VERTICAL: f64 = 2.0;
 
 /// Check all frames; the data must be linked without error.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Problems) {
-    let mut checker = Checker { data, origins, problems };
+    let mut checker = Checker { data, origins, findings: Vec::new(), known: HashMap::new() };
     checker.poses();
     checker.location_points();
     checker.trajectories();
     checker.grips();
     checker.views();
+    for finding in checker.findings {
+        let mut help = finding.help;
+        if finding.more > 0 {
+            let places = if finding.more == 1 { "place" } else { "places" };
+            help = format!("{help}; the same at {} more {places}", finding.more);
+        }
+        problems.push(finding.severity, finding.code, finding.at, finding.message, Some(help));
+    }
+}
+
+/// What is wrong with an entry at the first place where it is wrong, and at how many more.
+struct Finding {
+    severity: Severity,
+    code: &'static str,
+    at: At,
+    message: String,
+    help: String,
+    more: usize,
 }
 
 struct Checker<'a> {
     data: &'a TaskData<'a>,
     origins: &'a Origins,
-    problems: &'a mut Problems,
+    findings: Vec<Finding>,
+    /// Position in `findings` by source, first byte and code: an entry with the wild card can be wrong at every sector.
+    known: HashMap<(u32, u32, &'static str), usize>,
 }
 
 /// The origin of a record at a position.
@@ -52,6 +78,15 @@ fn from_vertical(frame: &Frame) -> f64 {
 }
 
 impl Checker<'_> {
+    fn note(&mut self, severity: Severity, code: &'static str, at: At, message: String, help: String) {
+        let next = self.findings.len();
+        let position = *self.known.entry((at.source, at.start, code)).or_insert(next);
+        match self.findings.get_mut(position) {
+            Some(finding) => finding.more += 1,
+            None => self.findings.push(Finding { severity, code, at, message, help, more: 0 }),
+        }
+    }
+
     /// Note a frame that the arm cannot take; true if it can.
     fn reach(&mut self, what: &str, frame: &Frame, at: At) -> bool {
         let joints = match T3.inverse(frame, &HOME_JOINTS) {
@@ -59,7 +94,7 @@ impl Checker<'_> {
             Err(error) => {
                 let p = frame.position;
                 let help = format!("its tool point is at ({:.2}, {:.2}, {:.2}) in", p.x, p.y, p.z);
-                self.problems.error_help("reach", at, format!("{what}: {error}"), help);
+                self.note(Severity::Error, "reach", at, format!("{what}: {error}"), help);
                 return false;
             }
         };
@@ -76,7 +111,7 @@ impl Checker<'_> {
         );
         let help =
             format!("the limits of {name} are {:.0} and {:.0} degrees", low.to_degrees(), high.to_degrees());
-        self.problems.error_help("limit", at, message, help);
+        self.note(Severity::Error, "limit", at, message, help);
         false
     }
 
@@ -86,7 +121,7 @@ impl Checker<'_> {
         if self.reach(what, frame, at) && degrees < VERTICAL {
             let help = "tilt the gripper by 3 degrees or more, as LK-GRP-1 does (VIII.9.5)".to_owned();
             let message = format!("{what}: the gripper is {degrees:.1} degrees from vertical");
-            self.problems.warning("vertical", at, message, Some(help));
+            self.note(Severity::Warning, "vertical", at, message, help);
         }
     }
 
@@ -254,6 +289,10 @@ impl Checker<'_> {
             let at = origin(&self.origins.visions, i);
             let object = data.object_name(record.object);
             for location in self.locations(record.object, record.at) {
+                // A more exact entry may hold at this location.
+                if data.view(&object, &location.place).is_none_or(|(_, view)| view != record) {
+                    continue;
+                }
                 let what = format!("view of {object} at {}", shown(&location));
                 let frame = data.moved(&location.frame, record.movetable);
                 self.target(&what, &frame, at);
