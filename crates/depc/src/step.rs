@@ -20,7 +20,8 @@ use crate::{
     plate::{HALF_TURN, angle_between, angle_word},
 };
 
-/// Halvings of the way: leaves less than a count of the longest way there is.
+/// Halvings of the way: leave 4e-5 in of the longest way that words can name. Coarser, and a step past a pole, which may be
+/// a hundredth of a count, would be lost.
 const BISECTIONS: u32 = 24;
 /// E this near to the pole (0.01 degree) is the pole: the tool point moves less than half a count if E is put right.
 const POLE: i32 = 2;
@@ -75,8 +76,8 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// The position at a fraction of the way.
-    fn at(&self, fraction: f64) -> Result<Position, Error> {
+    /// The words at a fraction of the way, and the tool frame that they are rounded from.
+    fn at(&self, fraction: f64) -> Result<(Plate, Frame), Error> {
         let tool = if fraction >= 1.0 {
             *self.goal
         } else {
@@ -85,7 +86,7 @@ impl Line<'_> {
                 rotation: rotation_by(&(self.turn * fraction)) * self.start.rotation,
             }
         };
-        Ok(Position::rounded_to(Plate::from_tool(&tool, self.arm, self.from)?, &tool))
+        Ok((Plate::from_tool(&tool, self.arm, self.from)?, tool))
     }
 }
 
@@ -114,22 +115,18 @@ pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result
     if let Some(position) = turn_at_the_pole(&line, limits, limits.orientation())? {
         return Ok(Step { position, reached: false });
     }
-    let (mut allowed, mut refused, mut position) = (0.0, 1.0, *from);
+    let (mut allowed, mut refused, mut plate, mut tool) = (0.0, 1.0, from.plate, start);
     for _ in 0..BISECTIONS {
         let middle = f64::midpoint(allowed, refused);
-        let there = line.at(middle)?;
-        if limits.check(&from.plate, &there.plate).is_ok() {
-            (allowed, position) = (middle, there);
+        let (there, frame) = line.at(middle)?;
+        if limits.check(&from.plate, &there).is_ok() {
+            (allowed, plate, tool) = (middle, there, frame);
         } else {
             refused = middle;
         }
     }
-    if position.plate == from.plate
-        && let Some(turned) = turn_at_the_pole(&line, limits, 0)?
-    {
-        position = turned;
-    }
-    Ok(Step { position, reached: false })
+    let position = if plate == from.plate { turn_at_the_pole(&line, limits, 0)? } else { None };
+    Ok(Step { position: position.unwrap_or_else(|| Position::rounded_to(plate, &tool)), reached: false })
 }
 
 /// At the pole, and D more than `near` (0.01 degree) from the direction in which the line leaves it: the position with D and
@@ -167,7 +164,7 @@ fn pole_near(e: i16) -> Option<(i16, i32)> {
 fn way_out(line: &Line<'_>) -> Result<Plate, Error> {
     let mut fraction = libm::ldexp(1.0, -20);
     loop {
-        let Position { plate, .. } = line.at(fraction)?;
+        let (plate, _) = line.at(fraction)?;
         let [.., e, _] = plate.words;
         if fraction >= 1.0 || pole_near(e).is_none() {
             return Ok(plate);
