@@ -1,0 +1,118 @@
+//! Grip (VI.3): the parts gripper, end effector 1, by eight air valves, a potentiometer and two strain gages.
+//!
+//! Air cannot be metered: six flow valves open or close the fingers at three speeds, and trapped air holds what was
+//! reached. So the servo chooses a flow by the distance that is left, coarse to fine, stops inside a dead band, lets the
+//! readings settle, and only then judges. It does not hunt: a flow that was stopped starts again only if the settled
+//! reading is outside a wider band than the one that stopped it.
+//!
+//! The command selects the table. Before any of them UP-INIT runs if position and force are not calibrated yet; the
+//! command waits, still executing, and is executed after it.
+//!
+//! ```text
+//!   a command                               the calibration (UP-INIT)
+//!
+//!         new number, Good                   Missing         Deferred, Failed
+//!                |                              |                   |
+//!                v                              | gripper comes,    | first command that
+//!            .-------.    not calibrated        | or a command      | moves the fingers
+//!            | Start |- - - - - - - - - - - -.  |                   |
+//!            '-------'                       :  v                   v
+//!                | calibrated                :..>.----------------.
+//!                v                               |    Closing     |  readings at 0.10 in
+//!   Error    .-------. <---------.               '----------------'
+//!   <--------|  Move |           |                       | steady
+//!   too late '-------'           |               .----------------.
+//!                | in the        | outside       |    Opening     |  readings at 5.00 in
+//!                | dead band     | wide band     '----------------'
+//!                v               |                       | steady
+//!            .--------.          |               .----------------.
+//!            | Settle |----------'               |    Venting     |  readings without force
+//!            '--------'                          '----------------'
+//!                | inside the wide band                  | steady, plausible   | else
+//!                v                                       v                     v
+//!              Done                                    Valid                 Failed
+//! ```
+//!
+//! When the gripper is taken off, a calibration under way is void and all valves go off; one that was finished is kept.
+//! PAUSE leaves the valves as they are, literally (VI.3.1): sent while a flow is on, the flow stays on.
+
+mod postprocess;
+mod preprocess;
+mod state;
+pub mod tables;
+#[cfg(test)]
+mod tests;
+
+pub use self::state::{Calibration, Command, Phase, Readings, Scale, State, Steady, Step};
+
+use rcs_core::{
+    interface::{GripOutputs, grip::GripVerb},
+    process::{Inputs, Process},
+    table::Table,
+};
+
+use self::{
+    preprocess::Seen,
+    tables::{Action, CLOSE_GRIP, PAUSE, POSITION, UP_INIT, close_grip, pause, position, up_init},
+};
+use crate::execution::{Course, EXECUTE};
+
+/// Decision tables, the upper one first.
+const TABLES: &[&Table] = &[&EXECUTE, &POSITION, &CLOSE_GRIP, &UP_INIT, &PAUSE];
+
+/// The Grip process.
+#[derive(Debug, Default)]
+pub struct Grip {
+    state: State,
+}
+
+impl Grip {
+    /// Look up the state variables in the table that has the duty; its row gives the action and the next step.
+    fn decide(&mut self, seen: &Seen) -> Action {
+        let state = &mut self.state;
+        if seen.calibrate {
+            let decision = up_init(state.phase, seen.gripper, seen.clock, seen.readings(state));
+            state.phase = decision.next;
+            let step = state.execution.step;
+            state.execution.note(TABLES, &UP_INIT, decision.row, step);
+            return decision.action;
+        }
+        if !matches!(seen.course, Course::Begin | Course::Continue) {
+            return if seen.course == Course::Refuse { Action::Stop } else { Action::Keep };
+        }
+        let step = state.step();
+        let (table, decision) = match state.command.verb {
+            GripVerb::Position | GripVerb::OpenGrip => {
+                (&POSITION, position(step, seen.gripper, seen.clock, seen.opening(state), seen.rest))
+            }
+            GripVerb::CloseGrip => {
+                (&CLOSE_GRIP, close_grip(step, seen.gripper, seen.clock, seen.grasp(state), seen.rest))
+            }
+            GripVerb::Pause | GripVerb::UpInit | GripVerb::None => (&PAUSE, pause(seen.gripper)),
+        };
+        state.execution.note(TABLES, table, decision.row, decision.next.code());
+        decision.action
+    }
+}
+
+impl<Data: ?Sized> Process<Data> for Grip {
+    type State = State;
+    type Outputs = GripOutputs;
+
+    const NAME: &'static str = "Grip";
+    const TABLES: &'static [&'static Table] = TABLES;
+
+    fn step(&mut self, inputs: &Inputs<'_, Data>, outputs: &mut GripOutputs) {
+        let seen = Seen::preprocess(&mut self.state, inputs);
+        let action = self.decide(&seen);
+        *outputs = postprocess::perform(&mut self.state, &seen, action, inputs.tick);
+    }
+
+    fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn restore(&mut self, state: State) {
+        self.state = state;
+    }
+}

@@ -1,0 +1,463 @@
+//! Scenarios of Grip with a simulated gripper.
+
+mod bench;
+mod gripper;
+
+use proptest::prelude::*;
+use rcs_core::{
+    interface::{
+        GripOutputs, Reason,
+        device::valve,
+        grip::{GripReport, GripVerb},
+    },
+    process::Process,
+    record::{Field, to_bytes},
+};
+
+use self::{
+    bench::Bench,
+    gripper::{Gripper, Object},
+};
+use super::{Grip, Phase, State, TABLES};
+
+/// A bench with a calibrated gripper.
+fn calibrated(seed: u64) -> Bench {
+    let mut bench = Bench::new(Gripper::new(1.0, seed));
+    bench.done(GripVerb::UpInit, 0.0, 0);
+    bench
+}
+
+fn reason(bench: &mut Bench) -> Reason {
+    let (_, outputs) = bench.finish();
+    assert_eq!(outputs.status.report, GripReport::Serror);
+    assert_eq!(outputs.valves.bits, 0);
+    outputs.status.reason
+}
+
+#[test]
+fn no_row_is_dead() {
+    for table in TABLES {
+        table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
+    }
+}
+
+#[test]
+fn positions_are_reached_without_hunting() {
+    let mut bench = calibrated(3);
+    for (opening, most_ticks) in
+        [(0.60, 60), (3.00, 60), (3.50, 40), (0.10, 60), (5.00, 60), (4.99, 20), (5.00, 20)]
+    {
+        let (ticks, outputs) = bench.done(GripVerb::Position, opening, 0);
+        assert!((bench.gripper.opening - opening).abs() <= 0.02, "{opening}: {}", bench.gripper.opening);
+        assert!((rcs_core::units::inches(outputs.status.position) - opening).abs() <= 0.02);
+        assert!(ticks <= most_ticks, "{opening} took {ticks} ticks");
+        let one_way = bench.patterns.iter().filter(|bits| **bits != 0).collect::<Vec<_>>();
+        assert!(one_way.len() <= 3, "{opening}: coarse, medium, fine and no more: {one_way:?}");
+        let before = bench.gripper.opening;
+        assert_eq!(bench.wait(500).valves.bits, 0);
+        assert_eq!(bench.gripper.opening, before);
+    }
+}
+
+#[test]
+fn a_commanded_speed_is_not_exceeded() {
+    let mut bench = calibrated(4);
+    for (velocity, in_a_tick) in [(25, 0.01), (99, 0.01), (100, 0.04), (399, 0.04), (400, 0.16), (0, 0.16)] {
+        for opening in [2.0, 3.0] {
+            bench.command_at(GripVerb::OpenGrip, opening, 0, velocity);
+            let mut before = bench.gripper.opening;
+            while bench.step().status.report == GripReport::Executing {
+                assert!((bench.gripper.opening - before).abs() < in_a_tick + 1e-9, "at {velocity}");
+                before = bench.gripper.opening;
+            }
+            assert!((bench.gripper.opening - opening).abs() <= 0.02);
+        }
+    }
+}
+
+#[test]
+fn a_grasp_has_the_commanded_force() {
+    let mut bench = calibrated(5);
+    bench.gripper.object = Some(Object { size: 0.625, off_centre: 0.0 });
+    for force in [30, 60, 5, 80] {
+        bench.done(GripVerb::OpenGrip, 3.5, 0);
+        let (_, outputs) = bench.done(GripVerb::CloseGrip, 0.60, force);
+        assert!((bench.gripper.force - f64::from(force)).abs() <= 3.0, "{force}: {}", bench.gripper.force);
+        assert!(outputs.status.position > 60, "held: {}", outputs.status.position);
+        assert!(
+            (outputs.status.left_force - force).abs() <= 3 && (outputs.status.right_force - force).abs() <= 3
+        );
+        assert_eq!((outputs.valves.bits, outputs.status.finger_height), (0, 0));
+    }
+}
+
+#[test]
+fn a_grasp_of_nothing_is_done_at_or_below_the_grasp_size() {
+    let mut bench = calibrated(6);
+    for grasp_size in [0.60, 0.61, 0.13, 0.10, 2.50] {
+        bench.done(GripVerb::Position, 3.0, 0);
+        bench.done(GripVerb::CloseGrip, grasp_size, 30);
+        for _ in 0..100 {
+            let position = bench.step().status.position;
+            assert!(position <= rcs_core::units::hundredths(grasp_size), "{grasp_size}: {position}");
+        }
+    }
+}
+
+#[test]
+fn one_finger_waits_for_the_other() {
+    let mut bench = calibrated(7);
+    bench.gripper.object = Some(Object { size: 0.70, off_centre: 0.3 });
+    bench.done(GripVerb::Position, 3.0, 0);
+    bench.command(GripVerb::CloseGrip, 0.60, 30);
+    let paused = (0..100).filter(|_| bench.step().status.report == GripReport::Paused).count();
+    assert!((4..20).contains(&paused), "{paused} ticks");
+    assert_eq!(bench.memory.grip.status.report, GripReport::Done);
+    assert!((bench.gripper.force - 30.0).abs() <= 3.0);
+}
+
+#[test]
+fn a_gripper_that_is_attached_at_the_start_calibrates_by_itself() {
+    let mut bench = Bench::new(Gripper::new(2.0, 8));
+    let status = bench.wait(200).status;
+    assert_eq!((status.initialized, status.report, status.echo), (true, GripReport::Idle, 0));
+    assert_eq!((status.position, bench.gripper.opening), (500, 5.0));
+    let rows = bench.rows.clone();
+    bench.wait(500);
+    assert_eq!(bench.rows, rows, "once is enough");
+}
+
+#[test]
+fn a_gripper_that_comes_later_calibrates_then_and_keeps_the_calibration() {
+    let mut bench = Bench::new(Gripper::new(2.0, 9));
+    bench.attach(false);
+    bench.done(GripVerb::Pause, 0.0, 0);
+    assert!(!bench.wait(50).status.initialized);
+    bench.attach(true);
+    let status = bench.wait(200).status;
+    assert_eq!((status.initialized, status.report), (true, GripReport::Done));
+    bench.attach(false);
+    let status = bench.wait(50).status;
+    assert_eq!((status.initialized, status.position, status.left_force), (true, 0, 0));
+    bench.attach(true);
+    assert_eq!(bench.step().status.position, 500);
+}
+
+#[test]
+fn a_command_before_the_calibration_is_executed_after_it() {
+    let mut bench = Bench::new(Gripper::new(2.0, 10));
+    bench.wait(5);
+    bench.done(GripVerb::Position, 3.0, 0);
+    assert!(bench.memory.grip.status.initialized && (bench.gripper.opening - 3.0).abs() <= 0.02);
+    let mut bench = Bench::new(Gripper::new(2.0, 10));
+    bench.wait(5);
+    bench.command(GripVerb::Pause, 0.0, 0);
+    assert_eq!(bench.step().status.report, GripReport::Executing, "PAUSE waits as well");
+    bench.finish();
+    assert_eq!((bench.memory.grip.status.initialized, bench.gripper.opening), (true, 5.0));
+}
+
+#[test]
+fn unattainable_commands_are_refused() {
+    let mut bench = calibrated(11);
+    for (verb, opening, force, velocity, why) in [
+        (GripVerb::Position, 0.09, 0, 0, Reason::GripUnattainable),
+        (GripVerb::OpenGrip, 5.01, 0, 0, Reason::GripUnattainable),
+        (GripVerb::Position, 1.0, 0, -1, Reason::GripUnattainable),
+        (GripVerb::CloseGrip, 0.05, 30, 0, Reason::GripUnattainable),
+        (GripVerb::CloseGrip, 0.60, 81, 0, Reason::GripUnattainable),
+        (GripVerb::CloseGrip, 0.60, -1, 0, Reason::GripUnattainable),
+        (GripVerb::None, 0.60, 30, 0, Reason::UnknownCommand),
+    ] {
+        bench.command_at(verb, opening, force, velocity);
+        assert_eq!(reason(&mut bench), why, "{verb} {opening} {force} {velocity}");
+    }
+    bench.command(GripVerb::Position, 1.0, 0);
+    bench.memory.emove.grip.end_effector_id = 2;
+    assert_eq!(reason(&mut bench), Reason::WrongGripper);
+    bench.done(GripVerb::Position, 1.0, 0);
+}
+
+#[test]
+fn without_the_gripper_commands_fail_and_valves_are_off() {
+    let mut bench = calibrated(12);
+    bench.command(GripVerb::Position, 0.5, 0);
+    bench.wait(5);
+    bench.attach(false);
+    assert_eq!(reason(&mut bench), Reason::WrongGripper);
+    for verb in [GripVerb::CloseGrip, GripVerb::UpInit] {
+        bench.command(verb, 0.6, 30);
+        assert_eq!(reason(&mut bench), Reason::WrongGripper);
+    }
+    bench.attach(true);
+    bench.external.devices.quick_change.unlocked = true;
+    bench.command(GripVerb::Position, 0.5, 0);
+    assert_eq!(reason(&mut bench), Reason::WrongGripper, "a ring seen in both places is not locked");
+}
+
+#[test]
+fn pause_leaves_the_valves_as_they_are() {
+    let mut bench = calibrated(13);
+    bench.done(GripVerb::Position, 0.5, 0);
+    bench.command(GripVerb::Position, 3.0, 0);
+    let moving = bench.wait(4).valves.bits;
+    assert_eq!(moving, valve::SUPPLY | valve::OPEN_COARSE);
+    let (ticks, outputs) = bench.done(GripVerb::Pause, 0.0, 0);
+    assert_eq!((ticks, outputs.valves.bits), (1, moving));
+    assert_eq!(bench.wait(20).valves.bits, moving);
+    bench.done(GripVerb::Position, 3.0, 0);
+    assert_eq!(bench.done(GripVerb::Pause, 0.0, 0).1.valves.bits, 0);
+}
+
+#[test]
+fn a_restarted_process_moves_nothing_until_it_must() {
+    let mut bench = calibrated(14);
+    bench.gripper.object = Some(Object { size: 0.625, off_centre: 0.0 });
+    bench.done(GripVerb::CloseGrip, 0.60, 30);
+    let force = bench.gripper.force;
+    bench.process = Grip::default();
+    assert_eq!(reason(&mut bench), Reason::Restarted);
+    bench.wait(100);
+    bench.done(GripVerb::Pause, 0.0, 0);
+    bench.wait(100);
+    assert_eq!((bench.gripper.force, bench.memory.grip.status.initialized), (force, false));
+    bench.gripper.object = None;
+    bench.done(GripVerb::OpenGrip, 2.0, 0);
+    assert!(bench.memory.grip.status.initialized && (bench.gripper.opening - 2.0).abs() <= 0.02);
+}
+
+#[test]
+fn what_does_not_finish_is_given_up() {
+    let mut bench = calibrated(15);
+    bench.gripper.object = Some(Object { size: 2.0, off_centre: 0.0 });
+    bench.command(GripVerb::Position, 1.0, 0);
+    let (ticks, outputs) = bench.finish();
+    assert_eq!((outputs.status.reason, ticks), (Reason::GripTimeout, 152));
+    bench.gripper.object = Some(Object { size: 2.0, off_centre: 3.0 });
+    bench.gripper.strain[1].1 = 0.0;
+    bench.command(GripVerb::CloseGrip, 1.0, 30);
+    assert_eq!(reason(&mut bench), Reason::GripTimeout, "a dead strain gage: the second finger never comes");
+}
+
+#[test]
+fn sensors_that_tell_nothing_are_not_calibrated() {
+    for (fault, breakage) in [
+        ("strain gage", (|g: &mut Gripper| g.strain[0].1 = 0.0) as fn(&mut Gripper)),
+        ("potentiometer", |g| g.potentiometer.1 = 0.0),
+        ("converter at its end", |g| g.strain[1].1 = 60.0),
+        ("noise", |g| g.noise = 40),
+    ] {
+        let mut bench = Bench::new(Gripper::new(1.0, 16));
+        breakage(&mut bench.gripper);
+        bench.command(GripVerb::CloseGrip, 0.6, 30);
+        assert_eq!(reason(&mut bench), Reason::GripNotCalibrated, "{fault}");
+        assert_eq!(bench.process.state.phase, Phase::Failed);
+        bench.gripper = Gripper::new(1.0, 16);
+        bench.done(GripVerb::Position, 0.6, 0);
+    }
+}
+
+/// Random work for one bench; returns the images of all outputs.
+fn work(
+    mut bench: Bench,
+    commands: &[(bool, i32, i32, i32)],
+    size: f64,
+) -> Result<Vec<[u8; 64]>, TestCaseError> {
+    let mut images = Vec::new();
+    for &(grasp, opening, force, velocity) in commands {
+        let opening = f64::from(opening) / 100.0;
+        bench.gripper.object = None;
+        if grasp {
+            bench.done(GripVerb::OpenGrip, 4.5, 0);
+            bench.gripper.object = Some(Object { size, off_centre: 0.1 });
+            bench.command_at(GripVerb::CloseGrip, size - 0.025, force, velocity);
+        } else {
+            bench.command_at(GripVerb::Position, opening, 0, velocity);
+        }
+        let (_, outputs) = bench.finish();
+        prop_assert_eq!(outputs.status.report, GripReport::Done);
+        if grasp {
+            prop_assert!(
+                (bench.gripper.force - f64::from(force)).abs() <= 3.0,
+                "{} lb for {force}",
+                bench.gripper.force
+            );
+            prop_assert!(
+                (bench.gripper.opening - size).abs() < 1e-9,
+                "{} in for {size}",
+                bench.gripper.opening
+            );
+        } else {
+            prop_assert!(
+                (bench.gripper.opening - opening).abs() <= 0.02,
+                "{} in for {opening}",
+                bench.gripper.opening
+            );
+        }
+        images.push(to_bytes(&outputs));
+    }
+    Ok(images)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    /// From any opening, with any noise of 1 or 2 counts and valves that act at once or a tick late: positions to 0.02 in,
+    /// forces to 3 lb, never both ways at once, and the same bits twice.
+    #[test]
+    fn servo(
+        seed in any::<u64>(),
+        start in 0.10..5.0_f64,
+        noise in 1_u16..=2,
+        late in any::<bool>(),
+        size in 0.3..4.0_f64,
+        commands in prop::collection::vec((any::<bool>(), 10..=500_i32, 5..=80_i32, 0..500_i32), 1..12),
+    ) {
+        let size = (size * 100.0).round() / 100.0 + 0.005;
+        let mut gripper = Gripper::new(start, seed);
+        (gripper.noise, gripper.late) = (noise, late);
+        let bench = || Bench::new(gripper.clone());
+        let once = work(bench(), &commands, size)?;
+        prop_assert_eq!(once, work(bench(), &commands, size)?);
+    }
+
+    /// UP-INIT finds scale and offset from any opening, whatever the sensors' offsets and scales are.
+    #[test]
+    fn calibration(
+        seed in any::<u64>(),
+        start in 0.10..5.0_f64,
+        noise in 1_u16..=2,
+        late in any::<bool>(),
+        potentiometer in (0.0..500.0_f64, 300.0..700.0_f64),
+        left in (10.0..500.0_f64, 10.0..44.0_f64),
+        right in (10.0..500.0_f64, 10.0..44.0_f64),
+    ) {
+        let mut gripper = Gripper::new(start, seed);
+        (gripper.noise, gripper.late, gripper.potentiometer, gripper.strain) = (noise, late, potentiometer, [left, right]);
+        let mut bench = Bench::new(gripper);
+        bench.wait(200);
+        let calibration = bench.process.state.calibration;
+        for (scale, (zero, counts), most) in
+            [(calibration.potentiometer, potentiometer, 5.0), (calibration.left, left, 80.0), (calibration.right, right, 80.0)]
+        {
+            for value in [0.0, most / 2.0, most] {
+                let found = scale.value(zero + counts * value);
+                prop_assert!((found - value).abs() < 2.0 / counts, "{found} for {value} of {most}");
+            }
+        }
+    }
+
+    /// Whatever the sensors read and whatever is commanded, nothing panics and no valves fight.
+    #[test]
+    fn nonsense(
+        seed in any::<u64>(),
+        ticks in prop::collection::vec((0_u8..40, any::<i32>(), any::<i32>(), any::<i32>(), any::<u8>(), any::<u16>()), 1..200),
+    ) {
+        let mut bench = Bench::new(Gripper::new(1.0, seed));
+        for (what, a, b, c, id, counts) in ticks {
+            if let Some(verb) = GripVerb::from_code(what) {
+                let number = bench.memory.emove.grip.number.wrapping_add(1);
+                let command = &mut bench.memory.emove.grip;
+                (command.number, command.command, command.position) = (number, verb, a);
+                (command.force, command.velocity, command.end_effector_id) = (b, c, id);
+            }
+            match what {
+                10 => bench.process = Grip::default(),
+                11 => bench.attach(id % 2 == 0),
+                12 => bench.gripper.noise = counts,
+                13 => bench.gripper.opening = 0.1 + f64::from(counts) / 20_000.0,
+                _ => {}
+            }
+            bench.step();
+        }
+    }
+}
+
+#[test]
+fn state_and_outputs_survive_as_bytes() {
+    let mut bench = calibrated(17);
+    bench.command(GripVerb::Position, 3.0, 0);
+    bench.wait(7);
+    let state = *<Grip as Process<()>>::state(&bench.process);
+    let image: [u8; 512] = to_bytes(&state);
+    assert!(State::SIZE <= image.len() && GripOutputs::SIZE <= 64, "{} {}", State::SIZE, GripOutputs::SIZE);
+    let back = rcs_core::record::from_bytes::<State>(&image).unwrap();
+    let mut resumed = Grip::default();
+    Process::<()>::restore(&mut resumed, back);
+    let going_on = bench.wait(100);
+    let mut again = calibrated(17);
+    again.command(GripVerb::Position, 3.0, 0);
+    again.wait(7);
+    again.process = resumed;
+    assert_eq!(again.wait(100), going_on);
+}
+
+/// Up to the tick after the valves went off.
+fn settle(bench: &mut Bench) {
+    bench.step();
+    while bench.process.state.settled == 0 {
+        bench.step();
+    }
+}
+
+#[test]
+fn every_row_fires() {
+    let mut bench = Bench::new(Gripper::new(1.0, 18));
+    // UP-INIT 1, 2, 4, 5, 6: taken off on the way.
+    bench.wait(40);
+    bench.attach(false);
+    bench.wait(2);
+    // UP-INIT 3: noise hides the ends; 10: a dead strain gage; 7, 8, 9: at last.
+    bench.attach(true);
+    bench.gripper.noise = 40;
+    bench.wait(410);
+    (bench.gripper.noise, bench.gripper.strain[0].1) = (1, 0.0);
+    bench.command(GripVerb::UpInit, 0.0, 0);
+    bench.finish();
+    bench.gripper.strain[0].1 = 40.5;
+    bench.done(GripVerb::UpInit, 0.0, 0);
+    // PAUSE 1, 2.
+    bench.done(GripVerb::Pause, 0.0, 0);
+    bench.attach(false);
+    bench.done(GripVerb::Pause, 0.0, 0);
+    bench.attach(true);
+    // POSITION 3 to 12: both ways, and pushed away while settling.
+    bench.done(GripVerb::Position, 1.0, 0);
+    bench.command(GripVerb::Position, 3.0, 0);
+    settle(&mut bench);
+    bench.gripper.opening += 0.05;
+    bench.finish();
+    // POSITION 1, 2, CLOSE-GRIP 1, 2: taken off, stopped by something.
+    for verb in [GripVerb::Position, GripVerb::CloseGrip] {
+        bench.command(verb, 1.0, 30);
+        bench.wait(3);
+        bench.attach(false);
+        bench.finish();
+        bench.attach(true);
+        bench.gripper.object = Some(Object { size: 1.5, off_centre: 0.0 });
+        bench.gripper.strain[1].1 = 0.0;
+        bench.command(verb, 1.0, 30);
+        bench.finish();
+        bench.gripper.object = None;
+        bench.gripper.strain[1].1 = 39.2;
+        bench.done(GripVerb::OpenGrip, 3.0, 0);
+    }
+    // CLOSE-GRIP 3 to 12: off centre, far from the grasp size so that the force overshoots, and losing force while settling.
+    bench.gripper.object = Some(Object { size: 1.5, off_centre: 0.1 });
+    bench.command(GripVerb::CloseGrip, 0.6, 5);
+    settle(&mut bench);
+    bench.gripper.force = 30.0;
+    bench.finish();
+    bench.done(GripVerb::CloseGrip, 0.6, 60);
+    // The upper table notes refusals only.
+    bench.command(GripVerb::Position, 9.0, 0);
+    bench.finish();
+    bench.process = Grip::default();
+    bench.step();
+    let all = TABLES.iter().zip(1_u8..).flat_map(|(table, number)| {
+        let noted = move |row: &u8| number > 1 || matches!(row, 2 | 3);
+        table.rows.iter().map(|row| row.number).filter(noted).map(move |row| (number, row))
+    });
+    let missing: Vec<_> = all.filter(|row| !bench.rows.contains(row)).collect();
+    assert!(missing.is_empty(), "never fired: {missing:?}");
+}
