@@ -14,7 +14,7 @@
 //! * [`wire`]: one file a frame, every byte shown;
 //! * [`receive`]: byte-by-byte receivers of both ends;
 //! * [`limit`], [`step`]: the velocity limits, and steps that respect them;
-//! * [`host`], [`controller`]: the two ends.
+//! * [`host`], [`controller`]: the two ends; [`warning`]: what the controller complains of.
 //!
 //! All that the appendix leaves open is marked ASSUMED where it is decided.
 
@@ -40,6 +40,7 @@ pub mod limit;
 pub mod plate;
 pub mod receive;
 pub mod step;
+pub mod warning;
 pub mod wire;
 
 pub use error::Error;

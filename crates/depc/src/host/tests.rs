@@ -1,0 +1,156 @@
+//! The host's end against a line that is written by hand.
+
+use super::*;
+use crate::wire::Report;
+
+const HOME: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
+const HOME_FRAME: [u8; 16] = [0x03, 0, 0, 0, 0, 0xE7, 0x68, 0xFD, 0x85, 0xDC, 0xD8, 0x34, 0xB7, 0, 0, 0x73];
+
+fn position(function: [u8; 2]) -> Intent {
+    Intent::Position(DataCommand { function, plate: HOME })
+}
+
+/// One tick: bytes in, bytes out.
+fn tick(host: &mut Host, rx: &[u8], intent: &Intent) -> (HostEvent, Vec<u8>) {
+    let (mut line, mut tx) = (LinkBytes::default(), LinkBytes::default());
+    assert_eq!(line.extend(rx), rx.len());
+    let event = host.receive(&line, true);
+    host.transmit(intent, &mut tx);
+    (event, tx.as_slice().to_vec())
+}
+
+fn report() -> [u8; 16] {
+    let mut frame = [0xA5; 16];
+    Report { plate: HOME }.emit(&mut frame);
+    frame
+}
+
+fn running() -> Host {
+    let mut host = Host::new(ANSWER_TICKS);
+    assert_eq!(tick(&mut host, &report(), &Intent::Idle), (HostEvent::Started, vec![]));
+    assert_eq!((host.position(), host.can_send()), (HOME, true));
+    host
+}
+
+#[test]
+fn one_frame_a_tick_is_kept_up() {
+    let mut host = running();
+    assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)).1, HOME_FRAME);
+    for _ in 0..10 {
+        let (event, tx) = tick(&mut host, &[0x06], &position(NO_FUNCTION));
+        assert_eq!((event, tx.as_slice()), (HostEvent::Acknowledged, &HOME_FRAME[..]));
+    }
+    assert_eq!((host.counters().frames, host.counters().acknowledged), (11, 10));
+}
+
+#[test]
+fn one_frame_is_outstanding() {
+    let mut host = running();
+    tick(&mut host, &[], &position(NO_FUNCTION));
+    assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)).1, []);
+    assert!(!host.can_send());
+}
+
+#[test]
+fn a_nak_brings_the_same_bytes_and_not_for_ever() {
+    let mut host = running();
+    let other = Intent::Position(DataCommand { function: NO_FUNCTION, plate: Plate::default() });
+    tick(&mut host, &[], &position(NO_FUNCTION));
+    for _ in 0..MOST_RETRIES {
+        assert_eq!(tick(&mut host, &[0x15], &other), (HostEvent::None, HOME_FRAME.to_vec()));
+    }
+    assert_eq!(tick(&mut host, &[0x15], &other), (HostEvent::Lost, vec![0x05]));
+    assert_eq!(host.fault(), LinkFault::NotTransmitted);
+    assert_eq!((host.counters().retries, host.counters().naks), (3, 4));
+}
+
+#[test]
+fn without_an_answer_the_link_is_restarted_and_nothing_is_repeated() {
+    let mut host = running();
+    tick(&mut host, &[], &position([7, 9]));
+    assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::None, vec![]));
+    assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::None, vec![]));
+    assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::Lost, vec![0x05]));
+    assert_eq!((host.fault(), host.lost_function()), (LinkFault::NotResponding, [7, 9]));
+    // Late answers are discarded, the report is not.
+    assert_eq!(tick(&mut host, &[0x06, 0x15, 0x41], &position(NO_FUNCTION)).1, []);
+    assert_eq!(host.state(), HostState::Starting);
+    assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
+    assert_eq!(host.fault(), LinkFault::NotResponding);
+    host.forgive();
+    assert_eq!(host.fault(), LinkFault::None);
+}
+
+#[test]
+fn a_start_without_answer_is_tried_again_and_blamed_the_third_time() {
+    let mut host = Host::new(ANSWER_TICKS);
+    let mut sent = Vec::new();
+    for _ in 0..10 {
+        sent.push(tick(&mut host, &[], &Intent::Idle).1.len());
+    }
+    assert_eq!(sent, [0, 0, 0, 1, 0, 0, 1, 0, 0, 1]);
+    assert_eq!((host.fault(), host.counters().restarts), (LinkFault::NotResponding, 3));
+}
+
+#[test]
+fn a_wrong_report_is_asked_for_again_at_once() {
+    let mut host = running();
+    assert_eq!(tick(&mut host, &[], &Intent::Restart).1, [0x05]);
+    let mut wrong = report();
+    wrong[8] ^= 0x40;
+    assert_eq!(tick(&mut host, &wrong, &Intent::Idle), (HostEvent::None, vec![0x05]));
+    assert_eq!((host.counters().checksum_errors, host.fault()), (1, LinkFault::None));
+    assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
+}
+
+#[test]
+fn a_report_that_nobody_asked_for_is_an_error_of_depc() {
+    let mut host = running();
+    tick(&mut host, &[], &position(NO_FUNCTION));
+    assert_eq!(tick(&mut host, &report(), &Intent::Idle), (HostEvent::Lost, vec![0x05]));
+    assert_eq!(host.fault(), LinkFault::DepcError);
+    let mut host = running();
+    let mut wrong = report();
+    wrong[15] ^= 1;
+    assert_eq!(tick(&mut host, &wrong, &Intent::Idle).0, HostEvent::Lost);
+    assert_eq!(host.fault(), LinkFault::Checksum);
+}
+
+#[test]
+fn a_report_outside_the_coding_is_not_believed() {
+    let mut host = Host::new(ANSWER_TICKS);
+    let mut frame = [0; 16];
+    Report { plate: Plate { words: [0, 0, 0, 0, -1, 0] } }.emit(&mut frame);
+    assert_eq!(tick(&mut host, &frame, &Intent::Idle).0, HostEvent::None);
+    assert_eq!(host.state(), HostState::Starting);
+}
+
+#[test]
+fn dtr_is_watched() {
+    let mut host = running();
+    assert_eq!(host.receive(&LinkBytes::default(), false), HostEvent::Lost);
+    assert_eq!((host.state(), host.fault()), (HostState::Down, LinkFault::NotResponding));
+    let mut tx = LinkBytes::default();
+    assert!(!host.transmit(&Intent::Restart, &mut tx));
+    assert_eq!(tx.length, 0);
+    assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
+}
+
+#[test]
+fn cancel_is_repeated_until_it_is_acknowledged() {
+    let mut host = running();
+    assert_eq!(tick(&mut host, &[], &Intent::Cancel).1, [0x18]);
+    assert_eq!(tick(&mut host, &[0x15], &Intent::Idle).1, [0x18]);
+    assert_eq!(tick(&mut host, &[0x06], &Intent::Idle).1, []);
+    assert_eq!(host.state(), HostState::Ended);
+}
+
+#[test]
+fn a_full_line_is_said_to_be_full() {
+    let mut host = running();
+    let mut tx = LinkBytes::default();
+    tx.extend(&[0; 60]);
+    host.receive(&LinkBytes::default(), true);
+    assert!(!host.transmit(&position(NO_FUNCTION), &mut tx));
+    assert_eq!((host.fault(), host.state()), (LinkFault::NotTransmitted, HostState::Starting));
+}

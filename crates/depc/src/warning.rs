@@ -1,0 +1,125 @@
+//! What the controller complains of: the codes of its screen, and the joints behind some of them (A 2.3).
+
+use rcs_core::{
+    coded_enum,
+    kinematics::{Arm, Joints, ReachError},
+};
+
+use crate::{Plate, limit::Exceeded};
+
+/// Why the joints cannot take a position that the limits allow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointProblem {
+    /// The shoulder would go beyond its upper limit.
+    ShoulderUp,
+    /// The roll would leave its limits.
+    Roll,
+    /// Another joint would leave its limits, or the arm is too short.
+    Joint,
+    /// The gripper axis is along the pitch axis.
+    WristSingularity,
+}
+
+/// The joint angles (radians) for a position of the end plate, within the limits of `arm`.
+///
+/// # Errors
+/// [`JointProblem`] as the controller would name it.
+pub fn joints_for(arm: &Arm, goal: &Plate, near: &Joints) -> Result<Joints, JointProblem> {
+    let joints = arm.inverse(&goal.to_tool(arm), near).map_err(|error| match error {
+        ReachError::WristSingularity => JointProblem::WristSingularity,
+        ReachError::TooFar { .. } | ReachError::TooNear { .. } | ReachError::NotFinite => JointProblem::Joint,
+    })?;
+    for (joint, (angle, (low, high))) in joints.iter().zip(arm.limits).enumerate() {
+        if (low..=high).contains(angle) {
+            continue;
+        }
+        return Err(match joint {
+            1 if *angle > high => JointProblem::ShoulderUp,
+            5 => JointProblem::Roll,
+            _ => JointProblem::Joint,
+        });
+    }
+    Ok(joints)
+}
+
+coded_enum! {
+    /// Codes on the controller's screen (A 2.3, "T3 controller error messages").
+    pub enum Warning {
+        /// No warning.
+        None = "",
+        /// The RS232 board is missing.
+        BoardMissing = "WD0",
+        /// The host's DTR is off.
+        CtsLow = "WD1",
+        /// The interrupt pushbutton.
+        Interrupt = "WD2",
+        /// More than 14 in/s.
+        Translation = "WD3",
+        /// More than 1.0 rad/s.
+        Orientation = "WD4",
+        /// The transmitter has failed.
+        Transmitter = "WD5",
+        /// Joint limit reached (joint 6).
+        JointLimit = "WD6",
+        /// Joint 2 reached the upward DEPC limit.
+        ShoulderUp = "P05",
+        /// Joint limit reached.
+        OtherJoint = "P0B",
+        /// Wrist singularity problem.
+        Wrist = "P9P",
+        /// DEPC link terminated (unrecoverable).
+        Terminated = "PIG",
+    }
+}
+
+impl Warning {
+    /// True if a restart command of the host clears it. The appendix recommends that for D6, and the other joint problems
+    /// are of its kind; what an operator or the wiring has caused, and a broken velocity limit, take an ENTER (ASSUMED).
+    #[must_use]
+    pub const fn host_can_restart(self) -> bool {
+        matches!(self, Self::JointLimit | Self::ShoulderUp | Self::OtherJoint | Self::Wrist)
+    }
+}
+
+impl From<JointProblem> for Warning {
+    fn from(problem: JointProblem) -> Self {
+        match problem {
+            JointProblem::ShoulderUp => Self::ShoulderUp,
+            JointProblem::Roll => Self::JointLimit,
+            JointProblem::Joint => Self::OtherJoint,
+            JointProblem::WristSingularity => Self::Wrist,
+        }
+    }
+}
+
+impl From<Exceeded> for Warning {
+    fn from(exceeded: Exceeded) -> Self {
+        match exceeded {
+            Exceeded::Translation => Self::Translation,
+            Exceeded::Orientation => Self::Orientation,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rcs_core::kinematics::{HOME_JOINTS, T3};
+
+    const HOME: Plate = Plate { words: [0, -6293, -636, -9000, 13500, 0] };
+
+    #[test]
+    fn joint_problems_are_told_apart() {
+        let at = |degrees: [f64; 6]| {
+            let frame = T3.forward_plate(&degrees.map(f64::to_radians));
+            joints_for(&T3, &Plate::from_frame(&frame, &HOME).unwrap(), &HOME_JOINTS).map(drop)
+        };
+        assert_eq!(at([-90.0, 45.0, -90.0, 0.0, 0.0, 0.0]), Ok(()));
+        assert_eq!(at([-90.0, 92.0, -90.0, 0.0, 0.0, 0.0]), Err(JointProblem::ShoulderUp));
+        assert_eq!(at([-90.0, -5.0, -90.0, 0.0, 0.0, 0.0]), Err(JointProblem::Joint));
+        assert_eq!(at([-90.0, 45.0, -90.0, 0.0, 0.0, 140.0]), Err(JointProblem::Roll));
+        assert_eq!(at([-90.0, 45.0, -90.0, 0.0, 90.0, 0.0]), Err(JointProblem::WristSingularity));
+        let far = Plate { words: [0, -15_000, 0, -9000, 9000, 0] };
+        assert_eq!(joints_for(&T3, &far, &HOME_JOINTS), Err(JointProblem::Joint));
+    }
+}
