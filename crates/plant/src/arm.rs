@@ -79,7 +79,6 @@ impl Arm {
     }
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -136,7 +136,9 @@ impl Camera {
         answer.z = hundredths(face.centre.z * scale + self.noise.within(error));
         answer.status = VisionStatus::Done;
         if precise {
-            let measured = face.edges.map(|(_, length)| length * scale + self.noise.within(self.description.shape_noise));
+            let measured = face
+                .edges
+                .map(|(_, length)| length * scale + self.noise.within(self.description.shape_noise));
             let turn = self.noise.within(self.description.angle_noise.to_radians());
             answer.angle = grip_angle(&face.edges, request.grip, turn);
             match expected {
@@ -154,7 +156,10 @@ impl Camera {
         let widest = self.description.view / (inches(self.description.reference_range_mm / 1000.0));
         let faces = subjects.iter().map(Subject::face).filter(|face| {
             let limit = widest * face.centre.x;
-            face.centre.x > 0.0 && face.centre.y.abs() <= limit && face.centre.z.abs() <= limit && face.height > 0.0
+            face.centre.x > 0.0
+                && face.centre.y.abs() <= limit
+                && face.centre.z.abs() <= limit
+                && face.height > 0.0
         });
         let away = |face: &Face| libm::hypot(face.centre.y, face.centre.z);
         faces.min_by(|a, b| away(a).total_cmp(&away(b)))
@@ -203,13 +208,15 @@ mod tests {
     /// GR-PIC of the cell proposal.
     fn gr_pic() -> Movetable {
         let line = |system, values| Line { system, values };
-        Movetable::from_lines(&[line(System::Tool, [-1468, 0, -252]), line(System::ToolOrigin, [-300, 0, 0])]).unwrap()
+        Movetable::from_lines(&[line(System::Tool, [-1468, 0, -252]), line(System::ToolOrigin, [-300, 0, 0])])
+            .unwrap()
     }
 
     /// A bar on the place, seen from the view point above it.
     fn bar(y: f64, z: f64, roll: f64) -> Subject {
         let place = straight_down(Vector::new(-50.75, 10.25, -16.55));
-        let part = place.shifted(Vector::new(-0.3125, y, z)).turned(&rotation_by(&Vector::new(roll, 0.0, 0.0)));
+        let part =
+            place.shifted(Vector::new(-0.3125, y, z)).turned(&rotation_by(&Vector::new(roll, 0.0, 0.0)));
         let view = camera().frame(&gr_pic().apply(&place));
         Subject { frame: view.inverse().compose(&part), size: Vector::new(0.625, 0.625, 4.0) }
     }

@@ -78,9 +78,14 @@ mod tests {
     #[test]
     fn a_contact_is_reported_when_it_begins() {
         let shape = Cuboid::new(Vector::splat(0.1));
-        let table = Obstacle { name: "table".into(), pose: Pose::IDENTITY, aabb: shape.aabb(&Pose::IDENTITY), shape };
+        let table =
+            Obstacle { name: "table".into(), pose: Pose::IDENTITY, aabb: shape.aabb(&Pose::IDENTITY), shape };
         let at = |z: Real| {
-            vec![Mover { name: "hand".into(), pose: Pose::translation(0.0, 0.0, z), shape: SharedShape::ball(0.05) }]
+            vec![Mover {
+                name: "hand".into(),
+                pose: Pose::translation(0.0, 0.0, z),
+                shape: SharedShape::ball(0.05),
+            }]
         };
         let mut clearance = Clearance::default();
         let mut check = |z: Real| clearance.check(&at(z), [&table].into_iter());

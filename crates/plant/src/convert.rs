@@ -69,6 +69,12 @@ pub fn to_frame(pose: &Pose) -> Frame {
     }
 }
 
+/// The quaternion of the same rotation that is nearer to `near`: of the two signs, the one that leads there without a turn.
+#[must_use]
+pub fn on_the_side_of(near: &Rotation, rotation: Rotation) -> Rotation {
+    if near.dot(rotation) < 0.0 { -rotation } else { rotation }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -76,7 +82,10 @@ mod tests {
 
     #[test]
     fn a_frame_comes_back() {
-        let frame = Frame { position: Vector::new(68.0, -44.0, -4.0), rotation: rotation_by(&Vector::new(0.3, -2.0, 1.1)) };
+        let frame = Frame {
+            position: Vector::new(68.0, -44.0, -4.0),
+            rotation: rotation_by(&Vector::new(0.3, -2.0, 1.1)),
+        };
         let distance = to_frame(&to_pose(&frame)).distance(&frame);
         assert!(distance.inches < 1e-12 && distance.radians < 1e-12, "{distance:?}");
     }

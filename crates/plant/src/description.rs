@@ -384,7 +384,10 @@ impl CellDescription {
         let gripper = &self.gripper;
         check.positive("gripper.body", &gripper.body);
         check.positive("gripper.fingers", &gripper.fingers);
-        check.positive("gripper.quick_change_length, quick_change_radius", &[gripper.quick_change_length, gripper.quick_change_radius]);
+        check.positive(
+            "gripper.quick_change_length, quick_change_radius",
+            &[gripper.quick_change_length, gripper.quick_change_radius],
+        );
         let length = gripper.quick_change_length + gripper.body[0] + gripper.fingers[0];
         check.that(
             (length - T3.plate_to_tool).abs() < 1e-6,
@@ -405,12 +408,23 @@ impl CellDescription {
         let full = sensors.potentiometer_offset + sensors.potentiometer_scale * greatest;
         check.within("gripper.sensors: potentiometer at the greatest opening", full, 1.0, 4095.0);
         for (offset, scale) in sensors.strain_offsets.iter().zip(sensors.strain_scales) {
-            check.within("gripper.sensors: strain gage at the greatest force", offset + scale * gripper.greatest_force, 1.0, 4095.0);
+            check.within(
+                "gripper.sensors: strain gage at the greatest force",
+                offset + scale * gripper.greatest_force,
+                1.0,
+                4095.0,
+            );
         }
         check.within("gripper.sensors.noise", sensors.noise, 0.0, 100.0);
         let camera = &self.camera;
         check.positive("camera: view, reference_range_mm", &[camera.view, camera.reference_range_mm]);
-        let noises = [camera.flood_noise, camera.precise_noise, camera.angle_noise, camera.shape_noise, camera.shape_tolerance];
+        let noises = [
+            camera.flood_noise,
+            camera.precise_noise,
+            camera.angle_noise,
+            camera.shape_noise,
+            camera.shape_tolerance,
+        ];
         for noise in noises {
             check.within("camera.*_noise, shape_tolerance", noise, 0.0, 10.0);
         }
@@ -420,7 +434,10 @@ impl CellDescription {
     fn check_vise_and_trays(&self, check: &mut Check) {
         let vise = &self.vise;
         check.positive("vise.jaw", &vise.jaw);
-        check.positive("vise: speed, force, friction, body_height", &[vise.speed, vise.force, vise.friction, vise.body_height]);
+        check.positive(
+            "vise: speed, force, friction, body_height",
+            &[vise.speed, vise.force, vise.friction, vise.body_height],
+        );
         check.within("vise.notch_back", vise.notch_back, 0.0, vise.jaw[0]);
         check.within("vise.notch_depth", vise.notch_depth, 0.0, vise.jaw[1]);
         let closed = 2.0 * vise.notch_depth;
@@ -432,7 +449,12 @@ impl CellDescription {
         check.positive("tray_shape", &[shape.inside, shape.wall, shape.rim, shape.floor_thickness]);
         check.within("tray_shape.random_offset", shape.random_offset, 0.0, shape.inside / 2.0);
         for tray in &self.tray {
-            check.that(!tray.sectors.is_empty(), &format!("tray {}: sectors", tray.unit), "at least one", "none");
+            check.that(
+                !tray.sectors.is_empty(),
+                &format!("tray {}: sectors", tray.unit),
+                "at least one",
+                "none",
+            );
             for (number, [x, y]) in tray.sectors.iter().enumerate() {
                 let [cx, cy] = tray.centre;
                 let away = (x - cx).abs().max((y - cy).abs());
@@ -452,7 +474,12 @@ impl CellDescription {
             check.that(names.insert((kind, name)), &format!("{kind} {name}"), "one entry for a name", "two");
             if kind == "part" || kind == "tray" {
                 let fits = Name16::new(name);
-                check.that(fits.is_ok(), &format!("{kind} {name}"), "a name of at most 16 printable characters", name);
+                check.that(
+                    fits.is_ok(),
+                    &format!("{kind} {name}"),
+                    "a name of at most 16 printable characters",
+                    name,
+                );
             }
         }
         check.that(!self.part.is_empty(), "part", "at least one", "none");
@@ -472,7 +499,11 @@ struct Check(Vec<Fault>);
 impl Check {
     fn that(&mut self, holds: bool, entry: &str, expected: impl fmt::Display, found: impl fmt::Display) {
         if !holds {
-            self.0.push(Fault { entry: entry.into(), expected: expected.to_string(), found: found.to_string() });
+            self.0.push(Fault {
+                entry: entry.into(),
+                expected: expected.to_string(),
+                found: found.to_string(),
+            });
         }
     }
 
@@ -499,12 +530,16 @@ mod tests {
         let sector = cell.tray("UNIT_1").unwrap().sector(4).unwrap();
         assert!((sector.position - Vector::new(-50.75, 10.25, -16.55)).norm() < 1e-12);
         assert!((sector.y() - Vector::new(0.0, -1.0, 0.0)).norm() < 1e-12, "tool Y is the robot's left: -Y");
-        assert!(cell.tray("UNIT_1").unwrap().sector(0).is_none() && cell.tray("UNIT_1").unwrap().sector(5).is_none());
+        assert!(
+            cell.tray("UNIT_1").unwrap().sector(0).is_none()
+                && cell.tray("UNIT_1").unwrap().sector(5).is_none()
+        );
     }
 
     #[test]
     fn a_misspelt_entry_is_named() {
-        let error = CellDescription::from_toml(&TEXT.replace("servo_lag_s", "servo_lag")).unwrap_err().to_string();
+        let error =
+            CellDescription::from_toml(&TEXT.replace("servo_lag_s", "servo_lag")).unwrap_err().to_string();
         assert!(error.contains("servo_lag"), "{error}");
     }
 
@@ -519,7 +554,10 @@ mod tests {
         };
         let entries: Vec<&str> = faults.all().iter().map(|f| f.entry.as_str()).collect();
         assert_eq!(entries.len(), 3, "{faults}");
-        assert!(faults.to_string().contains("expected the tool length of the arm, 12 in, found 13"), "{faults}");
+        assert!(
+            faults.to_string().contains("expected the tool length of the arm, 12 in, found 13"),
+            "{faults}"
+        );
     }
 
     #[test]

@@ -7,9 +7,7 @@
 //! the geometry says so ([`crate::squeeze`]); what they hold then is a [`Hold`].
 
 use rapier3d_f64::prelude::*;
-use rcs_core::{
-    interface::device::{ADC_FULL_SCALE, GripSensors, valve},
-};
+use rcs_core::interface::device::{ADC_FULL_SCALE, GripSensors, valve};
 
 use crate::{
     convert::{KILOGRAMS_PER_POUND, inches, metres, newtons},
@@ -142,7 +140,8 @@ impl Gripper {
             .collision_groups(groups(FINGER, Group::ALL & !FINGER));
         world.insert_collider(body, Some(hand));
         let air = Air::new(description);
-        let fingers = [1.0, -1.0].map(|side| Finger::new(world, description, stiffness, hand, tool, side, air.opening()));
+        let fingers = [1.0, -1.0]
+            .map(|side| Finger::new(world, description, stiffness, hand, tool, side, air.opening()));
         let shown = (air.opening(), 0.0);
         Self { description: description.clone(), air, hold: None, hand, fingers, shown }
     }
@@ -209,7 +208,9 @@ impl Gripper {
         let [left_offset, right_offset] = sensors.strain_offsets;
         let [left_scale, right_scale] = sensors.strain_scales;
         GripSensors {
-            potentiometer: counts(sensors.potentiometer_offset + sensors.potentiometer_scale * self.air.opening()),
+            potentiometer: counts(
+                sensors.potentiometer_offset + sensors.potentiometer_scale * self.air.opening(),
+            ),
             strain_left: counts(left_offset + left_scale * self.air.force()),
             strain_right: counts(right_offset + right_scale * self.air.force()),
             beams,
@@ -245,7 +246,11 @@ impl Gripper {
 /// Where a finger's middle stands in the tool frame, metres.
 fn finger_rest(description: &Description, side: Real, opening: f64) -> Pose {
     let [length, thickness, _] = description.fingers;
-    Pose::from_translation(Vector::new(-metres(length / 2.0), side * metres((opening + thickness) / 2.0), 0.0))
+    Pose::from_translation(Vector::new(
+        -metres(length / 2.0),
+        side * metres((opening + thickness) / 2.0),
+        0.0,
+    ))
 }
 
 impl Finger {
@@ -262,7 +267,8 @@ impl Finger {
         let mass = description.finger_weight * KILOGRAMS_PER_POUND;
         let [x, y, z] = description.fingers.map(|size| metres(size / 2.0));
         // The weight of the fingers is part of the arm's calibration: resting springs are not loaded by it.
-        let body = world.insert_body(RigidBodyBuilder::dynamic().pose(*tool * rest).gravity_scale(0.0).can_sleep(false));
+        let body = world
+            .insert_body(RigidBodyBuilder::dynamic().pose(*tool * rest).gravity_scale(0.0).can_sleep(false));
         let collider = ColliderBuilder::cuboid(x, y, z)
             .mass(mass)
             .friction(description.friction)
@@ -273,7 +279,10 @@ impl Finger {
         // they add a hundredth to what the tip gives way.
         let angular = 100.0 * linear * x * x;
         let inertia = mass / 3.0 * (x * x + z * z);
-        let mut data = GenericJointBuilder::new(JointAxesMask::empty()).local_frame1(rest).contacts_enabled(false).build();
+        let mut data = GenericJointBuilder::new(JointAxesMask::empty())
+            .local_frame1(rest)
+            .contacts_enabled(false)
+            .build();
         for axis in [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ] {
             let damping = 2.0 * libm::sqrt(linear * mass);
             data.set_motor_model(axis, MotorModel::ForceBased).set_motor(axis, 0.0, 0.0, linear, damping);

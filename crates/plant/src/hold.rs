@@ -6,10 +6,10 @@
 //! after the part, so that the part slides against exactly the limiting force. In the plane of the pads the limit is
 //! friction, across it the pads' force, and about each axis the moment that the touched area can carry.
 
-use rapier3d_f64::prelude::*;
 use rapier3d_f64::math::Vector;
+use rapier3d_f64::prelude::*;
 
-use crate::squeeze::Squeeze;
+use crate::{convert::on_the_side_of, squeeze::Squeeze};
 
 /// The six axes in the order of limits: X, Y, Z, about X, about Y, about Z. Y is across the pads.
 const AXES: [JointAxis; 6] =
@@ -72,10 +72,14 @@ impl Hold {
         let inertia = load.inertia + load.mass * anchor.translation.length_squared();
         let linear_damping = 2.0 * libm::sqrt(stiffness.linear * load.mass);
         let angular_damping = 2.0 * libm::sqrt(stiffness.angular * inertia);
-        let mut data = GenericJointBuilder::new(JointAxesMask::empty()).local_frame1(rest).local_frame2(anchor).build();
+        let mut data =
+            GenericJointBuilder::new(JointAxesMask::empty()).local_frame1(rest).local_frame2(anchor).build();
         for (index, axis) in AXES.into_iter().enumerate() {
-            let (k, c) =
-                if index < 3 { (stiffness.linear, linear_damping) } else { (stiffness.angular, angular_damping) };
+            let (k, c) = if index < 3 {
+                (stiffness.linear, linear_damping)
+            } else {
+                (stiffness.angular, angular_damping)
+            };
             data.set_motor_model(axis, MotorModel::ForceBased).set_motor(axis, 0.0, 0.0, k, c);
             data.set_motor_max_force(axis, 0.0);
         }
@@ -119,7 +123,8 @@ impl Hold {
     fn error(&self, world: &PhysicsWorld) -> Pose {
         let pads = world.bodies[self.pads].position();
         let part = world.bodies[self.part].position();
-        self.rest.inv_mul(&(pads.inv_mul(part) * self.anchor))
+        let error = self.rest.inv_mul(&(pads.inv_mul(part) * self.anchor));
+        Pose::from_parts(error.translation, on_the_side_of(&Rotation::IDENTITY, error.rotation))
     }
 
     /// After a step: let the rest position follow where a spring is beyond its limit. Returns how far, m.
@@ -158,7 +163,16 @@ impl Hold {
         self.set_rest(world, self.rest * error);
     }
 
+    /// Lead the part: all springs rest at the present point, moved along Y to `y` in the axes of the pads' body.
+    pub fn lead(&mut self, world: &mut PhysicsWorld, y: Real) {
+        let mut rest = self.rest;
+        rest.translation.y = y;
+        self.set_rest(world, rest);
+    }
+
     fn set_rest(&mut self, world: &mut PhysicsWorld, rest: Pose) {
+        // Rests are products of many rotations: without this their length would run away.
+        let rest = Pose::from_parts(rest.translation, rest.rotation.normalize());
         self.rest = rest;
         if let Some(joint) = world.impulse_joints.get_mut(self.joint, false) {
             joint.data.set_local_frame1(rest);

@@ -7,7 +7,7 @@ use crate::{
     convert::{KILOGRAMS_PER_POUND, metres, to_frame, to_pose},
     description::PartType,
     hold::Load,
-    scene::{FINGER, PART, groups},
+    scene::{FINGER, JAW, PART, groups},
 };
 
 /// Coefficient of friction of a part's surface.
@@ -72,11 +72,16 @@ impl Part {
         Load { mass, inertia }
     }
 
-    /// Whether the fingers collide with it: not while they hold it.
-    pub fn meet_fingers(&self, world: &mut PhysicsWorld, meets: bool) {
+    /// What holds it: fingers and jaws that hold a part do not also collide with it.
+    pub fn set_held_by(&self, world: &mut PhysicsWorld, fingers: bool, jaws: bool) {
+        let mut filter = Group::ALL;
+        filter.set(FINGER, !fingers);
+        filter.set(JAW, !jaws);
         if let Some(collider) = world.colliders.get_mut(self.collider) {
-            let filter = if meets { Group::ALL } else { Group::ALL & !FINGER };
             collider.set_collision_groups(groups(PART, filter));
+        }
+        if let Some(body) = world.bodies.get_mut(self.body) {
+            body.wake_up(true);
         }
     }
 
@@ -153,9 +158,16 @@ mod tests {
     #[test]
     fn a_beam_is_broken_by_what_crosses_it() {
         let half = Vector::new(0.01, 0.01, 0.05);
-        let across = |z: Real| segment_meets_box(Vector::new(0.0, -0.1, z), Vector::new(0.0, 0.1, z), &Pose::IDENTITY, half);
+        let across = |z: Real| {
+            segment_meets_box(Vector::new(0.0, -0.1, z), Vector::new(0.0, 0.1, z), &Pose::IDENTITY, half)
+        };
         assert!(across(0.049) && !across(0.051));
-        let short = segment_meets_box(Vector::new(0.0, -0.1, 0.0), Vector::new(0.0, -0.02, 0.0), &Pose::IDENTITY, half);
+        let short = segment_meets_box(
+            Vector::new(0.0, -0.1, 0.0),
+            Vector::new(0.0, -0.02, 0.0),
+            &Pose::IDENTITY,
+            half,
+        );
         assert!(!short, "the part is behind the receiver");
     }
 }

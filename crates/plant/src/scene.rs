@@ -12,8 +12,10 @@ use crate::{
     description::{CellDescription, Fixture, Tray, TrayShape, Vise},
 };
 
-/// Collision group of what stands still and of the vise jaw.
+/// Collision group of what stands still.
 pub const WORLD: Group = Group::GROUP_1;
+/// Collision group of the jaws of the vise.
+pub const JAW: Group = Group::GROUP_4;
 /// Collision group of the gripper.
 pub const FINGER: Group = Group::GROUP_2;
 /// Collision group of parts.
@@ -39,12 +41,18 @@ pub struct Block {
     pub size: Inches,
     /// Parts that are carried may touch it: it is there to work on.
     pub work_surface: bool,
+    /// It is a jaw of the vise.
+    pub jaw: bool,
 }
 
 impl Block {
     fn between(name: &str, low: Inches, high: Inches, work_surface: bool) -> Self {
         let frame = Frame { position: (low + high) / 2.0, rotation: Rotation::identity() };
-        Self { name: name.into(), frame, size: high - low, work_surface }
+        Self { name: name.into(), frame, size: high - low, work_surface, jaw: false }
+    }
+
+    fn jaw(name: &str, low: Inches, high: Inches) -> Self {
+        Self { jaw: true, ..Self::between(name, low, high, true) }
     }
 
     /// Half the size, metres.
@@ -66,7 +74,7 @@ impl Block {
         ColliderBuilder::cuboid(half.x, half.y, half.z)
             .position(to_pose(&self.frame))
             .friction(FRICTION)
-            .collision_groups(groups(WORLD, Group::ALL))
+            .collision_groups(groups(if self.jaw { JAW } else { WORLD }, Group::ALL))
     }
 }
 
@@ -90,6 +98,7 @@ fn fixture(fixture: &Fixture) -> Block {
         frame: Frame { position: Inches::from(fixture.centre), rotation },
         size: Inches::from(fixture.size),
         work_surface: false,
+        jaw: false,
     }
 }
 
@@ -101,7 +110,9 @@ fn tray_blocks(tray: &Tray, shape: &TrayShape) -> Vec<Block> {
     let (bottom, floor, rim) = (tray.floor - shape.floor_thickness, tray.floor, tray.floor + shape.rim);
     let name = |what: &str| format!("{}_{what}", tray.unit);
     let centre = Inches::new(x, y, 0.0);
-    let block = |what: &str, low: Inches, high: Inches, work| Block::between(&name(what), centre + low, centre + high, work);
+    let block = |what: &str, low: Inches, high: Inches, work| {
+        Block::between(&name(what), centre + low, centre + high, work)
+    };
     vec![
         block("floor", Inches::new(-outer, -outer, bottom), Inches::new(outer, outer, floor), true),
         block("far_wall", Inches::new(-outer, -outer, floor), Inches::new(-inner, outer, rim), false),
@@ -128,17 +139,15 @@ fn vise_blocks(vise: &Vise) -> Vec<Block> {
             Inches::new(body_back, vise.body_y[1], -height),
             true,
         ),
-        Block::between(
+        Block::jaw(
             "fixed_jaw_notch",
             Inches::new(0.0, -thickness, -height),
             Inches::new(vise.notch_back, -vise.notch_depth, 0.0),
-            true,
         ),
-        Block::between(
+        Block::jaw(
             "fixed_jaw",
             Inches::new(vise.notch_back, -thickness, -height),
             Inches::new(depth, 0.0, 0.0),
-            true,
         ),
     ]
 }
@@ -149,12 +158,15 @@ pub fn jaw_blocks(vise: &Vise) -> Vec<Block> {
     let [depth, thickness, height] = vise.jaw;
     let outer = thickness - vise.notch_depth;
     vec![
-        Block::between("movable_jaw_notch", Inches::new(0.0, 0.0, -height), Inches::new(vise.notch_back, outer, 0.0), true),
-        Block::between(
+        Block::jaw(
+            "movable_jaw_notch",
+            Inches::new(0.0, 0.0, -height),
+            Inches::new(vise.notch_back, outer, 0.0),
+        ),
+        Block::jaw(
             "movable_jaw",
             Inches::new(vise.notch_back, -vise.notch_depth, -height),
             Inches::new(depth, outer, 0.0),
-            true,
         ),
     ]
 }

@@ -85,8 +85,8 @@ impl T3Controller {
     /// # Errors
     /// [`DriveError::OutOfRange`] if the end plate is beyond the words of the line.
     pub fn new(start: &Joints) -> Result<Self, DriveError> {
-        let plate =
-            Plate::from_frame(&T3.forward_plate(start), &Plate::default()).map_err(|_| DriveError::OutOfRange)?;
+        let plate = Plate::from_frame(&T3.forward_plate(start), &Plate::default())
+            .map_err(|_| DriveError::OutOfRange)?;
         let panel = ControllerInputs { board: true, cts: true, start: true, ..ControllerInputs::default() };
         Ok(Self { depc: Controller::new(Limits::NBS), servos: Servos { plate, joints: *start }, panel })
     }

@@ -1,8 +1,9 @@
 //! The programmable vise: a fixed jaw, a movable jaw, and what is clamped between them.
 //!
-//! The jaw moves at its speed to an opening and is stopped by a part that lies between both clamping faces; then the part
-//! is held by the closing force and friction ([`crate::hold`]). A part that is still in the gripper's fingers when the jaw
-//! reaches it is pushed through the fingers: 500 lb against at most twice the finger force.
+//! The jaw moves at its speed to an opening. When it reaches a part on its way it takes the part along, flush with its
+//! face, and is stopped when the part lies against the fixed face; from then on the part is held by the closing force and
+//! friction ([`crate::hold`]). The gripper does not resist that: 500 lb against at most twice the finger force. A part that
+//! is still between the fingers is pushed aside in them.
 
 use rapier3d_f64::prelude::*;
 use rcs_core::frame::{Frame, Vector as Inches};
@@ -35,6 +36,7 @@ pub struct Vise {
     target: f64,
     jaw: RigidBodyHandle,
     base: RigidBodyHandle,
+    stopped: bool,
     /// What is clamped, by the index of the part.
     pub hold: Option<(usize, Hold)>,
 }
@@ -50,7 +52,16 @@ impl Vise {
         for block in jaw_blocks(description) {
             world.insert_collider(block.collider().friction(description.friction), Some(jaw));
         }
-        Self { description: description.clone(), frame, opening, target: opening, jaw, base, hold: None }
+        Self {
+            description: description.clone(),
+            frame,
+            opening,
+            target: opening,
+            jaw,
+            base,
+            stopped: false,
+            hold: None,
+        }
     }
 
     /// The frame of the vise, in.
@@ -86,48 +97,45 @@ impl Vise {
     /// True while the jaw is on its way.
     #[must_use]
     pub fn moving(&self) -> bool {
-        self.hold.is_none() && (self.opening - self.target).abs() > 1e-9
+        !self.stopped && (self.opening - self.target).abs() > 1e-9
     }
 
-    /// Command an opening. What was clamped is let go when the jaw opens.
-    pub fn command(&mut self, world: &mut PhysicsWorld, jaws: Jaws) {
+    /// True while the jaw is on its way to the fixed jaw.
+    #[must_use]
+    pub fn closing(&self) -> bool {
+        self.moving() && self.target < self.opening
+    }
+
+    /// Command an opening. Who commands one that is wider must first let go of what is clamped.
+    pub fn command(&mut self, jaws: Jaws) {
         self.target = match jaws {
             Jaws::Open => self.description.opening_open,
             Jaws::Partial => self.description.opening_partial,
-            Jaws::Closed => self.closed(),
+            // The inner faces of the jaws meet.
+            Jaws::Closed => 2.0 * self.description.notch_depth,
         };
-        if self.target > self.opening {
-            self.let_go(world);
-        }
+        self.stopped &= self.target < self.opening;
     }
 
-    /// Let go of what is clamped; the jaw goes on to where it was sent.
-    pub fn let_go(&mut self, world: &mut PhysicsWorld) {
-        if let Some((_, hold)) = self.hold.take() {
-            hold.release(world);
-        }
+    /// True if the jaw would move away from the fixed jaw.
+    #[must_use]
+    pub fn opening_commanded(&self) -> bool {
+        self.target > self.opening
     }
 
-    /// Opening at which the inner faces of the jaws meet.
-    fn closed(&self) -> f64 {
-        2.0 * self.description.notch_depth
-    }
-
-    /// Move the jaw for `dt` seconds; `stop` is the opening at which a part between the faces stops it. True if it is stopped.
-    pub fn advance(&mut self, world: &mut PhysicsWorld, dt: f64, stop: Option<f64>) -> bool {
-        if !self.moving() {
-            return false;
-        }
+    /// Move the jaw for `dt` seconds; `stop` is the opening at which a part between the faces stops it.
+    pub fn advance(&mut self, world: &mut PhysicsWorld, dt: f64, stop: Option<f64>) {
         let way = self.description.speed * dt;
         let wanted = self.opening + (self.target - self.opening).clamp(-way, way);
-        let stopped = stop.is_some_and(|stop| wanted <= stop && self.target < stop);
         self.opening = match stop {
-            Some(stop) if stopped => stop.min(self.opening),
+            Some(stop) if wanted <= stop && self.target < stop => {
+                self.stopped = true;
+                stop.min(self.opening)
+            }
             _ => wanted,
         };
         let pose = to_pose(&jaw_frame(&self.description, &self.frame, self.opening));
         world.bodies[self.jaw].set_next_kinematic_position(pose);
-        stopped
     }
 
     /// Close the jaw at once by what machining has taken off a clamped part.

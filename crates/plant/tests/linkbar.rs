@@ -25,7 +25,15 @@ fn the_linkbar_is_made() {
     assert!((at.position.x - 0.0375).abs() < 0.03 && (at.position.z + 1.10).abs() < 0.03, "{at:?}");
 
     rig.vise(ViseClose);
-    assert!(rig.part().clamped && rig.part().held);
+    assert!(
+        rig.part().clamped && rig.part().held,
+        "{:?} vise {} fingers {:?} at {:?} {:?}",
+        rig.part(),
+        rig.cell.vise_opening(),
+        rig.cell.fingers(),
+        rig.in_fixture(),
+        rig.log
+    );
     let at = rig.in_fixture();
     eprintln!("closed {:?} {:?} {:?}", at.position, rig.part(), rig.cell.fingers());
     assert!((at.position.y - 0.15).abs() < 0.002, "pushed through the fingers by 0.04: {at:?}");
@@ -76,6 +84,7 @@ fn the_linkbar_is_made() {
     let end = rig.part();
     eprintln!("{end:?}");
     assert_eq!((end.location.as_str(), end.sector, end.held), ("UNIT_1", 1, false));
-    assert!(end.error.unwrap() < 0.1, "{end:?}");
+    // Gripped 2.10 above its middle before the drop and 2.25 after it (VIII.9.5): 0.15 in is left over in the tray.
+    assert!((end.error.unwrap() - 0.15).abs() < 0.02, "{end:?}");
     assert!(rig.log.is_empty(), "nothing unexpected: {:?}", rig.log);
 }

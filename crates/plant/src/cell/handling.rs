@@ -19,7 +19,7 @@ const TOUCHING: Real = 1e-4;
 /// Fingers and part: stiff enough that a bar sags by 0.01 mm, soft enough that friction is not a jolt.
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
 /// Vise and part.
-const VISE_STIFFNESS: Stiffness = Stiffness { linear: 2.0e6, angular: 5000.0 };
+const VISE_STIFFNESS: Stiffness = Stiffness { linear: 4.0e5, angular: 1000.0 };
 
 impl Cell {
     /// Let the air move the fingers, and take or give up what is between them.
@@ -52,11 +52,14 @@ impl Cell {
         let hand = self.world.bodies[self.gripper.hand()].translation();
         let opening = metres(self.gripper.air.opening());
         let reach = 0.2;
-        let near = self.parts.iter().enumerate().filter(|(_, part)| {
-            (part.pose(&self.world).translation - hand).length() < reach + part.radius()
-        });
+        let near =
+            self.parts.iter().enumerate().filter(|(_, part)| {
+                (part.pose(&self.world).translation - hand).length() < reach + part.radius()
+            });
         near.filter_map(|(index, _)| Some((index, self.between_fingers(index)?)))
-            .filter(|(_, squeeze)| squeeze.width <= opening + TOUCHING && squeeze.centre.abs() < opening / 2.0)
+            .filter(|(_, squeeze)| {
+                squeeze.width <= opening + TOUCHING && squeeze.centre.abs() < opening / 2.0
+            })
             .max_by(|(_, a), (_, b)| a.width.total_cmp(&b.width))
     }
 
@@ -88,7 +91,8 @@ impl Cell {
             }
             (true, between) => self.let_go(between.is_none()),
             (false, Some((index, squeeze)))
-                if force >= LEAST_FORCE && self.gripper.air.opening() <= self.finger_stop(index, &squeeze) + 1e-6 =>
+                if force >= LEAST_FORCE
+                    && self.gripper.air.opening() <= self.finger_stop(index, &squeeze) + 1e-6 =>
             {
                 self.take_hold(index, &squeeze, clamp);
             }
@@ -99,7 +103,7 @@ impl Cell {
     fn take_hold(&mut self, index: usize, squeeze: &Squeeze, clamp: Clamp) {
         let fast = self.is_clamped(index);
         let part = &self.parts[index];
-        part.meet_fingers(&mut self.world, false);
+        part.set_held_by(&mut self.world, true, fast);
         let hand = self.gripper.hand();
         let flush = if fast {
             self.world.bodies[hand].position().inv_mul(&part.pose(&self.world))
@@ -119,30 +123,28 @@ impl Cell {
     pub(super) fn let_go(&mut self, lost: bool) {
         let Some((index, hold)) = self.gripper.hold.take() else { return };
         hold.release(&mut self.world);
+        let clamped = self.is_clamped(index);
         let part = &self.parts[index];
-        part.meet_fingers(&mut self.world, true);
-        self.world.bodies[part.body].wake_up(true);
+        part.set_held_by(&mut self.world, false, clamped);
         if lost {
             self.events.push(CellEvent::Dropped { part: part.kind.name.clone() });
         }
     }
 
-    /// Move the jaw of the vise, and clamp what stops it.
+    /// Move the jaw of the vise; it takes along what it reaches, and stops when that lies against the fixed face.
     pub(super) fn drive_jaw(&mut self, dt: f64) {
         if !self.vise.moving() {
             return;
         }
-        let between = self.between_jaws();
-        for part in &self.parts {
-            if self.vise.contains(&self.vise.frame().inverse().compose(&part.frame(&self.world)).position) {
-                self.world.bodies[part.body].wake_up(true);
-            }
-        }
-        let stop = between.as_ref().map(|(_, squeeze)| inches(squeeze.width));
-        if self.vise.advance(&mut self.world, dt, stop)
-            && let Some((index, squeeze)) = between
-        {
-            self.clamp(index, &squeeze);
+        let between = if self.vise.closing() { self.between_jaws() } else { None };
+        self.vise.advance(&mut self.world, dt, between.as_ref().map(|(_, squeeze)| inches(squeeze.width)));
+        let Some((index, squeeze)) = between else { return };
+        let face = self.vise.fixed_face() + metres(self.vise.opening());
+        let middle = face - squeeze.width / 2.0;
+        match &mut self.vise.hold {
+            Some((_, hold)) => hold.lead(&mut self.world, middle),
+            None if middle <= squeeze.centre => self.clamp(index, &squeeze, middle),
+            None => {}
         }
     }
 
@@ -153,7 +155,8 @@ impl Cell {
         let face = self.vise.fixed_face();
         let far = face + metres(self.vise.opening());
         let inside = |squeeze: &Squeeze| {
-            squeeze.centre - squeeze.width / 2.0 > face - 0.002 && squeeze.centre + squeeze.width / 2.0 < far + 0.002
+            squeeze.centre - squeeze.width / 2.0 > face - 0.002
+                && squeeze.centre + squeeze.width / 2.0 < far + 0.002
         };
         self.parts
             .iter()
@@ -166,15 +169,26 @@ impl Cell {
             .max_by(|(_, a), (_, b)| a.width.total_cmp(&b.width))
     }
 
-    /// Clamp a part between the jaws, flush against the fixed one.
-    pub(super) fn clamp(&mut self, index: usize, squeeze: &Squeeze) {
+    /// Take a part between the jaws, flush with the faces, its middle at `middle` (m) across them.
+    pub(super) fn clamp(&mut self, index: usize, squeeze: &Squeeze, middle: Real) {
+        let held = self.is_held(index);
         let part = &self.parts[index];
+        part.set_held_by(&mut self.world, held, true);
         let mut flush = squeeze.flush;
-        flush.translation.y = self.vise.fixed_face() + squeeze.width / 2.0;
+        flush.translation.y = middle;
         let base = self.vise.base();
-        let mut hold = Hold::new(&mut self.world, base, part.body, &flush, squeeze, VISE_STIFFNESS, part.load());
+        let mut hold =
+            Hold::new(&mut self.world, base, part.body, &flush, squeeze, VISE_STIFFNESS, part.load());
         hold.set_clamp(&mut self.world, self.vise.clamp(), squeeze);
         self.vise.hold = Some((index, hold));
+    }
+
+    /// Let go of what the vise has.
+    pub(super) fn unclamp(&mut self) {
+        let Some((index, hold)) = self.vise.hold.take() else { return };
+        hold.release(&mut self.world);
+        let held = self.is_held(index);
+        self.parts[index].set_held_by(&mut self.world, held, false);
     }
 
     /// What part `index` offers to the jaws.
@@ -217,9 +231,10 @@ impl Cell {
             .map(|part| (tool.inv_mul(&part.pose(&self.world)), part.half()))
             .filter(|(pose, half)| pose.translation.length() < 0.2 + half.length())
             .collect();
-        let broken = self.gripper.beams().map(|(from, to)| {
-            near.iter().any(|(pose, half)| segment_meets_box(from, to, pose, *half))
-        });
+        let broken = self
+            .gripper
+            .beams()
+            .map(|(from, to)| near.iter().any(|(pose, half)| segment_meets_box(from, to, pose, *half)));
         broken.enumerate().fold(0, |bits, (beam, is_broken)| bits | (u8::from(is_broken) << beam))
     }
 

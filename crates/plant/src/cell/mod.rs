@@ -25,7 +25,7 @@ use crate::{
     arm::Arm,
     camera::{Camera, Subject},
     clearance::{Clearance, Contact},
-    convert::{GRAVITY, to_frame, to_pose},
+    convert::{GRAVITY, on_the_side_of, to_frame, to_pose},
     description::{CellDescription, DescriptionError},
     gripper::Gripper,
     noise::{Noise, Stream},
@@ -80,7 +80,9 @@ impl fmt::Display for CellEvent {
             Self::Contact(contact) => {
                 write!(f, "{} runs into {}, {:.3} in deep", contact.mover, contact.obstacle, contact.depth)
             }
-            Self::Slipped { part, distance } => write!(f, "{part} slides in the fingers, {distance:.3} in so far"),
+            Self::Slipped { part, distance } => {
+                write!(f, "{part} slides in the fingers, {distance:.3} in so far")
+            }
             Self::Dropped { part } => write!(f, "{part} is lost from the fingers"),
             Self::Fell { part } => write!(f, "{part} lies on the floor"),
             Self::Warning(code) => write!(f, "the T3 controller shows {code}"),
@@ -177,8 +179,10 @@ impl Cell {
     fn substep(&mut self, fraction: f64, valves: u8) {
         let dt = self.world.integration_parameters.dt;
         self.arm.advance(fraction, dt);
-        let tool = to_pose(&self.arm.tool());
-        self.world.bodies[self.gripper.hand()].set_next_kinematic_position(tool);
+        let mut tool = to_pose(&self.arm.tool());
+        let hand = &mut self.world.bodies[self.gripper.hand()];
+        tool.rotation = on_the_side_of(hand.rotation(), tool.rotation);
+        hand.set_next_kinematic_position(tool);
         self.drive_fingers(dt, valves);
         self.drive_jaw(dt);
         self.world.step();

@@ -89,7 +89,11 @@ impl Cell {
         ] {
             for collider in self.world.bodies[body].colliders() {
                 let collider = &self.world.colliders[*collider];
-                movers.push(Mover { name: name.into(), pose: *collider.position(), shape: collider.shared_shape().clone() });
+                movers.push(Mover {
+                    name: name.into(),
+                    pose: *collider.position(),
+                    shape: collider.shared_shape().clone(),
+                });
             }
         }
         let camera = to_metres(&Inches::from(self.description.camera.position));
@@ -152,7 +156,14 @@ impl Cell {
                 urdf.begin_link(&block.name);
                 urdf.block(&Block { frame: Frame::identity(), ..block.clone() }, STEEL);
                 urdf.end_link();
-                urdf.joint(&format!("{}_mount", block.name), "fixed", "world", &block.name, &block.frame, None);
+                urdf.joint(
+                    &format!("{}_mount", block.name),
+                    "fixed",
+                    "world",
+                    &block.name,
+                    &block.frame,
+                    None,
+                );
             }
             last = &block.name;
         }
@@ -179,11 +190,15 @@ impl Cell {
         ];
         for (joint, (radius, length, from)) in outlines.into_iter().enumerate() {
             let (name, parent, axis) = ARM[joint];
-            let middle = Frame { position: Inches::new(from + length / 2.0, 0.0, 0.0), rotation: Rotation::identity() };
+            let middle = Frame {
+                position: Inches::new(from + length / 2.0, 0.0, 0.0),
+                rotation: Rotation::identity(),
+            };
             urdf.begin_link(name);
             urdf.shape(&middle, &Outline::Cylinder(radius, length), ROBOT);
             urdf.end_link();
-            let start = Frame { position: Inches::new(STARTS[joint], 0.0, 0.0), rotation: Rotation::identity() };
+            let start =
+                Frame { position: Inches::new(STARTS[joint], 0.0, 0.0), rotation: Rotation::identity() };
             urdf.joint(JOINT_NAMES[joint], "revolute", parent, name, &start, Some((axis, T3.limits[joint])));
         }
     }
@@ -191,11 +206,20 @@ impl Cell {
     fn urdf_gripper(&self, urdf: &mut Urdf) {
         let gripper = &self.description.gripper;
         let [length, thickness, width] = gripper.fingers;
-        let at = |x: f64, y: f64, z: f64| Frame { position: Inches::new(x, y, z), rotation: Rotation::identity() };
+        let at =
+            |x: f64, y: f64, z: f64| Frame { position: Inches::new(x, y, z), rotation: Rotation::identity() };
         urdf.begin_link("parts_gripper");
         let change = -T3.plate_to_tool + gripper.quick_change_length / 2.0;
-        urdf.shape(&at(change, 0.0, 0.0), &Outline::Cylinder(gripper.quick_change_radius, gripper.quick_change_length), DARK);
-        urdf.shape(&at(-length - gripper.body[0] / 2.0, 0.0, 0.0), &Outline::Box(Inches::from(gripper.body)), DARK);
+        urdf.shape(
+            &at(change, 0.0, 0.0),
+            &Outline::Cylinder(gripper.quick_change_radius, gripper.quick_change_length),
+            DARK,
+        );
+        urdf.shape(
+            &at(-length - gripper.body[0] / 2.0, 0.0, 0.0),
+            &Outline::Box(Inches::from(gripper.body)),
+            DARK,
+        );
         let [x, y, z] = self.description.camera.position;
         urdf.shape(&at(x, y, z), &Outline::Box(Inches::new(2.0, 2.0, 1.5)), DARK);
         urdf.end_link();
@@ -228,7 +252,8 @@ impl Cell {
             urdf.block(&block, STEEL);
         }
         urdf.end_link();
-        let start = Frame { position: Inches::new(0.0, -vise.notch_depth, 0.0), rotation: Rotation::identity() };
+        let start =
+            Frame { position: Inches::new(0.0, -vise.notch_depth, 0.0), rotation: Rotation::identity() };
         let range = (0.0, metres(vise.opening_open));
         urdf.joint("jaw_slide", "prismatic", "vise", "movable_jaw", &start, Some(([0.0, 1.0, 0.0], range)));
     }
@@ -257,7 +282,10 @@ struct Urdf(String);
 
 impl Urdf {
     fn new(name: &str) -> Self {
-        Self(format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n  <link name=\"world\"/>\n", escaped(name)))
+        Self(format!(
+            "<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n  <link name=\"world\"/>\n",
+            escaped(name)
+        ))
     }
 
     fn line(&mut self, text: std::fmt::Arguments<'_>) {
@@ -284,7 +312,8 @@ impl Urdf {
                 (*frame, format!("<box size=\"{} {} {}\"/>", size.x, size.y, size.z))
             }
             Outline::Cylinder(radius, length) => {
-                let geometry = format!("<cylinder radius=\"{}\" length=\"{}\"/>", metres(*radius), metres(*length));
+                let geometry =
+                    format!("<cylinder radius=\"{}\" length=\"{}\"/>", metres(*radius), metres(*length));
                 (frame.turned(&along_x()), geometry)
             }
         };

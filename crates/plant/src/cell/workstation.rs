@@ -144,7 +144,9 @@ pub enum WorkstationError {
         found: String,
     },
     /// The part is clamped, but not where it belongs.
-    #[error("{part} is clamped {distance:.3} in and {degrees:.2} degrees from its seat; {SEATED} in and 1 degree are allowed")]
+    #[error(
+        "{part} is clamped {distance:.3} in and {degrees:.2} degrees from its seat; {SEATED} in and 1 degree are allowed"
+    )]
     NotSeated {
         /// The part.
         part: String,
@@ -248,13 +250,16 @@ impl Cell {
             matches!(contact, Ok(Some(contact)) if contact.dist < -OVERLAP)
         };
         let jaw = self.jaw_obstacles();
-        let furniture = self.obstacles.iter().chain(&jaw).find(|obstacle| overlaps(&obstacle.pose, &obstacle.shape));
-        let parts = self.parts.iter().find(|part| overlaps(&part.pose(&self.world), &Cuboid::new(part.half())));
+        let furniture =
+            self.obstacles.iter().chain(&jaw).find(|obstacle| overlaps(&obstacle.pose, &obstacle.shape));
+        let parts =
+            self.parts.iter().find(|part| overlaps(&part.pose(&self.world), &Cuboid::new(part.half())));
         furniture.map(|obstacle| obstacle.name.clone()).or_else(|| parts.map(|part| part.kind.name.clone()))
     }
 
     fn remove(&mut self, id: u32) -> Result<(), WorkstationError> {
-        let index = self.parts.iter().position(|part| part.id == id).ok_or(WorkstationError::NoSuchPart { id })?;
+        let index =
+            self.parts.iter().position(|part| part.id == id).ok_or(WorkstationError::NoSuchPart { id })?;
         if self.is_held(index) || self.is_clamped(index) {
             return Err(WorkstationError::Held { part: self.parts[index].kind.name.clone() });
         }
@@ -278,7 +283,10 @@ impl Cell {
         for part in &self.parts {
             self.world.bodies[part.body].wake_up(true);
         }
-        self.vise.command(&mut self.world, jaws);
+        self.vise.command(jaws);
+        if self.vise.opening_commanded() {
+            self.unclamp();
+        }
         Ok(())
     }
 
@@ -292,7 +300,11 @@ impl Cell {
         }
         let (distance, angle) = self.seat_error(part);
         if distance > SEATED || angle > SQUARE {
-            return Err(WorkstationError::NotSeated { part: from.into(), distance, degrees: angle.to_degrees() });
+            return Err(WorkstationError::NotSeated {
+                part: from.into(),
+                distance,
+                degrees: angle.to_degrees(),
+            });
         }
         if next.size.iter().zip(part.kind.size).any(|(new, old)| *new > old + 1e-9) {
             return Err(WorkstationError::TooLarge { from: from.into(), to: to.into() });
@@ -301,14 +313,12 @@ impl Cell {
         let along = |kind: &PartType| sizes_along(&here, kind);
         let shift = self.vise.seat(&along(&next)) - self.vise.seat(&along(&part.kind));
         let shift = here.rotation.inverse() * shift;
-        self.vise.let_go(&mut self.world);
+        self.unclamp();
         self.parts[index].become_kind(&mut self.world, &next, shift);
-        if self.is_held(index) {
-            self.parts[index].meet_fingers(&mut self.world, false);
-        }
         if let Some(squeeze) = self.between_jaws_of(index) {
             self.vise.follow(&mut self.world, inches(squeeze.width));
-            self.clamp(index, &squeeze);
+            let middle = self.vise.fixed_face() + squeeze.width / 2.0;
+            self.clamp(index, &squeeze, middle);
         }
         Ok(())
     }
@@ -359,7 +369,11 @@ impl Cell {
         if self.vise.contains(&self.vise.frame().inverse().compose(frame).position) {
             return (self.vise.location().into(), 0, Some(self.seat_error(part).0));
         }
-        let lowest = self.furniture.iter().map(|block| block.frame.position.z + block.size.z / 2.0).fold(0.0, f64::min);
+        let lowest = self
+            .furniture
+            .iter()
+            .map(|block| block.frame.position.z + block.size.z / 2.0)
+            .fold(0.0, f64::min);
         let on_floor = at.z < lowest + inches(part.radius()) + 0.1;
         (if on_floor { "floor" } else { "elsewhere" }.into(), 0, None)
     }
@@ -396,7 +410,8 @@ mod tests {
     fn a_part_has_its_sizes_along_the_vise() {
         let kind = PartType { name: "P".into(), size: [1.0, 2.0, 3.0], weight: 1.0, vision_id: 0 };
         // Part X down, Y along vise X, a little askew.
-        let upright = rcs_core::frame::rotation_from_x_y(&Inches::new(0.02, 0.01, -1.0), &Inches::x()).unwrap();
+        let upright =
+            rcs_core::frame::rotation_from_x_y(&Inches::new(0.02, 0.01, -1.0), &Inches::x()).unwrap();
         let here = Frame { position: Inches::zeros(), rotation: upright };
         assert!((sizes_along(&here, &kind) - Inches::new(2.0, 3.0, 1.0)).norm() < 1e-12);
     }

@@ -13,20 +13,25 @@ use rcs_core::{
 pub const CELL: &str = include_str!("../../../../data/cell.toml");
 
 /// Poses of the cell proposal, §4.
-pub const UT_1: Pose = Pose { wrist: [-6650, -550, 1600], tool: [-6650, -550, -1400], finger: [-6650, -3550, -1400] };
-pub const PFIX: Pose = Pose { wrist: [3800, -4400, -400], tool: [6800, -4400, -400], finger: [6800, -1400, -400] };
+pub const UT_1: Pose =
+    Pose { wrist: [-6650, -550, 1600], tool: [-6650, -550, -1400], finger: [-6650, -3550, -1400] };
+pub const PFIX: Pose =
+    Pose { wrist: [3800, -4400, -400], tool: [6800, -4400, -400], finger: [6800, -1400, -400] };
 pub const UNIT_V1: Pose =
     Pose { wrist: [-4040, -1471, 3398], tool: [-5450, -1984, 800], finger: [-4424, -4803, 800] };
 pub const HOM_SAF_3: Pose =
     Pose { wrist: [-2454, -3505, 2521], tool: [-3671, -5243, 400], finger: [-1214, -6964, 400] };
-pub const HOM_SAF_1: Pose = Pose { wrist: [0, -4279, 2521], tool: [0, -6400, 400], finger: [3000, -6400, 400] };
-pub const FIX_V1: Pose = Pose { wrist: [1473, -3098, 1426], tool: [3285, -5258, 400], finger: [5583, -3330, 400] };
+pub const HOM_SAF_1: Pose =
+    Pose { wrist: [0, -4279, 2521], tool: [0, -6400, 400], finger: [3000, -6400, 400] };
+pub const FIX_V1: Pose =
+    Pose { wrist: [1473, -3098, 1426], tool: [3285, -5258, 400], finger: [5583, -3330, 400] };
 
 pub struct Rig {
     pub cell: Cell,
     pub outputs: DeviceOutputs,
     pub inputs: DeviceInputs,
     pub log: Vec<CellEvent>,
+    pub count: u64,
     at: Frame,
 }
 
@@ -43,7 +48,7 @@ impl Rig {
     pub fn new(description: &CellDescription, seed: u64) -> Self {
         let cell = Cell::new(description, seed).unwrap();
         let (inputs, at) = (cell.inputs(), T3.forward(&cell.joints()));
-        Self { cell, outputs: DeviceOutputs::default(), inputs, log: Vec::new(), at }
+        Self { cell, outputs: DeviceOutputs::default(), inputs, log: Vec::new(), count: 0, at }
     }
 
     pub fn place(&mut self, part: &str, sector: u16, x: f64, y: f64, angle: f64) {
@@ -55,6 +60,7 @@ impl Rig {
     pub fn tick(&mut self) {
         self.inputs = self.cell.step(&self.outputs);
         self.log.extend(self.cell.events());
+        self.count += 1;
     }
 
     pub fn ticks(&mut self, count: u32) {
