@@ -2,7 +2,7 @@
 
 use rcs_core::{
     interface::{
-        GripOutputs,
+        GripOutputs, Reason,
         device::{GripValves, valve},
         grip::{GripReport, GripStatus, GripVerb},
     },
@@ -83,14 +83,14 @@ fn note_readings(state: &mut State, action: Action) {
 }
 
 /// Whether the current command ends with this action. A calibration that nothing waits for ends no command; one that a
-/// command waits for ends it only by failing, and never ends PAUSE, which needs none.
+/// command waits for ends it only by failing. PAUSE does not need the gripper, so it does not fail with it.
 fn conclude(state: &mut State, action: Action) {
     if state.execution.outcome != Outcome::Executing {
         return;
     }
     match action {
         Action::Finish | Action::Pause => state.execution.finish(),
-        Action::Fail(_) if state.command.verb == GripVerb::Pause => {}
+        Action::Fail(Reason::WrongGripper) if state.command.verb == GripVerb::Pause => {}
         Action::Fail(reason) => state.execution.fail(reason),
         Action::Calibrate if state.command.verb == GripVerb::UpInit => state.execution.finish(),
         _ => {}

@@ -158,6 +158,19 @@ fn a_command_before_the_calibration_is_executed_after_it() {
 }
 
 #[test]
+fn a_pause_that_waits_for_a_calibration_fails_with_it_but_not_without_the_gripper() {
+    let mut bench = Bench::new(Gripper::new(2.0, 10));
+    bench.gripper.strain[0].1 = 0.0;
+    bench.command(GripVerb::Pause, 0.0, 0);
+    assert_eq!(reason(&mut bench), Reason::GripNotCalibrated);
+    let mut bench = Bench::new(Gripper::new(2.0, 10));
+    bench.command(GripVerb::Pause, 0.0, 0);
+    bench.wait(5);
+    bench.attach(false);
+    assert_eq!(bench.finish().1.status.report, GripReport::Done);
+}
+
+#[test]
 fn unattainable_commands_are_refused() {
     let mut bench = calibrated(11);
     for (verb, opening, force, velocity, why) in [
