@@ -8,7 +8,7 @@
 //! The gripper axis within 2 degrees of vertical is warned of: the Euler angles of the link are singular there (VIII
 //! introduction). Base poses and tray corners, which are taught vertical and not driven to, are left out (VIII.3).
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use rcs_core::{
     frame::Frame,
@@ -17,8 +17,8 @@ use rcs_core::{
 };
 
 use crate::files::{
-    ArrayId, Location, LocptId, ObjectId, OwnerId, PathId, PathPoint, Place, RefType, Reference, Target,
-    TaskData, Traj,
+    ArrayId, Location, LocptId, ObjectId, OwnerId, PathId, PathPoint, Place, PoseId, RefType, Reference,
+    Target, TaskData, Traj,
 };
 
 use super::{
@@ -32,7 +32,14 @@ const VERTICAL: f64 = 2.0;
 
 /// Check all frames; the data must be linked without error.
 pub(super) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Problems) {
-    let mut checker = Checker { data, origins, findings: Vec::new(), known: HashMap::new() };
+    let mut checker = Checker {
+        data,
+        origins,
+        findings: Vec::new(),
+        known: HashMap::new(),
+        bad_poses: HashSet::new(),
+        bad_points: HashSet::new(),
+    };
     checker.poses();
     checker.location_points();
     checker.trajectories();
@@ -64,6 +71,9 @@ struct Checker<'a> {
     findings: Vec<Finding>,
     /// Position in `findings` by source, first byte and code: an entry with the wild card can be wrong at every sector.
     known: HashMap<(u32, u32, &'static str), usize>,
+    /// Poses and location points out of reach: what is derived from them is not complained of again.
+    bad_poses: HashSet<PoseId>,
+    bad_points: HashSet<LocptId>,
 }
 
 /// The origin of a record at a position.
@@ -116,18 +126,22 @@ impl Checker<'_> {
     }
 
     /// Like [`Self::reach`], and a warning near the vertical.
-    fn target(&mut self, what: &str, frame: &Frame, at: At) {
+    fn target(&mut self, what: &str, frame: &Frame, at: At) -> bool {
         let degrees = from_vertical(frame);
-        if self.reach(what, frame, at) && degrees < VERTICAL {
+        let reached = self.reach(what, frame, at);
+        if reached && degrees < VERTICAL {
             let help = "tilt the gripper by 3 degrees or more, as LK-GRP-1 does (VIII.9.5)".to_owned();
             let message = format!("{what}: the gripper is {degrees:.1} degrees from vertical");
             self.note(Severity::Warning, "vertical", at, message, help);
         }
+        reached
     }
 
     fn poses(&mut self) {
         for (i, pose) in self.data.poses.iter().enumerate() {
-            self.reach(&format!("pose {}", pose.name), &pose.frame, origin(&self.origins.poses, i));
+            if !self.reach(&format!("pose {}", pose.name), &pose.frame, origin(&self.origins.poses, i)) {
+                self.bad_poses.insert(PoseId::at(i));
+            }
         }
     }
 
@@ -135,14 +149,17 @@ impl Checker<'_> {
         for (i, point) in self.data.locpts.iter().enumerate() {
             let at = origin(&self.origins.locpts, i);
             let what = format!("location point {}", point.name);
-            let vertical_pose = self
-                .data
-                .pose(point.pose)
-                .is_some_and(|pose| from_vertical(&pose.frame) < VERTICAL && point.movetable.is_null());
-            if vertical_pose {
-                self.reach(&what, &point.frame, at);
-            } else {
-                self.target(&what, &point.frame, at);
+            let taught_vertical =
+                self.data.pose(point.pose).is_some_and(|p| from_vertical(&p.frame) < VERTICAL)
+                    && point.movetable.is_null();
+            let good = !self.bad_poses.contains(&point.pose)
+                && if taught_vertical {
+                    self.reach(&what, &point.frame, at)
+                } else {
+                    self.target(&what, &point.frame, at)
+                };
+            if !good {
+                self.bad_points.insert(LocptId::at(i));
             }
         }
     }
@@ -178,13 +195,20 @@ impl Checker<'_> {
     fn follow(&mut self, path: PathId, reference: &Frame, what: &str, fixed: bool) {
         let data = self.data;
         let first = path.of(data.paths).map_or(0, |p| usize::try_from(p.first).unwrap_or(0));
+        let upright = from_vertical(reference) < VERTICAL;
         let mut before = *reference;
         for (i, point) in data.path(path).iter().enumerate() {
             let base = if fixed { reference } else { &before };
             let Some(frame) = data.point_frame(point, base) else { continue };
             if matches!(point.target, Target::Movetable(_)) {
                 let at = origin(&self.origins.path_points, first + i);
-                self.target(&format!("{what}, {}", self.point_name(point)), &frame, at);
+                let what = format!("{what}, {}", self.point_name(point));
+                // Where the reference is vertical and warned of, its points need no warning of their own.
+                if upright {
+                    self.reach(&what, &frame, at)
+                } else {
+                    self.target(&what, &frame, at)
+                };
             }
             before = frame;
         }
@@ -217,17 +241,17 @@ impl Checker<'_> {
         found.retain(|location| {
             at.kind == RefType::Any || data.aliases(&location.place).any(|alias| alias == at)
         });
-        if !found.is_empty() {
-            return found;
-        }
-        match at.kind {
-            RefType::LocationPoint => found.extend(self.at_point(at)),
-            RefType::Owner => {
-                let members = data.members_of(OwnerId::new(at.number)).iter();
-                found.extend(members.filter_map(|m| self.at_point(m.member)));
+        if found.is_empty() {
+            match at.kind {
+                RefType::LocationPoint => found.extend(self.at_point(at)),
+                RefType::Owner => {
+                    let members = data.members_of(OwnerId::new(at.number)).iter();
+                    found.extend(members.filter_map(|m| self.at_point(m.member)));
+                }
+                _ => {}
             }
-            _ => {}
         }
+        found.retain(|location| !self.bad_points.contains(&location.place.locpt));
         found
     }
 
@@ -267,7 +291,9 @@ impl Checker<'_> {
                 }
                 let what = format!("grip {} of {object} at {}", record.grip, shown(&location));
                 let frame = data.moved(&location.frame, record.movetable);
-                self.target(&what, &frame, at);
+                if !self.target(&what, &frame, at) {
+                    continue;
+                }
                 for (word, path) in [
                     ("approach of", data.approach(&object, record.grip, &location.place)),
                     ("depart of", data.depart(&object, record.grip, &location.place)),
@@ -295,7 +321,9 @@ impl Checker<'_> {
                 }
                 let what = format!("view of {object} at {}", shown(&location));
                 let frame = data.moved(&location.frame, record.movetable);
-                self.target(&what, &frame, at);
+                if !self.target(&what, &frame, at) {
+                    continue;
+                }
                 let path = data.view_approach(&object, record.grip, &location.place);
                 self.follow(path.unwrap_or_default(), &frame, &format!("approach of {what}"), true);
             }

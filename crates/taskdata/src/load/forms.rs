@@ -337,11 +337,13 @@ fn settings_of<const N: usize>(
     variables: &[(&str, RangeInclusive<i32>)],
 ) -> Result<(super::entries::Named<16>, [i32; N]), Skip> {
     let known = || std::iter::once(name_variable).chain(variables.iter().map(|v| v.0));
+    let mut misspelt = false;
     for (i, (variable, _)) in settings.iter().enumerate() {
         if !known().any(|k| k == variable.text) {
             let message = format!("{} has no variable {}", file.text, variable.text);
             let help = nearest(variable.text, known()).map(|n| format!("the nearest variable is {n}"));
             p.flaw("show.variable", variable.at, message, help);
+            misspelt = true;
         } else if settings.iter().take(i).any(|(v, _)| v.text == variable.text) {
             p.flaw("show.twice", variable.at, format!("{} is set twice", variable.text), None);
         }
@@ -349,7 +351,10 @@ fn settings_of<const N: usize>(
     let value_of = |name: &str| settings.iter().find(|(v, _)| v.text == name).map(|(_, value)| *value);
     let missing: Vec<&str> = known().filter(|k| value_of(k).is_none()).collect();
     let Some(object) = value_of(name_variable).filter(|_| missing.is_empty()) else {
-        p.flaw("show.missing", file.at, format!("{} needs {}", file.text, missing.join(", ")), None);
+        // A variable that is misspelt is missing too; one message will do.
+        if !misspelt {
+            p.flaw("show.missing", file.at, format!("{} needs {}", file.text, missing.join(", ")), None);
+        }
         return Err(Skip);
     };
     let object = p.at_word(object, |q| q.name("object"))?;

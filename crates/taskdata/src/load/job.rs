@@ -204,6 +204,13 @@ impl<'a> Fields<'a, '_> {
     }
 }
 
+/// A number and where it stands.
+#[derive(Clone, Copy)]
+struct Number {
+    value: i32,
+    at: At,
+}
+
 /// A name field and where it stands; empty for `--`.
 #[derive(Clone, Copy)]
 struct Field {
@@ -281,7 +288,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    fn integer(&mut self, fields: &mut Fields<'_, '_>, what: &str) -> Option<i32> {
+    fn integer(&mut self, fields: &mut Fields<'_, '_>, what: &str) -> Option<Number> {
         let at = fields.at();
         let Some(word) = fields.take() else {
             self.missing(what, at);
@@ -289,11 +296,10 @@ impl Reader<'_, '_> {
         };
         let value = word.text.parse::<i32>().ok().filter(|v| v.abs() <= MOST);
         if value.is_none() {
-            let message =
-                format!("{what} was expected, a whole number from -{MOST} to {MOST}; {} found", word.text);
-            self.problems.error("job.fields", word.at, message);
+            let message = format!("{what}, a whole number, was expected; {} found", word.text);
+            self.problems.error_help("job.fields", word.at, message, NINE_FIELDS);
         }
-        value
+        value.map(|value| Number { value, at: word.at })
     }
 
     /// The command and its nine fields (V.4.2, Figure VIII.4).
@@ -314,23 +320,23 @@ impl Reader<'_, '_> {
         let known = !object.given() || self.object(object);
         let thing = object.given().then_some(object.name).filter(|_| known);
         if known {
-            self.place(source, source_sector, thing, source_grip);
-            self.place(destination, destination_sector, thing, destination_grip);
-            self.place(end_at, end_at_sector, None, 0);
+            self.place(source, source_sector, thing, Some(source_grip));
+            self.place(destination, destination_sector, thing, Some(destination_grip));
+            self.place(end_at, end_at_sector, None, None);
         }
         Some(HwsCommand {
             number: 0,
             command: verb.name,
             object: object.name,
             serial: Name16::EMPTY,
-            source_grip,
+            source_grip: source_grip.value,
             source: source.name,
-            source_sector,
-            destination_grip,
+            source_sector: source_sector.value,
+            destination_grip: destination_grip.value,
             destination: destination.name,
-            destination_sector,
+            destination_sector: destination_sector.value,
             end_at: end_at.name,
-            end_at_sector,
+            end_at_sector: end_at_sector.value,
         })
     }
 
@@ -344,18 +350,19 @@ impl Reader<'_, '_> {
                 let offset = if fields.next < fields.words.len() {
                     let x = self.integer(fields, "x in 0.01 in")?;
                     let y = self.integer(fields, "y in 0.01 in")?;
-                    Some(Offset { x, y, angle: self.integer(fields, "an angle in 0.01 degree")? })
+                    let angle = self.integer(fields, "an angle in 0.01 degree")?;
+                    Some(Offset { x: x.value, y: y.value, angle: angle.value })
                 } else {
                     None
                 };
                 self.object(object).then_some(())?;
-                let location = self.place(place, sector, Some(object.name), 0)?;
+                let location = self.place(place, sector, Some(object.name), None)?;
                 Some(Workstation::Tray { location, object: object.name, offset })
             }
             "vise" => {
                 let opening = self.field(fields, "partial, close or open")?;
                 let place = self.field(fields, "a vise")?;
-                let location = self.place(place, 0, None, 0);
+                let location = self.plain_place(place);
                 let opening = match opening.name.as_str() {
                     "partial" => ViseOpening::Partial,
                     "close" => ViseOpening::Close,
@@ -376,7 +383,7 @@ impl Reader<'_, '_> {
                 let part = self.field(fields, "the finished part")?;
                 let place = self.field(fields, "a vise")?;
                 let both = [blank, part].map(|field| self.object(field));
-                let location = self.place(place, 0, None, 0)?;
+                let location = self.plain_place(place)?;
                 both.iter().all(|known| *known).then_some(Workstation::Machine {
                     blank: blank.name,
                     part: part.name,
@@ -415,36 +422,54 @@ impl Reader<'_, '_> {
         false
     }
 
+    /// A location without sector or object.
+    fn plain_place(&mut self, field: Field) -> Option<Location> {
+        self.place(field, Number { value: 0, at: field.at }, None, None)
+    }
+
     /// A location with its sector, and the grip of the object there if one is given.
-    fn place(&mut self, field: Field, sector: i32, object: Option<Name16>, grip: i32) -> Option<Location> {
+    fn place(
+        &mut self,
+        field: Field,
+        sector: Number,
+        object: Option<Name16>,
+        grip: Option<Number>,
+    ) -> Option<Location> {
         if !field.given() {
-            if sector != 0 {
-                self.problems.error("job.sector", field.at, format!("sector {sector} of no location"));
+            if sector.value != 0 {
+                self.problems.error(
+                    "job.sector",
+                    sector.at,
+                    format!("sector {} of no location", sector.value),
+                );
             }
             return None;
         }
-        let location = match self.data.resolve_location(&field.name, sector, object.as_ref()) {
+        let location = match self.data.resolve_location(&field.name, sector.value, object.as_ref()) {
             Ok(location) => location,
             Err(error) => {
-                let near = matches!(error, LookupError::UnknownLocation { .. })
-                    .then(|| self.near_location(&field.name));
-                let help = near.flatten().map(|n| format!("the nearest known name is {n}"));
-                self.problems.push(Severity::Error, "job.location", field.at, error.to_string(), help);
+                let unknown = matches!(error, LookupError::UnknownLocation { .. });
+                let wrong_sector =
+                    matches!(error, LookupError::SectorRange { .. } | LookupError::NoSectors { .. });
+                let at = if wrong_sector { sector.at } else { field.at };
+                let near = if unknown { self.near_location(&field.name) } else { None };
+                let help = near.map(|n| format!("the nearest known name is {n}"));
+                self.problems.push(Severity::Error, "job.location", at, error.to_string(), help);
                 return None;
             }
         };
-        if let Some(object) = object.filter(|_| grip != 0) {
-            self.grip(field, &object, grip, &location);
+        if let (Some(object), Some(grip)) = (object, grip.filter(|g| g.value != 0)) {
+            self.grip(grip, &object, &location);
         }
         Some(location)
     }
 
-    fn grip(&mut self, field: Field, object: &Name16, grip: i32, location: &Location) {
-        if self.data.object(object, grip).is_none() {
-            let message = format!("{object} has no grip {grip} in an object form");
-            self.problems.error("grip.unknown", field.at, message);
-        } else if let Err(error) = self.data.grip_frame(object, grip, location) {
-            self.problems.error("grip.unknown", field.at, error.to_string());
+    fn grip(&mut self, grip: Number, object: &Name16, location: &Location) {
+        if self.data.object(object, grip.value).is_none() {
+            let message = format!("{object} has no grip {} in an object form", grip.value);
+            self.problems.error("grip.unknown", grip.at, message);
+        } else if let Err(error) = self.data.grip_frame(object, grip.value, location) {
+            self.problems.error("grip.unknown", grip.at, error.to_string());
         }
     }
 
@@ -454,6 +479,9 @@ impl Reader<'_, '_> {
         nearest(name.as_str(), known.iter().map(String::as_str)).map(str::to_owned)
     }
 }
+
+/// What to say when the fields of a command do not come out right.
+const NINE_FIELDS: &str = "a command has nine fields: object, grip, location, sector, grip, location, sector, end-at, sector; -- is null";
 
 /// Greatest number in a job line.
 const MOST: i32 = 36_000;

@@ -225,9 +225,9 @@ fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
             line.at.length = short(text.len());
         }
     }
-    if let Some(line) = block.lines.get(BLOCK_LINES) {
+    if let Some(line) = block.lines.iter().skip(BLOCK_LINES).find(|line| !line.text.trim().is_empty()) {
+        // The lines are kept: what they say is checked all the same.
         faults.push((line.at, BlockFault::TooManyLines));
-        block.lines.truncate(BLOCK_LINES);
     }
     for line in &block.lines {
         let columns = line.text.trim_end().len();

@@ -1,0 +1,191 @@
+//! Poses, movetables, location points, arrays, owners, trajectories and their points (VII.1 to VII.6).
+
+use rcs_core::{frame::Frame, movetable::Movetable, name::Name, pose::Pose};
+
+use crate::files::{
+    Array, ArrayId, Locpt, LocptId, Member, MovtabId, MovtabRecord, Owner, OwnerId, Path, PathId, PathPoint,
+    PoseId, PoseRecord, RefType, Reference, Target, Traj, TrajPara, TrajParaId, data::NULL_NAME,
+    index::name_key,
+};
+
+use super::{
+    super::entries::{Named, OwnerEntry, PointEntry, PoseEntry, Typed},
+    Forms, Linker, number,
+};
+
+impl Linker<'_> {
+    pub(super) fn places(&mut self, forms: &Forms) {
+        for entry in &forms.movetables {
+            let movetable = Movetable::from_lines(&entry.lines).unwrap_or_default();
+            self.files.movetables.push(MovtabRecord { name: entry.name.name, movetable });
+        }
+        for entry in &forms.poses {
+            let record = self.pose_record(entry);
+            self.files.poses.push(record);
+            self.origins.poses.push(entry.at);
+        }
+        for entry in &forms.locpts {
+            let (pose, movetable) = (self.pose(entry.pose), self.movetable(entry.movetable));
+            let (pose, movetable) = (pose.unwrap_or_default(), movetable.unwrap_or_default());
+            let base = pose.of(&self.files.poses).map_or_else(Frame::identity, |p| p.frame);
+            let frame = self.moved(&base, movetable);
+            self.files.locpts.push(Locpt { name: entry.name.name, pose, movetable, frame });
+            self.origins.locpts.push(entry.name.at);
+        }
+        self.arrays(forms);
+        for (i, entry) in forms.owners.iter().enumerate() {
+            self.owner(OwnerId::at(i), entry);
+        }
+        for entry in &forms.trajectories {
+            // An end that is not known is noted; the record is kept, since the name index counts it.
+            let start = self.reference(entry.start).unwrap_or(Reference::NONE);
+            let end = self.reference(entry.end).unwrap_or(Reference::NONE);
+            let path = self.path(&entry.points);
+            self.files.trajectories.push(Traj { name: entry.name.name, start, end, path });
+            self.origins.trajectories.push(entry.start.name.at.to(entry.end.name.at));
+        }
+    }
+
+    /// A pose with its effective frame; points that are not square are made so.
+    fn pose_record(&mut self, entry: &PoseEntry) -> PoseRecord {
+        let [wrist, tool, finger] = entry.points;
+        let pose = Pose { wrist, tool, finger };
+        let movetable = self.movetable(entry.movetable).unwrap_or_default();
+        let base = match (pose.to_frame(), pose.off_square()) {
+            (Ok(frame), Ok(off)) => {
+                self.squareness(entry, off.to_degrees().abs());
+                frame
+            }
+            (Err(error), _) | (_, Err(error)) => {
+                self.problems.error("pose.points", entry.at, format!("{}: {error}", entry.name.name));
+                Frame::identity()
+            }
+        };
+        PoseRecord { name: entry.name.name, pose, movetable, frame: self.moved(&base, movetable) }
+    }
+
+    fn squareness(&mut self, entry: &PoseEntry, degrees: f64) {
+        const WARN: f64 = 0.1;
+        const REFUSE: f64 = 2.0;
+        let message = format!("{} is {degrees:.2} degrees off square", entry.name.name);
+        if degrees > REFUSE {
+            let help = format!(
+                "the finger point must be square to the axis within {REFUSE} degrees: record the pose again"
+            );
+            self.problems.error_help("pose.square", entry.at, message, help);
+        } else if degrees > WARN {
+            let help = "it is made square, with the axis from wrist to tool point kept".to_owned();
+            self.problems.warning("pose.square", entry.at, message, Some(help));
+        }
+    }
+
+    /// The dimension form and the location form of each array together (VII.4).
+    fn arrays(&mut self, forms: &Forms) {
+        let at_names: Vec<_> = forms.arrays_at.iter().map(|e| e.name).collect();
+        let located = self.declare_names("array location", &at_names);
+        for entry in &forms.arrays_at {
+            self.find("array", entry.name, |i| &i.arrays);
+        }
+        for entry in &forms.arrays {
+            let place = located
+                .view()
+                .find(name_key(&entry.name.name))
+                .and_then(|n| ArrayId::new(n).of(&forms.arrays_at));
+            let (mut pose, mut offset) = (PoseId::NULL, MovtabId::NULL);
+            match place {
+                Some(place) => {
+                    if place.pose.name.as_str() != NULL_NAME {
+                        pose = self.pose(place.pose).unwrap_or_default();
+                    }
+                    offset = self.movetable(place.movetable).unwrap_or_default();
+                }
+                None if self.broken.contains(entry.name.name.as_str()) => {}
+                None => self.problems.error_help(
+                    "array.location",
+                    entry.name.at,
+                    format!("the array {} has no location", entry.name.name),
+                    "an array needs an array location form too (-ar-, VII.4)",
+                ),
+            }
+            let column_step = self.movetable(entry.column_step).unwrap_or_default();
+            let row_step = entry.row_step.and_then(|step| self.movetable(step)).unwrap_or_default();
+            self.files.arrays.push(Array {
+                name: entry.name.name,
+                dimensions: entry.dimensions,
+                columns: entry.columns,
+                rows: entry.rows,
+                column_step,
+                row_step,
+                present: entry.present,
+                pose,
+                offset,
+            });
+            if self.indexes.locpts.view().find(name_key(&entry.name.name)).is_some() {
+                let message = format!("{} is a location point too", entry.name.name);
+                self.problems.error("name.both", entry.name.at, message);
+            }
+        }
+    }
+
+    fn owner(&mut self, id: OwnerId, entry: &OwnerEntry) {
+        let first = number(self.files.members.len());
+        for member in &entry.members {
+            if let Some(reference) = self.reference(*member) {
+                self.files.members.push(Member { owner: id, member: reference });
+            }
+        }
+        let of_arrays = entry.members.iter().any(|m| m.kind == RefType::Array);
+        if let (true, Some(member)) = (of_arrays, entry.members.first())
+            && member.kind != RefType::LocationPoint
+        {
+            self.problems.error_help(
+                "owner.first",
+                member.name.at,
+                format!("the first member of {} is no location point", entry.name.name),
+                "the first member of an owner of arrays is the location point at which they are used (VII.5)",
+            );
+        }
+        let count = number(self.files.members.len()).saturating_sub(first);
+        self.files.owners.push(Owner { name: entry.name.name, first, count });
+    }
+
+    /// Points and their parameters; equal parameters share a record.
+    pub(super) fn path(&mut self, entries: &[PointEntry]) -> PathId {
+        let first = number(self.files.path_points.len());
+        for entry in entries {
+            let target = match entry.target {
+                None => Some(Target::Stop),
+                Some(typed) => self.target(typed),
+            };
+            if let Some(target) = target {
+                let para = self.para(entry.para);
+                self.files.path_points.push(PathPoint { para, target });
+                self.origins.path_points.push(entry.at);
+            }
+        }
+        let count = number(self.files.path_points.len()).saturating_sub(first);
+        self.files.paths.push(Path { first, count });
+        PathId::new(number(self.files.paths.len()))
+    }
+
+    fn target(&mut self, typed: Typed) -> Option<Target> {
+        let name = Named { name: Name::clipped(typed.name.name.as_str()), at: typed.name.at };
+        match typed.kind {
+            RefType::Pose => self.pose(name).map(Target::Pose),
+            RefType::LocationPoint => self
+                .find("location point", name, |i| &i.locpts)
+                .map(|n| Target::LocationPoint(LocptId::new(n))),
+            RefType::Movetable => self.movetable(name).map(Target::Movetable),
+            _ => None,
+        }
+    }
+
+    fn para(&mut self, para: TrajPara) -> TrajParaId {
+        let next = TrajParaId::at(self.files.traj_paras.len());
+        let id = *self.paras.entry([para.acc_fac, para.vel_max, para.smooth, para.brk_dst]).or_insert(next);
+        if id == next {
+            self.files.traj_paras.push(para);
+        }
+        id
+    }
+}
