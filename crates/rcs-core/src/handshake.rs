@@ -15,6 +15,15 @@ use crate::{coded_enum, interface::Header, record, tick::Tick};
 /// Ticks after which a command that is not echoed counts as lost.
 pub const ECHO_LIMIT: u64 = 3;
 
+/// The command number after `number`: they run on past the end without 0, which means none.
+#[must_use]
+pub const fn successor(number: u32) -> u32 {
+    match number.checked_add(1) {
+        Some(next) => next,
+        None => 1,
+    }
+}
+
 coded_enum! {
     /// What a commander makes of the status of the process below it.
     pub enum Lower {
@@ -57,7 +66,7 @@ impl Commander {
 
     /// Number of a new command written in this tick.
     pub fn send(&mut self, tick: Tick) -> u32 {
-        self.number = self.number.checked_add(1).unwrap_or(1);
+        self.number = successor(self.number);
         self.sent = tick;
         self.number
     }

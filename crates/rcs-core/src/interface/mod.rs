@@ -147,6 +147,8 @@ coded_enum! {
         SensorError = "a sensor is overloaded or fails",
         /// The data base refused.
         DataBase = "the data base does not accept the update",
+        /// A TRAJ-PARA record with a count that is not positive.
+        BadParameters = "the trajectory parameters allow no motion",
     }
 }
 

@@ -1,0 +1,42 @@
+//! GOTO-PT (V.1.1).
+
+use rcs_core::{
+    coded_enum, decision_table,
+    interface::Reason::{InterfaceRefused, InterfaceSilent, LinkError, LinkOff, NeighbourLost, NotAtGoal},
+    table::Decision,
+};
+
+use super::{Action, Arrival, Choice, Health, Posture, Situation};
+
+coded_enum! {
+    /// Reference action of GOTO-PT.
+    pub enum Step {
+        /// Nothing done yet.
+        Start = "start",
+        /// On the way.
+        Going = "going",
+    }
+}
+
+decision_table! {
+    /// GOTO-PT (V.1.1): move to a point and stop. Done when the robot rests there, not when it was told to.
+    pub GOTO_PT: fn goto_pt(step: Step, health: Health, posture: Posture, arrival: Arrival) -> (Action, Step) {
+        //    step    health      posture        arrival                   action                   next
+        1: ( _     , LinkOff   , _            , _                   ) => Fail(LinkOff)          , Start ;
+        2: ( _     , LinkError , _            , _                   ) => Fail(LinkError)        , Start ;
+        3: ( _     , Refused   , _            , _                   ) => Fail(InterfaceRefused) , Start ;
+        4: ( _     , Silent    , _            , _                   ) => Fail(InterfaceSilent)  , Start ;
+        5: ( _     , Orphaned  , _            , _                   ) => Fail(NeighbourLost)    , Start ;
+        6: ( _     , Good      , Unpositioned , _                   ) => Fail(LinkOff)          , Start ;
+        7: ( Start , Good      , _            , _                   ) => Go                     , Going ;
+        8: ( Going , Good      , _            , UnderWay | Settling ) => Wait                   , Going ;
+        9: ( Going , Good      , _            , Arrived             ) => Finish                 , Start ;
+       10: ( Going , Good      , _            , Late                ) => Fail(NotAtGoal)        , Start ;
+    }
+}
+
+pub(super) fn consult(step: u8, s: &Situation) -> Choice {
+    let step = Step::from_code(step).unwrap_or_default();
+    let Decision { row, action, next } = goto_pt(step, s.health, s.posture, s.arrival);
+    Choice { table: &GOTO_PT, row, action, step: next.code() }
+}

@@ -1,0 +1,42 @@
+//! ROBOT-INIT (V.1.1).
+
+use rcs_core::{
+    coded_enum, decision_table,
+    interface::Reason::{InterfaceRefused, InterfaceSilent, LinkError, LinkOff, NeighbourLost},
+    table::Decision,
+};
+
+use super::{Action, Choice, Health, Link, Posture, Situation};
+
+coded_enum! {
+    /// Reference action of ROBOT-INIT.
+    pub enum Step {
+        /// Nothing sent yet.
+        Start = "start",
+        /// RESTART is sent.
+        Restarting = "restarting",
+    }
+}
+
+decision_table! {
+    /// ROBOT-INIT (V.1.1): RESTART to T3I. It is there to clear errors of the link, so that only those count which come
+    /// after the RESTART. The only way from an error, or from a start, to a commanded position.
+    pub ROBOT_INIT: fn robot_init(step: Step, health: Health, posture: Posture, link: Link) -> (Action, Step) {
+        //    step         health      posture           link        action                   next
+        1: ( _          , Silent    , _               , _       ) => Fail(InterfaceSilent)  , Start      ;
+        2: ( _          , Orphaned  , _               , _       ) => Fail(NeighbourLost)    , Start      ;
+        3: ( Start      , Good      , Moving | Ending , _       ) => Halt                   , Start      ;
+        4: ( Start      , _         , _               , _       ) => Restart                , Restarting ;
+        5: ( Restarting , LinkOff   , _               , _       ) => Fail(LinkOff)          , Start      ;
+        6: ( Restarting , LinkError , _               , _       ) => Fail(LinkError)        , Start      ;
+        7: ( Restarting , Refused   , _               , _       ) => Fail(InterfaceRefused) , Start      ;
+        8: ( Restarting , Good      , _               , Down    ) => Wait                   , Restarting ;
+        9: ( Restarting , Good      , _               , Running ) => TakePosition           , Start      ;
+    }
+}
+
+pub(super) fn consult(step: u8, s: &Situation) -> Choice {
+    let step = Step::from_code(step).unwrap_or_default();
+    let Decision { row, action, next } = robot_init(step, s.health, s.posture, s.link);
+    Choice { table: &ROBOT_INIT, row, action, step: next.code() }
+}

@@ -1,0 +1,533 @@
+//! Prim against a model of T3I that stalls, fails and watches the order of points.
+
+use std::collections::VecDeque;
+
+use rcs_core::{
+    frame::{Frame, Vector, norm},
+    handshake::{Arrival, Receiver, successor},
+    interface::{
+        ChangingPose, CommonMemory, ExternalInputs, Header, PrimOutputs, Reason, T3iOutputs, pose_range,
+        prim::{PrimReport, PrimVerb},
+        t3i::{LinkFault, T3iReport, T3iVerb},
+    },
+    movetable::{Line, Movetable, System, straight_down},
+    name::Name10,
+    pose::{Pose, WireFrame},
+    process::{Inputs, Process},
+    tick::Tick,
+};
+use taskdata::files::{MovtabId, MovtabRecord, PoseRecord, TaskData, TrajPara};
+
+use super::Prim;
+
+/// Points that T3I can queue.
+const QUEUE: usize = 4;
+
+/// T3I and everything below it, as far as Prim can see.
+#[derive(Default)]
+struct ModelT3i {
+    receiver: Receiver,
+    command: T3iVerb,
+    queue: VecDeque<WireFrame>,
+    output: WireFrame,
+    /// Ticks until the link runs.
+    starting: Option<u32>,
+    running: bool,
+    fault: LinkFault,
+    /// Every frame that went to the robot, without the repetitions.
+    path: Vec<WireFrame>,
+    /// The resolvers see this many 0.01 in beside the output.
+    off: i32,
+    /// No tick passes for it; its last outputs are written again.
+    dead: bool,
+}
+
+impl ModelT3i {
+    fn step(&mut self, tick: Tick, memory: &CommonMemory, stalled: bool) -> T3iOutputs {
+        if self.dead {
+            return memory.t3i;
+        }
+        let command = &memory.prim.t3i;
+        let expected = successor(self.receiver.echo);
+        if self.receiver.observe(command.number) == Arrival::New {
+            self.command = command.command;
+            match command.command {
+                T3iVerb::Restart => {
+                    (self.fault, self.running, self.starting) = (LinkFault::None, false, Some(7));
+                    self.queue.clear();
+                }
+                T3iVerb::Point if self.fault != LinkFault::None => {}
+                T3iVerb::Point => {
+                    assert_eq!(command.number, expected, "a point is missing");
+                    assert!(self.running, "a point before the link runs");
+                    assert!(self.queue.len() < QUEUE, "the queue overruns");
+                    self.queue.push_back(command.frame);
+                }
+                T3iVerb::Pause => self.queue.clear(),
+                T3iVerb::None => panic!("a command without a word"),
+            }
+        }
+        if self.starting.is_some_and(|left| left == 0) {
+            (self.starting, self.running) = (None, true);
+        }
+        self.starting = self.starting.map(|left| left - 1);
+        if self.fault != LinkFault::None {
+            self.running = false;
+            self.queue.clear();
+        }
+        if !stalled && let Some(point) = self.queue.pop_front() {
+            self.output = point;
+            self.path.push(point);
+        }
+        self.outputs(tick)
+    }
+
+    fn outputs(&self, tick: Tick) -> T3iOutputs {
+        let mut outputs =
+            T3iOutputs { header: Header { stamp: tick, ..Header::default() }, ..T3iOutputs::default() };
+        let status = &mut outputs.status;
+        status.echo = self.receiver.echo;
+        status.command = self.command;
+        status.fault = self.fault;
+        status.report = match self.queue.len() {
+            _ if self.fault != LinkFault::None => T3iReport::Error,
+            _ if self.starting.is_some() => T3iReport::Executing,
+            0 => T3iReport::Finished,
+            1 | 2 => T3iReport::Ready,
+            _ => T3iReport::Executing,
+        };
+        status.frame_feedback = self.output;
+        status.resolver_frame = self.output;
+        status.resolver_frame.tool[0] += self.off;
+        status.resolver_valid = true;
+        status.link_running = self.running;
+        outputs
+    }
+}
+
+fn start() -> Frame {
+    straight_down(Vector::new(-60.0, 0.0, -5.0))
+}
+
+fn shifted(x: f64, y: f64) -> Frame {
+    Frame { position: start().position + Vector::new(x, y, 0.0), ..start() }
+}
+
+fn pose_record(name: &str, frame: Frame) -> PoseRecord {
+    PoseRecord {
+        name: Name10::new(name).unwrap(),
+        pose: Pose::from_frame(&frame),
+        movetable: MovtabId::NULL,
+        frame,
+    }
+}
+
+/// POSE, MOVTAB and TRAJ-PARA of the tests.
+struct Files {
+    poses: Vec<PoseRecord>,
+    movetables: Vec<MovtabRecord>,
+    parameters: Vec<TrajPara>,
+}
+
+impl Files {
+    fn new() -> Self {
+        let up = Line { system: System::World, values: [0, 0, 300] };
+        Self {
+            poses: vec![
+                pose_record("VIA", shifted(10.0, 0.0)),
+                pose_record("END", shifted(10.0, 10.0)),
+                pose_record("FAR", shifted(40.0, 3.0)),
+            ],
+            movetables: vec![MovtabRecord {
+                name: Name10::new("UP-3").unwrap(),
+                movetable: Movetable::from_lines(&[up]).unwrap(),
+            }],
+            parameters: vec![
+                TrajPara { acc_fac: 4, vel_max: 100, smooth: 8, brk_dst: 300 },
+                TrajPara { acc_fac: 4, vel_max: 0, smooth: 8, brk_dst: 300 },
+            ],
+        }
+    }
+
+    fn data(&self) -> TaskData<'_> {
+        TaskData {
+            poses: &self.poses,
+            movetables: &self.movetables,
+            traj_paras: &self.parameters,
+            ..TaskData::default()
+        }
+    }
+}
+
+/// Prim with a commander above it and the model below, with buffers by tick parity.
+struct Rig {
+    prim: Prim,
+    t3i: ModelT3i,
+    memory: CommonMemory,
+    external: ExternalInputs,
+    files: Files,
+    tick: Tick,
+    /// One in so many ticks T3I takes no point; 0 for never.
+    stalls: u64,
+    noise: u64,
+    emove_dead: bool,
+}
+
+impl Rig {
+    fn new() -> Self {
+        let mut external = ExternalInputs::default();
+        external.devices.joystick.velocity = 1000;
+        let t3i = ModelT3i { output: WireFrame::from_frame(&start()), ..ModelT3i::default() };
+        Self {
+            prim: Prim::default(),
+            t3i,
+            memory: CommonMemory::default(),
+            external,
+            files: Files::new(),
+            tick: Tick::BEFORE_START,
+            stalls: 0,
+            noise: 1,
+            emove_dead: false,
+        }
+    }
+
+    fn stalled(&mut self) -> bool {
+        self.noise ^= self.noise << 13;
+        self.noise ^= self.noise >> 7;
+        self.noise ^= self.noise << 17;
+        self.stalls > 0 && self.noise.is_multiple_of(self.stalls)
+    }
+
+    fn step(&mut self) {
+        self.tick = self.tick.next();
+        let stalled = self.stalled();
+        let data = self.files.data();
+        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &data };
+        let mut prim: PrimOutputs = self.memory.prim;
+        self.prim.step(&inputs, &mut prim);
+        let t3i = self.t3i.step(self.tick, &self.memory, stalled);
+        self.memory.prim = prim;
+        self.memory.t3i = t3i;
+        if !self.emove_dead {
+            self.memory.emove.header.stamp = self.tick;
+        }
+    }
+
+    fn steps(&mut self, ticks: u32) {
+        (0..ticks).for_each(|_| self.step());
+    }
+
+    /// What E-move writes in a tick.
+    fn command(&mut self, verb: PrimVerb, pose: u32) {
+        let command = &mut self.memory.emove.prim;
+        command.number = successor(command.number);
+        command.command = verb;
+        command.pose = pose;
+        command.movetable = 0;
+        command.trajectory_parameters = 1;
+    }
+
+    fn report(&self) -> PrimReport {
+        self.memory.prim.status.report
+    }
+
+    /// Step until the command is answered and over.
+    fn until_over(&mut self) -> PrimReport {
+        for _ in 0..5000 {
+            self.step();
+            let status = &self.memory.prim.status;
+            if status.echo == self.memory.emove.prim.number && status.report != PrimReport::Executing {
+                return status.report;
+            }
+        }
+        panic!("never over: {:#?}", self.prim.state());
+    }
+
+    fn run(&mut self, verb: PrimVerb, pose: u32) -> PrimReport {
+        self.command(verb, pose);
+        self.until_over()
+    }
+
+    fn initialized() -> Self {
+        let mut rig = Self::new();
+        rig.steps(3);
+        assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Done);
+        rig
+    }
+
+    /// The points that went to the robot never jump, and speed changes as the parameters allow.
+    fn check_path(&self, from: &Frame) {
+        let mut points = vec![from.position];
+        points.extend(self.t3i.path.iter().map(|wire| wire.to_frame().unwrap().position));
+        // Rounding to 0.01 in: half a count in each of three axes at each end.
+        let rounding = 0.009;
+        for three in points.windows(3) {
+            let (a, b) = (three[1] - three[0], three[2] - three[1]);
+            assert!(norm(&b) <= 10.0 * 0.04 + 2.0 * rounding, "{b:?} in a tick");
+            assert!(norm(&(b - a)) <= 10.0 * 0.0016 + 4.0 * rounding, "{a:?}, then {b:?}");
+        }
+    }
+}
+
+#[test]
+fn starts_with_pause_and_without_a_position() {
+    let mut rig = Rig::new();
+    rig.steps(5);
+    let out = rig.memory.prim;
+    assert_eq!((out.t3i.command, out.t3i.number), (T3iVerb::Pause, 1));
+    assert_eq!((out.status.report, out.status.present_pose), (PrimReport::Idle, 0));
+    assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::T3LinkOff);
+    assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::Done);
+    assert_eq!(rig.memory.prim.t3i, out.t3i);
+}
+
+#[test]
+fn robot_init_takes_the_position_over() {
+    let mut rig = Rig::new();
+    rig.steps(3);
+    rig.command(PrimVerb::RobotInit, 0);
+    rig.steps(3);
+    assert_eq!(rig.memory.prim.t3i.command, T3iVerb::Restart);
+    assert!(rig.memory.prim.status.restarting && !rig.memory.prim.status.link_running);
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    let status = rig.memory.prim.status;
+    assert!(status.link_running && !status.restarting);
+    assert_eq!(rig.memory.changing_pose(status.present_pose), Some(&Pose::from_frame(&start())));
+    assert_eq!(rig.memory.changing_pose(status.sensor_pose), Some(&Pose::from_frame(&start())));
+    assert_eq!(status.detected_pose, 0);
+}
+
+#[test]
+fn a_trajectory_ends_exactly_whatever_stalls() {
+    for stalls in [0, 2, 3, 7, 50] {
+        let mut rig = Rig::initialized();
+        rig.stalls = stalls;
+        assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done);
+        assert!(rig.memory.prim.status.distance < 300);
+        assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+        let end = WireFrame::from_frame(&shifted(10.0, 10.0));
+        assert_eq!((rig.t3i.output, rig.memory.prim.status.distance), (end, 0));
+        rig.check_path(&start());
+        assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+    }
+}
+
+#[test]
+fn a_through_point_without_a_next_command_is_stopped_at() {
+    let mut rig = Rig::initialized();
+    assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done);
+    rig.steps(200);
+    assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(10.0, 0.0)));
+    assert_eq!(rig.report(), PrimReport::Done);
+    rig.check_path(&start());
+}
+
+#[test]
+fn pause_ramps_down_and_keeps_the_last_point() {
+    for after in [1, 5, 13, 40, 60] {
+        let mut rig = Rig::initialized();
+        rig.stalls = 5;
+        rig.command(PrimVerb::GotoPt, 3);
+        rig.steps(after);
+        assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::Done);
+        let held = rig.memory.prim.t3i;
+        rig.steps(20);
+        assert_eq!((rig.memory.prim.t3i, rig.t3i.output), (held, held.frame));
+        assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+        assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(10.0, 10.0)));
+        rig.check_path(&start());
+    }
+}
+
+#[test]
+fn a_goal_before_its_time_is_reached_without_a_jump() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(30);
+    assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+    assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(10.0, 10.0)));
+    rig.check_path(&start());
+}
+
+#[test]
+fn the_knob_stops_the_path() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(40);
+    rig.external.devices.joystick.velocity = 0;
+    rig.steps(60);
+    let held = rig.t3i.output;
+    rig.steps(60);
+    assert_eq!((rig.t3i.output, rig.report()), (held, PrimReport::Executing));
+    rig.external.devices.joystick.velocity = 1000;
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    rig.check_path(&start());
+}
+
+#[test]
+fn movetables_and_changing_poses_make_the_goal() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 1);
+    rig.memory.emove.prim.movetable = 1;
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    let mut goal = shifted(10.0, 0.0);
+    goal.position.z += 3.0;
+    assert_eq!(rig.t3i.output, WireFrame::from_frame(&goal));
+    let number = pose_range::EMOVE | 5;
+    rig.memory.emove.poses[1] = ChangingPose { number, pose: Pose::from_frame(&shifted(4.0, 4.0)) };
+    assert_eq!(rig.run(PrimVerb::GotoPt, number), PrimReport::Done);
+    assert_eq!(rig.t3i.output.tool, WireFrame::from_frame(&shifted(4.0, 4.0)).tool);
+}
+
+#[test]
+fn missing_records_and_bad_parameters_are_refused_and_stop_the_robot() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(30);
+    assert_eq!(rig.run(PrimVerb::GotoPt, 9), PrimReport::Error);
+    assert_eq!(rig.memory.prim.status.reason, Reason::BadRecord);
+    rig.steps(100);
+    assert!(rig.prim.state().motion.is_at_rest());
+    rig.check_path(&start());
+    for (pose, movetable, parameters, reason) in [
+        (pose_range::EMOVE | 77, 0, 1, Reason::BadRecord),
+        (1, 2, 1, Reason::BadRecord),
+        (1, 0, 0, Reason::BadRecord),
+        (1, 0, 2, Reason::BadParameters),
+    ] {
+        rig.command(PrimVerb::GoThru, pose);
+        rig.memory.emove.prim.movetable = movetable;
+        rig.memory.emove.prim.trajectory_parameters = parameters;
+        assert_eq!(rig.until_over(), PrimReport::Error);
+        assert_eq!(rig.memory.prim.status.reason, reason);
+    }
+    assert_eq!(rig.run(PrimVerb::None, 0), PrimReport::Error);
+    assert_eq!(rig.memory.prim.status.reason, Reason::UnknownCommand);
+    assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+}
+
+#[test]
+fn after_a_fault_only_robot_init_moves_the_robot() {
+    for (fault, report) in [
+        (LinkFault::NotResponding, PrimReport::T3LinkOff),
+        (LinkFault::DepcError, PrimReport::T3LinkErr),
+        (LinkFault::Checksum, PrimReport::T3LinkErr),
+        (LinkFault::NotTransmitted, PrimReport::T3LinkErr),
+        (LinkFault::InvalidCommand, PrimReport::T3BadCommand),
+    ] {
+        let mut rig = Rig::initialized();
+        rig.command(PrimVerb::GotoPt, 3);
+        rig.steps(30);
+        rig.t3i.fault = fault;
+        assert_eq!(rig.until_over(), report);
+        assert_eq!(rig.memory.prim.status.present_pose, 0);
+        rig.steps(3);
+        let stopped = rig.t3i.output;
+        assert_ne!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+        assert_eq!(rig.memory.prim.t3i.command, T3iVerb::Pause);
+        assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Done);
+        assert_eq!(rig.t3i.output, stopped);
+        rig.t3i.path.clear();
+        assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+        rig.check_path(&stopped.to_frame().unwrap());
+    }
+}
+
+#[test]
+fn a_silent_t3i_is_noticed() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(30);
+    rig.t3i.dead = true;
+    rig.steps(3);
+    assert_eq!(rig.report(), PrimReport::NoRespT3i);
+    assert_eq!(rig.memory.prim.t3i.command, T3iVerb::Pause);
+    assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::NoRespT3i);
+}
+
+#[test]
+fn without_e_move_the_robot_stops() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(30);
+    rig.emove_dead = true;
+    rig.steps(80);
+    assert_eq!((rig.report(), rig.memory.prim.status.reason), (PrimReport::Error, Reason::NeighbourLost));
+    assert!(rig.prim.state().motion.is_at_rest() && rig.prim.state().positioned);
+    assert_ne!(rig.t3i.output, WireFrame::from_frame(&shifted(40.0, 3.0)));
+    rig.check_path(&start());
+}
+
+#[test]
+fn a_robot_that_does_not_arrive_is_an_error_after_two_seconds() {
+    let mut rig = Rig::initialized();
+    rig.t3i.off = 3;
+    let before = rig.tick;
+    assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Error);
+    assert_eq!(rig.memory.prim.status.reason, Reason::NotAtGoal);
+    assert!(rig.tick.since(before) > 50);
+    rig.t3i.off = 1;
+    assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+}
+
+#[test]
+fn a_restarted_prim_executes_nothing() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(30);
+    rig.prim = Prim::default();
+    rig.steps(5);
+    assert_eq!((rig.report(), rig.memory.prim.status.reason), (PrimReport::Error, Reason::Restarted));
+    assert_eq!(rig.memory.prim.t3i.command, T3iVerb::Pause);
+    let stopped = rig.t3i.output;
+    rig.steps(20);
+    assert_eq!(rig.t3i.output, stopped);
+}
+
+/// Whatever is commanded whenever, points stay in order and the path has no jump.
+#[test]
+fn random_commands_never_make_the_robot_jump() {
+    for seed in 1..=400 {
+        let mut rig = Rig::initialized();
+        rig.noise = seed;
+        rig.stalls = 2 + seed % 9;
+        for _ in 0..12 {
+            rig.stalled();
+            let (verb, pose) = match rig.noise % 8 {
+                0 => (PrimVerb::Pause, 0),
+                1 => (PrimVerb::RobotInit, 0),
+                2 => (PrimVerb::GotoPt, 99),
+                3..=5 => (PrimVerb::GoThru, 1 + (rig.noise >> 9) as u32 % 3),
+                _ => (PrimVerb::GotoPt, 1 + (rig.noise >> 9) as u32 % 3),
+            };
+            rig.external.devices.joystick.velocity =
+                if (rig.noise >> 20).is_multiple_of(5) { 300 } else { 1000 };
+            rig.command(verb, pose);
+            if (rig.noise >> 30).is_multiple_of(3) {
+                rig.steps((rig.noise >> 40) as u32 % 60);
+            } else {
+                rig.until_over();
+            }
+        }
+        assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Done);
+        rig.external.devices.joystick.velocity = 1000;
+        assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+        assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(10.0, 10.0)));
+        rig.check_path(&start());
+    }
+}
+
+#[test]
+fn a_restored_prim_goes_on_to_the_bit() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(30);
+    let state = *rig.prim.state();
+    rig.prim = Prim::default();
+    Process::<TaskData<'_>>::restore(&mut rig.prim, state);
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    let restored = rig.t3i.path;
+    let mut rig = Rig::initialized();
+    assert_eq!(rig.run(PrimVerb::GotoPt, 3), PrimReport::Done);
+    assert_eq!(rig.t3i.path, restored);
+}
