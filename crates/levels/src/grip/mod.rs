@@ -61,7 +61,7 @@ use crate::execution::{Course, EXECUTE};
 const TABLES: &[&Table] = &[&EXECUTE, &POSITION, &CLOSE_GRIP, &UP_INIT, &PAUSE];
 
 /// The Grip process.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Grip {
     state: State,
 }

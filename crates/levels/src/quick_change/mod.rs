@@ -40,7 +40,7 @@ use crate::execution::EXECUTE;
 const TABLES: &[&Table] = &[&EXECUTE, &QC_PAUSE];
 
 /// The Quick Change process.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct QuickChange {
     state: State,
 }
