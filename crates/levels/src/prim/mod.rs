@@ -1,7 +1,7 @@
 //! Prim (V.1): takes a motion command apart into trajectory points, one every 40 ms.
 //!
-//! A command of E-move names records; Prim looks them up, gives the goal to the trajectory generator, and sends T3I a point
-//! whenever it wants one. Three things are kept apart:
+//! A command of E-move names records; Prim looks them up, gives the goal to the trajectory generator, and
+//! sends T3I a point whenever it wants one. Three things are kept apart:
 //!
 //! * the *command* (its table decides when it is done, and when it failed);
 //! * the *motion* ([`motion`]), which goes on when a GO-THRU is done, and ramps down when a command failed;
@@ -15,12 +15,13 @@
 //!     T3I: PAUSE         link off, link error, refused or silent T3I; a restart        T3I: POINT
 //! ```
 //!
-//! Only ROBOT-INIT leads from the left to the right, so that the robot is never asked to jump to where Prim believes it to be.
-//! PAUSE ramps down and then repeats the last point under its number: T3I holds it, its queue is not cut short,
-//! and the commanded position stays exact. PAUSE goes to T3I only while Prim has no position.
+//! Only ROBOT-INIT leads from the left to the right, so that the robot is never asked to jump to where Prim
+//! believes it to be. PAUSE ramps down and then repeats the last point under its number: T3I holds it, its
+//! queue is not cut short, and the commanded position stays exact. PAUSE goes to T3I only while Prim has no
+//! position.
 //!
-//! T3I queues up to four points. Prim reads in tick k+2 what T3I says to the point of tick k, so that T3I must say `Executing`
-//! while it has room for fewer than two. With that the queue cannot overrun.
+//! T3I queues up to four points. Prim reads in tick k+2 what T3I says to the point of tick k, so that T3I
+//! must say `Executing` while it has room for fewer than two. With that the queue cannot overrun.
 
 mod acting;
 pub mod motion;

@@ -93,8 +93,9 @@ pub fn posture(state: &State, pace: Pace) -> Posture {
 
 /// What T3I says, as far as it answers what was sent.
 ///
-/// A point is sent each tick, and its echo comes back two ticks later: while points flow, the echo of the point before counts as
-/// well. Any other command must be echoed itself, so that an error from before a RESTART is not taken for one of it.
+/// A point is sent each tick, and its echo comes back two ticks later: while points flow, the echo of the
+/// point before counts as well. Any other command must be echoed itself, so that an error from before a
+/// RESTART is not taken for one of it.
 fn interface(state: &State, inputs: &Inputs<'_, TaskData<'_>>, sent: &T3iCommand) -> (Health, Pace) {
     let t3i = &inputs.memory.t3i;
     let (number, echo) = (state.t3i.number, t3i.status.echo);

@@ -1,7 +1,7 @@
 //! What TRAJ-PARA and the velocity knob allow.
 //!
-//! The manual names the columns of a trajectory form (VII.6) but gives no units, so the three units are ASSUMED; they
-//! stand here and nowhere else.
+//! The manual names the columns of a trajectory form (VII.6) but gives no units, so the three units are
+//! ASSUMED; they stand here and nowhere else.
 
 use rcs_core::{interface::device::KNOB_FULL, record, tick::TICK_S};
 
@@ -9,8 +9,8 @@ use rcs_core::{interface::device::KNOB_FULL, record, tick::TICK_S};
 const VELOCITY_COUNT: f64 = 0.1;
 /// in/s² in a count of `acc-fac`: a velocity count gained in each tick (4 is 10 in/s²). ASSUMED.
 const ACCELERATION_COUNT: f64 = VELOCITY_COUNT / TICK_S;
-/// in/s³ in a count of `smooth`: an acceleration count of change in each tick, so that a bigger number is less
-/// smoothing (VII.6). ASSUMED.
+/// in/s³ in a count of `smooth`: an acceleration count of change in each tick, so that a bigger number is
+/// less smoothing (VII.6). ASSUMED.
 const JERK_COUNT: f64 = ACCELERATION_COUNT / TICK_S;
 /// in/s that the DEPC link takes (A 2.3).
 pub const LINK_VELOCITY: f64 = 14.0;

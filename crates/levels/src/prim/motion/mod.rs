@@ -1,9 +1,9 @@
 //! The trajectory generator: the manual's Traj-program, of which it says nothing (V.1).
 //!
-//! Each segment is a straight line with its own jerk-limited [`profile`]. A profile always stops at the end of its
-//! line, through points included, so that a stop is possible at any time and nothing depends on a next goal that may
-//! never come. At a through point two motions are superposed: the old segment goes on braking (the *residual*) while
-//! the new one already starts from rest *at the through point*:
+//! Each segment is a straight line with its own jerk-limited [`profile`]. A profile always stops at the end
+//! of its line, through points included, so that a stop is possible at any time and nothing depends on a next
+//! goal that may never come. At a through point two motions are superposed: the old segment goes on braking
+//! (the *residual*) while the new one already starts from rest *at the through point*:
 //!
 //! ```text
 //!  velocity   old ________                       frame = new segment's frame, displaced by what
@@ -16,16 +16,19 @@
 //!                          ^ handed over: not before the old segment brakes
 //! ```
 //!
-//! * The new segment starts no earlier than the old one brakes, and no faster than it brakes: the sum of both velocities
-//!   never exceeds the larger of their limits, and a straight passage that is handed over in time runs at full speed.
-//! * Braking towards a through point and starting over a residual use half of acceleration and jerk each: the vector sum keeps the
-//!   limits whatever the angle between the segments. Lone starts and the stop at a last point use all.
-//! * At most two motions are superposed: a through point counts as passed only when no older residual is left.
-//! * Knob, PAUSE and a new goal before its time are the same thing: a new velocity for the running profile. After a stop the
-//!   next segment starts from where the stop ended.
+//! * The new segment starts no earlier than the old one brakes, and no faster than it brakes: the sum of both
+//!   velocities never exceeds the larger of their limits, and a straight passage that is handed over in time
+//!   runs at full speed.
+//! * Braking towards a through point and starting over a residual use half of acceleration and jerk each: the
+//!   vector sum keeps the limits whatever the angle between the segments. Lone starts and the stop at a last
+//!   point use all.
+//! * At most two motions are superposed: a through point counts as passed only when no older residual is
+//!   left.
+//! * Knob, PAUSE and a new goal before its time are the same thing: a new velocity for the running profile.
+//!   After a stop the next segment starts from where the stop ended.
 //!
-//! Rotations are superposed as world rotations; their acceleration then has a small extra term, at most the product of
-//! both angular velocities.
+//! Rotations are superposed as world rotations; their acceleration then has a small extra term, at most the
+//! product of both angular velocities.
 
 pub mod limits;
 pub mod profile;
@@ -87,8 +90,8 @@ impl Motion {
         !(self.current.active || self.residual.active || self.next.given || self.halting)
     }
 
-    /// The last order was a GO-THRU and the next one may be given: no older residual is left, and the point is nearer
-    /// than the brake distance.
+    /// The last order was a GO-THRU and the next one may be given: no older residual is left, and the point
+    /// is nearer than the brake distance.
     #[must_use]
     pub fn is_passing(&self) -> bool {
         let alone = !(self.residual.active || self.next.given || self.halting);
@@ -96,8 +99,8 @@ impl Motion {
             && (!self.current.active || (self.current.order.through && self.distance() < self.brake_distance))
     }
 
-    /// Go to a goal, by the shortest way that is continuous: on from a through point that [`is_passing`](Self::is_passing), else
-    /// after a halt.
+    /// Go to a goal, by the shortest way that is continuous: on from a through point that
+    /// [`is_passing`](Self::is_passing), else after a halt.
     pub fn go(&mut self, goal: &Frame, limits: &Limits, through: Option<f64>) {
         self.halting = !self.is_passing();
         let goal = FrameData::from(goal);
@@ -172,8 +175,8 @@ impl Motion {
         if self.halting { 0.0 } else { self.current.order.limits.velocity_at(knob) }
     }
 
-    /// Plan the current segment from a state on it. What cannot be planned is left as it was: it ends at the goal,
-    /// and the next tick tries again.
+    /// Plan the current segment from a state on it. What cannot be planned is left as it was: it ends at the
+    /// goal, and the next tick tries again.
     fn plan(&mut self, from: &Along, knob: u16) {
         let velocity = self.velocity(knob);
         let order = &self.current.order;
@@ -200,7 +203,8 @@ impl Motion {
         }
     }
 
-    /// Start the next segment as soon as the current one brakes. `before` is the clock of the current one a tick ago.
+    /// Start the next segment as soon as the current one brakes. `before` is the clock of the current one a
+    /// tick ago.
     fn hand_over(&mut self, before: f64, knob: u16) {
         let old = &self.current;
         let Some(braking_point) = old.profile.braking_point().filter(|begin| old.profile.clock >= *begin)

@@ -1,13 +1,14 @@
 //! How far along a segment at what time: a jerk-limited profile in closed form.
 //!
-//! A profile changes the velocity to a cruise velocity, cruises, and stops at the goal: up to seven phases of constant
-//! jerk, from any velocity and acceleration. The change and the stop may have different limits. Because the profile is
-//! continuous in time and only its *samples* are sent, differences of samples are means of the true velocity,
-//! acceleration and jerk, and cannot exceed the limits however the phases fall between the ticks.
+//! A profile changes the velocity to a cruise velocity, cruises, and stops at the goal: up to seven phases of
+//! constant jerk, from any velocity and acceleration. The change and the stop may have different limits.
+//! Because the profile is continuous in time and only its *samples* are sent, differences of samples are
+//! means of the true velocity, acceleration and jerk, and cannot exceed the limits however the phases fall
+//! between the ticks.
 //!
-//! The cruise velocity is the highest that still lets the profile stop in the distance that is left. It is found by a
-//! fixed number of bisections over the closed forms; what the last bisection leaves over is cruised, so that the end
-//! is exact.
+//! The cruise velocity is the highest that still lets the profile stop in the distance that is left. It is
+//! found by a fixed number of bisections over the closed forms; what the last bisection leaves over is
+//! cruised, so that the end is exact.
 
 use rcs_core::record;
 
@@ -127,7 +128,8 @@ fn cruise_velocity(from: &Along, goal: f64, cap: f64, up: &Limits, down: &Limits
     if end(from, cap, up, down) <= goal {
         return Some(cap);
     }
-    // Above the settled velocity the end grows with the cruise velocity; below it does not, and is not searched.
+    // Above the settled velocity the end grows with the cruise velocity; below it does not, and is not
+    // searched.
     let (mut low, mut high) = (from.settled(up).max(0.0), cap);
     if low >= high || end(from, low, up, down) > goal {
         return None;
@@ -247,7 +249,8 @@ mod tests {
             for k in 0..=200 {
                 let now = at(&plan, whole * f64::from(k) / 200.0);
                 prop_assert!(now.position >= before.position - 1e-9);
-                prop_assert!(now.velocity >= -1e-6 && now.velocity <= ceiling + 1e-6, "{now:?} over {ceiling}");
+                prop_assert!(now.velocity >= -1e-6, "{now:?}");
+                prop_assert!(now.velocity <= ceiling + 1e-6, "{now:?} over {ceiling}");
                 prop_assert!(now.acceleration <= up.acceleration + 1e-6);
                 prop_assert!(now.acceleration >= -up.acceleration.max(down.acceleration) - 1e-6);
                 before = now;

@@ -143,7 +143,8 @@ impl Watch {
         let v = [Rate::between(&f[0], &f[1]), Rate::between(&f[1], &f[2]), Rate::between(&f[2], &f[3])];
         let a = [v[0].change(&v[1]), v[1].change(&v[2])];
         let j = a[0].change(&a[1]);
-        // Two rotations at once: an extra acceleration of the product of their velocities, twice that while it changes.
+        // Two rotations at once: an extra acceleration of the product of their velocities, twice that while
+        // it changes.
         let product =
             if allowed.superposed { allowed.limits.velocity.powi(2) / INCHES_PER_RADIAN } else { 0.0 };
         let limits = allowed.limits;
@@ -250,7 +251,8 @@ fn rest(motion: &mut Motion, watch: &mut Watch, knob: u16) -> Result<(), String>
         let slow = s.order.limits.share();
         slow.velocity / slow.acceleration + 2.0 * slow.acceleration / slow.jerk
     });
-    // A residual and the segment over it stop one after the other at worst, within the smaller of both limits.
+    // A residual and the segment over it stop one after the other at worst, within the smaller of both
+    // limits.
     let slowest = 4.0 * longest.fold(0.0, f64::max) + 1.0;
     let mut left = (slowest / TICK_S) as u32 + 2;
     while !motion.is_at_rest() {
@@ -391,8 +393,12 @@ proptest! {
 
     /// Counts at their extremes neither hang nor leave the numbers.
     #[test]
-    fn extreme_counts_stay_finite(a in prop::sample::select(vec![1, 1000, i32::MAX]), v in prop::sample::select(vec![1, i32::MAX]),
-                                  s in prop::sample::select(vec![1, 1000, i32::MAX]), x in -3e7_f64..3e7) {
+    fn extreme_counts_stay_finite(
+        a in prop::sample::select(vec![1, 1000, i32::MAX]),
+        v in prop::sample::select(vec![1, i32::MAX]),
+        s in prop::sample::select(vec![1, 1000, i32::MAX]),
+        x in -3e7_f64..3e7,
+    ) {
         let start = straight_down(Vector::new(-60.0, 0.0, 0.0));
         let mut motion = Motion::at_rest(&start);
         motion.go(&shifted(&start, x, 0.0), &Limits::from_counts(a, v, s).unwrap(), None);

@@ -19,9 +19,11 @@ coded_enum! {
 }
 
 decision_table! {
-    /// GO-THRU (V.1.1): move near a point on the way to the next. Done within the brake distance; the robot flies on
-    /// while the next command comes, and stops at the point if none does.
-    pub GO_THRU: fn go_thru(step: Step, health: Health, posture: Posture, passage: Passage) -> (Action, Step) {
+    /// GO-THRU (V.1.1): move near a point on the way to the next. Done within the brake distance; the robot
+    /// flies on while the next command comes, and stops at the point if none does.
+    pub GO_THRU: fn go_thru(step: Step, health: Health, posture: Posture, passage: Passage)
+        -> (Action, Step)
+    {
         //    step    health      posture        passage        action                   next
         1: ( _     , LinkOff   , _            , _        ) => Fail(LinkOff)          , Start ;
         2: ( _     , LinkError , _            , _        ) => Fail(LinkError)        , Start ;

@@ -20,7 +20,9 @@ coded_enum! {
 
 decision_table! {
     /// GOTO-PT (V.1.1): move to a point and stop. Done when the robot rests there, not when it was told to.
-    pub GOTO_PT: fn goto_pt(step: Step, health: Health, posture: Posture, arrival: Arrival) -> (Action, Step) {
+    pub GOTO_PT: fn goto_pt(step: Step, health: Health, posture: Posture, arrival: Arrival)
+        -> (Action, Step)
+    {
         //    step    health      posture        arrival                   action                   next
         1: ( _     , LinkOff   , _            , _                   ) => Fail(LinkOff)          , Start ;
         2: ( _     , LinkError , _            , _                   ) => Fail(LinkError)        , Start ;

@@ -1,7 +1,8 @@
 //! The path clock: the table of every tick, whatever the command.
 //!
-//! Time on the path is counted in points, not in ticks: when T3I has enough of them the path stands still, and nothing
-//! is lost or hurried afterwards. So the clock goes on after a GO-THRU is done, and while an error ramps down.
+//! Time on the path is counted in points, not in ticks: when T3I has enough of them the path stands still,
+//! and nothing is lost or hurried afterwards. So the clock goes on after a GO-THRU is done, and while an
+//! error ramps down.
 
 use rcs_core::{coded_enum, decision_table};
 
@@ -29,14 +30,14 @@ pub enum Flow {
 }
 
 decision_table! {
-    /// PATH-CLOCK (DESIGN 16 "Prim to T3I"): is the next point sent? A robot that does not follow must not be asked to jump,
-    /// so that a lost link leaves no motion behind.
+    /// PATH-CLOCK (DESIGN 16 "Prim to T3I"): is the next point sent? A robot that does not follow must not be
+    /// asked to jump, so that a lost link leaves no motion behind.
     pub PATH_CLOCK: fn path_clock(posture: Posture, health: Health, pace: Pace) -> (Flow, Clock) {
-        //    posture                       health                                   pace                    flow      clock
-        1: ( Unpositioned               , _                                      , _                 ) => Repeat  , Stands ;
-        2: ( Moving | Ending | Standing , LinkOff | LinkError | Refused | Silent , _                 ) => Abandon , Stands ;
-        3: ( Moving                     , Good | Orphaned                        , Wanted | Finished ) => Advance , Runs   ;
-        4: ( Moving                     , Good | Orphaned                        , Busy              ) => Repeat  , Stands ;
-        5: ( Ending | Standing          , Good | Orphaned                        , _                 ) => Repeat  , Stands ;
+        //   posture             health                                   pace                   flow      clock
+        1: ( Unpositioned      , _                                      , _                 ) => Repeat  , Stands ;
+        2: ( _                 , LinkOff | LinkError | Refused | Silent , _                 ) => Abandon , Stands ;
+        3: ( Moving            , _                                      , Wanted | Finished ) => Advance , Runs   ;
+        4: ( Moving            , _                                      , Busy              ) => Repeat  , Stands ;
+        5: ( Ending | Standing , _                                      , _                 ) => Repeat  , Stands ;
     }
 }

@@ -19,9 +19,11 @@ coded_enum! {
 }
 
 decision_table! {
-    /// ROBOT-INIT (V.1.1): RESTART to T3I. It is there to clear errors of the link, so that only those count which come
-    /// after the RESTART. The only way from an error, or from a start, to a commanded position.
-    pub ROBOT_INIT: fn robot_init(step: Step, health: Health, posture: Posture, link: Link) -> (Action, Step) {
+    /// ROBOT-INIT (V.1.1): RESTART to T3I. It is there to clear errors of the link, so that only those count
+    /// which come after the RESTART. The only way from an error, or from a start, to a commanded position.
+    pub ROBOT_INIT: fn robot_init(step: Step, health: Health, posture: Posture, link: Link)
+        -> (Action, Step)
+    {
         //    step         health      posture           link        action                   next
         1: ( _          , Silent    , _               , _       ) => Fail(InterfaceSilent)  , Start      ;
         2: ( _          , Orphaned  , _               , _       ) => Fail(NeighbourLost)    , Start      ;
