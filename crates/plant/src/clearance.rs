@@ -21,6 +21,8 @@ pub struct Mover {
     pub pose: Pose,
     /// Its shape.
     pub shape: SharedShape,
+    /// It is a part that is carried: it may touch what is there to work on.
+    pub carried: bool,
 }
 
 /// A contact that has begun.
@@ -51,7 +53,9 @@ impl Clearance {
         let mut begun = Vec::new();
         for mover in movers {
             let aabb = mover.shape.compute_aabb(&mover.pose);
-            for obstacle in obstacles.clone().filter(|obstacle| obstacle.aabb.intersects(&aabb)) {
+            for obstacle in obstacles.clone().filter(|obstacle| {
+                !(mover.carried && obstacle.work_surface) && obstacle.aabb.intersects(&aabb)
+            }) {
                 let Some(depth) = depth(mover, obstacle) else { continue };
                 let pair = (mover.name.clone(), obstacle.name.clone());
                 if !self.touching.contains(&pair) && !touching.contains(&pair) {
@@ -78,13 +82,19 @@ mod tests {
     #[test]
     fn a_contact_is_reported_when_it_begins() {
         let shape = Cuboid::new(Vector::splat(0.1));
-        let table =
-            Obstacle { name: "table".into(), pose: Pose::IDENTITY, aabb: shape.aabb(&Pose::IDENTITY), shape };
+        let table = Obstacle {
+            name: "table".into(),
+            pose: Pose::IDENTITY,
+            aabb: shape.aabb(&Pose::IDENTITY),
+            shape,
+            work_surface: false,
+        };
         let at = |z: Real| {
             vec![Mover {
                 name: "hand".into(),
                 pose: Pose::translation(0.0, 0.0, z),
                 shape: SharedShape::ball(0.05),
+                carried: false,
             }]
         };
         let mut clearance = Clearance::default();

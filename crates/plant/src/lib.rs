@@ -22,7 +22,7 @@ pub mod squeeze;
 pub mod t3;
 pub mod vise;
 
-pub use cell::{Cell, CellError, CellEvent, Link, Placement, WorkstationAction, WorkstationError};
+pub use cell::{Cell, CellError, CellEvent, Link, Placement, WorkstationAction, WorkstationError, part_link};
 pub use description::CellDescription;
 pub use part::PartState;
 pub use t3::Button;

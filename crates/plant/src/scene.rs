@@ -182,12 +182,20 @@ pub struct Obstacle {
     pub shape: Cuboid,
     /// Its surroundings.
     pub aabb: Aabb,
+    /// Parts that are carried may touch it.
+    pub work_surface: bool,
 }
 
 impl From<&Block> for Obstacle {
     fn from(block: &Block) -> Self {
         let (pose, shape) = (to_pose(&block.frame), Cuboid::new(block.half()));
-        Self { name: block.name.clone(), pose, aabb: shape.aabb(&pose), shape }
+        Self {
+            name: block.name.clone(),
+            pose,
+            aabb: shape.aabb(&pose),
+            shape,
+            work_surface: block.work_surface,
+        }
     }
 }
 

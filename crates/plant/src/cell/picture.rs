@@ -75,6 +75,7 @@ impl Cell {
             name: name.into(),
             pose,
             shape: SharedShape::capsule(Vector::X * metres(from), Vector::X * metres(to), metres(radius)),
+            carried: false,
         };
         let mut movers = vec![
             capsule("upper_arm", upper, T3.upper_arm / 4.0, T3.upper_arm, robot.upper_arm_radius),
@@ -93,6 +94,7 @@ impl Cell {
                     name: name.into(),
                     pose: *collider.position(),
                     shape: collider.shared_shape().clone(),
+                    carried: false,
                 });
             }
         }
@@ -101,7 +103,18 @@ impl Cell {
             name: "camera".into(),
             pose: *hand.position() * Pose::from_translation(camera),
             shape: SharedShape::cuboid(metres(1.0), metres(1.0), metres(0.75)),
+            carried: false,
         });
+        if let Some((index, _)) = &self.gripper.hold {
+            let part = &self.parts[*index];
+            let half = part.half();
+            movers.push(Mover {
+                name: part.kind.name.clone(),
+                pose: part.pose(&self.world),
+                shape: SharedShape::cuboid(half.x, half.y, half.z),
+                carried: true,
+            });
+        }
         movers
     }
 
@@ -111,21 +124,23 @@ impl Cell {
         jaw_blocks(&self.description.vise).iter().map(|block| Obstacle::from(&block.moved(&jaw))).collect()
     }
 
-    /// Names and poses of all moving bodies.
+    /// Names and poses of all moving bodies and of what they hang on; a parent stands before its children.
     #[must_use]
     pub fn links(&self) -> Vec<Link> {
-        let mut links = Vec::with_capacity(12 + self.parts.len());
+        let mut links = Vec::with_capacity(11 + self.parts.len());
         for (joint, angle) in self.joints().into_iter().enumerate() {
             let (name, parent, axis) = ARM[joint];
             let pose = Pose::new(Vector::X * metres(STARTS[joint]), Vector::from_array(axis) * angle);
             links.push(link(name, parent, &pose));
         }
+        links.push(link("parts_gripper", "end_plate", &to_pose(&gripper_mount())));
         let hand = *self.world.bodies[self.gripper.hand()].position();
         for (name, body) in ["left_finger", "right_finger"].into_iter().zip(self.gripper.finger_bodies()) {
             links.push(link(name, "parts_gripper", &hand.inv_mul(self.world.bodies[body].position())));
         }
         let vise = to_pose(self.vise.frame());
         let jaw = vise.inv_mul(self.world.bodies[self.vise.jaw()].position());
+        links.push(link("vise", "world", &vise));
         links.push(link("movable_jaw", "vise", &jaw));
         for part in &self.parts {
             links.push(link(&part_link(part.id), "world", &part.pose(&self.world)));
@@ -146,13 +161,19 @@ impl Cell {
     /// A URDF of the whole cell as it is now; parts that are put down later are not in it.
     #[must_use]
     pub fn urdf(&self) -> String {
+        self.urdf_with(&[])
+    }
+
+    /// A URDF of the whole cell with the parts that will be put down later, by their names in the description and in the order in which
+    /// that will happen: a log is told of geometry before its first tick. Names that the description does not have are left out.
+    #[must_use]
+    pub fn urdf_with(&self, coming: &[&str]) -> String {
         let mut urdf = Urdf::new(&self.description.name);
         self.urdf_arm(&mut urdf);
         self.urdf_gripper(&mut urdf);
-        let mut last = "";
         for block in &self.furniture {
             let in_vise = ["vise_body", "fixed_jaw_notch", "fixed_jaw"].contains(&block.name.as_str());
-            if !in_vise && block.name != last {
+            if !in_vise {
                 urdf.begin_link(&block.name);
                 urdf.block(&Block { frame: Frame::identity(), ..block.clone() }, STEEL);
                 urdf.end_link();
@@ -165,13 +186,14 @@ impl Cell {
                     None,
                 );
             }
-            last = &block.name;
         }
         self.urdf_vise(&mut urdf);
-        for part in &self.parts {
-            let name = part_link(part.id);
+        let present = self.parts.iter().map(|part| (part.id, part.kind.size));
+        let coming = coming.iter().filter_map(|name| self.description.part(name)).map(|kind| kind.size);
+        for (id, size) in present.chain((self.next_part..).zip(coming)) {
+            let name = part_link(id);
             urdf.begin_link(&name);
-            urdf.shape(&Frame::identity(), &Outline::Box(Inches::from(part.kind.size)), PART);
+            urdf.shape(&Frame::identity(), &Outline::Box(Inches::from(size)), PART);
             urdf.end_link();
             urdf.joint(&format!("{name}_free"), "floating", "world", &name, &Frame::identity(), None);
         }
@@ -223,8 +245,7 @@ impl Cell {
         let [x, y, z] = self.description.camera.position;
         urdf.shape(&at(x, y, z), &Outline::Box(Inches::new(2.0, 2.0, 1.5)), DARK);
         urdf.end_link();
-        let plate_to_tool = at(T3.yaw_to_plate + T3.plate_to_tool, 0.0, 0.0);
-        urdf.joint("quick_change", "fixed", "end_plate", "parts_gripper", &plate_to_tool, None);
+        urdf.joint("quick_change", "fixed", "end_plate", "parts_gripper", &gripper_mount(), None);
         for (name, side) in [("left_finger", 1.0), ("right_finger", -1.0)] {
             urdf.begin_link(name);
             urdf.shape(&Frame::identity(), &Outline::Box(Inches::new(length, thickness, width)), STEEL);
@@ -259,7 +280,15 @@ impl Cell {
     }
 }
 
-fn part_link(id: u32) -> String {
+/// Where the parts gripper sits on the end plate's link: its origin is the tool point.
+fn gripper_mount() -> Frame {
+    let ahead = Inches::new(T3.yaw_to_plate + T3.plate_to_tool, 0.0, 0.0);
+    Frame { position: ahead, rotation: Rotation::identity() }
+}
+
+/// Name of the link of a part.
+#[must_use]
+pub fn part_link(id: u32) -> String {
     format!("part_{id}")
 }
 

@@ -136,8 +136,9 @@ impl Rig {
         self.ticks(20);
     }
 
+    /// The part that was put down last.
     pub fn part(&self) -> PartState {
-        self.cell.parts()[0].clone()
+        self.cell.parts().pop().unwrap()
     }
 
     pub fn part_frame(&self) -> Frame {

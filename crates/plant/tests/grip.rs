@@ -1,0 +1,132 @@
+//! What a grip can do and what it cannot.
+
+mod rig;
+
+use plant::{CellEvent, Placement, WorkstationAction};
+use rcs_core::{
+    frame::{Vector, rotation_vector},
+    interface::device::valve,
+};
+use rig::{Rig, UNIT_V1, description, table};
+
+/// Where the part is, seen from the fingertips, in.
+fn in_fingers(rig: &Rig) -> Vector {
+    rig.cell.tool().inverse().compose(&rig.part_frame()).position
+}
+
+#[test]
+fn closing_fingers_draw_a_part_to_their_middle_and_square() {
+    let mut rig = Rig::new(&description(), 1);
+    rig.place("LINKBAR1_BH", 4, 0.0, 0.4, 3.0);
+    rig.pick(0.0, 0.0, 0.0, 30.0);
+    let held = rig.cell.tool().inverse().compose(&rig.part_frame());
+    assert!(rig.part().held && held.position.y.abs() < 0.001, "{held:?}");
+    let across = rotation_vector(&held.rotation);
+    assert!(across.x.abs() < 0.001 && across.z.abs() < 0.001, "flush with the pads: {across:?}");
+    assert!((rig.cell.fingers().0 - 0.625).abs() < 0.001, "{:?}", rig.cell.fingers());
+}
+
+#[test]
+fn a_held_part_does_not_creep() {
+    let mut rig = Rig::new(&description(), 1);
+    rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
+    rig.pick(0.0, 0.0, 0.0, 30.0);
+    rig.ticks(30);
+    let before = in_fingers(&rig);
+    rig.ticks(1500);
+    let creep = (in_fingers(&rig) - before).norm();
+    assert!(creep < 0.004, "{creep} in a minute");
+    assert!(rig.log.is_empty(), "{:?}", rig.log);
+}
+
+/// A block of the given weight, 2 x 2 x 2 in.
+fn with_block(weight: f64) -> plant::CellDescription {
+    let text = format!(
+        "{}\n[[part]]\nname = \"BLOCK\"\nsize = [2.0, 2.0, 2.0]\nweight = {weight}\nvision_id = 99\n",
+        rig::CELL
+    );
+    plant::CellDescription::from_toml(&text).unwrap()
+}
+
+/// Close on a block in sector 4 with `force` lb and lift by 5 in.
+fn lift_block(weight: f64, force: f64) -> Rig {
+    let mut rig = Rig::new(&with_block(weight), 1);
+    rig.place("BLOCK", 4, 0.0, 0.0, 0.0);
+    let sector = description().tray("UNIT_1").unwrap().sector(4).unwrap();
+    let grip = table(&[
+        (rcs_core::movetable::System::Tool, [-60, 0, 0]),
+        (rcs_core::movetable::System::ToolOrigin, [-300, 0, 0]),
+    ])
+    .apply(&sector);
+    rig.go(UNIT_V1.to_frame().unwrap(), 10.0);
+    rig.open(3.0);
+    rig.go(grip.shifted(Vector::new(-8.0, 0.0, 0.0)), 10.0);
+    rig.go_and_stop(grip, 4.0);
+    rig.close(force);
+    rig.go_and_stop(grip.shifted(Vector::new(-5.0, 0.0, 0.0)), 2.0);
+    rig
+}
+
+#[test]
+fn friction_decides_what_can_be_lifted() {
+    // Two pads of 30 lb at 0.30 carry 18 lb.
+    let rig = lift_block(15.0, 30.0);
+    assert!(rig.part().held && rig.part().position[2] > -12.5, "{:?} {:?}", rig.part(), rig.log);
+    assert!(rig.log.is_empty(), "{:?}", rig.log);
+
+    let rig = lift_block(24.0, 30.0);
+    assert!(rig.part().position[2] < -15.0, "it stays in the tray: {:?}", rig.part());
+    assert!(
+        matches!(rig.log.as_slice(), [CellEvent::Slipped { .. }, CellEvent::Dropped { .. }]),
+        "{:?}",
+        rig.log
+    );
+
+    let rig = lift_block(24.0, 50.0);
+    assert!(rig.part().held && rig.part().position[2] > -12.5, "50 lb carry 30: {:?}", rig.part());
+}
+
+#[test]
+fn vented_fingers_let_go() {
+    let mut rig = Rig::new(&description(), 1);
+    rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
+    rig.pick(0.0, 0.0, 0.0, 30.0);
+    assert!(rig.part().held);
+    rig.outputs.grip.bits = valve::SUPPLY | valve::VENT;
+    rig.ticks(50);
+    assert!(!rig.part().held && rig.part().location == "UNIT_1", "{:?}", rig.part());
+}
+
+#[test]
+fn a_carried_part_that_is_pushed_against_a_wall_slips() {
+    let mut rig = Rig::new(&description(), 1);
+    rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
+    rig.pick(0.0, 0.0, 0.0, 30.0);
+    // Down between the fingers: onto the tray floor, and 0.3 in farther.
+    rig.go_and_stop(rig.grip_frame(4, 0.0, 0.0, 0.0, -0.15), 2.0);
+    assert!(matches!(rig.log.as_slice(), [CellEvent::Slipped { .. }]), "{:?}", rig.log);
+    assert!((rig.part().position[2] + 16.2375).abs() < 0.05, "not into the floor: {:?}", rig.part());
+}
+
+#[test]
+fn another_size_of_bar_is_a_matter_of_data() {
+    let text = format!(
+        "{}\n[[part]]\nname = \"LINKBAR2_BH\"\nsize = [1.0, 1.0, 5.0]\nweight = 1.4\nvision_id = 21\n",
+        rig::CELL
+    );
+    let mut rig = Rig::new(&plant::CellDescription::from_toml(&text).unwrap(), 3);
+    let action = WorkstationAction::Place {
+        part: "LINKBAR2_BH".into(),
+        unit: "UNIT_1".into(),
+        sector: 4,
+        placement: Placement::At { x: 0.0, y: 0.0, angle: 15.0 },
+    };
+    rig.cell.workstation(&action).unwrap();
+    rig.pick(0.0, 0.0, 15.0, 30.0);
+    assert!(
+        rig.part().held && (rig.cell.fingers().0 - 1.0).abs() < 0.001,
+        "{:?} {:?}",
+        rig.part(),
+        rig.cell.fingers()
+    );
+}
