@@ -1,4 +1,6 @@
-//! Prim against a model of T3I that stalls, fails and watches the order of points.
+//! Prim against a model of T3I that stalls, fails and watches the order of points; in [`line`], against T3I itself.
+
+mod line;
 
 use std::collections::VecDeque;
 

@@ -1,0 +1,225 @@
+//! Prim, T3I and the controller's end of the DEPC line together, tick by tick: what one sends is what the next takes.
+
+use depc::{
+    Limits, Plate,
+    controller::{Controller, ControllerInputs, JointProblem, Robot, joints_for},
+};
+use rcs_core::{
+    frame::{Frame, Vector, norm, rotation_by},
+    handshake::successor,
+    interface::{
+        CommonMemory, ExternalInputs, Reason,
+        device::{LinkBytes, RESOLVER_COUNTS},
+        prim::{PrimReport, PrimVerb},
+    },
+    kinematics::{HOME_JOINTS, Joints, T3},
+    process::{Inputs, Process},
+    tick::Tick,
+};
+use taskdata::files::{TaskData, TrajPara};
+
+use super::pose_record;
+use crate::{prim::Prim, t3i::T3i};
+
+/// A robot that is where it is told to be.
+struct Exact {
+    joints: Joints,
+    at: Plate,
+}
+
+impl Robot for Exact {
+    fn present(&self) -> Plate {
+        self.at
+    }
+
+    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+        self.joints = joints_for(&T3, goal, &self.joints)?;
+        self.at = *goal;
+        Ok(())
+    }
+}
+
+/// The test is E-move.
+struct Bench {
+    prim: Prim,
+    t3i: T3i,
+    memory: CommonMemory,
+    external: ExternalInputs,
+    tick: Tick,
+    controller: Controller,
+    robot: Exact,
+    hold: bool,
+    /// The line carries nothing.
+    cut: bool,
+    /// Where the robot was after each tick.
+    track: Vec<Vector>,
+}
+
+fn home() -> Frame {
+    T3.forward(&HOME_JOINTS)
+}
+
+/// Three frames around HOME that turn the tool.
+fn goals() -> [Frame; 3] {
+    [
+        (Vector::new(8.0, 4.0, 2.0), Vector::new(0.2, 0.0, 0.1)),
+        (Vector::new(-6.0, 6.0, 5.0), Vector::new(0.0, 0.25, -0.2)),
+        (Vector::new(0.0, 0.0, 4.0), Vector::new(0.0, 0.0, 0.3)),
+    ]
+    .map(|(by, turn)| Frame {
+        position: home().position + by,
+        rotation: rotation_by(&turn) * home().rotation,
+    })
+}
+
+impl Bench {
+    fn new() -> Self {
+        let at = Plate::from_tool(&home(), &T3, &Plate::default()).unwrap();
+        let mut bench = Self {
+            prim: Prim::default(),
+            t3i: T3i::default(),
+            memory: CommonMemory::default(),
+            external: ExternalInputs::default(),
+            tick: Tick::BEFORE_START,
+            controller: Controller::new(Limits::NBS),
+            robot: Exact { joints: HOME_JOINTS, at },
+            hold: false,
+            cut: false,
+            track: Vec::new(),
+        };
+        bench.external.devices.joystick.velocity = 1000;
+        bench.external.devices.resolvers.valid = true;
+        bench.cell(&LinkBytes::default(), true);
+        bench.step();
+        bench
+    }
+
+    fn initialized() -> Self {
+        let mut bench = Self::new();
+        bench.command(PrimVerb::RobotInit, 0);
+        assert_eq!(bench.until_over(), PrimReport::Done);
+        bench
+    }
+
+    fn cell(&mut self, tx: &LinkBytes, start: bool) {
+        let hold = self.hold;
+        let rx = if self.cut { LinkBytes::default() } else { *tx };
+        let inputs = ControllerInputs { rx, cts: true, board: true, start, hold, ..Default::default() };
+        let out = self.controller.step(&inputs, &mut self.robot);
+        self.external.devices.link_rx = if self.cut { LinkBytes::default() } else { out.tx };
+        self.external.devices.link_ready = out.dtr;
+        self.external.devices.resolvers.counts = self.robot.joints.map(|angle| {
+            let turns = (angle / (2.0 * std::f64::consts::PI)).rem_euclid(1.0);
+            (turns * f64::from(RESOLVER_COUNTS)).round() as u32 % RESOLVER_COUNTS
+        });
+    }
+
+    fn step(&mut self) {
+        self.tick = self.tick.next();
+        let poses = goals().map(|goal| pose_record("GOAL", goal));
+        let parameters = [TrajPara { acc_fac: 4, vel_max: 100, smooth: 8, brk_dst: 300 }];
+        let data = TaskData { poses: &poses, traj_paras: &parameters, ..TaskData::default() };
+        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &data };
+        let (mut prim, mut t3i) = (self.memory.prim, self.memory.t3i);
+        self.prim.step(&inputs, &mut prim);
+        self.t3i.step(&inputs, &mut t3i);
+        (self.memory.prim, self.memory.t3i) = (prim, t3i);
+        self.memory.emove.header.stamp = self.tick;
+        self.cell(&t3i.link_tx, false);
+        self.track.push(self.robot.at.to_tool(&T3).position);
+    }
+
+    fn command(&mut self, verb: PrimVerb, pose: u32) {
+        let command = &mut self.memory.emove.prim;
+        command.number = successor(command.number);
+        command.command = verb;
+        command.pose = pose;
+        command.trajectory_parameters = 1;
+    }
+
+    fn until_over(&mut self) -> PrimReport {
+        for _ in 0..3000 {
+            self.step();
+            let status = &self.memory.prim.status;
+            if status.echo == self.memory.emove.prim.number && status.report != PrimReport::Executing {
+                return status.report;
+            }
+        }
+        panic!("never over: {:#?}", self.prim.state());
+    }
+
+    fn run(&mut self, verb: PrimVerb, pose: u32) -> PrimReport {
+        self.command(verb, pose);
+        self.until_over()
+    }
+
+    /// How far the robot is from a goal.
+    fn off(&self, goal: &Frame) -> f64 {
+        self.robot.at.to_tool(&T3).distance(goal).path()
+    }
+
+    /// The robot never moves faster than the parameters say.
+    fn check_track(&self) {
+        for two in self.track.windows(2) {
+            let step = norm(&(two[1] - two[0]));
+            // The end plate is rounded to words; the tool point stands 20 in off it.
+            assert!(step < 10.0 * 0.04 + 0.03, "{step} in in a tick");
+        }
+    }
+}
+
+#[test]
+fn robot_init_brings_the_line_up_where_the_robot_is() {
+    let bench = Bench::initialized();
+    assert!(bench.memory.prim.status.link_running);
+    assert!(bench.prim.state().motion.frame().distance(&home()).path() < 0.05);
+    assert!(bench.off(&home()) < 0.05);
+}
+
+#[test]
+fn a_trajectory_is_flown_and_its_end_is_reached() {
+    let mut bench = Bench::initialized();
+    for _ in 0..3 {
+        assert_eq!(bench.run(PrimVerb::GoThru, 1), PrimReport::Done);
+        assert_eq!(bench.run(PrimVerb::GoThru, 2), PrimReport::Done);
+        assert_eq!(bench.run(PrimVerb::GotoPt, 3), PrimReport::Done);
+        assert!(bench.off(&goals()[2]) < 0.03, "{}", bench.off(&goals()[2]));
+    }
+    bench.check_track();
+    let counters = bench.memory.t3i.status.counters;
+    assert_eq!((counters.naks, counters.timeouts, counters.restarts), (0, 0, 1));
+}
+
+#[test]
+fn a_held_robot_delays_the_path_and_loses_nothing() {
+    let mut bench = Bench::initialized();
+    bench.command(PrimVerb::GotoPt, 1);
+    for tick in 0..200 {
+        // Three ticks without an answer are a lost link; a hold of one or two is only a delay.
+        bench.hold = tick % 9 == 0;
+        bench.step();
+    }
+    bench.hold = false;
+    assert_eq!(bench.until_over(), PrimReport::Done);
+    assert!(bench.off(&goals()[0]) < 0.03);
+    bench.check_track();
+}
+
+#[test]
+fn a_cut_line_stops_the_robot_until_robot_init() {
+    let mut bench = Bench::initialized();
+    bench.command(PrimVerb::GotoPt, 1);
+    for _ in 0..25 {
+        bench.step();
+    }
+    bench.cut = true;
+    assert_eq!(bench.until_over(), PrimReport::T3LinkOff);
+    let stopped = bench.robot.at;
+    assert_eq!(bench.run(PrimVerb::GotoPt, 2), PrimReport::T3LinkOff);
+    assert_eq!(bench.memory.prim.status.reason, Reason::LinkOff);
+    bench.cut = false;
+    assert_eq!(bench.run(PrimVerb::RobotInit, 0), PrimReport::Done);
+    assert_eq!(bench.robot.at, stopped);
+    assert_eq!(bench.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+    bench.check_track();
+}
