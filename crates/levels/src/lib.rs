@@ -38,6 +38,7 @@
 pub mod emove;
 pub mod execution;
 pub mod grip;
+pub mod ladder;
 pub mod places;
 pub mod prim;
 pub mod quick_change;

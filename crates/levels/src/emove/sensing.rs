@@ -49,7 +49,9 @@ impl Emove {
         self.state.vision.start(inputs.external.devices.vision.echo);
 
         let held = &mut self.state.held;
-        if !held.object.is_empty() && memory.grip.status.position <= held.grasp_size {
+        // A gripper that was restarted knows no opening: what was held is not lost for that.
+        let grip = &memory.grip.status;
+        if !held.object.is_empty() && grip.initialized && grip.position <= held.grasp_size {
             *held = HeldObject::default();
         }
         let Some(present) = present_frame(memory) else { return };
@@ -165,8 +167,8 @@ impl Emove {
             (Lower::Done, _) if ring.status.end_effector_id != PARTS_GRIPPER => Tooling::Ready,
             (Lower::Done, Lower::Error | Lower::Joystick | Lower::Lost) => Tooling::GripFaulty,
             (Lower::Done, Lower::Pending | Lower::Executing) => Tooling::Busy,
-            (Lower::Done, Lower::Done) if inputs.memory.grip.status.initialized => Tooling::Ready,
-            (Lower::Done, Lower::Done) => Tooling::Busy,
+            // At the start Grip's PAUSE is done only when the calibration is (VI.3.1 UP-INIT).
+            (Lower::Done, Lower::Done) => Tooling::Ready,
         }
     }
 

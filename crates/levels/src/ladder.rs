@@ -1,0 +1,192 @@
+//! The ladder: all control processes, stepped once a tick.
+//!
+//! Every process reads common memory as the tick before left it and writes only its own part of the next one, so the order in
+//! which they are stepped cannot change a bit of the result ([`Ladder::step_in_order`] lets a test try).
+
+use rcs_core::{
+    coded_enum,
+    interface::{CommonMemory, ExternalInputs},
+    process::{Inputs, Process},
+    record,
+    table::Table,
+    tick::Tick,
+};
+use taskdata::files::TaskData;
+
+use crate::{
+    emove::Emove, grip::Grip, prim::Prim, quick_change::QuickChange, subtask::Subtask, t3i::T3i, task::Task,
+};
+
+coded_enum! {
+    /// The control processes in the order of [`CommonMemory`], which is the order of the digest.
+    pub enum ProcessId {
+        /// Task (V.4).
+        Task = "Task",
+        /// Subtask (V.3).
+        Subtask = "Subtask",
+        /// E-move (V.2).
+        Emove = "E-move",
+        /// Prim (V.1).
+        Prim = "Prim",
+        /// T3 Interface (VI.1).
+        T3i = "T3 Interface",
+        /// Quick Change (VI.2).
+        QuickChange = "Quick Change",
+        /// Grip (VI.3).
+        Grip = "Grip",
+    }
+}
+
+/// A process by name, with its decision tables.
+#[derive(Debug)]
+pub struct ProcessInfo {
+    /// The manual's name.
+    pub name: &'static str,
+    /// Its tables; `table` of a [`rcs_core::interface::Header`] counts them from 1.
+    pub tables: &'static [&'static Table],
+}
+
+impl ProcessInfo {
+    /// A table by the number in a header.
+    #[must_use]
+    pub fn table(&self, number: u8) -> Option<&'static Table> {
+        self.tables.get(usize::from(number.checked_sub(1)?)).copied()
+    }
+}
+
+const fn info<P: Process<TaskData<'static>>>() -> ProcessInfo {
+    ProcessInfo { name: P::NAME, tables: P::TABLES }
+}
+
+static PROCESSES: [ProcessInfo; 7] = [
+    info::<Task>(),
+    info::<Subtask>(),
+    info::<Emove>(),
+    info::<Prim>(),
+    info::<T3i>(),
+    info::<QuickChange>(),
+    info::<Grip>(),
+];
+
+type StateOf<P> = <P as Process<TaskData<'static>>>::State;
+
+record! {
+    /// What all processes remember.
+    pub struct LadderState {
+        /// Task.
+        pub task: StateOf<Task>,
+        /// Subtask.
+        pub subtask: StateOf<Subtask>,
+        /// E-move.
+        pub emove: StateOf<Emove>,
+        /// Prim.
+        pub prim: StateOf<Prim>,
+        /// T3 Interface.
+        pub t3i: StateOf<T3i>,
+        /// Quick Change.
+        pub quick_change: StateOf<QuickChange>,
+        /// Grip.
+        pub grip: StateOf<Grip>,
+    }
+}
+
+/// All control processes.
+#[derive(Clone, Debug, Default)]
+pub struct Ladder {
+    task: Task,
+    subtask: Subtask,
+    emove: Emove,
+    prim: Prim,
+    t3i: T3i,
+    quick_change: QuickChange,
+    grip: Grip,
+}
+
+impl Ladder {
+    /// The processes and their tables, in the order of [`ProcessId`].
+    #[must_use]
+    pub const fn processes() -> &'static [ProcessInfo; 7] {
+        &PROCESSES
+    }
+
+    /// One tick: read `before` and `external`, write `after`.
+    pub fn step(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &TaskData<'_>,
+        after: &mut CommonMemory,
+    ) {
+        self.step_in_order(ProcessId::ALL, tick, before, external, data, after);
+    }
+
+    /// One tick with the processes in another order; a process that is not named is not stepped.
+    pub fn step_in_order(
+        &mut self,
+        order: &[ProcessId],
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &TaskData<'_>,
+        after: &mut CommonMemory,
+    ) {
+        *after = *before;
+        let inputs = Inputs { tick, memory: before, external, data };
+        for process in order {
+            match process {
+                ProcessId::Task => self.task.step(&inputs, &mut after.task),
+                ProcessId::Subtask => self.subtask.step(&inputs, &mut after.subtask),
+                ProcessId::Emove => self.emove.step(&inputs, &mut after.emove),
+                ProcessId::Prim => self.prim.step(&inputs, &mut after.prim),
+                ProcessId::T3i => self.t3i.step(&inputs, &mut after.t3i),
+                ProcessId::QuickChange => self.quick_change.step(&inputs, &mut after.quick_change),
+                ProcessId::Grip => self.grip.step(&inputs, &mut after.grip),
+            }
+        }
+    }
+
+    /// Restart a process: it forgets everything, as after a crash.
+    pub fn restart(&mut self, process: ProcessId) {
+        match process {
+            ProcessId::Task => self.task = Task::default(),
+            ProcessId::Subtask => self.subtask = Subtask::default(),
+            ProcessId::Emove => self.emove = Emove::default(),
+            ProcessId::Prim => self.prim = Prim::default(),
+            ProcessId::T3i => self.t3i = T3i::default(),
+            ProcessId::QuickChange => self.quick_change = QuickChange::default(),
+            ProcessId::Grip => self.grip = Grip::default(),
+        }
+    }
+
+    /// What all processes remember.
+    #[must_use]
+    pub fn state(&self) -> LadderState {
+        fn of<P: Process<TaskData<'static>>>(process: &P) -> P::State {
+            *process.state()
+        }
+        LadderState {
+            task: of(&self.task),
+            subtask: of(&self.subtask),
+            emove: of(&self.emove),
+            prim: of(&self.prim),
+            t3i: of(&self.t3i),
+            quick_change: of(&self.quick_change),
+            grip: of(&self.grip),
+        }
+    }
+
+    /// Go on from a remembered state.
+    pub fn restore(&mut self, state: &LadderState) {
+        fn to<P: Process<TaskData<'static>>>(process: &mut P, state: P::State) {
+            process.restore(state);
+        }
+        to(&mut self.task, state.task);
+        to(&mut self.subtask, state.subtask);
+        to(&mut self.emove, state.emove);
+        to(&mut self.prim, state.prim);
+        to(&mut self.t3i, state.t3i);
+        to(&mut self.quick_change, state.quick_change);
+        to(&mut self.grip, state.grip);
+    }
+}
