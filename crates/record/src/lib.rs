@@ -1,1 +1,45 @@
-//! record
+//! The record of a run: an MCAP file that shows the moving cell in any viewer and is a test at the same time.
+//!
+//! ```text
+//!  tick ──copy──> ring ──> writer thread ──> file.mcap ──> viewers
+//!                                               │
+//!                              difference <── replay ──> Ladder
+//! ```
+//!
+//! * [`recorder`]: what the run calls. Nothing there allocates or waits in a real-time run.
+//! * [`writer`]: what a log holds, and how it gets into the file.
+//! * [`reader`]: reads a log back, also one whose program was killed.
+//! * [`replay`]: runs the control processes on the recorded inputs and compares every output buffer of every
+//!   tick, bit for bit.
+//! * [`layout`], [`delta`]: byte images, and what changed in them.
+//! * [`proto`]: the messages of the channels.
+//!
+//! The log of a run in fast clock has no wall-clock time in it: the same run writes the same file, to the
+//! byte.
+
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![cfg_attr(
+    not(test),
+    deny(clippy::indexing_slicing, clippy::unwrap_used, clippy::expect_used, clippy::panic)
+)]
+
+pub mod channels;
+pub mod delta;
+pub mod error;
+pub mod input;
+pub mod layout;
+pub mod proto;
+pub mod reader;
+pub mod recorder;
+pub mod remarks;
+pub mod replay;
+pub mod scene;
+pub mod writer;
+
+pub use error::{ReadError, RecordError, ReplayError};
+pub use input::{Attachment, CellFrame, CellModel, End, Epoch, Link, Setup};
+pub use proto::foxglove::{Level, Transform};
+pub use reader::Log;
+pub use recorder::{Lost, Pace, Recorder, Summary};
+pub use replay::{Difference, ReplayReport, replay};

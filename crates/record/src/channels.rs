@@ -1,0 +1,311 @@
+//! The channels of the buffers: one a buffer of [`CommonMemory`] and [`ExternalInputs`], found in their
+//! schemas.
+//!
+//! The outputs of a process are a header and buffers. Each buffer gets a channel `/process/buffer`, a command
+//! `/process/buffer_command`; the header gets `/process/row`, the row of the decision table that fired as
+//! text. A message is written when its buffer changes, and once a second anyway, so that a viewer that jumps
+//! into the middle finds a value soon.
+
+use std::{
+    collections::BTreeMap,
+    io::{Seek, Write},
+    ops::Range,
+};
+
+use levels::ladder::{Ladder, ProcessInfo};
+use mcap::{McapResult, records::MessageHeader};
+use prost_types::field_descriptor_proto::Type;
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs, Header},
+    record::{self, RecordSchema, Schema},
+    table::{RowText, Table},
+    tick::Tick,
+};
+
+use crate::{
+    input::Epoch,
+    proto::{
+        descriptor::{self, encode_set, field, file},
+        message, wire,
+    },
+};
+
+/// Encoding of schemas and messages in protobuf.
+pub const PROTOBUF: &str = "protobuf";
+
+/// An MCAP file in which every message has the time of its tick.
+pub struct Output<W: Write + Seek> {
+    /// The file.
+    pub mcap: mcap::Writer<W>,
+    /// Time of tick 0.
+    pub epoch: Epoch,
+}
+
+impl<W: Write + Seek> Output<W> {
+    /// A new channel whose schema and messages are protobuf.
+    pub fn protobuf(&mut self, topic: &str, schema: &str, descriptors: &[u8]) -> McapResult<u16> {
+        self.channel(topic, schema, PROTOBUF, descriptors, PROTOBUF)
+    }
+
+    /// A new channel with a schema of its own encoding.
+    pub fn channel(
+        &mut self,
+        topic: &str,
+        schema: &str,
+        schema_encoding: &str,
+        definition: &[u8],
+        message_encoding: &str,
+    ) -> McapResult<u16> {
+        let schema = self.mcap.add_schema(schema, schema_encoding, definition)?;
+        self.mcap.add_channel(schema, topic, message_encoding, &BTreeMap::new())
+    }
+
+    /// Write a message of a tick.
+    pub fn put(&mut self, channel_id: u16, tick: Tick, data: &[u8]) -> McapResult<()> {
+        let log_time = self.epoch.of(tick);
+        // A tick number beyond 32 bits is five years of running.
+        let sequence = u32::try_from(tick.0).unwrap_or(u32::MAX);
+        self.mcap.write_to_known_channel(
+            &MessageHeader { channel_id, sequence, log_time, publish_time: log_time },
+            data,
+        )
+    }
+}
+
+/// A part of an image with a channel of its own.
+struct Buffer {
+    channel: u16,
+    bytes: Range<usize>,
+    schema: RecordSchema,
+}
+
+/// The buffers of one image.
+pub struct Buffers(Vec<Buffer>);
+
+/// Where a buffer stands in its image, and its topic.
+struct Place {
+    topic: String,
+    bytes: Range<usize>,
+    schema: RecordSchema,
+}
+
+/// The buffers of a record: its fields but for the header, named after `prefix`.
+fn places(prefix: &str, record: &'static RecordSchema, mut offset: usize) -> Vec<Place> {
+    let mut found = Vec::new();
+    for field in record.fields {
+        let size = field.schema.size();
+        let (name, fields) = match &field.schema {
+            Schema::Record(of) => (of.name, of.fields),
+            // An array is a message with itself as its only field.
+            _ => (field.name, std::slice::from_ref(field)),
+        };
+        if name != Header::RECORD.name {
+            let command = name.ends_with("Command") && !field.name.ends_with("command");
+            let topic = format!("{prefix}/{}{}", field.name, if command { "_command" } else { "" });
+            found.push(Place { topic, bytes: offset..offset + size, schema: RecordSchema { name, fields } });
+        }
+        offset += size;
+    }
+    found
+}
+
+fn external_places() -> Vec<Place> {
+    places("/external", ExternalInputs::RECORD, 0)
+}
+
+fn memory_places() -> Vec<Place> {
+    let mut offset = 0;
+    let mut found = Vec::new();
+    for process in CommonMemory::RECORD.fields {
+        if let Schema::Record(outputs) = &process.schema {
+            found.extend(places(&format!("/{}", process.name), outputs, offset));
+        }
+        offset += process.schema.size();
+    }
+    found
+}
+
+impl Buffers {
+    /// Channels of the buffers of [`ExternalInputs`].
+    pub fn external<W: Write + Seek>(output: &mut Output<W>) -> McapResult<Self> {
+        Self::open(output, external_places())
+    }
+
+    /// Channels of the buffers of [`CommonMemory`].
+    pub fn memory<W: Write + Seek>(output: &mut Output<W>) -> McapResult<Self> {
+        Self::open(output, memory_places())
+    }
+
+    fn open<W: Write + Seek>(output: &mut Output<W>, places: Vec<Place>) -> McapResult<Self> {
+        let open = |Place { topic, bytes, schema }| {
+            let descriptors = descriptor::descriptor_set(&schema);
+            let channel = output.protobuf(&topic, &descriptor::message_name(&schema), &descriptors)?;
+            Ok(Buffer { channel, bytes, schema })
+        };
+        places.into_iter().map(open).collect::<McapResult<_>>().map(Self)
+    }
+
+    /// Write the buffers of `image` that differ from `last`, or all of them.
+    pub fn write<W: Write + Seek>(
+        &self,
+        output: &mut Output<W>,
+        tick: Tick,
+        last: &[u8],
+        image: &[u8],
+        all: bool,
+    ) -> McapResult<()> {
+        let mut data = Vec::new();
+        for buffer in &self.0 {
+            let now = image.get(buffer.bytes.clone()).unwrap_or_default();
+            if all || last.get(buffer.bytes.clone()) != Some(now) {
+                data.clear();
+                message::encode(&buffer.schema, now, &mut data);
+                output.put(buffer.channel, tick, &data)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The header of one process in the image of common memory.
+#[derive(Clone, Copy, Debug)]
+pub struct HeaderPlace {
+    /// Field of [`CommonMemory`].
+    pub field: &'static str,
+    /// First byte of the header.
+    pub offset: usize,
+    /// The process, with its tables.
+    pub process: &'static ProcessInfo,
+}
+
+impl HeaderPlace {
+    /// The header in an image; the default if the image is too short.
+    #[must_use]
+    pub fn read(&self, image: &[u8]) -> Header {
+        image.get(self.offset..).and_then(|bytes| record::from_bytes(bytes).ok()).unwrap_or_default()
+    }
+
+    /// The row that a header names.
+    #[must_use]
+    pub fn row(&self, header: &Header) -> Option<(&'static Table, &'static RowText)> {
+        let table = self.process.table(header.table)?;
+        Some((table, table.row(header.row)?))
+    }
+}
+
+/// The headers of all processes. Processes and fields of common memory stand in the same order.
+#[must_use]
+pub fn headers() -> Vec<HeaderPlace> {
+    let mut offset = 0;
+    let mut found = Vec::new();
+    for (field, process) in CommonMemory::RECORD.fields.iter().zip(Ladder::processes()) {
+        found.push(HeaderPlace { field: field.name, offset, process });
+        offset += field.schema.size();
+    }
+    found
+}
+
+/// The row channels.
+pub struct Rows(Vec<(u16, HeaderPlace, Option<Header>)>);
+
+/// Message on the row channels.
+const ROW: &str = "Row";
+
+impl Rows {
+    /// One channel a process.
+    pub fn open<W: Write + Seek>(output: &mut Output<W>) -> McapResult<Self> {
+        let fields = vec![
+            field("process", 1, Type::String),
+            field("table_number", 2, Type::Uint32),
+            field("table", 3, Type::String),
+            field("row", 4, Type::Uint32),
+            field("conditions", 5, Type::String),
+            field("action", 6, Type::String),
+            field("next", 7, Type::String),
+            field("republished", 8, Type::Bool),
+        ];
+        let message = descriptor::message(ROW, fields);
+        let set = encode_set(vec![file("rcs.proto", descriptor::PACKAGE, &[], vec![message])]);
+        let name = format!("{}.{ROW}", descriptor::PACKAGE);
+        let open = |place: HeaderPlace| {
+            let channel = output.protobuf(&format!("/{}/row", place.field), &name, &set)?;
+            Ok((channel, place, None))
+        };
+        headers().into_iter().map(open).collect::<McapResult<_>>().map(Self)
+    }
+
+    /// Write the rows that are others than in the tick before, or all of them. The time stamp in the header
+    /// is no change.
+    pub fn write<W: Write + Seek>(
+        &mut self,
+        output: &mut Output<W>,
+        tick: Tick,
+        image: &[u8],
+        all: bool,
+    ) -> McapResult<()> {
+        for (channel, place, last) in &mut self.0 {
+            let header = Header { stamp: Tick::BEFORE_START, ..place.read(image) };
+            if all || *last != Some(header) {
+                output.put(*channel, tick, &row_message(place, &header))?;
+                *last = Some(header);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
+    let (table, conditions, action, next) = place
+        .row(header)
+        .map_or(("", "", "", ""), |(table, row)| (table.name, row.conditions, row.action, row.next));
+    let mut data = Vec::new();
+    wire::bytes(1, place.process.name.as_bytes(), &mut data);
+    wire::unsigned(2, header.table.into(), &mut data);
+    wire::bytes(3, table.as_bytes(), &mut data);
+    wire::unsigned(4, header.row.into(), &mut data);
+    wire::bytes(5, conditions.as_bytes(), &mut data);
+    wire::bytes(6, action.as_bytes(), &mut data);
+    wire::bytes(7, next.as_bytes(), &mut data);
+    wire::unsigned(8, header.republished.into(), &mut data);
+    data
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rcs_core::record::Field;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_buffer_has_a_topic_of_its_own() {
+        let topics: Vec<String> =
+            external_places().into_iter().chain(memory_places()).map(|place| place.topic).collect();
+        assert_eq!(topics.iter().collect::<BTreeSet<_>>().len(), topics.len());
+        for topic in [
+            "/external/hws_command",
+            "/external/devices",
+            "/task/status",
+            "/task/subtask_command",
+            "/emove/prim_command",
+            "/prim/t3i_command",
+            "/prim/poses",
+            "/t3i/link_tx",
+            "/grip/valves",
+        ] {
+            assert!(topics.iter().any(|known| known == topic), "{topic} is not among {topics:?}");
+        }
+    }
+
+    #[test]
+    fn headers_are_where_the_processes_are() {
+        let mut memory = CommonMemory::default();
+        memory.prim.header = Header { stamp: Tick(7), republished: false, table: 2, row: 3 };
+        let mut image = vec![0; CommonMemory::SIZE];
+        memory.encode(&mut record::Writer::new(&mut image));
+        let headers = headers();
+        assert_eq!(headers.len(), CommonMemory::RECORD.fields.len());
+        let prim = headers.iter().find(|place| place.field == "prim").unwrap();
+        assert_eq!(prim.read(&image), memory.prim.header);
+        assert!(prim.process.name.eq_ignore_ascii_case("prim"));
+    }
+}

@@ -1,0 +1,114 @@
+//! Why a log cannot be written, read or replayed.
+
+use std::path::PathBuf;
+
+/// Why a log ended before the run did, or never began.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// The file or its directory cannot be made.
+    #[error("the log {path} cannot be created: {source}")]
+    Create {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file was removed while the run went on.
+    #[error("the log {path} was removed during the run")]
+    Removed {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Writing failed: the disk is full, or the device is gone.
+    #[error("the log could not be written further: {0}")]
+    Write(#[from] mcap::McapError),
+    /// The cell has more links or joints than a frame of it can carry.
+    #[error("a cell of at most {allowed} {what} was expected, this one has {found}")]
+    CellTooLarge {
+        /// Links or joints.
+        what: &'static str,
+        /// How many a [`crate::CellFrame`] carries.
+        allowed: usize,
+        /// How many the cell has.
+        found: usize,
+    },
+    /// The writer thread cannot be started, or ended without a result.
+    #[error("the thread that writes the log failed")]
+    Thread,
+}
+
+/// Why a file is not a log.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file cannot be read.
+    #[error("{path}: {source}")]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is no MCAP file.
+    #[error("{path} is not an MCAP file: {source}")]
+    NotMcap {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: mcap::McapError,
+    },
+    /// An MCAP file, but not of this program.
+    #[error(
+        "{path} is an MCAP file without the metadata {:?}: it was not written by this program",
+        crate::writer::RUN
+    )]
+    NotALog {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A log of a program whose buffers were laid out differently.
+    #[error(
+        "the log was written with layout {found}, this program has layout {expected}: \
+         replay it with the program that wrote it{}",
+        by(.version)
+    )]
+    OtherLayout {
+        /// Layout of this program.
+        expected: String,
+        /// Layout of the log.
+        found: String,
+        /// Version of the program that wrote it, if it says so.
+        version: String,
+    },
+    /// A message on `/replay` that does not fit the layout.
+    #[error("the record of tick {tick} does not fit the layout: the log is damaged")]
+    Damaged {
+        /// Number in the message.
+        tick: u64,
+    },
+}
+
+fn by(version: &str) -> String {
+    if version.is_empty() { String::new() } else { format!(" (version {version})") }
+}
+
+/// Why a log cannot be replayed.
+#[derive(Debug, thiserror::Error)]
+pub enum ReplayError {
+    /// The log cannot be read.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The log holds no tick.
+    #[error("the log holds no tick that a replay could start from")]
+    Empty,
+    /// The recorded inputs of a tick are no legal record.
+    #[error("the inputs of tick {tick} cannot be read: {source}")]
+    Inputs {
+        /// The tick.
+        tick: u64,
+        /// What is wrong with them.
+        source: rcs_core::record::DecodeError,
+    },
+    /// The attached task data does not load.
+    #[error("the attached task data does not load:\n{0}")]
+    TaskData(String),
+}

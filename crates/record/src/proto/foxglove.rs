@@ -1,0 +1,194 @@
+//! Messages of the `foxglove` package: viewers know by their names what they mean.
+//!
+//! Fields and numbers are those that foxglove publishes in its schema repository for `FrameTransforms` and
+//! `Log`; fields that this log never fills (message id, lineage) are not described.
+
+use prost_types::{DescriptorProto, FileDescriptorProto, field_descriptor_proto::Type};
+
+use super::{
+    descriptor::{encode_set, enumeration, field, file, message, repeated, typed_field},
+    wire,
+};
+
+/// Full name of the message on `/tf`.
+pub const FRAME_TRANSFORMS: &str = "foxglove.FrameTransforms";
+/// Full name of the message on `/log`.
+pub const LOG: &str = "foxglove.Log";
+
+/// How much a log line matters; the codes are those of `foxglove.Log`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
+    /// For those who look for a fault in the program.
+    Debug = 1,
+    /// What happens.
+    #[default]
+    Info = 2,
+    /// What should not happen and does no harm yet.
+    Warning = 3,
+    /// A command failed.
+    Error = 4,
+}
+
+impl Level {
+    /// The level with a code; what has no code here is an error.
+    #[must_use]
+    pub const fn from_code(code: u64) -> Self {
+        match code {
+            1 => Self::Debug,
+            2 => Self::Info,
+            3 => Self::Warning,
+            _ => Self::Error,
+        }
+    }
+}
+
+/// A place of a frame in another: metres, and a unit quaternion x, y, z, w.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform {
+    /// Origin of the frame, metres.
+    pub position: [f64; 3],
+    /// Orientation, x, y, z, w.
+    pub rotation: [f64; 4],
+}
+
+impl Transform {
+    /// The frame itself.
+    pub const IDENTITY: Self = Self { position: [0.0; 3], rotation: [0.0, 0.0, 0.0, 1.0] };
+}
+
+fn timestamp_file() -> FileDescriptorProto {
+    let fields = vec![field("seconds", 1, Type::Int64), field("nanos", 2, Type::Int32)];
+    let timestamp = message("Timestamp", fields);
+    file("google/protobuf/timestamp.proto", "google.protobuf", &[], vec![timestamp])
+}
+
+fn timestamp_field() -> prost_types::FieldDescriptorProto {
+    typed_field("timestamp", 1, Type::Message, "google.protobuf.Timestamp")
+}
+
+fn doubles(name: &str, fields: &[&str]) -> DescriptorProto {
+    let fields = (1..).zip(fields).map(|(number, name)| field(name, number, Type::Double));
+    message(name, fields.collect())
+}
+
+/// Descriptors of [`FRAME_TRANSFORMS`].
+#[must_use]
+pub fn frame_transforms_descriptor() -> Vec<u8> {
+    let transform = message(
+        "FrameTransform",
+        vec![
+            timestamp_field(),
+            field("parent_frame_id", 2, Type::String),
+            field("child_frame_id", 3, Type::String),
+            typed_field("translation", 4, Type::Message, "foxglove.Vector3"),
+            typed_field("rotation", 5, Type::Message, "foxglove.Quaternion"),
+        ],
+    );
+    let transforms = message(
+        "FrameTransforms",
+        vec![repeated(typed_field("transforms", 1, Type::Message, "foxglove.FrameTransform"))],
+    );
+    let messages = vec![
+        doubles("Vector3", &["x", "y", "z"]),
+        doubles("Quaternion", &["x", "y", "z", "w"]),
+        transform,
+        transforms,
+    ];
+    let imports = ["google/protobuf/timestamp.proto"];
+    encode_set(vec![timestamp_file(), file("foxglove/FrameTransforms.proto", "foxglove", &imports, messages)])
+}
+
+/// Descriptors of [`LOG`].
+#[must_use]
+pub fn log_descriptor() -> Vec<u8> {
+    let levels = ["UNKNOWN", "DEBUG", "INFO", "WARNING", "ERROR", "FATAL"];
+    let levels = (0..).zip(levels).map(|(code, name)| (code, name.to_owned())).collect();
+    let log = DescriptorProto {
+        enum_type: vec![enumeration("Level", levels)],
+        ..message(
+            "Log",
+            vec![
+                timestamp_field(),
+                typed_field("level", 2, Type::Enum, "foxglove.Log.Level"),
+                field("message", 3, Type::String),
+                field("name", 4, Type::String),
+                field("file", 5, Type::String),
+                field("line", 6, Type::Fixed32),
+            ],
+        )
+    };
+    let imports = ["google/protobuf/timestamp.proto"];
+    encode_set(vec![timestamp_file(), file("foxglove/Log.proto", "foxglove", &imports, vec![log])])
+}
+
+fn timestamp(nanoseconds: u64, out: &mut Vec<u8>) {
+    wire::nested(1, out, |out| {
+        wire::unsigned(1, nanoseconds / 1_000_000_000, out);
+        wire::unsigned(2, nanoseconds % 1_000_000_000, out);
+    });
+}
+
+/// Append one transform to a `FrameTransforms` message. `time` in nanoseconds since 1970.
+pub fn put_transform(time: u64, parent: &str, child: &str, transform: &Transform, out: &mut Vec<u8>) {
+    wire::nested(1, out, |out| {
+        timestamp(time, out);
+        wire::bytes(2, parent.as_bytes(), out);
+        wire::bytes(3, child.as_bytes(), out);
+        wire::nested(4, out, |out| put_doubles(&transform.position, out));
+        wire::nested(5, out, |out| put_doubles(&transform.rotation, out));
+    });
+}
+
+fn put_doubles(values: &[f64], out: &mut Vec<u8>) {
+    (1..).zip(values).for_each(|(number, value)| wire::double(number, *value, out));
+}
+
+/// Append a `Log` message. `time` in nanoseconds since 1970; `file` and `line` say where the row stands, or
+/// are empty and 0.
+pub fn put_log(time: u64, level: Level, text: &str, source: &str, file: &str, line: u32, out: &mut Vec<u8>) {
+    timestamp(time, out);
+    wire::unsigned(2, level as u64, out);
+    wire::bytes(3, text.as_bytes(), out);
+    wire::bytes(4, source.as_bytes(), out);
+    wire::bytes(5, file.as_bytes(), out);
+    wire::fixed32(6, line, out);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use prost::Message as _;
+    use prost_types::{FileDescriptorSet, Timestamp};
+
+    #[test]
+    fn descriptors_hold_what_they_name() {
+        for (bytes, root) in [(frame_transforms_descriptor(), "FrameTransforms"), (log_descriptor(), "Log")] {
+            let set = FileDescriptorSet::decode(bytes.as_slice()).unwrap();
+            assert_eq!(set.file[0].name(), set.file[1].dependency[0]);
+            assert!(set.file[1].message_type.iter().any(|message| message.name() == root));
+        }
+    }
+
+    #[test]
+    fn times_are_seconds_and_nanoseconds() {
+        let mut out = Vec::new();
+        timestamp(566_611_200_040_000_000, &mut out);
+        let decoded = Timestamp::decode(&out[2..]).unwrap();
+        assert_eq!(decoded, Timestamp { seconds: 566_611_200, nanos: 40_000_000 });
+    }
+
+    #[test]
+    fn a_log_line_to_the_byte() {
+        let mut out = Vec::new();
+        put_log(1_000_000_002, Level::Error, "no", "Task", "", 7, &mut out);
+        let expected: &[&[u8]] = &[
+            &[0x0A, 0x04, 0x08, 0x01, 0x10, 0x02],
+            &[0x10, 0x04],
+            b"\x1A\x02no",
+            b"\x22\x04Task",
+            &[0x2A, 0x00],
+            &[0x35, 7, 0, 0, 0],
+        ];
+        assert_eq!(out, expected.concat());
+    }
+}

@@ -1,0 +1,106 @@
+//! A record's byte image as a protobuf message, described by [`super::descriptor`].
+
+use rcs_core::record::{RecordSchema, Schema};
+
+use super::wire;
+use crate::layout;
+
+/// Append the message of `record`, whose image is `image`.
+pub fn encode(record: &RecordSchema, mut image: &[u8], out: &mut Vec<u8>) {
+    for (number, field) in (1..).zip(record.fields) {
+        let (bytes, rest) = image.split_at_checked(field.schema.size()).unwrap_or((image, &[]));
+        encode_field(number, &field.schema, bytes, out);
+        image = rest;
+    }
+}
+
+fn encode_field(number: u32, schema: &Schema, bytes: &[u8], out: &mut Vec<u8>) {
+    match schema {
+        Schema::U8 | Schema::U16 | Schema::U32 | Schema::U64 | Schema::Bool | Schema::Enum(_) => {
+            wire::unsigned(number, layout::unsigned(bytes), out);
+        }
+        Schema::I16 | Schema::I32 => wire::signed(number, layout::signed(bytes), out),
+        Schema::F64 => wire::double(number, f64::from_bits(layout::unsigned(bytes)), out),
+        Schema::Text(_) => {
+            let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
+            wire::bytes(number, bytes.get(..end).unwrap_or_default(), out);
+        }
+        Schema::Record(record) => wire::nested(number, out, |out| encode(record, bytes, out)),
+        Schema::Array(Schema::U8, _) => wire::bytes(number, bytes, out),
+        Schema::Array(of @ (Schema::Text(_) | Schema::Record(_) | Schema::Array(..)), _) => {
+            bytes.chunks_exact(of.size().max(1)).for_each(|item| encode_field(number, of, item, out));
+        }
+        Schema::Array(of, _) => wire::nested(number, out, |out| {
+            bytes.chunks_exact(of.size().max(1)).for_each(|item| encode_packed(of, item, out));
+        }),
+    }
+}
+
+/// An element of a packed array: the value without its field number.
+fn encode_packed(schema: &Schema, bytes: &[u8], out: &mut Vec<u8>) {
+    match schema {
+        Schema::F64 => out.extend_from_slice(bytes),
+        Schema::I16 | Schema::I32 => wire::put_varint(wire::zigzag(layout::signed(bytes)), out),
+        _ => wire::put_varint(layout::unsigned(bytes), out),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rcs_core::record::{Field, Writer};
+
+    rcs_core::coded_enum! {
+        /// For the test.
+        enum Light { Off = "off", On = "on", }
+    }
+
+    rcs_core::record! {
+        /// For the test.
+        struct Inner { at: i16, }
+    }
+
+    rcs_core::record! {
+        /// For the test.
+        struct Lamp {
+            number: u16,
+            light: Light,
+            hours: [i32; 2],
+            name: rcs_core::name::Name10,
+            raw: [u8; 3],
+            inner: [Inner; 2],
+            level: f64,
+            lit: bool,
+        }
+    }
+
+    #[test]
+    fn a_message_field_by_field() {
+        let lamp = Lamp {
+            number: 300,
+            light: Light::On,
+            hours: [-1, 200],
+            name: rcs_core::name::Name10::new("LAMP").unwrap(),
+            raw: [9, 0, 7],
+            inner: [Inner { at: 0 }, Inner { at: -2 }],
+            level: 0.0,
+            lit: true,
+        };
+        let mut image = vec![0xA5; Lamp::SIZE];
+        lamp.encode(&mut Writer::new(&mut image));
+        let mut out = Vec::new();
+        encode(Lamp::RECORD, &image, &mut out);
+        let expected: &[&[u8]] = &[
+            &[0x08, 0xAC, 0x02],             // number
+            &[0x10, 0x01],                   // light
+            &[0x1A, 0x03, 0x01, 0x90, 0x03], // hours, packed zigzag
+            b"\x22\x04LAMP",                 // name
+            &[0x2A, 0x03, 9, 0, 7],          // raw
+            &[0x32, 0x02, 0x08, 0x00],       // inner[0]: a zero is written
+            &[0x32, 0x02, 0x08, 0x03],       // inner[1]
+            &[0x39, 0, 0, 0, 0, 0, 0, 0, 0], // level
+            &[0x40, 0x01],                   // lit
+        ];
+        assert_eq!(out, expected.concat());
+    }
+}

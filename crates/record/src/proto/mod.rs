@@ -1,0 +1,14 @@
+//! Messages of the log's channels: protobuf for buffers, transforms and log lines, CDR for the two ROS
+//! messages that carry joints and the description of the cell.
+//!
+//! * [`wire`]: the wire format;
+//! * [`descriptor`]: a record's schema as protobuf descriptors, so that a reader needs nothing but the file;
+//! * [`message`]: a record's byte image as a protobuf message;
+//! * [`foxglove`]: messages whose meaning viewers know;
+//! * [`ros`]: `JointState` and `String`.
+
+pub mod descriptor;
+pub mod foxglove;
+pub mod message;
+pub mod ros;
+pub mod wire;

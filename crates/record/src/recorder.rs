@@ -1,0 +1,297 @@
+//! What the run calls: a bounded ring on this side, a thread that writes on the other.
+//!
+//! In a tick the recorder copies three records into memory that was there before the first tick: it allocates
+//! nothing, and in a real-time run it never waits. A tick that finds the ring full is counted, and the count
+//! travels with the next tick that finds room. In a fast run there is nobody to be late for, so there the
+//! recorder waits and nothing is lost.
+//!
+//! The writer thread ends at the first error. Then the ring has no reader, the recorder returns at once from
+//! every call, and the error is what [`Recorder::finish`] returns: a full disk ends the log, never the run.
+//!
+//! Make a recorder before the thread of the ticks gets its real-time priority: the writer inherits the
+//! priority of its maker.
+
+use std::{
+    fs::File,
+    io::BufWriter,
+    path::{Path, PathBuf},
+    sync::{Arc, Mutex, PoisonError},
+    thread::{self, JoinHandle},
+    time::Duration,
+};
+
+use levels::ladder::LadderState;
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs},
+    tick::Tick,
+};
+use rtrb::{Consumer, Producer, RingBuffer};
+
+use crate::{
+    error::RecordError,
+    input::{CellFrame, End, Setup},
+    proto::foxglove::Level,
+    remarks::Remark,
+    writer::{FULL_SET, LogWriter, TickRecord, Written},
+};
+
+/// Ticks that the ring holds: ten seconds of real time.
+const RING: usize = 256;
+/// States that the ring holds; one a second.
+const STATE_RING: usize = 32;
+/// Notes that the ring holds.
+const NOTE_RING: usize = 1024;
+/// How long the writer sleeps when there is nothing to write: an eighth of a tick.
+const IDLE: Duration = Duration::from_millis(5);
+/// How long a run in fast clock sleeps when the ring is full.
+const FULL: Duration = Duration::from_micros(100);
+/// Characters of a note; what is longer is cut.
+pub const NOTE: usize = 192;
+
+/// What happens when the ring is full.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// The run waits: for runs in fast clock.
+    Wait,
+    /// The tick is not recorded, and counted: for runs in real time.
+    Drop,
+}
+
+/// A line for `/log` on its way to the writer.
+#[derive(Clone, Copy)]
+struct Note {
+    tick: Tick,
+    level: Level,
+    source: [u8; 16],
+    text: [u8; NOTE],
+}
+
+/// As much of a text as fits, without half a character at the end.
+fn clipped<const N: usize>(text: &str) -> [u8; N] {
+    let mut end = text.len().min(N);
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    let mut bytes = [0; N];
+    bytes.iter_mut().zip(text.bytes().take(end)).for_each(|(slot, byte)| *slot = byte);
+    bytes
+}
+
+fn text_of(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned()
+}
+
+/// The run's end of the ring.
+pub struct Recorder {
+    ticks: Producer<TickRecord>,
+    states: Producer<(Tick, LadderState)>,
+    cells: Producer<CellFrame>,
+    notes: Producer<Note>,
+    pace: Pace,
+    last_state: Option<Tick>,
+    gap: u32,
+    lost: Lost,
+    path: PathBuf,
+    end: Arc<Mutex<(End, Lost)>>,
+    thread: JoinHandle<Result<Written, RecordError>>,
+}
+
+/// What found no room in the ring.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lost {
+    /// Ticks: the run cannot be replayed over them.
+    pub ticks: u64,
+    /// Frames of the cell.
+    pub frames: u64,
+    /// Lines for `/log`.
+    pub notes: u64,
+}
+
+/// What became of a log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Summary {
+    /// The file.
+    pub path: PathBuf,
+    /// Ticks in it.
+    pub ticks: u64,
+    /// What is not in it.
+    pub lost: Lost,
+    /// Bytes of the file.
+    pub bytes: u64,
+}
+
+impl Recorder {
+    /// Create the file, with its directory if there is none, and start the writer.
+    ///
+    /// # Errors
+    /// [`RecordError`] if the file cannot be created, or its head cannot be written.
+    pub fn start(path: &Path, pace: Pace, setup: Setup) -> Result<Self, RecordError> {
+        if let Some(cell) = &setup.cell {
+            cell.check()?;
+        }
+        let create = |source| RecordError::Create { path: path.to_owned(), source };
+        if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
+            std::fs::create_dir_all(directory).map_err(create)?;
+        }
+        let file = File::create(path).map_err(create)?;
+        let log = LogWriter::create(BufWriter::new(file), setup)?;
+        let (ticks, tick_consumer) = RingBuffer::new(RING);
+        let (states, state_consumer) = RingBuffer::new(STATE_RING);
+        let (cells, cell_consumer) = RingBuffer::new(RING);
+        let (notes, note_consumer) = RingBuffer::new(NOTE_RING);
+        let end = Arc::default();
+        let drain = Drain {
+            log,
+            path: path.to_owned(),
+            ticks: tick_consumer,
+            states: state_consumer,
+            cells: cell_consumer,
+            notes: note_consumer,
+            end: Arc::clone(&end),
+        };
+        let thread = thread::Builder::new()
+            .name("log".into())
+            .spawn(move || drain.run())
+            .map_err(|_| RecordError::Thread)?;
+        let (last_state, gap, lost, path) = (None, 0, Lost::default(), path.to_owned());
+        Ok(Self { ticks, states, cells, notes, pace, last_state, gap, lost, path, end, thread })
+    }
+
+    /// Where everything in the cell is; before [`Recorder::tick`] of the same tick.
+    pub fn cell(&mut self, frame: &CellFrame) {
+        if !has_room(&self.cells, self.pace) || self.cells.push(*frame).is_err() {
+            self.lost.frames += 1;
+        }
+    }
+
+    /// A line for `/log`; before [`Recorder::tick`] of the same tick.
+    ///
+    /// The writer takes notes when it comes to their tick, so waiting for room here could be for ever.
+    pub fn note(&mut self, tick: Tick, level: Level, source: &str, text: &str) {
+        let note = Note { tick, level, source: clipped(source), text: clipped(text) };
+        if !has_room(&self.notes, Pace::Drop) || self.notes.push(note).is_err() {
+            self.lost.notes += 1;
+        }
+    }
+
+    /// What the processes read and wrote in a tick. `state` is asked for the states after it with the first
+    /// tick, once a second, and after a gap.
+    pub fn tick(
+        &mut self,
+        tick: Tick,
+        external: &ExternalInputs,
+        memory: &CommonMemory,
+        state: impl FnOnce() -> LadderState,
+    ) {
+        if !has_room(&self.ticks, self.pace) {
+            self.gap = self.gap.saturating_add(1);
+            self.lost.ticks += 1;
+            return;
+        }
+        let due = self.last_state.is_none_or(|last| tick.since(last) >= FULL_SET);
+        // The states go first: a tick in the ring means that its states are there.
+        if (due || self.gap > 0)
+            && has_room(&self.states, self.pace)
+            && self.states.push((tick, state())).is_ok()
+        {
+            self.last_state = Some(tick);
+        }
+        let record = TickRecord { tick, gap: self.gap, external: *external, memory: *memory };
+        if self.ticks.push(record).is_ok() {
+            self.gap = 0;
+        }
+    }
+
+    /// What found no room so far.
+    #[must_use]
+    pub const fn lost(&self) -> Lost {
+        self.lost
+    }
+
+    /// Wait until everything is written, and end the log.
+    ///
+    /// # Errors
+    /// What ended the log before the run did.
+    pub fn finish(self, end: End) -> Result<Summary, RecordError> {
+        let Self { ticks, states, cells, notes, lost, path, end: slot, thread, .. } = self;
+        *slot.lock().unwrap_or_else(PoisonError::into_inner) = (end, lost);
+        // Without a producer the writer finishes; the ticks go last, since they are what it waits for.
+        drop((states, cells, notes));
+        drop(ticks);
+        let written = thread.join().map_err(|_| RecordError::Thread)??;
+        Ok(Summary { path, ticks: written.ticks, lost, bytes: written.bytes })
+    }
+}
+
+/// True if a push will succeed. In a fast run this waits for it, unless the writer is gone.
+fn has_room<T>(ring: &Producer<T>, pace: Pace) -> bool {
+    while ring.is_full() && !ring.is_abandoned() {
+        match pace {
+            Pace::Drop => return false,
+            Pace::Wait => thread::sleep(FULL),
+        }
+    }
+    !ring.is_abandoned()
+}
+
+/// The writer's end of the ring.
+struct Drain {
+    log: LogWriter<BufWriter<File>>,
+    path: PathBuf,
+    ticks: Consumer<TickRecord>,
+    states: Consumer<(Tick, LadderState)>,
+    cells: Consumer<CellFrame>,
+    notes: Consumer<Note>,
+    end: Arc<Mutex<(End, Lost)>>,
+}
+
+impl Drain {
+    fn run(mut self) -> Result<Written, RecordError> {
+        loop {
+            // Asked before the ring is emptied: what was pushed before the run let go of the ring is then
+            // still found.
+            let ended = self.ticks.is_abandoned();
+            while let Ok(record) = self.ticks.pop() {
+                if record.tick.0.is_multiple_of(FULL_SET) && !self.path.exists() {
+                    return Err(RecordError::Removed { path: self.path });
+                }
+                self.write(&record)?;
+            }
+            if ended {
+                break;
+            }
+            thread::sleep(IDLE);
+        }
+        self.write_notes(Tick(u64::MAX))?;
+        let (end, lost) = self.end.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let written = self.log.finish(&end, lost)?;
+        if self.path.exists() { Ok(written) } else { Err(RecordError::Removed { path: self.path }) }
+    }
+
+    fn write(&mut self, record: &TickRecord) -> Result<(), RecordError> {
+        self.write_notes(record.tick)?;
+        let state = latest(&mut self.states, record.tick, |(tick, _)| *tick).map(|(_, state)| state);
+        let cell = latest(&mut self.cells, record.tick, |frame| frame.tick);
+        self.log.tick(record, state.as_ref(), cell.as_ref())?;
+        Ok(())
+    }
+
+    fn write_notes(&mut self, until: Tick) -> Result<(), RecordError> {
+        while self.notes.peek().is_ok_and(|note| note.tick <= until) {
+            if let Ok(Note { tick, level, source, text }) = self.notes.pop() {
+                let remark =
+                    Remark { level, source: text_of(&source), text: text_of(&text), ..Remark::default() };
+                self.log.remark(tick, &remark)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The entry of a tick in a ring; earlier ones are discarded.
+fn latest<T>(ring: &mut Consumer<T>, tick: Tick, tick_of: impl Fn(&T) -> Tick) -> Option<T> {
+    while ring.peek().is_ok_and(|entry| tick_of(entry) < tick) {
+        let _ = ring.pop();
+    }
+    ring.peek().is_ok_and(|entry| tick_of(entry) == tick).then(|| ring.pop().ok()).flatten()
+}

@@ -1,0 +1,201 @@
+//! The lines on `/log`: what a person wants to have been told, found by comparing two ticks.
+//!
+//! Commands as they go down the ladder, the status of the job, and each failure as one sentence: which
+//! process, why, and by which row of which decision table.
+
+use rcs_core::interface::{
+    CommonMemory, ExternalInputs, Header, Reason,
+    hws::{HwsCommand, HwsReport},
+    t3i::LinkFault,
+};
+
+use crate::{channels::HeaderPlace, proto::foxglove::Level};
+
+/// A line on `/log`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Remark {
+    /// How much it matters.
+    pub level: Level,
+    /// Who says it: a process, the cell, the recorder.
+    pub source: String,
+    /// The sentence.
+    pub text: String,
+    /// Source file of the decision table; empty for none.
+    pub file: &'static str,
+    /// Line of the decision table in it.
+    pub line: u32,
+}
+
+/// What two successive ticks give reason to say.
+#[must_use]
+pub fn remarks(
+    headers: &[HeaderPlace],
+    hws: &HwsCommand,
+    before: &CommonMemory,
+    after: &CommonMemory,
+) -> Vec<Remark> {
+    let mut said = Vec::new();
+    commands(headers, hws, before, after, &mut said);
+    failures(headers, before, after, &mut said);
+    said
+}
+
+fn commands(
+    headers: &[HeaderPlace],
+    hws: &HwsCommand,
+    before: &CommonMemory,
+    after: &CommonMemory,
+    said: &mut Vec<Remark>,
+) {
+    let mut say = |level, field: &str, text: String| {
+        let source = name_of(headers, field);
+        said.push(Remark { level, source, text, ..Remark::default() });
+    };
+    let (was, is) = (&before.task.status, &after.task.status);
+    if was.echo != is.echo {
+        say(Level::Info, "task", format!("command {}: {}", is.echo, hws_text(hws)));
+    }
+    if was.report != is.report && is.report != HwsReport::Idle {
+        let level = if is.report == HwsReport::Error { Level::Error } else { Level::Info };
+        say(level, "task", format!("command {}: {}", is.echo, is.report));
+    }
+    let (was, is) = (&before.task.subtask, &after.task.subtask);
+    if was.number != is.number {
+        let goal = [is.object.as_str(), is.location.as_str()].join(" ");
+        say(Level::Info, "task", format!("Subtask {}: {} {}", is.number, is.command, goal.trim()));
+    }
+    let (was, is) = (&before.subtask.emove, &after.subtask.emove);
+    if was.number != is.number {
+        let goal = [is.object.as_str(), is.location.as_str()].join(" ");
+        say(Level::Info, "subtask", format!("E-move {}: {} {}", is.number, is.command, goal.trim()));
+    }
+    let (was, is) = (&before.emove.prim, &after.emove.prim);
+    if was.number != is.number {
+        say(Level::Debug, "emove", format!("Prim {}: {}", is.number, is.command));
+    }
+    let (was, is) = (&before.emove.grip, &after.emove.grip);
+    if was.number != is.number {
+        say(Level::Debug, "emove", format!("Grip {}: {}", is.number, is.command));
+    }
+}
+
+fn failures(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, said: &mut Vec<Remark>) {
+    let reasons = |memory: &CommonMemory| {
+        [
+            ("task", memory.task.header, memory.task.status.reason),
+            ("subtask", memory.subtask.header, memory.subtask.status.reason),
+            ("emove", memory.emove.header, memory.emove.status.reason),
+            ("prim", memory.prim.header, memory.prim.status.reason),
+            ("quick_change", memory.quick_change.header, memory.quick_change.status.reason),
+            ("grip", memory.grip.header, memory.grip.status.reason),
+        ]
+    };
+    for ((_, _, was), (field, header, is)) in reasons(before).into_iter().zip(reasons(after)) {
+        if is != was && is != Reason::None {
+            said.push(failure(headers, field, &header, Level::Error, is.text()));
+        }
+    }
+    let (was, is) = (before.t3i.status.fault, after.t3i.status.fault);
+    if is != was && is != LinkFault::None {
+        said.push(failure(headers, "t3i", &after.t3i.header, Level::Warning, is.text()));
+    }
+}
+
+fn failure(headers: &[HeaderPlace], field: &str, header: &Header, level: Level, reason: &str) -> Remark {
+    let place = headers.iter().find(|place| place.field == field);
+    let source = name_of(headers, field);
+    match place.and_then(|place| place.row(header)) {
+        Some((table, row)) => Remark {
+            level,
+            source,
+            text: format!("{reason} ({})", row_text(table, row)),
+            file: table.file,
+            line: table.line,
+        },
+        None => Remark { level, source, text: reason.into(), ..Remark::default() },
+    }
+}
+
+/// A row as one line: `get_object row 4: (step, object) = (Start, _) => report(NoGrip), next Start`.
+#[must_use]
+pub fn row_text(table: &rcs_core::table::Table, row: &rcs_core::table::RowText) -> String {
+    format!(
+        "{} row {}: ({}) = {} => {}, next {}",
+        table.name,
+        row.number,
+        table.columns.join(", "),
+        row.conditions,
+        row.action,
+        row.next
+    )
+}
+
+fn name_of(headers: &[HeaderPlace], field: &str) -> String {
+    headers.iter().find(|place| place.field == field).map_or(field, |place| place.process.name).to_owned()
+}
+
+/// A command of the workstation as people write it: the words that it has.
+fn hws_text(command: &HwsCommand) -> String {
+    let mut words = vec![command.command.to_string()];
+    let place = |name: &str, sector: i32| match sector {
+        0 => name.to_owned(),
+        _ => format!("{name}:{sector}"),
+    };
+    if !command.object.is_empty() {
+        words.push(command.object.to_string());
+    }
+    if !command.source.is_empty() {
+        words.push(format!("from {}", place(command.source.as_str(), command.source_sector)));
+    }
+    if !command.destination.is_empty() {
+        words.push(format!("to {}", place(command.destination.as_str(), command.destination_sector)));
+    }
+    if !command.end_at.is_empty() {
+        words.push(format!("end at {}", place(command.end_at.as_str(), command.end_at_sector)));
+    }
+    words.join(" ")
+}
+
+/// Text of the inputs' command, for reports outside the log.
+#[must_use]
+pub fn command_text(external: &ExternalInputs) -> String {
+    hws_text(&external.hws)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::channels::headers;
+    use rcs_core::name::Name16;
+
+    #[test]
+    fn a_command_is_told_once() {
+        let mut hws = HwsCommand { number: 1, source_sector: 1, ..HwsCommand::default() };
+        hws.command = Name16::new("TRANSFER").unwrap();
+        hws.object = Name16::new("LINKBAR1").unwrap();
+        hws.source = Name16::new("UNIT_2").unwrap();
+        hws.destination = Name16::new("PFIXTURE").unwrap();
+        let before = CommonMemory::default();
+        let mut after = before;
+        after.task.status.echo = 1;
+        let said = remarks(&headers(), &hws, &before, &after);
+        assert_eq!(said.len(), 1, "{said:?}");
+        assert_eq!(said[0].text, "command 1: TRANSFER LINKBAR1 from UNIT_2:1 to PFIXTURE");
+        assert!(remarks(&headers(), &hws, &after, &after).is_empty());
+    }
+
+    #[test]
+    fn a_failure_names_its_row() {
+        let before = CommonMemory::default();
+        let mut after = before;
+        after.subtask.status.reason = Reason::NoTrajectory;
+        after.subtask.header.table = 1;
+        after.subtask.header.row = 1;
+        let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
+        assert_eq!(said.len(), 1, "{said:?}");
+        assert_eq!(said[0].level, Level::Error);
+        let text = &said[0].text;
+        assert!(text.starts_with(Reason::NoTrajectory.text()) && text.contains(" row 1: ("), "{text}");
+        assert!(said[0].line > 0);
+    }
+}

@@ -1,0 +1,261 @@
+//! A log is a test: run the control processes again on the recorded inputs, and compare.
+//!
+//! The task data come from the log's attachments, the inputs from its ticks, and nothing from anywhere else.
+//! Every output buffer of every tick is compared bit for bit, and the states of the processes where they were
+//! recorded. The first difference ends the comparison: what comes after it follows from it.
+//!
+//! Where ticks are missing, nothing can be computed; the replay goes on from the states recorded with the
+//! first tick after the gap.
+
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+use levels::ladder::{Ladder, LadderState};
+use rcs_core::{
+    digest::Digest,
+    interface::{CommonMemory, ExternalInputs},
+    record::{Field, Writer, from_bytes},
+    tick::{TICK_MS, Tick},
+};
+use taskdata::load::{Source, Store};
+
+use crate::{
+    channels::{HeaderPlace, headers},
+    error::ReplayError,
+    input::Attachment,
+    layout::{self, Leaf},
+    reader::{Log, LoggedTick},
+    remarks::row_text,
+};
+
+/// Where a replay first went another way than the run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// The tick.
+    pub tick: Tick,
+    /// The process and the buffer: `prim.status`; `state.prim` for what a process remembers.
+    pub buffer: String,
+    /// The field in it.
+    pub field: String,
+    /// What was recorded.
+    pub was: String,
+    /// What the replay computed.
+    pub is: String,
+    /// The row by which the process decided in the replay.
+    pub row: String,
+}
+
+impl std::fmt::Display for Difference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { tick, buffer, field, was, is, row } = self;
+        write!(f, "tick {tick}, buffer {buffer}, field {field}: was {was}, is {is}; {row}")
+    }
+}
+
+/// What a replay found.
+#[derive(Clone, Debug)]
+pub struct ReplayReport {
+    /// Ticks that were computed again.
+    pub ticks: u64,
+    /// Ticks that could not be: those of gaps, and those with which the replay began anew.
+    pub skipped: u64,
+    /// Where the replay first went another way; none if it never did.
+    pub first_difference: Option<Difference>,
+    /// Digest of the output buffers of the computed ticks.
+    pub digest: Digest,
+    /// Digest that the run gave at its end; none if it never came to that.
+    pub recorded_digest: Option<u64>,
+    /// The log has its end.
+    pub complete: bool,
+    /// Time that the processes took, without reading and comparing.
+    pub computing: Duration,
+    /// Time of the whole replay.
+    pub elapsed: Duration,
+}
+
+impl ReplayReport {
+    /// True if every computed tick was the same, and the digest too where there are two to compare.
+    #[must_use]
+    pub fn is_same(&self) -> bool {
+        let digests = self.recorded_digest.is_none_or(|recorded| recorded == self.digest.value());
+        self.first_difference.is_none() && (self.skipped > 0 || digests)
+    }
+
+    /// How many times faster than the run in real time.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        let simulated = Duration::from_millis(self.ticks.saturating_mul(TICK_MS));
+        simulated.as_secs_f64() / self.elapsed.as_secs_f64().max(1e-9)
+    }
+}
+
+/// Replay a log.
+///
+/// # Errors
+/// [`ReplayError`] if the log cannot be read, is of another layout, or its task data do not load. A
+/// difference is no error: it is in the report.
+pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
+    let started = Instant::now();
+    let log = Log::open(path)?;
+    log.check_layout()?;
+    let store = task_data(&log)?;
+    let data = store.view();
+    let mut replayer = Replayer::new();
+    let mut first_difference = None;
+    for logged in log.ticks() {
+        first_difference = replayer.tick(&logged?, &data)?;
+        if first_difference.is_some() {
+            break;
+        }
+    }
+    if replayer.ticks == 0 {
+        return Err(ReplayError::Empty);
+    }
+    let digest = log.end.as_ref().and_then(|end| end.get("digest"));
+    Ok(ReplayReport {
+        ticks: replayer.ticks,
+        skipped: replayer.skipped,
+        first_difference,
+        digest: replayer.digest,
+        recorded_digest: digest.and_then(|digest| u64::from_str_radix(digest, 16).ok()),
+        complete: log.complete,
+        computing: replayer.computing,
+        elapsed: started.elapsed(),
+    })
+}
+
+/// The task data that travelled in a log.
+///
+/// # Errors
+/// [`ReplayError::TaskData`] with the report of the loader.
+pub fn task_data(log: &Log) -> Result<Store, ReplayError> {
+    let source = |attachment: &Attachment| {
+        let name = attachment.name.strip_prefix(Attachment::TASK_DATA)?;
+        let text = String::from_utf8_lossy(&attachment.data).into_owned();
+        Some(Source { name: name.to_owned(), text: text.into() })
+    };
+    let sources = log.attachments.iter().filter_map(source).collect();
+    let (store, _) =
+        Store::from_sources(sources).map_err(|report| ReplayError::TaskData(report.render(false)))?;
+    Ok(store)
+}
+
+struct Replayer {
+    ladder: Ladder,
+    /// Common memory after the tick before; none where a replay cannot go on without recorded states.
+    before: Option<CommonMemory>,
+    last: Tick,
+    image: Vec<u8>,
+    state: Vec<u8>,
+    memory_leaves: Vec<Leaf>,
+    state_leaves: Vec<Leaf>,
+    headers: Vec<HeaderPlace>,
+    digest: Digest,
+    ticks: u64,
+    skipped: u64,
+    computing: Duration,
+}
+
+impl Replayer {
+    fn new() -> Self {
+        Self {
+            ladder: Ladder::default(),
+            before: Some(CommonMemory::default()),
+            last: Tick::BEFORE_START,
+            image: vec![0; CommonMemory::SIZE],
+            state: vec![0; LadderState::SIZE],
+            memory_leaves: layout::leaves(CommonMemory::RECORD),
+            state_leaves: layout::leaves(LadderState::RECORD),
+            headers: headers(),
+            digest: Digest::new(),
+            ticks: 0,
+            skipped: 0,
+            computing: Duration::ZERO,
+        }
+    }
+
+    /// Compute a tick again, or take over what was recorded if there is a gap before it.
+    fn tick(
+        &mut self,
+        logged: &LoggedTick,
+        data: &taskdata::files::TaskData<'_>,
+    ) -> Result<Option<Difference>, ReplayError> {
+        let tick = logged.tick;
+        let before = self.before.filter(|_| tick == self.last.next());
+        self.skipped += tick.since(self.last.next());
+        self.last = tick;
+        let Some(before) = before else {
+            self.skipped += 1;
+            self.take_over(logged)?;
+            return Ok(None);
+        };
+        let bad = |source| ReplayError::Inputs { tick: tick.0, source };
+        let external: ExternalInputs = from_bytes(&logged.external).map_err(bad)?;
+        let mut after = before;
+        let started = Instant::now();
+        self.ladder.step(tick, &before, &external, data, &mut after);
+        self.computing += started.elapsed();
+        self.ticks += 1;
+        after.encode(&mut Writer::new(&mut self.image));
+        self.digest.add(&self.image);
+        self.before = Some(after);
+        Ok(self.compare(logged))
+    }
+
+    /// Go on from what was recorded; without states the replay waits for the next tick that has them.
+    fn take_over(&mut self, logged: &LoggedTick) -> Result<(), ReplayError> {
+        let bad = |source| ReplayError::Inputs { tick: logged.tick.0, source };
+        self.before = None;
+        if let Some(image) = &logged.state {
+            let state: LadderState = from_bytes(image).map_err(bad)?;
+            self.ladder.restore(&state);
+            self.before = Some(from_bytes(&logged.memory).map_err(bad)?);
+        }
+        Ok(())
+    }
+
+    fn compare(&mut self, logged: &LoggedTick) -> Option<Difference> {
+        let tick = logged.tick;
+        if let Some(leaf) = layout::first_difference(&self.memory_leaves, &logged.memory, &self.image) {
+            let (buffer, field) = split(&leaf.path);
+            return Some(self.difference(tick, leaf, buffer, field, &logged.memory, &self.image));
+        }
+        let recorded = logged.state.as_ref()?;
+        self.ladder.state().encode(&mut Writer::new(&mut self.state));
+        let leaf = layout::first_difference(&self.state_leaves, recorded, &self.state)?;
+        let (process, field) = leaf.path.split_once('.').unwrap_or((&leaf.path, ""));
+        Some(self.difference(tick, leaf, format!("state.{process}"), field.to_owned(), recorded, &self.state))
+    }
+
+    fn difference(
+        &self,
+        tick: Tick,
+        leaf: &Leaf,
+        buffer: String,
+        field: String,
+        was: &[u8],
+        is: &[u8],
+    ) -> Difference {
+        let text = |image| layout::value_text(leaf.schema, leaf.bytes(image));
+        let process = leaf.path.split('.').next().unwrap_or_default();
+        let row =
+            self.headers.iter().find(|place| place.field == process).map_or_else(String::new, |place| {
+                match place.row(&place.read(&self.image)) {
+                    Some((table, row)) => {
+                        format!("{} decided by {}", place.process.name, row_text(table, row))
+                    }
+                    None => format!("{} decided by no row", place.process.name),
+                }
+            });
+        Difference { tick, buffer, field, was: text(was), is: text(is), row }
+    }
+}
+
+/// The first two names of a path, and the rest: `prim.status`, `distance`.
+fn split(path: &str) -> (String, String) {
+    let mut parts = path.splitn(3, '.');
+    let buffer: Vec<&str> = parts.by_ref().take(2).collect();
+    (buffer.join("."), parts.next().unwrap_or_default().to_owned())
+}

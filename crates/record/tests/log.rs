@@ -1,0 +1,376 @@
+//! Logs as a whole: written by the recorder, read back, damaged, replayed.
+//!
+//! The run is a ladder without task data on inputs that keep it busy: what counts here is that the log holds
+//! exactly what the ladder did.
+
+use std::{
+    fs,
+    io::{self, Cursor, Seek, SeekFrom, Write},
+    path::{Path, PathBuf},
+};
+
+use levels::ladder::{Ladder, LadderState};
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs},
+    name::Name16,
+    record::{Field, to_bytes},
+    tick::Tick,
+};
+use record::{
+    Attachment, CellFrame, CellModel, End, Epoch, Level, Log, Lost, Pace, ReadError, RecordError, Recorder,
+    Setup, Transform, replay,
+    writer::{LogWriter, TickRecord},
+};
+use taskdata::{files::TaskData, load::Source};
+
+/// A directory that is removed at the end of a test.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("record-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn setup() -> Setup {
+    let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
+    let links = ["base".to_owned(), "arm".to_owned()];
+    let urdf = "<robot name='cell'><link name='base'/><link name='arm'/><joint name='turn' type='revolute'>\
+                <parent link=\"base\"/><child link=\"arm\"/></joint></robot>";
+    Setup {
+        epoch: Epoch::Fixed,
+        run: [text("version", "0.0.1-test"), text("seed", "7")].into(),
+        attachments: vec![Attachment::text(Attachment::JOB, "TRANSFER")],
+        cell: Some(CellModel::new(urdf.into(), &links, vec!["turn".into()])),
+    }
+}
+
+/// Inputs that move something in every tick, and give a command every hundred.
+fn inputs(tick: Tick) -> ExternalInputs {
+    let mut external = ExternalInputs::default();
+    let turn = u32::try_from(tick.0 * 37 % 131_072).unwrap();
+    external.devices.resolvers.counts = [turn, 5 * turn % 131_072, 0, 0, 0, 1];
+    external.devices.resolvers.valid = true;
+    external.devices.joystick.velocity = 1000;
+    external.hws.number = u32::try_from(tick.0 / 100).unwrap();
+    external.hws.command = Name16::new(if tick.0 % 200 < 100 { "TRANSFER" } else { "PAUSE" }).unwrap();
+    external.hws.object = Name16::new("LINKBAR1").unwrap();
+    external
+}
+
+/// What a run records in `ticks` ticks.
+fn run(ticks: u64, mut each: impl FnMut(Tick, &ExternalInputs, &CommonMemory, LadderState)) -> u64 {
+    let mut ladder = Ladder::default();
+    let mut digest = rcs_core::digest::Digest::new();
+    let mut memory = CommonMemory::default();
+    for tick in (1..=ticks).map(Tick) {
+        let (before, external) = (memory, inputs(tick));
+        ladder.step(tick, &before, &external, &TaskData::default(), &mut memory);
+        digest.add_record(&memory, &mut [0; CommonMemory::SIZE]);
+        each(tick, &external, &memory, ladder.state());
+    }
+    digest.value()
+}
+
+fn record_run(path: &Path, ticks: u64) -> record::Summary {
+    let mut recorder = Recorder::start(path, Pace::Wait, setup()).unwrap();
+    let digest = run(ticks, |tick, external, memory, state| {
+        let turn = tick.0 as f64 * 1e-3;
+        let arm = Transform { position: [0.0, 0.0, 1.0], rotation: [0.0, 0.0, turn.sin(), turn.cos()] };
+        recorder.cell(&CellFrame::of(tick, [Transform::IDENTITY, arm], [2.0 * turn]));
+        if tick.0 == 30 {
+            recorder.note(tick, Level::Warning, "cell", "the part slips");
+        }
+        recorder.tick(tick, external, memory, || state);
+    });
+    recorder.finish(End { digest: Some(digest), result: "finished".into() }).unwrap()
+}
+
+#[test]
+fn a_recorded_run_is_replayed_bit_for_bit() {
+    let scratch = Scratch::new("replay");
+    let path = scratch.file("deep/down/run.mcap");
+    let summary = record_run(&path, 1000);
+    assert_eq!((summary.ticks, summary.lost), (1000, Lost::default()));
+    assert_eq!(summary.bytes, fs::metadata(&path).unwrap().len());
+
+    let log = Log::open(&path).unwrap();
+    assert!(log.complete);
+    assert_eq!(log.run["seed"], "7");
+    assert_eq!(log.end.as_ref().unwrap()["result"], "finished");
+    assert_eq!(log.attachment(Attachment::JOB).unwrap().data, b"TRANSFER");
+    assert!(log.lines().any(|line| line.tick == Tick(30) && line.text == "the part slips"));
+    let mut recorded = log.ticks();
+    run(1000, |tick, external, memory, state| {
+        let logged = recorded.next().unwrap().unwrap();
+        assert_eq!(logged.tick, tick);
+        assert_eq!(logged.external, to_bytes::<{ ExternalInputs::SIZE }, _>(external));
+        assert_eq!(logged.memory, to_bytes::<{ CommonMemory::SIZE }, _>(memory));
+        let expected = (tick.0 % 25 == 1).then(|| to_bytes::<{ LadderState::SIZE }, _>(&state).to_vec());
+        assert_eq!(logged.state, expected);
+    });
+    assert!(recorded.next().is_none());
+
+    let report = replay(&path).unwrap();
+    assert!(report.is_same(), "{:?}", report.first_difference);
+    assert_eq!((report.ticks, report.skipped), (1000, 0));
+    assert_eq!(report.recorded_digest, Some(report.digest.value()));
+}
+
+#[test]
+fn the_same_run_writes_the_same_bytes() {
+    let scratch = Scratch::new("bytes");
+    let (first, second) = (scratch.file("1.mcap"), scratch.file("2.mcap"));
+    record_run(&first, 200);
+    record_run(&second, 200);
+    assert!(fs::read(first).unwrap() == fs::read(second).unwrap());
+}
+
+#[test]
+fn a_log_that_was_cut_off_is_read_up_to_the_cut() {
+    let scratch = Scratch::new("cut");
+    let path = scratch.file("run.mcap");
+    record_run(&path, 300);
+    let whole = fs::read(&path).unwrap();
+    let mut most = 0;
+    for part in 1..=40 {
+        let cut = whole.len() * part / 41;
+        fs::write(&path, &whole[..cut]).unwrap();
+        let Ok(log) = Log::open(&path) else {
+            assert!(part < 10, "the head of the log is lost at {cut} of {} bytes", whole.len());
+            continue;
+        };
+        assert!(!log.complete);
+        let ticks = log.ticks().filter(Result::is_ok).count();
+        assert!(ticks >= most, "{ticks} ticks up to byte {cut}, {most} before");
+        most = ticks;
+        if ticks > 0 {
+            let report = replay(&path).unwrap();
+            assert!(report.is_same() && !report.complete, "cut at {cut}: {:?}", report.first_difference);
+        }
+    }
+    assert!(most > 225, "{most} ticks of 300 were readable");
+}
+
+/// A log in memory, ticks changed by `change` before they are written, with gaps where it says no.
+fn changed(ticks: u64, mut change: impl FnMut(&mut TickRecord) -> bool) -> Vec<u8> {
+    let mut file = Cursor::new(Vec::new());
+    let mut log = LogWriter::create(&mut file, setup()).unwrap();
+    let mut gap = 0;
+    let digest = run(ticks, |tick, external, memory, state| {
+        let mut record = TickRecord { tick, gap, external: *external, memory: *memory };
+        if change(&mut record) {
+            let state = (gap > 0 || tick.0 % 25 == 1).then_some(state);
+            log.tick(&record, state.as_ref(), None).unwrap();
+            gap = 0;
+        } else {
+            gap += 1;
+        }
+    });
+    log.finish(&End { digest: Some(digest), result: String::new() }, Lost::default()).unwrap();
+    file.into_inner()
+}
+
+#[test]
+fn a_difference_is_named() {
+    let scratch = Scratch::new("difference");
+    let path = scratch.file("run.mcap");
+    let bytes = changed(100, |record| {
+        if record.tick.0 == 42 {
+            record.memory.prim.status.distance += 1;
+        }
+        true
+    });
+    fs::write(&path, bytes).unwrap();
+    let report = replay(&path).unwrap();
+    assert!(!report.is_same());
+    let difference = report.first_difference.unwrap();
+    assert_eq!(
+        (difference.tick, difference.buffer.as_str(), difference.field.as_str()),
+        (Tick(42), "prim.status", "distance")
+    );
+    assert_eq!(difference.was.parse::<i32>().unwrap(), difference.is.parse::<i32>().unwrap() + 1);
+    assert!(difference.to_string().starts_with("tick 42, buffer prim.status, field distance: was "));
+}
+
+#[test]
+fn an_input_that_was_not_recorded_shows_as_a_difference() {
+    let scratch = Scratch::new("input");
+    let path = scratch.file("run.mcap");
+    let bytes = changed(300, |record| {
+        if record.tick.0 >= 100 {
+            record.external.hws.number = 0;
+        }
+        true
+    });
+    fs::write(&path, bytes).unwrap();
+    let difference = replay(&path).unwrap().first_difference.unwrap();
+    assert!(difference.tick >= Tick(100) && difference.tick < Tick(103), "{difference}");
+}
+
+#[test]
+fn a_replay_goes_on_after_a_gap() {
+    let scratch = Scratch::new("gap");
+    let path = scratch.file("run.mcap");
+    fs::write(&path, changed(200, |record| !(60..=64).contains(&record.tick.0))).unwrap();
+    let log = Log::open(&path).unwrap();
+    let gaps: Vec<(Tick, u64)> = log
+        .ticks()
+        .map(Result::unwrap)
+        .filter(|tick| tick.gap > 0)
+        .map(|tick| (tick.tick, tick.gap))
+        .collect();
+    assert_eq!(gaps, [(Tick(65), 5)]);
+    assert!(log.lines().any(|line| line.tick == Tick(65) && line.text.starts_with("5 ticks are missing")));
+    let report = replay(&path).unwrap();
+    assert!(report.is_same(), "{:?}", report.first_difference);
+    assert_eq!((report.ticks, report.skipped), (194, 6));
+}
+
+#[test]
+fn a_log_of_another_layout_is_refused() {
+    let scratch = Scratch::new("layout");
+    let path = scratch.file("run.mcap");
+    let mut file = Cursor::new(Vec::new());
+    let mut writer = mcap::Writer::new(&mut file).unwrap();
+    let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
+    let metadata = [text("layout", "0123456789abcdef"), text("version", "9.9.9")].into();
+    writer.write_metadata(&mcap::records::Metadata { name: "rcs-run".into(), metadata }).unwrap();
+    writer.finish().unwrap();
+    drop(writer);
+    fs::write(&path, file.into_inner()).unwrap();
+    let error = replay(&path).unwrap_err().to_string();
+    assert!(error.contains("layout 0123456789abcdef") && error.contains("(version 9.9.9)"), "{error}");
+}
+
+#[test]
+fn files_that_are_no_logs_are_refused() {
+    let scratch = Scratch::new("foreign");
+    let path = scratch.file("run.mcap");
+    assert!(matches!(Log::open(&path), Err(ReadError::Unreadable { .. })));
+    for bytes in [&b""[..], b"PK\x03\x04 this is no MCAP file at all", &[0x89, b'M', b'C']] {
+        fs::write(&path, bytes).unwrap();
+        assert!(Log::open(&path).is_err_and(|error| error.to_string().contains("run.mcap")));
+    }
+    let mut file = Cursor::new(Vec::new());
+    mcap::Writer::new(&mut file).unwrap().finish().unwrap();
+    fs::write(&path, file.into_inner()).unwrap();
+    assert!(matches!(Log::open(&path), Err(ReadError::NotALog { .. })));
+}
+
+/// A disk with so many bytes left.
+struct Disk {
+    bytes: Cursor<Vec<u8>>,
+    left: usize,
+}
+
+impl Write for Disk {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if bytes.len() > self.left {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.left -= bytes.len();
+        self.bytes.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for Disk {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.bytes.seek(to)
+    }
+}
+
+#[test]
+fn a_disk_that_fills_up_ends_the_log_wherever_it_happens() {
+    let needed = changed(60, |_| true).len();
+    let mut failed = 0;
+    for left in (0..needed).step_by(needed / 50) {
+        let disk = Disk { bytes: Cursor::new(Vec::new()), left };
+        let Ok(mut log) = LogWriter::create(disk, setup()) else {
+            failed += 1;
+            continue;
+        };
+        let mut result = Ok(());
+        run(60, |tick, external, memory, state| {
+            let record = TickRecord { tick, gap: 0, external: *external, memory: *memory };
+            if result.is_ok() {
+                result = log.tick(&record, Some(&state), None);
+            }
+        });
+        failed += usize::from(result.is_err() || log.finish(&End::default(), Lost::default()).is_err());
+    }
+    assert!(failed >= 50, "{failed} of 51 disks were too small");
+}
+
+#[test]
+fn a_removed_log_ends_the_log_and_not_the_run() {
+    let scratch = Scratch::new("removed");
+    let path = scratch.file("run.mcap");
+    let mut recorder = Recorder::start(&path, Pace::Wait, setup()).unwrap();
+    let mut ticks = 0;
+    run(2000, |tick, external, memory, state| {
+        if tick.0 == 100 {
+            fs::remove_file(&path).unwrap();
+        }
+        recorder.tick(tick, external, memory, || state);
+        ticks += 1;
+    });
+    assert_eq!(ticks, 2000);
+    assert!(recorder.lost().ticks > 0, "after its end the log takes no ticks");
+    assert!(matches!(recorder.finish(End::default()), Err(RecordError::Removed { .. })));
+}
+
+#[test]
+fn a_file_that_cannot_be_made_is_told_before_the_run() {
+    let scratch = Scratch::new("create");
+    let in_the_way = scratch.file("file");
+    fs::write(&in_the_way, "").unwrap();
+    let error = Recorder::start(&in_the_way.join("run.mcap"), Pace::Drop, setup()).err().unwrap();
+    assert!(matches!(error, RecordError::Create { .. }), "{error}");
+}
+
+#[test]
+fn a_run_in_real_time_never_waits_and_counts_what_it_lost() {
+    let scratch = Scratch::new("drop");
+    let path = scratch.file("run.mcap");
+    let mut recorder = Recorder::start(&path, Pace::Drop, setup()).unwrap();
+    // Far faster than any writer: most ticks find the ring full.
+    let digest = run(20_000, |tick, external, memory, state| recorder.tick(tick, external, memory, || state));
+    let lost = recorder.lost().ticks;
+    let summary = recorder.finish(End { digest: Some(digest), result: String::new() }).unwrap();
+    assert!(lost > 0 && summary.ticks + lost == 20_000, "{lost} lost, {} written", summary.ticks);
+    let log = Log::open(&path).unwrap();
+    assert_eq!(log.end.as_ref().unwrap()["lost_ticks"], lost.to_string());
+    let mut next = 1;
+    for tick in log.ticks().map(Result::unwrap) {
+        assert_eq!(tick.tick.0, next + tick.gap, "every missing tick is in a gap");
+        next = tick.tick.0 + 1;
+    }
+    let report = replay(&path).unwrap();
+    assert!(report.is_same(), "{:?}", report.first_difference);
+}
+
+#[test]
+fn task_data_travel_in_their_order() {
+    let source = |name: &str, text: &str| Source { name: name.into(), text: text.into() };
+    let files = Attachment::task_data(&[source("z.blk", "1"), source("a/b.blk", "2")]);
+    let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
+    assert_eq!(names, ["taskdata/z.blk", "taskdata/a/b.blk"]);
+}
