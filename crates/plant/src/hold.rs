@@ -1,10 +1,13 @@
 //! A hold: a part between two pads, as strong as the pads' force and friction allow, and no stronger.
 //!
 //! Contacts between a squeezed light part and two heavy pads creep, and a rigid weld never lets go. A hold is between the
-//! two: six springs with limits between the pads' body and the part, placed where the pads touch (an elastic-plastic
-//! element). Below its limit a spring holds the part to a few micrometres; beyond it, the spring's rest position moves
-//! after the part, so that the part slides against exactly the limiting force. In the plane of the pads the limit is
-//! friction, across it the pads' force, and about each axis the moment that the touched area can carry.
+//! two: six springs with limits between the pads' body and the part, placed where the pads touch. Below its limit a spring
+//! holds the part to a few micrometres. Beyond it, two things happen:
+//!
+//! * along the pads (X, Z, and the turn about Y) the limit is friction. The spring's rest position moves after the part: it
+//!   slides against exactly the limiting force, and stays where it has slid to;
+//! * across the pads (Y, and the tilts about X and Z) the limit is the pads' force. The part is pushed aside against it, and
+//!   the pads bring it back to their middle, flush, as soon as they are the stronger.
 
 use rapier3d_f64::math::Vector;
 use rapier3d_f64::prelude::*;
@@ -127,31 +130,22 @@ impl Hold {
         Pose::from_parts(error.translation, on_the_side_of(&Rotation::IDENTITY, error.rotation))
     }
 
-    /// After a step: let the rest position follow where a spring is beyond its limit. Returns how far, m.
+    /// After a step: let the rest position follow where friction is overcome. Returns how far, m.
     pub fn give_way(&mut self, world: &mut PhysicsWorld) -> Real {
         let error = self.error(world);
-        let turn = error.rotation.to_scaled_axis();
         let beyond = |value: Real, limit: Real, stiffness: Real| {
             let elastic = limit / stiffness;
             value - value.clamp(-elastic, elastic)
         };
-        // In the plane of the pads friction has one limit whatever the direction.
+        // Friction has one limit whatever the direction in the plane.
         let plane = libm::hypot(error.translation.x, error.translation.z);
         let over = beyond(plane, self.limits[0], self.stiffness.linear);
         let share = if plane > 0.0 { over / plane } else { 0.0 };
-        let slide = Vector::new(
-            error.translation.x * share,
-            beyond(error.translation.y, self.limits[1], self.stiffness.linear),
-            error.translation.z * share,
-        );
-        let tilt = Vector::new(
-            beyond(turn.x, self.limits[3], self.stiffness.angular),
-            beyond(turn.y, self.limits[4], self.stiffness.angular),
-            beyond(turn.z, self.limits[5], self.stiffness.angular),
-        );
+        let slide = Vector::new(error.translation.x * share, 0.0, error.translation.z * share);
+        let turn = beyond(error.rotation.to_scaled_axis().y, self.limits[4], self.stiffness.angular);
         let moved = slide.length();
-        if moved > 0.0 || tilt.length() > 0.0 {
-            self.set_rest(world, self.rest * Pose::new(slide, tilt));
+        if moved > 0.0 || turn != 0.0 {
+            self.set_rest(world, self.rest * Pose::new(slide, Vector::Y * turn));
             self.slipped += moved;
         }
         moved
@@ -163,10 +157,12 @@ impl Hold {
         self.set_rest(world, self.rest * error);
     }
 
-    /// Lead the part: all springs rest at the present point, moved along Y to `y` in the axes of the pads' body.
-    pub fn lead(&mut self, world: &mut PhysicsWorld, y: Real) {
+    /// The stronger grip is gone: draw the part back to the middle of the pads, flush; along the pads it stays.
+    pub fn recover(&mut self, world: &mut PhysicsWorld) {
         let mut rest = self.rest;
-        rest.translation.y = y;
+        rest.translation.y = 0.0;
+        let twist = Rotation::from_xyzw(0.0, rest.rotation.y, 0.0, rest.rotation.w);
+        rest.rotation = if twist.length_squared() > 0.0 { twist } else { Rotation::IDENTITY };
         self.set_rest(world, rest);
     }
 

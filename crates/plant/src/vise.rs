@@ -1,9 +1,9 @@
 //! The programmable vise: a fixed jaw, a movable jaw, and what is clamped between them.
 //!
 //! The jaw moves at its speed to an opening. When it reaches a part on its way it takes the part along, flush with its
-//! face, and is stopped when the part lies against the fixed face; from then on the part is held by the closing force and
-//! friction ([`crate::hold`]). The gripper does not resist that: 500 lb against at most twice the finger force. A part that
-//! is still between the fingers is pushed aside in them.
+//! face, and is stopped when the part lies against the fixed face; from then on the closing force and friction hold it. The
+//! gripper does not resist that: 500 lb against at most twice the finger force. A part that is still between the fingers is
+//! pushed aside in them.
 
 use rapier3d_f64::prelude::*;
 use rcs_core::frame::{Frame, Vector as Inches};
@@ -11,7 +11,6 @@ use rcs_core::frame::{Frame, Vector as Inches};
 use crate::{
     convert::{metres, newtons, to_pose},
     description::Vise as Description,
-    hold::{Clamp, Hold},
     scene::{jaw_blocks, vise_frame},
     squeeze::Pads,
 };
@@ -35,10 +34,18 @@ pub struct Vise {
     opening: f64,
     target: f64,
     jaw: RigidBodyHandle,
-    base: RigidBodyHandle,
     stopped: bool,
-    /// What is clamped, by the index of the part.
-    pub hold: Option<(usize, Hold)>,
+    /// What the jaws have.
+    pub clamped: Option<Clamped>,
+}
+
+/// A part between the jaws: nothing in the cell but a crash is stronger than the vise, so it is led and does not give way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clamped {
+    /// Index of the part.
+    pub part: usize,
+    /// Where it is in the frame of the vise, m.
+    pub rest: Pose,
 }
 
 impl Vise {
@@ -46,7 +53,6 @@ impl Vise {
     pub fn new(world: &mut PhysicsWorld, description: &Description) -> Self {
         let frame = vise_frame(description);
         let opening = description.opening_open;
-        let base = world.insert_body(RigidBodyBuilder::fixed().pose(to_pose(&frame)));
         let pose = to_pose(&jaw_frame(description, &frame, opening));
         let jaw = world.insert_body(RigidBodyBuilder::kinematic_position_based().pose(pose));
         for block in jaw_blocks(description) {
@@ -58,9 +64,8 @@ impl Vise {
             opening,
             target: opening,
             jaw,
-            base,
             stopped: false,
-            hold: None,
+            clamped: None,
         }
     }
 
@@ -82,12 +87,6 @@ impl Vise {
         self.opening
     }
 
-    /// The body that holds what is clamped.
-    #[must_use]
-    pub fn base(&self) -> RigidBodyHandle {
-        self.base
-    }
-
     /// Name of its location.
     #[must_use]
     pub fn location(&self) -> &str {
@@ -98,6 +97,12 @@ impl Vise {
     #[must_use]
     pub fn moving(&self) -> bool {
         !self.stopped && (self.opening - self.target).abs() > 1e-9
+    }
+
+    /// True if a part stops the jaw.
+    #[must_use]
+    pub fn stopped(&self) -> bool {
+        self.stopped
     }
 
     /// True while the jaw is on its way to the fixed jaw.
@@ -157,10 +162,10 @@ impl Vise {
         -metres(self.description.notch_depth)
     }
 
-    /// Force and friction on what is clamped.
+    /// The force along the faces that draws a part out of the closed jaws, N.
     #[must_use]
-    pub fn clamp(&self) -> Clamp {
-        Clamp { force: newtons(self.description.force), friction: self.description.friction }
+    pub fn friction_limit(&self) -> Real {
+        2.0 * newtons(self.description.force) * self.description.friction
     }
 
     /// Where the middle of a part of the given size (in, part frame axes parallel to the vise: X in, Y left, Z up) is when

@@ -4,10 +4,11 @@ use rapier3d_f64::prelude::*;
 
 use super::{Cell, CellEvent};
 use crate::{
-    convert::{inches, metres},
+    convert::{inches, metres, on_the_side_of, to_pose},
     hold::{Clamp, Hold, Stiffness},
     part::segment_meets_box,
     squeeze::{Squeeze, squeeze},
+    vise::Clamped,
 };
 
 /// Below this force of a finger, lb, nothing is held.
@@ -18,8 +19,6 @@ const SLIP: f64 = 0.02;
 const TOUCHING: Real = 1e-4;
 /// Fingers and part: stiff enough that a bar sags by 0.01 mm, soft enough that friction is not a jolt.
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
-/// Vise and part.
-const VISE_STIFFNESS: Stiffness = Stiffness { linear: 4.0e5, angular: 1000.0 };
 
 impl Cell {
     /// Let the air move the fingers, and take or give up what is between them.
@@ -30,9 +29,10 @@ impl Cell {
         };
         let stop = between.as_ref().map(|(index, squeeze)| self.finger_stop(*index, squeeze));
         if let (Some(stop), true) = (stop, self.gripper.hold.is_some())
-            && stop > self.gripper.air.opening() + 1e-4
+            && (stop - self.gripper.air.opening()).abs() > 1e-5
+            && self.gripper.air.force() >= LEAST_FORCE
         {
-            // The two fingers are coupled: a part that is pushed off the middle spreads them.
+            // The two fingers are coupled: a part that is pushed off the middle spreads them, and they follow it back.
             self.gripper.air.spread(stop);
         }
         self.gripper.air.advance(dt, valves, stop);
@@ -72,7 +72,7 @@ impl Cell {
     }
 
     pub(super) fn is_clamped(&self, index: usize) -> bool {
-        self.vise.hold.as_ref().is_some_and(|(held, _)| *held == index)
+        self.vise.clamped.is_some_and(|clamped| clamped.part == index)
     }
 
     pub(super) fn is_held(&self, index: usize) -> bool {
@@ -141,16 +141,15 @@ impl Cell {
         let Some((index, squeeze)) = between else { return };
         let face = self.vise.fixed_face() + metres(self.vise.opening());
         let middle = face - squeeze.width / 2.0;
-        match &mut self.vise.hold {
-            Some((_, hold)) => hold.lead(&mut self.world, middle),
-            None if middle <= squeeze.centre => self.clamp(index, &squeeze, middle),
-            None => {}
+        let reached = middle <= squeeze.centre || self.vise.stopped();
+        if reached || self.vise.clamped.is_some() {
+            self.clamp(index, &squeeze, middle);
         }
     }
 
     /// The widest part between the clamping faces.
     fn between_jaws(&self) -> Option<(usize, Squeeze)> {
-        let base = self.world.bodies[self.vise.base()].position();
+        let base = to_pose(self.vise.frame());
         let pads = self.vise.pads();
         let face = self.vise.fixed_face();
         let far = face + metres(self.vise.opening());
@@ -169,44 +168,68 @@ impl Cell {
             .max_by(|(_, a), (_, b)| a.width.total_cmp(&b.width))
     }
 
-    /// Take a part between the jaws, flush with the faces, its middle at `middle` (m) across them.
+    /// Take a part between the jaws, or lead it on: flush with the faces, its middle at `middle` (m) across them.
     pub(super) fn clamp(&mut self, index: usize, squeeze: &Squeeze, middle: Real) {
-        let held = self.is_held(index);
-        let part = &self.parts[index];
-        part.set_held_by(&mut self.world, held, true);
-        let mut flush = squeeze.flush;
-        flush.translation.y = middle;
-        let base = self.vise.base();
-        let mut hold =
-            Hold::new(&mut self.world, base, part.body, &flush, squeeze, VISE_STIFFNESS, part.load());
-        hold.set_clamp(&mut self.world, self.vise.clamp(), squeeze);
-        self.vise.hold = Some((index, hold));
+        let mut rest = squeeze.flush;
+        rest.translation.y = middle;
+        let body = self.parts[index].body;
+        if self.vise.clamped.is_none() {
+            let held = self.is_held(index);
+            self.parts[index].set_held_by(&mut self.world, held, true);
+            self.world.bodies[body].set_body_type(RigidBodyType::KinematicPositionBased, true);
+        }
+        self.vise.clamped = Some(Clamped { part: index, rest });
+        let body = &mut self.world.bodies[body];
+        let mut next = to_pose(self.vise.frame()) * rest;
+        next.rotation = on_the_side_of(body.rotation(), next.rotation);
+        body.set_next_kinematic_position(next);
     }
 
     /// Let go of what the vise has.
     pub(super) fn unclamp(&mut self) {
-        let Some((index, hold)) = self.vise.hold.take() else { return };
-        hold.release(&mut self.world);
-        let held = self.is_held(index);
-        self.parts[index].set_held_by(&mut self.world, held, false);
+        let Some(Clamped { part, .. }) = self.vise.clamped.take() else { return };
+        let held = self.is_held(part);
+        if let (true, Some((_, grip))) = (held, &mut self.gripper.hold) {
+            grip.recover(&mut self.world);
+        }
+        self.parts[part].set_held_by(&mut self.world, held, false);
+        let body = &mut self.world.bodies[self.parts[part].body];
+        body.set_body_type(RigidBodyType::Dynamic, true);
+        body.set_linvel(Vector::ZERO, true);
+        body.set_angvel(Vector::ZERO, true);
+    }
+
+    /// A part that the gripper pushes harder along the jaws than their friction is forced out of them.
+    fn resist_in_vise(&mut self) {
+        let Some(Clamped { part, .. }) = self.vise.clamped else { return };
+        let collider = self.parts[part].collider;
+        let fingers = self.gripper.finger_colliders();
+        let pushes = self
+            .world
+            .contact_pairs_with(collider)
+            .filter(|pair| fingers.contains(&pair.collider1) || fingers.contains(&pair.collider2));
+        let impulse: Vector = pushes.map(ContactPair::total_impulse).sum();
+        let along = libm::hypot(impulse.x, impulse.z) / self.world.integration_parameters.dt;
+        if along > self.vise.friction_limit() {
+            self.unclamp();
+            self.events.push(CellEvent::ForcedOut { part: self.parts[part].kind.name.clone() });
+        }
     }
 
     /// What part `index` offers to the jaws.
     pub(super) fn between_jaws_of(&self, index: usize) -> Option<Squeeze> {
         let part = self.parts.get(index)?;
-        let base = self.world.bodies[self.vise.base()].position();
+        let base = to_pose(self.vise.frame());
         squeeze(&base.inv_mul(&part.pose(&self.world)), part.half(), &self.vise.pads())
     }
 
     /// After a step: holds that are asked for more than friction gives slide.
     pub(super) fn let_holds_give_way(&mut self) {
-        let both = match (&self.gripper.hold, &self.vise.hold) {
-            (Some((gripped, _)), Some((clamped, _))) => gripped == clamped,
+        self.resist_in_vise();
+        let both = match (&self.gripper.hold, &self.vise.clamped) {
+            (Some((gripped, _)), Some(clamped)) => *gripped == clamped.part,
             _ => false,
         };
-        if let Some((_, hold)) = &mut self.vise.hold {
-            hold.give_way(&mut self.world);
-        }
         let Some((index, hold)) = &mut self.gripper.hold else { return };
         if both {
             // The vise is the stronger: the fingers keep their force, but where the part lies in them is the vise's affair.

@@ -63,6 +63,11 @@ pub enum CellEvent {
         /// The part.
         part: String,
     },
+    /// The gripper has forced a part out of the closed vise.
+    ForcedOut {
+        /// The part.
+        part: String,
+    },
     /// A part lies on the floor.
     Fell {
         /// The part.
@@ -84,6 +89,7 @@ impl fmt::Display for CellEvent {
                 write!(f, "{part} slides in the fingers, {distance:.3} in so far")
             }
             Self::Dropped { part } => write!(f, "{part} is lost from the fingers"),
+            Self::ForcedOut { part } => write!(f, "{part} is forced out of the vise"),
             Self::Fell { part } => write!(f, "{part} lies on the floor"),
             Self::Warning(code) => write!(f, "the T3 controller shows {code}"),
             Self::Quarantined => f.write_str("a body is no longer anywhere: the simulation has failed"),

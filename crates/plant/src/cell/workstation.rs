@@ -266,12 +266,10 @@ impl Cell {
         let part = self.parts.remove(index);
         self.world.remove_body(part.body);
         // What is held is known by its place in the list.
-        for hold in [&mut self.gripper.hold, &mut self.vise.hold] {
-            if let Some((held, _)) = hold
-                && *held > index
-            {
-                *held -= 1;
-            }
+        let gripped = self.gripper.hold.as_mut().map(|(held, _)| held);
+        let clamped = self.vise.clamped.as_mut().map(|clamped| &mut clamped.part);
+        for held in gripped.into_iter().chain(clamped).filter(|held| **held > index) {
+            *held -= 1;
         }
         Ok(())
     }
@@ -293,7 +291,7 @@ impl Cell {
     fn machine(&mut self, from: &str, to: &str) -> Result<(), WorkstationError> {
         let next = self.kind(to)?;
         let not_clamped = || WorkstationError::NotClamped { expected: from.into() };
-        let index = self.vise.hold.as_ref().map(|(index, _)| *index).ok_or_else(not_clamped)?;
+        let index = self.vise.clamped.map(|clamped| clamped.part).ok_or_else(not_clamped)?;
         let part = &self.parts[index];
         if part.kind.name != from {
             return Err(WorkstationError::WrongPart { expected: from.into(), found: part.kind.name.clone() });
