@@ -40,8 +40,12 @@ struct ModelT3i {
     path: Vec<WireFrame>,
     /// The resolvers see this many 0.01 in beside the output.
     off: i32,
-    /// No tick passes for it; its last outputs are written again.
+    /// No tick passes for it; its last outputs stand as they are.
     dead: bool,
+    /// It is held; its last outputs are republished.
+    held: bool,
+    /// It reads no command, and goes on with the last one.
+    deaf: bool,
 }
 
 impl ModelT3i {
@@ -49,9 +53,13 @@ impl ModelT3i {
         if self.dead {
             return memory.t3i;
         }
+        if self.held {
+            let header = Header { stamp: tick, republished: true, ..memory.t3i.header };
+            return T3iOutputs { header, ..memory.t3i };
+        }
         let command = &memory.prim.t3i;
         let expected = successor(self.receiver.echo);
-        if self.receiver.observe(command.number) == Arrival::New {
+        if !self.deaf && self.receiver.observe(command.number) == Arrival::New {
             self.command = command.command;
             match command.command {
                 T3iVerb::Restart => {
@@ -390,6 +398,7 @@ fn missing_records_and_bad_parameters_are_refused_and_stop_the_robot() {
     assert_eq!(rig.memory.prim.status.reason, Reason::BadRecord);
     rig.steps(100);
     assert!(rig.prim.state().motion.is_at_rest());
+    assert_ne!(rig.t3i.output, WireFrame::from_frame(&shifted(40.0, 3.0)));
     rig.check_path(&start());
     for (pose, movetable, parameters, reason) in [
         (pose_range::EMOVE | 77, 0, 1, Reason::BadRecord),
@@ -445,6 +454,69 @@ fn a_silent_t3i_is_noticed() {
     assert_eq!(rig.report(), PrimReport::NoRespT3i);
     assert_eq!(rig.memory.prim.t3i.command, T3iVerb::Pause);
     assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::NoRespT3i);
+}
+
+#[test]
+fn a_t3i_that_does_not_echo_gets_one_point_more_and_no_other() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(30);
+    rig.t3i.deaf = true;
+    let number = rig.memory.prim.t3i.number;
+    rig.steps(4);
+    assert_eq!(rig.memory.prim.t3i.number, number + 1);
+    assert_eq!(rig.until_over(), PrimReport::NoRespT3i);
+}
+
+#[test]
+fn a_last_point_that_is_not_echoed_is_noticed() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 2);
+    rig.steps(5);
+    while !rig.prim.state().motion.is_at_rest() {
+        rig.step();
+    }
+    rig.t3i.deaf = true;
+    assert_eq!(rig.until_over(), PrimReport::NoRespT3i);
+}
+
+#[test]
+fn a_held_t3i_is_waited_for() {
+    let mut rig = Rig::initialized();
+    rig.t3i.held = true;
+    rig.steps(2);
+    let before = rig.memory.prim.t3i;
+    rig.command(PrimVerb::GotoPt, 2);
+    rig.steps(20);
+    assert_eq!((rig.memory.prim.t3i, rig.report()), (before, PrimReport::Executing));
+    rig.t3i.held = false;
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    rig.check_path(&start());
+}
+
+#[test]
+fn a_point_is_sent_every_tick() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.step();
+    for _ in 0..50 {
+        let number = rig.memory.prim.t3i.number;
+        rig.step();
+        assert_eq!(rig.memory.prim.t3i.number, successor(number));
+        assert_eq!(rig.memory.prim.t3i.cycle, rig.tick);
+    }
+}
+
+#[test]
+fn a_robot_that_swings_through_the_goal_is_not_at_rest() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 2);
+    while rig.report() != PrimReport::Error {
+        rig.t3i.off = if rig.tick.0.is_multiple_of(3) { 3 } else { 0 };
+        rig.step();
+        assert_ne!((rig.report(), rig.memory.prim.status.echo), (PrimReport::Done, 2));
+    }
+    assert_eq!(rig.memory.prim.status.reason, Reason::NotAtGoal);
 }
 
 #[test]
