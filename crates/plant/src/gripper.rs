@@ -164,6 +164,12 @@ impl Gripper {
         self.fingers.map(|finger| finger.collider)
     }
 
+    /// Where the air and the arm want the middles of the left and the right finger, tool frame, m.
+    #[must_use]
+    pub fn finger_rests(&self) -> [Pose; 2] {
+        self.fingers.map(|finger| finger_rest(&self.description, finger.side, self.air.opening()))
+    }
+
     /// The pads in the tool frame.
     #[must_use]
     pub fn pads(&self) -> Pads {

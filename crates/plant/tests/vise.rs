@@ -111,3 +111,15 @@ fn a_clamped_bar_takes_the_robot_s_push() {
     assert!((given + 0.02).abs() < 0.006, "the tool stands {given} in behind the command");
     assert!(!rig.log.iter().any(|event| matches!(event, CellEvent::Contact(_))), "{:?}", rig.log);
 }
+
+#[test]
+fn a_crash_forces_a_bar_out_of_the_vise() {
+    let mut rig = Rig::new(&description(), 1);
+    put(&mut rig, upright(Vector::new(0.0375, 0.152, -1.249), 0.0));
+    rig.vise(WorkstationAction::ViseClose);
+    rig.go(rig::FIX_V1.to_frame().unwrap(), 10.0);
+    rig.go(Rig::fixture(&rig::HOLD, 5.0, 0.0), 4.0);
+    rig.go_and_stop(Rig::fixture(&rig::HOLD, -0.30, 0.0), 0.5);
+    let out = CellEvent::ForcedOut { part: "LINKBAR1_BH".into() };
+    assert!(rig.log.contains(&out), "500 lb at 0.20 on two faces are 200 lb: {:?}", rig.log);
+}

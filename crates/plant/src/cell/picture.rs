@@ -83,20 +83,24 @@ impl Cell {
             capsule("wrist", plate, 0.0, T3.yaw_to_plate, robot.wrist_radius),
         ];
         let hand = &self.world.bodies[self.gripper.hand()];
-        for (name, body) in [
-            ("gripper", self.gripper.hand()),
-            ("left_finger", self.gripper.finger_bodies()[0]),
-            ("right_finger", self.gripper.finger_bodies()[1]),
-        ] {
-            for collider in self.world.bodies[body].colliders() {
-                let collider = &self.world.colliders[*collider];
-                movers.push(Mover {
-                    name: name.into(),
-                    pose: *collider.position(),
-                    shape: collider.shared_shape().clone(),
-                    carried: false,
-                });
-            }
+        for collider in hand.colliders() {
+            let collider = &self.world.colliders[*collider];
+            movers.push(Mover {
+                name: "gripper".into(),
+                pose: *collider.position(),
+                shape: collider.shared_shape().clone(),
+                carried: false,
+            });
+        }
+        // The fingers give way to what they run into; how deep the arm has led them is what counts.
+        let fingers = self.gripper.finger_rests().into_iter().zip(self.gripper.finger_colliders());
+        for (name, (rest, collider)) in ["left_finger", "right_finger"].into_iter().zip(fingers) {
+            movers.push(Mover {
+                name: name.into(),
+                pose: *hand.position() * rest,
+                shape: self.world.colliders[collider].shared_shape().clone(),
+                carried: false,
+            });
         }
         let camera = to_metres(&Inches::from(self.description.camera.position));
         movers.push(Mover {
