@@ -74,11 +74,11 @@ impl CommandReceiver {
         if first == START {
             return self.data();
         }
-        // Several restarts in a row are one: the host has only become impatient. A command may follow, nothing else.
+        // Several restarts in a row are one: the host has only become impatient. Nothing else may follow, since it waits for
+        // an answer; a late end of a frame may begin with the byte of a cancel.
         let same = held.iter().take_while(|byte| **byte == first).count();
-        let next = held.get(same);
         match Control::from_byte(first) {
-            Some(control) if next.is_none_or(|byte| *byte == START) => {
+            Some(control) if same == held.len() => {
                 self.drop_first(same);
                 Some(Command::Control(control))
             }
@@ -104,17 +104,25 @@ impl CommandReceiver {
             }
             return None;
         };
-        if let Ok(command) = DataCommand::parse(frame) {
-            self.drop_first(FRAME_BYTES);
-            return Some(Command::Data(command));
+        // Nothing but restarts may follow: the host waits for an answer. And the checksum does not tell a frame from one
+        // that begins with the late end of its own first copy, since the exclusive or of both is the same.
+        let behind = held.get(FRAME_BYTES..).unwrap_or_default();
+        let alone = behind.iter().all(|byte| *byte == Control::Restart.byte());
+        match DataCommand::parse(frame) {
+            Ok(command) if alone => {
+                self.drop_first(FRAME_BYTES);
+                Some(Command::Data(command))
+            }
+            _ if behind.is_empty() => {
+                self.clear();
+                Some(Command::Undecipherable)
+            }
+            _ => {
+                self.clear();
+                self.garbled = 1;
+                None
+            }
         }
-        let more = held.len() > FRAME_BYTES;
-        self.clear();
-        if more {
-            self.garbled = 1;
-            return None;
-        }
-        Some(Command::Undecipherable)
     }
 
     fn drop_first(&mut self, count: usize) {
@@ -291,13 +299,37 @@ mod tests {
     }
 
     #[test]
-    fn restarts_in_a_row_are_one_and_a_command_behind_them_is_kept() {
+    fn restarts_in_a_row_are_one_also_behind_a_command() {
         let mut receiver = CommandReceiver::default();
-        let mut line = vec![0x05; 3];
-        line.extend(command());
-        assert_eq!(tick(&mut receiver, &line), Some(Command::Control(Control::Restart)));
-        assert!(matches!(receiver.take(), Some(Command::Data(_))));
-        assert_eq!(receiver, CommandReceiver::default());
+        let mut line = command().to_vec();
+        line.extend([0x05; 3]);
+        assert!(matches!(tick(&mut receiver, &line), Some(Command::Data(_))));
+        assert_eq!(receiver.take(), Some(Command::Control(Control::Restart)));
+        assert_eq!(receiver.take(), None);
+    }
+
+    #[test]
+    fn a_command_with_anything_else_behind_it_is_not_executed() {
+        for line in [[&command()[..], &[0x41]].concat(), [&[0x18], &command()[..]].concat(), vec![0x05, 0x18]]
+        {
+            let mut receiver = CommandReceiver::default();
+            assert_eq!(tick(&mut receiver, &line), None);
+            assert_eq!(tick(&mut receiver, &[]), Some(Command::Undecipherable));
+        }
+    }
+
+    #[test]
+    fn the_late_end_of_a_frame_before_its_second_copy_is_no_command() {
+        // 3 bytes of the first copy, then the second: the first 16 of these 19 have a right checksum.
+        let mut frame = [0; 16];
+        DataCommand { function: NO_FUNCTION, plate: Plate { words: [-400, -6000, -800, 0, 9000, 0x03C7] } }
+            .emit(&mut frame);
+        let mut line = frame[13..].to_vec();
+        line.extend(frame);
+        assert!(DataCommand::parse(&line[..16]).is_ok());
+        let mut receiver = CommandReceiver::default();
+        assert_eq!(tick(&mut receiver, &line), None);
+        assert_eq!(tick(&mut receiver, &[]), Some(Command::Undecipherable));
     }
 
     #[test]

@@ -101,9 +101,12 @@ pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result
     if limits.check(&from.plate, &full).is_ok() {
         return Ok(Step { position: Position::rounded_to(full, goal), reached: true });
     }
-    // At the pole the words say where the robot is: what they round away there can be a whole turn of D.
+    let mut start = from.tool();
     let [.., e, _] = from.plate.words;
-    let start = if pole_near(e).is_some() { from.plate.to_tool(arm) } else { from.tool() };
+    if pole_near(e).is_some() {
+        // What the words round away at the pole can be a whole turn of D: there they say how the tool is turned.
+        start.rotation = from.plate.to_frame().rotation;
+    }
     let line = Line {
         way: goal.position - start.position,
         turn: rotation_vector(&(goal.rotation * start.rotation.inverse())),

@@ -132,9 +132,8 @@ impl Bench {
 
     fn new_goal(&mut self) {
         let home = T3.forward(&HOME_JOINTS);
-        let shift =
-            Vector::new(self.numbers.within(12.0), self.numbers.within(12.0), self.numbers.within(12.0));
-        let turn = Vector::new(self.numbers.within(0.5), self.numbers.within(0.5), self.numbers.within(0.5));
+        let shift = Vector::new(self.numbers.within(6.0), self.numbers.within(6.0), self.numbers.within(6.0));
+        let turn = Vector::new(self.numbers.within(0.3), self.numbers.within(0.3), self.numbers.within(0.3));
         self.goal = Frame { position: home.position + shift, rotation: rotation_by(&turn) * home.rotation };
     }
 
@@ -197,7 +196,7 @@ fn faults_neither_jump_nor_repeat_and_the_link_comes_back() {
         let mut bench = Bench::new(seed);
         bench.tick(0, true);
         for tick in 0..5000 {
-            if tick % 100 == 0 {
+            if tick % 30 == 0 {
                 bench.new_goal();
             }
             bench.tick(8, false);
