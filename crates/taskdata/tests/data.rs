@@ -54,6 +54,34 @@ fn sectors_are_where_the_cell_has_them() {
     }
 }
 
+/// Three numbers of a table of the cell description.
+fn numbers<const N: usize>(value: &toml::Value) -> [f64; N] {
+    let all: Vec<f64> = value.as_array().unwrap().iter().map(|v| v.as_float().unwrap()).collect();
+    all.try_into().unwrap()
+}
+
+#[test]
+fn the_cell_and_the_data_agree() {
+    let (store, _) = load();
+    let data = store.view();
+    let text = std::fs::read_to_string(data_directory().join("cell.toml")).unwrap();
+    let cell: toml::Table = text.parse().unwrap();
+    let vise = cell["vise"].as_table().unwrap();
+    let location = at(&data, vise["location"].as_str().unwrap(), 0, "LINKBAR1_BH");
+    assert_near(&location.frame, numbers(&vise["position"]), 1e-9);
+    assert!(location.frame.distance(&Frame::identity()).radians < 1e-9, "X into the vise, Y left, Z up");
+    let trays = cell["tray"].as_array().unwrap();
+    assert_eq!(trays.len(), 2);
+    for tray in trays {
+        let floor = tray["floor"].as_float().unwrap();
+        for (sector, centre) in (1..).zip(tray["sectors"].as_array().unwrap()) {
+            let [x, y] = numbers(centre);
+            let location = at(&data, tray["unit"].as_str().unwrap(), sector, "LINKBAR1_BH");
+            assert_near(&location.frame, [x, y, floor], 1e-9);
+        }
+    }
+}
+
 #[test]
 fn the_blank_is_picked_tilted_and_stands_upright_in_the_vise() {
     let (store, _) = load();

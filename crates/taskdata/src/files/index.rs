@@ -27,6 +27,12 @@ impl<'a> Index<'a> {
         (keys.len() == numbers.len() && keys.is_sorted()).then_some(Self { keys, numbers })
     }
 
+    /// An index over what was sorted before; [`Index::new`] without its check of every key.
+    #[cfg(feature = "load")]
+    pub(crate) const fn sorted(keys: &'a [u128], numbers: &'a [u32]) -> Self {
+        Self { keys, numbers }
+    }
+
     /// The record number of a key; of the first, if several records have it.
     #[must_use]
     pub fn find(&self, key: u128) -> Option<u32> {

@@ -49,7 +49,7 @@ impl Sorted {
     }
 
     pub fn view(&self) -> Index<'_> {
-        Index::new(&self.keys, &self.numbers).unwrap_or_default()
+        Index::sorted(&self.keys, &self.numbers)
     }
 }
 
