@@ -184,9 +184,11 @@ impl Host {
             self.receiver.idle();
         }
         let mut event = HostEvent::None;
+        let mut behind = bytes.len();
         for byte in bytes {
+            behind = behind.saturating_sub(1);
             if let Some(reply) = self.receiver.push(*byte) {
-                event = event.max(self.take(reply));
+                event = event.max(self.take(reply, behind == 0));
             }
         }
         if self.waited >= self.answer_ticks { event.max(self.without_answer()) } else { event }
@@ -250,7 +252,10 @@ impl Host {
 
     /// What one reply means in the present state. What has no meaning is noise, and ignored: if it took the place of
     /// an answer, no answer comes.
-    fn take(&mut self, reply: Reply) -> HostEvent {
+    ///
+    /// A report is believed only if it is the `last` of its tick: nothing is sent behind it, and the checksum does not tell
+    /// a report that has lost an FF in it from one that is closed by the first FF of the next.
+    fn take(&mut self, reply: Reply, last: bool) -> HostEvent {
         if reply == Reply::BadChecksum {
             count(&mut self.counters.checksum_errors);
         }
@@ -258,7 +263,9 @@ impl Host {
             count(&mut self.counters.naks);
         }
         match (self.state, reply) {
-            (HostState::Starting, Reply::Report(plate)) if !self.restart_due && plate.is_canonical() => {
+            (HostState::Starting, Reply::Report(plate))
+                if last && !self.restart_due && plate.is_canonical() =>
+            {
                 self.position = plate;
                 self.state = HostState::Ready;
                 self.attempts = 0;

@@ -126,6 +126,19 @@ fn a_report_outside_the_coding_is_not_believed() {
 }
 
 #[test]
+fn a_report_closed_by_the_next_one_is_not_believed() {
+    let mut frame = [0; 16];
+    Report { plate: Plate { words: [1, 2, 3, 4, 9000, -114] } }.emit(&mut frame);
+    let without_ff = [&frame[..13], &frame[14..]].concat();
+    assert_eq!(frame[13], 0xFF);
+    assert!(Report::parse(&[&without_ff[..], &[0xFF]].concat()).is_ok());
+    let mut host = Host::new(ANSWER_TICKS);
+    assert_eq!(tick(&mut host, &without_ff, &Intent::Idle).0, HostEvent::None);
+    assert_eq!(tick(&mut host, &frame, &Intent::Idle).0, HostEvent::None);
+    assert_eq!(host.state(), HostState::Starting);
+}
+
+#[test]
 fn dtr_is_watched() {
     let mut host = running();
     assert_eq!(host.receive(&LinkBytes::default(), false), HostEvent::Lost);
