@@ -1,2 +1,41 @@
-//! The RCS-II/T3 controller.
-fn main() {}
+//! `rcs-run`: the RCS-II/T3 controller with its simulated cell.
+//!
+//! One thread runs the ticks: controller, log hand-off, cell, workstation controller, in this order ([`run`]). The other
+//! subcommands look at task data and decision tables without running anything, or clean up after killed runs.
+
+mod check;
+mod clean;
+mod cli;
+mod error;
+mod run;
+mod tables;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::cli::{Cli, Command};
+
+// Counts what the controller allocates; the count is in the result of every run.
+#[global_allocator]
+static ALLOCATOR: executive::alloc::Counting = executive::alloc::Counting;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let outcome = match cli.command {
+        None => run::run(&cli.run),
+        Some(Command::Run(arguments)) => run::run(&arguments),
+        Some(Command::Check(arguments)) => check::check(&arguments),
+        Some(Command::Tables) => tables::tables(),
+        Some(Command::Clean) => clean::clean(),
+    };
+    match outcome {
+        Ok(code) => code,
+        Err(error) => {
+            // The reason is the last line on standard error, whatever stands before it.
+            eprint!("{}", error.details());
+            eprintln!("rcs-run: {error}");
+            ExitCode::from(error::UNUSABLE)
+        }
+    }
+}

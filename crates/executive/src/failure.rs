@@ -4,14 +4,13 @@
 //! reason which arrived at Task. By the time it arrives there the lower processes have moved on: [`Watch`] therefore keeps, for each
 //! process, common memory as it was in the tick when the process began to report its reason.
 
+use levels::ladder::ProcessInfo;
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Header, HwsCommand, Reason, t3i::LinkFault},
     record::Field,
     table::RowText,
     tick::Tick,
 };
-
-use crate::runner::ProcessText;
 
 /// Processes of [`CommonMemory`], in its order.
 pub const PROCESSES: usize = 7;
@@ -29,10 +28,10 @@ pub struct Failure {
     pub tick: Tick,
     /// The process that knows why; the manual's name.
     pub process: String,
-    /// Its decision table; empty if none was used.
-    pub table: String,
-    /// The row that fired, 0 for none.
-    pub row: u8,
+    /// Its decision table, if one was used.
+    pub table: Option<String>,
+    /// The row that fired, from 1.
+    pub row: Option<u8>,
     /// The whole in one sentence.
     pub text: String,
     /// The link to the robot is lost, or the robot was stopped: not a matter of the job.
@@ -105,7 +104,7 @@ impl Watch {
     /// Why Task reports an error; `None` while it reports none. `processes` are the names and tables in the order of
     /// [`CommonMemory`].
     #[must_use]
-    pub fn failure(&self, processes: &[ProcessText; PROCESSES]) -> Option<Failure> {
+    pub fn failure(&self, processes: &[ProcessInfo; PROCESSES]) -> Option<Failure> {
         let task = self.causes[TASK].as_ref()?;
         let Report::Reason(reason) = task.report else { return None };
         let link = matches!(reason, Reason::LinkOff | Reason::LinkError);
@@ -134,8 +133,8 @@ impl Watch {
         Some(Failure {
             tick: cause.tick,
             process: process.name.to_owned(),
-            table: row.map_or_else(String::new, |(table, _)| table.to_owned()),
-            row: cause.header.row,
+            table: row.map(|(table, _)| table.to_owned()),
+            row: row.map(|(_, row)| row.number),
             text,
             stopped: link,
         })
@@ -147,8 +146,8 @@ fn describe(row: &RowText) -> String {
 }
 
 /// Name of the table and the row that a header names.
-fn row_text(process: &ProcessText, header: &Header) -> Option<(&'static str, &'static RowText)> {
-    let table = process.tables.get(usize::from(header.table).checked_sub(1)?)?;
+fn row_text(process: &ProcessInfo, header: &Header) -> Option<(&'static str, &'static RowText)> {
+    let table = process.table(header.table)?;
     Some((table.name, table.row(header.row)?))
 }
 
@@ -243,7 +242,7 @@ fn place(word: &str, location: &dyn std::fmt::Display, sector: i32) -> String {
 /// What each level is doing, from Task down, for a failure that no process reports: a command that takes too long.
 #[must_use]
 pub fn present_commands(
-    processes: &[ProcessText; PROCESSES],
+    processes: &[ProcessInfo; PROCESSES],
     hws: &HwsCommand,
     memory: &CommonMemory,
 ) -> String {
@@ -280,9 +279,9 @@ mod tests {
 
     const TABLES: &[&rcs_core::table::Table] = &[&CLOSE_GRIP];
 
-    fn processes() -> [ProcessText; PROCESSES] {
+    fn processes() -> [ProcessInfo; PROCESSES] {
         ["Task", "Subtask", "E-move", "Prim", "T3I", "Quick Change", "Grip"]
-            .map(|name| ProcessText { name, tables: if name == "Grip" { TABLES } else { &[] } })
+            .map(|name| ProcessInfo { name, tables: if name == "Grip" { TABLES } else { &[] } })
     }
 
     /// Plays ticks: each closure changes common memory, the watch looks on.
@@ -323,8 +322,8 @@ mod tests {
             |memory| memory.task.status.reason = Reason::GraspMissed,
         ]);
         let failure = watch.failure(&processes()).expect("Task reports a reason");
-        assert_eq!((failure.tick, failure.row, failure.stopped), (Tick(3), 3, false));
-        assert_eq!((failure.process.as_str(), failure.table.as_str()), ("Grip", "close_grip"));
+        assert_eq!((failure.tick, failure.row, failure.stopped), (Tick(3), Some(3), false));
+        assert_eq!((failure.process.as_str(), failure.table.as_deref()), ("Grip", Some("close_grip")));
         assert_eq!(
             failure.text,
             "Grip: the fingers closed on nothing, while it executed CLOSE-GRIP (opening 0.00 in, force 25 lb) \
@@ -345,7 +344,7 @@ mod tests {
             |memory| memory.task.status.reason = Reason::UnknownGrip,
         ]);
         let failure = watch.failure(&processes()).expect("Task reports a reason");
-        assert_eq!((failure.tick, failure.process.as_str(), failure.row), (Tick(4), "Subtask", 0));
+        assert_eq!((failure.tick, failure.process.as_str(), failure.row), (Tick(4), "Subtask", None));
         assert_eq!(
             failure.text,
             "Subtask: the object has no such grip, while it executed GET-OBJECT at UNIT_1"

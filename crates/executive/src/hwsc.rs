@@ -18,9 +18,10 @@ use rcs_core::{
     name::Name16,
     tick::{TICK_MS, Tick},
 };
+use taskdata::load::job::{JobLine, Step, Workstation as Action};
 
-/// What the workstation can do by itself. `Action` is an action of a job.
-pub trait Workstation<Action> {
+/// What the workstation can do by itself.
+pub trait Workstation {
     /// Begin an action.
     ///
     /// # Errors
@@ -32,35 +33,6 @@ pub trait Workstation<Action> {
 
     /// What is wrong with the workstation, in a sentence; `None` if nothing is.
     fn fault(&self) -> Option<String>;
-}
-
-/// A step of a job.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Step<Action> {
-    /// A command for Task.
-    Command {
-        /// The line as it stands in the job.
-        text: String,
-        /// Its fields; the number is filled in when it is sent.
-        command: HwsCommand,
-    },
-    /// An action of the workstation.
-    Workstation {
-        /// The line as it stands in the job.
-        text: String,
-        /// What to do.
-        action: Action,
-    },
-}
-
-impl<Action> Step<Action> {
-    /// The line as it stands in the job.
-    #[must_use]
-    pub fn text(&self) -> &str {
-        match self {
-            Self::Command { text, .. } | Self::Workstation { text, .. } => text,
-        }
-    }
 }
 
 /// How a step ended.
@@ -136,8 +108,8 @@ pub const TIME_LIMIT: u64 = 5 * 60 * 1000 / TICK_MS;
 
 /// The emulator of the workstation controller.
 #[derive(Debug)]
-pub struct Hwsc<Action> {
-    steps: Vec<Step<Action>>,
+pub struct Hwsc {
+    steps: Vec<JobLine>,
     /// The step that is going on: 0 is the first PAUSE, `n` is `steps[n - 1]`.
     current: usize,
     began: Option<Tick>,
@@ -148,10 +120,10 @@ pub struct Hwsc<Action> {
     time_limit: u64,
 }
 
-impl<Action> Hwsc<Action> {
+impl Hwsc {
     /// An emulator that will play `steps`, each within `time_limit` ticks.
     #[must_use]
-    pub fn new(steps: Vec<Step<Action>>, time_limit: u64) -> Self {
+    pub fn new(steps: Vec<JobLine>, time_limit: u64) -> Self {
         let records = Vec::with_capacity(steps.len() + 1);
         Self {
             steps,
@@ -196,12 +168,7 @@ impl<Action> Hwsc<Action> {
     }
 
     /// Once a tick, after the controller: read what Task wrote in `tick`, write what it will read in the next one.
-    pub fn step(
-        &mut self,
-        tick: Tick,
-        task: &TaskOutputs,
-        workstation: &mut impl Workstation<Action>,
-    ) -> &Progress {
+    pub fn step(&mut self, tick: Tick, task: &TaskOutputs, workstation: &mut impl Workstation) -> &Progress {
         if self.progress != Progress::Running {
             return &self.progress;
         }
@@ -230,7 +197,7 @@ impl<Action> Hwsc<Action> {
         tick: Tick,
         began: Tick,
         task: &TaskOutputs,
-        workstation: &impl Workstation<Action>,
+        workstation: &impl Workstation,
     ) -> Option<Result<(), JobFailure>> {
         let ticks = tick.since(began);
         if let Some(record) = self.records.last_mut() {
@@ -249,7 +216,7 @@ impl<Action> Hwsc<Action> {
             Lower::Done => true,
         };
         let waits_for_workstation =
-            self.step_at(self.current).is_some_and(|s| matches!(s, Step::Workstation { .. }));
+            self.step_at(self.current).is_some_and(|line| matches!(line.step, Step::Workstation(_)));
         if finished && !(waits_for_workstation && workstation.busy()) {
             Some(Ok(()))
         } else if ticks >= self.time_limit {
@@ -259,12 +226,12 @@ impl<Action> Hwsc<Action> {
         }
     }
 
-    fn step_at(&self, position: usize) -> Option<&Step<Action>> {
+    fn step_at(&self, position: usize) -> Option<&JobLine> {
         self.steps.get(position.checked_sub(1)?)
     }
 
     /// Begin the current step; after the last one the job is over.
-    fn begin(&mut self, tick: Tick, workstation: &mut impl Workstation<Action>) {
+    fn begin(&mut self, tick: Tick, workstation: &mut impl Workstation) {
         self.began = Some(tick);
         let (text, command, refused) = match self.step_at(self.current) {
             None if self.current == 0 => {
@@ -275,8 +242,10 @@ impl<Action> Hwsc<Action> {
                 self.progress = Progress::Over;
                 return;
             }
-            Some(Step::Command { text, command }) => (text.clone(), Some(*command), None),
-            Some(Step::Workstation { text, action }) => (text.clone(), None, workstation.begin(action).err()),
+            Some(JobLine { step: Step::Command(command), text, .. }) => (text.clone(), Some(*command), None),
+            Some(JobLine { step: Step::Workstation(action), text, .. }) => {
+                (text.clone(), None, workstation.begin(action).err())
+            }
         };
         self.records.push(Record {
             text,
@@ -317,8 +286,14 @@ const fn lower(report: HwsReport) -> Lower {
 mod tests {
     use super::*;
     use rcs_core::{
+        frame::Frame,
         handshake::{Arrival, Receiver},
         interface::Header,
+        name::Name10,
+    };
+    use taskdata::{
+        files::{Location, Place},
+        load::job::ViseOpening,
     };
 
     /// A Task that executes each command for some ticks.
@@ -363,16 +338,17 @@ mod tests {
     #[derive(Default)]
     struct Vise {
         busy: std::cell::Cell<u32>,
-        told: Vec<&'static str>,
+        told: Vec<ViseOpening>,
         fault: Option<&'static str>,
     }
 
-    impl Workstation<&'static str> for Vise {
-        fn begin(&mut self, action: &&'static str) -> Result<(), String> {
-            if *action == "jam" {
-                return Err("the vise is jammed".into());
+    impl Workstation for Vise {
+        fn begin(&mut self, action: &Action) -> Result<(), String> {
+            let Action::Vise { opening, location } = action else { return Err("this is a vise".into()) };
+            if location.name.as_str() != "PFIXTURE" {
+                return Err(format!("there is no vise at {}", location.name));
             }
-            self.told.push(action);
+            self.told.push(*opening);
             self.busy.set(6);
             Ok(())
         }
@@ -387,17 +363,24 @@ mod tests {
         }
     }
 
-    fn command(verb: &str) -> Step<&'static str> {
+    fn command(verb: &str) -> JobLine {
         let command = HwsCommand { command: Name16::clipped(verb), ..HwsCommand::default() };
-        Step::Command { text: format!("== {verb}"), command }
+        JobLine { step: Step::Command(command), text: format!("== {verb}"), line: 1 }
     }
 
-    fn action(name: &'static str) -> Step<&'static str> {
-        Step::Workstation { text: name.to_owned(), action: name }
+    fn action(opening: ViseOpening, name: &str) -> JobLine {
+        let name = Name10::new(name).unwrap();
+        let location = Location { name, place: Place::default(), sector: 0, frame: Frame::identity() };
+        let text = format!("** vise {opening:?} {name}");
+        JobLine { step: Step::Workstation(Action::Vise { opening, location }), text, line: 1 }
+    }
+
+    fn vise(opening: ViseOpening) -> JobLine {
+        action(opening, "PFIXTURE")
     }
 
     /// Plays a job for at most 200 ticks; the last tick comes back.
-    fn play(hwsc: &mut Hwsc<&'static str>, task: &mut Task, vise: &mut Vise) -> u64 {
+    fn play(hwsc: &mut Hwsc, task: &mut Task, vise: &mut Vise) -> u64 {
         for tick in 1..200 {
             let outputs = task.step(Tick(tick), hwsc.command());
             if *hwsc.step(Tick(tick), &outputs, vise) != Progress::Running {
@@ -409,12 +392,13 @@ mod tests {
 
     #[test]
     fn a_job_is_played_in_order_and_pause_comes_first() {
-        let steps = vec![action("partial"), command("MOVE"), action("close"), command("MOVE")];
-        let (mut hwsc, mut task, mut vise) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
-        play(&mut hwsc, &mut task, &mut vise);
+        let (partial, close) = (ViseOpening::Partial, ViseOpening::Close);
+        let steps = vec![vise(partial), command("MOVE"), vise(close), command("MOVE")];
+        let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
+        play(&mut hwsc, &mut task, &mut jaws);
         assert_eq!(*hwsc.progress(), Progress::Over);
         assert_eq!(task.received, ["PAUSE", "MOVE", "MOVE"]);
-        assert_eq!(vise.told, ["partial", "close"]);
+        assert_eq!(jaws.told, [partial, close]);
         let texts: Vec<_> =
             hwsc.records().iter().map(|r| (r.text.as_str(), r.is_command, r.outcome)).collect();
         let finished = Outcome::Finished;
@@ -422,9 +406,9 @@ mod tests {
             texts,
             [
                 ("PAUSE", true, finished),
-                ("partial", false, finished),
+                ("** vise Partial PFIXTURE", false, finished),
                 ("== MOVE", true, finished),
-                ("close", false, finished),
+                ("** vise Close PFIXTURE", false, finished),
                 ("== MOVE", true, finished)
             ]
         );
@@ -466,7 +450,7 @@ mod tests {
         let mut hwsc = Hwsc::new(vec![command("MOVE")], 3);
         play(&mut hwsc, &mut Task::default(), &mut Vise::default());
         assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::TimeLimit(3)));
-        let mut hwsc = Hwsc::new(vec![action("close")], 5);
+        let mut hwsc = Hwsc::new(vec![vise(ViseOpening::Close)], 5);
         play(&mut hwsc, &mut Task::default(), &mut Vise::default());
         assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::TimeLimit(5)));
         assert_eq!(hwsc.records().len(), 2, "PAUSE is finished within five ticks");
@@ -474,12 +458,15 @@ mod tests {
 
     #[test]
     fn what_the_workstation_cannot_do_ends_the_job() {
-        let mut hwsc = Hwsc::new(vec![action("jam")], 100);
+        let mut hwsc = Hwsc::new(vec![action(ViseOpening::Open, "TABLE")], 100);
         play(&mut hwsc, &mut Task::default(), &mut Vise::default());
-        assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Workstation("the vise is jammed".into())));
-        let mut vise = Vise { fault: Some("no oil pressure"), ..Vise::default() };
+        assert_eq!(
+            *hwsc.progress(),
+            Progress::Failed(JobFailure::Workstation("there is no vise at TABLE".into()))
+        );
+        let mut jaws = Vise { fault: Some("no oil pressure"), ..Vise::default() };
         let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
-        play(&mut hwsc, &mut Task::default(), &mut vise);
+        play(&mut hwsc, &mut Task::default(), &mut jaws);
         assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Workstation("no oil pressure".into())));
     }
 }

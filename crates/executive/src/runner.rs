@@ -6,13 +6,14 @@
 
 use std::time::Instant;
 
+use levels::ladder::Ladder;
 use rcs_core::{
     digest::Digest,
     interface::{CommonMemory, ExternalInputs},
     record::Field,
-    table::Table,
     tick::Tick,
 };
+use taskdata::files::TaskData;
 
 use crate::{
     alloc::{self, Section},
@@ -21,9 +22,9 @@ use crate::{
     memory::{Publisher, buffers::Pulse},
 };
 
-/// A ladder of control processes that can be stepped: [`levels::ladder::Ladder`], or a test's own.
+/// A ladder of control processes that can be stepped: [`Ladder`], or a test's own.
 pub trait Levels<Data: ?Sized> {
-    /// One tick of all processes: read `before` and `external`, write `after`. `after` holds the same as `before` at first.
+    /// One tick of all processes: read `before` and `external`, write `after`, all of it.
     fn step(
         &mut self,
         tick: Tick,
@@ -34,13 +35,17 @@ pub trait Levels<Data: ?Sized> {
     );
 }
 
-/// What is known of a control process besides its buffers.
-#[derive(Clone, Copy, Debug)]
-pub struct ProcessText {
-    /// The manual's name.
-    pub name: &'static str,
-    /// Its decision tables; a header names one by position from 1.
-    pub tables: &'static [&'static Table],
+impl Levels<TaskData<'_>> for Ladder {
+    fn step(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &TaskData<'_>,
+        after: &mut CommonMemory,
+    ) {
+        Self::step(self, tick, before, external, data, after);
+    }
 }
 
 /// Runs a ladder.
@@ -94,7 +99,6 @@ impl<L> Runner<L> {
         self.tick = self.tick.next();
         let [even, odd] = &mut self.halves;
         let (before, after) = if self.tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
-        *after = *before;
         self.levels.step(self.tick, before, external, data, after);
         if let Some(publisher) = &mut self.publisher {
             let pulse = Pulse {
@@ -186,6 +190,7 @@ mod tests {
             data: &u32,
             after: &mut CommonMemory,
         ) {
+            *after = *before;
             after.task.header.stamp = tick;
             after.task.status.echo = before.task.status.echo + *data;
             after.subtask.status.echo = before.task.status.echo;

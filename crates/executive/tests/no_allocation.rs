@@ -27,6 +27,7 @@ impl Levels<()> for Failing {
         _: &(),
         after: &mut CommonMemory,
     ) {
+        *after = *before;
         after.grip.header.stamp = tick;
         after.grip.status.reason = if tick.0 % 10 < 5 { Reason::GraspMissed } else { Reason::None };
         after.emove.status.reason = before.grip.status.reason;
@@ -37,7 +38,15 @@ impl Levels<()> for Failing {
 struct Careless;
 
 impl Levels<()> for Careless {
-    fn step(&mut self, tick: Tick, _: &CommonMemory, _: &ExternalInputs, _: &(), after: &mut CommonMemory) {
+    fn step(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        _: &ExternalInputs,
+        _: &(),
+        after: &mut CommonMemory,
+    ) {
+        *after = *before;
         after.task.header.stamp = tick;
         if tick.0.is_multiple_of(100) {
             drop(std::hint::black_box(vec![1_u8]));

@@ -1,0 +1,143 @@
+//! `rcs-run check`: loads everything that a run needs, and prints what was found.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use plant::CellDescription;
+use serde::Serialize;
+use taskdata::load::{Diagnostic, Job, Report, Severity, Store};
+
+use crate::{
+    cli::CheckArguments,
+    error::{Error, UNUSABLE},
+    run::setup::{CELL, EXTENSION, JOBS},
+};
+
+/// One finding, for scripts.
+#[derive(Serialize)]
+struct Finding {
+    severity: &'static str,
+    code: String,
+    place: String,
+    message: String,
+    help: Option<String>,
+}
+
+/// The outcome, for scripts.
+#[derive(Serialize)]
+struct Outcome {
+    ok: bool,
+    errors: usize,
+    warnings: usize,
+    files: usize,
+    blocks: usize,
+    records: serde_json::Map<String, serde_json::Value>,
+    jobs: Vec<String>,
+    findings: Vec<Finding>,
+}
+
+/// Load and report. Exit status 0 if a run could begin, else 2.
+pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
+    if !arguments.data.is_dir() {
+        return Err(Error::NoData(arguments.data.clone()));
+    }
+    let (store, data) = match Store::load(&arguments.data) {
+        Ok((store, report)) => (Some(store), report),
+        Err(report) => (None, *report),
+    };
+    let mut outcome = Outcome {
+        ok: true,
+        errors: 0,
+        warnings: 0,
+        files: data.files,
+        blocks: data.blocks,
+        records: data.loaded.iter().map(|l| (l.file.to_owned(), l.records.into())).collect(),
+        jobs: Vec::new(),
+        findings: Vec::new(),
+    };
+    let mut reports = vec![("task data".to_owned(), data)];
+    for path in jobs(&arguments.data) {
+        // Without task data a job cannot be checked: the names of its commands mean nothing yet.
+        let Some(store) = &store else { break };
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let report = match Job::load(&path, store) {
+            Ok((_, report)) => report,
+            Err(report) => *report,
+        };
+        reports.push((format!("job {name}"), report));
+        outcome.jobs.push(name);
+    }
+    for (_, report) in &reports {
+        outcome.findings.extend(report.diagnostics().iter().map(finding));
+    }
+    let cell = arguments.data.join(CELL);
+    if let Err(error) = CellDescription::load(&cell) {
+        outcome.findings.push(Finding {
+            severity: "error",
+            code: "cell".to_owned(),
+            place: cell.display().to_string(),
+            message: error.to_string(),
+            help: None,
+        });
+    }
+    let count = |severity| outcome.findings.iter().filter(|finding| finding.severity == severity).count();
+    (outcome.errors, outcome.warnings) = (count("error"), count("warning"));
+    outcome.ok = outcome.errors == 0;
+    if arguments.json {
+        serde_json::to_writer_pretty(io::stdout().lock(), &outcome).map_err(io::Error::from)?;
+        println!();
+    } else {
+        print(&reports, &outcome);
+    }
+    if !outcome.ok {
+        eprintln!(
+            "rcs-run: {} cannot be used: {}",
+            arguments.data.display(),
+            amount(outcome.errors, "error")
+        );
+    }
+    Ok(ExitCode::from(if outcome.ok { 0 } else { UNUSABLE }))
+}
+
+/// All jobs of a data directory.
+pub fn jobs(data: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(data.join(JOBS)).into_iter().flatten().flatten();
+    let mut jobs: Vec<PathBuf> = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|e| e == EXTENSION))
+        .collect();
+    jobs.sort();
+    jobs
+}
+
+fn finding(diagnostic: &Diagnostic) -> Finding {
+    Finding {
+        severity: match diagnostic.severity() {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        },
+        code: diagnostic.code().to_owned(),
+        place: diagnostic.place(),
+        message: diagnostic.message().to_owned(),
+        help: diagnostic.help().map(str::to_owned),
+    }
+}
+
+fn print(reports: &[(String, Report)], outcome: &Outcome) {
+    use std::io::IsTerminal as _;
+    let graphical = io::stdout().is_terminal();
+    for (what, report) in reports {
+        println!("{what}: {}", report.render(graphical).trim_end());
+    }
+    match outcome.findings.iter().find(|finding| finding.code == "cell") {
+        None => println!("cell description: no errors"),
+        Some(finding) => println!("cell description: {}: {}", finding.place, finding.message),
+    }
+}
+
+fn amount(count: usize, one: &str) -> String {
+    if count == 1 { format!("1 {one}") } else { format!("{count} {one}s") }
+}

@@ -1,0 +1,209 @@
+//! The command line.
+
+use std::{path::PathBuf, str::FromStr};
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// The RCS-II/T3 controller: runs jobs in the simulated cell.
+#[derive(Debug, Parser)]
+#[command(
+    name = "rcs-run",
+    version,
+    about,
+    args_conflicts_with_subcommands = true,
+    after_help = "\
+Examples:
+  rcs-run                              run the linkbar as fast as the cell can be simulated
+  rcs-run linkbar --clock real         the same, one tick every 40 ms
+  rcs-run my.job --seed 7 --json       a job file, other noise, the result as JSON
+  rcs-run check                        look at the task data without running anything
+  rcs-run tables > tables.md           all decision tables
+
+Exit status: 0 finished; 1 the job failed; 2 usage, configuration or data error;
+3 stopped by an emergency stop or a lost link. The reason is the last line on standard error."
+)]
+pub struct Cli {
+    /// What to do; without it, run a job.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Arguments of `run`, which may be left out.
+    #[command(flatten)]
+    pub run: RunArguments,
+}
+
+/// What else to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a job (the same as without a subcommand)
+    Run(RunArguments),
+    /// Load task data, jobs and the cell description, and print all errors and warnings, and what was loaded
+    Check(CheckArguments),
+    /// Print every decision table as Markdown
+    Tables,
+    /// Remove what killed runs left in shared memory
+    Clean,
+}
+
+/// Arguments of `run`.
+#[derive(Clone, Debug, Args)]
+pub struct RunArguments {
+    /// Name of a job in the data directory, or a path
+    #[arg(default_value = "linkbar")]
+    pub job: String,
+    /// Task data, jobs and cell description
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
+    /// Run ticks at once, or one every 40 ms
+    #[arg(long, value_enum, default_value_t = ClockKind::Fast)]
+    pub clock: ClockKind,
+    /// The robot to command: sim, the simulated one
+    #[arg(long, default_value = "sim", value_parser = robot)]
+    pub robot: Robot,
+    /// How processes are spread over boards: one, all in one thread
+    #[arg(long, default_value = "one", value_parser = boards)]
+    pub boards: Boards,
+    /// Seed of the cell's noise and of where parts are delivered
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// Where to write the log; none for no log [default: runs/<job>.mcap]
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<LogTarget>,
+    /// Stop after so many ticks if the job is not over before
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub ticks: Option<u64>,
+    /// Show the buffers to other programs
+    #[arg(long, value_enum, default_value_t = Switch::On)]
+    pub shared_memory: Switch,
+    /// Print one JSON object on standard output at the end, and nothing else there
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `check`.
+#[derive(Clone, Debug, Args)]
+pub struct CheckArguments {
+    /// Task data, jobs and cell description
+    #[arg(value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// When ticks are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ClockKind {
+    /// As fast as the cell can be simulated
+    Fast,
+    /// On a 40 ms grid
+    Real,
+}
+
+impl ClockKind {
+    /// The word on the command line.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Fast => "fast",
+            Self::Real => "real",
+        }
+    }
+}
+
+/// Yes or no.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Switch {
+    /// Yes
+    On,
+    /// No
+    Off,
+}
+
+/// Which robot is commanded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Robot {
+    /// The one of the simulated cell.
+    Sim,
+}
+
+fn robot(text: &str) -> Result<Robot, String> {
+    match text {
+        "sim" => Ok(Robot::Sim),
+        _ if text.starts_with("serial:") => {
+            Err("this version drives the simulated robot only, a serial port cannot be opened yet: use sim"
+                .into())
+        }
+        _ => Err("sim was expected".into()),
+    }
+}
+
+/// How processes are spread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Boards {
+    /// All in one thread.
+    One,
+}
+
+fn boards(text: &str) -> Result<Boards, String> {
+    match text {
+        "one" => Ok(Boards::One),
+        "split" => {
+            Err("this version runs all processes on one board, they cannot be split yet: use one".into())
+        }
+        _ => Err("one was expected".into()),
+    }
+}
+
+/// Where the log goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LogTarget {
+    /// Nowhere.
+    None,
+    /// Into a file.
+    File(PathBuf),
+}
+
+impl FromStr for LogTarget {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "" => Err("a file name or none was expected".into()),
+            "none" => Ok(Self::None),
+            path => Ok(Self::File(path.into())),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definitions_are_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn run_may_be_left_out() {
+        let short = Cli::parse_from(["rcs-run", "other", "--seed", "7", "--log", "none"]);
+        assert!(short.command.is_none());
+        let long = Cli::parse_from(["rcs-run", "run", "other", "--seed", "7", "--log", "none"]);
+        let Some(Command::Run(long)) = long.command else { panic!("run was asked for") };
+        assert_eq!((short.run.job, short.run.seed, short.run.log), (long.job, long.seed, long.log));
+        assert_eq!(Cli::parse_from(["rcs-run"]).run.job, "linkbar");
+    }
+
+    #[test]
+    fn what_this_version_cannot_do_is_refused_with_a_sentence() {
+        for (option, sentence) in
+            [("--robot=serial:/dev/ttyS0", "serial port"), ("--boards=split", "one board")]
+        {
+            let error = Cli::try_parse_from(["rcs-run", option]).expect_err("it is refused");
+            assert_eq!(error.exit_code(), 2);
+            assert!(error.to_string().contains(sentence), "{error}");
+        }
+        assert!(Cli::try_parse_from(["rcs-run", "--faults", "some.toml"]).is_err());
+    }
+}

@@ -1,0 +1,96 @@
+//! What keeps a run from beginning: usage, configuration and data errors. Exit status 2.
+
+use std::{io, path::PathBuf};
+
+use executive::memory::SharedMemoryError;
+use plant::{CellError, description::DescriptionError};
+use record::RecordError;
+use taskdata::load::Report;
+
+/// Exit status of a job that failed.
+pub const FAILED: u8 = 1;
+/// Exit status of a usage, configuration or data error.
+pub const UNUSABLE: u8 = 2;
+/// Exit status of a run that an emergency stop or a lost link ended.
+pub const STOPPED: u8 = 3;
+
+/// Why nothing was run.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The data directory is not there.
+    #[error("there is no task data directory {}; name one with --data", .0.display())]
+    NoData(PathBuf),
+    /// Task data or the job has errors.
+    #[error("{what} cannot be used: {}", count(.report))]
+    Data {
+        /// Which.
+        what: String,
+        /// All that was found.
+        report: Box<Report>,
+    },
+    /// There is no such job.
+    #[error("there is no job {job}: {}", known_jobs(.known))]
+    NoJob {
+        /// As asked for.
+        job: String,
+        /// Jobs of the data directory.
+        known: Vec<String>,
+    },
+    /// A file that is needed cannot be read.
+    #[error("{} cannot be read: {source}", path.display())]
+    Read {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The cell description cannot be used.
+    #[error("{}: {source}", path.display())]
+    Description {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: Box<DescriptionError>,
+    },
+    /// The cell cannot be built.
+    #[error("the cell cannot be built: {0}")]
+    Cell(#[from] CellError),
+    /// The log cannot be written.
+    #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
+    Log(#[from] RecordError),
+    /// Signals cannot be caught.
+    #[error("interrupts cannot be caught: {0}")]
+    Signals(io::Error),
+    /// Shared memory cannot be looked at.
+    #[error(transparent)]
+    SharedMemory(#[from] SharedMemoryError),
+    /// The result cannot be written.
+    #[error("the result cannot be written: {0}")]
+    Output(#[from] io::Error),
+}
+
+impl Error {
+    /// What is to be said before the last line; empty, or lines that end.
+    #[must_use]
+    pub fn details(&self) -> String {
+        match self {
+            Self::Data { report, .. } => report.render_for_stderr(),
+            _ => String::new(),
+        }
+    }
+}
+
+fn count(report: &Report) -> String {
+    match report.errors().count() {
+        1 => "1 error".to_owned(),
+        count => format!("{count} errors"),
+    }
+}
+
+fn known_jobs(known: &[String]) -> String {
+    match known {
+        [] => "the data directory has no jobs".to_owned(),
+        [only] => format!("the data directory has {only}"),
+        more => format!("the data directory has {}", more.join(", ")),
+    }
+}

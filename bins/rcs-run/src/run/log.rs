@@ -1,0 +1,137 @@
+//! What the run tells its log: set-up, one frame of the cell a tick, events, and the tick itself.
+
+use std::{collections::BTreeMap, path::Path};
+
+use executive::alloc::Section;
+use levels::ladder::Ladder;
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use plant::{Cell, part_link};
+use rcs_core::{
+    digest::Digest,
+    interface::{CommonMemory, ExternalInputs},
+    tick::Tick,
+};
+use record::{
+    Attachment, CellFrame, CellModel, End, Epoch, Level, Pace, RecordError, Recorder, Summary, Transform,
+};
+use taskdata::load::{
+    Store,
+    job::{Job, Step, Workstation},
+};
+
+use super::setup::Setup;
+use crate::cli::{ClockKind, RunArguments};
+
+/// A log that is being written, with what is needed to draw the cell.
+pub struct Log {
+    recorder: Recorder,
+    /// Links in the order in which the log knows them, each with the position of its parent; none for the world.
+    links: Vec<(String, Option<usize>)>,
+}
+
+impl Log {
+    /// Begin a log.
+    ///
+    /// # Errors
+    /// [`RecordError`] if the file cannot be written.
+    pub fn start(path: &Path, arguments: &RunArguments, setup: &Setup) -> Result<Self, RecordError> {
+        let coming: Vec<&str> = setup.job.steps.iter().filter_map(|line| delivered(&line.step)).collect();
+        let now = setup.cell.links();
+        let position = |name: &str| now.iter().position(|link| link.name == name);
+        let mut links: Vec<_> = now.iter().map(|link| (link.name.clone(), position(link.parent))).collect();
+        links.extend((1..).take(coming.len()).map(|id| (part_link(id), None)));
+        let names: Vec<String> = links.iter().map(|(name, _)| name.clone()).collect();
+        let joints = setup.cell.joint_states().into_iter().map(|(name, _)| name.to_owned()).collect();
+        let model = CellModel::new(setup.cell.urdf_with(&coming), &names, joints);
+        let attachments = attachments(&setup.store, &setup.job, &setup.description_text);
+        let (pace, epoch) = match arguments.clock {
+            ClockKind::Fast => (Pace::Wait, Epoch::Fixed),
+            ClockKind::Real => (Pace::Drop, Epoch::now()),
+        };
+        let run = metadata(arguments, &setup.job, &attachments);
+        let recorder =
+            Recorder::start(path, pace, record::Setup { epoch, run, attachments, cell: Some(model) })?;
+        Ok(Self { recorder, links })
+    }
+
+    /// The cell as the controller will see it in `tick`; before [`Log::tick`].
+    pub fn cell(&mut self, tick: Tick, cell: &Cell) {
+        let mut places = vec![Isometry3::identity(); self.links.len()];
+        for link in cell.links() {
+            let Some(at) = self.links.iter().position(|(name, _)| *name == link.name) else { continue };
+            let [x, y, z, w] = link.rotation;
+            let rotation = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
+            let here = Isometry3::from_parts(Translation3::from(link.position), rotation);
+            let parent = self.links[at].1.map_or_else(Isometry3::identity, |parent| places[parent]);
+            places[at] = parent * here;
+        }
+        let transforms = places.iter().map(|place| {
+            let rotation = place.rotation.coords;
+            Transform {
+                position: place.translation.vector.into(),
+                rotation: [rotation.x, rotation.y, rotation.z, rotation.w],
+            }
+        });
+        let joints = cell.joint_states().into_iter().map(|(_, value)| value);
+        self.recorder.cell(&CellFrame::of(tick, transforms, joints));
+    }
+
+    /// Something worth a line; before [`Log::tick`] of the same tick.
+    pub fn note(&mut self, tick: Tick, level: Level, source: &str, text: &str) {
+        self.recorder.note(tick, level, source, text);
+    }
+
+    /// Hand over a tick. This belongs to the tick itself: what it allocates is counted.
+    pub fn tick(&mut self, tick: Tick, external: &ExternalInputs, memory: &CommonMemory, ladder: &Ladder) {
+        let _section = Section::enter();
+        self.recorder.tick(tick, external, memory, || ladder.state());
+    }
+
+    /// End the log.
+    ///
+    /// # Errors
+    /// [`RecordError`] that ended the log before the run did.
+    pub fn finish(self, digest: Digest, result: String) -> Result<Summary, RecordError> {
+        self.recorder.finish(End { digest: Some(digest.value()), result })
+    }
+}
+
+/// The part that a step puts into the cell.
+fn delivered(step: &Step) -> Option<&str> {
+    match step {
+        Step::Workstation(Workstation::Tray { object, .. }) => Some(object.as_str()),
+        _ => None,
+    }
+}
+
+/// Everything that a replay needs: task data, job, cell description.
+fn attachments(store: &Store, job: &Job, description: &str) -> Vec<Attachment> {
+    let data = store
+        .sources()
+        .iter()
+        .map(|source| Attachment::text(&format!("{}{}", Attachment::TASK_DATA, source.name), &source.text));
+    let mut all: Vec<Attachment> = data.collect();
+    all.push(Attachment::text(Attachment::JOB, &job.source().text));
+    all.push(Attachment::text(Attachment::CELL, description));
+    all
+}
+
+/// What the log says of the run. Nothing here differs between two equal runs.
+fn metadata(arguments: &RunArguments, job: &Job, attachments: &[Attachment]) -> BTreeMap<String, String> {
+    let mut configuration = Digest::new();
+    for attachment in attachments {
+        configuration.add(attachment.name.as_bytes());
+        configuration.add(&attachment.data);
+    }
+    let command_line = std::env::args().collect::<Vec<_>>().join(" ");
+    let entries = [
+        ("program", format!("rcs-run {}", env!("CARGO_PKG_VERSION"))),
+        ("commit", env!("RCS_COMMIT").to_owned()),
+        ("command_line", command_line),
+        ("job", job.name.clone()),
+        ("seed", arguments.seed.to_string()),
+        ("clock", arguments.clock.text().to_owned()),
+        ("configuration_digest", configuration.to_string()),
+    ];
+    entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}

@@ -1,0 +1,291 @@
+//! `rcs-run run`: a job, from the first tick to the result.
+//!
+//! One tick is, in this order: the controller (timed, and its allocations counted), the hand-off to the log, the cell, the workstation
+//! controller. Physics allocates and takes its time; it is outside of what is counted as the controller's.
+
+mod log;
+mod progress;
+mod result;
+pub mod setup;
+mod workstation;
+
+use std::{
+    io::{self, Write as _},
+    process::ExitCode,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Instant,
+};
+
+use executive::{
+    clock::Clock,
+    failure::{self, Failure},
+    hwsc::{self, Hwsc, JobFailure},
+    memory::{Publisher, RunName},
+    realtime,
+    runner::Runner,
+};
+use levels::ladder::Ladder;
+use plant::CellEvent;
+use rcs_core::{
+    interface::{DeviceInputs, ExternalInputs},
+    tick::{TICK_S, Tick},
+};
+use record::Level;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use taskdata::load::{Job, Store};
+
+use self::{
+    log::Log,
+    progress::Progress,
+    result::{CommandResult, FailureResult, Page, RunResult},
+    setup::Setup,
+    workstation::SimulatedWorkstation,
+};
+use crate::{
+    cli::{ClockKind, RunArguments, Switch},
+    error::{Error, FAILED, STOPPED},
+};
+
+/// What moves while a run goes on.
+struct Run {
+    runner: Runner<Ladder>,
+    hwsc: Hwsc,
+    workstation: SimulatedWorkstation,
+    inputs: DeviceInputs,
+    log: Option<Log>,
+    clock: Clock,
+    progress: Progress,
+    /// Events of the cell since the last tick, for the log of the next one.
+    fresh: Vec<CellEvent>,
+    /// All events, with their ticks.
+    events: Vec<String>,
+}
+
+/// How a run ended.
+enum Ending {
+    /// The job is over.
+    Finished,
+    /// `--ticks` were run.
+    Stopped,
+    /// Something went wrong.
+    Failed(Failure),
+}
+
+/// Run a job and print its result.
+///
+/// # Errors
+/// [`Error`] if the run could not begin. A job that fails is no error here, but an exit status.
+pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
+    let interrupted = interruption()?;
+    let setup = Setup::load(arguments)?;
+    let log = setup.log.as_deref().map(|path| Log::start(path, arguments, &setup)).transpose()?;
+    let publisher = publisher(arguments, &setup.job);
+    let Setup { store, job, description, cell, log: log_path, .. } = setup;
+    let mut run = Run {
+        runner: Runner::new(Ladder::default(), publisher),
+        hwsc: Hwsc::new(job.steps.clone(), hwsc::TIME_LIMIT),
+        inputs: cell.inputs(),
+        workstation: SimulatedWorkstation::new(cell, description.vise.location),
+        log,
+        progress: Progress::new(job.steps.len() + 1),
+        clock: Clock::Fast,
+        fresh: Vec::new(),
+        events: Vec::new(),
+    };
+    if arguments.clock == ClockKind::Real {
+        run.ask_for_real_time();
+    }
+    let started = Instant::now();
+    let ending = run.to_the_end(&store, arguments.ticks, &interrupted);
+    let wall_s = started.elapsed().as_secs_f64();
+    run.progress.end();
+    let mut result = run.result(&job, &ending, wall_s);
+    let log_text = run.finish_log(&ending, &mut result, log_path);
+    let page = Page {
+        result: &result,
+        steps: run.hwsc.records(),
+        events: &run.events,
+        log: &log_text,
+        stopped: matches!(ending, Ending::Stopped),
+    };
+    print(&page, arguments.json)?;
+    // What is shared goes before the last word: whoever reads it may start the next run at once.
+    drop(run);
+    Ok(match &ending {
+        Ending::Finished | Ending::Stopped => ExitCode::SUCCESS,
+        Ending::Failed(failure) => {
+            eprintln!("rcs-run: {} failed at tick {}: {}", job.name, failure.tick, failure.text);
+            ExitCode::from(if failure.stopped { STOPPED } else { FAILED })
+        }
+    })
+}
+
+/// A flag that an interrupt or a termination request sets; the second one ends the program at once.
+fn interruption() -> Result<Arc<AtomicBool>, Error> {
+    let flag = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&flag))
+            .map_err(Error::Signals)?;
+        signal_hook::flag::register(signal, Arc::clone(&flag)).map_err(Error::Signals)?;
+    }
+    Ok(flag)
+}
+
+/// Shared memory is a convenience: a run that cannot have it says so and goes on.
+fn publisher(arguments: &RunArguments, job: &Job) -> Option<Publisher> {
+    if arguments.shared_memory == Switch::Off {
+        return None;
+    }
+    match Publisher::create(&RunName::unique(&job.name)) {
+        Ok(publisher) => Some(publisher),
+        Err(error) => {
+            eprintln!("rcs-run: nobody can look on, shared memory cannot be had: {error}");
+            None
+        }
+    }
+}
+
+fn print(page: &Page<'_>, json: bool) -> Result<(), Error> {
+    let text = if json {
+        serde_json::to_string(page.result).map_err(io::Error::from)? + "\n"
+    } else {
+        page.to_string()
+    };
+    Ok(io::stdout().write_all(text.as_bytes())?)
+}
+
+impl Run {
+    /// The log's thread runs already: it keeps its ordinary priority.
+    fn ask_for_real_time(&mut self) {
+        let verdict = realtime::acquire();
+        let text = format!("real time: {verdict}");
+        self.progress.say(&text);
+        if let Some(log) = &mut self.log {
+            let level = if verdict.complete() { Level::Info } else { Level::Warning };
+            log.note(Tick::BEFORE_START.next(), level, "executive", &text);
+        }
+        self.clock = Clock::real();
+    }
+
+    fn to_the_end(&mut self, store: &Store, ticks: Option<u64>, interrupted: &AtomicBool) -> Ending {
+        let data = store.view();
+        loop {
+            self.clock.wait();
+            let external = ExternalInputs { hws: *self.hwsc.command(), devices: self.inputs };
+            let tick = self.runner.tick().next();
+            if let Some(log) = &mut self.log {
+                for event in self.fresh.drain(..) {
+                    log.note(tick, Level::Warning, "cell", &event.to_string());
+                }
+                log.cell(tick, &self.workstation.cell);
+            }
+            let memory = *self.runner.step(&external, &data, self.clock.skipped());
+            if let Some(log) = &mut self.log {
+                log.tick(tick, &external, &memory, self.runner.levels());
+            }
+            self.inputs = self.workstation.cell.step(&memory.device_outputs());
+            self.fresh = self.workstation.events();
+            self.events.extend(self.fresh.iter().map(|event| format!("tick {tick}: {event}")));
+            self.progress.show(&self.hwsc, &external.hws, &memory);
+            match self.hwsc.step(tick, &memory.task, &mut self.workstation) {
+                hwsc::Progress::Over => return Ending::Finished,
+                hwsc::Progress::Failed(failure) => {
+                    let failure = failure.clone();
+                    return Ending::Failed(self.explain(&failure, &external));
+                }
+                hwsc::Progress::Running => {}
+            }
+            if interrupted.load(Ordering::Relaxed) {
+                return Ending::Failed(outside(tick, "rcs-run", "interrupted".to_owned()));
+            }
+            if ticks.is_some_and(|ticks| tick.0 >= ticks) {
+                return Ending::Stopped;
+            }
+        }
+    }
+
+    /// Why the job failed: the explanation of the process that knows, with the line of the job.
+    fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Failure {
+        let line = self.hwsc.records().last().map_or("", |record| record.text.as_str());
+        let processes = Ladder::processes();
+        let by_process = self.runner.watch().failure(processes);
+        match (failure, by_process) {
+            (JobFailure::Command(_), Some(known)) => {
+                Failure { text: format!("{line}: {}", known.text), ..known }
+            }
+            (JobFailure::TimeLimit(_), _) => {
+                let doing = failure::present_commands(processes, &external.hws, self.runner.memory());
+                outside(self.runner.tick(), "HWSC", format!("{line}: {failure}; {doing}"))
+            }
+            _ => outside(self.runner.tick(), "HWSC", format!("{line}: {failure}")),
+        }
+    }
+
+    fn result(&self, job: &Job, ending: &Ending, wall_s: f64) -> RunResult {
+        let ticks = self.runner.tick().0;
+        let simulated_s = ticks as f64 * TICK_S;
+        let commands =
+            self.hwsc.records().iter().filter(|record| record.is_command).map(|record| CommandResult {
+                text: record.text.trim_start_matches("==").trim_start().to_owned(),
+                status: record.outcome.text(),
+                ticks: record.ticks,
+            });
+        RunResult {
+            job: job.name.clone(),
+            commands: commands.collect(),
+            ticks,
+            simulated_s,
+            wall_s,
+            realtime_factor: simulated_s / wall_s,
+            overruns: self.clock.skipped(),
+            allocations_after_start: self.runner.allocations(),
+            tick_us: self.runner.times().summary().into(),
+            link: (&self.runner.memory().t3i.status.counters).into(),
+            digest: self.runner.digest().to_string(),
+            parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
+            log: None,
+            failure: match ending {
+                Ending::Failed(failure) => Some(FailureResult::from(failure)),
+                Ending::Finished | Ending::Stopped => None,
+            },
+        }
+    }
+
+    /// End the log and say what became of it. A log that broke does not make a finished job a failed one.
+    fn finish_log(
+        &mut self,
+        ending: &Ending,
+        result: &mut RunResult,
+        path: Option<std::path::PathBuf>,
+    ) -> String {
+        let Some(log) = self.log.take() else { return "none".to_owned() };
+        let outcome = match ending {
+            Ending::Finished => "finished".to_owned(),
+            Ending::Stopped => "stopped as asked for".to_owned(),
+            Ending::Failed(failure) => failure.text.clone(),
+        };
+        result.log = path;
+        match log.finish(self.runner.digest(), outcome) {
+            Ok(summary) => {
+                let (file, size) = (summary.path.display(), summary.bytes as f64 / 1e6);
+                let lost = match summary.lost.ticks {
+                    0 => String::new(),
+                    lost => format!("; {lost} ticks found no room and are missing"),
+                };
+                format!("{file} ({size:.1} MB{lost}): rerun {file}, or open it in Foxglove or Lichtblick")
+            }
+            Err(error) => {
+                eprintln!("rcs-run: the log ended before the run did: {error}");
+                format!("incomplete: {error}")
+            }
+        }
+    }
+}
+
+/// A failure that no control process reports.
+fn outside(tick: Tick, process: &str, text: String) -> Failure {
+    Failure { tick, process: process.to_owned(), table: None, row: None, text, stopped: false }
+}

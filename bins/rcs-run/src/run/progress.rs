@@ -1,0 +1,93 @@
+//! Progress on a terminal: the line of the job that is being executed, and what each level does.
+
+use std::{
+    io::{self, IsTerminal},
+    time::{Duration, Instant},
+};
+
+use executive::{failure, hwsc::Hwsc};
+use indicatif::{ProgressBar, ProgressStyle};
+use levels::ladder::Ladder;
+use rcs_core::interface::{CommonMemory, HwsCommand};
+
+/// Time between two pictures.
+const PERIOD: Duration = Duration::from_millis(100);
+/// Levels that are shown: Task, Subtask, E-move, Prim, in the order of common memory.
+const LEVELS: usize = 4;
+
+/// The progress line; nothing if standard error is no terminal.
+pub struct Progress {
+    bar: Option<ProgressBar>,
+    shown: Instant,
+}
+
+impl Progress {
+    /// A line for a job of so many steps.
+    #[must_use]
+    pub fn new(steps: usize) -> Self {
+        let bar = io::stderr().is_terminal().then(|| {
+            let bar = ProgressBar::new(steps as u64);
+            if let Ok(style) = ProgressStyle::with_template("{pos:>3}/{len} {elapsed} {wide_msg}") {
+                bar.set_style(style);
+            }
+            bar
+        });
+        Self { bar, shown: Instant::now() }
+    }
+
+    /// Show where the run is, at most ten times a second.
+    pub fn show(&mut self, hwsc: &Hwsc, hws: &HwsCommand, memory: &CommonMemory) {
+        let Some(bar) = &self.bar else { return };
+        if self.shown.elapsed() < PERIOD {
+            return;
+        }
+        self.shown = Instant::now();
+        bar.set_position(hwsc.records().len() as u64);
+        let line = hwsc.records().last().map_or("", |record| record.text.as_str());
+        bar.set_message(format!("{line}   [{}]", levels(hws, memory)));
+    }
+
+    /// A line that stays, above the progress line.
+    pub fn say(&self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.println(text),
+            None => eprintln!("{text}"),
+        }
+    }
+
+    /// Take the line away.
+    pub fn end(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// What Task, Subtask, E-move and Prim do.
+fn levels(hws: &HwsCommand, memory: &CommonMemory) -> String {
+    let names = Ladder::processes().iter().map(|process| process.name).enumerate().take(LEVELS);
+    let doing = names.filter_map(|(index, name)| {
+        let command = failure::command(index, hws, memory);
+        (!command.is_empty()).then(|| format!("{name}: {command}"))
+    });
+    doing.collect::<Vec<_>>().join(" | ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rcs_core::{
+        interface::{emove::EmoveVerb, prim::PrimVerb},
+        name::{Name10, Name16},
+    };
+
+    #[test]
+    fn levels_without_a_command_are_left_out() {
+        let mut memory = CommonMemory::default();
+        let hws = HwsCommand { command: Name16::clipped("MOVE"), ..HwsCommand::default() };
+        memory.subtask.emove.command = EmoveVerb::MovToLoc;
+        memory.subtask.emove.location = Name10::clipped("HOME");
+        memory.emove.prim.command = PrimVerb::GoThru;
+        assert_eq!(levels(&hws, &memory), "Task: MOVE | E-move: MOV-TO-LOC at HOME | Prim: GO-THRU");
+    }
+}

@@ -1,0 +1,236 @@
+//! The result of a run: for scripts as one JSON object, for people as a page of text.
+
+use std::{
+    fmt::{self, Write as _},
+    path::PathBuf,
+};
+
+use executive::{failure::Failure, histogram, hwsc::Record};
+use plant::PartState;
+use rcs_core::{interface::t3i::LinkCounters, tick::TICK_S};
+use serde::Serialize;
+
+/// A command for Task.
+#[derive(Clone, Debug, Serialize)]
+pub struct CommandResult {
+    /// As written in the job.
+    pub text: String,
+    /// `finished`, `error` or `executing`.
+    pub status: &'static str,
+    /// From the tick that sent it to the tick that saw its end.
+    pub ticks: u64,
+}
+
+/// Times of the controller, without the cell, in microseconds.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TickTimes {
+    /// Median.
+    pub p50: f64,
+    /// 99 of 100 ticks took at most this.
+    pub p99: f64,
+    /// The longest.
+    pub max: f64,
+}
+
+impl From<histogram::Summary> for TickTimes {
+    fn from(summary: histogram::Summary) -> Self {
+        Self { p50: summary.p50, p99: summary.p99, max: summary.max }
+    }
+}
+
+/// What happened on the DEPC link.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LinkResult {
+    /// Data frames sent, repetitions included.
+    pub frames: u32,
+    /// NAKs received.
+    pub naks: u32,
+    /// Frames sent again.
+    pub retries: u32,
+    /// Reports with a wrong checksum.
+    pub checksum_errors: u32,
+    /// Points that were scaled back to the velocity limits.
+    pub limited: u32,
+}
+
+impl From<&LinkCounters> for LinkResult {
+    fn from(counters: &LinkCounters) -> Self {
+        Self {
+            frames: counters.frames,
+            naks: counters.naks,
+            retries: counters.retries,
+            checksum_errors: counters.checksum_errors,
+            limited: counters.limited,
+        }
+    }
+}
+
+/// Where a part ended.
+#[derive(Clone, Debug, Serialize)]
+pub struct PartResult {
+    /// Its name at the end.
+    pub name: String,
+    /// A unit, the vise's location, `gripper`, `floor` or `elsewhere`.
+    pub location: String,
+    /// Sector of the unit, 0 elsewhere.
+    pub sector: u16,
+    /// The gripper holds it.
+    pub held: bool,
+    /// Its middle in world coordinates, inches.
+    pub position_in: [f64; 3],
+    /// From the centre of its sector, or from its seat in the vise, inches.
+    pub error_in: Option<f64>,
+}
+
+impl From<PartState> for PartResult {
+    fn from(part: PartState) -> Self {
+        Self {
+            name: part.name,
+            location: part.location,
+            sector: part.sector,
+            held: part.held,
+            position_in: part.position,
+            error_in: part.error,
+        }
+    }
+}
+
+/// Why a run failed.
+#[derive(Clone, Debug, Serialize)]
+pub struct FailureResult {
+    /// Tick in which it began.
+    pub tick: u64,
+    /// The process that knows why.
+    pub process: String,
+    /// Its decision table, if one was used.
+    pub table: Option<String>,
+    /// The row that fired.
+    pub row: Option<u8>,
+    /// The whole in one sentence.
+    pub text: String,
+}
+
+impl From<&Failure> for FailureResult {
+    fn from(failure: &Failure) -> Self {
+        Self {
+            tick: failure.tick.0,
+            process: failure.process.clone(),
+            table: failure.table.clone(),
+            row: failure.row,
+            text: failure.text.clone(),
+        }
+    }
+}
+
+/// The result of a run. The names of the fields are those of the JSON object.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunResult {
+    /// Name of the job.
+    pub job: String,
+    /// Commands that were sent to Task.
+    pub commands: Vec<CommandResult>,
+    /// Ticks that were run.
+    pub ticks: u64,
+    /// The time that the cell went through.
+    pub simulated_s: f64,
+    /// The time that it took.
+    pub wall_s: f64,
+    /// How often the first is the second.
+    pub realtime_factor: f64,
+    /// Slots of the 40 ms grid that were skipped.
+    pub overruns: u64,
+    /// Heap allocations of the controller after the start.
+    pub allocations_after_start: Option<u64>,
+    /// Times of the controller.
+    pub tick_us: TickTimes,
+    /// The link.
+    pub link: LinkResult,
+    /// Fingerprint of all output buffers of all ticks.
+    pub digest: String,
+    /// Where the parts are.
+    pub parts: Vec<PartResult>,
+    /// The log that was written.
+    pub log: Option<PathBuf>,
+    /// Why it failed, if it did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failure: Option<FailureResult>,
+}
+
+/// The page of text: the result, all steps of the job, and remarks that have no place in JSON.
+pub struct Page<'a> {
+    /// The result.
+    pub result: &'a RunResult,
+    /// All steps, those of the workstation included.
+    pub steps: &'a [Record],
+    /// What happened in the cell that should not.
+    pub events: &'a [String],
+    /// Lines about the log.
+    pub log: &'a str,
+    /// The run was stopped by `--ticks` before the job was over.
+    pub stopped: bool,
+}
+
+/// Events that are printed; the rest is in the log.
+const EVENTS_SHOWN: usize = 10;
+
+impl fmt::Display for Page<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let result = self.result;
+        let outcome = match (&result.failure, self.stopped) {
+            (Some(_), _) => "failed",
+            (None, true) => "stopped as asked for",
+            (None, false) => "finished",
+        };
+        writeln!(
+            f,
+            "{} {outcome}: {:.1} s simulated in {:.1} s, {:.0} x real time\n",
+            result.job, result.simulated_s, result.wall_s, result.realtime_factor
+        )?;
+        let width = self.steps.iter().map(|step| step.text.len()).max().unwrap_or(0);
+        for step in self.steps {
+            let seconds = step.ticks as f64 * TICK_S;
+            writeln!(f, "  {:width$}  {seconds:7.1} s  {}", step.text, step.outcome.text())?;
+        }
+        writeln!(f)?;
+        for part in &result.parts {
+            writeln!(f, "part       {}", place(part))?;
+        }
+        for event in self.events.iter().take(EVENTS_SHOWN) {
+            writeln!(f, "event      {event}")?;
+        }
+        if self.events.len() > EVENTS_SHOWN {
+            writeln!(f, "           and {} more, all in the log", self.events.len() - EVENTS_SHOWN)?;
+        }
+        let link = &result.link;
+        writeln!(
+            f,
+            "link       {} frames, {} NAKs, {} retries, {} checksum errors, {} points limited",
+            link.frames, link.naks, link.retries, link.checksum_errors, link.limited
+        )?;
+        let times = &result.tick_us;
+        let allocations = result.allocations_after_start.map_or("not counted".to_owned(), |n| n.to_string());
+        writeln!(
+            f,
+            "controller {} ticks: p50 {:.1} us, p99 {:.1} us, max {:.1} us; {} slots skipped; allocations: {allocations}",
+            result.ticks, times.p50, times.p99, times.max, result.overruns
+        )?;
+        writeln!(f, "digest     {}", result.digest)?;
+        writeln!(f, "log        {}", self.log)
+    }
+}
+
+fn place(part: &PartResult) -> String {
+    let [x, y, z] = part.position_in;
+    let mut text = format!("{} ", part.name);
+    // Writing to a String cannot fail.
+    let _ = match (part.location.as_str(), part.sector) {
+        (location, 0) => write!(text, "at {location}"),
+        (location, sector) => write!(text, "at {location} sector {sector}"),
+    };
+    if let Some(error) = part.error_in {
+        let from = if part.sector > 0 { "the sector's centre" } else { "its seat" };
+        let _ = write!(text, ", {error:.2} in from {from}");
+    }
+    let _ = write!(text, " ({x:.2} {y:.2} {z:.2})");
+    text
+}

@@ -1,0 +1,96 @@
+//! Everything that must be there before the first tick.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use plant::{Cell, CellDescription};
+use taskdata::load::{Job, Report, Store};
+
+use crate::{
+    check,
+    cli::{LogTarget, RunArguments},
+    error::Error,
+};
+
+/// Directory of the jobs in the data directory.
+pub const JOBS: &str = "jobs";
+/// Extension of job files.
+pub const EXTENSION: &str = "job";
+/// The cell description in the data directory.
+pub const CELL: &str = "cell.toml";
+
+/// What a run works with.
+pub struct Setup {
+    /// Task data.
+    pub store: Store,
+    /// The job.
+    pub job: Job,
+    /// The cell description as written.
+    pub description_text: String,
+    /// The cell description.
+    pub description: CellDescription,
+    /// The cell.
+    pub cell: Cell,
+    /// Where the log goes.
+    pub log: Option<PathBuf>,
+}
+
+impl Setup {
+    /// Read, check and build everything.
+    ///
+    /// # Errors
+    /// [`Error`], with all errors of the data.
+    pub fn load(arguments: &RunArguments) -> Result<Self, Error> {
+        let data = &arguments.data;
+        if !data.is_dir() {
+            return Err(Error::NoData(data.clone()));
+        }
+        let unusable = |what: String| move |report| Error::Data { what, report };
+        let (store, report) =
+            Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
+        warn(&report, "the task data");
+        let path = job_path(&arguments.job, data)?;
+        let (job, report) =
+            Job::load(&path, &store).map_err(unusable(format!("the job {}", path.display())))?;
+        warn(&report, "the job");
+        let path = data.join(CELL);
+        let description_text =
+            fs::read_to_string(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
+        let description = CellDescription::from_toml(&description_text)
+            .map_err(|source| Error::Description { path, source: Box::new(source) })?;
+        let cell = Cell::new(&description, arguments.seed)?;
+        let log = match &arguments.log {
+            Some(LogTarget::None) => None,
+            Some(LogTarget::File(path)) => Some(path.clone()),
+            None => Some(Path::new("runs").join(&job.name).with_added_extension("mcap")),
+        };
+        Ok(Self { store, job, description_text, description, cell, log })
+    }
+}
+
+/// Warnings do not keep a run from beginning; one line says that there are some.
+fn warn(report: &Report, what: &str) {
+    match report.warnings().count() {
+        0 => {}
+        1 => eprintln!("rcs-run: 1 warning in {what}; rcs-run check shows it"),
+        count => eprintln!("rcs-run: {count} warnings in {what}; rcs-run check shows them"),
+    }
+}
+
+/// The file of a job: a path if it looks like one or is one, else a name in the data directory.
+fn job_path(job: &str, data: &Path) -> Result<PathBuf, Error> {
+    let path = PathBuf::from(job);
+    let named = data.join(JOBS).join(job).with_added_extension(EXTENSION);
+    if named.is_file() {
+        return Ok(named);
+    }
+    if path.is_file() {
+        return Ok(path);
+    }
+    let known = check::jobs(data);
+    let known =
+        known.iter().filter_map(|path| path.file_stem()).map(|name| name.to_string_lossy().into_owned());
+    Err(Error::NoJob { job: job.to_owned(), known: known.collect() })
+}

@@ -1,0 +1,268 @@
+//! The command line as scripts see it: exit status, the last line on standard error, and the JSON object.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+    time::{Duration, Instant},
+};
+
+use serde_json::Value;
+
+/// The data directory of the repository.
+fn data() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data")
+}
+
+/// An empty directory that is removed at the end of a test.
+struct Place(PathBuf);
+
+impl Place {
+    fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("rcs-run-{}-{test}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    /// A job file.
+    fn job(&self, name: &str, text: &str) -> String {
+        let path = self.0.join(name).with_extension("job");
+        fs::write(&path, text).unwrap();
+        path.display().to_string()
+    }
+
+    /// A copy of the data directory.
+    fn data(&self) -> PathBuf {
+        let to = self.0.join("data");
+        copy(&data(), &to);
+        to
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap().flatten() {
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target);
+        } else {
+            fs::copy(entry.path(), target).unwrap();
+        }
+    }
+}
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-run"));
+    command
+        .args(arguments)
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
+        .stdin(Stdio::null());
+    command
+}
+
+fn rcs_run(arguments: &[&str]) -> Output {
+    command(arguments).output().expect("the program starts")
+}
+
+fn last_line(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).lines().last().unwrap_or_default().to_owned()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn json(output: &Output) -> Value {
+    let text = stdout(output);
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text:?}; {}", last_line(output)))
+}
+
+#[test]
+fn help_and_version_are_given() {
+    let help = rcs_run(&["--help"]);
+    assert_eq!(help.status.code(), Some(0));
+    assert!(stdout(&help).contains("Examples:") && stdout(&help).contains("Exit status"));
+    let version = rcs_run(&["--version"]);
+    assert_eq!(stdout(&version), format!("rcs-run {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn usage_errors_have_status_2_and_a_sentence() {
+    for (arguments, sentence) in [
+        (&["--robot", "serial:/dev/ttyS0"][..], "serial port cannot be opened yet"),
+        (&["--boards", "split"], "cannot be split yet"),
+        (&["--clock", "slow"], "fast, real"),
+        (&["--data", "/nowhere"], "there is no task data directory /nowhere"),
+        (&["no-such-job"], "there is no job no-such-job: the data directory has linkbar"),
+    ] {
+        let output = rcs_run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stdout(&output).is_empty(), "{arguments:?}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains(sentence), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn the_data_of_the_repository_is_good() {
+    let output = rcs_run(&["check", "--json"]);
+    let found = json(&output);
+    assert_eq!(
+        (output.status.code(), &found["ok"], &found["errors"]),
+        (Some(0), &true.into(), &0.into()),
+        "{found}"
+    );
+    assert!(found["jobs"].as_array().unwrap().contains(&"linkbar".into()));
+    assert!(found["records"]["POSE"].as_u64().unwrap() > 0, "{found}");
+}
+
+#[test]
+fn a_data_error_is_shown_with_its_place_and_nothing_runs() {
+    let place = Place::new("data-error");
+    let data = place.data();
+    let poses = data.join("poses.blk");
+    let text = fs::read_to_string(&poses).unwrap().replace("PFIX-P ", "PFIX-Q ");
+    fs::write(&poses, text).unwrap();
+    for arguments in [&["check"][..], &["--log", "none", "--data"]] {
+        let mut arguments = arguments.to_vec();
+        let path = data.display().to_string();
+        arguments.push(&path);
+        let output = rcs_run(&arguments);
+        assert_eq!(output.status.code(), Some(2));
+        let all = stdout(&output) + &String::from_utf8_lossy(&output.stderr);
+        assert!(all.contains("PFIX-P") && all.contains("locations.blk"), "{all}");
+        assert!(last_line(&output).contains("cannot be used: "), "{}", last_line(&output));
+    }
+}
+
+#[test]
+fn all_tables_are_printed_as_markdown() {
+    let output = rcs_run(&["tables"]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = stdout(&output);
+    for process in levels::ladder::Ladder::processes() {
+        assert!(text.contains(&format!("\n## {}\n", process.name)));
+        for table in process.tables {
+            assert!(text.contains(&format!(". {}\n", table.name)), "{}", table.name);
+        }
+    }
+}
+
+#[test]
+fn a_few_ticks_give_the_same_bits_every_time() {
+    let arguments = ["--ticks", "50", "--json", "--log", "none", "--shared-memory", "off"];
+    let (one, other) = (json(&rcs_run(&arguments)), json(&rcs_run(&arguments)));
+    assert_eq!((&one["ticks"], &one["simulated_s"]), (&50.into(), &2.0.into()));
+    assert_eq!(one["digest"], other["digest"]);
+    assert_eq!(one["allocations_after_start"], 0);
+    assert_eq!(one["overruns"], 0);
+    assert_eq!(one["commands"][0]["text"], "PAUSE");
+    assert!(one["failure"].is_null() && one["log"].is_null());
+    let shared = json(&rcs_run(&["--ticks", "50", "--json", "--log", "none", "--shared-memory", "on"]));
+    assert_eq!(shared["digest"], one["digest"], "whoever looks on changes nothing");
+}
+
+#[test]
+fn real_time_runs_as_many_ticks_as_there_were_slots() {
+    let output = rcs_run(&["--clock", "real", "--ticks", "10", "--json", "--log", "none"]);
+    let result = json(&output);
+    let slots = result["ticks"].as_u64().unwrap() + result["overruns"].as_u64().unwrap();
+    let elapsed = result["wall_s"].as_f64().unwrap();
+    // The clock starts a little after the time that the result reports.
+    assert!(slots as f64 * 0.040 <= elapsed + 0.040, "{result}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("real time: "));
+    let fast = json(&rcs_run(&["--ticks", "10", "--json", "--log", "none"]));
+    assert_eq!(result["digest"], fast["digest"], "the clock changes no bit");
+}
+
+#[test]
+fn a_blank_that_is_missing_fails_the_job_with_the_row_that_knows() {
+    let place = Place::new("no-blank");
+    let job = place
+        .job("no-blank", "** vise partial PFIXTURE\n== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n");
+    let output = rcs_run(&[&job, "--json", "--log", "none"]);
+    assert_eq!(output.status.code(), Some(1), "{}", last_line(&output));
+    let result = json(&output);
+    let failure = &result["failure"];
+    assert!(failure["row"].as_u64().is_some_and(|row| row > 0), "{failure}");
+    assert!(failure["table"].is_string() && failure["process"].is_string(), "{failure}");
+    assert!(failure["text"].as_str().unwrap().contains("vision sees no object"), "{failure}");
+    assert!(last_line(&output).ends_with(failure["text"].as_str().unwrap()), "{}", last_line(&output));
+    assert_eq!(result["commands"].as_array().unwrap().last().unwrap()["status"], "error");
+}
+
+#[test]
+fn a_place_that_is_taken_fails_the_job_in_words() {
+    let place = Place::new("taken");
+    let twice = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0\n";
+    let job = place.job("taken", &format!("{twice}{twice}== PAUSE -- 0 -- 0 0 -- 0 -- 0\n"));
+    let output = rcs_run(&[&job, "--json", "--log", "none"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(json(&output)["failure"]["process"], "HWSC");
+    assert!(last_line(&output).contains("in the way"), "{}", last_line(&output));
+}
+
+#[test]
+fn an_interrupt_ends_the_run_in_order() {
+    let place = Place::new("interrupt");
+    let log = place.0.join("cut.mcap").display().to_string();
+    let mut child = command(&["--clock", "real", "--json", "--log", &log])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    wait_for(|| executive_runs(child.id()) == 1);
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    let mut output = Output { status: child.wait().unwrap(), stdout: Vec::new(), stderr: Vec::new() };
+    std::io::Read::read_to_end(&mut child.stdout.take().unwrap(), &mut output.stdout).unwrap();
+    std::io::Read::read_to_end(&mut child.stderr.take().unwrap(), &mut output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(last_line(&output).ends_with("interrupted"), "{}", last_line(&output));
+    assert_eq!(json(&output)["failure"]["text"], "interrupted");
+    assert!(fs::metadata(&log).unwrap().len() > 0);
+    assert_eq!(executive_runs(child.id()), 0, "nothing is left in shared memory");
+}
+
+#[test]
+fn what_a_killed_run_left_is_removed_by_clean() {
+    let mut child = command(&["--clock", "real", "--log", "none"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    wait_for(|| executive_runs(child.id()) == 1);
+    let alive = rcs_run(&["clean"]);
+    assert!(stdout(&alive).contains(&format!("linkbar-{} is alive", child.id())), "{}", stdout(&alive));
+    child.kill().unwrap();
+    child.wait().unwrap();
+    // A run of another test may clean up already when it starts; what counts is that nothing is left.
+    let cleaned = rcs_run(&["clean"]);
+    assert_eq!(cleaned.status.code(), Some(0));
+    assert_eq!(executive_runs(child.id()), 0);
+    let left =
+        fs::read_dir("/dev/shm").unwrap().flatten().map(|e| e.file_name().to_string_lossy().into_owned());
+    let suffix = format!("-linkbar-{}_", child.id());
+    assert_eq!(left.filter(|name| name.contains(&suffix)).count(), 0);
+}
+
+/// Traces in shared memory of the linkbar run of a process.
+fn executive_runs(process: u32) -> usize {
+    let start = format!("linkbar-{process}@");
+    let runs = fs::read_dir(executive::memory::runs::root()).into_iter().flatten().flatten();
+    runs.filter(|entry| entry.file_name().to_string_lossy().starts_with(&start)).count()
+}
+
+fn wait_for(condition: impl Fn() -> bool) {
+    let started = Instant::now();
+    while !condition() {
+        assert!(started.elapsed() < Duration::from_secs(60), "it did not happen within a minute");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
