@@ -30,7 +30,7 @@ use depc::{
     wire::{DataCommand, NO_FUNCTION},
 };
 use rcs_core::{
-    handshake::Arrival,
+    handshake::{Arrival, successor},
     interface::{
         Header, T3iOutputs,
         device::{LinkBytes, RESOLVER_COUNTS, Resolvers},
@@ -125,7 +125,7 @@ impl T3i {
             HostEvent::None | HostEvent::Acknowledged => {}
         }
         let prim = &inputs.memory.prim;
-        let expected = state.receiver.echo.checked_add(1).unwrap_or(1);
+        let expected = successor(state.receiver.echo);
         Seen {
             arrival: state.receiver.observe(prim.t3i.number),
             order: if prim.t3i.number != expected {

@@ -227,7 +227,7 @@ fn a_queue_that_fills_asks_prim_to_wait_and_never_overflows() {
     let mut bench = Bench::running();
     let mut x = 0.0;
     let mut waited = 0;
-    // Prim answers each report one tick later, as it would: two inches a point is far more than the line can do.
+    // Prim answers each report one tick later, as it would: 0.9 in a point is more than the line can do.
     for _ in 0..200 {
         let report = bench.report();
         bench.tick();
