@@ -203,6 +203,37 @@ BLOCK# 850 OFFSET 21000
     assert_eq!(data.place_named::<16, 16>(&name("G"), None), None);
 }
 
+/// The errors and warnings of a load.
+fn said(text: &str) -> Vec<String> {
+    let sources = vec![source(&folded(text))];
+    let report = Store::from_sources(sources).map_or_else(|report| *report, |(_, report)| report);
+    report.diagnostics().iter().map(|d| format!("{}: {d}", d.severity().text())).collect()
+}
+
+#[test]
+fn a_corner_of_a_tray_may_be_vertical_and_a_via_point_may_not() {
+    let via = "BLOCK# 850 OFFSET 21000\n -traj F-A lpt F lpt A -ppt 4 100 8 300 pos B-P";
+    assert_eq!(said(CELL), Vec::<String>::new());
+    assert_eq!(
+        said(&format!("{CELL}\n{via}")),
+        ["warning: trajectory F-A, B-P: the gripper is 0.0 degrees from vertical"]
+    );
+    let plain = CELL.replace("-own- B -m- lpt B -m- arr SECTORS", "");
+    assert_eq!(said(&plain), ["warning: location point B: the gripper is 0.0 degrees from vertical"]);
+}
+
+#[test]
+fn a_file_has_an_end() {
+    let lines: String = (0..=100_000).map(|i| format!("1 t 0 0 0 -mtb- M{i}\n")).collect();
+    let blocks: Vec<&str> = lines.split_inclusive('\n').collect();
+    let text: String = blocks
+        .chunks(16)
+        .enumerate()
+        .map(|(i, c)| format!("BLOCK# {i} OFFSET 21001\n{}", c.concat()))
+        .collect();
+    assert_eq!(said(&text), ["error: FILE FULL: MOVTAB holds 100000 records, 100001 found"]);
+}
+
 #[test]
 fn an_owner_by_pose_stands_in_for_its_location_points() {
     let store = store(&format!(

@@ -401,6 +401,30 @@ error: objects/linkbar.blk: block 261 (offset 20000), line 5, column 9: H-LINKBA
 fn a_job_is_checked_against_the_data() {
     for (line, expected) in [
         (
+            r#"== TRANSFER LCLEVIS +1 UNIT_2 1 +1 UNIT_2 2 HOME 0"#,
+            r#"
+error: try.job: line 1, column 24: nothing says how grip 1 of LCLEVIS is approached at UNIT_2
+    == TRANSFER LCLEVIS +1 UNIT_2 1 +1 UNIT_2 2 HOME 0
+                           ^^^^^^
+    help: add an entry -appr obj for this location, or for $$$ (VII.7.7)
+error: try.job: line 1, column 36: nothing says how grip 1 of LCLEVIS is approached at UNIT_2
+    == TRANSFER LCLEVIS +1 UNIT_2 1 +1 UNIT_2 2 HOME 0
+                                       ^^^^^^
+    help: add an entry -appr obj for this location, or for $$$ (VII.7.7)
+"#,
+        ),
+        (
+            r#"== TRANSFER LINKBAR1 +2 PFIXTURE 0 +2 UNIT_1 1 HOME 0
+== MOVE -- +0 -- 0 +0 SAFE 0 -- 0
+== MOVE -- +0 -- 0 +0 PFIXTURE 0 -- 0"#,
+            r#"
+error: try.job: line 3, column 23: no trajectory leads from SAFE to PFIXTURE
+    == MOVE -- +0 -- 0 +0 PFIXTURE 0 -- 0
+                          ^^^^^^^^
+    help: add a trajectory form (VII.6); each is flown from its start to its end only
+"#,
+        ),
+        (
             r#"== MOVE LINKBAR1_BH +2 UNIT_1 5 +2 PFIXTURE 0 -- 0"#,
             r#"
 error: try.job: line 1, column 31: SECTORS at UNIT_1 has sectors 1 to 4, 5 found

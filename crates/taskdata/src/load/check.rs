@@ -127,14 +127,20 @@ impl Checker<'_> {
 
     /// Like [`Self::reach`], and a warning near the vertical.
     fn target(&mut self, what: &str, frame: &Frame, at: At) -> bool {
-        let degrees = from_vertical(frame);
         let reached = self.reach(what, frame, at);
-        if reached && degrees < VERTICAL {
+        if reached {
+            self.vertical(what, frame, at);
+        }
+        reached
+    }
+
+    fn vertical(&mut self, what: &str, frame: &Frame, at: At) {
+        let degrees = from_vertical(frame);
+        if degrees < VERTICAL {
             let help = "tilt the gripper by 3 degrees or more, as LK-GRP-1 does (VIII.9.5)".to_owned();
             let message = format!("{what}: the gripper is {degrees:.1} degrees from vertical");
             self.note(Severity::Warning, "vertical", at, message, help);
         }
-        reached
     }
 
     fn poses(&mut self) {
@@ -145,15 +151,22 @@ impl Checker<'_> {
         }
     }
 
+    /// Location points at which arrays are used.
+    fn corners(&self) -> HashSet<LocptId> {
+        let owners = (0..self.data.owners.len()).map(|i| self.data.members_of(OwnerId::at(i)));
+        let of_arrays = owners.filter(|members| members.iter().any(|m| m.member.kind == RefType::Array));
+        of_arrays.filter_map(|members| members.first()).map(|m| LocptId::new(m.member.number)).collect()
+    }
+
     fn location_points(&mut self) {
+        let corners = self.corners();
         for (i, point) in self.data.locpts.iter().enumerate() {
             let at = origin(&self.origins.locpts, i);
             let what = format!("location point {}", point.name);
-            let taught_vertical =
-                self.data.pose(point.pose).is_some_and(|p| from_vertical(&p.frame) < VERTICAL)
-                    && point.movetable.is_null();
+            // The corner of a tray is a base for its sectors (VIII.3).
+            let corner = corners.contains(&LocptId::at(i));
             let good = !self.bad_poses.contains(&point.pose)
-                && if taught_vertical {
+                && if corner {
                     self.reach(&what, &point.frame, at)
                 } else {
                     self.target(&what, &point.frame, at)
@@ -191,7 +204,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Check the movetable points of a path; `fixed` if all of them refer to `reference`, else each to the point before it.
+    /// Check the points of a path; `fixed` if all its movetables refer to `reference`, else each to the point before it.
     fn follow(&mut self, path: PathId, reference: &Frame, what: &str, fixed: bool) {
         let data = self.data;
         let first = path.of(data.paths).map_or(0, |p| usize::try_from(p.first).unwrap_or(0));
@@ -200,15 +213,19 @@ impl Checker<'_> {
         for (i, point) in data.path(path).iter().enumerate() {
             let base = if fixed { reference } else { &before };
             let Some(frame) = data.point_frame(point, base) else { continue };
-            if matches!(point.target, Target::Movetable(_)) {
-                let at = origin(&self.origins.path_points, first + i);
-                let what = format!("{what}, {}", self.point_name(point));
+            let at = origin(&self.origins.path_points, first + i);
+            let what = format!("{what}, {}", self.point_name(point));
+            match point.target {
                 // Where the reference is vertical and warned of, its points need no warning of their own.
-                if upright {
-                    self.reach(&what, &frame, at)
-                } else {
-                    self.target(&what, &frame, at)
-                };
+                Target::Movetable(_) if upright => {
+                    self.reach(&what, &frame, at);
+                }
+                Target::Movetable(_) => {
+                    self.target(&what, &frame, at);
+                }
+                // Their reach was checked where they are defined; here they are driven to.
+                Target::Pose(_) | Target::LocationPoint(_) => self.vertical(&what, &frame, at),
+                Target::Stop => {}
             }
             before = frame;
         }

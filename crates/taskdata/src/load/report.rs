@@ -91,10 +91,14 @@ impl Problems {
         }
     }
 
+    /// Add an error that belongs to no piece of text.
+    pub fn general(&mut self, code: &'static str, message: String) {
+        self.list.push(Problem { severity: Severity::Error, code, at: None, message, help: None });
+    }
+
     /// Add what the operating system said about a file.
     pub fn unreadable(&mut self, path: &str, error: &std::io::Error) {
-        let message = format!("{path} cannot be read: {error}");
-        self.list.push(Problem { severity: Severity::Error, code: "file", at: None, message, help: None });
+        self.general("file", format!("{path} cannot be read: {error}"));
     }
 
     /// True if an error is among them.
@@ -334,7 +338,9 @@ impl Report {
         if !graphical {
             return self.to_string();
         }
-        let handler = GraphicalReportHandler::new_themed(GraphicalTheme::unicode());
+        let colourless = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+        let theme = if colourless { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
+        let handler = GraphicalReportHandler::new_themed(theme);
         let mut out = String::new();
         for diagnostic in &self.diagnostics {
             // Writing to a String cannot fail; a diagnostic that cannot be drawn is given as plain text.

@@ -273,7 +273,7 @@ impl Linker<'_> {
         for loaded in store.loaded().iter().filter(|l| l.records > FILE_RECORDS) {
             let message =
                 format!("FILE FULL: {} holds {FILE_RECORDS} records, {} found", loaded.file, loaded.records);
-            self.problems.error("file.full", At::default(), message);
+            self.problems.general("file.full", message);
         }
         self.files = store.files;
     }

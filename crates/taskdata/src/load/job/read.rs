@@ -1,189 +1,20 @@
-//! Job files: what the workstation controller sends, and what the workstation does in between.
-//!
-//! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the variables of
-//! V.4.2 without the serial number (contradiction 25): object, source grip, location and sector, destination grip, location
-//! and sector, end-at location and sector; `--` is a null field. The manual's own forms of lines end there: vise, trays and
-//! machine belong to the HWSC, not to the robot. Lines that begin with `**` say what they do:
-//!
-//! ```text
-//! ** tray UNIT_1 4 LINKBAR1_BH            a part is delivered into a sector, somewhere (a seed decides)
-//! ** tray UNIT_1 4 LINKBAR1_BH 50 -20 1500   or at an x, y (0.01 in) and an angle (0.01 degree) from its centre
-//! ** vise partial|close|open PFIXTURE      the jaws of a vise move
-//! ** machine LINKBAR1_BH LINKBAR1 PFIXTURE  the blank in a vise becomes the finished part
-//! ```
-//!
-//! Commands are checked against the task data, so that a job which cannot run is refused before the first tick.
-
-use std::path::Path;
+//! The lines of a job, word by word.
 
 use rcs_core::{interface::hws::HwsCommand, name::Name16};
 
 use crate::files::{Location, LookupError, TaskData};
 
 use super::{
-    Store,
-    lex::{Word, words_of_line},
-    names::nearest,
-    parse::is_integer,
-    report::{Problems, Report, Severity},
-    source::{At, Line, Source, lines_of, read},
+    super::{
+        lex::{Word, words_of_line},
+        names::nearest,
+        parse::is_integer,
+        report::{Problems, Severity},
+        source::{At, Line},
+    },
+    JobLine, Offset, Step, TASK_COMMANDS, ViseOpening, Workstation,
+    walk::{Visit, Visits, Walk},
 };
-
-/// Input commands of Task (V.4.1).
-pub const TASK_COMMANDS: &[&str] = &[
-    "TRANSFER",
-    "MOVE",
-    "POSITION",
-    "ACQUIRE",
-    "REFIXTURE",
-    "PAUSE",
-    "INSERT-TOOL",
-    "RELEASE-TOOL",
-    "ACQUIRE-TOOL",
-    "REMOVE-TOOL",
-    "STARTUP",
-    "SHUTDOWN",
-];
-
-/// How far a vise is to open or close (VIII.2).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ViseOpening {
-    /// Far enough to put a blank in, near enough to hold it upright.
-    Partial,
-    /// On the part.
-    Close,
-    /// Wide enough to take the part out, or to let it drop onto the ledge.
-    Open,
-}
-
-/// Where a part lies in its sector.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Offset {
-    /// From the centre of the sector along world X, 0.01 in.
-    pub x: i32,
-    /// From the centre of the sector along world Y, 0.01 in.
-    pub y: i32,
-    /// Angle about world Z, 0.01 degree.
-    pub angle: i32,
-}
-
-/// What the workstation itself does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Workstation {
-    /// A part is delivered into a sector of a tray.
-    Tray {
-        /// The sector, resolved for the part.
-        location: Location,
-        /// The part.
-        object: Name16,
-        /// Where in the sector; `None` leaves it to the seed of the run.
-        offset: Option<Offset>,
-    },
-    /// A vise moves its jaws.
-    Vise {
-        /// How far.
-        opening: ViseOpening,
-        /// The vise.
-        location: Location,
-    },
-    /// A part is machined in a vise.
-    Machine {
-        /// What goes in.
-        blank: Name16,
-        /// What comes out.
-        part: Name16,
-        /// The vise.
-        location: Location,
-    },
-}
-
-/// A step of a job.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Step {
-    /// A command to Task, its number still 0.
-    Command(HwsCommand),
-    /// Something that the workstation does.
-    Workstation(Workstation),
-}
-
-/// A step with its line.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JobLine {
-    /// The step.
-    pub step: Step,
-    /// The line as written, without its comment.
-    pub text: String,
-    /// Line of the file from 1.
-    pub line: u32,
-}
-
-/// A job.
-#[derive(Clone, Debug)]
-pub struct Job {
-    /// Name of the job: the file's name without its extension.
-    pub name: String,
-    /// Its steps in order.
-    pub steps: Vec<JobLine>,
-    source: Source,
-}
-
-impl Job {
-    /// Read a job file and check it against the task data.
-    ///
-    /// # Errors
-    /// The report, if it holds an error; every error of the job is in it.
-    pub fn load(path: &Path, store: &Store) -> Result<(Self, Report), Box<Report>> {
-        match read(path, &path.display().to_string()) {
-            Ok(source) => Self::from_source(source, store),
-            Err(error) => {
-                let mut problems = Problems::default();
-                problems.unreadable(&path.display().to_string(), &error);
-                Err(Box::new(Report::new(problems, &[], 0, Vec::new())))
-            }
-        }
-    }
-
-    /// Check a job that was read elsewhere, such as the attachment of a log.
-    ///
-    /// # Errors
-    /// The report, if it holds an error.
-    pub fn from_source(source: Source, store: &Store) -> Result<(Self, Report), Box<Report>> {
-        let mut problems = Problems::default();
-        let mut reader = Reader { data: store.view(), problems: &mut problems };
-        let steps = source_lines(&source).filter_map(|line| reader.line(&line)).collect();
-        let failed = problems.has_errors();
-        let report = Report::new(problems, std::slice::from_ref(&source), 0, Vec::new());
-        if failed {
-            return Err(Box::new(report));
-        }
-        let file = Path::new(&source.name).file_stem().map(|s| s.to_string_lossy().into_owned());
-        Ok((Self { name: file.unwrap_or_default(), steps, source }, report))
-    }
-
-    /// The text that the job was read from.
-    #[must_use]
-    pub const fn source(&self) -> &Source {
-        &self.source
-    }
-}
-
-fn source_lines(source: &Source) -> impl Iterator<Item = Line<'_>> {
-    let short = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
-    lines_of(&source.text).enumerate().filter(|(_, (_, text))| !text.starts_with("BLOCK#")).map(
-        move |(number, (start, text))| {
-            let line = short(number).saturating_add(1);
-            let at = At {
-                source: 0,
-                block: None,
-                line,
-                column: 1,
-                start: short(start),
-                length: short(text.len()),
-            };
-            Line { text, at }
-        },
-    )
-}
 
 /// The words of one line, taken from left to right.
 struct Fields<'a, 'w> {
@@ -224,13 +55,22 @@ impl Field {
     }
 }
 
-struct Reader<'s, 'p> {
+/// Reads the lines of a job in their order.
+pub(super) struct Reader<'s, 'p> {
     data: TaskData<'s>,
     problems: &'p mut Problems,
+    walk: Walk,
+}
+
+impl<'s, 'p> Reader<'s, 'p> {
+    pub(super) fn new(data: TaskData<'s>, problems: &'p mut Problems) -> Self {
+        Self { data, problems, walk: Walk::default() }
+    }
 }
 
 impl Reader<'_, '_> {
-    fn line(&mut self, line: &Line<'_>) -> Option<JobLine> {
+    /// The step of a line; `None` if it has none, or if it cannot be read, which is noted.
+    pub(super) fn line(&mut self, line: &Line<'_>) -> Option<JobLine> {
         let words = words_of_line(line);
         let first = words.first()?;
         let mut fields = Fields { words: &words, next: 1 };
@@ -318,11 +158,13 @@ impl Reader<'_, '_> {
             self.unknown("command of Task", verb, TASK_COMMANDS.iter().copied().map(str::to_owned).collect());
         }
         let known = !object.given() || self.object(object);
-        let thing = object.given().then_some(object.name).filter(|_| known);
         if known {
-            self.place(source, source_sector, thing, Some(source_grip));
-            self.place(destination, destination_sector, thing, Some(destination_grip));
-            self.place(end_at, end_at_sector, None, None);
+            let thing = object.given().then_some(object.name);
+            let source = self.visit(source, source_sector, thing, source_grip);
+            let destination = self.visit(destination, destination_sector, thing, destination_grip);
+            let end_at = self.visit(end_at, end_at_sector, None, Number { value: 0, at: end_at.at });
+            let verb = verb.name.as_str();
+            self.walk.command(&self.data, self.problems, verb, Visits { source, destination, end_at });
         }
         Some(HwsCommand {
             number: 0,
@@ -338,6 +180,15 @@ impl Reader<'_, '_> {
             end_at: end_at.name,
             end_at_sector: end_at_sector.value,
         })
+    }
+
+    /// A location of a command, with the object that is handled there.
+    fn visit(&mut self, field: Field, sector: Number, object: Option<Name16>, grip: Number) -> Option<Visit> {
+        let location = self.place(field, sector, object, Some(grip))?;
+        // A grip that is not known is noted already.
+        let known = |name: &Name16| grip.value != 0 && self.data.object(name, grip.value).is_some();
+        let object = object.filter(known).map(|name| (name, grip.value));
+        Some(Visit { location, object, at: field.at })
     }
 
     fn workstation(&mut self, fields: &mut Fields<'_, '_>) -> Option<Workstation> {

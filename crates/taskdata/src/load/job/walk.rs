@@ -1,0 +1,118 @@
+//! The way of the robot through a job: from each location to the next there must be a trajectory, and a way to approach.
+//!
+//! Where the robot is before the first command is not known here. A command whose way leads over the Active Pedestal or to the tool
+//! drum is not followed; the walk begins again at its end.
+
+use rcs_core::name::Name16;
+
+use crate::files::{Location, TaskData};
+
+use super::super::{report::Problems, source::At};
+
+/// A location that a command leads to.
+pub(super) struct Visit {
+    pub location: Location,
+    /// The object that is handled there, and with which grip.
+    pub object: Option<(Name16, i32)>,
+    pub at: At,
+}
+
+/// The locations of a command.
+pub(super) struct Visits {
+    pub source: Option<Visit>,
+    pub destination: Option<Visit>,
+    pub end_at: Option<Visit>,
+}
+
+/// Where the robot is between two commands.
+#[derive(Default)]
+pub(super) struct Walk {
+    last: Option<Location>,
+}
+
+impl Walk {
+    /// Follow a command (V.4.1).
+    pub(super) fn command(
+        &mut self,
+        data: &TaskData<'_>,
+        problems: &mut Problems,
+        verb: &str,
+        visits: Visits,
+    ) {
+        let Visits { source, destination, end_at } = visits;
+        let regrip = match (&source, &destination) {
+            (Some(from), Some(to)) => from.object.map(|o| o.1) != to.object.map(|o| o.1),
+            _ => false,
+        };
+        if let Some(visit) = &source {
+            view(data, problems, visit, verb);
+        }
+        match verb {
+            "TRANSFER" | "MOVE" | "REFIXTURE" => {
+                self.go(data, problems, source);
+                if regrip || verb == "REFIXTURE" {
+                    self.last = None;
+                }
+                self.go(data, problems, destination);
+                // MOVE ignores its end-at location.
+                if verb != "MOVE" {
+                    self.go(data, problems, end_at);
+                }
+            }
+            "ACQUIRE" => self.go(data, problems, source),
+            // An object where it is, or a location (contradiction 24).
+            "POSITION" => self.go(data, problems, source.or(destination)),
+            "PAUSE" => {}
+            _ => self.last = None,
+        }
+    }
+
+    fn go(&mut self, data: &TaskData<'_>, problems: &mut Problems, visit: Option<Visit>) {
+        let Some(Visit { location, object, at }) = visit else { return };
+        if let Some((object, grip)) = object
+            && data.approach(&object, grip, &location.place).is_none()
+        {
+            problems.error_help(
+                "path.missing",
+                at,
+                format!("nothing says how grip {grip} of {object} is approached at {}", location.name),
+                "add an entry -appr obj for this location, or for $$$ (VII.7.7)",
+            );
+        }
+        if let Some(last) = self.last.filter(|last| !same(last, &location))
+            && data.trajectory(&last.place, &location.place).is_none()
+        {
+            problems.error_help(
+                "path.missing",
+                at,
+                format!("no trajectory leads from {} to {}", last.name, location.name),
+                "add a trajectory form (VII.6); each is flown from its start to its end only",
+            );
+        }
+        self.last = Some(location);
+    }
+}
+
+/// An object that vision has to find needs a way to the place from which it is looked for.
+fn view(data: &TaskData<'_>, problems: &mut Problems, visit: &Visit, verb: &str) {
+    let Some((object, _)) = visit.object.filter(|_| matches!(verb, "TRANSFER" | "MOVE" | "ACQUIRE")) else {
+        return;
+    };
+    let Some((_, vision)) = data.view(&object, &visit.location.place).filter(|(_, vision)| vision.enabled)
+    else {
+        return;
+    };
+    if data.view_approach(&object, vision.grip, &visit.location.place).is_none() {
+        problems.error_help(
+            "path.missing",
+            visit.at,
+            format!("nothing says how the view of {object} is approached at {}", visit.location.name),
+            "add an entry -appr vu for this location, or for $$$ (VII.7.7)",
+        );
+    }
+}
+
+/// Sectors of one tray are one location: the way between them needs no trajectory (DESIGN 16).
+fn same(one: &Location, other: &Location) -> bool {
+    one.name == other.name
+}
