@@ -6,6 +6,7 @@ use std::{
     process::ExitCode,
 };
 
+use executive::failure;
 use levels::ladder::Ladder;
 use rcs_core::table::Table;
 
@@ -38,16 +39,9 @@ fn append(text: &mut String, number: usize, table: &Table) {
     let _ = writeln!(text, "| row |{columns} action | next |");
     let _ = writeln!(text, "|---:|{} --- | --- |", " --- |".repeat(table.columns.len()));
     for row in table.rows {
-        let cells: String = cells(row.conditions).iter().map(|cell| format!(" {cell} |")).collect();
-        let _ = writeln!(text, "| {} |{cells} {} | {} |", row.number, row.action, row.next);
+        let cells: String = failure::cells(row).iter().map(|cell| format!(" {cell} |")).collect();
+        let _ = writeln!(text, "| {} |{cells} {} | {} |", row.number, failure::action(row), row.next);
     }
-}
-
-/// The cells of `(Start, Open | Stuck, _)`, with alternatives in words: a bar would end the cell in Markdown.
-fn cells(conditions: &str) -> Vec<String> {
-    let inner = conditions.trim().trim_start_matches('(').trim_end_matches(')');
-    let cell = |cell: &str| cell.split('|').map(str::trim).collect::<Vec<_>>().join(" or ");
-    inner.split(',').map(cell).map(|cell| if cell == "_" { String::new() } else { cell }).collect()
 }
 
 #[cfg(test)]
@@ -55,17 +49,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cells_are_split_and_any_is_left_empty() {
-        assert_eq!(cells("(Start, Open | Stuck, _)"), ["Start", "Open or Stuck", ""]);
-    }
-
-    #[test]
     fn every_row_of_every_table_has_as_many_cells_as_columns() {
         let mut rows = 0;
         for table in Ladder::processes().iter().flat_map(|process| process.tables) {
             for row in table.rows {
                 assert_eq!(
-                    cells(row.conditions).len(),
+                    failure::cells(row).len(),
                     table.columns.len(),
                     "{} row {}",
                     table.name,

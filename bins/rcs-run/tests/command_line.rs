@@ -127,7 +127,7 @@ fn a_data_error_is_shown_with_its_place_and_nothing_runs() {
     let place = Place::new("data-error");
     let data = place.data();
     let poses = data.join("poses.blk");
-    let text = fs::read_to_string(&poses).unwrap().replace("PFIX-P ", "PFIX-Q ");
+    let text = fs::read_to_string(&poses).unwrap().replace("PFIX-P", "PFIX-Q");
     fs::write(&poses, text).unwrap();
     for arguments in [&["check"][..], &["--log", "none", "--data"]] {
         let mut arguments = arguments.to_vec();

@@ -8,7 +8,7 @@ use levels::ladder::ProcessInfo;
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Header, HwsCommand, Reason, t3i::LinkFault},
     record::Field,
-    table::RowText,
+    table::{RowText, Table},
     tick::Tick,
 };
 
@@ -120,20 +120,21 @@ impl Watch {
             Report::Link(fault) => fault.text(),
         };
         let process = &processes[root];
-        let row = row_text(process, &cause.header);
+        let row = row_of(process, &cause.header);
         let text = format!(
             "{}: {why}, {}{}",
             process.name,
             while_doing(root, cause),
             row.map_or_else(String::new, |(table, row)| format!(
-                " (table {table}, row {row})",
-                row = describe(row)
+                " (table {}, {})",
+                table.name,
+                describe(table, row)
             ))
         );
         Some(Failure {
             tick: cause.tick,
             process: process.name.to_owned(),
-            table: row.map(|(table, _)| table.to_owned()),
+            table: row.map(|(table, _)| table.name.to_owned()),
             row: row.map(|(_, row)| row.number),
             text,
             stopped: link,
@@ -141,14 +142,38 @@ impl Watch {
     }
 }
 
-fn describe(row: &RowText) -> String {
-    format!("{}: {} => {}", row.number, row.conditions, row.action)
+/// The row as a person says it: `row 5: step Flooding, tries Spent => Fail(NothingSeen)`. Columns in which anything goes are left out.
+fn describe(table: &Table, row: &RowText) -> String {
+    let named = table.columns.iter().zip(cells(row)).filter(|(_, cell)| !cell.is_empty());
+    let conditions: Vec<String> = named.map(|(column, cell)| format!("{column} {cell}")).collect();
+    format!("row {}: {} => {}", row.number, conditions.join(", "), action(row))
 }
 
-/// Name of the table and the row that a header names.
-fn row_text(process: &ProcessInfo, header: &Header) -> Option<(&'static str, &'static RowText)> {
+/// The conditions of a row, one a column: `Open or Stuck`; empty where anything goes.
+#[must_use]
+pub fn cells(row: &RowText) -> Vec<String> {
+    let inner = row.conditions.trim().trim_start_matches('(').trim_end_matches(')');
+    let cell = |cell: &str| cell.split('|').map(str::trim).collect::<Vec<_>>().join(" or ");
+    inner.split(',').map(cell).map(|cell| if cell == "_" { String::new() } else { cell }).collect()
+}
+
+/// The action of a row with its argument, if it has one, as a bare name: `Fail(NothingSeen)`.
+#[must_use]
+pub fn action(row: &RowText) -> String {
+    match row.action.split_once('(') {
+        None => row.action.trim().to_owned(),
+        Some((action, argument)) => {
+            let argument = argument.trim().trim_end_matches(')').trim_end();
+            let bare = argument.rsplit("::").next().unwrap_or(argument).trim();
+            format!("{}({bare})", action.trim())
+        }
+    }
+}
+
+/// The table and the row that a header names.
+fn row_of(process: &ProcessInfo, header: &Header) -> Option<(&'static Table, &'static RowText)> {
     let table = process.table(header.table)?;
-    Some((table.name, table.row(header.row)?))
+    Some((table, table.row(header.row)?))
 }
 
 fn reports(memory: &CommonMemory) -> [Report; PROCESSES] {
@@ -249,9 +274,10 @@ pub fn present_commands(
     let headers = headers(memory);
     let lines = processes.iter().enumerate().filter_map(|(index, process)| {
         let command = command(index, hws, memory);
-        let row = row_text(process, &headers[index])?;
-        (!command.is_empty())
-            .then(|| format!("{} executes {command} (table {}, row {})", process.name, row.0, row.1.number))
+        let (table, row) = row_of(process, &headers[index])?;
+        let text =
+            || format!("{} executes {command} (table {}, row {})", process.name, table.name, row.number);
+        (!command.is_empty()).then(text)
     });
     lines.collect::<Vec<_>>().join("; ")
 }
@@ -296,6 +322,17 @@ mod tests {
     }
 
     #[test]
+    fn a_row_is_told_without_what_does_not_matter() {
+        let row = RowText {
+            number: 7,
+            conditions: "(_, Apart | Shut)",
+            action: "Fail (Reason::GraspMissed)",
+            next: "",
+        };
+        assert_eq!(describe(&CLOSE_GRIP, &row), "row 7: fingers Apart or Shut => Fail(GraspMissed)");
+    }
+
+    #[test]
     fn no_failure_without_a_reason_at_task() {
         assert_eq!(Watch::default().failure(&processes()), None);
         let watch = watched(&[|memory| memory.grip.status.reason = Reason::GraspMissed]);
@@ -327,7 +364,7 @@ mod tests {
         assert_eq!(
             failure.text,
             "Grip: the fingers closed on nothing, while it executed CLOSE-GRIP (opening 0.00 in, force 25 lb) \
-             (table close_grip, row 3: (Wait, Shut) => Report)"
+             (table close_grip, row 3: step Wait, fingers Shut => Report)"
         );
     }
 

@@ -102,8 +102,7 @@ pub enum Progress {
     Failed(JobFailure),
 }
 
-/// Ticks that a step may take: five minutes. The longest of the linkbar, a transfer across the cell at a tenth of full speed,
-/// stays below four.
+/// Ticks that a step may take: five minutes, three times the longest step of the linkbar.
 pub const TIME_LIMIT: u64 = 5 * 60 * 1000 / TICK_MS;
 
 /// The emulator of the workstation controller.

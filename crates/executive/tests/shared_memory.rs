@@ -107,7 +107,7 @@ fn readers_come_and_go_and_the_last_one_out_removes_everything() {
     assert!(!traces(&name).is_empty());
     drop(reader);
     assert_eq!(traces(&name), Vec::<String>::new());
-    assert!(matches!(Attached::open(&name), Err(SharedMemoryError::NoSuchRun(_))));
+    assert!(matches!(Attached::open(&name), Err(SharedMemoryError::NoSuchRun { .. })));
 }
 
 #[test]

@@ -112,12 +112,14 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         stopped: matches!(ending, Ending::Stopped),
     };
     print(&page, arguments.json)?;
+    let run_line = run.hwsc.records().last().map(|record| record.text.clone());
     // What is shared goes before the last word: whoever reads it may start the next run at once.
     drop(run);
     Ok(match &ending {
         Ending::Finished | Ending::Stopped => ExitCode::SUCCESS,
         Ending::Failed(failure) => {
-            eprintln!("rcs-run: {} failed at tick {}: {}", job.name, failure.tick, failure.text);
+            let line = run_line.map_or_else(String::new, |line| format!(" in `{line}`"));
+            eprintln!("rcs-run: {} failed at tick {}{line}: {}", job.name, failure.tick, failure.text);
             ExitCode::from(if failure.stopped { STOPPED } else { FAILED })
         }
     })
@@ -207,21 +209,23 @@ impl Run {
         }
     }
 
-    /// Why the job failed: the explanation of the process that knows, with the line of the job.
+    /// Why the job failed: the explanation of the process that knows, or what the workstation controller saw.
     fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Failure {
-        let line = self.hwsc.records().last().map_or("", |record| record.text.as_str());
         let processes = Ladder::processes();
-        let by_process = self.runner.watch().failure(processes);
-        match (failure, by_process) {
-            (JobFailure::Command(_), Some(known)) => {
-                Failure { text: format!("{line}: {}", known.text), ..known }
-            }
-            (JobFailure::TimeLimit(_), _) => {
-                let doing = failure::present_commands(processes, &external.hws, self.runner.memory());
-                outside(self.runner.tick(), "HWSC", format!("{line}: {failure}; {doing}"))
-            }
-            _ => outside(self.runner.tick(), "HWSC", format!("{line}: {failure}")),
-        }
+        let known = match failure {
+            JobFailure::Command(_) => self.runner.watch().failure(processes),
+            _ => None,
+        };
+        known.unwrap_or_else(|| {
+            let text = match failure {
+                JobFailure::TimeLimit(_) => {
+                    let doing = failure::present_commands(processes, &external.hws, self.runner.memory());
+                    format!("HWSC: {failure}; {doing}")
+                }
+                _ => format!("HWSC: {failure}"),
+            };
+            outside(self.runner.tick(), "HWSC", text)
+        })
     }
 
     fn result(&self, job: &Job, ending: &Ending, wall_s: f64) -> RunResult {

@@ -60,7 +60,10 @@ impl Attached {
         let runs = runs::list()?;
         let mut named = runs.iter().filter(|run| run.name == *name && run.alive);
         match named.clone().find(|run| run.layout == ours).or_else(|| named.next()) {
-            None => return Err(SharedMemoryError::NoSuchRun(name.to_string())),
+            None => {
+                let alive = runs.iter().filter(|run| run.alive).map(|run| run.name.clone()).collect();
+                return Err(SharedMemoryError::NoSuchRun { run: name.to_string(), alive });
+            }
             Some(run) if run.layout != ours => {
                 return Err(SharedMemoryError::OtherLayout {
                     run: name.to_string(),

@@ -41,11 +41,14 @@ pub enum SharedMemoryError {
     /// A path that iceoryx2 does not take.
     #[error("{0:?} cannot be used for shared memory: the path is too long or has unusual characters")]
     BadPath(PathBuf),
-    /// No run of that name, or of any.
-    #[error(
-        "there is no run named {0:?}; `rcs-run` prints the name at the start when its shared memory is on"
-    )]
-    NoSuchRun(String),
+    /// No living run of that name.
+    #[error("there is no run named {run}: {}", alive_in_words(.alive))]
+    NoSuchRun {
+        /// As asked for.
+        run: String,
+        /// The runs that live.
+        alive: Vec<RunName>,
+    },
     /// A run whose program has another layout of buffers.
     #[error(
         "run {run:?} has layout {theirs}, this program has {ours}: they were built from different sources"
@@ -87,6 +90,13 @@ pub enum SharedMemoryError {
 impl SharedMemoryError {
     pub(super) fn service(service: &'static str, what: &dyn Debug) -> Self {
         Self::Service { service, what: format!("{what:?}") }
+    }
+}
+
+fn alive_in_words(alive: &[RunName]) -> String {
+    match alive {
+        [] => "no run shows its buffers at the moment".to_owned(),
+        some => format!("there is {}", some.iter().map(RunName::as_str).collect::<Vec<_>>().join(", ")),
     }
 }
 
