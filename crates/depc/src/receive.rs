@@ -15,6 +15,8 @@ use crate::{
 pub const BOARD_BYTES: usize = 64;
 /// Ticks after which garbage is answered even if the line is not quiet.
 const GARBLED_TICKS: u8 = 3;
+/// Ticks over which the bytes of one frame may be spread; later ones may be another command that makes up for a lost byte.
+const FRAME_TICKS: u8 = 2;
 
 /// What the controller has received.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +41,8 @@ record! {
         quiet: bool,
         /// Ticks since a bad byte, 0 for none.
         garbled: u8,
+        /// Ticks in which the frame at the front was not complete.
+        begun: u8,
     }
 }
 
@@ -102,6 +106,11 @@ impl CommandReceiver {
                 self.clear();
                 return Some(Command::Undecipherable);
             }
+            self.begun = self.begun.saturating_add(1);
+            if self.begun >= FRAME_TICKS {
+                self.clear();
+                self.garbled = 1;
+            }
             return None;
         };
         // Nothing but restarts may follow: the host waits for an answer. And the checksum does not tell a frame from one
@@ -126,6 +135,7 @@ impl CommandReceiver {
     }
 
     fn drop_first(&mut self, count: usize) {
+        self.begun = 0;
         let length = usize::from(self.length);
         let count = count.min(length);
         self.bytes.rotate_left(count);
@@ -266,6 +276,19 @@ mod tests {
             Some(Command::Data(DataCommand { function: NO_FUNCTION, plate: HOME }))
         );
         assert_eq!(receiver.take(), None);
+    }
+
+    #[test]
+    fn a_frame_in_three_ticks_is_none() {
+        // It has lost a byte, and the host's restart is just that byte.
+        let mut frame = [0; 16];
+        DataCommand { function: NO_FUNCTION, plate: Plate { words: [1, 2, 3, 4, 9000, 0x055F] } }
+            .emit(&mut frame);
+        let mut receiver = CommandReceiver::default();
+        assert_eq!(tick(&mut receiver, &frame[..9]), None);
+        assert_eq!(tick(&mut receiver, &[&frame[9..13], &frame[14..]].concat()), None);
+        assert_eq!(tick(&mut receiver, &[0x05]), None);
+        assert_eq!(tick(&mut receiver, &[]), Some(Command::Undecipherable));
     }
 
     #[test]
