@@ -1,1 +1,153 @@
-//! Shared helpers of the whole-system tests.
+//! Runs the programs as their users do, and reads what they say: exit status, JSON, the last line on standard error, the log.
+//!
+//! The tests of this package judge the whole: controller, link, cell, executive and log, built as for a release.
+
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::{Child, Command, Stdio},
+    sync::OnceLock,
+};
+
+use serde_json::Value;
+
+/// Root of the repository.
+#[must_use]
+pub fn root() -> &'static Path {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
+    tests.parent().unwrap_or(tests)
+}
+
+/// The program `rcs-run`, brought up to date: a test of this package must never judge an older one.
+///
+/// # Panics
+/// If it does not build.
+#[must_use]
+pub fn rcs_run() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
+        // Tests lie in <target>/release/deps.
+        let test = env::current_exe().expect("a test has a path");
+        let profile = test.ancestors().nth(2).expect("a test lies two directories deep");
+        let target = profile.parent().expect("a profile lies in the target directory");
+        let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let built = Command::new(cargo)
+            .args(["build", "--quiet", "--release", "--package", "rcs-run", "--target-dir"])
+            .arg(target)
+            .current_dir(root())
+            .status()
+            .expect("cargo can be started");
+        assert!(built.success(), "rcs-run does not build");
+        target.join("release").join("rcs-run")
+    })
+}
+
+/// A directory for the files of one test, removed with it.
+pub struct Scratch(PathBuf);
+
+impl Scratch {
+    /// A new, empty directory.
+    ///
+    /// # Panics
+    /// If it cannot be made.
+    #[must_use]
+    pub fn new(name: &str) -> Self {
+        let path = env::temp_dir().join(format!("rcs-{name}-{}", std::process::id()));
+        // It may be there from a run that was killed.
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).expect("a directory can be made");
+        Self(path)
+    }
+
+    /// A file in it.
+    #[must_use]
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// What a run said at its end.
+pub struct Outcome {
+    /// Exit status.
+    pub status: Option<i32>,
+    /// The object on standard output.
+    pub result: Value,
+    /// The last line on standard error; empty if there was none.
+    pub last_words: String,
+    /// The log.
+    pub log: PathBuf,
+    _scratch: Scratch,
+}
+
+impl Outcome {
+    /// The digest of all output buffers of all ticks.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[must_use]
+    pub fn digest(&self) -> &str {
+        self.result["digest"].as_str().expect("a result has a digest")
+    }
+
+    /// The part of a name.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[must_use]
+    pub fn part(&self, name: &str) -> &Value {
+        let parts = self.result["parts"].as_array().expect("a result has parts");
+        parts.iter().find(|part| part["name"] == name).unwrap_or_else(|| panic!("no {name} among {parts:?}"))
+    }
+}
+
+/// The command that runs a job in a directory: equal arguments, so that equal runs write equal logs.
+fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
+    let mut command = Command::new(rcs_run());
+    command
+        .args(["run", job, "--json", "--log", "run.mcap", "--shared-memory", "off", "--seed"])
+        .arg(seed.to_string())
+        .arg("--data")
+        .arg(root().join("data"))
+        .current_dir(&directory.0);
+    command
+}
+
+/// Run a job of the data directory, or one written by `prepare`, which gets the directory of the run.
+///
+/// # Panics
+/// If the program cannot be started or says no JSON.
+#[must_use]
+pub fn run(job: &str, seed: u64, name: &str, prepare: impl FnOnce(&Scratch)) -> Outcome {
+    let scratch = Scratch::new(name);
+    prepare(&scratch);
+    let output = command(&scratch, job, seed).output().expect("rcs-run can be started");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let result = serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|error| panic!("{error} in {:?}; {said}", String::from_utf8_lossy(&output.stdout)));
+    Outcome {
+        status: output.status.code(),
+        result,
+        last_words: said.lines().last().unwrap_or_default().to_owned(),
+        log: scratch.file("run.mcap"),
+        _scratch: scratch,
+    }
+}
+
+/// Start a job and leave it running.
+///
+/// # Panics
+/// If the program cannot be started.
+#[must_use]
+pub fn start(scratch: &Scratch, job: &str, seed: u64) -> Child {
+    command(scratch, job, seed)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("rcs-run can be started")
+}
