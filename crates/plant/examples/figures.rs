@@ -1,4 +1,5 @@
 //! The figures of the simulation: cost of a tick (one core's time, Linux), error at rest, sink of contacts, creep of a grip.
+//! The number of sub-steps can be given.
 
 #[path = "../tests/rig/mod.rs"]
 mod rig;
@@ -7,7 +8,11 @@ use plant::WorkstationAction::{ViseClose, ViseOpen, VisePartial};
 use rig::{FX1, HOLD, Rig, SEAT, description};
 
 fn main() {
-    let mut rig = Rig::new(&description(), 1);
+    let mut cell = description();
+    if let Some(substeps) = std::env::args().nth(1).and_then(|word| word.parse().ok()) {
+        cell.physics.substeps = substeps;
+    }
+    let mut rig = Rig::new(&cell, 1);
     for sector in 1..=4 {
         rig.place("LINKBAR1_BH", sector, 0.0, 0.0, 20.0);
     }

@@ -1,20 +1,23 @@
 //! A hold: a part between two pads, as strong as the pads' force and friction allow, and no stronger.
 //!
 //! Contacts between a squeezed light part and two heavy pads creep, and a rigid weld never lets go. A hold is between the
-//! two: six springs with limits between the pads' body and the part, placed where the pads touch. Below its limit a spring
-//! holds the part to a few micrometres. Beyond it, two things happen:
+//! two: springs between the pads' body and the part, whose rest position gives way when more is asked of the pads than they
+//! can bear. The load on the pads is known from the springs; what is beyond the limit moves the rest position after the
+//! part, by just so much that the limit remains (a return mapping, as for plastic material):
 //!
-//! * along the pads (X, Z, and the turn about Y) the limit is friction. The spring's rest position moves after the part: it
-//!   slides against exactly the limiting force, and stays where it has slid to;
-//! * across the pads (Y, and the tilts about X and Z) the limit is the pads' force. The part is pushed aside against it, and
-//!   the pads bring it back to their middle, flush, as soon as they are the stronger.
+//! * along the pads (X, Z, and the turn about Y) the limit is friction, and what has slid stays where it has slid to;
+//! * across the pads (Y, and the tilts about X and Z) the limit is the pads' force: the part is pushed aside, and the pads
+//!   bring it back to their middle, flush, as soon as they are the stronger.
+//!
+//! The springs act at the middle of the part, where the six axes do not disturb each other, so that the solver has them
+//! exact at once; the limits hold where the pads touch, and a bar that is gripped at its end droops about that point.
 
 use rapier3d_f64::math::Vector;
 use rapier3d_f64::prelude::*;
 
 use crate::{convert::on_the_side_of, squeeze::Squeeze};
 
-/// The six axes in the order of limits: X, Y, Z, about X, about Y, about Z. Y is across the pads.
+/// The six axes: along X, Y, Z, about X, about Y, about Z. Y is across the pads.
 const AXES: [JointAxis; 6] =
     [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ, JointAxis::AngX, JointAxis::AngY, JointAxis::AngZ];
 
@@ -45,55 +48,78 @@ pub struct Load {
     pub inertia: Real,
 }
 
+/// What the pads can bear where they touch, and where that is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Limits {
+    /// Along the pads, N.
+    friction: Real,
+    /// Across the pads, N.
+    normal: Real,
+    /// About X, Y, Z, N·m.
+    moments: [Real; 3],
+    /// The middle of the touched area, in the axes of the pads' body.
+    point: Vector,
+}
+
 /// A part between two pads.
 #[derive(Debug)]
 pub struct Hold {
     joint: ImpulseJointHandle,
     pads: RigidBodyHandle,
     part: RigidBodyHandle,
+    /// Where the part would be without any load, as far as friction remembers: its middle, and its turn from flush.
+    nominal: Pose,
+    /// Where the springs rest: nominal, pushed aside.
     rest: Pose,
-    anchor: Pose,
+    /// From the part's axes to those in which it lies flush.
+    attitude: Rotation,
     stiffness: Stiffness,
-    limits: [Real; 6],
+    /// Of the springs along and about the axes, N·s/m and N·m·s/rad.
+    damping: [Real; 2],
+    limits: Limits,
+    sliding: bool,
     slipped: Real,
 }
 
 impl Hold {
-    /// Take hold of a part: `flush` is where the part shall lie in the axes of the pads' body, `squeeze` what is touched.
+    /// Take hold of a part: `flush` is where the part shall lie in the axes of the pads' body.
     pub fn new(
         world: &mut PhysicsWorld,
         pads: RigidBodyHandle,
         part: RigidBodyHandle,
         flush: &Pose,
-        squeeze: &Squeeze,
         stiffness: Stiffness,
         load: Load,
     ) -> Self {
-        let point = Vector::new(squeeze.point.x, flush.translation.y, squeeze.point.z);
-        let rest = Pose::from_translation(point);
-        let anchor = flush.inv_mul(&rest);
-        let inertia = load.inertia + load.mass * anchor.translation.length_squared();
-        let linear_damping = 2.0 * libm::sqrt(stiffness.linear * load.mass);
-        let angular_damping = 2.0 * libm::sqrt(stiffness.angular * inertia);
-        let mut data =
-            GenericJointBuilder::new(JointAxesMask::empty()).local_frame1(rest).local_frame2(anchor).build();
-        for (index, axis) in AXES.into_iter().enumerate() {
-            let (k, c) = if index < 3 {
-                (stiffness.linear, linear_damping)
-            } else {
-                (stiffness.angular, angular_damping)
-            };
-            data.set_motor_model(axis, MotorModel::ForceBased).set_motor(axis, 0.0, 0.0, k, c);
-            data.set_motor_max_force(axis, 0.0);
+        let nominal = Pose::from_translation(flush.translation);
+        let attitude = flush.rotation.inverse();
+        let damping = [
+            2.0 * libm::sqrt(stiffness.linear * load.mass),
+            2.0 * libm::sqrt(stiffness.angular * load.inertia),
+        ];
+        let mut data = GenericJointBuilder::new(JointAxesMask::empty())
+            .local_frame1(nominal)
+            .local_frame2(Pose::from_rotation(attitude))
+            .build();
+        set_springs(&mut data, stiffness, damping);
+        for axis in AXES {
+            data.set_motor_model(axis, MotorModel::ForceBased).set_motor_max_force(axis, 0.0);
         }
         let joint = world.insert_impulse_joint(pads, part, data);
-        Self { joint, pads, part, rest, anchor, stiffness, limits: [0.0; 6], slipped: 0.0 }
-    }
-
-    /// The body of the held part.
-    #[must_use]
-    pub fn part(&self) -> RigidBodyHandle {
-        self.part
+        let limits = Limits::default();
+        Self {
+            joint,
+            pads,
+            part,
+            nominal,
+            rest: nominal,
+            attitude,
+            stiffness,
+            damping,
+            limits,
+            sliding: false,
+            slipped: 0.0,
+        }
     }
 
     /// How far the part has slid in this hold, m.
@@ -102,81 +128,163 @@ impl Hold {
         self.slipped
     }
 
-    /// Set the limits from force, friction and the touched area.
+    /// Set the limits from force, friction and what is touched.
     pub fn set_clamp(&mut self, world: &mut PhysicsWorld, clamp: Clamp, squeeze: &Squeeze) {
         let normal = 2.0 * clamp.force;
         let friction = normal * clamp.friction;
         let [span_x, span_z] = squeeze.span;
-        self.limits = [
+        let moments = [normal * span_z / 2.0, friction * squeeze.friction_arm(), normal * span_x / 2.0];
+        let limits = Limits { friction, normal, moments, point: squeeze.point };
+        if limits == self.limits {
+            return;
+        }
+        self.limits = limits;
+        // Within a step the springs may not exceed what the pads bear either; a force at the middle of the part adds its
+        // moment about the pads.
+        let arm = (self.nominal.translation - squeeze.point).length();
+        let [about_x, about_y, about_z] = moments;
+        let greatest = [
             friction,
             normal,
             friction,
-            normal * span_z / 2.0,
-            friction * squeeze.friction_arm(),
-            normal * span_x / 2.0,
+            about_x + normal * arm,
+            about_y + friction * arm,
+            about_z + normal * arm,
         ];
         if let Some(joint) = world.impulse_joints.get_mut(self.joint, false) {
-            for (axis, limit) in AXES.into_iter().zip(self.limits) {
+            for (axis, limit) in AXES.into_iter().zip(greatest) {
                 joint.data.set_motor_max_force(axis, limit);
             }
         }
     }
 
-    /// Where the part is, seen from the springs' rest position.
-    fn error(&self, world: &PhysicsWorld) -> Pose {
+    /// Where the part is in the axes of the pads' body, turned as it is from flush.
+    fn present(&self, world: &PhysicsWorld) -> Pose {
         let pads = world.bodies[self.pads].position();
-        let part = world.bodies[self.part].position();
-        let error = self.rest.inv_mul(&(pads.inv_mul(part) * self.anchor));
-        Pose::from_parts(error.translation, on_the_side_of(&Rotation::IDENTITY, error.rotation))
+        let part = pads.inv_mul(world.bodies[self.part].position());
+        Pose::from_parts(part.translation, part.rotation * self.attitude)
     }
 
-    /// After a step: let the rest position follow where friction is overcome. Returns how far, m.
-    pub fn give_way(&mut self, world: &mut PhysicsWorld) -> Real {
-        let error = self.error(world);
-        let beyond = |value: Real, limit: Real, stiffness: Real| {
-            let elastic = limit / stiffness;
-            value - value.clamp(-elastic, elastic)
-        };
-        // Friction has one limit whatever the direction in the plane.
-        let plane = libm::hypot(error.translation.x, error.translation.z);
-        let over = beyond(plane, self.limits[0], self.stiffness.linear);
-        let share = if plane > 0.0 { over / plane } else { 0.0 };
-        let slide = Vector::new(error.translation.x * share, 0.0, error.translation.z * share);
-        let turn = beyond(error.rotation.to_scaled_axis().y, self.limits[4], self.stiffness.angular);
-        let moved = slide.length();
-        if moved > 0.0 || turn != 0.0 {
-            self.set_rest(world, self.rest * Pose::new(slide, Vector::Y * turn));
-            self.slipped += moved;
+    /// After a step: let the rest position give way where the load is beyond what the pads bear.
+    pub fn give_way(&mut self, world: &mut PhysicsWorld) {
+        let Stiffness { linear, angular } = self.stiffness;
+        let present = self.present(world);
+        let away = present.translation - self.nominal.translation;
+        let turn = on_the_side_of(&Rotation::IDENTITY, present.rotation * self.nominal.rotation.inverse());
+        let turn = turn.to_scaled_axis();
+
+        // Along the pads: friction has one limit whatever the direction.
+        let plane = libm::hypot(away.x, away.z);
+        let slid = beyond(plane, self.limits.friction / linear);
+        let share = if plane > 0.0 { slid / plane } else { 0.0 };
+        let slide = Vector::new(away.x * share, 0.0, away.z * share);
+        let aside = Vector::Y * beyond(away.y, self.limits.normal / linear);
+
+        // About the point where the pads touch: the springs' moment, and that of their force at the middle.
+        let arm = self.nominal.translation - self.limits.point;
+        let force = (away - slide - aside) * -linear;
+        let moment = (turn * -angular + arm.cross(force)).to_array();
+        let squares =
+            [arm.y * arm.y + arm.z * arm.z, arm.x * arm.x + arm.z * arm.z, arm.x * arm.x + arm.y * arm.y];
+        let [tilt_x, turned, tilt_z] = [0, 1, 2].map(|axis| {
+            -beyond(moment[axis], self.limits.moments[axis]) / (angular + linear * squares[axis])
+        });
+
+        if slid > 0.0 || turned != 0.0 {
+            self.nominal = about(self.limits.point, Vector::Y * turned, self.nominal);
+            self.nominal.translation += slide;
+            self.slipped += slid;
         }
-        moved
+        self.set_sliding(world, slid > 0.0 || turned != 0.0);
+        let mut rest = about(self.limits.point, Vector::new(tilt_x, 0.0, tilt_z), self.nominal);
+        rest.translation += aside;
+        self.set_rest(world, rest);
     }
 
     /// Let all springs rest where the part is now: another, stronger grip has it.
     pub fn relax(&mut self, world: &mut PhysicsWorld) {
-        let error = self.error(world);
-        self.set_rest(world, self.rest * error);
+        self.nominal = normalised(self.present(world));
+        self.set_rest(world, self.nominal);
     }
 
     /// The stronger grip is gone: draw the part back to the middle of the pads, flush; along the pads it stays.
     pub fn recover(&mut self, world: &mut PhysicsWorld) {
-        let mut rest = self.rest;
-        rest.translation.y = 0.0;
-        let twist = Rotation::from_xyzw(0.0, rest.rotation.y, 0.0, rest.rotation.w);
-        rest.rotation = if twist.length_squared() > 0.0 { twist } else { Rotation::IDENTITY };
-        self.set_rest(world, rest);
+        self.nominal.translation.y = 0.0;
+        let twist = Rotation::from_xyzw(0.0, self.nominal.rotation.y, 0.0, self.nominal.rotation.w);
+        self.nominal.rotation =
+            if twist.length_squared() > 0.0 { twist.normalize() } else { Rotation::IDENTITY };
+        self.set_rest(world, self.nominal);
+    }
+
+    /// A part that slides meets friction, and no damping beside it.
+    fn set_sliding(&mut self, world: &mut PhysicsWorld, sliding: bool) {
+        if sliding == self.sliding {
+            return;
+        }
+        self.sliding = sliding;
+        if let Some(joint) = world.impulse_joints.get_mut(self.joint, false) {
+            set_springs(&mut joint.data, self.stiffness, if sliding { [0.0; 2] } else { self.damping });
+        }
     }
 
     fn set_rest(&mut self, world: &mut PhysicsWorld, rest: Pose) {
-        // Rests are products of many rotations: without this their length would run away.
-        let rest = Pose::from_parts(rest.translation, rest.rotation.normalize());
-        self.rest = rest;
+        if rest == self.rest {
+            return;
+        }
+        self.rest = normalised(rest);
         if let Some(joint) = world.impulse_joints.get_mut(self.joint, false) {
-            joint.data.set_local_frame1(rest);
+            joint.data.set_local_frame1(self.rest);
         }
     }
 
     /// Let go.
     pub fn release(self, world: &mut PhysicsWorld) {
         world.remove_impulse_joint(self.joint);
+    }
+}
+
+fn set_springs(joint: &mut GenericJoint, stiffness: Stiffness, damping: [Real; 2]) {
+    for (index, axis) in AXES.into_iter().enumerate() {
+        let (k, c) = if index < 3 { (stiffness.linear, damping[0]) } else { (stiffness.angular, damping[1]) };
+        joint.set_motor(axis, 0.0, 0.0, k, c);
+    }
+}
+
+/// By how much a value is beyond plus or minus a limit.
+fn beyond(value: Real, limit: Real) -> Real {
+    value - value.clamp(-limit, limit)
+}
+
+/// A pose turned about a point.
+fn about(point: Vector, turn: Vector, pose: Pose) -> Pose {
+    if turn == Vector::ZERO {
+        return pose;
+    }
+    let turn = Rotation::from_scaled_axis(turn);
+    normalised(Pose::from_parts(point + turn * (pose.translation - point), turn * pose.rotation))
+}
+
+/// Products of many rotations do not keep their length by themselves.
+fn normalised(pose: Pose) -> Pose {
+    Pose::from_parts(pose.translation, pose.rotation.normalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_beyond_a_limit_has_its_sign() {
+        assert_eq!((beyond(3.0, 2.0), beyond(-3.0, 2.0), beyond(1.0, 2.0)), (1.0, -1.0, 0.0));
+    }
+
+    #[test]
+    fn a_turn_leaves_its_point_where_it_is() {
+        let point = Vector::new(1.0, 2.0, 3.0);
+        let turned = about(point, Vector::new(0.3, -0.2, 0.9), Pose::from_translation(point));
+        assert!((turned.translation - point).length() < 1e-15);
+        let beside =
+            about(point, Vector::Z * core::f64::consts::FRAC_PI_2, Pose::from_translation(point + Vector::X));
+        assert!((beside.translation - point - Vector::Y).length() < 1e-12);
     }
 }

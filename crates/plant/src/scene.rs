@@ -68,7 +68,6 @@ impl Block {
     }
 
     /// A collider of this block, at its place.
-    #[must_use]
     pub fn collider(&self) -> ColliderBuilder {
         let half = self.half();
         ColliderBuilder::cuboid(half.x, half.y, half.z)

@@ -87,6 +87,25 @@ fn friction_decides_what_can_be_lifted() {
 }
 
 #[test]
+fn a_bar_that_is_gripped_at_its_end_droops_if_it_is_gripped_too_softly() {
+    // 0.44 lb at 1.67 in from the pads ask for 0.73 in.lb; two pads of 4 lb give 0.48 in.lb, of 30 lb 3.6.
+    for (force, droops) in [(4.0, true), (30.0, false)] {
+        let mut rig = Rig::new(&description(), 1);
+        rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
+        rig.pick(0.0, 0.0, 0.0, force);
+        rig.ticks(50);
+        let along = rig.part_frame().z();
+        assert_eq!(
+            along.z.abs() > 0.3,
+            droops,
+            "{force} lb: the bar lies along {along:?}, {:?}",
+            rig.cell.fingers()
+        );
+        assert!(rig.part().held, "{:?}", rig.part());
+    }
+}
+
+#[test]
 fn vented_fingers_let_go() {
     let mut rig = Rig::new(&description(), 1);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);

@@ -112,8 +112,7 @@ impl Cell {
             flush.translation.y = 0.0;
             flush
         };
-        let mut hold =
-            Hold::new(&mut self.world, hand, part.body, &flush, squeeze, FINGER_STIFFNESS, part.load());
+        let mut hold = Hold::new(&mut self.world, hand, part.body, &flush, FINGER_STIFFNESS, part.load());
         hold.set_clamp(&mut self.world, clamp, squeeze);
         self.gripper.hold = Some((index, hold));
         self.slip_reported = false;
