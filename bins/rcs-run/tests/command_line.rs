@@ -7,6 +7,7 @@ use std::{
     time::{Duration, Instant},
 };
 
+use executive::memory::{Attached, RunName};
 use serde_json::Value;
 
 /// The data directory of the repository.
@@ -231,6 +232,37 @@ fn an_interrupt_ends_the_run_in_order() {
 }
 
 #[test]
+fn another_program_looks_on_and_changes_nothing() {
+    let child = command(&["--clock", "real", "--ticks", "40", "--json", "--log", "none"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let name: RunName = format!("linkbar-{}", child.id()).parse().unwrap();
+    let mut reader = None;
+    wait_for(|| {
+        reader = Attached::open(&name).ok();
+        reader.is_some()
+    });
+    let reader = reader.unwrap();
+    let mut seen = std::collections::BTreeSet::new();
+    wait_for(|| {
+        if let Ok(memory) = reader.memory() {
+            seen.insert(memory.task.header.stamp);
+        }
+        reader.pulse().is_ok_and(|pulse| pulse.over)
+    });
+    assert!(seen.len() > 2, "{seen:?}");
+    assert_eq!(reader.memory().unwrap().task.header.stamp.0, 40);
+    assert_eq!(reader.pulse().unwrap().allocations, 0);
+    let watched = json(&child.wait_with_output().unwrap());
+    drop(reader);
+    assert_eq!(executive_runs_named(name.as_str()), 0, "the last one out removes everything");
+    let alone = json(&rcs_run(&["--ticks", "40", "--json", "--log", "none", "--shared-memory", "off"]));
+    assert_eq!(watched["digest"], alone["digest"]);
+}
+
+#[test]
 fn what_a_killed_run_left_is_removed_by_clean() {
     let mut child = command(&["--clock", "real", "--log", "none"])
         .stdout(Stdio::null())
@@ -254,12 +286,16 @@ fn what_a_killed_run_left_is_removed_by_clean() {
 
 /// Traces in shared memory of the linkbar run of a process.
 fn executive_runs(process: u32) -> usize {
-    let start = format!("linkbar-{process}@");
+    executive_runs_named(&format!("linkbar-{process}"))
+}
+
+fn executive_runs_named(name: &str) -> usize {
+    let start = format!("{name}@");
     let runs = fs::read_dir(executive::memory::runs::root()).into_iter().flatten().flatten();
     runs.filter(|entry| entry.file_name().to_string_lossy().starts_with(&start)).count()
 }
 
-fn wait_for(condition: impl Fn() -> bool) {
+fn wait_for(mut condition: impl FnMut() -> bool) {
     let started = Instant::now();
     while !condition() {
         assert!(started.elapsed() < Duration::from_secs(60), "it did not happen within a minute");

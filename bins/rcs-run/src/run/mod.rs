@@ -99,7 +99,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         run.ask_for_real_time();
     }
     let started = Instant::now();
-    let ending = run.to_the_end(&store, arguments.ticks, &interrupted);
+    let ending = run.play(&store, arguments.ticks, &interrupted);
     let wall_s = started.elapsed().as_secs_f64();
     run.progress.end();
     let mut result = run.result(&job, &ending, wall_s);
@@ -172,7 +172,7 @@ impl Run {
         self.clock = Clock::real();
     }
 
-    fn to_the_end(&mut self, store: &Store, ticks: Option<u64>, interrupted: &AtomicBool) -> Ending {
+    fn play(&mut self, store: &Store, ticks: Option<u64>, interrupted: &AtomicBool) -> Ending {
         let data = store.view();
         loop {
             self.clock.wait();

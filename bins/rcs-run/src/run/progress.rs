@@ -27,7 +27,9 @@ impl Progress {
     pub fn new(steps: usize) -> Self {
         let bar = io::stderr().is_terminal().then(|| {
             let bar = ProgressBar::new(steps as u64);
-            if let Ok(style) = ProgressStyle::with_template("{pos:>3}/{len} {elapsed} {wide_msg}") {
+            if let Ok(style) =
+                ProgressStyle::with_template("{pos:>3}/{len} {elapsed:>4} {prefix}\n    {wide_msg}")
+            {
                 bar.set_style(style);
             }
             bar
@@ -44,7 +46,8 @@ impl Progress {
         self.shown = Instant::now();
         bar.set_position(hwsc.records().len() as u64);
         let line = hwsc.records().last().map_or("", |record| record.text.as_str());
-        bar.set_message(format!("{line}   [{}]", levels(hws, memory)));
+        bar.set_prefix(line.to_owned());
+        bar.set_message(levels(hws, memory));
     }
 
     /// A line that stays, above the progress line.
@@ -67,7 +70,8 @@ impl Progress {
 fn levels(hws: &HwsCommand, memory: &CommonMemory) -> String {
     let names = Ladder::processes().iter().map(|process| process.name).enumerate().take(LEVELS);
     let doing = names.filter_map(|(index, name)| {
-        let command = failure::command(index, hws, memory);
+        // All of Task's command stands in the line of the job already.
+        let command = if index == 0 { hws.command.to_string() } else { failure::command(index, hws, memory) };
         (!command.is_empty()).then(|| format!("{name}: {command}"))
     });
     doing.collect::<Vec<_>>().join(" | ")
