@@ -1,12 +1,13 @@
 //! An allocator that counts what the controller allocates.
 //!
-//! Nothing may be allocated after the start (DESIGN 14). The levels cannot allocate, since they are built without `alloc`; what
-//! stands around them in a tick could. So the program installs [`Counting`] as its allocator, each tick runs inside a
-//! [`Section`], and what is allocated there is counted: over the whole run, in production as in tests. Other threads, and what the
-//! same thread does between ticks, are not counted.
+//! Nothing may be allocated after the start (DESIGN 14). The levels cannot allocate, since they are built
+//! without `alloc`; what stands around them in a tick could. So the program installs [`Counting`] as its
+//! allocator, each tick runs inside a [`Section`], and what is allocated there is counted: over the whole
+//! run, in production as in tests. Other threads, and what the same thread does between ticks, are not
+//! counted.
 //!
-//! This is the only module of the executive with unsafe code: an allocator cannot be written without it. It does nothing but
-//! count and hand over to the system's allocator.
+//! This is the only module of the executive with unsafe code: an allocator cannot be written without it. It
+//! does nothing but count and hand over to the system's allocator.
 
 #![allow(unsafe_code, reason = "GlobalAlloc is an unsafe trait; every call is passed on unchanged")]
 
@@ -20,7 +21,8 @@ use std::{
 static IN_SECTIONS: AtomicU64 = AtomicU64::new(0);
 
 thread_local! {
-    // Constant initialisation and no destructor: an access never allocates and works at any time of a thread's life.
+    // Constant initialisation and no destructor: an access never allocates and works at any time of a
+    // thread's life.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
 }
 
@@ -56,14 +58,15 @@ impl Drop for Section {
     }
 }
 
-/// Allocations that were made inside sections, by all threads, since the program started. Without [`Counting`] as the
-/// program's allocator it stays 0: ask [`is_installed`] first.
+/// Allocations that were made inside sections, by all threads, since the program started. Without
+/// [`Counting`] as the program's allocator it stays 0: ask [`is_installed`] first.
 #[must_use]
 pub fn allocations() -> u64 {
     IN_SECTIONS.load(Ordering::Relaxed)
 }
 
-/// True if the program runs on [`Counting`]. Makes one allocation to find out, and takes it off the count again.
+/// True if the program runs on [`Counting`]. Makes one allocation to find out, and takes it off the count
+/// again.
 #[must_use]
 pub fn is_installed() -> bool {
     let before = allocations();
@@ -85,8 +88,8 @@ fn count() {
     }
 }
 
-// SAFETY: every method passes its arguments unchanged to `System`, which upholds the contract of `GlobalAlloc`; `count` neither
-// allocates nor unwinds.
+// SAFETY: every method passes its arguments unchanged to `System`, which upholds the contract of
+// `GlobalAlloc`; `count` neither allocates nor unwinds.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count();
@@ -102,7 +105,8 @@ unsafe impl GlobalAlloc for Counting {
 
     unsafe fn realloc(&self, block: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
         count();
-        // SAFETY: `block` came from this allocator, hence from `System`, with `layout`; the caller vouches for the rest.
+        // SAFETY: `block` came from this allocator, hence from `System`, with `layout`; the caller vouches
+        // for the rest.
         unsafe { System.realloc(block, layout, new_size) }
     }
 

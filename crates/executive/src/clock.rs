@@ -1,9 +1,10 @@
 //! When ticks are run (DESIGN 4).
 //!
-//! The controller itself has no clock; somebody has to say "now". [`Clock::Fast`] says it at once: the simulated cell advances
-//! 40 ms a tick, however long that takes. [`Clock::Real`] says it on an absolute 40 ms [`Grid`]: slot `n` starts 40 ms x `n` after the
-//! start of the run, a late wake-up does not shift the slots after it, and a slot whose start has passed is skipped and
-//! counted. So this holds at every wake-up, by construction:
+//! The controller itself has no clock; somebody has to say "now". [`Clock::Fast`] says it at once: the
+//! simulated cell advances 40 ms a tick, however long that takes. [`Clock::Real`] says it on an absolute 40
+//! ms [`Grid`]: slot `n` starts 40 ms x `n` after the start of the run, a late wake-up does not shift the
+//! slots after it, and a slot whose start has passed is skipped and counted. So this holds at every wake-up,
+//! by construction:
 //!
 //! ```text
 //! ticks run + slots skipped = time elapsed / 40 ms    (rounded down)
@@ -41,7 +42,8 @@ impl Time for Monotonic {
 
     fn sleep_until(&mut self, at: Duration) {
         let Ok(request) = Timespec::try_from(at) else { return };
-        // EINTR is the only error of a valid request: a signal, after which the caller looks at the time again.
+        // EINTR is the only error of a valid request: a signal, after which the caller looks at the time
+        // again.
         match clock_nanosleep_absolute(ClockId::Monotonic, &request) {
             Ok(()) | Err(Errno::INTR) => {}
             Err(error) => debug_assert!(false, "clock_nanosleep: {error}"),
@@ -145,7 +147,8 @@ mod tests {
     use proptest::prelude::*;
     use std::time::Instant;
 
-    /// Time that a test moves: each sleep ends late by the next entry of `late`, or early by a signal if the entry is `None`.
+    /// Time that a test moves: each sleep ends late by the next entry of `late`, or early by a signal if the
+    /// entry is `None`.
     struct Scripted {
         now: Duration,
         late: Vec<Option<Duration>>,

@@ -1,8 +1,9 @@
 //! Says why something failed: which process, which decision table, which row, in one sentence.
 //!
-//! A reason travels up the ladder unchanged, a tick a level, so the process that knows most is the lowest one that bears the
-//! reason which arrived at Task. By the time it arrives there the lower processes have moved on: [`Watch`] therefore keeps, for each
-//! process, common memory as it was in the tick when the process began to report its reason.
+//! A reason travels up the ladder unchanged, a tick a level, so the process that knows most is the lowest one
+//! that bears the reason which arrived at Task. By the time it arrives there the lower processes have moved
+//! on: [`Watch`] therefore keeps, for each process, common memory as it was in the tick when the process
+//! began to report its reason.
 
 use levels::ladder::ProcessInfo;
 use rcs_core::{
@@ -15,7 +16,8 @@ use rcs_core::{
 /// Processes of [`CommonMemory`], in its order.
 pub const PROCESSES: usize = 7;
 
-/// Processes from the lowest upward, as positions in [`CommonMemory`]: T3I, Grip, Quick Change, Prim, E-move, Subtask, Task.
+/// Processes from the lowest upward, as positions in [`CommonMemory`]: T3I, Grip, Quick Change, Prim, E-move,
+/// Subtask, Task.
 const UPWARD: [usize; PROCESSES] = [4, 6, 5, 3, 2, 1, 0];
 
 /// Position of Task.
@@ -74,7 +76,8 @@ impl Default for Watch {
 }
 
 impl Watch {
-    /// Look at a tick: what came from outside, what the processes read, and what they wrote. Does not allocate.
+    /// Look at a tick: what came from outside, what the processes read, and what they wrote. Does not
+    /// allocate.
     pub fn observe(
         &mut self,
         tick: Tick,
@@ -101,8 +104,8 @@ impl Watch {
         self.last = now;
     }
 
-    /// Why Task reports an error; `None` while it reports none. `processes` are the names and tables in the order of
-    /// [`CommonMemory`].
+    /// Why Task reports an error; `None` while it reports none. `processes` are the names and tables in the
+    /// order of [`CommonMemory`].
     #[must_use]
     pub fn failure(&self, processes: &[ProcessInfo; PROCESSES]) -> Option<Failure> {
         let task = self.causes[TASK].as_ref()?;
@@ -142,7 +145,8 @@ impl Watch {
     }
 }
 
-/// The row as a person says it: `row 5: step Flooding, tries Spent => Fail(NothingSeen)`. Columns in which anything goes are left out.
+/// The row as a person says it: `row 5: step Flooding, tries Spent => Fail(NothingSeen)`. Columns in which
+/// anything goes are left out.
 fn describe(table: &Table, row: &RowText) -> String {
     let named = table.columns.iter().zip(cells(row)).filter(|(_, cell)| !cell.is_empty());
     let conditions: Vec<String> = named.map(|(column, cell)| format!("{column} {cell}")).collect();
@@ -264,7 +268,8 @@ fn place(word: &str, location: &dyn std::fmt::Display, sector: i32) -> String {
     }
 }
 
-/// What each level is doing, from Task down, for a failure that no process reports: a command that takes too long.
+/// What each level is doing, from Task down, for a failure that no process reports: a command that takes too
+/// long.
 #[must_use]
 pub fn present_commands(
     processes: &[ProcessInfo; PROCESSES],

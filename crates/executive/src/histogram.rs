@@ -1,4 +1,5 @@
-//! Times of ticks in a fixed number of buckets, so that a run of any length is summed up without an allocation.
+//! Times of ticks in a fixed number of buckets, so that a run of any length is summed up without an
+//! allocation.
 
 /// Buckets an octave: a percentile is right to 1/32, about 3 %.
 const PER_OCTAVE: u64 = 32;
@@ -6,7 +7,8 @@ const PER_OCTAVE: u64 = 32;
 const OCTAVES: usize = 30;
 const BUCKETS: usize = (OCTAVES + 1) * 32;
 
-/// A histogram of durations in nanoseconds: exact below 32 ns, then 32 buckets an octave, everything above half a minute in the last.
+/// A histogram of durations in nanoseconds: exact below 32 ns, then 32 buckets an octave, everything above
+/// half a minute in the last.
 #[derive(Clone)]
 pub struct Histogram {
     counts: [u64; BUCKETS],
@@ -45,8 +47,8 @@ impl Histogram {
         self.total
     }
 
-    /// The value, in nanoseconds, that `permille` of 1000 values do not exceed: the upper edge of its bucket, and never more than
-    /// the largest value. 0 if nothing was added.
+    /// The value, in nanoseconds, that `permille` of 1000 values do not exceed: the upper edge of its bucket,
+    /// and never more than the largest value. 0 if nothing was added.
     #[must_use]
     pub fn quantile(&self, permille: u64) -> u64 {
         let wanted = (self.total * permille.min(1000)).div_ceil(1000);
@@ -113,7 +115,10 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_quantile_is_right_to_a_32nd(mut values in prop::collection::vec(0_u64..30_000_000_000, 1..400), permille in 1_u64..=1000) {
+        fn a_quantile_is_right_to_a_32nd(
+            mut values in prop::collection::vec(0_u64..30_000_000_000, 1..400),
+            permille in 1_u64..=1000,
+        ) {
             let mut histogram = Histogram::default();
             values.iter().for_each(|&value| histogram.add(value));
             values.sort_unstable();

@@ -1,9 +1,10 @@
 //! The workstation controller (HWSC), emulated: plays a job.
 //!
-//! A job is a list of steps: commands for Task, and actions of the workstation itself (vise, machining) between them. The
-//! emulator first sends PAUSE, as the startup sequence does (V.4.1), and then one step after the other: a command is over when Task
-//! answers its number with `finished`, an action when the workstation is no longer busy. An error, a lost Task, a fault of the
-//! workstation or a step that takes too long end the job with a [`JobFailure`].
+//! A job is a list of steps: commands for Task, and actions of the workstation itself (vise, machining)
+//! between them. The emulator first sends PAUSE, as the startup sequence does (V.4.1), and then one step
+//! after the other: a command is over when Task answers its number with `finished`, an action when the
+//! workstation is no longer busy. An error, a lost Task, a fault of the workstation or a step that takes too
+//! long end the job with a [`JobFailure`].
 //!
 //! ```text
 //!           PAUSE           command finished, or workstation idle
@@ -166,7 +167,8 @@ impl Hwsc {
         false
     }
 
-    /// Once a tick, after the controller: read what Task wrote in `tick`, write what it will read in the next one.
+    /// Once a tick, after the controller: read what Task wrote in `tick`, write what it will read in the next
+    /// one.
     pub fn step(&mut self, tick: Tick, task: &TaskOutputs, workstation: &mut impl Workstation) -> &Progress {
         if self.progress != Progress::Running {
             return &self.progress;
@@ -411,7 +413,8 @@ mod tests {
                 ("== MOVE", true, finished)
             ]
         );
-        // A command is written in one tick, read in the next, executed for four, and its end is seen in the tick that writes it.
+        // A command is written in one tick, read in the next, executed for four, and its end is seen in the
+        // tick that writes it.
         assert!(hwsc.records().iter().filter(|r| r.is_command).all(|r| r.ticks == 5), "{:?}", hwsc.records());
         assert!(
             hwsc.records().iter().filter(|r| !r.is_command).all(|r| r.ticks == 6),

@@ -1,9 +1,10 @@
 //! Runs the levels: clocks, boards, common memory, real-time set-up, and the neighbours that command them.
 //!
-//! The control processes are pure state machines; this crate gives them time and surroundings. [`runner`] steps them with tick-parity
-//! buffers and sums up what they did, [`clock`] says when, [`realtime`] asks the system for punctuality, [`alloc`] proves that
-//! nothing is allocated on the way, [`memory`] lets others look on, [`hwsc`] plays the workstation controller, and [`failure`] finds the
-//! process, the table and the row that explain why something went wrong.
+//! The control processes are pure state machines; this crate gives them time and surroundings. [`runner`]
+//! steps them with tick-parity buffers and sums up what they did, [`clock`] says when, [`realtime`] asks the
+//! system for punctuality, [`alloc`] proves that nothing is allocated on the way, [`memory`] lets others look
+//! on, [`hwsc`] plays the workstation controller, and [`failure`] finds the process, the table and the row
+//! that explain why something went wrong.
 
 #![deny(unsafe_code)]
 

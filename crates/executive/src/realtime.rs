@@ -1,8 +1,9 @@
 //! Asks the system for what real time needs, and says plainly what it did not get.
 //!
-//! Three things are asked for: no page of the program is ever fetched from disk (`mlockall`), the thread of the ticks comes before
-//! everything that is not real time (`SCHED_FIFO`), and it stays on one core. None of them is needed for right results, only
-//! for punctual ones, so a refusal is a sentence in the verdict and not an error.
+//! Three things are asked for: no page of the program is ever fetched from disk (`mlockall`), the thread of
+//! the ticks comes before everything that is not real time (`SCHED_FIFO`), and it stays on one core. None of
+//! them is needed for right results, only for punctual ones, so a refusal is a sentence in the verdict and
+//! not an error.
 //!
 //! Threads inherit policy and core: start log and progress threads before [`acquire`] is called.
 

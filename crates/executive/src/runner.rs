@@ -1,8 +1,9 @@
 //! Steps the ladder, one tick after the other, and sums up what it did.
 //!
-//! Common memory is doubled by tick parity: the processes read what stands in one half and write the other, so that their order
-//! within a tick cannot matter. After every tick the buffers go into the digest, the statuses are watched for the first
-//! sign of a failure, and, if asked for, the buffers are published in shared memory.
+//! Common memory is doubled by tick parity: the processes read what stands in one half and write the other,
+//! so that their order within a tick cannot matter. After every tick the buffers go into the digest, the
+//! statuses are watched for the first sign of a failure, and, if asked for, the buffers are published in
+//! shared memory.
 
 use std::time::Instant;
 
@@ -80,11 +81,12 @@ impl<L> Runner<L> {
         }
     }
 
-    /// Run the next tick on what came from outside for it. `skipped` are the slots of the grid that were skipped so far; they are
-    /// published, and change nothing else.
+    /// Run the next tick on what came from outside for it. `skipped` are the slots of the grid that were
+    /// skipped so far; they are published, and change nothing else.
     ///
-    /// Allocations are counted from here to the end of the call. The time that counts as the controller's is that of the processes
-    /// and of publishing; the digest and the watch for failures belong to the bookkeeping of a run and are not in it.
+    /// Allocations are counted from here to the end of the call. The time that counts as the controller's is
+    /// that of the processes and of publishing; the digest and the watch for failures belong to the
+    /// bookkeeping of a run and are not in it.
     pub fn step<Data: ?Sized>(
         &mut self,
         external: &ExternalInputs,
@@ -160,7 +162,8 @@ impl<L> Runner<L> {
         self.last_ns
     }
 
-    /// Heap allocations of the controller since the runner was made; `None` if the program does not count them.
+    /// Heap allocations of the controller since the runner was made; `None` if the program does not count
+    /// them.
     #[must_use]
     pub fn allocations(&self) -> Option<u64> {
         alloc::is_installed().then(|| alloc::allocations() - self.allocations_at_start)

@@ -1,4 +1,5 @@
-//! Common memory in shared memory: what is published is read, by readers that come and go, and nothing stays behind.
+//! Common memory in shared memory: what is published is read, by readers that come and go, and nothing stays
+//! behind.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

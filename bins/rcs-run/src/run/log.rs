@@ -4,7 +4,6 @@ use std::{collections::BTreeMap, path::Path};
 
 use executive::alloc::Section;
 use levels::ladder::Ladder;
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use plant::{Cell, part_link};
 use rcs_core::{
     digest::Digest,
@@ -12,7 +11,8 @@ use rcs_core::{
     tick::Tick,
 };
 use record::{
-    Attachment, CellFrame, CellModel, End, Epoch, Level, Pace, RecordError, Recorder, Summary, Transform,
+    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Pace, RecordError, Recorder, Summary,
+    Transform,
 };
 use taskdata::load::{
     Store,
@@ -25,8 +25,8 @@ use crate::cli::{ClockKind, RunArguments};
 /// A log that is being written, with what is needed to draw the cell.
 pub struct Log {
     recorder: Recorder,
-    /// Links in the order in which the log knows them, each with the position of its parent; none for the world.
-    links: Vec<(String, Option<usize>)>,
+    /// Names of the links that move, in the order in which the log knows them.
+    links: Vec<String>,
 }
 
 impl Log {
@@ -36,13 +36,21 @@ impl Log {
     /// [`RecordError`] if the file cannot be written.
     pub fn start(path: &Path, arguments: &RunArguments, setup: &Setup) -> Result<Self, RecordError> {
         let coming: Vec<&str> = setup.job.steps.iter().filter_map(|line| delivered(&line.step)).collect();
-        let now = setup.cell.links();
-        let position = |name: &str| now.iter().position(|link| link.name == name);
-        let mut links: Vec<_> = now.iter().map(|link| (link.name.clone(), position(link.parent))).collect();
-        links.extend((1..).take(coming.len()).map(|id| (part_link(id), None)));
-        let names: Vec<String> = links.iter().map(|(name, _)| name.clone()).collect();
-        let joints = setup.cell.joint_states().into_iter().map(|(name, _)| name.to_owned()).collect();
-        let model = CellModel::new(setup.cell.urdf_with(&coming), &names, joints);
+        let later = (1..).take(coming.len()).map(|id| ("world", part_link(id)));
+        let here = setup.cell.links().into_iter().map(|link| (link.parent, link.name));
+        let links = here.chain(later).map(|(parent, name)| Link { name, parent: parent.to_owned() });
+        let fixed = setup.cell.fixed_links().into_iter().map(|link| {
+            let place = transform(&link);
+            (Link { name: link.name, parent: link.parent.to_owned() }, place)
+        });
+        let joints = setup.cell.joint_states().into_iter().map(|(name, _)| name.to_owned());
+        let model = CellModel {
+            urdf: setup.cell.urdf_with(&coming),
+            links: links.collect(),
+            fixed: fixed.collect(),
+            joints: joints.collect(),
+        };
+        let links = model.links.iter().map(|link| link.name.clone()).collect();
         let attachments = attachments(&setup.store, &setup.job, &setup.description_text);
         let (pace, epoch) = match arguments.clock {
             ClockKind::Fast => (Pace::Wait, Epoch::Fixed),
@@ -56,24 +64,14 @@ impl Log {
 
     /// The cell as the controller will see it in `tick`; before [`Log::tick`].
     pub fn cell(&mut self, tick: Tick, cell: &Cell) {
-        let mut places = vec![Isometry3::identity(); self.links.len()];
+        let mut places = vec![Transform::IDENTITY; self.links.len()];
         for link in cell.links() {
-            let Some(at) = self.links.iter().position(|(name, _)| *name == link.name) else { continue };
-            let [x, y, z, w] = link.rotation;
-            let rotation = UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z));
-            let here = Isometry3::from_parts(Translation3::from(link.position), rotation);
-            let parent = self.links[at].1.map_or_else(Isometry3::identity, |parent| places[parent]);
-            places[at] = parent * here;
-        }
-        let transforms = places.iter().map(|place| {
-            let rotation = place.rotation.coords;
-            Transform {
-                position: place.translation.vector.into(),
-                rotation: [rotation.x, rotation.y, rotation.z, rotation.w],
+            if let Some(at) = self.links.iter().position(|name| *name == link.name) {
+                places[at] = transform(&link);
             }
-        });
+        }
         let joints = cell.joint_states().into_iter().map(|(_, value)| value);
-        self.recorder.cell(&CellFrame::of(tick, transforms, joints));
+        self.recorder.cell(&CellFrame::of(tick, places, joints));
     }
 
     /// Something worth a line; before [`Log::tick`] of the same tick.
@@ -94,6 +92,10 @@ impl Log {
     pub fn finish(self, digest: Digest, result: String) -> Result<Summary, RecordError> {
         self.recorder.finish(End { digest: Some(digest.value()), result })
     }
+}
+
+fn transform(link: &plant::Link) -> Transform {
+    Transform { position: link.position, rotation: link.rotation }
 }
 
 /// The part that a step puts into the cell.

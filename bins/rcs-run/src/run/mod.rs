@@ -1,7 +1,8 @@
 //! `rcs-run run`: a job, from the first tick to the result.
 //!
-//! One tick is, in this order: the controller (timed, and its allocations counted), the hand-off to the log, the cell, the workstation
-//! controller. Physics allocates and takes its time; it is outside of what is counted as the controller's.
+//! One tick is, in this order: the controller (timed, and its allocations counted), the hand-off to the log,
+//! the cell, the workstation controller. Physics allocates and takes its time; it is outside of what is
+//! counted as the controller's.
 
 mod log;
 mod progress;

@@ -211,7 +211,8 @@ impl fmt::Display for Page<'_> {
         let allocations = result.allocations_after_start.map_or("not counted".to_owned(), |n| n.to_string());
         writeln!(
             f,
-            "controller {} ticks: p50 {:.1} us, p99 {:.1} us, max {:.1} us; {} slots skipped; allocations: {allocations}",
+            "controller {} ticks: p50 {:.1} us, p99 {:.1} us, max {:.1} us; {} slots skipped; \
+             allocations: {allocations}",
             result.ticks, times.p50, times.p99, times.max, result.overruns
         )?;
         writeln!(f, "digest     {}", result.digest)?;

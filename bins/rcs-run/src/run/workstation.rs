@@ -18,7 +18,8 @@ impl SimulatedWorkstation {
         Self { cell, vise, fault: None }
     }
 
-    /// What happened in the cell since the last call. A simulation that has failed is a fault of the workstation.
+    /// What happened in the cell since the last call. A simulation that has failed is a fault of the
+    /// workstation.
     pub fn events(&mut self) -> Vec<CellEvent> {
         let events = self.cell.events();
         if let Some(event) = events.iter().find(|event| **event == CellEvent::Quarantined) {

@@ -1,5 +1,6 @@
 //! The side of the others: look into a run without disturbing it.
 
+use iceoryx2::{node::Node, prelude::ipc};
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs},
     record::DecodeError,
@@ -46,15 +47,15 @@ struct Ports {
     hwsc: HwscReader,
     devices: DevicesReader,
     executive: ExecutiveReader,
-    _node: iceoryx2::node::Node<iceoryx2::prelude::ipc::Service>,
+    _node: Node<ipc::Service>,
 }
 
 impl Attached {
     /// Attach to a run by its name.
     ///
     /// # Errors
-    /// [`SharedMemoryError::NoSuchRun`] if no living run has the name, [`SharedMemoryError::OtherLayout`] if it comes from other
-    /// sources, else what iceoryx2 says.
+    /// [`SharedMemoryError::NoSuchRun`] if no living run has the name, [`SharedMemoryError::OtherLayout`] if
+    /// it comes from other sources, else what iceoryx2 says.
     pub fn open(name: &RunName) -> Result<Self, SharedMemoryError> {
         let ours = runs::layout();
         let runs = runs::list()?;

@@ -1,12 +1,13 @@
 //! The buffers in shared memory, service by service.
 //!
-//! [`services!`] turns the list at the end of this file into one pair of structures a service: the writer's ends of its buffers and
-//! the readers' ends. A buffer travels as header and byte image; all buffers of a service that bear the same stamp belong
-//! together, and a reader that finds different stamps looks again.
+//! [`services!`] turns the list at the end of this file into one pair of structures a service: the writer's
+//! ends of its buffers and the readers' ends. A buffer travels as header and byte image; all buffers of a
+//! service that bear the same stamp belong together, and a reader that finds different stamps looks again.
 
-use std::marker::PhantomData;
+use std::{fmt::Debug, marker::PhantomData};
 
 use iceoryx2::{
+    node::Node,
     port::{reader::EntryHandle, writer::EntryHandleMut},
     prelude::ipc,
 };
@@ -31,12 +32,14 @@ use rcs_core::{
 
 use super::runs::SharedMemoryError;
 
-/// Epoch of a service: 1 for the first writer, the next number for a writer that takes over from a killed one, because a
-/// blackboard cannot be reopened for writing while a reader holds it. Part of the service's name.
+/// Epoch of a service: 1 for the first writer, the next number for a writer that takes over from a killed
+/// one, because a blackboard cannot be reopened for writing while a reader holds it. Part of the service's
+/// name.
 pub type Epoch = u32;
 
 record! {
-    /// What the executive says about a run, once a tick. Holds counts of this machine: not part of the digest.
+    /// What the executive says about a run, once a tick. Holds counts of this machine: not part of the
+    /// digest.
     pub struct Pulse {
         /// The tick that was run last.
         pub tick: Tick,
@@ -86,6 +89,16 @@ const fn image_size<T: Field>() -> usize {
     Header::SIZE + T::SIZE
 }
 
+/// A buffer as it stands in shared memory.
+fn image<const N: usize, T: Field>(header: &Header, value: &T) -> [u8; N] {
+    let mut bytes = [0; N];
+    let mut w = Writer::new(&mut bytes);
+    header.encode(&mut w);
+    value.encode(&mut w);
+    debug_assert_eq!(w.missing(), 0);
+    bytes
+}
+
 /// The writer's end of a buffer whose image has `N` bytes, header included.
 struct BufferWriter<const N: usize, T> {
     entry: EntryHandleMut<ipc::Service, u32, [u8; N]>,
@@ -94,12 +107,7 @@ struct BufferWriter<const N: usize, T> {
 
 impl<const N: usize, T: Field> BufferWriter<N, T> {
     fn write(&self, header: &Header, value: &T) {
-        let mut image = [0; N];
-        let mut w = Writer::new(&mut image);
-        header.encode(&mut w);
-        value.encode(&mut w);
-        debug_assert_eq!(w.missing(), 0);
-        self.entry.update_with_copy(image);
+        self.entry.update_with_copy(image(header, value));
     }
 }
 
@@ -120,9 +128,12 @@ impl<const N: usize, T: Field> BufferReader<N, T> {
 macro_rules! services {
     ($(
         $(#[doc = $doc:literal])*
-        $service:ident ( $writer:ident, $reader:ident ) = $outputs:ident { $( $key:literal $buffer:ident : $type:ty, )+ }
+        $service:ident ( $writer:ident, $reader:ident ) = $outputs:ident {
+            $( $key:literal $buffer:ident : $type:ty, )+
+        }
     )+) => {
-        /// The services of a run: for each, its name, and the names and schemas of its buffers in the order of their keys.
+        /// The services of a run: for each, its name, and the names and schemas of its buffers in the order
+        /// of their keys.
         pub const SERVICES: &[(&str, &[(&str, Schema)])] = &[ $(
             (stringify!($service), &[ $( (stringify!($buffer), <$type as Field>::SCHEMA), )+ ]),
         )+ ];
@@ -137,15 +148,15 @@ macro_rules! services {
 
             impl $writer {
                 /// Create the service and its buffers, zeroed.
-                pub(super) fn create(node: &iceoryx2::node::Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
-                    let failed = |what: &dyn std::fmt::Debug| SharedMemoryError::service(stringify!($service), what);
+                pub(super) fn create(node: &Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
+                    let failed = |what: &dyn Debug| SharedMemoryError::service(stringify!($service), what);
                     let name = super::runs::service_name(stringify!($service), epoch)?;
                     let service = node
                         .service_builder(&name)
                         .blackboard_creator::<u32>()
                         .max_readers(super::runs::MAX_READERS)
                         .max_nodes(super::runs::MAX_READERS + 1)
-                        $( .add($key, rcs_core::record::to_bytes::<{ image_size::<$type>() }, _>(&<$outputs>::ZERO.header)) )+
+                        $( .add($key, image::<{ image_size::<$type>() }, _>(&Header::ZERO, &<$type as Field>::ZERO)) )+
                         .create()
                         .map_err(|error| failed(&error))?;
                     let port = service.writer_builder().create().map_err(|error| failed(&error))?;
@@ -172,8 +183,8 @@ macro_rules! services {
 
             impl $reader {
                 /// Open the service.
-                pub(super) fn open(node: &iceoryx2::node::Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
-                    let failed = |what: &dyn std::fmt::Debug| SharedMemoryError::service(stringify!($service), what);
+                pub(super) fn open(node: &Node<ipc::Service>, epoch: Epoch) -> Result<Self, SharedMemoryError> {
+                    let failed = |what: &dyn Debug| SharedMemoryError::service(stringify!($service), what);
                     let name = super::runs::service_name(stringify!($service), epoch)?;
                     let service = node
                         .service_builder(&name)
@@ -192,7 +203,12 @@ macro_rules! services {
                 /// The latest buffers; `None` if they were being written meanwhile.
                 pub fn read(&self) -> Result<Option<$outputs>, DecodeError> {
                     let mut outputs = <$outputs>::default();
-                    let mut stamps = [ $( { let (header, value) = self.$buffer.read()?; outputs.$buffer = value; header }, )+ ].into_iter();
+                    let mut stamps = [ $( {
+                        let (header, value) = self.$buffer.read()?;
+                        outputs.$buffer = value;
+                        header
+                    }, )+ ]
+                    .into_iter();
                     let first = stamps.next().unwrap_or_default();
                     outputs.header = first;
                     Ok(stamps.all(|header| header == first).then_some(outputs))
@@ -258,8 +274,8 @@ services! {
     }
 }
 
-/// Version of the layout: a hash of the names and schemas of all services and buffers. Programs that were built with different
-/// layouts never read each other's bytes.
+/// Version of the layout: a hash of the names and schemas of all services and buffers. Programs that were
+/// built with different layouts never read each other's bytes.
 #[must_use]
 pub fn layout_version() -> u32 {
     let mut digest = Digest::new();
@@ -318,8 +334,8 @@ mod tests {
     use super::*;
     use rcs_core::interface::{CommonMemory, ExternalInputs};
 
-    /// The services together carry every field of common memory and of the external inputs: their schemas, headers apart,
-    /// are those of the records.
+    /// The services together carry every field of common memory and of the external inputs: their schemas,
+    /// headers apart, are those of the records.
     #[test]
     fn every_buffer_of_common_memory_is_published() {
         let processes = CommonMemory::RECORD.fields.len();

@@ -1,12 +1,13 @@
 //! Common memory that others can see (DESIGN 6): the buffers of a run in shared memory.
 //!
-//! The run publishes, once a tick, what its processes wrote. Programs outside attach and leave whenever they like and read the
-//! latest values; nothing they do changes a tick. Each writer (a control process, the HWSC, the devices, the executive) has one
-//! iceoryx2 *blackboard* service: latest value, one writer, no allocation. Its buffers are the keys.
+//! The run publishes, once a tick, what its processes wrote. Programs outside attach and leave whenever they
+//! like and read the latest values; nothing they do changes a tick. Each writer (a control process, the HWSC,
+//! the devices, the executive) has one iceoryx2 *blackboard* service: latest value, one writer, no
+//! allocation. Its buffers are the keys.
 //!
-//! A value is bytes, never a Rust structure: a [`Header`](rcs_core::interface::Header) with the tick that wrote it, then the buffer's
-//! byte image (`rcs_core::record`). So there is no padding, no pointer and no enum that another program could make
-//! illegal; a reader decodes with checks.
+//! A value is bytes, never a Rust structure: a [`Header`](rcs_core::interface::Header) with the tick that
+//! wrote it, then the buffer's byte image (`rcs_core::record`). So there is no padding, no pointer and no
+//! enum that another program could make illegal; a reader decodes with checks.
 //!
 //! * [`buffers`]: which buffers there are, and how they are written and read;
 //! * [`publish`]: the side of the run;

@@ -1,5 +1,7 @@
-//! The side of the run: creates all services before the first tick and writes them once a tick, without allocating.
+//! The side of the run: creates all services before the first tick and writes them once a tick, without
+//! allocating.
 
+use iceoryx2::{node::Node, prelude::ipc};
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Header},
     tick::Tick,
@@ -16,8 +18,8 @@ use super::{
 /// Epoch of a run whose writers were never restarted.
 pub const FIRST_EPOCH: Epoch = 1;
 
-/// The writers of all buffers of a run. Dropping it ends the run in shared memory: readers that are still attached see
-/// [`Pulse::over`], and whoever leaves last removes the files.
+/// The writers of all buffers of a run. Dropping it ends the run in shared memory: readers that are still
+/// attached see [`Pulse::over`], and whoever leaves last removes the files.
 pub struct Publisher {
     name: RunName,
     // Taken out before the files are removed: iceoryx2 must have let go of them by then.
@@ -37,14 +39,15 @@ struct Ports {
     devices: DevicesWriter,
     executive: ExecutiveWriter,
     // Last: the services are closed before their node.
-    _node: iceoryx2::node::Node<iceoryx2::prelude::ipc::Service>,
+    _node: Node<ipc::Service>,
 }
 
 impl Publisher {
     /// Set up all services of a run. What killed runs left behind is removed first.
     ///
     /// # Errors
-    /// [`SharedMemoryError`] with what iceoryx2 says, if this machine does not give the memory or the name is taken.
+    /// [`SharedMemoryError`] with what iceoryx2 says, if this machine does not give the memory or the name is
+    /// taken.
     pub fn create(name: &RunName) -> Result<Self, SharedMemoryError> {
         runs::clean()?;
         let node = runs::node(name, "rcs-run")?;
@@ -71,7 +74,8 @@ impl Publisher {
         &self.name
     }
 
-    /// Write the buffers of a tick: what came in, what the processes wrote, and the pulse, in this order. Does not allocate.
+    /// Write the buffers of a tick: what came in, what the processes wrote, and the pulse, in this order.
+    /// Does not allocate.
     pub fn publish(&mut self, external: &ExternalInputs, memory: &CommonMemory, pulse: Pulse) {
         let Some(ports) = &self.ports else { return };
         let header = stamp(pulse.tick);

@@ -1,8 +1,9 @@
 //! Where runs live in shared memory, and how they are found and removed.
 //!
-//! Every run has a name and a directory of its own, `<temporary directory>/rcs-ii-<user>/<name>@<layout>`, in which iceoryx2 keeps its
-//! files, and its own prefix of names in shared memory. So parallel runs and tests never meet, users do not disturb each
-//! other, and what a killed run left behind is found by looking, and removed when nobody who is alive uses it.
+//! Every run has a name and a directory of its own, `<temporary directory>/rcs-ii-<user>/<name>@<layout>`, in
+//! which iceoryx2 keeps its files, and its own prefix of names in shared memory. So parallel runs and tests
+//! never meet, users do not disturb each other, and what a killed run left behind is found by looking, and
+//! removed when nobody who is alive uses it.
 
 use std::{
     fmt::{self, Debug},
@@ -108,8 +109,8 @@ pub const RUN_NAME_MAX: usize = 40;
 pub struct RunName(String);
 
 impl RunName {
-    /// A name that no other living run of this machine has: the job and the number of this operating system process. Characters of the
-    /// job that a name cannot have become hyphens.
+    /// A name that no other living run of this machine has: the job and the number of this operating system
+    /// process. Characters of the job that a name cannot have become hyphens.
     #[must_use]
     pub fn unique(job: &str) -> Self {
         let suffix = format!("-{}", std::process::id());
@@ -190,8 +191,8 @@ fn prefix(name: &RunName, layout: &str) -> String {
     format!("rcs-{}-{layout}-{name}_", geteuid().as_raw())
 }
 
-/// Held while a run's directory is made or removed, so that nobody clears away what another program is just setting up. The system
-/// releases it when its holder ends, however that happens.
+/// Held while a run's directory is made or removed, so that nobody clears away what another program is just
+/// setting up. The system releases it when its holder ends, however that happens.
 fn lock() -> Result<File, SharedMemoryError> {
     let root = root();
     let path = root.join("lock");
@@ -270,7 +271,8 @@ fn is_alive(config: &Config) -> bool {
 /// Remove what killed runs left in shared memory; living runs are left alone.
 ///
 /// # Errors
-/// [`SharedMemoryError::Io`] if the directory of runs cannot be read. What could not be removed is in the answer.
+/// [`SharedMemoryError::Io`] if the directory of runs cannot be read. What could not be removed is in the
+/// answer.
 pub fn clean() -> Result<Cleaned, SharedMemoryError> {
     let mut cleaned = Cleaned::default();
     for run in list()? {
@@ -283,7 +285,8 @@ pub fn clean() -> Result<Cleaned, SharedMemoryError> {
     Ok(cleaned)
 }
 
-/// The last one out: removes a run's directory and objects if no living node is left in it; false if there is one.
+/// The last one out: removes a run's directory and objects if no living node is left in it; false if there is
+/// one.
 pub(super) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, SharedMemoryError> {
     let config = config(name, layout)?;
     let _lock = lock()?;
@@ -311,8 +314,8 @@ pub(super) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, S
     }
 }
 
-/// Removes the objects in shared memory whose names start with a run's prefix. iceoryx2 itself leaves one of 16 bytes behind even
-/// after an orderly end.
+/// Removes the objects in shared memory whose names start with a run's prefix. iceoryx2 itself leaves one of
+/// 16 bytes behind even after an orderly end.
 fn remove_objects(prefix: &str) -> Result<(), SharedMemoryError> {
     let Ok(entries) = fs::read_dir(SHARED_MEMORY) else { return Ok(()) };
     for entry in entries.flatten() {
