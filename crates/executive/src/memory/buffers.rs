@@ -1,8 +1,9 @@
 //! The buffers in shared memory, service by service.
 //!
-//! [`services!`] turns the list at the end of this file into one pair of structures a service: the writer's
-//! ends of its buffers and the readers' ends. A buffer travels as header and byte image; all buffers of a
-//! service that bear the same stamp belong together, and a reader that finds different stamps looks again.
+//! The macro `services!` turns the list at the end of this file into one pair of structures a service: the
+//! writer's ends of its buffers and the readers' ends. A buffer travels as header and byte image; all buffers
+//! of a service that bear the same stamp belong together, and a reader that finds different stamps looks
+//! again.
 
 use std::{fmt::Debug, marker::PhantomData};
 
