@@ -10,9 +10,9 @@ use taskdata::load::Source;
 
 use crate::{error::RecordError, proto::foxglove::Transform};
 
-/// Links of the cell at most.
+/// Links that move, at most.
 pub const MAX_LINKS: usize = 64;
-/// Joints of the cell at most.
+/// Joints at most.
 pub const MAX_JOINTS: usize = 16;
 
 /// What time tick 0 of a log has.
@@ -83,7 +83,7 @@ impl Attachment {
     }
 }
 
-/// A link of the cell: a frame that moves, and the frame that it is given in.
+/// A link of the cell: a frame, and the frame that it is given in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Link {
     /// Name, as in the URDF.
@@ -93,29 +93,20 @@ pub struct Link {
 }
 
 /// The cell as viewers need it.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct CellModel {
     /// Geometry of all links.
     pub urdf: String,
-    /// Links in the order of [`CellFrame::transforms`]; a parent stands before its children.
+    /// Links that move, in the order of [`CellFrame::transforms`].
     pub links: Vec<Link>,
+    /// Links that do not, with their places in their parents. A viewer draws no link whose place it is not
+    /// told, URDF or not.
+    pub fixed: Vec<(Link, Transform)>,
     /// Names of the joints in the order of [`CellFrame::joints`].
     pub joints: Vec<String>,
 }
 
 impl CellModel {
-    /// A model whose links are given in world coordinates and whose parents are read from the URDF: the
-    /// parent link of the joint whose child the link is.
-    #[must_use]
-    pub fn new(urdf: String, links: &[String], joints: Vec<String>) -> Self {
-        let parents = urdf_parents(&urdf);
-        let links = links.iter().map(|name| {
-            let parent = parents.get(name.as_str()).copied().unwrap_or(WORLD);
-            Link { name: name.clone(), parent: parent.to_owned() }
-        });
-        Self { links: links.collect(), joints, urdf }
-    }
-
     /// Refuses a cell that a [`CellFrame`] cannot carry.
     pub(crate) const fn check(&self) -> Result<(), RecordError> {
         let (links, joints) = (self.links.len(), self.joints.len());
@@ -129,32 +120,12 @@ impl CellModel {
     }
 }
 
-/// The frame that everything else is given in.
-pub const WORLD: &str = "world";
-
-/// Parent of each child link, from the `joint` elements of a URDF.
-fn urdf_parents(urdf: &str) -> BTreeMap<&str, &str> {
-    let link = |joint: &'_ str, element: &str| -> Option<(usize, usize)> {
-        let after = joint.find(element)? + element.len();
-        let open = after + joint.get(after..)?.find("link=\"")? + "link=\"".len();
-        Some((open, open + joint.get(open..)?.find('"')?))
-    };
-    let joint_elements =
-        urdf.split("<joint").skip(1).map(|rest| rest.split("</joint>").next().unwrap_or(rest));
-    joint_elements
-        .filter_map(|joint| {
-            let (parent, child) = (link(joint, "<parent")?, link(joint, "<child")?);
-            Some((joint.get(child.0..child.1)?, joint.get(parent.0..parent.1)?))
-        })
-        .collect()
-}
-
 /// Where everything in the cell is in one tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CellFrame {
     /// The tick.
     pub tick: Tick,
-    /// Places of the links in world coordinates, in the order of [`CellModel::links`].
+    /// Places of the links in their parents, in the order of [`CellModel::links`].
     pub transforms: [Transform; MAX_LINKS],
     /// Positions of the joints, radians or metres, in the order of [`CellModel::joints`].
     pub joints: [f64; MAX_JOINTS],
@@ -222,19 +193,10 @@ mod tests {
     }
 
     #[test]
-    fn parents_come_from_the_urdf() {
-        let urdf = r#"<robot name="cell"><link name="base"/><link name="arm"/>
-            <joint name="j" type="revolute"><parent link="base"/><child link="arm"/></joint>
-            <joint name="broken"><parent link="base"/></joint></robot>"#;
-        let model = CellModel::new(urdf.into(), &["base".into(), "arm".into(), "part".into()], Vec::new());
-        let parents: Vec<&str> = model.links.iter().map(|link| link.parent.as_str()).collect();
-        assert_eq!(parents, ["world", "base", "world"]);
-    }
-
-    #[test]
     fn a_cell_that_is_too_large_is_refused() {
-        let links: Vec<String> = (0..=MAX_LINKS).map(|number| format!("link-{number}")).collect();
-        let error = CellModel::new(String::new(), &links, Vec::new()).check().unwrap_err();
+        let link = |number| Link { name: format!("link-{number}"), parent: "world".into() };
+        let model = CellModel { links: (0..=MAX_LINKS).map(link).collect(), ..CellModel::default() };
+        let error = model.check().unwrap_err();
         assert_eq!(error.to_string(), "a cell of at most 64 links was expected, this one has 65");
     }
 }

@@ -4,7 +4,7 @@
 //! process, why, and by which row of which decision table.
 
 use rcs_core::interface::{
-    CommonMemory, ExternalInputs, Header, Reason,
+    CommonMemory, Header, Reason,
     hws::{HwsCommand, HwsReport},
     t3i::LinkFault,
 };
@@ -61,22 +61,28 @@ fn commands(
     }
     let (was, is) = (&before.task.subtask, &after.task.subtask);
     if was.number != is.number {
-        let goal = [is.object.as_str(), is.location.as_str()].join(" ");
-        say(Level::Info, "task", format!("Subtask {}: {} {}", is.number, is.command, goal.trim()));
+        let words = [is.command.text(), is.object.as_str(), is.location.as_str()];
+        say(Level::Info, "task", down("Subtask", &words));
     }
     let (was, is) = (&before.subtask.emove, &after.subtask.emove);
     if was.number != is.number {
-        let goal = [is.object.as_str(), is.location.as_str()].join(" ");
-        say(Level::Info, "subtask", format!("E-move {}: {} {}", is.number, is.command, goal.trim()));
+        let words = [is.command.text(), is.object.as_str(), is.location.as_str()];
+        say(Level::Info, "subtask", down("E-move", &words));
     }
     let (was, is) = (&before.emove.prim, &after.emove.prim);
     if was.number != is.number {
-        say(Level::Debug, "emove", format!("Prim {}: {}", is.number, is.command));
+        say(Level::Debug, "emove", down("Prim", &[is.command.text()]));
     }
     let (was, is) = (&before.emove.grip, &after.emove.grip);
     if was.number != is.number {
-        say(Level::Debug, "emove", format!("Grip {}: {}", is.number, is.command));
+        say(Level::Debug, "emove", down("Grip", &[is.command.text()]));
     }
+}
+
+/// A command on its way down: `-> E-move: GRASP-OBJ LINKBAR1 PFIXTURE`.
+fn down(to: &str, words: &[&str]) -> String {
+    let words: Vec<&str> = words.iter().copied().filter(|word| !word.is_empty()).collect();
+    format!("-> {to}: {}", words.join(" "))
 }
 
 fn failures(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, said: &mut Vec<Remark>) {
@@ -154,12 +160,6 @@ fn hws_text(command: &HwsCommand) -> String {
         words.push(format!("end at {}", place(command.end_at.as_str(), command.end_at_sector)));
     }
     words.join(" ")
-}
-
-/// Text of the inputs' command, for reports outside the log.
-#[must_use]
-pub fn command_text(external: &ExternalInputs) -> String {
-    hws_text(&external.hws)
 }
 
 #[cfg(test)]

@@ -129,6 +129,7 @@ impl<W: Write + Seek> LogWriter<W> {
             .profile("")
             .library(concat!("rcs-record ", env!("CARGO_PKG_VERSION")))
             .compression(Some(Compression::Lz4))
+            .compression_level(6)
             .chunk_size(Some(CHUNK));
         let mut output = Output { mcap: options.create(sink)?, epoch: setup.epoch };
         write_head(&mut output, &setup)?;

@@ -17,8 +17,8 @@ use rcs_core::{
     tick::Tick,
 };
 use record::{
-    Attachment, CellFrame, CellModel, End, Epoch, Level, Log, Lost, Pace, ReadError, RecordError, Recorder,
-    Setup, Transform, replay,
+    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Log, Lost, Pace, ReadError, RecordError,
+    Recorder, Setup, Transform, replay,
     writer::{LogWriter, TickRecord},
 };
 use taskdata::{files::TaskData, load::Source};
@@ -47,14 +47,20 @@ impl Drop for Scratch {
 
 fn setup() -> Setup {
     let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
-    let links = ["base".to_owned(), "arm".to_owned()];
+    let link = |name: &str, parent: &str| Link { name: name.into(), parent: parent.into() };
+    let table = (link("table", "world"), Transform { position: [1.0, 0.0, 0.5], ..Transform::IDENTITY });
     let urdf = "<robot name='cell'><link name='base'/><link name='arm'/><joint name='turn' type='revolute'>\
                 <parent link=\"base\"/><child link=\"arm\"/></joint></robot>";
     Setup {
         epoch: Epoch::Fixed,
         run: [text("version", "0.0.1-test"), text("seed", "7")].into(),
         attachments: vec![Attachment::text(Attachment::JOB, "TRANSFER")],
-        cell: Some(CellModel::new(urdf.into(), &links, vec!["turn".into()])),
+        cell: Some(CellModel {
+            urdf: urdf.into(),
+            links: vec![link("base", "world"), link("arm", "base")],
+            fixed: vec![table],
+            joints: vec!["turn".into()],
+        }),
     }
 }
 
@@ -113,6 +119,11 @@ fn a_recorded_run_is_replayed_bit_for_bit() {
     assert_eq!(log.end.as_ref().unwrap()["result"], "finished");
     assert_eq!(log.attachment(Attachment::JOB).unwrap().data, b"TRANSFER");
     assert!(log.lines().any(|line| line.tick == Tick(30) && line.text == "the part slips"));
+    for (topic, messages) in
+        [("/robot_description", 1), ("/tf_static", 1), ("/tf", 1000), ("/joint_states", 1000)]
+    {
+        assert_eq!(log.messages(topic).count(), messages, "{topic}");
+    }
     let mut recorded = log.ticks();
     run(1000, |tick, external, memory, state| {
         let logged = recorded.next().unwrap().unwrap();

@@ -45,6 +45,9 @@ const ARM: [(&str, &str, [f64; 3]); 6] = [
 /// Where each arm link begins in its parent, along the parent's X, in.
 const STARTS: [f64; 6] = [0.0, 0.0, T3.upper_arm, T3.forearm, T3.pitch_to_yaw, 0.0];
 
+/// Blocks of the furniture that belong to the link of the vise.
+const VISE_BLOCKS: [&str; 3] = ["vise_body", "fixed_jaw_notch", "fixed_jaw"];
+
 /// A shape of a link for the picture, in the link's frame.
 enum Outline {
     Box(Inches),
@@ -152,6 +155,13 @@ impl Cell {
         links
     }
 
+    /// Names and poses of what stands in the cell for ever: the links of the URDF that [`Cell::links`] does not have.
+    #[must_use]
+    pub fn fixed_links(&self) -> Vec<Link> {
+        let standing = self.furniture.iter().filter(|block| !VISE_BLOCKS.contains(&block.name.as_str()));
+        standing.map(|block| link(&block.name, "world", &to_pose(&block.frame))).collect()
+    }
+
     /// Names and values of all joints of the URDF that are one number: radians, or metres for fingers and jaw.
     #[must_use]
     pub fn joint_states(&self) -> Vec<(&'static str, f64)> {
@@ -176,8 +186,7 @@ impl Cell {
         self.urdf_arm(&mut urdf);
         self.urdf_gripper(&mut urdf);
         for block in &self.furniture {
-            let in_vise = ["vise_body", "fixed_jaw_notch", "fixed_jaw"].contains(&block.name.as_str());
-            if !in_vise {
+            if !VISE_BLOCKS.contains(&block.name.as_str()) {
                 urdf.begin_link(&block.name);
                 urdf.block(&Block { frame: Frame::identity(), ..block.clone() }, STEEL);
                 urdf.end_link();
@@ -266,7 +275,7 @@ impl Cell {
         urdf.begin_link("vise");
         let inverse = self.vise.frame().inverse();
         for block in &self.furniture {
-            if ["vise_body", "fixed_jaw_notch", "fixed_jaw"].contains(&block.name.as_str()) {
+            if VISE_BLOCKS.contains(&block.name.as_str()) {
                 urdf.block(&block.moved(&inverse), DARK);
             }
         }
