@@ -34,6 +34,7 @@ pub struct Air {
     opening: f64,
     force: f64,
     speed: f64,
+    relieved: bool,
     range: [f64; 2],
     compressibility: f64,
     greatest_force: f64,
@@ -48,6 +49,7 @@ impl Air {
             opening: gripper.initial_opening,
             force: 0.0,
             speed: 0.0,
+            relieved: false,
             range: gripper.opening,
             compressibility: gripper.compressibility,
             greatest_force: gripper.greatest_force,
@@ -67,6 +69,12 @@ impl Air {
         self.force
     }
 
+    /// True if the force was taken back in the last step: what slides then is being let go.
+    #[must_use]
+    pub fn relieved(&self) -> bool {
+        self.relieved
+    }
+
     /// Opening speed in the last step, in/s.
     #[must_use]
     pub fn speed(&self) -> f64 {
@@ -75,7 +83,7 @@ impl Air {
 
     /// Let the air flow for `dt` seconds; `stop` is the opening at which something between the fingers blocks them.
     pub fn advance(&mut self, dt: f64, bits: u8, stop: Option<f64>) {
-        let before = self.opening;
+        let (before, force) = (self.opening, self.force);
         let [least, greatest] = self.range;
         if bits & valve::VENT != 0 {
             self.force = (self.force - self.greatest_force * dt / self.vent_time).max(0.0);
@@ -99,6 +107,7 @@ impl Air {
             self.opening = (self.opening + wanted - relieved / self.compressibility).min(greatest);
         }
         self.speed = (self.opening - before) / dt;
+        self.relieved = self.force < force;
     }
 
     /// The part has been pushed aside between the fingers and has spread them to `opening`.

@@ -1,13 +1,13 @@
 //! A hold: a part between two pads, as strong as the pads' force and friction allow, and no stronger.
 //!
 //! Contacts between a squeezed light part and two heavy pads creep, and a rigid weld never lets go. A hold is between the
-//! two: springs between the pads' body and the part, whose rest position gives way when more is asked of the pads than they
-//! can bear. The load on the pads is known from the springs; what is beyond the limit moves the rest position after the
-//! part, by just so much that the limit remains (a return mapping, as for plastic material):
+//! two: springs between the pads' body and the part, and limits to what they may carry.
 //!
-//! * along the pads (X, Z, and the turn about Y) the limit is friction, and what has slid stays where it has slid to;
-//! * across the pads (Y, and the tilts about X and Z) the limit is the pads' force: the part is pushed aside, and the pads
-//!   bring it back to their middle, flush, as soon as they are the stronger.
+//! * Along the pads (X, Z, and the turn about Y) the limit is friction, for force and moment together: an ellipse with the
+//!   friction force and its moment on the touched area as axes. Below it the part *sticks* to its springs and nothing creeps;
+//!   beyond it the part *slides* without them, against friction along its sliding, until it stands still and sticks again.
+//! * Across the pads (Y, and the tilts about X and Z) the limit is the pads' force. The part is pushed aside against it, and
+//!   the pads bring it back to their middle, flush, as soon as they are the stronger.
 //!
 //! The springs act at the middle of the part, where the six axes do not disturb each other, so that the solver has them
 //! exact at once; the limits hold where the pads touch, and a bar that is gripped at its end droops about that point.
@@ -15,7 +15,11 @@
 use rapier3d_f64::math::Vector;
 use rapier3d_f64::prelude::*;
 
-use crate::{convert::on_the_side_of, squeeze::Squeeze};
+use crate::{
+    convert::on_the_side_of,
+    friction::{Motion, Rubbed},
+    squeeze::Squeeze,
+};
 
 /// The six axes: along X, Y, Z, about X, about Y, about Z. Y is across the pads.
 const AXES: [JointAxis; 6] =
@@ -76,9 +80,20 @@ pub struct Hold {
     stiffness: Stiffness,
     /// Of the springs along and about the axes, N·s/m and N·m·s/rad.
     damping: [Real; 2],
+    load: Load,
     limits: Limits,
-    sliding: bool,
+    grip: Grip,
     slipped: Real,
+}
+
+/// Whether friction holds the part along the pads: it slides when more is asked for than friction bears, and sticks again
+/// when friction stops it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Grip {
+    /// The springs hold.
+    Sticks,
+    /// Friction acts against the motion.
+    Slides,
 }
 
 impl Hold {
@@ -101,7 +116,7 @@ impl Hold {
             .local_frame1(nominal)
             .local_frame2(Pose::from_rotation(attitude))
             .build();
-        set_springs(&mut data, stiffness, damping);
+        set_springs(&mut data, stiffness, damping, Grip::Sticks);
         for axis in AXES {
             data.set_motor_model(axis, MotorModel::ForceBased).set_motor_max_force(axis, 0.0);
         }
@@ -117,7 +132,8 @@ impl Hold {
             stiffness,
             damping,
             limits,
-            sliding: false,
+            load,
+            grip: Grip::Sticks,
             slipped: 0.0,
         }
     }
@@ -165,38 +181,76 @@ impl Hold {
         Pose::from_parts(part.translation, part.rotation * self.attitude)
     }
 
-    /// After a step: let the rest position give way where the load is beyond what the pads bear.
+    /// Before a step of `dt` seconds: friction on a part that slides.
+    pub fn rub(&mut self, world: &mut PhysicsWorld, dt: Real) {
+        if self.grip == Grip::Sticks {
+            return;
+        }
+        let pads = &world.bodies[self.pads];
+        let axes = pads.position().rotation;
+        let local = |v: Vector| axes.inverse() * v;
+        let part = &world.bodies[self.part];
+        let middle = part.center_of_mass();
+        let relative = local(part.linvel() + world.gravity * dt - pads.velocity_at_point(middle));
+        let turn = local(part.angvel() - pads.angvel()).y;
+        let offset = *pads.position() * self.limits.point - middle;
+        let reach = local(offset) * Vector::new(1.0, 0.0, 1.0);
+        let towards = if reach.length() > 1e-9 { reach.normalize() } else { Vector::X };
+        let across = Vector::Y.cross(towards);
+        let motion = Motion { along: relative.dot(towards), across: relative.dot(across), turn };
+        let Load { mass, inertia } = self.load;
+        let rubbed = Rubbed { mass, inertia, reach: reach.length(), arm: self.friction_arm() };
+        let Some(left) = rubbed.after(&motion, self.limits.friction * dt) else {
+            self.set_grip(world, Grip::Sticks);
+            return;
+        };
+        let push = towards * (left.along - motion.along) + across * (left.across - motion.across);
+        let part = &mut world.bodies[self.part];
+        part.apply_impulse(axes * (push * mass), true);
+        part.apply_torque_impulse(axes * (Vector::Y * ((left.turn - turn) * inertia)), true);
+    }
+
+    /// Lever arm of friction about Y, m.
+    fn friction_arm(&self) -> Real {
+        if self.limits.friction > 0.0 { self.limits.moments[1] / self.limits.friction } else { 0.0 }
+    }
+
+    /// After a step: break away if more is asked for than friction bears, and be pushed aside where it is more than the
+    /// pads' force.
     pub fn give_way(&mut self, world: &mut PhysicsWorld) {
         let Stiffness { linear, angular } = self.stiffness;
         let present = self.present(world);
+        if self.grip == Grip::Slides {
+            self.follow(&present);
+        }
         let away = present.translation - self.nominal.translation;
         let turn = on_the_side_of(&Rotation::IDENTITY, present.rotation * self.nominal.rotation.inverse());
         let turn = turn.to_scaled_axis();
-
-        // Along the pads: friction has one limit whatever the direction.
-        let plane = libm::hypot(away.x, away.z);
-        let slid = beyond(plane, self.limits.friction / linear);
-        let share = if plane > 0.0 { slid / plane } else { 0.0 };
-        let slide = Vector::new(away.x * share, 0.0, away.z * share);
         let aside = Vector::Y * beyond(away.y, self.limits.normal / linear);
-
-        // About the point where the pads touch: the springs' moment, and that of their force at the middle.
+        // What the springs carry, at the point where the pads touch: their moment, and that of their force at the middle.
         let arm = self.nominal.translation - self.limits.point;
-        let force = (away - slide - aside) * -linear;
-        let moment = (turn * -angular + arm.cross(force)).to_array();
-        let squares =
-            [arm.y * arm.y + arm.z * arm.z, arm.x * arm.x + arm.z * arm.z, arm.x * arm.x + arm.y * arm.y];
-        let [tilt_x, turned, tilt_z] = [0, 1, 2].map(|axis| {
-            -beyond(moment[axis], self.limits.moments[axis]) / (angular + linear * squares[axis])
-        });
-
-        if slid > 0.0 || turned != 0.0 {
-            self.nominal = about(self.limits.point, Vector::Y * turned, self.nominal);
-            self.nominal.translation += slide;
-            self.slipped += slid;
+        let force = (away - aside) * -linear;
+        let moment = turn * -angular + arm.cross(force);
+        if self.grip == Grip::Sticks {
+            let force = libm::hypot(force.x, force.z) / self.limits.friction;
+            let used = libm::hypot(force, moment.y / self.limits.moments[1]);
+            if used > 1.0 {
+                // The springs go on at the limit; whether the part stands or slides is seen before the next step.
+                let excess = 1.0 - 1.0 / used;
+                let slide = Vector::new(away.x, 0.0, away.z) * excess;
+                self.nominal.translation += slide;
+                let turned = Rotation::from_scaled_axis(Vector::Y * (turn.y * excess));
+                self.nominal.rotation = (turned * self.nominal.rotation).normalize();
+                self.slipped += slide.length();
+                self.set_grip(world, Grip::Slides);
+            }
         }
-        self.set_sliding(world, slid > 0.0 || turned != 0.0);
-        let mut rest = about(self.limits.point, Vector::new(tilt_x, 0.0, tilt_z), self.nominal);
+        let tilt = |moment: Real, limit: Real, across: Real| {
+            -beyond(moment, limit) / (angular + linear * (across * across + arm.y * arm.y))
+        };
+        let [limit_x, _, limit_z] = self.limits.moments;
+        let tilts = Vector::new(tilt(moment.x, limit_x, arm.z), 0.0, tilt(moment.z, limit_z, arm.x));
+        let mut rest = about(self.limits.point, tilts, self.nominal);
         rest.translation += aside;
         self.set_rest(world, rest);
     }
@@ -204,6 +258,9 @@ impl Hold {
     /// Let all springs rest where the part is now: another, stronger grip has it.
     pub fn relax(&mut self, world: &mut PhysicsWorld) {
         self.nominal = normalised(self.present(world));
+        if self.grip != Grip::Sticks {
+            self.set_grip(world, Grip::Sticks);
+        }
         self.set_rest(world, self.nominal);
     }
 
@@ -216,14 +273,19 @@ impl Hold {
         self.set_rest(world, self.nominal);
     }
 
-    /// A part that slides meets friction, and no damping beside it.
-    fn set_sliding(&mut self, world: &mut PhysicsWorld, sliding: bool) {
-        if sliding == self.sliding {
-            return;
-        }
-        self.sliding = sliding;
+    /// The part has slid without springs: it would now stick where it is.
+    fn follow(&mut self, present: &Pose) {
+        let touched = self.nominal.inverse_transform_point(self.limits.point);
+        self.nominal.translation.x = present.translation.x;
+        self.nominal.translation.z = present.translation.z;
+        self.nominal.rotation = about_y(present.rotation);
+        self.slipped += (self.nominal.transform_point(touched) - self.limits.point).length();
+    }
+
+    fn set_grip(&mut self, world: &mut PhysicsWorld, grip: Grip) {
+        self.grip = grip;
         if let Some(joint) = world.impulse_joints.get_mut(self.joint, false) {
-            set_springs(&mut joint.data, self.stiffness, if sliding { [0.0; 2] } else { self.damping });
+            set_springs(&mut joint.data, self.stiffness, self.damping, grip);
         }
     }
 
@@ -243,11 +305,22 @@ impl Hold {
     }
 }
 
-fn set_springs(joint: &mut GenericJoint, stiffness: Stiffness, damping: [Real; 2]) {
+/// All springs, or only those across the pads.
+fn set_springs(joint: &mut GenericJoint, stiffness: Stiffness, damping: [Real; 2], grip: Grip) {
     for (index, axis) in AXES.into_iter().enumerate() {
+        let along = matches!(axis, JointAxis::LinX | JointAxis::LinZ | JointAxis::AngY);
         let (k, c) = if index < 3 { (stiffness.linear, damping[0]) } else { (stiffness.angular, damping[1]) };
         joint.set_motor(axis, 0.0, 0.0, k, c);
+        if along && grip != Grip::Sticks {
+            joint.motor_axes.remove(axis.into());
+        }
     }
+}
+
+/// The turn about Y that is in a rotation.
+fn about_y(rotation: Rotation) -> Rotation {
+    let twist = Rotation::from_xyzw(0.0, rotation.y, 0.0, rotation.w);
+    if twist.length_squared() > 0.0 { twist.normalize() } else { Rotation::IDENTITY }
 }
 
 /// By how much a value is beyond plus or minus a limit.

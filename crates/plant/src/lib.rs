@@ -40,6 +40,7 @@ pub mod cell;
 pub mod clearance;
 pub mod convert;
 pub mod description;
+pub mod friction;
 pub mod gripper;
 pub mod hold;
 pub mod noise;

@@ -98,8 +98,9 @@ fn a_bar_that_is_gripped_at_its_end_droops_if_it_is_gripped_too_softly() {
         assert_eq!(
             along.z.abs() > 0.3,
             droops,
-            "{force} lb: the bar lies along {along:?}, {:?}",
-            rig.cell.fingers()
+            "{force} lb: the bar lies along {along:?}, {:?} {:?}",
+            rig.part(),
+            rig.log
         );
         assert!(rig.part().held, "{:?}", rig.part());
     }
@@ -123,7 +124,14 @@ fn a_carried_part_that_is_pushed_against_a_wall_slips() {
     rig.pick(0.0, 0.0, 0.0, 30.0);
     // Down between the fingers: onto the tray floor, and 0.3 in farther.
     rig.go_and_stop(rig.grip_frame(4, 0.0, 0.0, 0.0, -0.15), 2.0);
-    assert!(matches!(rig.log.as_slice(), [CellEvent::Slipped { .. }]), "{:?}", rig.log);
+    assert!(
+        matches!(rig.log.as_slice(), [CellEvent::Slipped { .. }]),
+        "{:?} {:?} {:?} {:?}",
+        rig.log,
+        rig.part(),
+        rig.cell.fingers(),
+        in_fingers(&rig)
+    );
     assert!((rig.part().position[2] + 16.2375).abs() < 0.05, "not into the floor: {:?}", rig.part());
 }
 

@@ -107,10 +107,6 @@ fn a_clamped_bar_takes_the_robot_s_push() {
     rig.go_and_stop(Rig::fixture(&rig::HOLD, -0.095, 0.0), 0.5);
     let moved = (rig.in_fixture().position - before).norm();
     assert!(moved < 0.004, "{moved}");
-    for n in 0..1 {
-        let _ = n;
-        eprintln!("{:?} bar {:?}", rig.cell.tool().position, rig.in_fixture().position);
-    }
     let given = rig.cell.tool().position.x - 68.0 + 0.35 - 0.095;
     assert!((given + 0.02).abs() < 0.006, "the tool stands {given} in behind the command");
     assert!(!rig.log.iter().any(|event| matches!(event, CellEvent::Contact(_))), "{:?}", rig.log);

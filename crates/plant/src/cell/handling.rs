@@ -237,7 +237,7 @@ impl Cell {
         }
         hold.give_way(&mut self.world);
         let distance = inches(hold.slipped());
-        if distance > SLIP && !self.slip_reported {
+        if distance > SLIP && !self.slip_reported && !self.gripper.air.relieved() {
             self.slip_reported = true;
             let part = self.parts[*index].kind.name.clone();
             self.events.push(CellEvent::Slipped { part, distance });

@@ -191,6 +191,9 @@ impl Cell {
         hand.set_next_kinematic_position(tool);
         self.drive_fingers(dt, valves);
         self.drive_jaw(dt);
+        if let Some((_, hold)) = &mut self.gripper.hold {
+            hold.rub(&mut self.world, dt);
+        }
         self.world.step();
         self.let_holds_give_way();
     }
