@@ -40,7 +40,7 @@ impl Rubbed {
         let stop = [self.mass * motion.along, self.mass * motion.across];
         let moment = self.inertia * motion.turn - self.reach * stop[1];
         let needed = libm::hypot(libm::hypot(stop[0], stop[1]), moment / self.arm);
-        if !(needed > limit) {
+        if needed <= limit {
             return None;
         }
         let (mut low, mut high) = (0.0, 1.0);

@@ -16,7 +16,7 @@
 //! | arm while moving | 5.6 to 7.3 mrad beside the path | on the path, 80 ms behind |
 //! | grip by contact friction, one minute | slides by millimetres | below 0.001 mm, limits kept |
 //! | blank pressed to the notch with 30 lb | - | sinks by 0.06 mm |
-//! | one core, tick of 40 ms | 760 us, 52 x real time | 110 to 190 us, 210 to 360 x |
+//! | one core, tick of 40 ms | 760 us, 52 x real time | 110 to 185 us, 215 to 360 x |
 //!
 //! (Left: measured with rapier 0.36 at 16 sub-steps, a six-joint arm and a gripped part of 8 kg; right: `--example
 //! figures`, 16 sub-steps.) So:
@@ -24,8 +24,8 @@
 //! * joints follow their servos exactly ([`arm`]); inverse kinematics, limits and the link stand before them ([`t3`]);
 //! * the hand is a kinematic body at the tool frame, the fingers hang on it by springs that stand for the stiffness of arm,
 //!   wrist and fingers ([`gripper`]): everything that the robot touches meets a finite force;
-//! * what is between two pads is held by six springs with limits ([`hold`]): below friction nothing creeps, beyond it the
-//!   part slides, under no force it falls;
+//! * what is between two pads is held by springs with limits ([`hold`]): below friction nothing creeps, beyond it the part
+//!   slides ([`friction`]), under no force it falls;
 //! * a clamped part is led by the vise ([`vise`]), and forced out of it by a crash;
 //! * parts on trays, ledge and floor are rapier's, with contacts made stiff enough for gaps of a millimetre.
 //!

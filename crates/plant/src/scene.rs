@@ -8,7 +8,7 @@ use rapier3d_f64::prelude::*;
 use rcs_core::frame::{Frame, Rotation, Vector as Inches};
 
 use crate::{
-    convert::{metres, to_metres, to_pose},
+    convert::{to_metres, to_pose},
     description::{CellDescription, Fixture, Tray, TrayShape, Vise},
 };
 
@@ -202,11 +202,4 @@ impl From<&Block> for Obstacle {
 #[must_use]
 pub fn along_x() -> Rotation {
     Rotation::from_axis_angle(&Inches::y_axis(), FRAC_PI_2)
-}
-
-/// The least size of a cell that holds everything, for the fall of parts: z below which nothing stands, metres.
-#[must_use]
-pub fn lowest(blocks: &[Block]) -> Real {
-    let bottoms = blocks.iter().map(|block| block.frame.position.z - block.size.z / 2.0);
-    metres(bottoms.fold(0.0, f64::min))
 }

@@ -123,3 +123,31 @@ fn a_crash_forces_a_bar_out_of_the_vise() {
     let out = CellEvent::ForcedOut { part: "LINKBAR1_BH".into() };
     assert!(rig.log.contains(&out), "500 lb at 0.20 on two faces are 200 lb: {:?}", rig.log);
 }
+
+#[test]
+fn what_stands_does_not_creep() {
+    let mut rig = Rig::new(&description(), 1);
+    put(&mut rig, upright(Vector::new(0.0375, 0.16, -1.249), 0.0));
+    rig.ticks(50);
+    let before = rig.in_fixture().position;
+    rig.ticks(1500);
+    let crept = (rig.in_fixture().position - before).norm();
+    assert!(crept < 0.004, "{crept} in a minute on the ledge");
+}
+
+#[test]
+fn a_stack_of_five_stands_and_hardly_sinks() {
+    let mut rig = Rig::new(&description(), 1);
+    let sector = description().tray("UNIT_1").unwrap().sector(4).unwrap();
+    for layer in 0..5 {
+        let up = Vector::new(-0.3125 - 0.626 * f64::from(layer), 0.0, 0.0);
+        put(&mut rig, sector.shifted(up));
+    }
+    rig.ticks(1500);
+    for (layer, part) in (0_u8..).zip(rig.cell.parts()) {
+        let nominal = -16.55 + 0.3125 + 0.625 * f64::from(layer);
+        let [_, _, z] = part.position;
+        assert!((z - nominal).abs() < 0.004 * 5.0, "layer {layer} is {} in low", nominal - z);
+        assert!(part.error.is_some_and(|error| error < 0.02), "{part:?}");
+    }
+}

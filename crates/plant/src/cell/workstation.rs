@@ -17,6 +17,8 @@ const SEATED: f64 = 0.03;
 const SQUARE: f64 = 0.0175;
 /// Overlap that counts as one, when a part is put down, m.
 const OVERLAP: Real = 1e-4;
+/// What stands or is stacked this high above a tray's floor is in the tray, in (ASSUMED: tall tools).
+const IN_TRAY: f64 = 10.0;
 /// A part is put down this far above what it comes to rest on, in.
 const DROP: f64 = 0.002;
 
@@ -355,7 +357,7 @@ impl Cell {
             let shape = &self.description.tray_shape;
             let [x, y] = tray.centre;
             let inside = (at.x - x).abs() < shape.inside / 2.0 && (at.y - y).abs() < shape.inside / 2.0;
-            if inside && (tray.floor..tray.floor + shape.rim.max(inches(part.radius()))).contains(&at.z) {
+            if inside && (tray.floor..tray.floor + IN_TRAY).contains(&at.z) {
                 let away = |centre: &[f64; 2]| libm::hypot(at.x - centre[0], at.y - centre[1]);
                 let nearest = (1_u16..).zip(&tray.sectors).min_by(|a, b| away(a.1).total_cmp(&away(b.1)));
                 return match nearest {
