@@ -10,7 +10,7 @@ use std::{
 
 use mcap::{
     McapError,
-    read::{ChunkFlattener, Options},
+    read::{ChunkFlattener, LinearReader, Options},
     records::Record,
 };
 use rcs_core::{
@@ -90,7 +90,9 @@ impl Log {
             complete: false,
         };
         let (mut is_log, mut first) = (false, true);
-        for record in records(&bytes).map_err(|source| log.not_mcap(source))? {
+        // Chunks are passed over here: what is asked for stands between them.
+        let outside = LinearReader::new_with_options(&bytes, Options::IgnoreEndMagic.into());
+        for record in outside.map_err(|source| log.not_mcap(source))? {
             match record {
                 Ok(Record::Metadata(metadata)) if metadata.name == RUN => {
                     (log.run, is_log) = (metadata.metadata, true);
@@ -179,7 +181,7 @@ impl Log {
     pub fn messages(&self, topic: &str) -> impl Iterator<Item = (Tick, Vec<u8>)> {
         let topic = topic.to_owned();
         let mut channel = None;
-        // `open` has been through the file already: what stops here is its end or its damage.
+        // `open` has been through the file: what stops here is its end, or its damage.
         let readable = records(&self.bytes).into_iter().flatten().map_while(Result::ok);
         readable.filter_map(move |record| match record {
             Record::Channel(found) if found.topic == topic => {

@@ -135,10 +135,13 @@ impl Recorder {
         }
         let file = File::create(path).map_err(create)?;
         let log = LogWriter::create(BufWriter::new(file), setup)?;
-        let (ticks, tick_consumer) = RingBuffer::new(RING);
-        let (states, state_consumer) = RingBuffer::new(STATE_RING);
-        let (cells, cell_consumer) = RingBuffer::new(RING);
-        let (notes, note_consumer) = RingBuffer::new(NOTE_RING);
+        let tick = Tick::BEFORE_START;
+        let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
+        let (ticks, tick_consumer) = ring(RING, TickRecord { tick, gap: 0, external, memory });
+        let (states, state_consumer) = ring(STATE_RING, (tick, LadderState::default()));
+        let (cells, cell_consumer) = ring(RING, CellFrame::new(tick));
+        let note = Note { tick, level: Level::Info, source: [0; 16], text: [0; NOTE] };
+        let (notes, note_consumer) = ring(NOTE_RING, note);
         let end = Arc::default();
         let drain = Drain {
             log,
@@ -221,6 +224,15 @@ impl Recorder {
         let written = thread.join().map_err(|_| RecordError::Thread)??;
         Ok(Summary { path, ticks: written.ticks, lost, bytes: written.bytes })
     }
+}
+
+/// A ring whose memory is there: the first lap of the run must not be the one that fetches it from the
+/// system, page by page.
+fn ring<T: Copy>(capacity: usize, sample: T) -> (Producer<T>, Consumer<T>) {
+    let (mut producer, mut consumer) = RingBuffer::new(capacity);
+    while producer.push(sample).is_ok() {}
+    while consumer.pop().is_ok() {}
+    (producer, consumer)
 }
 
 /// True if a push will succeed. In a fast run this waits for it, unless the writer is gone.
