@@ -1,6 +1,8 @@
-//! Runs the programs as their users do, and reads what they say: exit status, JSON, the last line on standard error, the log.
+//! Runs the programs as their users do, and reads what they say: exit status, JSON, the last line on standard
+//! error, the log.
 //!
-//! The tests of this package judge the whole: controller, link, cell, executive and log, built as for a release.
+//! The tests of this package judge the whole: controller, link, cell, executive and log, built as for a
+//! release.
 
 use std::{
     env, fs,

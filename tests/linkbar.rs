@@ -15,8 +15,9 @@ use record::{
 use whole_system_tests::{Outcome, Scratch, root, run, start};
 
 const SEED: u64 = 1;
-/// How far from the centre of its sector the finished bar may lie, inches: an eighth of what the camera allows for.
-const PLACED: f64 = 0.25;
+/// How far from the centre of its sector the finished bar may lie, inches. The figures of chapter VIII give
+/// 0.15: the blank drops so far onto the ledge of the vise and is then gripped where it was let go.
+const PLACED: f64 = 0.2;
 
 /// The run that most tests look at.
 fn linkbar() -> &'static Outcome {
