@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Reason},
     record::{Field, Writer, from_bytes},
+    tick::Tick,
 };
 use record::{
     Log, replay,
@@ -156,7 +157,8 @@ proptest! {
         let data = store.view();
         let mut ladder = Ladder::default();
         let (mut before, mut image) = (CommonMemory::default(), vec![0; CommonMemory::SIZE]);
-        for (tick, (order, (external, memory))) in (1..).map(rcs_core::tick::Tick).zip(orders.iter().cycle().zip(ticks)) {
+        for (number, (order, (external, memory))) in (1..).zip(orders.iter().cycle().zip(ticks)) {
+            let tick = Tick(number);
             let mut after = before;
             ladder.step_in_order(order, tick, &before, external, &data, &mut after);
             after.encode(&mut Writer::new(&mut image));
