@@ -108,7 +108,7 @@ pub struct Physics {
     pub contact_damping: f64,
 }
 
-/// The arm's servos and outline; its lengths are [`T3`].
+/// The arm's servos and outline; its lengths are [`rcs_core::kinematics::T3`].
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
