@@ -14,7 +14,8 @@
 //! * [`wire`]: one file a frame, every byte shown;
 //! * [`receive`]: byte-by-byte receivers of both ends;
 //! * [`limit`], [`step`]: the velocity limits, and steps that respect them;
-//! * [`host`], [`controller`]: the two ends; [`warning`]: what the controller complains of.
+//! * [`host`], [`controller`]: the two ends; [`warning`]: what the controller complains of;
+//! * [`fault`]: faults on the line between them, by plan and seed.
 //!
 //! All that the appendix leaves open is marked ASSUMED where it is decided.
 
@@ -35,6 +36,7 @@
 
 pub mod controller;
 pub mod error;
+pub mod fault;
 pub mod host;
 pub mod limit;
 pub mod plate;

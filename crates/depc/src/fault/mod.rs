@@ -1,0 +1,470 @@
+//! Faults on the line, between the two ends: part of the product, so that a host can be tried against a bad line.
+//!
+//! A [`Plan`] is a seed and some [`Rule`]s; an [`Injector`] applies it, tick by tick and direction by direction, to the
+//! bytes and the modem signal that pass. It is plain data without a clock: the same plan and the same traffic give the
+//! same faults.
+//!
+//! | kind | acts on | what it does | `ticks` |
+//! |---|---|---|---|
+//! | `drop` | each byte | the byte is lost | |
+//! | `flip` | each byte | one bit of it is inverted | |
+//! | `duplicate` | each byte | the byte arrives twice | |
+//! | `delay` | each byte | the byte, and what is behind it, is late | how late |
+//! | `insert` | each tick | a byte arrives that nobody sent, a given one or any | |
+//! | `truncate` | each tick that bears bytes | the end of them is lost, at least one byte | |
+//! | `stall` | each tick | nothing arrives; what was sent comes afterwards, in order | how long |
+//! | `cts-low` | each tick | the receiving end sees the other's DTR off | how long |
+//!
+//! A rule acts with a *rate*, the chance of each byte or tick; in a *window* of ticks; or both. In a window without a rate
+//! it acts on every byte or tick. A serial line does not reorder, and neither does the injector. In one tick the order is:
+//! truncate, then for each byte drop, flip, delay, duplicate, then insert, then stall.
+//!
+//! With the feature `plan`, [`text`] reads a plan from a file.
+
+mod inject;
+mod numbers;
+#[cfg(feature = "plan")]
+pub mod text;
+
+use core::fmt;
+
+use rcs_core::{coded_enum, record};
+
+pub use inject::{Counts, Injector, LINE_BYTES};
+pub use numbers::Numbers;
+
+/// Rules in a plan.
+pub const RULES: usize = 16;
+/// Kinds of fault.
+pub const KINDS: usize = FaultKind::ALL.len();
+/// Rate of what always happens: rates are in millionths.
+pub const ALWAYS: u32 = 1_000_000;
+/// The longest delay, stall or loss of the signal that one event causes, ticks.
+pub const MOST_TICKS: u16 = 1000;
+
+coded_enum! {
+    /// What can happen on a line.
+    pub enum FaultKind {
+        /// A byte is lost.
+        Drop = "drop",
+        /// A bit of a byte is inverted.
+        Flip = "flip",
+        /// A byte arrives twice.
+        Duplicate = "duplicate",
+        /// A byte and what is behind it arrive later.
+        Delay = "delay",
+        /// A byte arrives that nobody sent.
+        Insert = "insert",
+        /// The end of what was sent in a tick is lost.
+        Truncate = "truncate",
+        /// Nothing arrives for some ticks.
+        Stall = "stall",
+        /// The modem signal is off for some ticks.
+        CtsLow = "cts-low",
+    }
+}
+
+coded_enum! {
+    /// A direction of the line.
+    pub enum Direction {
+        /// From the host.
+        ToController = "to-controller",
+        /// From the controller.
+        ToHost = "to-host",
+    }
+}
+
+impl FaultKind {
+    /// True if each byte has the chance of the rate; otherwise each tick has it.
+    #[must_use]
+    pub const fn is_per_byte(self) -> bool {
+        matches!(self, Self::Drop | Self::Flip | Self::Duplicate | Self::Delay)
+    }
+
+    /// True if the fault has a length in ticks.
+    #[must_use]
+    pub const fn has_ticks(self) -> bool {
+        matches!(self, Self::Delay | Self::Stall | Self::CtsLow)
+    }
+
+    /// True if the fault does something only to bytes that were sent.
+    const fn needs_bytes(self) -> bool {
+        self.is_per_byte() || matches!(self, Self::Truncate | Self::Stall)
+    }
+}
+
+record! {
+    /// One kind of fault: where, when, how often. Zero stands for what was not said.
+    pub struct Rule {
+        /// What happens.
+        pub kind: FaultKind,
+        /// It happens to what the host sends.
+        pub to_controller: bool,
+        /// It happens to what the controller sends.
+        pub to_host: bool,
+        /// Chance of each byte or tick, millionths; 0: not said.
+        pub rate: u32,
+        /// First tick of the window.
+        pub from: u64,
+        /// Tick behind the window; 0: not said, then there is no window.
+        pub until: u64,
+        /// Length of a delay, a stall or a loss of the signal; 0: not said, then it is one tick.
+        pub ticks: u16,
+        /// `insert`: always `byte`, otherwise any.
+        pub fixed: bool,
+        /// The byte to insert.
+        pub byte: u8,
+    }
+}
+
+impl Rule {
+    /// A rule for both directions that does not say yet when and how often.
+    #[must_use]
+    pub fn new(kind: FaultKind) -> Self {
+        Self { kind, to_controller: true, to_host: true, ..Self::default() }
+    }
+
+    /// The rule for one direction only.
+    #[must_use]
+    pub const fn only(mut self, direction: Direction) -> Self {
+        self.to_controller = matches!(direction, Direction::ToController);
+        self.to_host = matches!(direction, Direction::ToHost);
+        self
+    }
+
+    /// The rule with a rate in millionths.
+    #[must_use]
+    pub const fn rate(mut self, millionths: u32) -> Self {
+        self.rate = millionths;
+        self
+    }
+
+    /// The rule in the ticks `from` to `until` - 1.
+    #[must_use]
+    pub const fn window(mut self, from: u64, until: u64) -> Self {
+        self.from = from;
+        self.until = until;
+        self
+    }
+
+    /// The rule in one tick.
+    #[must_use]
+    pub const fn at(self, tick: u64) -> Self {
+        self.window(tick, tick.saturating_add(1))
+    }
+
+    /// The rule with a length.
+    #[must_use]
+    pub const fn ticks(mut self, ticks: u16) -> Self {
+        self.ticks = ticks;
+        self
+    }
+
+    /// The rule with the byte to insert.
+    #[must_use]
+    pub const fn byte(mut self, byte: u8) -> Self {
+        self.fixed = true;
+        self.byte = byte;
+        self
+    }
+
+    const fn has_window(&self) -> bool {
+        self.from != 0 || self.until != 0
+    }
+
+    const fn goes(&self, direction: Direction) -> bool {
+        match direction {
+            Direction::ToController => self.to_controller,
+            Direction::ToHost => self.to_host,
+        }
+    }
+
+    const fn covers(&self, tick: u64) -> bool {
+        !self.has_window() || self.from <= tick && tick < self.until
+    }
+
+    /// The chance, with what was not said filled in.
+    const fn chance(&self) -> u32 {
+        if self.rate == 0 { ALWAYS } else { self.rate }
+    }
+
+    /// The length, with what was not said filled in.
+    fn length(&self) -> u64 {
+        u64::from(self.ticks.max(1))
+    }
+
+    /// Everything that `other` could act on is lost through this rule.
+    fn hides(&self, other: &Self) -> bool {
+        let directions = (!other.to_controller || self.to_controller) && (!other.to_host || self.to_host);
+        let ticks = !self.has_window()
+            || other.has_window() && self.from <= other.from && other.until <= self.until;
+        self.kind == FaultKind::Drop
+            && self.chance() == ALWAYS
+            && other.kind.needs_bytes()
+            && directions
+            && ticks
+    }
+
+    /// What is wrong with the rule by itself.
+    fn check(&self) -> Result<(), Refusal> {
+        let kind = self.kind;
+        if !self.to_controller && !self.to_host {
+            return Err(Refusal::NoDirection);
+        }
+        if self.rate > ALWAYS {
+            return Err(Refusal::Rate { millionths: self.rate });
+        }
+        if self.has_window() && self.from >= self.until {
+            return Err(Refusal::EmptyWindow { from: self.from, until: self.until });
+        }
+        if self.rate == 0 && !self.has_window() {
+            return Err(Refusal::Never);
+        }
+        if self.ticks > MOST_TICKS {
+            return Err(Refusal::TooLong { found: self.ticks });
+        }
+        if self.ticks > 0 && !kind.has_ticks() {
+            return Err(Refusal::NoLength { kind });
+        }
+        let longer = self.until.saturating_sub(self.from) > 1;
+        if self.ticks > 0 && self.rate == 0 && longer && kind != FaultKind::Delay {
+            return Err(Refusal::TwoLengths { kind });
+        }
+        if self.fixed && kind != FaultKind::Insert {
+            return Err(Refusal::NoByte { kind });
+        }
+        Ok(())
+    }
+}
+
+record! {
+    /// A seed and rules, checked.
+    pub struct Plan {
+        seed: u64,
+        rules: [Rule; RULES],
+        count: u8,
+    }
+}
+
+impl Plan {
+    /// A plan without faults.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self { seed, ..Self::default() }
+    }
+
+    /// What the numbers of the injector depend on.
+    #[must_use]
+    pub const fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The rules.
+    #[must_use]
+    pub fn rules(&self) -> &[Rule] {
+        self.rules.get(..usize::from(self.count)).unwrap_or_default()
+    }
+
+    /// Append a rule.
+    ///
+    /// # Errors
+    /// [`Refusal`] if the rule, or the rule beside those before it, makes no sense; the plan stays as it was.
+    pub fn add(&mut self, rule: Rule) -> Result<(), Refusal> {
+        rule.check()?;
+        for (number, other) in (1_u8..).zip(self.rules()) {
+            if other.hides(&rule) {
+                return Err(Refusal::Hidden { kind: rule.kind, by: number });
+            }
+            if rule.hides(other) {
+                return Err(Refusal::Hides { kind: other.kind, number });
+            }
+        }
+        let slot = self.rules.get_mut(usize::from(self.count)).ok_or(Refusal::TooMany)?;
+        *slot = rule;
+        self.count = self.count.saturating_add(1);
+        Ok(())
+    }
+}
+
+/// Why a rule is refused. Rules are counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// There is no direction.
+    NoDirection,
+    /// There is neither a rate nor a window.
+    Never,
+    /// The rate is above 1.
+    Rate {
+        /// The rate found.
+        millionths: u32,
+    },
+    /// There is no tick in the window.
+    EmptyWindow {
+        /// Its first tick.
+        from: u64,
+        /// The tick behind it.
+        until: u64,
+    },
+    /// `ticks` for a fault that has no length.
+    NoLength {
+        /// The fault.
+        kind: FaultKind,
+    },
+    /// `ticks` beside a window that gives the length already.
+    TwoLengths {
+        /// The fault.
+        kind: FaultKind,
+    },
+    /// More than [`MOST_TICKS`].
+    TooLong {
+        /// The length found.
+        found: u16,
+    },
+    /// A byte for a fault that inserts none.
+    NoByte {
+        /// The fault.
+        kind: FaultKind,
+    },
+    /// An earlier rule drops every byte on which this one could act.
+    Hidden {
+        /// The fault that would never happen.
+        kind: FaultKind,
+        /// Number of the rule that drops.
+        by: u8,
+    },
+    /// This rule drops every byte on which an earlier one could act.
+    Hides {
+        /// The fault that would never happen.
+        kind: FaultKind,
+        /// Number of its rule.
+        number: u8,
+    },
+    /// More than [`RULES`].
+    TooMany,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoDirection => f.write_str("expected at least one direction, found none"),
+            Self::Never => f.write_str(
+                "expected a rate, a tick or a range of ticks, found none of them: the fault would never happen",
+            ),
+            Self::Rate { millionths } => {
+                write!(f, "expected a rate of 0.000001 to 1, found {millionths} millionths")
+            }
+            Self::EmptyWindow { from, until } => {
+                write!(f, "expected `until` behind `from`, found {from} to {until}: there is no tick in it")
+            }
+            Self::NoLength { kind } => write!(
+                f,
+                "`ticks` says how long a delay, a stall or cts-low takes; {} takes no time",
+                kind.text()
+            ),
+            Self::TwoLengths { kind } => write!(
+                f,
+                "a range of ticks without a rate says already how long the {} takes: leave `ticks` out, or give a \
+                 rate or a single tick",
+                kind.text()
+            ),
+            Self::TooLong { found } => write!(f, "expected 1 to {MOST_TICKS} ticks, found {found}"),
+            Self::NoByte { kind } => {
+                write!(f, "`byte` says what is inserted; {} inserts nothing", kind.text())
+            }
+            Self::Hidden { kind, by } => write!(
+                f,
+                "fault {by} drops every byte in these ticks and nothing is left to {}: put them into other ticks",
+                kind.text()
+            ),
+            Self::Hides { kind, number } => write!(
+                f,
+                "this drops every byte that fault {number} ({}) could act on: put them into other ticks",
+                kind.text()
+            ),
+            Self::TooMany => write!(f, "expected at most {RULES} faults"),
+        }
+    }
+}
+
+impl core::error::Error for Refusal {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use FaultKind::{CtsLow, Delay, Drop, Duplicate, Flip, Insert, Stall, Truncate};
+
+    fn refusal(rule: Rule) -> Option<Refusal> {
+        Plan::new(1).add(rule).err()
+    }
+
+    #[test]
+    fn every_kind_takes_a_rate_and_a_window() {
+        for kind in FaultKind::ALL {
+            assert_eq!(refusal(Rule::new(*kind).rate(1)), None);
+            assert_eq!(refusal(Rule::new(*kind).window(10, 20)), None);
+            assert_eq!(refusal(Rule::new(*kind).at(10).only(Direction::ToHost)), None);
+            assert_eq!(refusal(Rule::new(*kind).window(10, 20).rate(ALWAYS)), None);
+            assert_eq!(refusal(Rule::new(*kind)), Some(Refusal::Never));
+        }
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_refused() {
+        let nowhere = Rule { to_controller: false, to_host: false, ..Rule::new(Drop).rate(1) };
+        for (rule, expected) in [
+            (nowhere, Refusal::NoDirection),
+            (Rule::new(Flip).rate(ALWAYS + 1), Refusal::Rate { millionths: ALWAYS + 1 }),
+            (Rule::new(Flip).window(20, 20), Refusal::EmptyWindow { from: 20, until: 20 }),
+            (Rule::new(Flip).window(20, 0), Refusal::EmptyWindow { from: 20, until: 0 }),
+            (Rule::new(Drop).rate(1).ticks(1), Refusal::NoLength { kind: Drop }),
+            (Rule::new(Stall).window(10, 20).ticks(3), Refusal::TwoLengths { kind: Stall }),
+            (Rule::new(CtsLow).rate(1).ticks(1001), Refusal::TooLong { found: 1001 }),
+            (Rule::new(Duplicate).rate(1).byte(6), Refusal::NoByte { kind: Duplicate }),
+        ] {
+            assert_eq!(refusal(rule), Some(expected), "{rule:?}");
+            assert!(!expected.to_string().is_empty());
+        }
+    }
+
+    #[test]
+    fn a_length_goes_with_a_rate_a_tick_or_a_delay() {
+        for rule in [
+            Rule::new(Stall).rate(10).ticks(1000),
+            Rule::new(CtsLow).at(5).ticks(7),
+            Rule::new(Delay).window(10, 20).ticks(3),
+            Rule::new(Stall).window(10, 20).rate(10).ticks(3),
+            Rule::new(Insert).at(4).byte(6),
+        ] {
+            assert_eq!(refusal(rule), None);
+        }
+    }
+
+    #[test]
+    fn a_fault_of_bytes_that_are_all_lost_is_refused_on_either_side() {
+        let cut = Rule::new(Drop).window(10, 20);
+        let flip = Rule::new(Flip).window(12, 14).only(Direction::ToHost);
+        let mut plan = Plan::new(1);
+        assert_eq!(plan.add(cut), Ok(()));
+        assert_eq!(plan.add(flip), Err(Refusal::Hidden { kind: Flip, by: 1 }));
+        assert_eq!(plan.add(Rule::new(Truncate).at(19)), Err(Refusal::Hidden { kind: Truncate, by: 1 }));
+        for rule in
+            [Rule::new(Flip).window(15, 21), Rule::new(Insert).at(15), Rule::new(CtsLow).window(10, 20)]
+        {
+            assert_eq!(plan.add(rule), Ok(()));
+        }
+        assert_eq!(plan.rules().len(), 4);
+        let mut plan = Plan::new(1);
+        assert_eq!(plan.add(flip), Ok(()));
+        assert_eq!(plan.add(cut), Err(Refusal::Hides { kind: Flip, number: 1 }));
+        assert_eq!(plan.add(cut.only(Direction::ToController)), Ok(()));
+    }
+
+    #[test]
+    fn a_plan_has_an_end() {
+        let mut plan = Plan::new(1);
+        for _ in 0..RULES {
+            assert_eq!(plan.add(Rule::new(Flip).rate(1)), Ok(()));
+        }
+        assert_eq!(plan.add(Rule::new(Flip).rate(1)), Err(Refusal::TooMany));
+    }
+}
