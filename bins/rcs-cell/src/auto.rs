@@ -1,0 +1,106 @@
+//! The operator of `--auto`: goes through the start-up by itself, so that a link can be tested without a person.
+//!
+//! It presses what IV.3.3 says, one key after the other, up to the DEPC function. From then on it answers ENTER to what
+//! a host can bring about (WD1 once a host is there, WD3, WD4), and starts the program again after a cancel. As soon as a
+//! person touches the console it leaves the robot to that person: an emergency stop must stay one.
+
+use depc::controller::{ControllerState, Warning};
+
+use crate::{
+    console::Key,
+    t3::{Stage, T3},
+};
+
+/// The operator.
+#[derive(Debug)]
+pub struct Operator {
+    on_duty: bool,
+}
+
+impl Operator {
+    /// One that works, or one that does nothing.
+    #[must_use]
+    pub const fn new(on_duty: bool) -> Self {
+        Self { on_duty }
+    }
+
+    /// A person has pressed a key; true if the operator has just stepped back.
+    pub fn step_back(&mut self) -> bool {
+        std::mem::replace(&mut self.on_duty, false)
+    }
+
+    /// What the operator does now. `host` says that a host has the line open.
+    #[must_use]
+    pub fn next(&self, t3: &T3, host: bool) -> Option<Key> {
+        if !self.on_duty {
+            return None;
+        }
+        match t3.stage() {
+            Stage::Dark => Some(Key::ControlPower(true)),
+            Stage::Faulted => Some(Key::FaultReset),
+            Stage::Ready => Some(Key::Hydraulics(true)),
+            Stage::Enabled => Some(Key::Manual(true)),
+            Stage::Manual if !t3.at_rest() => None,
+            Stage::Manual if t3.aligned() == [true; 6] => Some(Key::Auto),
+            Stage::Manual => Some(Key::Align(None)),
+            Stage::Auto => Some(Key::CycleStart),
+            Stage::Depc if t3.depc().state() == ControllerState::Warning => match t3.depc().warning() {
+                Warning::CtsLow if host => Some(Key::Enter),
+                Warning::Translation | Warning::Orientation => Some(Key::Enter),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::t3::StepInputs;
+    use depc::Limits;
+
+    /// Run for `seconds` and press what the operator wants; returns the keys.
+    fn run(t3: &mut T3, operator: &Operator, seconds: f64, host: bool) -> Vec<Key> {
+        let mut keys = Vec::new();
+        for _ in 0..(seconds / 0.04) as u32 {
+            if let Some(key) = operator.next(t3, host) {
+                t3.press(key).unwrap();
+                keys.push(key);
+            }
+            t3.step(&StepInputs { elapsed: 0.04, cts: host, ..StepInputs::default() });
+        }
+        keys
+    }
+
+    #[test]
+    fn it_starts_up_once_and_answers_when_a_host_comes() {
+        let (mut t3, operator) = (T3::new(Limits::NBS, 5), Operator::new(true));
+        let keys = run(&mut t3, &operator, 30.0, false);
+        let order = [
+            Key::ControlPower(true),
+            Key::FaultReset,
+            Key::Hydraulics(true),
+            Key::Manual(true),
+            Key::Align(None),
+            Key::Auto,
+            Key::CycleStart,
+        ];
+        assert_eq!(keys, order);
+        assert_eq!(t3.depc().warning(), Warning::CtsLow);
+        assert_eq!(run(&mut t3, &operator, 1.0, true), [Key::Enter]);
+        assert_eq!(t3.depc().state(), ControllerState::Running);
+        run(&mut t3, &operator, 1.0, false);
+        assert_eq!(t3.depc().warning(), Warning::CtsLow);
+        assert_eq!(run(&mut t3, &operator, 1.0, true), [Key::Enter]);
+    }
+
+    #[test]
+    fn it_does_not_undo_what_a_person_does() {
+        let (mut t3, mut operator) = (T3::new(Limits::NBS, 5), Operator::new(true));
+        run(&mut t3, &operator, 30.0, true);
+        assert!(operator.step_back() && !operator.step_back());
+        t3.press(Key::Estop).unwrap();
+        assert_eq!(run(&mut t3, &operator, 5.0, true), []);
+    }
+}

@@ -1,0 +1,218 @@
+//! The console: what a person can press, turn and ask for, one command a line.
+
+use std::str::FromStr;
+
+/// What is done at the controller's console, keyboard and teach pendant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// Control power (IV.3.3 step 4).
+    ControlPower(bool),
+    /// FAULT RESET (step 5).
+    FaultReset,
+    /// HYDRAULICS keyswitch (step 7).
+    Hydraulics(bool),
+    /// MANUAL ON/OFF (step 8).
+    Manual(bool),
+    /// Teach pendant: move an axis, counted from 1, to its arrow (step 9); without one, all of them.
+    Align(Option<u8>),
+    /// AUTO (step 10).
+    Auto,
+    /// CYCLE START (step 12).
+    CycleStart,
+    /// INTERRUPT (step 12, A 2.3).
+    Interrupt,
+    /// CANCEL on the keyboard (step 12, A 2.4).
+    Cancel,
+    /// ENTER on the keyboard (A 2.4).
+    Enter,
+    /// Hold (A 2.3).
+    Hold(bool),
+    /// The E-stop of the control panel (III.6).
+    Estop,
+}
+
+impl Key {
+    /// The key as a line of the console.
+    #[must_use]
+    pub fn text(self) -> String {
+        let on = |on| if on { "on" } else { "off" };
+        match self {
+            Self::ControlPower(to) => format!("control power {}", on(to)),
+            Self::FaultReset => "fault reset".into(),
+            Self::Hydraulics(to) => format!("hydraulics {}", if to { "enable" } else { "disable" }),
+            Self::Manual(to) => format!("manual {}", on(to)),
+            Self::Align(None) => "align".into(),
+            Self::Align(Some(axis)) => format!("align {axis}"),
+            Self::Auto => "auto".into(),
+            Self::CycleStart => "cycle start".into(),
+            Self::Interrupt => "interrupt".into(),
+            Self::Cancel => "cancel".into(),
+            Self::Enter => "enter".into(),
+            Self::Hold(to) => format!("hold {}", on(to)),
+            Self::Estop => "estop".into(),
+        }
+    }
+}
+
+/// A line of the console.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Line {
+    /// Do something at the controller.
+    Key(Key),
+    /// Show everything.
+    Status,
+    /// List the commands.
+    Help,
+    /// Wait so many milliseconds before the next line.
+    Wait(u64),
+    /// End the program.
+    Quit,
+}
+
+/// Longest wait, seconds.
+const LONGEST_WAIT_S: f64 = 3600.0;
+
+/// All commands, in the order of the start-up.
+pub const HELP: &str = "\
+control power on|off        power of the controller
+fault reset                 the red FAULT RESET button
+hydraulics enable|disable   the keyswitch
+manual on|off               the MANUAL ON/OFF button: the robot's hydraulics
+align [AXIS]                teach pendant: move all axes, or one of 1 to 6, to its arrow
+auto                        the AUTO button: the robot moves to HOME
+cycle start                 two short vertical motions, then the DEPC function
+interrupt, cancel, enter    INTERRUPT button; CANCEL and ENTER keys
+hold on|off                 the Hold button
+estop                       E-stop: the robot sinks
+status                      everything at a glance
+wait SECONDS                wait before the next line (for scripts)
+help, quit";
+
+impl FromStr for Line {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let lower = text.to_ascii_lowercase();
+        let words: Vec<&str> = lower.split_whitespace().collect();
+        let key = match words.as_slice() {
+            ["control", "power", switch] => Key::ControlPower(on(switch)?),
+            ["fault", "reset"] => Key::FaultReset,
+            ["hydraulics", "enable"] => Key::Hydraulics(true),
+            ["hydraulics", "disable"] => Key::Hydraulics(false),
+            ["hydraulics", ..] => return Err("hydraulics enable or hydraulics disable was expected".into()),
+            ["manual", switch] => Key::Manual(on(switch)?),
+            ["align"] => Key::Align(None),
+            ["align", axis] => match axis.parse() {
+                Ok(axis @ 1..=6) => Key::Align(Some(axis)),
+                _ => return Err(format!("an axis from 1 to 6 was expected, found {axis}")),
+            },
+            ["auto"] => Key::Auto,
+            ["cycle", "start"] => Key::CycleStart,
+            ["interrupt"] => Key::Interrupt,
+            ["cancel"] => Key::Cancel,
+            ["enter"] => Key::Enter,
+            ["hold", switch] => Key::Hold(on(switch)?),
+            ["estop" | "e-stop"] => Key::Estop,
+            ["status"] => return Ok(Self::Status),
+            ["help" | "?"] => return Ok(Self::Help),
+            ["wait", seconds] => return wait(seconds),
+            ["quit" | "exit"] => return Ok(Self::Quit),
+            _ => return Err(format!("there is no command \"{}\"; help lists them", text.trim())),
+        };
+        Ok(Self::Key(key))
+    }
+}
+
+fn on(switch: &str) -> Result<bool, String> {
+    match switch {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(format!("on or off was expected, found {switch}")),
+    }
+}
+
+fn wait(seconds: &str) -> Result<Line, String> {
+    match seconds.parse::<f64>() {
+        Ok(seconds) if (0.0..=LONGEST_WAIT_S).contains(&seconds) => {
+            Ok(Line::Wait((seconds * 1000.0).round() as u64))
+        }
+        _ => Err(format!("seconds from 0 to {LONGEST_WAIT_S} were expected, found {seconds}")),
+    }
+}
+
+/// Bytes as they come from standard input, cut into lines. A line that is too long is cut off.
+#[derive(Debug, Default)]
+pub struct Lines {
+    bytes: Vec<u8>,
+}
+
+/// Longest line that is kept, bytes.
+const LONGEST_LINE: usize = 256;
+
+impl Lines {
+    /// Take in `bytes`; returns the lines that are complete, without those that are empty or a `#` comment.
+    pub fn accept(&mut self, bytes: &[u8]) -> Vec<String> {
+        let mut lines = Vec::new();
+        for byte in bytes {
+            match byte {
+                b'\n' | b'\r' => {
+                    let line = String::from_utf8_lossy(&self.bytes).trim().to_owned();
+                    self.bytes.clear();
+                    if !line.is_empty() && !line.starts_with('#') {
+                        lines.push(line);
+                    }
+                }
+                _ if self.bytes.len() < LONGEST_LINE => self.bytes.push(*byte),
+                _ => {}
+            }
+        }
+        lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_of_the_help_is_understood() {
+        for line in HELP.lines() {
+            let synopsis = line.split("  ").next().unwrap_or_default();
+            for one in synopsis.split(", ") {
+                let one = one.split(['|', '[']).next().unwrap_or_default();
+                let one = one.replace("SECONDS", "1.5");
+                assert!(one.parse::<Line>().is_ok(), "{one}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_meant_is_found_and_what_is_wrong_is_said() {
+        assert_eq!("  Control POWER on ".parse(), Ok(Line::Key(Key::ControlPower(true))));
+        assert_eq!("align 3".parse(), Ok(Line::Key(Key::Align(Some(3)))));
+        for key in [Key::ControlPower(false), Key::Hydraulics(false), Key::Align(Some(6)), Key::Hold(true)] {
+            assert_eq!(key.text().parse(), Ok(Line::Key(key)));
+        }
+        assert_eq!("wait 0.25".parse(), Ok(Line::Wait(250)));
+        for (wrong, says) in [
+            ("align 7", "1 to 6"),
+            ("hold maybe", "on or off"),
+            ("wait nan", "seconds"),
+            ("wait -1", "seconds"),
+            ("hydraulics on", "enable"),
+            ("start", "no command"),
+        ] {
+            let error = wrong.parse::<Line>().expect_err(wrong);
+            assert!(error.contains(says), "{wrong}: {error}");
+        }
+    }
+
+    #[test]
+    fn lines_are_cut_wherever_the_bytes_are() {
+        let mut lines = Lines::default();
+        assert!(lines.accept(b"sta").is_empty());
+        assert_eq!(lines.accept(b"tus\r\n\n# no\nquit\nhe"), ["status", "quit"]);
+        assert_eq!(lines.accept(&[b'x'; 5000]).len(), 0);
+        assert_eq!(lines.accept(b"\n")[0].len(), LONGEST_LINE);
+    }
+}

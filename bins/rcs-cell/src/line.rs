@@ -1,0 +1,208 @@
+//! The serial line in time: a pseudo-terminal passes bytes at once, a line at one byte after the other.
+//!
+//! Bytes of the host arrive here one byte time apart, and bytes to the host leave so. All times are microseconds of one
+//! monotonic clock; nothing here reads it.
+
+use std::collections::VecDeque;
+
+use depc::wire::{FRAME_BYTES, START};
+use rcs_core::interface::device::LinkBytes;
+
+/// Bytes that wait on the line; a host that sends more finds the pseudo-terminal full.
+const MOST_WAITING: usize = 1024;
+/// Bits of a byte: start, eight data, stop.
+const BITS: u64 = 10;
+/// Bytes to wait for a next one before a burst counts as over (ASSUMED).
+const PAUSE_BYTES: u64 = 2;
+/// A step waits so many byte times at most for a frame that is just arriving.
+const PATIENCE_BYTES: u64 = 20;
+
+/// Both directions of the line.
+#[derive(Debug)]
+pub struct Line {
+    byte_us: u64,
+    rx: VecDeque<(u64, u8)>,
+    tx: VecDeque<(u64, u8)>,
+    rx_end: u64,
+    tx_end: u64,
+}
+
+impl Line {
+    /// A line of so many bits a second.
+    #[must_use]
+    pub fn new(baud: u32) -> Self {
+        // Rounded up: never faster than the line.
+        let byte_us = (BITS * 1_000_000).div_ceil(u64::from(baud.max(1)));
+        Self { byte_us, rx: VecDeque::new(), tx: VecDeque::new(), rx_end: 0, tx_end: 0 }
+    }
+
+    /// How many more bytes of the host the line takes.
+    #[must_use]
+    pub fn room(&self) -> usize {
+        MOST_WAITING.saturating_sub(self.rx.len())
+    }
+
+    /// The host has put `bytes` on the line.
+    pub fn host_sent(&mut self, now: u64, bytes: &[u8]) {
+        for byte in bytes.iter().take(self.room()) {
+            self.rx_end = self.rx_end.max(now) + self.byte_us;
+            self.rx.push_back((self.rx_end, *byte));
+        }
+    }
+
+    /// The bytes that have arrived by `now`, as many as a step takes.
+    pub fn arrived(&mut self, now: u64) -> LinkBytes {
+        let mut bytes = LinkBytes::default();
+        while let Some(&(at, byte)) = self.rx.front() {
+            if at > now || !bytes.push(byte) {
+                break;
+            }
+            self.rx.pop_front();
+        }
+        bytes
+    }
+
+    /// The controller puts `bytes` on the line.
+    pub fn send(&mut self, now: u64, bytes: &[u8]) {
+        for byte in bytes {
+            self.tx_end = self.tx_end.max(now) + self.byte_us;
+            self.tx.push_back((self.tx_end, *byte));
+        }
+    }
+
+    /// The next byte that has reached the host by `now`.
+    pub fn delivered(&mut self, now: u64) -> Option<u8> {
+        let (at, _) = self.tx.front()?;
+        if *at > now {
+            return None;
+        }
+        self.tx.pop_front().map(|(_, byte)| byte)
+    }
+
+    /// When the next byte reaches the host.
+    #[must_use]
+    pub fn next_delivery(&self) -> Option<u64> {
+        self.tx.front().map(|(at, _)| *at)
+    }
+
+    /// The cable is pulled: nothing is on the line.
+    pub fn clear(&mut self) {
+        self.rx.clear();
+        self.tx.clear();
+    }
+}
+
+/// When the controller takes its next step.
+///
+/// A move takes a period, and the next command is taken when it is over; a controller that waits takes a command as soon
+/// as it is there (A 2.3: ACK, then the move during the next period). Without that, two clocks of the same period would
+/// lose every second period whenever a frame happened to straddle a step.
+#[derive(Debug)]
+pub struct Cadence {
+    period_us: u64,
+    last: u64,
+    busy: bool,
+}
+
+impl Cadence {
+    /// The first step is due one period after `now`.
+    #[must_use]
+    pub fn new(period_ms: u16, now: u64) -> Self {
+        Self { period_us: u64::from(period_ms) * 1000, last: now, busy: true }
+    }
+
+    /// When the next step is due, as far as the bytes tell that are on the line now.
+    #[must_use]
+    pub fn next(&self, line: &Line) -> u64 {
+        let regular = self.last + self.period_us;
+        let Some(&(end, _)) = line.rx.back() else { return regular };
+        let over = end + PAUSE_BYTES * line.byte_us;
+        if over > regular {
+            return over.min(regular + PATIENCE_BYTES * line.byte_us);
+        }
+        let complete =
+            line.rx.len() >= FRAME_BYTES || line.rx.front().is_some_and(|(_, byte)| *byte != START);
+        if complete && !self.busy { over.max(self.last) } else { regular }
+    }
+
+    /// A step was taken at `now`; `busy` if it began a move or an answer.
+    pub fn stepped(&mut self, now: u64, busy: bool) {
+        self.last = now;
+        self.busy = busy;
+    }
+
+    /// When the last step was taken.
+    #[must_use]
+    pub fn last(&self) -> u64 {
+        self.last
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_take_their_time_in_both_directions() {
+        let mut line = Line::new(9600);
+        line.host_sent(1000, &[7; 16]);
+        assert_eq!(line.arrived(2041).as_slice(), &[]);
+        assert_eq!(line.arrived(2042).as_slice(), &[7]);
+        assert_eq!(line.arrived(1000 + 16 * 1042).as_slice(), &[7; 15]);
+        line.send(50_000, &[6, 5]);
+        assert_eq!(line.delivered(51_041), None);
+        assert_eq!((line.delivered(51_042), line.delivered(51_042)), (Some(6), None));
+        assert_eq!(line.next_delivery(), Some(52_084));
+    }
+
+    #[test]
+    fn no_more_than_38_bytes_pass_in_40_ms() {
+        let mut line = Line::new(9600);
+        line.host_sent(0, &[1; 500]);
+        assert_eq!(line.arrived(40_000).length, 38);
+        line.host_sent(0, &[1; 1000]);
+        assert_eq!(line.room(), 0);
+    }
+
+    /// A host and a controller of the same period: one command a period, whatever the phase between their clocks.
+    #[test]
+    fn every_phase_gives_a_command_a_period() {
+        for phase in (0..40_000).step_by(500) {
+            let (mut line, mut cadence) = (Line::new(9600), Cadence::new(40, phase));
+            let (mut sent, mut taken, mut acknowledged) = (0, 0, true);
+            for tick in 0..100 {
+                let (now, end) = (tick * 40_000, (tick + 1) * 40_000);
+                acknowledged |= line.delivered(now).is_some();
+                if acknowledged {
+                    line.host_sent(now, &[START; FRAME_BYTES]);
+                    sent += 1;
+                    acknowledged = false;
+                }
+                while cadence.next(&line) < end {
+                    let at = cadence.next(&line);
+                    let frame = line.arrived(at).length == 16;
+                    if frame {
+                        taken += 1;
+                        line.send(at, &[6]);
+                    }
+                    cadence.stepped(at, frame);
+                }
+            }
+            assert!(sent >= 98 && taken >= 98, "phase {phase}: {sent} sent, {taken} taken");
+        }
+    }
+
+    #[test]
+    fn a_frame_without_end_does_not_stop_the_steps() {
+        let (mut line, mut cadence) = (Line::new(9600), Cadence::new(40, 0));
+        for now in (0..1_000_000).step_by(1000) {
+            line.host_sent(now, &[1, 2]);
+            if cadence.next(&line) <= now {
+                assert!(now - cadence.last() <= 62_000);
+                line.arrived(now);
+                cadence.stepped(now, true);
+            }
+        }
+        assert!(cadence.last() > 900_000);
+    }
+}

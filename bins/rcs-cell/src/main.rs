@@ -1,0 +1,61 @@
+//! `rcs-cell`: the simulated T3 controller behind a pseudo-terminal.
+//!
+//! Any DEPC host can open the terminal and finds what it would find on the serial line of a Cincinnati Milacron T3: the
+//! start-up of the manual's IV.3.3 at the console, the function of appendix A on the line, 9600 baud.
+//!
+//! ```text
+//!   console (standard input) ──► t3: start-up, program, DEPC ──► arm: hydraulics, servos
+//!   auto (the operator of --auto) ──►  │      ▲
+//!                               line: bytes in time ◄──► pty ◄──► host
+//! ```
+//!
+//! [`t3`], [`arm`], [`line`], [`auto`] and [`console`] neither read a clock nor do I/O; [`shell`] and [`pty`] do nothing else.
+
+mod arm;
+mod auto;
+mod cli;
+mod console;
+mod line;
+mod message;
+mod pty;
+mod refusal;
+mod shell;
+mod t3;
+
+use std::{
+    process::ExitCode,
+    sync::{Arc, atomic::AtomicBool},
+};
+
+use clap::Parser;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+
+use crate::{cli::Cli, pty::Pty, shell::Shell};
+
+/// Exit status if the pseudo-terminal fails while it runs.
+const FAILED: u8 = 1;
+/// Exit status if nothing can be started.
+const UNUSABLE: u8 = 2;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
+        if let Err(error) = signal_hook::flag::register(signal, Arc::clone(&stop)) {
+            return fail(UNUSABLE, &format!("signals cannot be caught: {error}"));
+        }
+    }
+    let pty = match Pty::open(&cli.link) {
+        Ok(pty) => pty,
+        Err(error) => return fail(UNUSABLE, &error.to_string()),
+    };
+    match Shell::new(&cli, pty, stop).run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => fail(FAILED, &error.to_string()),
+    }
+}
+
+fn fail(status: u8, reason: &str) -> ExitCode {
+    eprintln!("rcs-cell: {reason}");
+    ExitCode::from(status)
+}

@@ -1,0 +1,123 @@
+//! What the controller shows and what can be seen of the robot.
+//!
+//! Lines of the controller's screen stand alone and are the manual's (IV.3.3, A 2.3, A 2.4); everything that a person
+//! would see or hear beside it has its source in brackets.
+
+use std::fmt;
+
+use depc::{Plate, controller::Warning};
+use rcs_core::pose::WireFrame;
+
+/// HOME as the manual prints it (IV.3.3 step 11).
+pub const HOME: WireFrame =
+    WireFrame { tool: [0, -7145, -1483], wrist_to_tool: [0, -2123, -2119], tool_to_finger: [3000, 0, 0] };
+/// How far a value of HOME may be off (IV.3.3 step 11).
+pub const HOME_TOLERANCE: i32 = 4;
+
+/// One message.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Message {
+    /// Screen: which axes are aligned.
+    Aligned([bool; 6]),
+    /// Screen: a warning or an error.
+    Warning(Warning),
+    /// A lamp on the console or on the robot.
+    Lamp(&'static str),
+    /// What the robot does.
+    Robot(String),
+    /// The position, and how far it may be off HOME.
+    Position(WireFrame),
+    /// The DEPC function has begun and reported the position.
+    Reported(Plate),
+    /// The DEPC function has ended without an error.
+    Ended,
+    /// The controller runs a function on arrival (A 2.3).
+    Function([u8; 2]),
+}
+
+impl fmt::Display for Message {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Aligned(axes) => {
+                f.write_str("* = ALIGNED   1 2 3 4 5 6\n             ")?;
+                for star in axes {
+                    f.write_str(if *star { " *" } else { "  " })?;
+                }
+                Ok(())
+            }
+            Self::Warning(warning) => {
+                let (code, problem) = screen(*warning);
+                write!(f, "{code}  {problem}")
+            }
+            Self::Lamp(text) => write!(f, "[lamp] {text}"),
+            Self::Robot(text) => write!(f, "[robot] {text}"),
+            Self::Position(frame) => {
+                for (row, [x, y, z]) in
+                    [frame.tool, frame.wrist_to_tool, frame.tool_to_finger].iter().enumerate()
+                {
+                    let head = if row == 0 { "[position]" } else { "\n          " };
+                    write!(f, "{head} {x:6} {y:6} {z:6}")?;
+                }
+                match off_home(frame) {
+                    off if off <= HOME_TOLERANCE => write!(f, "   HOME, to within {off}"),
+                    _ => Ok(()),
+                }
+            }
+            Self::Reported(plate) => {
+                let [x, y, z, d, e, r] = plate.words;
+                write!(f, "[link] DEPC runs, reported X {x} Y {y} Z {z} D {d} E {e} R {r}")
+            }
+            Self::Ended => f.write_str("[link] DEPC cancelled by the host"),
+            Self::Function([code, operand]) => write!(f, "[link] function {code:02X} {operand:02X}"),
+        }
+    }
+}
+
+/// The largest difference of a value to HOME.
+#[must_use]
+pub fn off_home(frame: &WireFrame) -> i32 {
+    let values = |frame: &WireFrame| [frame.tool, frame.wrist_to_tool, frame.tool_to_finger].concat();
+    values(frame).iter().zip(values(&HOME)).map(|(a, b)| (a - b).abs()).max().unwrap_or_default()
+}
+
+/// Code and problem as the table of appendix A has them.
+fn screen(warning: Warning) -> (&'static str, &'static str) {
+    match warning {
+        Warning::None => ("", ""),
+        Warning::BoardMissing => ("WD0", "RS232 board missing"),
+        Warning::CtsLow => ("WD1", "CTS low"),
+        Warning::Interrupt => ("WD2", "Interrupt Button"),
+        Warning::Translation => ("WD3", "Translation"),
+        Warning::Orientation => ("WD4", "Orientation"),
+        Warning::Transmitter => ("WD5", "Trans hardware"),
+        Warning::JointLimit => ("WD6", "Joint limit reached (Joint 6)"),
+        Warning::ShoulderUp => ("P05", "Joint 2 reached upward DEPC limit"),
+        Warning::OtherJoint => ("P0B", "Joint limit reached"),
+        Warning::Wrist => ("P9P", "Wrist singularity problem"),
+        Warning::Terminated => ("P-IG", "DEPC link terminated (unrecoverable)"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_screen_reads_as_the_manual_has_it() {
+        assert_eq!(
+            Message::Aligned([true, false, false, false, true, true]).to_string(),
+            "* = ALIGNED   1 2 3 4 5 6\n              *       * *"
+        );
+        assert_eq!(Message::Warning(Warning::CtsLow).to_string(), "WD1  CTS low");
+        assert!(Message::Warning(Warning::Terminated).to_string().starts_with("P-IG"));
+    }
+
+    #[test]
+    fn home_is_recognised_within_four_counts() {
+        let mut frame = HOME;
+        frame.wrist_to_tool[1] += 4;
+        assert!(Message::Position(frame).to_string().ends_with("HOME, to within 4"));
+        frame.wrist_to_tool[1] += 1;
+        assert!(!Message::Position(frame).to_string().contains("HOME"));
+    }
+}

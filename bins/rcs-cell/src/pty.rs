@@ -1,0 +1,296 @@
+//! The pseudo-terminal behind a path.
+//!
+//! The path is a symbolic link to the slave; a host opens it as it would open a serial port. A pseudo-terminal has no modem
+//! lines: that a host has it open stands for the host's DTR.
+//!
+//! The terminal stays when a host hangs up, and is made ready for the next: raw again, and empty. One thing cannot be taken
+//! back from outside: a host that was killed leaves the exclusive lock of the port (TIOCEXCL) behind, and nobody but the
+//! superuser could open it again. Then a new terminal takes its place under the same path.
+//!
+//! While the program lives it holds an abstract socket that is named after the path; the kernel removes it whenever the
+//! program ends, however it ends. So a link without its socket is dead and may be replaced.
+
+use std::{
+    io,
+    os::{
+        fd::{AsFd, BorrowedFd, OwnedFd},
+        linux::net::SocketAddrExt,
+        unix::{
+            ffi::OsStrExt,
+            net::{SocketAddr, UnixDatagram},
+        },
+    },
+    path::{Path, PathBuf},
+};
+
+use rustix::{
+    event::{PollFd, PollFlags, Timespec, poll},
+    fs::{Mode, OFlags},
+    io::Errno,
+    pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},
+    termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcsetattr},
+};
+
+/// Where slaves are.
+const SLAVES: &str = "/dev/pts";
+
+/// Why there is no pseudo-terminal behind the path.
+#[derive(Debug, thiserror::Error)]
+pub enum PtyError {
+    /// Another program serves the path.
+    #[error("{} is the link of another rcs-cell that still runs: stop it, or choose another path", .0.display())]
+    Alive(PathBuf),
+    /// Something else is there.
+    #[error("{} exists and is not a link that rcs-cell has left behind: remove it, or choose another path", .0.display())]
+    Occupied(PathBuf),
+    /// The directory of the path is not there.
+    #[error("there is no directory for the link {}", .0.display())]
+    NoDirectory(PathBuf),
+    /// The link cannot be made.
+    #[error("the link {} cannot be made: {source}", path.display())]
+    Link {
+        /// Where.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The terminal cannot be opened or set up.
+    #[error("no pseudo-terminal: {0}")]
+    Terminal(#[from] Errno),
+}
+
+/// A pseudo-terminal and the link to it. Dropping it removes the link.
+#[derive(Debug)]
+pub struct Pty {
+    master: OwnedFd,
+    slave: PathBuf,
+    path: PathBuf,
+    /// Held for as long as the link is ours.
+    _alive: UnixDatagram,
+}
+
+impl Pty {
+    /// Open a pseudo-terminal and link it at `path`.
+    ///
+    /// # Errors
+    /// [`PtyError`]: what stands in the way. Nothing was changed.
+    pub fn open(path: &Path) -> Result<Self, PtyError> {
+        let link_error = |source| PtyError::Link { path: path.to_owned(), source };
+        // A link is named by its directory, which does not change when the link does.
+        let (Some(name), Some(parent)) = (path.file_name(), path.parent()) else {
+            return Err(PtyError::Occupied(path.to_owned()));
+        };
+        let parent = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
+        let directory = parent.canonicalize().map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound => PtyError::NoDirectory(path.to_owned()),
+            _ => link_error(error),
+        })?;
+        let path = directory.join(name);
+        let alive = claim(&path).map_err(|error| match error.kind() {
+            io::ErrorKind::AddrInUse => PtyError::Alive(path.clone()),
+            _ => link_error(error),
+        })?;
+        match path.symlink_metadata() {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            Err(error) => return Err(link_error(error)),
+            Ok(_) if path.read_link().is_ok_and(|target| target.starts_with(SLAVES)) => {}
+            Ok(_) => return Err(PtyError::Occupied(path)),
+        }
+        let (master, slave) = terminal()?;
+        point(&path, &slave).map_err(link_error)?;
+        Ok(Self { master, slave, path, _alive: alive })
+    }
+
+    /// The slave, as the link points to it.
+    #[must_use]
+    pub fn slave(&self) -> &Path {
+        &self.slave
+    }
+
+    /// To wait for.
+    #[must_use]
+    pub fn fd(&self) -> BorrowedFd<'_> {
+        self.master.as_fd()
+    }
+
+    /// A host has the terminal open.
+    #[must_use]
+    pub fn has_host(&self) -> bool {
+        let mut fds = [PollFd::new(&self.master, PollFlags::empty())];
+        let asked = poll(&mut fds, Some(&Timespec { tv_sec: 0, tv_nsec: 0 }));
+        asked.is_ok() && !fds.iter().any(|fd| fd.revents().contains(PollFlags::HUP))
+    }
+
+    /// Bytes of the host, if there are any; 0 if there are none.
+    ///
+    /// # Errors
+    /// What the system says beside "nothing there" and "no host".
+    pub fn read(&self, bytes: &mut [u8]) -> Result<usize, PtyError> {
+        match rustix::io::read(&self.master, bytes) {
+            Ok(count) => Ok(count),
+            Err(Errno::AGAIN | Errno::IO | Errno::INTR) => Ok(0),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// A byte for the host. If the host does not read and the terminal is full, it is lost, as on a line.
+    ///
+    /// # Errors
+    /// As [`Pty::read`].
+    pub fn write(&self, byte: u8) -> Result<(), PtyError> {
+        match rustix::io::write(&self.master, &[byte]) {
+            Ok(_) | Err(Errno::AGAIN | Errno::IO | Errno::INTR) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// A host has hung up: make the terminal ready for the next one. True if a new one had to take its place.
+    ///
+    /// # Errors
+    /// [`PtyError`] if that cannot be done.
+    pub fn renew(&mut self) -> Result<bool, PtyError> {
+        if prepare(&self.slave).is_ok() {
+            return Ok(false);
+        }
+        let (master, slave) = terminal()?;
+        point(&self.path, &slave).map_err(|source| PtyError::Link { path: self.path.clone(), source })?;
+        (self.master, self.slave) = (master, slave);
+        Ok(true)
+    }
+}
+
+impl Drop for Pty {
+    fn drop(&mut self) {
+        // Not if someone has put something else there in the meantime.
+        if self.path.read_link().is_ok_and(|target| target == self.slave) {
+            // There is nobody left to tell if this fails; the next start replaces the dead link.
+            let _ = std::fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// The sign of life for a path.
+fn claim(path: &Path) -> io::Result<UnixDatagram> {
+    // The name of a socket is short; a long path is told apart by its end.
+    let bytes = path.as_os_str().as_bytes();
+    let end = &bytes[bytes.len().saturating_sub(90)..];
+    UnixDatagram::bind_addr(&SocketAddr::from_abstract_name([b"rcs-cell:", end].concat())?)
+}
+
+/// A pseudo-terminal in raw mode, its master never blocking.
+fn terminal() -> Result<(OwnedFd, PathBuf), PtyError> {
+    let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
+    grantpt(&master)?;
+    unlockpt(&master)?;
+    rustix::io::ioctl_fionbio(&master, true)?;
+    let name = ptsname(&master, Vec::new())?;
+    let slave = PathBuf::from(std::ffi::OsStr::from_bytes(name.as_bytes()));
+    prepare(&slave)?;
+    Ok((master, slave))
+}
+
+/// Raw mode, 9600 baud, nothing left over.
+fn prepare(slave: &Path) -> Result<(), Errno> {
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC | OFlags::NONBLOCK;
+    let slave = rustix::fs::open(slave, flags, Mode::empty())?;
+    let mut settings = tcgetattr(&slave)?;
+    settings.make_raw();
+    settings.set_speed(9600)?;
+    tcsetattr(&slave, OptionalActions::Now, &settings)?;
+    tcflush(&slave, QueueSelector::IOFlush)
+}
+
+/// Make `path` a link to `slave`, in one step.
+fn point(path: &Path, slave: &Path) -> io::Result<()> {
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(format!(".{}", std::process::id()));
+    std::os::unix::fs::symlink(slave, &beside)?;
+    std::fs::rename(&beside, path).inspect_err(|_| {
+        let _ = std::fs::remove_file(&beside);
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{
+        fs::{self, File, OpenOptions},
+        io::{Read, Write},
+    };
+
+    /// A directory of its own for a test, removed at the end.
+    struct Place(PathBuf);
+
+    impl Place {
+        fn new(name: &str) -> Self {
+            let place = std::env::temp_dir().join(format!("rcs-cell-pty-{name}-{}", std::process::id()));
+            fs::create_dir_all(&place).unwrap();
+            Self(place)
+        }
+    }
+
+    impl Drop for Place {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    fn host(path: &Path) -> File {
+        OpenOptions::new().read(true).write(true).open(path).unwrap()
+    }
+
+    #[test]
+    fn all_bytes_pass_and_a_host_comes_and_goes() {
+        let place = Place::new("pass");
+        let path = place.0.join("t3");
+        let mut pty = Pty::open(&path).unwrap();
+        assert!(!pty.has_host());
+        let mut bytes = [0; 512];
+        for round in 0..3 {
+            let mut host = host(&path);
+            assert!(pty.has_host(), "round {round}");
+            let all: Vec<u8> = (0..=255).collect();
+            host.write_all(&all).unwrap();
+            assert_eq!(pty.read(&mut bytes).unwrap(), 256);
+            assert_eq!(bytes[..256], all);
+            pty.write(0x11).unwrap();
+            let mut one = [0];
+            host.read_exact(&mut one).unwrap();
+            assert_eq!(one, [0x11]);
+            // Left unread, and gone when the next one comes.
+            pty.write(0x22).unwrap();
+            drop(host);
+            assert!(!pty.has_host());
+            pty.renew().unwrap();
+            assert_eq!(pty.read(&mut bytes).unwrap(), 0);
+        }
+    }
+
+    #[test]
+    fn the_link_is_removed_and_a_dead_one_is_replaced() {
+        let place = Place::new("link");
+        let path = place.0.join("t3");
+        let first = Pty::open(&path).unwrap();
+        assert_eq!(path.read_link().unwrap(), first.slave());
+        assert!(matches!(Pty::open(&path), Err(PtyError::Alive(_))));
+        drop(first);
+        assert!(path.symlink_metadata().is_err());
+        // As a kill leaves it.
+        std::os::unix::fs::symlink("/dev/pts/99999", &path).unwrap();
+        drop(Pty::open(&path).unwrap());
+        assert!(path.symlink_metadata().is_err());
+    }
+
+    #[test]
+    fn what_is_not_ours_is_left_alone() {
+        let place = Place::new("alien");
+        let path = place.0.join("t3");
+        fs::write(&path, "precious").unwrap();
+        assert!(matches!(Pty::open(&path), Err(PtyError::Occupied(_))));
+        assert_eq!(fs::read_to_string(&path).unwrap(), "precious");
+        assert!(matches!(Pty::open(&place.0.join("none/t3")), Err(PtyError::NoDirectory(_))));
+        let link = place.0.join("link");
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        assert!(matches!(Pty::open(&link), Err(PtyError::Occupied(_))));
+    }
+}

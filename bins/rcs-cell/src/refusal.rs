@@ -1,0 +1,57 @@
+//! Why a key does nothing.
+
+/// A key that was pressed at the wrong moment, and what has to be done first (IV.3.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// Control power is off.
+    #[error("the controller has no power: control power on comes first")]
+    NoPower,
+    /// Control power is on already.
+    #[error("control power is on already")]
+    PowerIsOn,
+    /// FAULT RESET is lit.
+    #[error("the FAULT RESET button is lit: fault reset comes first")]
+    Fault,
+    /// FAULT RESET is not lit.
+    #[error("the FAULT RESET button is not lit: there is nothing to reset")]
+    NoFault,
+    /// The keyswitch is not at ENABLE.
+    #[error("the HYDRAULICS keyswitch is not at ENABLE: hydraulics enable comes first")]
+    NotEnabled,
+    /// The keyswitch is there already.
+    #[error("the HYDRAULICS keyswitch is there already")]
+    KeyIsThere,
+    /// The robot's hydraulics are off.
+    #[error("the robot's hydraulics are off: manual on comes first")]
+    NoPressure,
+    /// The robot's hydraulics are on.
+    #[error("the robot's hydraulics are on already")]
+    PressureIsOn,
+    /// The robot moves.
+    #[error("the robot moves: wait until it stands")]
+    Moving,
+    /// An axis is not aligned.
+    #[error("not all axes are aligned: align comes first")]
+    NotAligned,
+    /// Axes are aligned in manual mode only.
+    #[error("axes are aligned in manual mode, before AUTO")]
+    NotManual,
+    /// The robot is not in auto mode.
+    #[error("the robot is not in auto mode at HOME: auto comes first")]
+    NotAuto,
+    /// A program runs.
+    #[error("the program runs: interrupt it first")]
+    Running,
+    /// No program runs.
+    #[error("no program runs")]
+    NotRunning,
+    /// A warning waits for an answer.
+    #[error("a warning is on the screen: answer it with enter, or with cancel twice")]
+    Warned,
+    /// No warning to answer.
+    #[error("there is no warning on the screen to answer")]
+    NothingToAnswer,
+    /// The error P-IG can only be cancelled.
+    #[error("the error P-IG can only be cancelled")]
+    OnlyCancel,
+}

@@ -1,0 +1,284 @@
+//! The shell around the state machine: clock, pseudo-terminal, standard input and output.
+//!
+//! One thread, which sleeps until a byte comes or the next one is due. Nothing in it blocks: what a host does not read is
+//! lost, what has not come is not there yet.
+
+use std::{
+    collections::VecDeque,
+    io::{self, IsTerminal, Write},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::Instant,
+};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+use crate::{
+    auto::Operator,
+    cli::Cli,
+    console::{self, Key, Lines},
+    line::{Cadence, Line},
+    pty::{Pty, PtyError},
+    t3::{StepInputs, T3},
+};
+
+/// Baud of the link (VI.1).
+const BAUD: u32 = 9600;
+/// Longest sleep, microseconds: a signal is noticed within it.
+const LONGEST_SLEEP: u64 = 50_000;
+/// Longest time that a step makes up for, seconds, if the program was stopped.
+const LONGEST_STEP_S: f64 = 2.0;
+
+/// What ends the program in an error.
+#[derive(Debug, thiserror::Error)]
+pub enum ShellError {
+    /// The pseudo-terminal.
+    #[error(transparent)]
+    Pty(#[from] PtyError),
+    /// Standard input or output, or waiting.
+    #[error("standard input or output failed: {0}")]
+    Io(#[from] io::Error),
+}
+
+/// Everything that runs.
+pub struct Shell {
+    start: Instant,
+    stop: Arc<AtomicBool>,
+    pty: Pty,
+    host: bool,
+    line: Line,
+    cadence: Cadence,
+    t3: T3,
+    operator: Operator,
+    lines: Lines,
+    waiting: VecDeque<String>,
+    /// Lines are not read before this time, microseconds.
+    wait_until: u64,
+    /// A key waits for its step.
+    pressed: bool,
+    input_open: bool,
+    out: io::Stdout,
+}
+
+impl Shell {
+    /// Ready to run. `stop` ends it.
+    #[must_use]
+    pub fn new(cli: &Cli, pty: Pty, stop: Arc<AtomicBool>) -> Self {
+        Self {
+            start: Instant::now(),
+            stop,
+            pty,
+            host: false,
+            line: Line::new(BAUD),
+            cadence: Cadence::new(cli.period.period_ms(), 0),
+            t3: T3::new(cli.period, cli.seed),
+            operator: Operator::new(cli.auto),
+            lines: Lines::default(),
+            waiting: VecDeque::new(),
+            wait_until: 0,
+            pressed: false,
+            input_open: true,
+            out: io::stdout(),
+        }
+    }
+
+    /// Run until `quit`, the end of a terminal's input, or a signal.
+    ///
+    /// # Errors
+    /// [`ShellError`].
+    pub fn run(&mut self) -> Result<(), ShellError> {
+        self.say(&format!(
+            "[link] {} waits for a host; help lists the commands",
+            self.pty.slave().display()
+        ))?;
+        while !self.stop.load(Ordering::Relaxed) {
+            self.watch_host()?;
+            self.take_bytes()?;
+            self.take_input()?;
+            if self.obey()? {
+                break;
+            }
+            if self.cadence.next(&self.line) <= self.now() {
+                self.step()?;
+            }
+            while let Some(byte) = self.line.delivered(self.now()) {
+                self.pty.write(byte)?;
+            }
+            self.sleep()?;
+        }
+        Ok(())
+    }
+
+    /// Microseconds since the start.
+    fn now(&self) -> u64 {
+        u64::try_from(self.start.elapsed().as_micros()).unwrap_or(u64::MAX)
+    }
+
+    fn say(&mut self, text: &str) -> io::Result<()> {
+        writeln!(self.out, "{text}")?;
+        self.out.flush()
+    }
+
+    fn watch_host(&mut self) -> Result<(), ShellError> {
+        let host = self.pty.has_host();
+        if host == self.host {
+            return Ok(());
+        }
+        self.host = host;
+        if host {
+            self.say("[link] a host has opened the link")?;
+        } else {
+            self.line.clear();
+            let text = if self.pty.renew()? {
+                format!("[link] the host has left it locked, now at {}", self.pty.slave().display())
+            } else {
+                "[link] the host has hung up".to_owned()
+            };
+            self.say(&text)?;
+        }
+        Ok(())
+    }
+
+    fn take_bytes(&mut self) -> Result<(), ShellError> {
+        let mut bytes = [0; 256];
+        let room = self.line.room().min(bytes.len());
+        if self.host && room > 0 {
+            let count = self.pty.read(&mut bytes[..room])?;
+            let now = self.now();
+            self.line.host_sent(now, &bytes[..count]);
+        }
+        Ok(())
+    }
+
+    fn take_input(&mut self) -> Result<(), ShellError> {
+        let stdin = io::stdin();
+        if !self.input_open || !is_ready(&stdin)? {
+            return Ok(());
+        }
+        let mut bytes = [0; 256];
+        match rustix::io::read(&stdin, &mut bytes) {
+            Ok(0) => {
+                self.input_open = false;
+                if stdin.is_terminal() {
+                    self.waiting.push_back("quit".into());
+                }
+            }
+            Ok(count) => self.waiting.extend(self.lines.accept(&bytes[..count])),
+            Err(rustix::io::Errno::INTR | rustix::io::Errno::AGAIN) => {}
+            // A terminal that was closed.
+            Err(_) => self.input_open = false,
+        }
+        Ok(())
+    }
+
+    /// The lines that are due; true if one of them was `quit`.
+    fn obey(&mut self) -> Result<bool, ShellError> {
+        // A key counts in the next step; the key after it must find what this one has done.
+        while self.wait_until <= self.now() && !self.pressed {
+            let Some(text) = self.waiting.pop_front() else { break };
+            match text.parse() {
+                Err(error) => self.say(&format!("error: {error}"))?,
+                Ok(console::Line::Quit) => return Ok(true),
+                Ok(console::Line::Help) => self.say(console::HELP)?,
+                Ok(console::Line::Status) => self.status()?,
+                Ok(console::Line::Wait(milliseconds)) => self.wait_until = self.now() + milliseconds * 1000,
+                Ok(console::Line::Key(key)) => {
+                    if self.operator.step_back() {
+                        self.say("[auto] steps back: the console is yours")?;
+                    }
+                    self.press(key)?;
+                    self.pressed = true;
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    fn press(&mut self, key: Key) -> Result<(), ShellError> {
+        match self.t3.press(key) {
+            Ok(()) => self.show(),
+            Err(refusal) => Ok(self.say(&format!("refused: {refusal}"))?),
+        }
+    }
+
+    fn show(&mut self) -> Result<(), ShellError> {
+        for message in self.t3.messages() {
+            self.say(&message.to_string())?;
+        }
+        Ok(())
+    }
+
+    fn step(&mut self) -> Result<(), ShellError> {
+        if let Some(key) = self.operator.next(&self.t3, self.host) {
+            self.say(&format!("[auto] {}", key.text()))?;
+            self.press(key)?;
+        }
+        let now = self.now();
+        let elapsed = std::time::Duration::from_micros(now - self.cadence.last()).as_secs_f64();
+        let inputs =
+            StepInputs { elapsed: elapsed.min(LONGEST_STEP_S), rx: self.line.arrived(now), cts: self.host };
+        let out = self.t3.step(&inputs);
+        if self.host {
+            self.line.send(now, out.tx.as_slice());
+        }
+        self.pressed = false;
+        self.cadence.stepped(now, out.busy);
+        self.show()
+    }
+
+    fn status(&mut self) -> Result<(), ShellError> {
+        let (t3, depc) = (&self.t3, self.t3.depc());
+        let counts = t3.counts();
+        let text = format!(
+            "[status] {}; hold {}; host {}; DEPC {}; {} moves, {} NAKs, {} reports",
+            t3.stage().text(),
+            if t3.hold() { "on" } else { "off" },
+            if self.host { "there" } else { "not there" },
+            depc.state(),
+            counts.moves,
+            counts.naks,
+            counts.reports,
+        );
+        let mut lines = vec![text, crate::message::Message::Aligned(t3.aligned()).to_string()];
+        if depc.warning() != depc::controller::Warning::None {
+            lines.push(crate::message::Message::Warning(depc.warning()).to_string());
+        }
+        lines.push(crate::message::Message::Position(t3.position()).to_string());
+        Ok(self.say(&lines.join("\n"))?)
+    }
+
+    /// Sleep until something comes or is due.
+    fn sleep(&self) -> Result<(), ShellError> {
+        let now = self.now();
+        let due = [Some(self.cadence.next(&self.line)), self.line.next_delivery()]
+            .into_iter()
+            .flatten()
+            .fold(now + LONGEST_SLEEP, u64::min);
+        let left = std::time::Duration::from_micros(due.saturating_sub(now));
+        let timeout = Timespec::try_from(left).map_err(io::Error::other)?;
+        let stdin = io::stdin();
+        let mut fds = Vec::with_capacity(2);
+        // Without a host the master reports a hang-up all the time; a full line has no room for what is there.
+        if self.host && self.line.room() > 0 {
+            fds.push(PollFd::from_borrowed_fd(self.pty.fd(), PollFlags::IN));
+        }
+        if self.input_open {
+            fds.push(PollFd::new(&stdin, PollFlags::IN));
+        }
+        match poll(&mut fds, Some(&timeout)) {
+            Ok(_) | Err(rustix::io::Errno::INTR) => Ok(()),
+            Err(error) => Err(io::Error::from(error).into()),
+        }
+    }
+}
+
+fn is_ready(stdin: &io::Stdin) -> io::Result<bool> {
+    let mut fds = [PollFd::new(stdin, PollFlags::IN)];
+    match poll(&mut fds, Some(&Timespec { tv_sec: 0, tv_nsec: 0 })) {
+        Ok(count) => Ok(count > 0),
+        Err(rustix::io::Errno::INTR) => Ok(false),
+        Err(error) => Err(error.into()),
+    }
+}

@@ -1,0 +1,246 @@
+//! The start-up of IV.3.3, step by step.
+
+use super::*;
+use crate::message::{HOME_TOLERANCE, off_home as off};
+use depc::wire::{DataCommand, FRAME_BYTES, Report};
+
+/// The report at HOME, worked out from appendix A.
+const HOME_REPORT: [u8; 16] =
+    [0xFF, 0xFF, 0x03, 0x00, 0x00, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x7A];
+
+fn t3() -> T3 {
+    T3::new(Limits::NBS, 1)
+}
+
+/// Let `seconds` pass in periods with a host on the line; returns what was sent.
+fn pass(t3: &mut T3, seconds: f64) -> Vec<u8> {
+    let mut sent = Vec::new();
+    for _ in 0..(seconds / 0.04).ceil() as u32 {
+        sent.extend(step(t3, &[], true));
+    }
+    sent
+}
+
+fn step(t3: &mut T3, rx: &[u8], cts: bool) -> Vec<u8> {
+    let mut inputs = StepInputs { elapsed: 0.04, cts, ..StepInputs::default() };
+    assert_eq!(inputs.rx.extend(rx), rx.len());
+    t3.step(&inputs).tx.as_slice().to_vec()
+}
+
+fn manual() -> T3 {
+    let mut t3 = t3();
+    for key in [Key::ControlPower(true), Key::FaultReset, Key::Hydraulics(true), Key::Manual(true)] {
+        t3.press(key).unwrap();
+    }
+    pass(&mut t3, 4.0);
+    assert_eq!(t3.stage(), Stage::Manual);
+    t3
+}
+
+fn auto() -> T3 {
+    let mut t3 = manual();
+    t3.press(Key::Align(None)).unwrap();
+    pass(&mut t3, 3.0);
+    t3.press(Key::Auto).unwrap();
+    pass(&mut t3, 3.0);
+    assert_eq!(t3.stage(), Stage::Auto);
+    t3
+}
+
+fn running() -> T3 {
+    let mut t3 = auto();
+    t3.press(Key::CycleStart).unwrap();
+    let sent = pass(&mut t3, 6.0);
+    assert_eq!(sent.first_chunk::<16>().map(|f| Report::parse(f).is_ok()), Some(true), "{sent:02X?}");
+    t3.messages();
+    t3
+}
+
+fn frame(words: [i16; 6], function: [u8; 2]) -> [u8; FRAME_BYTES] {
+    let mut bytes = [0; FRAME_BYTES];
+    DataCommand { function, plate: Plate { words } }.emit(&mut bytes);
+    bytes
+}
+
+#[test]
+fn the_steps_of_the_manual_lead_to_a_report_of_home() {
+    let mut t3 = auto();
+    assert!(off(&t3.position()) <= HOME_TOLERANCE, "{:?}", t3.position());
+    t3.press(Key::CycleStart).unwrap();
+    let mut highest = i32::MIN;
+    let mut sent = Vec::new();
+    while sent.is_empty() {
+        sent = step(&mut t3, &[], true);
+        highest = highest.max(t3.position().tool[2]);
+    }
+    assert_eq!(sent, HOME_REPORT);
+    assert!((highest - (-1483 + 100)).abs() <= 5, "{highest}");
+    assert_eq!(t3.stage(), Stage::Depc);
+    assert!(off(&t3.position()) <= HOME_TOLERANCE);
+}
+
+#[test]
+fn both_jumps_are_there() {
+    let mut t3 = t3();
+    for key in [Key::ControlPower(true), Key::FaultReset, Key::Hydraulics(true), Key::Manual(true)] {
+        t3.press(key).unwrap();
+    }
+    let below = t3.position();
+    pass(&mut t3, 0.8);
+    assert_eq!(t3.position(), below, "the pressure comes after a delay");
+    pass(&mut t3, 3.0);
+    let jump = t3.position().tool[2] - below.tool[2];
+    assert!((500..1200).contains(&jump), "{jump}");
+    t3.press(Key::Align(None)).unwrap();
+    pass(&mut t3, 3.0);
+    assert_eq!(t3.aligned(), [true; 6]);
+    assert!(off(&t3.position()) > HOME_TOLERANCE, "arrows are set by eye");
+    t3.press(Key::Auto).unwrap();
+    pass(&mut t3, 3.0);
+    assert!(off(&t3.position()) <= HOME_TOLERANCE);
+}
+
+#[test]
+fn steps_out_of_order_are_refused_and_change_nothing() {
+    let all = [
+        Key::ControlPower(true),
+        Key::FaultReset,
+        Key::Hydraulics(true),
+        Key::Manual(true),
+        Key::Align(None),
+        Key::Auto,
+        Key::CycleStart,
+    ];
+    let order = [
+        (Stage::Dark, vec![Refusal::NoPower; 6]),
+        (
+            Stage::Faulted,
+            vec![Refusal::Fault, Refusal::Fault, Refusal::NoPressure, Refusal::NoPressure, Refusal::NotAuto],
+        ),
+        (Stage::Ready, vec![Refusal::NotEnabled, Refusal::NoPressure, Refusal::NoPressure, Refusal::NotAuto]),
+        (Stage::Enabled, vec![Refusal::NoPressure, Refusal::NoPressure, Refusal::NotAuto]),
+        (Stage::Manual, vec![Refusal::NotAligned, Refusal::NotAuto]),
+    ];
+    let mut t3 = t3();
+    for (done, (stage, refusals)) in order.into_iter().enumerate() {
+        for (key, refusal) in all[done + 1..].iter().zip(refusals) {
+            assert_eq!((t3.press(*key), t3.stage()), (Err(refusal), stage), "{key:?}");
+        }
+        t3.press(all[done]).unwrap();
+        pass(&mut t3, 4.0);
+    }
+    // The last of the keys pressed was `align`.
+    assert_eq!(t3.press(Key::CycleStart), Err(Refusal::NotAuto));
+    t3.press(Key::Auto).unwrap();
+    assert_eq!(t3.press(Key::CycleStart), Err(Refusal::Moving));
+    assert_eq!(t3.press(Key::Enter), Err(Refusal::NothingToAnswer));
+}
+
+#[test]
+fn axes_get_their_asterisks_one_by_one() {
+    let mut t3 = manual();
+    t3.press(Key::Align(Some(3))).unwrap();
+    assert_eq!(t3.press(Key::Align(Some(4))), Err(Refusal::Moving));
+    pass(&mut t3, 3.0);
+    assert_eq!(t3.aligned(), [false, false, true, false, false, false]);
+    assert_eq!(t3.press(Key::Auto), Err(Refusal::NotAligned));
+}
+
+#[test]
+fn a_wd_error_is_recovered_from_as_step_12_says() {
+    let mut t3 = auto();
+    t3.press(Key::CycleStart).unwrap();
+    for _ in 0..200 {
+        assert_eq!(step(&mut t3, &[], false), []);
+    }
+    assert!(t3.messages().contains(&Message::Warning(Warning::CtsLow)));
+    assert_eq!(t3.press(Key::Auto), Err(Refusal::Warned));
+    for key in [Key::Interrupt, Key::Cancel, Key::Cancel] {
+        t3.press(key).unwrap();
+        step(&mut t3, &[], true);
+    }
+    assert!(t3.messages().contains(&Message::Warning(Warning::Terminated)));
+    assert_eq!(t3.stage(), Stage::PreManual);
+    t3.press(Key::Auto).unwrap();
+    pass(&mut t3, 3.0);
+    t3.press(Key::CycleStart).unwrap();
+    assert_eq!(pass(&mut t3, 6.0), HOME_REPORT);
+}
+
+#[test]
+fn enter_begins_again_where_the_robot_stands() {
+    let mut t3 = running();
+    assert_eq!(step(&mut t3, &frame([30, -6293, -636, -9000, 13500, 0], [0; 2]), true), [0x06]);
+    assert_eq!(step(&mut t3, &[], false), []);
+    assert_eq!(t3.messages(), [Message::Warning(Warning::CtsLow)]);
+    t3.press(Key::Enter).unwrap();
+    let report = step(&mut t3, &[], true);
+    assert_eq!(Report::parse(&report).unwrap().plate.words, [30, -6293, -636, -9000, 13500, 0]);
+    // A step too far: ACK, then the warning, and the robot stays.
+    assert_eq!(step(&mut t3, &frame([90, -6293, -636, -9000, 13500, 0], [0; 2]), true), [0x06]);
+    assert!(t3.messages().contains(&Message::Warning(Warning::Translation)));
+    t3.press(Key::Enter).unwrap();
+    assert_eq!(step(&mut t3, &[], true), report);
+}
+
+#[test]
+fn the_arm_follows_what_is_acknowledged_and_functions_run_on_arrival() {
+    let mut t3 = running();
+    for count in 1..=50_i16 {
+        let sent = step(&mut t3, &frame([count * 20, -6293, -636, -9000, 13500, 0], [7, 9]), true);
+        assert_eq!(sent, [0x06]);
+    }
+    pass(&mut t3, 2.0);
+    assert!((t3.position().tool[0] - 1000).abs() <= 2, "{:?}", t3.position());
+    assert_eq!(t3.counts(), Counts { moves: 50, naks: 0, reports: 1 });
+    assert_eq!(t3.messages(), vec![Message::Function([7, 9]); 50]);
+}
+
+#[test]
+fn after_a_cancel_the_program_goes_home_and_can_begin_again() {
+    let mut t3 = running();
+    for count in 1..=20_i16 {
+        step(&mut t3, &frame([count * 50, -6293, -636, -9000, 13500, 0], [0; 2]), true);
+    }
+    assert_eq!(step(&mut t3, &[0x18], true), [0x06]);
+    assert_eq!((t3.stage(), step(&mut t3, &[0x05], true)), (Stage::Homing, vec![]));
+    pass(&mut t3, 5.0);
+    assert_eq!(t3.stage(), Stage::Auto);
+    t3.press(Key::CycleStart).unwrap();
+    assert_eq!(pass(&mut t3, 6.0), HOME_REPORT);
+}
+
+#[test]
+fn an_emergency_stop_lets_the_arm_sink_and_takes_the_whole_start_up() {
+    let mut t3 = running();
+    t3.press(Key::Estop).unwrap();
+    let before = t3.position().tool[2];
+    assert_eq!(step(&mut t3, &[0x05], true), []);
+    pass(&mut t3, 10.0);
+    assert!(before - t3.position().tool[2] > 500);
+    assert_eq!((t3.stage(), t3.aligned()), (Stage::Faulted, [false; 6]));
+    assert_eq!(t3.press(Key::Hydraulics(true)), Err(Refusal::Fault));
+    t3.press(Key::FaultReset).unwrap();
+    assert_eq!(t3.press(Key::Manual(true)), Err(Refusal::NotEnabled));
+}
+
+#[test]
+fn hold_stops_the_programs_own_motions_and_interrupt_ends_them() {
+    let mut t3 = auto();
+    t3.press(Key::CycleStart).unwrap();
+    pass(&mut t3, 0.5);
+    t3.press(Key::Hold(true)).unwrap();
+    pass(&mut t3, 1.0);
+    let held = t3.position();
+    pass(&mut t3, 5.0);
+    assert_eq!((t3.position(), t3.stage()), (held, Stage::Rehearsing));
+    t3.press(Key::Interrupt).unwrap();
+    assert_eq!(t3.stage(), Stage::PreManual);
+}
+
+#[test]
+fn the_same_seed_is_the_same_morning() {
+    let morning = |seed| T3::new(Limits::NBS, seed).position();
+    assert_eq!(morning(3), morning(3));
+    assert_ne!(morning(3), morning(4));
+}
