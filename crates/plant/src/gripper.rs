@@ -18,6 +18,13 @@ use crate::{
     squeeze::Pads,
 };
 
+/// Fingers farther than this from what would block them are free, in.
+const FREE_GAP: f64 = 0.001;
+/// How long the seals hold free fingers before trapped air drives them on, s; a part that slides out is clear by then.
+const BREAKAWAY_TIME: f64 = 0.25;
+/// Speed of fingers that trapped air drives, in/s: that of the coarse flow, which the same ports limit.
+const EXPANSION_SPEED: f64 = 4.0;
+
 /// Speeds of the six flow valves, in/s, opening positive ([`valve`]).
 const FLOWS: [(u8, f64); 6] = [
     (valve::OPEN_FINE, 0.25),
@@ -35,6 +42,7 @@ pub struct Air {
     force: f64,
     speed: f64,
     relieved: bool,
+    free_for: f64,
     range: [f64; 2],
     compressibility: f64,
     greatest_force: f64,
@@ -50,6 +58,7 @@ impl Air {
             force: 0.0,
             speed: 0.0,
             relieved: false,
+            free_for: 0.0,
             range: gripper.opening,
             compressibility: gripper.compressibility,
             greatest_force: gripper.greatest_force,
@@ -94,6 +103,7 @@ impl Air {
             0.0
         };
         let stop = stop.map_or(least, |stop| stop.max(least));
+        self.expand(dt, stop);
         let wanted = flow * dt;
         if wanted < 0.0 {
             let free = (self.opening - stop).max(0.0).min(-wanted);
@@ -108,6 +118,23 @@ impl Air {
         }
         self.speed = (self.opening - before) / dt;
         self.relieved = self.force < force;
+    }
+
+    /// Air that is pressed in behind fingers which nothing blocks any more drives them on: a part that was torn out of the
+    /// fingers leaves them more closed than it was wide.
+    fn expand(&mut self, dt: f64, stop: f64) {
+        let gap = self.opening - stop;
+        if self.force <= 0.0 || gap <= FREE_GAP {
+            self.free_for = 0.0;
+            return;
+        }
+        self.free_for += dt;
+        if self.free_for < BREAKAWAY_TIME {
+            return;
+        }
+        let travel = gap.min(self.force / self.compressibility).min(EXPANSION_SPEED * dt);
+        self.opening -= travel;
+        self.force -= travel * self.compressibility;
     }
 
     /// The part has been pushed aside between the fingers and has spread them to `opening`.
@@ -349,6 +376,21 @@ mod tests {
         let mut air = air();
         run(&mut air, 1.0, valve::OPEN_COARSE, None);
         assert_eq!(air.opening(), 0.10);
+    }
+
+    #[test]
+    fn fingers_that_lose_their_part_close_on() {
+        let mut air = air();
+        run(&mut air, 0.7, valve::SUPPLY | valve::OPEN_MEDIUM, None);
+        run(&mut air, 0.475, valve::SUPPLY | valve::CLOSE_MEDIUM, Some(0.625));
+        assert!((air.opening() - 0.625).abs() < 1e-9 && (air.force() - 30.0).abs() < 1e-6, "{}", air.force());
+        run(&mut air, 1.0, valve::SUPPLY, None);
+        assert!(
+            (air.opening() - 0.325).abs() < 1e-9 && air.force() < 1e-9,
+            "{} {}",
+            air.opening(),
+            air.force()
+        );
     }
 
     #[test]
