@@ -1,0 +1,247 @@
+//! The program as a host and a person at the console find it.
+
+use std::{
+    fs::{self, File, OpenOptions},
+    io::{BufRead, BufReader, Read, Write},
+    os::unix::fs::OpenOptionsExt,
+    path::{Path, PathBuf},
+    process::{Child, ChildStdin, Command, ExitStatus, Stdio},
+    sync::mpsc::{Receiver, channel},
+    thread,
+    time::{Duration, Instant},
+};
+
+use rustix::{
+    event::{PollFd, PollFlags, Timespec, poll},
+    process::{Pid, Signal, kill_process},
+};
+
+/// Longer than anything takes on a machine that does something else as well.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// The report at HOME, byte for byte.
+const HOME: [u8; 16] =
+    [0xFF, 0xFF, 0x03, 0x00, 0x00, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x7A];
+/// The data command to 0.10 in beside HOME.
+const BESIDE: [u8; 16] =
+    [0x03, 0x00, 0x00, 0x00, 0x0A, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x70];
+/// The report there.
+const BESIDE_REPORT: [u8; 16] =
+    [0xFF, 0xFF, 0x03, 0x00, 0x0A, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x70];
+
+/// A directory for one test, removed at the end.
+struct Place(PathBuf);
+
+impl Place {
+    fn new(name: &str) -> Self {
+        let place = std::env::temp_dir().join(format!("rcs-cell-{name}-{}", std::process::id()));
+        fs::create_dir_all(&place).unwrap();
+        Self(place)
+    }
+
+    fn link(&self) -> PathBuf {
+        self.0.join("t3")
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// The program, its console and its screen.
+struct Cell {
+    child: Child,
+    console: ChildStdin,
+    screen: Receiver<String>,
+}
+
+impl Cell {
+    fn start(link: &Path, options: &[&str]) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_rcs-cell"))
+            .arg("--link")
+            .arg(link)
+            .args(options)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let (send, screen) = channel();
+        let out = BufReader::new(child.stdout.take().unwrap());
+        thread::spawn(move || {
+            for line in out.lines().map_while(Result::ok) {
+                if send.send(line).is_err() {
+                    break;
+                }
+            }
+        });
+        Self { console: child.stdin.take().unwrap(), child, screen }
+    }
+
+    fn enter(&mut self, line: &str) {
+        writeln!(self.console, "{line}").unwrap();
+    }
+
+    /// Wait for a line that contains `text`; returns the lines up to it.
+    fn wait_for(&self, text: &str) -> Vec<String> {
+        let mut seen = Vec::new();
+        let end = Instant::now() + PATIENCE;
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            match self.screen.recv_timeout(left) {
+                Ok(line) => seen.push(line),
+                Err(error) => panic!("{text:?} did not come ({error}), but {seen:#?}"),
+            }
+            if seen.last().is_some_and(|line| line.contains(text)) {
+                return seen;
+            }
+        }
+    }
+
+    fn signal(&self, signal: Signal) {
+        let pid = Pid::from_child(&self.child);
+        kill_process(pid, signal).unwrap();
+    }
+
+    fn ended(&mut self) -> ExitStatus {
+        let end = Instant::now() + PATIENCE;
+        loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                return status;
+            }
+            assert!(Instant::now() < end, "it does not end");
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+impl Drop for Cell {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A host that opens the link as a file: the terminal is raw already.
+struct Host(File);
+
+impl Host {
+    fn open(link: &Path) -> Self {
+        let mut options = OpenOptions::new();
+        options.read(true).write(true).custom_flags(rustix::fs::OFlags::NOCTTY.bits().cast_signed());
+        Self(options.open(link).unwrap())
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        self.0.write_all(bytes).unwrap();
+    }
+
+    fn receive<const N: usize>(&mut self) -> [u8; N] {
+        let (mut bytes, mut length) = ([0; N], 0);
+        let end = Instant::now() + PATIENCE;
+        while length < N {
+            let left = end.saturating_duration_since(Instant::now());
+            assert!(!left.is_zero(), "only {:02X?} came", &bytes[..length]);
+            let mut fds = [PollFd::new(&self.0, PollFlags::IN)];
+            if poll(&mut fds, Some(&Timespec::try_from(left).unwrap())).unwrap() > 0 {
+                length += self.0.read(&mut bytes[length..]).unwrap();
+            }
+        }
+        bytes
+    }
+}
+
+#[test]
+fn a_host_finds_the_robot_at_home_and_comes_back_where_it_left_it() {
+    let place = Place::new("host");
+    let mut cell = Cell::start(&place.link(), &["--auto"]);
+    cell.wait_for("waits for a host");
+    let mut host = Host::open(&place.link());
+    assert_eq!(host.receive(), HOME);
+    host.send(&BESIDE);
+    assert_eq!(host.receive(), [0x06]);
+    let mut garbled = BESIDE;
+    garbled[4] = 0x0B;
+    host.send(&garbled);
+    assert_eq!(host.receive(), [0x15]);
+    let sent = Instant::now();
+    host.send(&[0x05]);
+    assert_eq!(host.receive(), BESIDE_REPORT);
+    // Seventeen bytes at 9600 baud; this can only take longer on a busy machine.
+    assert!(sent.elapsed() >= Duration::from_micros(17 * 1041), "{:?}", sent.elapsed());
+
+    drop(host);
+    cell.wait_for("WD1  CTS low");
+    let mut host = Host::open(&place.link());
+    assert_eq!(host.receive(), BESIDE_REPORT);
+    host.send(&BESIDE);
+    assert_eq!(host.receive(), [0x06]);
+    cell.signal(Signal::TERM);
+    assert_eq!(cell.ended().code(), Some(0));
+    assert!(place.link().symlink_metadata().is_err(), "the link is removed");
+}
+
+#[test]
+fn a_person_starts_the_robot_step_by_step_and_recovers_from_a_wd_error() {
+    let place = Place::new("person");
+    let mut cell = Cell::start(&place.link(), &["--seed", "3"]);
+    cell.wait_for("waits for a host");
+    cell.enter("cycle start");
+    cell.wait_for("refused: the controller has no power");
+    for (command, answer) in [
+        ("control power on", "FAULT RESET on"),
+        ("fault reset", "FAULT RESET off"),
+        ("manual on", "refused: the HYDRAULICS keyswitch is not at ENABLE"),
+        ("hydraulics enable", "HYD ENABLED on"),
+        ("manual on", "the hand has jumped by"),
+        ("auto", "refused: not all axes are aligned"),
+        ("align", " * * * * * *"),
+        ("auto", "HOME, to within"),
+        ("cycle start", "WD1  CTS low"),
+        ("interrupt\ncancel", "P-IG"),
+        ("cancel", "pre-manual mode"),
+    ] {
+        cell.enter(command);
+        cell.wait_for(answer);
+    }
+    let mut host = Host::open(&place.link());
+    cell.wait_for("a host has opened the link");
+    cell.enter("auto");
+    cell.wait_for("HOME, to within");
+    cell.enter("cycle start");
+    assert_eq!(host.receive(), HOME);
+    cell.enter("estop");
+    cell.wait_for("the arm sinks");
+    cell.enter("status");
+    cell.wait_for("[status] fault");
+    cell.enter("quit");
+    assert_eq!(cell.ended().code(), Some(0));
+    assert!(place.link().symlink_metadata().is_err());
+}
+
+#[test]
+fn a_path_is_taken_over_from_the_dead_but_not_from_the_living() {
+    let place = Place::new("path");
+    let mut first = Cell::start(&place.link(), &[]);
+    first.wait_for("waits for a host");
+    let refused = |link: &Path| {
+        let output = Command::new(env!("CARGO_BIN_EXE_rcs-cell")).arg("--link").arg(link).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (status, reason) = refused(&place.link());
+    assert_eq!(status, Some(2));
+    assert!(reason.contains("still runs"), "{reason}");
+    first.signal(Signal::KILL);
+    first.ended();
+    assert!(place.link().symlink_metadata().is_ok(), "nobody could remove it");
+    let second = Cell::start(&place.link(), &[]);
+    second.wait_for("waits for a host");
+
+    let file = place.0.join("file");
+    fs::write(&file, "precious").unwrap();
+    let (status, reason) = refused(&file);
+    assert_eq!(status, Some(2));
+    assert!(reason.contains("not a link that rcs-cell has left behind"), "{reason}");
+    assert_eq!(fs::read_to_string(&file).unwrap(), "precious");
+}
