@@ -135,6 +135,15 @@ impl T3Controller {
         let words = Plate::from_frame(plate, &self.servos.plate).map_err(|_| DriveError::OutOfRange)?;
         self.servos.move_to(&words).map_err(DriveError::Joints)
     }
+
+    /// Take over the position of another controller that has the robot: joint angles that the servos reach for, radians.
+    ///
+    /// # Errors
+    /// [`JointProblem`] if this arm cannot take the position; the command stays as it was.
+    pub fn follow(&mut self, plate: &Plate) -> Result<Joints, JointProblem> {
+        self.servos.move_to(plate)?;
+        Ok(self.servos.joints)
+    }
 }
 
 #[cfg(test)]

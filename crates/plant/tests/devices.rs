@@ -57,6 +57,31 @@ fn data_commands_move_the_arm() {
 }
 
 #[test]
+fn the_cell_follows_a_robot_elsewhere() {
+    let mut cell = Cell::new(&description(), 1).unwrap();
+    let home = Plate::from_frame(&T3.forward_plate(&cell.joints()), &Plate::default()).unwrap();
+    let outputs = DeviceOutputs::default();
+    let before = cell.inputs().resolvers;
+    assert_eq!(cell.step_following(None, &outputs).resolvers, before, "nothing is known of the robot yet");
+    let mut there = home;
+    there.words[2] += 200;
+    for _ in 0..60 {
+        let inputs = cell.step_following(Some(&there), &outputs);
+        assert!(!inputs.link_ready && inputs.link_rx.length == 0, "the line is elsewhere");
+    }
+    assert_eq!(Plate::from_frame(&T3.forward_plate(&cell.joints()), &there).unwrap(), there);
+    assert_eq!(cell.events(), []);
+    let mut beyond = there;
+    beyond.words[2] = 20_000;
+    for _ in 0..3 {
+        cell.step_following(Some(&beyond), &outputs);
+    }
+    let events = cell.events();
+    assert!(matches!(events[..], [CellEvent::CannotFollow(_)]), "said once: {events:?}");
+    assert_eq!(Plate::from_frame(&T3.forward_plate(&cell.joints()), &there).unwrap(), there);
+}
+
+#[test]
 fn a_leap_is_a_warning_and_the_operator_answers() {
     let mut cell = Cell::new(&description(), 1).unwrap();
     let mut outputs = DeviceOutputs::default();

@@ -6,7 +6,10 @@ mod workstation;
 
 use std::fmt;
 
-use depc::controller::ControllerState;
+use depc::{
+    Plate,
+    controller::{ControllerState, JointProblem},
+};
 use rapier3d_f64::prelude::*;
 use rcs_core::{
     frame::{Frame, Vector as Inches},
@@ -75,6 +78,8 @@ pub enum CellEvent {
     },
     /// The T3 controller shows a warning.
     Warning(&'static str),
+    /// The simulated arm cannot take a position that the robot it follows has taken, and stays behind.
+    CannotFollow(JointProblem),
     /// A body has left the realm of numbers and was taken out of the simulation.
     Quarantined,
 }
@@ -92,6 +97,9 @@ impl fmt::Display for CellEvent {
             Self::ForcedOut { part } => write!(f, "{part} is forced out of the vise"),
             Self::Fell { part } => write!(f, "{part} lies on the floor"),
             Self::Warning(code) => write!(f, "the T3 controller shows {code}"),
+            Self::CannotFollow(problem) => {
+                write!(f, "the simulated arm cannot follow the robot: {problem:?}")
+            }
             Self::Quarantined => f.write_str("a body is no longer anywhere: the simulation has failed"),
         }
     }
@@ -115,6 +123,8 @@ pub struct Cell {
     placement_noise: Noise,
     events: Vec<CellEvent>,
     slip_reported: bool,
+    /// The arm cannot follow the robot; said once.
+    stays_behind: bool,
     inputs: DeviceInputs,
 }
 
@@ -152,6 +162,7 @@ impl Cell {
             placement_noise: Noise::new(seed, Stream::Placement),
             events: Vec::new(),
             slip_reported: false,
+            stays_behind: false,
             inputs: DeviceInputs::default(),
         };
         cell.inputs = cell.sense(LinkBytes::default(), false);
@@ -170,15 +181,41 @@ impl Cell {
         if let Some(warning) = tick.warning {
             self.events.push(CellEvent::Warning(warning.text()));
         }
-        self.arm.begin_tick(Some(tick.command));
+        self.advance(tick.command, outputs);
+        self.inputs = self.sense(tick.tx, tick.dtr);
+        self.inputs
+    }
+
+    /// Like [`Cell::step`], while a robot elsewhere is commanded: the simulated arm, and with it all else in the cell, follows
+    /// `position`, the one that the robot has acknowledged; `None` while none is known. The simulated T3 controller is
+    /// not asked: `outputs.link_tx` goes to the robot, and what it answers is the caller's to fill in (`link_rx` and
+    /// `link_ready` are returned empty).
+    ///
+    /// The arm comes from where it is as fast as its servos can, so a first position far away is a motion, not a jump. A
+    /// position that it cannot take leaves it where it is and is a [`CellEvent::CannotFollow`].
+    pub fn step_following(&mut self, position: Option<&Plate>, outputs: &DeviceOutputs) -> DeviceInputs {
+        let followed = position.map_or(Ok(*self.arm.command()), |plate| self.t3.follow(plate));
+        let command = followed.unwrap_or(*self.arm.command());
+        if let Err(problem) = followed
+            && !self.stays_behind
+        {
+            self.events.push(CellEvent::CannotFollow(problem));
+        }
+        self.stays_behind = followed.is_err();
+        self.advance(command, outputs);
+        self.inputs = self.sense(LinkBytes::default(), false);
+        self.inputs
+    }
+
+    /// One tick of all that moves, with a command for the arm's servos.
+    fn advance(&mut self, command: Joints, outputs: &DeviceOutputs) {
+        self.arm.begin_tick(Some(command));
         let steps = self.description.physics.substeps;
         for step in 1..=steps {
             self.substep(f64::from(step) / f64::from(steps), outputs.grip.bits);
         }
         self.after_tick();
         self.look(outputs);
-        self.inputs = self.sense(tick.tx, tick.dtr);
-        self.inputs
     }
 
     /// One step of the simulation, up to the given fraction of the tick.
