@@ -2,9 +2,9 @@
 //!
 //! The control processes are pure state machines; this crate gives them time and surroundings. [`runner`]
 //! steps them with tick-parity buffers and sums up what they did, [`clock`] says when, [`realtime`] asks the
-//! system for punctuality, [`alloc`] proves that nothing is allocated on the way, [`memory`] lets others look
-//! on, [`hwsc`] plays the workstation controller, and [`failure`] finds the process, the table and the row
-//! that explain why something went wrong.
+//! system for punctuality, [`serial`] is the line to a real robot, [`alloc`] proves that nothing is allocated
+//! on the way, [`memory`] lets others look on, [`hwsc`] plays the workstation controller, and [`failure`]
+//! finds the process, the table and the row that explain why something went wrong.
 
 #![deny(unsafe_code)]
 
@@ -16,3 +16,4 @@ pub mod hwsc;
 pub mod memory;
 pub mod realtime;
 pub mod runner;
+pub mod serial;

@@ -1,0 +1,286 @@
+//! A serial port as the controller needs it: what has arrived is taken, what is due is handed over, and
+//! nothing waits (DESIGN 9).
+//!
+//! [`SerialLine`] stands between the T3 Interface, which knows bytes only, and the port. In a tick it makes a
+//! handful of system calls, never blocks and never allocates. The port may disappear at any time, by an
+//! unplugged adapter or a peer that hangs up: that is a line that is not ready and brings no bytes, never an
+//! error. A helper thread then closes the dead port (closing may wait for the hardware) and tries once a
+//! second to open it again; the tick only looks whether a new one has been handed over.
+//!
+//! ```text
+//!  tick thread                                helper thread
+//!  receive, send ── port is gone ── dead ──►  close it; once a second: open ──► opened
+//!       ▲                                                                         │
+//!       └─────────────────── taken over at the next tick ─────────────────────────┘
+//! ```
+//!
+//! There are two descriptors of the same port. The serialport crate sets the line up, holds it exclusively
+//! and knows the modem lines, but its descriptor blocks on a write that does not fit, and it allocates for
+//! each error, even for "nothing there". Bytes go through the other one, which does neither.
+
+mod settings;
+
+use std::{
+    fs::File,
+    io::{ErrorKind, Read as _, Write as _},
+    path::PathBuf,
+    sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
+    thread,
+    time::Duration,
+};
+
+use rcs_core::interface::device::LinkBytes;
+use rustix::{
+    event::{PollFd, PollFlags, Timespec, poll},
+    fs::{Mode, OFlags},
+    io::Errno,
+};
+use serialport::{ClearBuffer, SerialPort as _, TTYPort};
+
+pub use self::settings::{Parity, SerialSettings};
+
+/// Time between two attempts to open a port that has gone.
+pub const RETRY: Duration = Duration::from_secs(1);
+
+/// Why a port cannot be opened.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OpenError {
+    /// There is nothing at the path.
+    #[error("there is no serial port {}", .0.display())]
+    Missing(PathBuf),
+    /// The user may not open it.
+    #[error("{}: permission denied; ports usually belong to a group such as dialout", .0.display())]
+    Denied(PathBuf),
+    /// Another program has it.
+    #[error("{} is used by another program", .0.display())]
+    Busy(PathBuf),
+    /// It is no serial port, or not one that can be set up as asked for.
+    #[error("{} cannot be used as a serial port: {reason}", path.display())]
+    Unusable {
+        /// Which.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+}
+
+/// What went over the line since it was opened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SerialCounts {
+    /// Bytes received.
+    pub received: u64,
+    /// Bytes handed over to the port.
+    pub sent: u64,
+    /// Bytes that the port did not take, or that found no port.
+    pub unsent: u64,
+    /// How often the port has disappeared.
+    pub losses: u32,
+    /// How often it was opened again.
+    pub reopened: u32,
+}
+
+/// A serial line that outlives its port.
+#[derive(Debug)]
+pub struct SerialLine {
+    port: Option<Port>,
+    /// The port took a part of a frame only; the line rests for a tick.
+    cut: bool,
+    counts: SerialCounts,
+    dead: SyncSender<Port>,
+    opened: Receiver<Port>,
+}
+
+/// The port has disappeared.
+struct Gone;
+
+impl SerialLine {
+    /// Open a port. The thread that keeps it open starts here, with the priority of the caller: open the line
+    /// before asking for real time.
+    ///
+    /// # Errors
+    /// [`OpenError`] if the port cannot be had now. Later losses are none.
+    pub fn open(settings: SerialSettings) -> Result<Self, OpenError> {
+        let port = Port::open(&settings)?;
+        let (dead, to_close) = sync_channel(1);
+        let (hand_over, opened) = sync_channel(1);
+        let path = settings.path.clone();
+        thread::Builder::new()
+            .name("serial-port".into())
+            .spawn(move || keep_open(&settings, &to_close, &hand_over))
+            .map_err(|error| OpenError::Unusable { path, reason: error.to_string() })?;
+        Ok(Self { port: Some(port), cut: false, counts: SerialCounts::default(), dead, opened })
+    }
+
+    /// Append what has arrived to `rx`, as far as there is room; the rest stays in the port. True if the line
+    /// is ready: the port is there and, where it has modem lines, CTS is on (the robot's DTR, A.2). Without
+    /// a port `rx` is empty. Never blocks, never allocates.
+    pub fn receive(&mut self, rx: &mut LinkBytes) -> bool {
+        if self.port.is_none()
+            && let Ok(port) = self.opened.try_recv()
+        {
+            self.port = Some(port);
+            self.counts.reopened = self.counts.reopened.saturating_add(1);
+        }
+        let before = rx.length;
+        let ready = match self.port.as_mut().map(|port| port.receive(rx)) {
+            Some(Ok(ready)) => ready && !std::mem::take(&mut self.cut),
+            Some(Err(Gone)) => {
+                self.lose();
+                false
+            }
+            None => false,
+        };
+        if self.port.is_none() {
+            *rx = LinkBytes::default();
+        } else {
+            self.counts.received += u64::from(rx.length - before);
+        }
+        ready
+    }
+
+    /// Hand over the bytes of a tick; true if the port took them all. A port that takes a part of a frame
+    /// only is stuck: the rest is dropped and counted, what waits in the port is thrown away as far as it
+    /// can be, and the line is not ready in the next tick, so that the link begins again instead of continuing
+    /// a torn frame. Never blocks, never allocates.
+    pub fn send(&mut self, tx: &LinkBytes) -> bool {
+        let bytes = tx.as_slice();
+        if bytes.is_empty() {
+            return true;
+        }
+        let taken = match self.port.as_mut().map(|port| port.send(bytes)) {
+            Some(Ok(taken)) => taken,
+            Some(Err(Gone)) => {
+                self.lose();
+                0
+            }
+            None => 0,
+        };
+        self.counts.sent += taken as u64;
+        self.counts.unsent += (bytes.len() - taken) as u64;
+        self.cut = self.port.is_some() && taken < bytes.len();
+        taken == bytes.len()
+    }
+
+    /// Wait until bytes are there, or for `timeout`; may return early. Not for use in a tick.
+    pub fn wait(&self, timeout: Duration) {
+        let (Some(port), Ok(limit)) = (&self.port, Timespec::try_from(timeout)) else {
+            return thread::sleep(timeout);
+        };
+        // Whatever it says, the next receive finds out.
+        let _ = poll(&mut [PollFd::new(&port.bytes, PollFlags::IN)], Some(&limit));
+    }
+
+    /// True while there is a port.
+    #[must_use]
+    pub const fn is_there(&self) -> bool {
+        self.port.is_some()
+    }
+
+    /// True if the port has modem lines; a pseudo-terminal has none, and counts as ready while it is there.
+    #[must_use]
+    pub fn has_modem_lines(&self) -> bool {
+        self.port.as_ref().is_some_and(|port| port.modem)
+    }
+
+    /// What went over the line.
+    #[must_use]
+    pub const fn counts(&self) -> SerialCounts {
+        self.counts
+    }
+
+    fn lose(&mut self) {
+        if let Some(port) = self.port.take() {
+            self.counts.losses = self.counts.losses.saturating_add(1);
+            // There is room: the helper has taken the last dead port before it handed over this one.
+            drop(self.dead.try_send(port));
+        }
+    }
+}
+
+/// The helper thread: closes dead ports and opens them again, until the line is dropped.
+fn keep_open(settings: &SerialSettings, dead: &Receiver<Port>, hand_over: &SyncSender<Port>) {
+    while let Ok(port) = dead.recv() {
+        drop(port);
+        let port = loop {
+            match dead.recv_timeout(RETRY) {
+                Err(RecvTimeoutError::Timeout) => {}
+                _ => return,
+            }
+            if let Ok(port) = Port::open(settings) {
+                break port;
+            }
+        };
+        if hand_over.send(port).is_err() {
+            return;
+        }
+    }
+}
+
+/// An open port.
+#[derive(Debug)]
+struct Port {
+    /// Bytes; does not block.
+    bytes: File,
+    /// Set-up, exclusive use, modem lines.
+    lines: TTYPort,
+    modem: bool,
+}
+
+impl Port {
+    fn open(settings: &SerialSettings) -> Result<Self, OpenError> {
+        let path = &settings.path;
+        let unusable = |reason: String| OpenError::Unusable { path: path.clone(), reason };
+        // A terminal that is opened by a program without one must not become its own, or Ctrl-C on it would
+        // end the program.
+        let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
+        let bytes = rustix::fs::open(path, flags, Mode::empty()).map_err(|error| match error {
+            Errno::NOENT | Errno::NODEV | Errno::NXIO => OpenError::Missing(path.clone()),
+            Errno::ACCESS | Errno::PERM => OpenError::Denied(path.clone()),
+            Errno::BUSY => OpenError::Busy(path.clone()),
+            other => unusable(std::io::Error::from(other).to_string()),
+        })?;
+        if !rustix::termios::isatty(&bytes) {
+            return Err(unusable("it is no terminal device".into()));
+        }
+        let name = path.to_str().ok_or_else(|| unusable("its name is not UTF-8".into()))?;
+        let mut lines = TTYPort::open(&settings.builder(name)).map_err(|error| match error.kind {
+            serialport::ErrorKind::NoDevice => OpenError::Busy(path.clone()),
+            _ => unusable(error.description),
+        })?;
+        // What was said before has no meaning any more. A port that cannot forget has nothing to forget.
+        drop(lines.clear(ClearBuffer::All));
+        let modem = settings.clear_to_send && lines.read_clear_to_send().is_ok();
+        Ok(Self { bytes: File::from(bytes), lines, modem })
+    }
+
+    fn receive(&mut self, rx: &mut LinkBytes) -> Result<bool, Gone> {
+        let room = rx.bytes.get_mut(usize::from(rx.length)..).unwrap_or_default();
+        if !room.is_empty() {
+            match self.bytes.read(room) {
+                // The end of a terminal is its hang-up.
+                Ok(0) => return Err(Gone),
+                Ok(count) => rx.length += u8::try_from(count).unwrap_or_default(),
+                Err(error) if waits(error.kind()) => {}
+                Err(_) => return Err(Gone),
+            }
+        }
+        if self.modem { self.lines.read_clear_to_send().map_err(|_| Gone) } else { Ok(true) }
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<usize, Gone> {
+        let taken = match self.bytes.write(bytes) {
+            Ok(count) => count,
+            Err(error) if waits(error.kind()) => 0,
+            Err(_) => return Err(Gone),
+        };
+        if taken < bytes.len() {
+            self.lines.clear(ClearBuffer::Output).map_err(|_| Gone)?;
+        }
+        Ok(taken)
+    }
+}
+
+/// Nothing is wrong; there is nothing, or no room, right now.
+fn waits(kind: ErrorKind) -> bool {
+    matches!(kind, ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}

@@ -1,0 +1,178 @@
+//! Over pseudo-terminals: what happens in a tick, and what happens to a port that goes and comes back.
+
+use std::{
+    fs::{self, File},
+    io::{Read as _, Write as _},
+    os::unix::fs::symlink,
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, Instant},
+};
+
+use executive::{
+    alloc::{Counting, Section, allocations, is_installed},
+    serial::{OpenError, RETRY, SerialCounts, SerialLine, SerialSettings},
+};
+use rcs_core::interface::device::LinkBytes;
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// The robot's end of a line, and the path of the controller's.
+struct Peer {
+    master: File,
+    path: PathBuf,
+}
+
+impl Peer {
+    fn new() -> Self {
+        let flags = OpenptFlags::RDWR | OpenptFlags::NOCTTY;
+        let master = openpt(flags).unwrap();
+        grantpt(&master).unwrap();
+        unlockpt(&master).unwrap();
+        let path = PathBuf::from(ptsname(&master, Vec::new()).unwrap().into_string().unwrap());
+        Self { master: File::from(master), path }
+    }
+
+    fn line(&self) -> SerialLine {
+        SerialLine::open(SerialSettings::new(&self.path)).unwrap()
+    }
+
+    fn read(&mut self, count: usize) -> Vec<u8> {
+        let mut bytes = vec![0; count];
+        self.master.read_exact(&mut bytes).unwrap();
+        bytes
+    }
+}
+
+fn bytes(of: &[u8]) -> LinkBytes {
+    let mut bytes = LinkBytes::default();
+    assert_eq!(bytes.extend(of), of.len());
+    bytes
+}
+
+/// Receive until so many bytes are there, as far as a second lasts.
+fn received(line: &mut SerialLine, count: usize) -> LinkBytes {
+    let (started, mut rx) = (Instant::now(), LinkBytes::default());
+    while usize::from(rx.length) < count && started.elapsed() < Duration::from_secs(1) {
+        line.wait(Duration::from_millis(10));
+        line.receive(&mut rx);
+    }
+    rx
+}
+
+#[test]
+fn all_byte_values_pass_unchanged_both_ways() {
+    let mut peer = Peer::new();
+    let mut line = peer.line();
+    let all: Vec<u8> = (0..=255).collect();
+    for chunk in all.chunks(64) {
+        assert!(line.send(&bytes(chunk)));
+        assert_eq!(peer.read(64), chunk);
+        peer.master.write_all(chunk).unwrap();
+        assert_eq!(received(&mut line, 64).as_slice(), chunk);
+    }
+    let expected = SerialCounts { received: 256, sent: 256, ..SerialCounts::default() };
+    assert_eq!(line.counts(), expected);
+}
+
+#[test]
+fn a_tick_takes_what_fits_and_leaves_the_rest_in_the_port() {
+    let mut peer = Peer::new();
+    let mut line = peer.line();
+    peer.master.write_all(&[7; 100]).unwrap();
+    assert_eq!(received(&mut line, 64).length, 64);
+    assert_eq!(received(&mut line, 36).length, 36);
+}
+
+#[test]
+fn a_tick_allocates_nothing_not_even_when_the_port_goes() {
+    assert!(is_installed());
+    let mut peer = Peer::new();
+    let mut line = peer.line();
+    // The sum is over all threads; no other test of this program enters a section.
+    let within = |line: &mut SerialLine| {
+        let before = allocations();
+        let section = Section::enter();
+        let mut rx = LinkBytes::default();
+        let ready = line.receive(&mut rx);
+        line.send(&bytes(&[3; 16]));
+        drop(section);
+        (ready, allocations() - before)
+    };
+    for _ in 0..100 {
+        peer.master.write_all(&[6]).unwrap();
+        assert_eq!(within(&mut line), (true, 0));
+        peer.read(16);
+        assert_eq!(within(&mut line), (true, 0), "with nothing to read");
+        peer.read(16);
+    }
+    drop(peer);
+    assert_eq!(within(&mut line), (false, 0), "when it goes");
+    assert_eq!(within(&mut line), (false, 0), "while it is gone");
+    assert_eq!(line.counts().losses, 1);
+}
+
+#[test]
+fn a_line_that_takes_nothing_more_is_reported_and_rests_for_a_tick() {
+    let peer = Peer::new();
+    let mut line = peer.line();
+    let started = Instant::now();
+    // A pseudo-terminal takes some ten thousand bytes that nobody reads.
+    let sent = (0..2000).take_while(|_| line.send(&bytes(&[3; 64]))).count();
+    assert!(sent > 0 && sent < 2000, "{sent} frames were taken");
+    assert!(line.counts().unsent > 0);
+    assert!(started.elapsed() < Duration::from_secs(5), "it has waited");
+    let mut rx = LinkBytes::default();
+    assert!(!line.receive(&mut rx) && line.is_there(), "the link must begin again");
+    assert!(line.receive(&mut rx));
+    assert!(line.send(&bytes(&[5])), "what waited was thrown away");
+}
+
+#[test]
+fn a_port_that_comes_back_is_taken_over_and_begins_clean() {
+    let directory = std::env::temp_dir().join(format!("rcs-serial-{}", std::process::id()));
+    fs::create_dir_all(&directory).unwrap();
+    let path = directory.join("port");
+    let plug = |peer: &Peer| {
+        let _ = fs::remove_file(&path);
+        symlink(&peer.path, &path).unwrap();
+    };
+    let first = Peer::new();
+    plug(&first);
+    let mut line = SerialLine::open(SerialSettings::new(&path)).unwrap();
+    assert!(line.receive(&mut LinkBytes::default()));
+    drop(first);
+    let mut rx = bytes(&[1, 2, 3]);
+    assert!(!line.receive(&mut rx));
+    assert_eq!((rx, line.is_there()), (LinkBytes::default(), false));
+    let second = Peer::new();
+    plug(&second);
+    (&second.master).write_all(b"said before anybody listened").unwrap();
+    let started = Instant::now();
+    while !line.receive(&mut rx) {
+        assert!(started.elapsed() < Duration::from_secs(5), "it was not opened again");
+        thread::sleep(Duration::from_millis(20));
+    }
+    assert!(started.elapsed() > RETRY / 2, "attempts are a second apart");
+    assert_eq!(rx.length, 0);
+    (&second.master).write_all(&[6]).unwrap();
+    assert_eq!(received(&mut line, 1).as_slice(), &[6]);
+    assert_eq!((line.counts().losses, line.counts().reopened), (1, 1));
+    let _ = fs::remove_dir_all(&directory);
+}
+
+#[test]
+fn what_cannot_be_opened_is_said() {
+    let open = |path: &Path| SerialLine::open(SerialSettings::new(path)).err();
+    assert_eq!(open(Path::new("/dev/none")), Some(OpenError::Missing("/dev/none".into())));
+    let null = open(Path::new("/dev/null"));
+    assert!(matches!(&null, Some(OpenError::Unusable { reason, .. }) if reason.contains("no terminal")));
+    let peer = Peer::new();
+    let line = peer.line();
+    assert_eq!(open(&peer.path), Some(OpenError::Busy(peer.path.clone())));
+    drop(line);
+    let again = peer.line();
+    assert!(!again.has_modem_lines() && again.is_there());
+}
