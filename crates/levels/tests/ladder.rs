@@ -271,7 +271,7 @@ fn mishap() -> impl Strategy<Value = Mishap> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
     /// Whatever is late or restarted: the robot is never asked to jump, a command that is reported finished is finished, no
     /// command is left without an end, and a PAUSE leads back to work.
     #[test]

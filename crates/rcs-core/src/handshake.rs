@@ -15,6 +15,10 @@ use crate::{coded_enum, interface::Header, record, tick::Tick};
 /// Ticks after which a command that is not echoed counts as lost.
 pub const ECHO_LIMIT: u64 = 3;
 
+/// How far the first number of a starting commander is from the echo: more than can be under way, since a number
+/// written in tick k is echoed in the buffer that tick k+2 reads.
+pub const FIRST_STEP: u32 = 4;
+
 /// The command number after `number`: they run on past the end without 0, which means none.
 #[must_use]
 pub const fn successor(number: u32) -> u32 {
@@ -49,24 +53,29 @@ record! {
         pub number: u32,
         /// When it was written.
         pub sent: Tick,
-        /// The number has been taken over from the echo of the process below.
+        /// A command has been sent since the start.
         pub started: bool,
     }
 }
 
 impl Commander {
-    /// Before anything else in a tick: a commander that starts goes on from the echo of the process below, so that
-    /// its first command is new to it.
+    /// Before anything else in a tick: a commander that has sent nothing yet follows the echo of the process below.
     pub fn start(&mut self, echo: u32) {
         if !self.started {
             self.number = echo;
-            self.started = true;
         }
     }
 
     /// Number of a new command written in this tick.
+    ///
+    /// The first one after a start stands off from the echo: commands of the time before may still be under way, and a
+    /// number that has been used is not new.
     pub fn send(&mut self, tick: Tick) -> u32 {
-        self.number = successor(self.number);
+        let steps = if self.started { 1 } else { FIRST_STEP };
+        for _ in 0..steps {
+            self.number = successor(self.number);
+        }
+        self.started = true;
         self.sent = tick;
         self.number
     }
@@ -161,9 +170,12 @@ mod tests {
     fn an_old_status_is_not_believed() {
         let mut commander = Commander::default();
         commander.start(41);
-        assert_eq!(commander.send(Tick(10)), 42);
+        assert_eq!(commander.send(Tick(10)), 41 + FIRST_STEP);
         assert_eq!(commander.read(Tick(11), &header(10), 41, Lower::Done), Lower::Pending);
-        assert_eq!(commander.read(Tick(12), &header(11), 42, Lower::Executing), Lower::Executing);
+        assert_eq!(
+            commander.read(Tick(12), &header(11), 41 + FIRST_STEP, Lower::Executing),
+            Lower::Executing
+        );
         assert_eq!(commander.read(Tick(14), &header(13), 41, Lower::Done), Lower::Lost);
         assert_eq!(commander.read(Tick(14), &header(12), 42, Lower::Done), Lower::Lost);
     }
@@ -174,13 +186,27 @@ mod tests {
         assert_eq!(commander.send(Tick(2)), 1);
     }
 
+    #[test]
+    fn a_restarted_commander_uses_no_number_that_is_under_way() {
+        let mut commander = Commander::default();
+        commander.start(41);
+        let under_way = commander.send(Tick(10));
+        // It forgets everything in the next tick, when the echo is still the old one.
+        let mut restarted = Commander::default();
+        restarted.start(41);
+        let mut receiver = Receiver { echo: 41, started: true, adopted: false };
+        assert_eq!(receiver.observe(under_way), Arrival::New);
+        restarted.start(under_way);
+        assert_eq!(receiver.observe(restarted.send(Tick(12))), Arrival::New);
+    }
+
     proptest! {
         /// Whatever is restarted whenever, no command is executed twice and no status of another command is believed.
         #[test]
         fn each_command_is_executed_at_most_once(events in prop::collection::vec(0_u8..12, 1..300)) {
             let mut commander = Commander::default();
             let mut receiver = Receiver::default();
-            // Tick-parity buffers: what was written in the tick before.
+            // Tick-parity buffers: what was written in the tick before stays until it is written again.
             let (mut number, mut echo) = (0_u32, (0_u32, Lower::Done));
             let mut executed = std::collections::HashSet::new();
             for (k, event) in events.into_iter().enumerate() {
@@ -195,8 +221,6 @@ mod tests {
                 let status = commander.read(tick, &header(k as u64), old_echo.0, old_echo.1);
                 if matches!(status, Lower::Done | Lower::Error) || (event == 2 && status != Lower::Pending) {
                     number = commander.send(tick);
-                } else {
-                    number = commander.number;
                 }
                 let arrival = receiver.observe(old_number);
                 if arrival == Arrival::New {

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 
 use rcs_core::{
     frame::{Frame, Vector, norm},
-    handshake::{Arrival, Receiver, successor},
+    handshake::{Arrival, FIRST_STEP, Receiver, successor},
     interface::{
         ChangingPose, CommonMemory, ExternalInputs, Header, PrimOutputs, Reason, T3iOutputs, pose_range,
         prim::{PrimReport, PrimVerb},
@@ -284,7 +284,7 @@ fn starts_with_pause_and_without_a_position() {
     let mut rig = Rig::new();
     rig.steps(5);
     let out = rig.memory.prim;
-    assert_eq!((out.t3i.command, out.t3i.number), (T3iVerb::Pause, 1));
+    assert_eq!((out.t3i.command, out.t3i.number), (T3iVerb::Pause, FIRST_STEP));
     assert_eq!((out.status.report, out.status.present_pose), (PrimReport::Idle, 0));
     assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::T3LinkOff);
     assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::Done);

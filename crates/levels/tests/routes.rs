@@ -1,0 +1,173 @@
+//! Routes of E-move over the linkbar's data: the points of Figures VIII.22 to VIII.28 in their order, and what is refused.
+
+use std::{path::Path, sync::OnceLock};
+
+use levels::emove::{
+    route::{Ahead, Goal, LegGoal, Route},
+    state::{Sort, Stance},
+};
+use rcs_core::{
+    frame::Frame,
+    interface::{
+        Reason,
+        emove::{EmoveCommand, EmoveVerb},
+    },
+    name::{Name10, Name16},
+    pose::Pose,
+};
+use taskdata::{
+    files::{Location, MovtabId, TaskData},
+    load::Store,
+};
+
+fn data() -> TaskData<'static> {
+    static STORE: OnceLock<Store> = OnceLock::new();
+    let store = STORE.get_or_init(|| {
+        match Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))) {
+            Ok((store, _)) => store,
+            Err(report) => panic!("{report}"),
+        }
+    });
+    store.view()
+}
+
+fn location(name: &str, sector: i32, object: &str) -> Location {
+    let object = Name16::new(object).unwrap();
+    let object = (!object.is_empty()).then_some(&object);
+    data().resolve_location(&Name16::new(name).unwrap(), sector, object).unwrap()
+}
+
+fn command(verb: EmoveVerb, object: &str, grip: i32, at: &Location) -> EmoveCommand {
+    let object = Name16::new(object).unwrap();
+    EmoveCommand {
+        number: 1,
+        command: verb,
+        object,
+        grip,
+        object_parameters: data().object(&object, grip).map_or(0, |(id, _)| id.number()),
+        object_vision: data().view(&object, &at.place).map_or(0, |(id, _)| id.number()),
+        location: at.name,
+        location_kind: at.place.kind,
+        location_record: at.place.locpt.number(),
+        location_array: at.place.array.number(),
+        ..EmoveCommand::default()
+    }
+}
+
+fn stance(sort: Sort, object: &str, grip: i32, at: &Location, frame: &Frame) -> Stance {
+    Stance {
+        known: true,
+        sort,
+        location: at.name,
+        kind: at.place.kind,
+        record: at.place.locpt.number(),
+        array: at.place.array.number(),
+        object: Name16::new(object).unwrap(),
+        grip,
+        pose: Pose::from_frame(frame),
+    }
+}
+
+/// The whole route as text: `departure A/D-8`, `UNIT-V1`, `goal A/D-10`, `goal`, each with the velocity of its segment.
+fn legs(mut route: Route, departure: &Frame) -> Vec<(String, i32)> {
+    let data = data();
+    (route.departure, route.goal) = (1_000_001, 1_000_002);
+    let mut all = Vec::new();
+    while route.ahead(&data) != Ahead::Nothing {
+        let leg = route.leg(departure, &data).unwrap();
+        let name =
+            |id: u32| data.movetables.get(id as usize - 1).map_or(String::new(), |m| format!(" {}", m.name));
+        let text = match leg.at {
+            LegGoal::Record { pose: 1_000_001, movetable } => format!("departure{}", name(movetable)),
+            LegGoal::Record { pose: 1_000_002, movetable: 0 } => "goal".to_owned(),
+            LegGoal::Record { pose: 1_000_002, movetable } => format!("goal{}", name(movetable)),
+            LegGoal::Record { pose, .. } => data.poses[pose as usize - 1].name.to_string(),
+            LegGoal::Computed(_) => "computed".to_owned(),
+        };
+        all.push((text, data.traj_para(leg.parameters).unwrap().vel_max));
+        route.advance(&data);
+    }
+    all
+}
+
+fn planned(
+    verb: EmoveVerb,
+    object: &str,
+    grip: i32,
+    to: &Location,
+    from: &Stance,
+) -> Result<Vec<(String, i32)>, Reason> {
+    let command = command(verb, object, grip, to);
+    let goal = Goal::new(&command, &to.frame, &data())?;
+    let route = Route::plan(&command, &goal, from, &data())?;
+    Ok(legs(route, &from.pose.to_frame().unwrap()))
+}
+
+fn texts(expected: &[(&str, i32)]) -> Vec<(String, i32)> {
+    expected.iter().map(|(text, velocity)| ((*text).to_owned(), *velocity)).collect()
+}
+
+#[test]
+fn the_blank_goes_from_the_tray_into_the_vise() {
+    let tray = location("UNIT_1", 4, "LINKBAR1_BH");
+    let vise = location("PFIXTURE", 0, "");
+    let held = data().grip_frame(&Name16::new("LINKBAR1_BH").unwrap(), 2, &tray).unwrap();
+    let from = stance(Sort::Object, "LINKBAR1_BH", 2, &tray, &held);
+    let route = planned(EmoveVerb::MovObjTo, "LINKBAR1_BH", 2, &vise, &from).unwrap();
+    assert_eq!(
+        route,
+        texts(&[
+            ("departure A/D-8", 40),
+            ("UNIT-V1", 100),
+            ("HOM-SAF-3", 100),
+            ("HOM-SAF-1", 100),
+            ("FIX-V1", 100),
+            ("goal A/D-10", 30),
+            ("goal A/D-5", 10),
+            ("goal D/A+.25rwz", 5),
+            ("goal", 5),
+        ])
+    );
+}
+
+#[test]
+fn hold_then_seat_needs_no_trajectory_and_no_depart() {
+    let vise = location("PFIXTURE", 0, "");
+    let hold = data().grip_frame(&Name16::new("H-LINKBAR1_BH").unwrap(), 1, &vise).unwrap();
+    let from = stance(Sort::Object, "H-LINKBAR1_BH", 1, &vise, &hold);
+    assert_eq!(
+        planned(EmoveVerb::MovToObj, "S-LINKBAR1_BH", 1, &vise, &from).unwrap(),
+        texts(&[("goal", 5)])
+    );
+    // Where the robot is already, nothing is left to do.
+    assert_eq!(planned(EmoveVerb::MovToObj, "H-LINKBAR1_BH", 1, &vise, &from).unwrap(), []);
+}
+
+#[test]
+fn the_view_at_unit_1_is_approached_from_above() {
+    let (home, tray) = (location("HOME", 0, ""), location("UNIT_1", 4, "LINKBAR1_BH"));
+    let from = stance(Sort::Location, "", 0, &home, &home.frame);
+    let route = planned(EmoveVerb::MovToVu, "LINKBAR1_BH", 2, &tray, &from).unwrap();
+    assert_eq!(route, texts(&[("HOM-SAF-3", 100), ("UNIT-V1", 100), ("goal D/A+10rwz", 40), ("goal", 40)]));
+    let command = command(EmoveVerb::MovToVu, "LINKBAR1_BH", 2, &tray);
+    let goal = Goal::new(&command, &tray.frame, &data()).unwrap();
+    assert_eq!(goal.opening, 500);
+    let view = data().movetable_named(&Name10::new("GR-PIC").unwrap()).unwrap();
+    assert_ne!(view, MovtabId::NULL);
+    assert!(data().moved(&tray.frame, view).distance(&goal.frame).inches < 1e-9);
+}
+
+#[test]
+fn what_is_missing_has_a_reason() {
+    let (home, vise) = (location("HOME", 0, ""), location("PFIXTURE", 0, ""));
+    let tray = location("UNIT_1", 4, "LINKBAR1_BH");
+    let known = stance(Sort::Location, "", 0, &home, &home.frame);
+    let lost = Stance { known: false, ..known };
+    assert_eq!(planned(EmoveVerb::MovToLoc, "", 0, &vise, &lost), Err(Reason::UnknownStart));
+    assert_eq!(
+        planned(EmoveVerb::MovToLoc, "", 0, &location("TABLE", 0, ""), &known),
+        Err(Reason::NoTrajectory)
+    );
+    assert_eq!(planned(EmoveVerb::MovToObj, "LINKBAR1_BH", 7, &tray, &known), Err(Reason::UnknownGrip));
+    assert_eq!(planned(EmoveVerb::MovToVu, "LINKBAR1", 2, &tray, &known), Err(Reason::BadRecord));
+}
