@@ -3,8 +3,9 @@
 use std::{path::PathBuf, str::FromStr};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use executive::serial::SerialSettings;
 
-/// The RCS-II/T3 controller: runs jobs in the simulated cell.
+/// The RCS-II/T3 controller: runs jobs in the simulated cell, or with a robot at a serial port.
 #[derive(Debug, Parser)]
 #[command(
     name = "rcs-run",
@@ -16,11 +17,16 @@ Examples:
   rcs-run                              run the linkbar as fast as the cell can be simulated
   rcs-run linkbar --clock real         the same, one tick every 40 ms
   rcs-run my.job --seed 7 --json       a job file, other noise, the result as JSON
+  rcs-run --faults bad-line.toml       the same line, with the faults of a plan
+  rcs-run link-test --robot serial:/dev/ttyUSB0
+                                       try the line to a robot; nothing moves
+  rcs-run --robot serial:/dev/ttyUSB0 --clock real
+                                       command the robot there; gripper, tray, vise and camera are simulated
   rcs-run check                        look at the task data without running anything
   rcs-run tables > tables.md           all decision tables
 
 Exit status: 0 finished; 1 the job failed; 2 usage, configuration or data error;
-3 stopped by an emergency stop or a lost link. The reason is the last line on standard error."
+3 stopped by an emergency stop or a lost link, or no link to test. The reason is the last line on standard error."
 )]
 pub struct Cli {
     /// What to do; without it, run a job.
@@ -36,6 +42,8 @@ pub struct Cli {
 pub enum Command {
     /// Run a job (the same as without a subcommand)
     Run(RunArguments),
+    /// Exchange frames with a robot at a serial port, holding the position that it reports, and judge the link
+    LinkTest(LinkTestArguments),
     /// Load task data, jobs and the cell description, and print all errors and warnings, and what was loaded
     Check(CheckArguments),
     /// Print every decision table as Markdown
@@ -56,9 +64,15 @@ pub struct RunArguments {
     /// Run ticks at once, or one every 40 ms
     #[arg(long, value_enum, default_value_t = ClockKind::Fast)]
     pub clock: ClockKind,
-    /// The robot to command: sim, the simulated one
-    #[arg(long, default_value = "sim", value_parser = robot)]
+    /// The robot to command: sim, the simulated one, or serial:PATH[,OPTION...], one at a serial port
+    ///
+    /// Options: baud=N (9600), parity=none|even|odd (none), stop=1|2 (1), cts=watch|ignore (watch; ignore is
+    /// for cables of three wires). A robot at a port needs --clock real.
+    #[arg(long, value_name = "ROBOT", default_value = "sim", value_parser = robot)]
     pub robot: Robot,
+    /// Faults to inject into the line to the simulated robot: a plan in TOML
+    #[arg(long, value_name = "FILE")]
+    pub faults: Option<PathBuf>,
     /// How processes are spread over boards: one, all in one thread
     #[arg(long, default_value = "one", value_parser = boards)]
     pub boards: Boards,
@@ -75,6 +89,23 @@ pub struct RunArguments {
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub shared_memory: Switch,
     /// Print one JSON object on standard output at the end, and nothing else there
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `link-test`.
+#[derive(Clone, Debug, Args)]
+pub struct LinkTestArguments {
+    /// The robot: serial:PATH[,OPTION...], with the options of a run
+    #[arg(long, value_name = "ROBOT", value_parser = robot)]
+    pub robot: Robot,
+    /// How long to try
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    pub seconds: u32,
+    /// Print every frame in hexadecimal with direction and time (with --json on standard error)
+    #[arg(long)]
+    pub dump: bool,
+    /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
     pub json: bool,
 }
@@ -120,20 +151,19 @@ pub enum Switch {
 }
 
 /// Which robot is commanded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Robot {
     /// The one of the simulated cell.
     Sim,
+    /// One at a serial port.
+    Serial(SerialSettings),
 }
 
 fn robot(text: &str) -> Result<Robot, String> {
-    match text {
-        "sim" => Ok(Robot::Sim),
-        _ if text.starts_with("serial:") => {
-            Err("this version drives the simulated robot only, a serial port cannot be opened yet: use sim"
-                .into())
-        }
-        _ => Err("sim was expected".into()),
+    match text.split_once(':') {
+        None if text == "sim" => Ok(Robot::Sim),
+        Some(("serial", port)) => port.parse().map(Robot::Serial),
+        _ => Err("sim or serial:PATH was expected".into()),
     }
 }
 
@@ -197,13 +227,19 @@ mod tests {
 
     #[test]
     fn what_this_version_cannot_do_is_refused_with_a_sentence() {
-        for (option, sentence) in
-            [("--robot=serial:/dev/ttyS0", "serial port"), ("--boards=split", "one board")]
-        {
-            let error = Cli::try_parse_from(["rcs-run", option]).expect_err("it is refused");
-            assert_eq!(error.exit_code(), 2);
-            assert!(error.to_string().contains(sentence), "{error}");
+        let error = Cli::try_parse_from(["rcs-run", "--boards=split"]).expect_err("it is refused");
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("one board"), "{error}");
+    }
+
+    #[test]
+    fn a_robot_is_simulated_or_at_a_port() {
+        let robot = |text| Cli::try_parse_from(["rcs-run", "--robot", text]).map(|cli| cli.run.robot);
+        assert_eq!(robot("sim").ok(), Some(Robot::Sim));
+        let port = SerialSettings::new("/dev/ttyS0");
+        assert_eq!(robot("serial:/dev/ttyS0").ok(), Some(Robot::Serial(port)));
+        for wrong in ["serial", "serial:", "serial:/dev/x,stop=3", "/dev/ttyS0"] {
+            assert_eq!(robot(wrong).expect_err(wrong).exit_code(), 2);
         }
-        assert!(Cli::try_parse_from(["rcs-run", "--faults", "some.toml"]).is_err());
     }
 }

@@ -2,7 +2,8 @@
 
 use std::{io, path::PathBuf};
 
-use executive::memory::SharedMemoryError;
+use depc::fault::text::PlanFileError;
+use executive::{memory::SharedMemoryError, serial::OpenError};
 use plant::{CellError, description::DescriptionError};
 use record::RecordError;
 use taskdata::load::Report;
@@ -55,6 +56,21 @@ pub enum Error {
     /// The cell cannot be built.
     #[error("the cell cannot be built: {0}")]
     Cell(#[from] CellError),
+    /// A robot at a port with a clock that does not wait for it.
+    #[error("a robot at a serial port lives in real time: add --clock real")]
+    NotInRealTime,
+    /// Faults for a line that has its own.
+    #[error("--faults is for the line to the simulated robot; a serial port has faults of its own")]
+    FaultsAtPort,
+    /// The fault plan cannot be used.
+    #[error("the faults cannot be injected: {0}")]
+    Faults(#[from] PlanFileError),
+    /// The port cannot be opened.
+    #[error("the robot cannot be reached: {0}")]
+    Port(#[from] OpenError),
+    /// The simulated robot has no port.
+    #[error("the simulated robot has no line to test: name a port with --robot serial:PATH")]
+    NoLinkToTest,
     /// The log cannot be written.
     #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
     Log(#[from] RecordError),

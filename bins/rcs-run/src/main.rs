@@ -1,13 +1,14 @@
 //! `rcs-run`: the RCS-II/T3 controller with its simulated cell.
 //!
 //! One thread runs the ticks: controller, log hand-off, cell, workstation controller, in this order
-//! ([`run`]). The other subcommands look at task data and decision tables without running anything, or clean
+//! ([`run`]). [`link_test`] tries the line to a robot. The other subcommands look at task data and decision tables without running anything, or clean
 //! up after killed runs.
 
 mod check;
 mod clean;
 mod cli;
 mod error;
+mod link_test;
 mod run;
 mod tables;
 
@@ -26,6 +27,7 @@ fn main() -> ExitCode {
     let outcome = match cli.command {
         None => run::run(&cli.run),
         Some(Command::Run(arguments)) => run::run(&arguments),
+        Some(Command::LinkTest(arguments)) => link_test::link_test(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Tables) => tables::tables(),
         Some(Command::Clean) => clean::clean(),

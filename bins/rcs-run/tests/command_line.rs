@@ -96,7 +96,7 @@ fn help_and_version_are_given() {
 #[test]
 fn usage_errors_have_status_2_and_a_sentence() {
     for (arguments, sentence) in [
-        (&["--robot", "serial:/dev/ttyS0"][..], "serial port cannot be opened yet"),
+        (&["--robot", "serial:/dev/ttyS0"][..], "add --clock real"),
         (&["--boards", "split"], "cannot be split yet"),
         (&["--clock", "slow"], "fast, real"),
         (&["--data", "/nowhere"], "there is no task data directory /nowhere"),

@@ -127,7 +127,8 @@ fn metadata(arguments: &RunArguments, job: &Job, attachments: &[Attachment]) -> 
     }
     let command_line = std::env::args().collect::<Vec<_>>().join(" ");
     let entries = [
-        ("program", format!("rcs-run {}", env!("CARGO_PKG_VERSION"))),
+        ("program", "rcs-run".to_owned()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("commit", env!("RCS_COMMIT").to_owned()),
         ("command_line", command_line),
         ("job", job.name.clone()),

@@ -1,12 +1,13 @@
 //! `rcs-run run`: a job, from the first tick to the result.
 //!
-//! One tick is, in this order: the controller (timed, and its allocations counted), the hand-off to the log,
-//! the cell, the workstation controller. Physics allocates and takes its time; it is outside of what is
+//! One tick is, in this order: what has come over a serial line, the controller (timed, and its allocations
+//! counted), what goes over the line, the hand-off to the log, the cell, the workstation controller. Physics allocates and takes its time; it is outside of what is
 //! counted as the controller's.
 
 mod log;
 mod progress;
 mod result;
+mod robot;
 pub mod setup;
 mod workstation;
 
@@ -20,6 +21,7 @@ use std::{
     time::Instant,
 };
 
+use depc::Plate;
 use executive::{
     clock::Clock,
     failure::{self, Failure},
@@ -41,7 +43,8 @@ use taskdata::load::{Job, Store};
 use self::{
     log::Log,
     progress::Progress,
-    result::{CommandResult, FailureResult, Page, RunResult},
+    result::{CommandResult, FailureResult, FaultsResult, Page, PortResult, RunResult},
+    robot::Robot,
     setup::Setup,
     workstation::SimulatedWorkstation,
 };
@@ -56,6 +59,7 @@ struct Run {
     hwsc: Hwsc,
     workstation: SimulatedWorkstation,
     inputs: DeviceInputs,
+    robot: Robot,
     log: Option<Log>,
     clock: Clock,
     progress: Progress,
@@ -84,11 +88,12 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let setup = Setup::load(arguments)?;
     let log = setup.log.as_deref().map(|path| Log::start(path, arguments, &setup)).transpose()?;
     let publisher = publisher(arguments, &setup.job);
-    let Setup { store, job, description, cell, log: log_path, .. } = setup;
+    let Setup { store, job, description, cell, robot, log: log_path, .. } = setup;
     let mut run = Run {
         runner: Runner::new(Ladder::default(), publisher),
         hwsc: Hwsc::new(job.steps.clone(), hwsc::TIME_LIMIT),
         inputs: cell.inputs(),
+        robot,
         workstation: SimulatedWorkstation::new(cell, description.vise.location),
         log,
         progress: Progress::new(job.steps.len() + 1),
@@ -127,7 +132,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
 }
 
 /// A flag that an interrupt or a termination request sets; the second one ends the program at once.
-fn interruption() -> Result<Arc<AtomicBool>, Error> {
+pub fn interruption() -> Result<Arc<AtomicBool>, Error> {
     let flag = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM] {
         signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&flag))
@@ -177,6 +182,7 @@ impl Run {
         let data = store.view();
         loop {
             self.clock.wait();
+            self.robot.receive(&mut self.inputs);
             let external = ExternalInputs { hws: *self.hwsc.command(), devices: self.inputs };
             let tick = self.runner.tick().next();
             if let Some(log) = &mut self.log {
@@ -186,10 +192,14 @@ impl Run {
                 log.cell(tick, &self.workstation.cell);
             }
             let memory = *self.runner.step(&external, &data, self.clock.skipped());
+            let outputs = memory.device_outputs();
+            self.robot.send(&outputs);
             if let Some(log) = &mut self.log {
                 log.tick(tick, &external, &memory, self.runner.levels());
             }
-            self.inputs = self.workstation.cell.step(&memory.device_outputs());
+            let ladder = self.runner.levels();
+            self.inputs =
+                self.robot.advance(tick, &mut self.workstation.cell, &outputs, || acknowledged(ladder));
             self.fresh = self.workstation.events();
             self.events.extend(self.fresh.iter().map(|event| format!("tick {tick}: {event}")));
             self.progress.show(&self.hwsc, &external.hws, &memory);
@@ -249,6 +259,8 @@ impl Run {
             allocations_after_start: self.runner.allocations(),
             tick_us: self.runner.times().summary().into(),
             link: (&self.runner.memory().t3i.status.counters).into(),
+            faults: self.robot.faults().map(FaultsResult::from),
+            port: self.robot.port().map(PortResult::from),
             digest: self.runner.digest().to_string(),
             parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
             log: None,
@@ -288,6 +300,12 @@ impl Run {
             }
         }
     }
+}
+
+/// The position that the robot has acknowledged or reported last, while the link runs.
+fn acknowledged(ladder: &Ladder) -> Option<Plate> {
+    let host = ladder.state().t3i.host;
+    host.is_running().then(|| host.position())
 }
 
 /// A failure that no control process reports.

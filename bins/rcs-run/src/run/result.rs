@@ -1,14 +1,21 @@
 //! The result of a run: for scripts as one JSON object, for people as a page of text.
 
 use std::{
+    collections::BTreeMap,
     fmt::{self, Write as _},
     path::PathBuf,
 };
 
-use executive::{failure::Failure, histogram, hwsc::Record};
+use depc::fault::{Counts, FaultKind};
+use executive::{failure::Failure, histogram, hwsc::Record, serial::SerialCounts};
 use plant::PartState;
-use rcs_core::{interface::t3i::LinkCounters, tick::TICK_S};
+use rcs_core::{
+    interface::t3i::LinkCounters,
+    tick::{TICK_MS, TICK_S},
+};
 use serde::Serialize;
+
+use super::robot::Port;
 
 /// A command for Task.
 #[derive(Clone, Debug, Serialize)]
@@ -62,6 +69,56 @@ impl From<&LinkCounters> for LinkResult {
             checksum_errors: counters.checksum_errors,
             limited: counters.limited,
         }
+    }
+}
+
+/// Faults that were injected into the line, both directions together.
+#[derive(Clone, Debug, Serialize)]
+pub struct FaultsResult {
+    /// Faults of all kinds.
+    pub total: u64,
+    /// Of each kind that happened.
+    pub kinds: BTreeMap<&'static str, u64>,
+}
+
+impl From<Counts> for FaultsResult {
+    fn from(counts: Counts) -> Self {
+        let kinds = FaultKind::ALL.iter().map(|kind| (kind.text(), counts.of(*kind)));
+        Self { total: counts.faults(), kinds: kinds.filter(|(_, count)| *count > 0).collect() }
+    }
+}
+
+impl fmt::Display for FaultsResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} injected", self.total)?;
+        let mut separator = ": ";
+        for (kind, count) in &self.kinds {
+            write!(f, "{separator}{kind} {count}")?;
+            separator = ", ";
+        }
+        Ok(())
+    }
+}
+
+/// What went over a serial port.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct PortResult {
+    /// Bytes received.
+    pub received: u64,
+    /// Bytes sent.
+    pub sent: u64,
+    /// Bytes that the port did not take.
+    pub unsent: u64,
+    /// How often the port disappeared.
+    pub losses: u32,
+    /// By how much the time between two data commands differed from 40 ms.
+    pub deviation_us: TickTimes,
+}
+
+impl From<&Port> for PortResult {
+    fn from(port: &Port) -> Self {
+        let SerialCounts { received, sent, unsent, losses, .. } = port.counts();
+        Self { received, sent, unsent, losses, deviation_us: port.deviations().into() }
     }
 }
 
@@ -145,6 +202,12 @@ pub struct RunResult {
     pub tick_us: TickTimes,
     /// The link.
     pub link: LinkResult,
+    /// Faults of `--faults`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub faults: Option<FaultsResult>,
+    /// The serial port.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub port: Option<PortResult>,
     /// Fingerprint of all output buffers of all ticks.
     pub digest: String,
     /// Where the parts are.
@@ -207,6 +270,18 @@ impl fmt::Display for Page<'_> {
             "link       {} frames, {} NAKs, {} retries, {} checksum errors, {} points limited",
             link.frames, link.naks, link.retries, link.checksum_errors, link.limited
         )?;
+        if let Some(faults) = &result.faults {
+            writeln!(f, "faults     {faults}")?;
+        }
+        if let Some(port) = &result.port {
+            let TickTimes { p50, p99, max } = port.deviation_us;
+            writeln!(
+                f,
+                "port       {} bytes sent, {} received, {} not taken, lost {} times; a frame every {TICK_MS} ms, \
+                 beside it by p50 {p50:.0} us, p99 {p99:.0} us, max {max:.0} us",
+                port.sent, port.received, port.unsent, port.losses
+            )?;
+        }
         let times = &result.tick_us;
         let allocations = result.allocations_after_start.map_or("not counted".to_owned(), |n| n.to_string());
         writeln!(

@@ -5,12 +5,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use depc::fault::{Injector, Plan, text};
+use executive::serial::SerialLine;
 use plant::{Cell, CellDescription};
 use taskdata::load::{Job, Report, Store};
 
+use super::robot::{Port, Robot};
 use crate::{
     check,
-    cli::{LogTarget, RunArguments},
+    cli::{self, ClockKind, LogTarget, RunArguments},
     error::Error,
 };
 
@@ -33,6 +36,8 @@ pub struct Setup {
     pub description: CellDescription,
     /// The cell.
     pub cell: Cell,
+    /// The other end of the line.
+    pub robot: Robot,
     /// Where the log goes.
     pub log: Option<PathBuf>,
 }
@@ -43,6 +48,7 @@ impl Setup {
     /// # Errors
     /// [`Error`], with all errors of the data.
     pub fn load(arguments: &RunArguments) -> Result<Self, Error> {
+        let plan = plan(arguments)?;
         let data = &arguments.data;
         if !data.is_dir() {
             return Err(Error::NoData(data.clone()));
@@ -66,8 +72,26 @@ impl Setup {
             Some(LogTarget::File(path)) => Some(path.clone()),
             None => Some(Path::new("runs").join(&job.name).with_added_extension("mcap")),
         };
-        Ok(Self { store, job, description_text, description, cell, log })
+        // The last of all: a robot hears nothing of a run that cannot begin.
+        let robot = match &arguments.robot {
+            cli::Robot::Sim => Robot::Simulated(plan.map(|plan| Box::new(Injector::new(&plan)))),
+            cli::Robot::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
+        };
+        Ok(Self { store, job, description_text, description, cell, robot, log })
     }
+}
+
+/// The fault plan, if there is one, and whether the arguments go together.
+fn plan(arguments: &RunArguments) -> Result<Option<Plan>, Error> {
+    if arguments.robot != cli::Robot::Sim {
+        if arguments.clock != ClockKind::Real {
+            return Err(Error::NotInRealTime);
+        }
+        if arguments.faults.is_some() {
+            return Err(Error::FaultsAtPort);
+        }
+    }
+    Ok(arguments.faults.as_deref().map(text::load).transpose()?)
 }
 
 /// Warnings do not keep a run from beginning; one line says that there are some.

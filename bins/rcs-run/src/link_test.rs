@@ -1,0 +1,185 @@
+//! `rcs-run link-test`: round trips on a DEPC link, with a verdict.
+//!
+//! The host of [`depc::host`] starts the link and then sends, every 40 ms, the position that the robot itself
+//! has reported: nothing moves. Each answer is timed to the moment at which its byte can be read, not to the
+//! next tick. A frame is in time if it is acknowledged within a tick, since then the next one can follow
+//! without a gap.
+
+mod dump;
+mod tally;
+
+use std::{
+    io,
+    process::ExitCode,
+    sync::atomic::Ordering,
+    time::{Duration, Instant},
+};
+
+use depc::{
+    host::{ANSWER_TICKS, Host, HostEvent, Intent},
+    wire::{DataCommand, FRAME_BYTES, NO_FUNCTION},
+};
+use executive::serial::{SerialLine, SerialSettings};
+use rcs_core::{interface::device::LinkBytes, tick::TICK_MS};
+
+use self::{
+    dump::{Dump, Way},
+    tally::Tally,
+};
+use crate::{
+    cli::{LinkTestArguments, Robot},
+    error::{Error, FAILED, STOPPED},
+    run::interruption,
+};
+
+/// Length of a tick.
+const PERIOD: Duration = Duration::from_millis(TICK_MS);
+
+/// Test the link and print the result. Exit status 0 if it can be used, 1 if not, 3 if there is none.
+///
+/// # Errors
+/// [`Error`] if there is nothing to test.
+pub fn link_test(arguments: &LinkTestArguments) -> Result<ExitCode, Error> {
+    let Robot::Serial(settings) = &arguments.robot else { return Err(Error::NoLinkToTest) };
+    let interrupted = interruption()?;
+    let line = match SerialLine::open(settings.clone()) {
+        Ok(line) => line,
+        Err(error) => {
+            eprintln!("rcs-run: no link: {error}");
+            return Ok(ExitCode::from(STOPPED));
+        }
+    };
+    let mut test = Test::new(line, Dump::new(arguments.dump, arguments.json));
+    let ticks = u64::from(arguments.seconds) * 1000 / TICK_MS;
+    test.run(ticks, || interrupted.load(Ordering::Relaxed));
+    let tally = test.finish(settings);
+    if arguments.json {
+        serde_json::to_writer(io::stdout().lock(), &tally).map_err(io::Error::from)?;
+        println!();
+    } else {
+        print!("{tally}");
+    }
+    Ok(match tally.failure() {
+        Some(reason) => {
+            eprintln!("rcs-run: {reason}");
+            ExitCode::from(if tally.connected { FAILED } else { STOPPED })
+        }
+        None => ExitCode::SUCCESS,
+    })
+}
+
+/// A data command whose answer has not come.
+#[derive(Clone, Copy)]
+struct Outstanding {
+    sent: Instant,
+    /// When a byte that may be its ACK could be read.
+    answered: Option<Instant>,
+}
+
+struct Test {
+    line: SerialLine,
+    host: Host,
+    dump: Dump,
+    outstanding: Option<Outstanding>,
+    starts: u32,
+    latencies: Vec<Duration>,
+}
+
+impl Test {
+    fn new(line: SerialLine, dump: Dump) -> Self {
+        let host = Host::new(ANSWER_TICKS);
+        Self { line, host, dump, outstanding: None, starts: 0, latencies: Vec::new() }
+    }
+
+    /// Run so many ticks; in the last ones nothing new is sent, so that every frame has had its time.
+    fn run(&mut self, ticks: u64, interrupted: impl Fn() -> bool) {
+        let quiet = ticks.saturating_sub(u64::from(ANSWER_TICKS) + 1);
+        let mut rx = LinkBytes::default();
+        let mut due = Instant::now();
+        for tick in 0..ticks {
+            let ready = self.line.receive(&mut rx);
+            self.receive(&rx, ready);
+            self.transmit(tick < quiet);
+            // Late ticks are not made up for: the robot would be asked for more than one command a tick.
+            due = (due + PERIOD).max(Instant::now());
+            rx = self.collect(due);
+            if interrupted() {
+                break;
+            }
+        }
+    }
+
+    /// Take in what arrives until `due`.
+    fn collect(&mut self, due: Instant) -> LinkBytes {
+        let mut rx = LinkBytes::default();
+        loop {
+            let left = due.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return rx;
+            }
+            let full = rx.as_slice().len() == rx.bytes.len();
+            if full || !self.line.is_there() {
+                std::thread::sleep(left);
+                continue;
+            }
+            self.line.wait(left);
+            let before = rx.as_slice().len();
+            if !self.line.receive(&mut rx) {
+                // A line that was lost within the tick is reported at its end.
+                std::thread::sleep(due.saturating_duration_since(Instant::now()));
+                return LinkBytes::default();
+            }
+            let now = Instant::now();
+            let fresh = rx.as_slice().get(before..).unwrap_or_default();
+            self.dump.show(now, Way::Received, fresh);
+            if let Some(outstanding) = &mut self.outstanding
+                && !fresh.is_empty()
+            {
+                outstanding.answered.get_or_insert(now);
+            }
+        }
+    }
+
+    fn receive(&mut self, rx: &LinkBytes, ready: bool) {
+        let naks = self.host.counters().naks;
+        let event = self.host.receive(rx, ready);
+        match event {
+            HostEvent::Acknowledged => {
+                if let Some(Outstanding { sent, answered: Some(at) }) = self.outstanding.take() {
+                    self.latencies.push(at.saturating_duration_since(sent));
+                }
+            }
+            HostEvent::Started => self.starts += 1,
+            HostEvent::Lost => self.outstanding = None,
+            HostEvent::None => {}
+        }
+        if self.host.counters().naks > naks {
+            self.outstanding = None;
+        }
+    }
+
+    fn transmit(&mut self, wanted: bool) {
+        let intent = if wanted {
+            Intent::Position(DataCommand { function: NO_FUNCTION, plate: self.host.position() })
+        } else {
+            Intent::Idle
+        };
+        let mut tx = LinkBytes::default();
+        self.host.transmit(&intent, &mut tx);
+        if tx.length == 0 {
+            return;
+        }
+        let now = Instant::now();
+        self.line.send(&tx);
+        self.dump.show(now, Way::Sent, tx.as_slice());
+        if tx.as_slice().len() == FRAME_BYTES {
+            self.outstanding = Some(Outstanding { sent: now, answered: None });
+        }
+    }
+
+    fn finish(mut self, settings: &SerialSettings) -> Tally {
+        self.dump.flush();
+        let (connected, counters) = (self.host.is_running(), self.host.counters());
+        Tally::new(settings, connected, self.starts, counters, self.line.counts(), &mut self.latencies)
+    }
+}

@@ -1,0 +1,219 @@
+//! The result of a link test: counts, latencies, and the verdict in words.
+
+use std::{fmt, time::Duration};
+
+use executive::serial::{SerialCounts, SerialSettings};
+use rcs_core::{interface::t3i::LinkCounters, tick::TICK_MS};
+use serde::Serialize;
+
+/// An ACK that comes within a tick.
+const IN_TIME: Duration = Duration::from_millis(TICK_MS);
+/// Share of frames acknowledged in time from which a link is good.
+const GOOD: f64 = 0.95;
+/// Share from which it is usable.
+const USABLE: f64 = 0.90;
+
+/// What the numbers mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// From 0.95 of the frames in time.
+    Good,
+    /// From 0.90.
+    Usable,
+    /// Less.
+    NotUsable,
+    /// No position was ever reported, or the link was down at the end.
+    NoLink,
+}
+
+impl Verdict {
+    fn of(connected: bool, share: f64) -> Self {
+        match share {
+            _ if !connected => Self::NoLink,
+            share if share >= GOOD => Self::Good,
+            share if share >= USABLE => Self::Usable,
+            _ => Self::NotUsable,
+        }
+    }
+
+    const fn text(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Usable => "usable",
+            Self::NotUsable => "not usable",
+            Self::NoLink => "no link",
+        }
+    }
+}
+
+/// From a data command to the byte of its ACK, milliseconds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Latency {
+    /// The shortest.
+    pub min: f64,
+    /// Half of them took at most this.
+    pub median: f64,
+    /// The longest.
+    pub max: f64,
+}
+
+impl Latency {
+    fn of(latencies: &mut [Duration]) -> Option<Self> {
+        latencies.sort_unstable();
+        let ms = |latency: &Duration| latency.as_secs_f64() * 1000.0;
+        Some(Self {
+            min: ms(latencies.first()?),
+            median: ms(latencies.get(latencies.len() / 2)?),
+            max: ms(latencies.last()?),
+        })
+    }
+}
+
+/// The result. The names of the fields are those of the JSON object.
+#[derive(Clone, Debug, Serialize)]
+pub struct Tally {
+    /// The port.
+    pub port: String,
+    /// The link ran at the end.
+    pub connected: bool,
+    /// Times that the link began: reports that were accepted.
+    pub starts: u32,
+    /// Data commands sent.
+    pub sent: u32,
+    /// Data commands acknowledged.
+    pub acknowledged: u32,
+    /// Of these, within a tick.
+    pub in_time: usize,
+    /// Data commands refused with a NAK.
+    pub refused: u32,
+    /// Data commands without an answer.
+    pub lost: u32,
+    /// Re-start commands sent.
+    pub restarts: u32,
+    /// Reports with a wrong checksum.
+    pub checksum_errors: u32,
+    /// Times that the port disappeared.
+    pub port_lost: u32,
+    /// Share of the data commands that were acknowledged in time.
+    pub share_in_time: f64,
+    /// Latency of ACKs.
+    pub ack_ms: Option<Latency>,
+    /// In words.
+    pub verdict: Verdict,
+}
+
+impl Tally {
+    /// Sum up: `latencies` are those of all ACKs, `connected` says whether the link runs at the end, `starts`
+    /// how often it began.
+    #[must_use]
+    pub fn new(
+        settings: &SerialSettings,
+        connected: bool,
+        starts: u32,
+        counters: &LinkCounters,
+        serial: SerialCounts,
+        latencies: &mut [Duration],
+    ) -> Self {
+        let (sent, acknowledged, refused) = (counters.frames, counters.acknowledged, counters.naks);
+        let in_time = latencies.iter().filter(|latency| **latency <= IN_TIME).count();
+        let share_in_time = if sent == 0 { 0.0 } else { in_time as f64 / f64::from(sent) };
+        Self {
+            port: settings.path.display().to_string(),
+            connected,
+            starts,
+            sent,
+            acknowledged,
+            in_time,
+            refused,
+            lost: sent.saturating_sub(acknowledged).saturating_sub(refused),
+            restarts: counters.restarts,
+            checksum_errors: counters.checksum_errors,
+            port_lost: serial.losses,
+            share_in_time,
+            ack_ms: Latency::of(latencies),
+            verdict: Verdict::of(connected && sent > 0, share_in_time),
+        }
+    }
+
+    /// Why the link cannot be used, in a sentence; `None` if it can.
+    #[must_use]
+    pub fn failure(&self) -> Option<String> {
+        let port = &self.port;
+        match self.verdict {
+            Verdict::Good | Verdict::Usable => None,
+            Verdict::NotUsable => Some(format!(
+                "the link at {port} is not usable: {} of {} frames were acknowledged within {TICK_MS} ms, {USABLE} of \
+                 them are needed",
+                self.in_time, self.sent
+            )),
+            Verdict::NoLink if self.starts == 0 => Some(format!(
+                "no link at {port}: the robot controller has not reported its position, after {} re-start commands",
+                self.restarts
+            )),
+            Verdict::NoLink => Some(format!("no link at {port}: it ran, and was lost")),
+        }
+    }
+}
+
+impl fmt::Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "port       {}, lost {} times", self.port, self.port_lost)?;
+        writeln!(
+            f,
+            "link       {} starts, {} re-start commands, {} checksum errors",
+            self.starts, self.restarts, self.checksum_errors
+        )?;
+        writeln!(
+            f,
+            "frames     {} sent, {} acknowledged ({} within {TICK_MS} ms), {} refused (NAK), {} lost",
+            self.sent, self.acknowledged, self.in_time, self.refused, self.lost
+        )?;
+        match self.ack_ms {
+            Some(Latency { min, median, max }) => {
+                writeln!(f, "ACK after  {min:.1} ms at least, {median:.1} median, {max:.1} at most")?;
+            }
+            None => writeln!(f, "ACK after  -")?,
+        }
+        writeln!(f, "verdict    {} ({:.3} in time)", self.verdict.text(), self.share_in_time)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tally(frames: u32, acknowledged: u32, late: usize) -> Tally {
+        let counters = LinkCounters { frames, acknowledged, naks: 1, ..LinkCounters::default() };
+        let mut latencies: Vec<Duration> = (0..acknowledged as usize)
+            .map(|n| Duration::from_millis(if n < late { 41 } else { 20 }))
+            .collect();
+        let serial = SerialCounts::default();
+        Tally::new(&SerialSettings::new("/dev/x"), true, 1, &counters, serial, &mut latencies)
+    }
+
+    #[test]
+    fn the_verdict_follows_the_share_in_time() {
+        for (late, verdict) in [
+            (0, Verdict::Good),
+            (4, Verdict::Good),
+            (5, Verdict::Usable),
+            (9, Verdict::Usable),
+            (10, Verdict::NotUsable),
+        ] {
+            let tally = tally(100, 99, late);
+            assert_eq!(tally.verdict, verdict, "{tally}");
+            assert_eq!(tally.failure().is_some(), verdict == Verdict::NotUsable);
+        }
+        assert_eq!(Verdict::of(false, 1.0), Verdict::NoLink);
+        assert_eq!(tally(0, 0, 0).verdict, Verdict::NoLink);
+    }
+
+    #[test]
+    fn every_frame_is_acknowledged_refused_or_lost() {
+        let tally = tally(100, 90, 1);
+        assert_eq!((tally.refused, tally.lost, tally.in_time), (1, 9, 89));
+        let latency = tally.ack_ms.unwrap();
+        assert_eq!((latency.min, latency.median, latency.max), (20.0, 20.0, 41.0));
+    }
+}

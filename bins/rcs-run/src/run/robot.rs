@@ -1,0 +1,135 @@
+//! The other end of the DEPC line: the T3 controller of the simulated cell, or a robot at a serial port.
+//!
+//! With the simulated one the bytes of a tick go through the fault injector, if there is a fault plan, and
+//! then through the cell. With a serial port they go to the port; the rest of the cell (gripper, camera,
+//! tray, vise, resolvers) is simulated all the same, and follows the position that the robot has
+//! acknowledged.
+
+use std::time::{Duration, Instant};
+
+use depc::{
+    Plate,
+    fault::{Counts, Direction, Injector},
+    wire::FRAME_BYTES,
+};
+use executive::{
+    alloc::Section,
+    histogram::{Histogram, Summary},
+    serial::{SerialCounts, SerialLine},
+};
+use plant::Cell;
+use rcs_core::{
+    interface::device::{DeviceInputs, DeviceOutputs, LinkBytes},
+    tick::{TICK_MS, Tick},
+};
+
+/// Length of a tick.
+const PERIOD: Duration = Duration::from_millis(TICK_MS);
+
+/// Who is at the other end of the line.
+pub enum Robot {
+    /// The simulated T3 controller, behind a line that may have faults.
+    Simulated(Option<Box<Injector>>),
+    /// Whoever is at a serial port.
+    Serial(Port),
+}
+
+/// A serial line, with what is measured on it.
+pub struct Port {
+    line: SerialLine,
+    /// When the last data command was handed to the port.
+    sent: Option<Instant>,
+    /// By how much the time between two data commands differs from a tick, ns.
+    deviations: Box<Histogram>,
+}
+
+impl Port {
+    /// Whoever is at this line.
+    #[must_use]
+    pub fn new(line: SerialLine) -> Self {
+        Self { line, sent: None, deviations: Box::default() }
+    }
+
+    fn send(&mut self, tx: &LinkBytes) {
+        let now = Instant::now();
+        // What the port does not take is counted by the line, and makes it rest for a tick.
+        self.line.send(tx);
+        if tx.as_slice().len() != FRAME_BYTES {
+            return;
+        }
+        if let Some(before) = self.sent.replace(now) {
+            let deviation = now.saturating_duration_since(before).abs_diff(PERIOD);
+            self.deviations.add(u64::try_from(deviation.as_nanos()).unwrap_or(u64::MAX));
+        }
+    }
+
+    /// What went over the port.
+    #[must_use]
+    pub const fn counts(&self) -> SerialCounts {
+        self.line.counts()
+    }
+
+    /// By how much the time between two data commands differed from a tick.
+    #[must_use]
+    pub fn deviations(&self) -> Summary {
+        self.deviations.summary()
+    }
+}
+
+impl Robot {
+    /// Before the controller's tick: what has come over the line. Counted as a part of the tick.
+    pub fn receive(&mut self, inputs: &mut DeviceInputs) {
+        let Self::Serial(port) = self else { return };
+        let _section = Section::enter();
+        inputs.link_rx = LinkBytes::default();
+        inputs.link_ready = port.line.receive(&mut inputs.link_rx);
+    }
+
+    /// After the controller's tick: what goes over the line. Counted as a part of the tick.
+    pub fn send(&mut self, outputs: &DeviceOutputs) {
+        let Self::Serial(port) = self else { return };
+        let _section = Section::enter();
+        port.send(&outputs.link_tx);
+    }
+
+    /// The rest of the tick: the cell moves. `acknowledged` gives the position that the robot has
+    /// last acknowledged or reported, if any is known; it is asked for a robot at a port only.
+    pub fn advance(
+        &mut self,
+        tick: Tick,
+        cell: &mut Cell,
+        outputs: &DeviceOutputs,
+        acknowledged: impl FnOnce() -> Option<Plate>,
+    ) -> DeviceInputs {
+        match self {
+            Self::Serial(_) => cell.step_following(acknowledged().as_ref(), outputs),
+            Self::Simulated(None) => cell.step(outputs),
+            Self::Simulated(Some(injector)) => {
+                let (rx, ready) = injector.carry(Direction::ToController, tick, &outputs.link_tx, true);
+                cell.set_host_ready(ready);
+                let mut inputs = cell.step(&DeviceOutputs { link_tx: rx, ..*outputs });
+                (inputs.link_rx, inputs.link_ready) =
+                    injector.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
+                inputs
+            }
+        }
+    }
+
+    /// Faults that were injected, both directions together.
+    #[must_use]
+    pub fn faults(&self) -> Option<Counts> {
+        match self {
+            Self::Simulated(Some(injector)) => Some(injector.total()),
+            _ => None,
+        }
+    }
+
+    /// The serial port, if there is one.
+    #[must_use]
+    pub const fn port(&self) -> Option<&Port> {
+        match self {
+            Self::Serial(port) => Some(port),
+            Self::Simulated(_) => None,
+        }
+    }
+}
