@@ -8,7 +8,7 @@ use depc::controller::{ControllerState, Warning};
 
 use crate::{
     console::Key,
-    t3::{Stage, T3},
+    t3::{Machine, Stage},
 };
 
 /// The operator.
@@ -29,9 +29,9 @@ impl Operator {
         std::mem::replace(&mut self.on_duty, false)
     }
 
-    /// What the operator does now. `host` says that a host has the line open.
+    /// What the operator does now. `cts` says that a host has the line open.
     #[must_use]
-    pub fn next(&self, t3: &T3, host: bool) -> Option<Key> {
+    pub fn next(&self, t3: &Machine, cts: bool) -> Option<Key> {
         if !self.on_duty {
             return None;
         }
@@ -45,7 +45,7 @@ impl Operator {
             Stage::Manual => Some(Key::Align(None)),
             Stage::Auto => Some(Key::CycleStart),
             Stage::Depc if t3.depc().state() == ControllerState::Warning => match t3.depc().warning() {
-                Warning::CtsLow if host => Some(Key::Enter),
+                Warning::CtsLow if cts => Some(Key::Enter),
                 Warning::Translation | Warning::Orientation => Some(Key::Enter),
                 _ => None,
             },
@@ -61,7 +61,7 @@ mod tests {
     use depc::Limits;
 
     /// Run for `seconds` and press what the operator wants; returns the keys.
-    fn run(t3: &mut T3, operator: &Operator, seconds: f64, host: bool) -> Vec<Key> {
+    fn run(t3: &mut Machine, operator: &Operator, seconds: f64, host: bool) -> Vec<Key> {
         let mut keys = Vec::new();
         for _ in 0..(seconds / 0.04) as u32 {
             if let Some(key) = operator.next(t3, host) {
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn it_starts_up_once_and_answers_when_a_host_comes() {
-        let (mut t3, operator) = (T3::new(Limits::NBS, 5), Operator::new(true));
+        let (mut t3, operator) = (Machine::new(Limits::NBS, 5), Operator::new(true));
         let keys = run(&mut t3, &operator, 30.0, false);
         let order = [
             Key::ControlPower(true),
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn it_does_not_undo_what_a_person_does() {
-        let (mut t3, mut operator) = (T3::new(Limits::NBS, 5), Operator::new(true));
+        let (mut t3, mut operator) = (Machine::new(Limits::NBS, 5), Operator::new(true));
         run(&mut t3, &operator, 30.0, true);
         assert!(operator.step_back() && !operator.step_back());
         t3.press(Key::Estop).unwrap();

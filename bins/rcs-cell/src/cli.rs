@@ -12,19 +12,20 @@ use depc::Limits;
     version,
     about,
     after_help = "\
-Commands are read from standard input, one a line; `help` lists them. The start-up is that of the manual
-(NBSIR 88-3692, IV.3.3): control power on, fault reset, hydraulics enable, manual on, align, auto, cycle start.
-A host that has the link open stands for its DTR; when it hangs up, the controller shows WD1. The end of standard
-input ends the program if that is a terminal; otherwise it runs on.
+Commands are read from standard input, one a line; help lists them. The start-up is that of the manual \
+(NBSIR 88-3692, IV.3.3): control power on, fault reset, hydraulics enable, manual on, align, auto, \
+cycle start. A host that has the link open stands for its DTR; when it hangs up, the controller shows \
+WD1. The end of standard input ends the program if that is a terminal; otherwise it runs on.
 
 Examples:
   rcs-cell --link /tmp/t3              the console: start the robot step by step
   rcs-cell --link /tmp/t3 --auto       the start-up by itself, ready for a host
   rcs-run --robot serial:/tmp/t3 --clock real    a host (in another terminal)
+  rcs-cell --link /tmp/t3 --auto --faults data/faults/noisy-line.toml    the same over a bad line
   rcs-cell --link /tmp/t3 < start.txt  commands from a file; `wait 4` waits between them
 
-Exit status: 0 ended by quit, the end of input or a signal; 1 the pseudo-terminal failed; 2 usage, or the path cannot
-be used. The reason is the last line on standard error."
+Exit status: 0 ended by quit, the end of input or a signal; 1 the pseudo-terminal failed; 2 usage, or \
+the path cannot be used. The reason is the last line on standard error."
 )]
 pub struct Cli {
     /// Where to link the pseudo-terminal; nothing else may be there
@@ -33,15 +34,22 @@ pub struct Cli {
     /// Go through the start-up without a person, and answer ENTER when a host comes
     #[arg(long)]
     pub auto: bool,
-    /// Period of the controller in milliseconds, a multiple of 10 up to 1000; the velocity limits are per period
+    /// Period of the controller in milliseconds, a multiple of 10 up to 1000, or 19.76 as in appendix A; the velocity
+    /// limits are per period
     #[arg(long, value_name = "MS", default_value = "40", value_parser = period)]
     pub period: Limits,
     /// Seed: how far the joints are from HOME in the morning, and how well they are aligned
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
+    /// Fault plan (TOML): what happens to bytes on the line; its ticks are the controller's steps, one a period or so
+    #[arg(long, value_name = "FILE")]
+    pub faults: Option<PathBuf>,
 }
 
 fn period(text: &str) -> Result<Limits, String> {
+    if text == "19.76" {
+        return Ok(Limits::APPENDIX);
+    }
     let milliseconds = text.parse().map_err(|_| "milliseconds were expected".to_owned())?;
     Limits::new(milliseconds).map_err(|error| error.to_string())
 }
@@ -59,7 +67,8 @@ mod tests {
     #[test]
     fn a_period_is_a_multiple_of_ten_milliseconds() {
         let cli = |period| Cli::try_parse_from(["rcs-cell", "--link", "x", "--period", period]);
-        assert_eq!(cli("20").map(|cli| cli.period.period_ms()).ok(), Some(20));
+        assert_eq!(cli("20").map(|cli| cli.period.period_us()).ok(), Some(20_000));
+        assert_eq!(cli("19.76").map(|cli| cli.period).ok(), Some(Limits::APPENDIX));
         assert!(Cli::try_parse_from(["rcs-cell", "--link", "x"]).is_ok_and(|cli| cli.period == Limits::NBS));
         for wrong in ["0", "15", "1010", "fast"] {
             assert_eq!(cli(wrong).expect_err(wrong).exit_code(), 2);

@@ -107,8 +107,8 @@ pub struct Cadence {
 impl Cadence {
     /// The first step is due one period after `now`.
     #[must_use]
-    pub fn new(period_ms: u16, now: u64) -> Self {
-        Self { period_us: u64::from(period_ms) * 1000, last: now, busy: true }
+    pub fn new(period_us: u32, now: u64) -> Self {
+        Self { period_us: u64::from(period_us), last: now, busy: true }
     }
 
     /// When the next step is due, as far as the bytes tell that are on the line now.
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn every_phase_gives_a_command_a_period() {
         for phase in (0..40_000).step_by(500) {
-            let (mut line, mut cadence) = (Line::new(9600), Cadence::new(40, phase));
+            let (mut line, mut cadence) = (Line::new(9600), Cadence::new(40_000, phase));
             let (mut sent, mut taken, mut acknowledged) = (0, 0, true);
             for tick in 0..100 {
                 let (now, end) = (tick * 40_000, (tick + 1) * 40_000);
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn a_frame_without_end_does_not_stop_the_steps() {
-        let (mut line, mut cadence) = (Line::new(9600), Cadence::new(40, 0));
+        let (mut line, mut cadence) = (Line::new(9600), Cadence::new(40_000, 0));
         for now in (0..1_000_000).step_by(1000) {
             line.host_sent(now, &[1, 2]);
             if cadence.next(&line) <= now {

@@ -23,11 +23,13 @@ mod shell;
 mod t3;
 
 use std::{
+    path::Path,
     process::ExitCode,
     sync::{Arc, atomic::AtomicBool},
 };
 
 use clap::Parser;
+use depc::fault::{FaultKind, Plan, Rule, text};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::{cli::Cli, pty::Pty, shell::Shell};
@@ -45,14 +47,31 @@ fn main() -> ExitCode {
             return fail(UNUSABLE, &format!("signals cannot be caught: {error}"));
         }
     }
+    let plan = match cli.faults.as_deref().map(plan).transpose() {
+        Ok(plan) => plan,
+        Err(reason) => return fail(UNUSABLE, &reason),
+    };
     let pty = match Pty::open(&cli.link) {
         Ok(pty) => pty,
         Err(error) => return fail(UNUSABLE, &error.to_string()),
     };
-    match Shell::new(&cli, pty, stop).run() {
+    match Shell::new(&cli, plan.as_ref(), pty, stop).run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => fail(FAILED, &error.to_string()),
     }
+}
+
+/// The fault plan in a file, if a pseudo-terminal can do what it says.
+fn plan(path: &Path) -> Result<Plan, String> {
+    let plan = text::load(path).map_err(|error| error.to_string())?;
+    let useless = |rule: &Rule| rule.kind == FaultKind::CtsLow && !rule.to_controller;
+    if plan.rules().iter().any(useless) {
+        return Err(format!(
+            "{}: cts-low to-host has no effect, a pseudo-terminal has no modem lines: use to-controller",
+            path.display()
+        ));
+    }
+    Ok(plan)
 }
 
 fn fail(status: u8, reason: &str) -> ExitCode {

@@ -10,9 +10,11 @@ use std::{
         Arc,
         atomic::{AtomicBool, Ordering},
     },
-    time::Instant,
+    time::{Duration, Instant},
 };
 
+use depc::fault::{Direction, Injector, Plan};
+use rcs_core::{interface::device::LinkBytes, tick::Tick};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::{
@@ -21,7 +23,7 @@ use crate::{
     console::{self, Key, Lines},
     line::{Cadence, Line},
     pty::{Pty, PtyError},
-    t3::{StepInputs, T3},
+    t3::{Machine, StepInputs},
 };
 
 /// Baud of the link (VI.1).
@@ -49,8 +51,11 @@ pub struct Shell {
     pty: Pty,
     host: bool,
     line: Line,
+    faults: Option<Injector>,
+    /// Steps of the controller: the ticks of the fault plan.
+    tick: Tick,
     cadence: Cadence,
-    t3: T3,
+    t3: Machine,
     operator: Operator,
     lines: Lines,
     waiting: VecDeque<String>,
@@ -65,15 +70,17 @@ pub struct Shell {
 impl Shell {
     /// Ready to run. `stop` ends it.
     #[must_use]
-    pub fn new(cli: &Cli, pty: Pty, stop: Arc<AtomicBool>) -> Self {
+    pub fn new(cli: &Cli, plan: Option<&Plan>, pty: Pty, stop: Arc<AtomicBool>) -> Self {
         Self {
             start: Instant::now(),
             stop,
             pty,
             host: false,
             line: Line::new(BAUD),
-            cadence: Cadence::new(cli.period.period_ms(), 0),
-            t3: T3::new(cli.period, cli.seed),
+            faults: plan.map(Injector::new),
+            tick: Tick::BEFORE_START,
+            cadence: Cadence::new(cli.period.period_us(), 0),
+            t3: Machine::new(cli.period, cli.seed),
             operator: Operator::new(cli.auto),
             lines: Lines::default(),
             waiting: VecDeque::new(),
@@ -211,21 +218,31 @@ impl Shell {
     }
 
     fn step(&mut self) -> Result<(), ShellError> {
-        if let Some(key) = self.operator.next(&self.t3, self.host) {
+        let now = self.now();
+        let elapsed = Duration::from_micros(now - self.cadence.last()).as_secs_f64();
+        self.tick = self.tick.next();
+        let arrived = self.line.arrived(now);
+        let (rx, cts) = self.carry(Direction::ToController, arrived, self.host);
+        if let Some(key) = self.operator.next(&self.t3, cts) {
             self.say(&format!("[auto] {}", key.text()))?;
             self.press(key)?;
         }
-        let now = self.now();
-        let elapsed = std::time::Duration::from_micros(now - self.cadence.last()).as_secs_f64();
-        let inputs =
-            StepInputs { elapsed: elapsed.min(LONGEST_STEP_S), rx: self.line.arrived(now), cts: self.host };
-        let out = self.t3.step(&inputs);
+        let out = self.t3.step(&StepInputs { elapsed: elapsed.min(LONGEST_STEP_S), rx, cts });
+        let (tx, _) = self.carry(Direction::ToHost, out.tx, true);
         if self.host {
-            self.line.send(now, out.tx.as_slice());
+            self.line.send(now, tx.as_slice());
         }
         self.pressed = false;
         self.cadence.stepped(now, out.busy);
         self.show()
+    }
+
+    /// Bytes and DTR of one end, with the faults of the plan.
+    fn carry(&mut self, direction: Direction, sent: LinkBytes, ready: bool) -> (LinkBytes, bool) {
+        match &mut self.faults {
+            Some(injector) => injector.carry(direction, self.tick, &sent, ready),
+            None => (sent, ready),
+        }
     }
 
     fn status(&mut self) -> Result<(), ShellError> {
@@ -245,6 +262,9 @@ impl Shell {
         if depc.warning() != depc::controller::Warning::None {
             lines.push(crate::message::Message::Warning(depc.warning()).to_string());
         }
+        if let Some(injector) = &self.faults {
+            lines.push(format!("[status] {} faults on the line", injector.total().faults()));
+        }
         lines.push(crate::message::Message::Position(t3.position()).to_string());
         Ok(self.say(&lines.join("\n"))?)
     }
@@ -256,7 +276,7 @@ impl Shell {
             .into_iter()
             .flatten()
             .fold(now + LONGEST_SLEEP, u64::min);
-        let left = std::time::Duration::from_micros(due.saturating_sub(now));
+        let left = Duration::from_micros(due.saturating_sub(now));
         let timeout = Timespec::try_from(left).map_err(io::Error::other)?;
         let stdin = io::stdin();
         let mut fds = Vec::with_capacity(2);

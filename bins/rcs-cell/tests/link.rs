@@ -153,7 +153,7 @@ impl Host {
 }
 
 #[test]
-fn a_host_finds_the_robot_at_home_and_comes_back_where_it_left_it() {
+fn the_host_finds_the_robot_at_home_and_comes_back_where_it_left_it() {
     let place = Place::new("host");
     let mut cell = Cell::start(&place.link(), &["--auto"]);
     cell.wait_for("waits for a host");
@@ -244,4 +244,37 @@ fn a_path_is_taken_over_from_the_dead_but_not_from_the_living() {
     assert_eq!(status, Some(2));
     assert!(reason.contains("not a link that rcs-cell has left behind"), "{reason}");
     assert_eq!(fs::read_to_string(&file).unwrap(), "precious");
+}
+
+#[test]
+fn faults_spoil_the_line_and_a_useless_plan_is_refused() {
+    let place = Place::new("faults");
+    let plan = place.0.join("faults.toml");
+    fs::write(&plan, "[[fault]]\nkind = \"flip\"\ndirection = \"to-controller\"\nrate = 1.0\n").unwrap();
+    let option = format!("--faults={}", plan.display());
+    let mut cell = Cell::start(&place.link(), &["--auto", &option]);
+    cell.wait_for("waits for a host");
+    let mut host = Host::open(&place.link());
+    assert_eq!(host.receive(), HOME);
+    host.send(&BESIDE);
+    assert_eq!(host.receive(), [0x15]);
+    cell.enter("status");
+    cell.wait_for("16 faults on the line");
+    cell.enter("quit");
+    assert_eq!(cell.ended().code(), Some(0));
+
+    for (text, says) in [
+        ("[[fault]]\nkind = \"cts-low\"\ndirection = \"to-host\"\nat = 5\n", "modem lines"),
+        ("[[fault]]\nkind = \"melt\"\nat = 5\n", "melt"),
+    ] {
+        fs::write(&plan, text).unwrap();
+        let output = Command::new(env!("CARGO_BIN_EXE_rcs-cell"))
+            .arg("--link")
+            .arg(place.link())
+            .arg(&option)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&output.stderr).contains(says), "{output:?}");
+    }
 }

@@ -1,19 +1,23 @@
 //! The start-up of IV.3.3, step by step.
 
 use super::*;
-use crate::message::{HOME_TOLERANCE, off_home as off};
+use crate::{
+    console::Key,
+    message::{HOME_TOLERANCE, off_home as off},
+    refusal::Refusal,
+};
 use depc::wire::{DataCommand, FRAME_BYTES, Report};
 
 /// The report at HOME, worked out from appendix A.
 const HOME_REPORT: [u8; 16] =
     [0xFF, 0xFF, 0x03, 0x00, 0x00, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x7A];
 
-fn t3() -> T3 {
-    T3::new(Limits::NBS, 1)
+fn t3() -> Machine {
+    Machine::new(Limits::NBS, 1)
 }
 
 /// Let `seconds` pass in periods with a host on the line; returns what was sent.
-fn pass(t3: &mut T3, seconds: f64) -> Vec<u8> {
+fn pass(t3: &mut Machine, seconds: f64) -> Vec<u8> {
     let mut sent = Vec::new();
     for _ in 0..(seconds / 0.04).ceil() as u32 {
         sent.extend(step(t3, &[], true));
@@ -21,13 +25,13 @@ fn pass(t3: &mut T3, seconds: f64) -> Vec<u8> {
     sent
 }
 
-fn step(t3: &mut T3, rx: &[u8], cts: bool) -> Vec<u8> {
+fn step(t3: &mut Machine, rx: &[u8], cts: bool) -> Vec<u8> {
     let mut inputs = StepInputs { elapsed: 0.04, cts, ..StepInputs::default() };
     assert_eq!(inputs.rx.extend(rx), rx.len());
     t3.step(&inputs).tx.as_slice().to_vec()
 }
 
-fn manual() -> T3 {
+fn manual() -> Machine {
     let mut t3 = t3();
     for key in [Key::ControlPower(true), Key::FaultReset, Key::Hydraulics(true), Key::Manual(true)] {
         t3.press(key).unwrap();
@@ -37,7 +41,7 @@ fn manual() -> T3 {
     t3
 }
 
-fn auto() -> T3 {
+fn auto() -> Machine {
     let mut t3 = manual();
     t3.press(Key::Align(None)).unwrap();
     pass(&mut t3, 3.0);
@@ -47,7 +51,7 @@ fn auto() -> T3 {
     t3
 }
 
-fn running() -> T3 {
+fn running() -> Machine {
     let mut t3 = auto();
     t3.press(Key::CycleStart).unwrap();
     let sent = pass(&mut t3, 6.0);
@@ -86,7 +90,7 @@ fn both_jumps_are_there() {
         t3.press(key).unwrap();
     }
     let below = t3.position();
-    pass(&mut t3, 0.8);
+    pass(&mut t3, 0.4);
     assert_eq!(t3.position(), below, "the pressure comes after a delay");
     pass(&mut t3, 3.0);
     let jump = t3.position().tool[2] - below.tool[2];
@@ -228,7 +232,7 @@ fn an_emergency_stop_lets_the_arm_sink_and_takes_the_whole_start_up() {
 fn hold_stops_the_programs_own_motions_and_interrupt_ends_them() {
     let mut t3 = auto();
     t3.press(Key::CycleStart).unwrap();
-    pass(&mut t3, 0.5);
+    pass(&mut t3, 0.2);
     t3.press(Key::Hold(true)).unwrap();
     pass(&mut t3, 1.0);
     let held = t3.position();
@@ -240,7 +244,7 @@ fn hold_stops_the_programs_own_motions_and_interrupt_ends_them() {
 
 #[test]
 fn the_same_seed_is_the_same_morning() {
-    let morning = |seed| T3::new(Limits::NBS, seed).position();
+    let morning = |seed| Machine::new(Limits::NBS, seed).position();
     assert_eq!(morning(3), morning(3));
     assert_ne!(morning(3), morning(4));
 }

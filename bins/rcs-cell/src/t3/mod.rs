@@ -1,5 +1,8 @@
 //! The T3 controller with its robot: the start-up of IV.3.3 as a state machine, without I/O and without a clock.
 
+mod keys;
+mod stage;
+
 use depc::{
     Limits, Plate,
     controller::{Controller, ControllerInputs, ControllerState, JointProblem, Robot, Warning, joints_for},
@@ -14,87 +17,21 @@ use rcs_core::{
     pose::WireFrame,
 };
 
-use crate::{arm::Arm, console::Key, message::Message, refusal::Refusal};
+pub use self::stage::Stage;
+use crate::{arm::Arm, message::Message};
 
 /// From MANUAL ON to the pressure, seconds ("a short delay", ASSUMED).
-const PUMP_S: f64 = 1.0;
+const PUMP_S: f64 = 0.5;
 /// Speed of motions that the controller makes by itself, degrees/s of the fastest joint (ASSUMED).
 const OWN_SPEED: f64 = 10.0;
 /// The two short vertical motions of the program: up by this much, inches, and down again (ASSUMED).
 const VERTICAL_IN: f64 = 1.0;
 /// Time for each of them, seconds (ASSUMED).
-const VERTICAL_S: f64 = 1.0;
+const VERTICAL_S: f64 = 0.5;
 /// Where the last shift has left the arm: greatest distance of each joint from its arrow, degrees (ASSUMED).
 const LEFT_OFF: f64 = 2.0;
 /// How well a person brings a joint to its arrow: greatest error, degrees (ASSUMED).
 const BY_EYE: f64 = 0.5;
-
-/// How far the start-up has come.
-///
-/// ```text
-///  Dark ─power on─► Faulted ─fault reset─► Ready ─key at ENABLE─► Enabled ─manual on─► Rising
-///                      ▲                                             ▲                   │ jump
-///                      │ E-stop (any)          manual off (any live) │                   ▼
-///                      └──────────────────────────────────────────── ┴──────────────── Manual
-///                                                                                        │ auto,
-///           ┌─────── second jump: the robot moves to HOME ◄── Homing ◄───────────────────┤ all aligned
-///           ▼                                                    ▲                       │
-///         Auto ─cycle start─► Rehearsing ─two motions─► Depc ────┤ 18                    │ auto
-///                                │ interrupt             │       │                       │
-///                                └──────────────────► PreManual ─┴───────────────────────┘
-///                                                        ▲ CANCEL, CANCEL after a warning
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stage {
-    /// Control power is off.
-    Dark,
-    /// FAULT RESET is lit.
-    Faulted,
-    /// No fault, the keyswitch is not at ENABLE.
-    Ready,
-    /// The keyswitch is at ENABLE, the hydraulics are off.
-    Enabled,
-    /// The pump starts; pressure comes after a short delay.
-    Rising,
-    /// Hydraulics on; the axes can be aligned.
-    Manual,
-    /// On the way to HOME after AUTO, or after the program's end.
-    Homing,
-    /// Auto mode, at HOME.
-    Auto,
-    /// The program's two vertical motions.
-    Rehearsing,
-    /// The program is in the DEPC function, see [`T3::depc`].
-    Depc,
-    /// Pre-manual mode: the program was ended, the axes are still aligned.
-    PreManual,
-}
-
-impl Stage {
-    /// For people.
-    #[must_use]
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Dark => "control power off",
-            Self::Faulted => "fault",
-            Self::Ready => "hydraulics disabled",
-            Self::Enabled => "hydraulics enabled",
-            Self::Rising => "hydraulics starting",
-            Self::Manual => "manual",
-            Self::Homing => "moving to HOME",
-            Self::Auto => "auto, at HOME",
-            Self::Rehearsing => "vertical motions",
-            Self::Depc => "DEPC",
-            Self::PreManual => "pre-manual",
-        }
-    }
-
-    /// The hydraulics have, or are about to have, pressure.
-    #[must_use]
-    pub const fn is_live(self) -> bool {
-        !matches!(self, Self::Dark | Self::Faulted | Self::Ready | Self::Enabled)
-    }
-}
 
 /// What comes from the line in a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -148,7 +85,7 @@ impl Robot for SetPoint {
 
 /// The controller and its robot.
 #[derive(Debug)]
-pub struct T3 {
+pub struct Machine {
     stage: Stage,
     limits: Limits,
     arm: Arm,
@@ -170,7 +107,7 @@ pub struct T3 {
     messages: Vec<Message>,
 }
 
-impl T3 {
+impl Machine {
     /// A controller without power, its robot sunk onto the shot pin near HOME. `seed` says how far the joints are off.
     #[must_use]
     pub fn new(limits: Limits, seed: u64) -> Self {
@@ -241,37 +178,6 @@ impl T3 {
         std::mem::take(&mut self.messages)
     }
 
-    /// A key is pressed.
-    ///
-    /// # Errors
-    /// [`Refusal`]: what must be done first; then nothing has changed.
-    pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
-        if self.stage == Stage::Dark && key != Key::ControlPower(true) {
-            return Err(Refusal::NoPower);
-        }
-        match key {
-            Key::ControlPower(on) => self.control_power(on),
-            Key::FaultReset => self.fault_reset(),
-            Key::Hydraulics(on) => self.hydraulics(on),
-            Key::Manual(on) => self.manual(on),
-            Key::Align(axis) => self.align(axis),
-            Key::Auto => self.auto(),
-            Key::CycleStart => self.cycle_start(),
-            Key::Interrupt => self.interrupt(),
-            Key::Cancel => self.answer(true),
-            Key::Enter => self.answer(false),
-            Key::Hold(on) => {
-                self.keys.hold = on;
-                Ok(())
-            }
-            Key::Estop => {
-                self.cut(Stage::Faulted);
-                self.lamp("FAULT RESET on, HYD ENABLED off");
-                Ok(())
-            }
-        }
-    }
-
     /// Let time pass: the robot moves, and the DEPC function takes one step if it is reached.
     pub fn step(&mut self, inputs: &StepInputs) -> StepOutputs {
         let program = matches!(self.stage, Stage::Homing | Stage::Rehearsing);
@@ -304,128 +210,10 @@ impl T3 {
         self.messages.push(Message::Robot(text.into()));
     }
 
-    /// Pressure goes, and with it whatever runs and what is known of the axes.
-    fn cut(&mut self, stage: Stage) {
-        if self.stage.is_live() {
-            self.robot("hydraulics off: the arm sinks to its shot pin");
-        }
-        self.before_jump = None;
-        self.arm.set_pressure(false);
-        self.aligned = [false; 6];
-        self.aligning = [false; 6];
-        self.end_program(stage);
-    }
-
     fn end_program(&mut self, stage: Stage) {
         self.depc = Controller::new(self.limits);
         self.keys = ControllerInputs { hold: self.keys.hold, ..ControllerInputs::default() };
         self.enter(stage);
-    }
-
-    fn control_power(&mut self, on: bool) -> Result<(), Refusal> {
-        match (on, self.stage) {
-            (true, Stage::Dark) => {
-                self.enter(Stage::Faulted);
-                self.lamp("control power on, FAULT RESET on");
-                Ok(())
-            }
-            (true, _) => Err(Refusal::PowerIsOn),
-            (false, _) => {
-                self.cut(Stage::Dark);
-                self.lamp("control power off");
-                Ok(())
-            }
-        }
-    }
-
-    fn fault_reset(&mut self) -> Result<(), Refusal> {
-        if self.stage != Stage::Faulted {
-            return Err(Refusal::NoFault);
-        }
-        self.enter(Stage::Ready);
-        self.lamp("FAULT RESET off");
-        Ok(())
-    }
-
-    fn hydraulics(&mut self, enable: bool) -> Result<(), Refusal> {
-        match (enable, self.stage) {
-            (true, Stage::Faulted) => Err(Refusal::Fault),
-            (true, Stage::Ready) => {
-                self.enter(Stage::Enabled);
-                self.lamp("HYD ENABLED on, red warning lights on the robot on");
-                Ok(())
-            }
-            (true, _) | (false, Stage::Ready | Stage::Faulted) => Err(Refusal::KeyIsThere),
-            (false, _) => {
-                self.cut(Stage::Ready);
-                self.lamp("HYD ENABLED off, red warning lights on the robot off");
-                Ok(())
-            }
-        }
-    }
-
-    fn manual(&mut self, on: bool) -> Result<(), Refusal> {
-        match (on, self.stage) {
-            (true, Stage::Faulted) => Err(Refusal::Fault),
-            (true, Stage::Ready) => Err(Refusal::NotEnabled),
-            (true, Stage::Enabled) => {
-                self.enter(Stage::Rising);
-                self.robot("hydraulics on: the arm will jump");
-                Ok(())
-            }
-            (true, _) => Err(Refusal::PressureIsOn),
-            (false, stage) if stage.is_live() => {
-                self.cut(Stage::Enabled);
-                Ok(())
-            }
-            (false, _) => Err(Refusal::NoPressure),
-        }
-    }
-
-    fn align(&mut self, axis: Option<u8>) -> Result<(), Refusal> {
-        match self.stage {
-            Stage::Manual => {}
-            Stage::Rising => return Err(Refusal::Moving),
-            stage if stage.is_live() => return Err(Refusal::NotManual),
-            _ => return Err(Refusal::NoPressure),
-        }
-        if !self.arm.settled() {
-            return Err(Refusal::Moving);
-        }
-        let arrows = off_home(&mut self.noise, BY_EYE);
-        let mut goal = *self.arm.command();
-        for (number, (joint, arrow)) in (1..).zip(goal.iter_mut().zip(arrows)) {
-            let chosen = axis.is_none_or(|axis| axis == number);
-            if chosen {
-                *joint = arrow;
-            }
-            self.aligning[usize::from(number) - 1] = chosen;
-        }
-        self.travel(goal);
-        Ok(())
-    }
-
-    fn auto(&mut self) -> Result<(), Refusal> {
-        match self.stage {
-            Stage::Manual if !self.arm.settled() => Err(Refusal::Moving),
-            Stage::Manual if self.aligned != [true; 6] => Err(Refusal::NotAligned),
-            Stage::Manual | Stage::PreManual | Stage::Auto => {
-                self.go_home();
-                Ok(())
-            }
-            Stage::Rising | Stage::Homing => Err(Refusal::Moving),
-            Stage::Rehearsing => Err(Refusal::Running),
-            Stage::Depc => Err(self.why_not_auto()),
-            _ => Err(Refusal::NoPressure),
-        }
-    }
-
-    fn why_not_auto(&self) -> Refusal {
-        match self.depc.state() {
-            ControllerState::Warning => Refusal::Warned,
-            ControllerState::PreManual => Refusal::OnlyCancel,
-            _ => Refusal::Running,
-        }
     }
 
     fn go_home(&mut self) {
@@ -439,50 +227,6 @@ impl T3 {
         let ways = goal.iter().zip(self.arm.command()).map(|(goal, at)| (goal - at).abs());
         let longest = ways.fold(0.0, f64::max);
         self.arm.reach(goal, longest / OWN_SPEED.to_radians());
-    }
-
-    fn cycle_start(&mut self) -> Result<(), Refusal> {
-        match self.stage {
-            Stage::Auto => {
-                self.enter(Stage::Rehearsing);
-                self.motions = 0;
-                self.robot("two short vertical motions");
-                Ok(())
-            }
-            Stage::Homing => Err(Refusal::Moving),
-            Stage::Rehearsing => Err(Refusal::Running),
-            Stage::Depc => Err(self.why_not_auto()),
-            _ => Err(Refusal::NotAuto),
-        }
-    }
-
-    fn interrupt(&mut self) -> Result<(), Refusal> {
-        match self.stage {
-            Stage::Depc => {
-                // Step 12 presses it while a warning stands: it changes nothing then.
-                self.keys.interrupt = true;
-                Ok(())
-            }
-            Stage::Homing | Stage::Rehearsing => {
-                self.arm.stop();
-                self.enter(Stage::PreManual);
-                self.robot("interrupted");
-                Ok(())
-            }
-            _ => Err(Refusal::NotRunning),
-        }
-    }
-
-    fn answer(&mut self, cancel: bool) -> Result<(), Refusal> {
-        match (self.stage, self.depc.state()) {
-            (Stage::Depc, ControllerState::PreManual) if !cancel => Err(Refusal::OnlyCancel),
-            (Stage::Depc, ControllerState::Warning | ControllerState::PreManual) => {
-                self.keys.cancel = cancel;
-                self.keys.enter = !cancel;
-                Ok(())
-            }
-            _ => Err(Refusal::NothingToAnswer),
-        }
     }
 
     /// The pump runs; then the servos have pressure and jump to their command.
@@ -540,7 +284,7 @@ impl T3 {
         self.keys = ControllerInputs { hold: self.keys.hold, ..ControllerInputs::default() };
         if out.moving {
             self.counts.moves += 1;
-            self.arm.reach(self.set_point.joints, f64::from(self.limits.period_ms()) / 1000.0);
+            self.arm.reach(self.set_point.joints, f64::from(self.limits.period_us()) / 1e6);
         }
         if out.function != NO_FUNCTION {
             self.messages.push(Message::Function(out.function));

@@ -1,0 +1,201 @@
+//! What the keys of the console do, and why not.
+
+use depc::controller::ControllerState;
+
+use super::{BY_EYE, Machine, Stage, off_home};
+use crate::{console::Key, refusal::Refusal};
+
+impl Machine {
+    /// A key is pressed.
+    ///
+    /// # Errors
+    /// [`Refusal`]: what must be done first; then nothing has changed.
+    pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
+        if self.stage == Stage::Dark && key != Key::ControlPower(true) {
+            return Err(Refusal::NoPower);
+        }
+        match key {
+            Key::ControlPower(on) => self.control_power(on),
+            Key::FaultReset => self.fault_reset(),
+            Key::Hydraulics(on) => self.hydraulics(on),
+            Key::Manual(on) => self.manual(on),
+            Key::Align(axis) => self.align(axis),
+            Key::Auto => self.auto(),
+            Key::CycleStart => self.cycle_start(),
+            Key::Interrupt => self.interrupt(),
+            Key::Cancel => self.answer(true),
+            Key::Enter => self.answer(false),
+            Key::Hold(on) => {
+                self.keys.hold = on;
+                Ok(())
+            }
+            Key::Estop => {
+                self.cut(Stage::Faulted);
+                self.lamp("FAULT RESET on, HYD ENABLED off");
+                Ok(())
+            }
+        }
+    }
+
+    /// Pressure goes, and with it whatever runs and what is known of the axes.
+    fn cut(&mut self, stage: Stage) {
+        if self.stage.is_live() {
+            self.robot("hydraulics off: the arm sinks to its shot pin");
+        }
+        self.before_jump = None;
+        self.arm.set_pressure(false);
+        self.aligned = [false; 6];
+        self.aligning = [false; 6];
+        self.end_program(stage);
+    }
+
+    fn control_power(&mut self, on: bool) -> Result<(), Refusal> {
+        match (on, self.stage) {
+            (true, Stage::Dark) => {
+                self.enter(Stage::Faulted);
+                self.lamp("control power on, FAULT RESET on");
+                Ok(())
+            }
+            (true, _) => Err(Refusal::PowerIsOn),
+            (false, _) => {
+                self.cut(Stage::Dark);
+                self.lamp("control power off");
+                Ok(())
+            }
+        }
+    }
+
+    fn fault_reset(&mut self) -> Result<(), Refusal> {
+        if self.stage != Stage::Faulted {
+            return Err(Refusal::NoFault);
+        }
+        self.enter(Stage::Ready);
+        self.lamp("FAULT RESET off");
+        Ok(())
+    }
+
+    fn hydraulics(&mut self, enable: bool) -> Result<(), Refusal> {
+        match (enable, self.stage) {
+            (true, Stage::Faulted) => Err(Refusal::Fault),
+            (true, Stage::Ready) => {
+                self.enter(Stage::Enabled);
+                self.lamp("HYD ENABLED on, red warning lights on the robot on");
+                Ok(())
+            }
+            (true, _) | (false, Stage::Ready | Stage::Faulted) => Err(Refusal::KeyIsThere),
+            (false, _) => {
+                self.cut(Stage::Ready);
+                self.lamp("HYD ENABLED off, red warning lights on the robot off");
+                Ok(())
+            }
+        }
+    }
+
+    fn manual(&mut self, on: bool) -> Result<(), Refusal> {
+        match (on, self.stage) {
+            (true, Stage::Faulted) => Err(Refusal::Fault),
+            (true, Stage::Ready) => Err(Refusal::NotEnabled),
+            (true, Stage::Enabled) => {
+                self.enter(Stage::Rising);
+                self.robot("hydraulics on: the arm will jump");
+                Ok(())
+            }
+            (true, _) => Err(Refusal::PressureIsOn),
+            (false, stage) if stage.is_live() => {
+                self.cut(Stage::Enabled);
+                Ok(())
+            }
+            (false, _) => Err(Refusal::NoPressure),
+        }
+    }
+
+    fn align(&mut self, axis: Option<u8>) -> Result<(), Refusal> {
+        match self.stage {
+            Stage::Manual => {}
+            Stage::Rising => return Err(Refusal::Moving),
+            stage if stage.is_live() => return Err(Refusal::NotManual),
+            _ => return Err(Refusal::NoPressure),
+        }
+        if !self.arm.settled() {
+            return Err(Refusal::Moving);
+        }
+        let arrows = off_home(&mut self.noise, BY_EYE);
+        let mut goal = *self.arm.command();
+        for (number, (joint, arrow)) in (1..).zip(goal.iter_mut().zip(arrows)) {
+            let chosen = axis.is_none_or(|axis| axis == number);
+            if chosen {
+                *joint = arrow;
+            }
+            self.aligning[usize::from(number) - 1] = chosen;
+        }
+        self.travel(goal);
+        Ok(())
+    }
+
+    fn auto(&mut self) -> Result<(), Refusal> {
+        match self.stage {
+            Stage::Manual if !self.arm.settled() => Err(Refusal::Moving),
+            Stage::Manual if self.aligned != [true; 6] => Err(Refusal::NotAligned),
+            Stage::Manual | Stage::PreManual | Stage::Auto => {
+                self.go_home();
+                Ok(())
+            }
+            Stage::Rising | Stage::Homing => Err(Refusal::Moving),
+            Stage::Rehearsing => Err(Refusal::Running),
+            Stage::Depc => Err(self.why_not_auto()),
+            _ => Err(Refusal::NoPressure),
+        }
+    }
+
+    fn why_not_auto(&self) -> Refusal {
+        match self.depc.state() {
+            ControllerState::Warning => Refusal::Warned,
+            ControllerState::PreManual => Refusal::OnlyCancel,
+            _ => Refusal::Running,
+        }
+    }
+
+    fn cycle_start(&mut self) -> Result<(), Refusal> {
+        match self.stage {
+            Stage::Auto => {
+                self.enter(Stage::Rehearsing);
+                self.motions = 0;
+                self.robot("two short vertical motions");
+                Ok(())
+            }
+            Stage::Homing => Err(Refusal::Moving),
+            Stage::Rehearsing => Err(Refusal::Running),
+            Stage::Depc => Err(self.why_not_auto()),
+            _ => Err(Refusal::NotAuto),
+        }
+    }
+
+    fn interrupt(&mut self) -> Result<(), Refusal> {
+        match self.stage {
+            Stage::Depc => {
+                // Step 12 presses it while a warning stands: it changes nothing then.
+                self.keys.interrupt = true;
+                Ok(())
+            }
+            Stage::Homing | Stage::Rehearsing => {
+                self.arm.stop();
+                self.enter(Stage::PreManual);
+                self.robot("interrupted");
+                Ok(())
+            }
+            _ => Err(Refusal::NotRunning),
+        }
+    }
+
+    fn answer(&mut self, cancel: bool) -> Result<(), Refusal> {
+        match (self.stage, self.depc.state()) {
+            (Stage::Depc, ControllerState::PreManual) if !cancel => Err(Refusal::OnlyCancel),
+            (Stage::Depc, ControllerState::Warning | ControllerState::PreManual) => {
+                self.keys.cancel = cancel;
+                self.keys.enter = !cancel;
+                Ok(())
+            }
+            _ => Err(Refusal::NothingToAnswer),
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! The steps of the start-up.
+
+/// How far the start-up has come.
+///
+/// ```text
+///   Dark
+///    │ power on
+///    ▼            fault reset          key at ENABLE            manual on
+///   Faulted ───────────────────► Ready ─────────────► Enabled ─────────────► Rising
+///    ▲                                                   ▲                     │ first jump
+///    │ E-stop (any)                                      │ manual off (any)    ▼
+///    └── ...                                             └── ...             Manual: align 1 to 6
+///                                                                              │ auto
+///                 two motions            cycle start            second jump    ▼
+///   Depc ◄────────────────── Rehearsing ◄───────────── Auto ◄──────────────── Homing
+///    │ │                         │ interrupt                                   ▲ ▲
+///    │ └─ 18 ────────────────────┼─────────────────────────────────────────────┘ │
+///    │ CANCEL, CANCEL            ▼                                               │ auto
+///    └─────────────────────► PreManual ──────────────────────────────────────────┘
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Control power is off.
+    Dark,
+    /// FAULT RESET is lit.
+    Faulted,
+    /// No fault, the keyswitch is not at ENABLE.
+    Ready,
+    /// The keyswitch is at ENABLE, the hydraulics are off.
+    Enabled,
+    /// The pump starts; pressure comes after a short delay.
+    Rising,
+    /// Hydraulics on; the axes can be aligned.
+    Manual,
+    /// On the way to HOME after AUTO, or after the program's end.
+    Homing,
+    /// Auto mode, at HOME.
+    Auto,
+    /// The program's two vertical motions.
+    Rehearsing,
+    /// The program is in the DEPC function, see [`super::Machine::depc`].
+    Depc,
+    /// Pre-manual mode: the program was ended, the axes are still aligned.
+    PreManual,
+}
+
+impl Stage {
+    /// For people.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Dark => "control power off",
+            Self::Faulted => "fault",
+            Self::Ready => "hydraulics disabled",
+            Self::Enabled => "hydraulics enabled",
+            Self::Rising => "hydraulics starting",
+            Self::Manual => "manual",
+            Self::Homing => "moving to HOME",
+            Self::Auto => "auto, at HOME",
+            Self::Rehearsing => "vertical motions",
+            Self::Depc => "DEPC",
+            Self::PreManual => "pre-manual",
+        }
+    }
+
+    /// The hydraulics have, or are about to have, pressure.
+    #[must_use]
+    pub const fn is_live(self) -> bool {
+        !matches!(self, Self::Dark | Self::Faulted | Self::Ready | Self::Enabled)
+    }
+}
