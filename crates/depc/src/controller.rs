@@ -411,4 +411,65 @@ mod tests {
         controller.step(&ControllerInputs { start: true, board: false, ..well() }, &mut robot);
         assert_eq!(controller.warning(), Warning::BoardMissing);
     }
+
+    #[test]
+    fn the_next_command_is_taken_while_the_robot_moves() {
+        let (mut controller, mut robot) = running();
+        for n in 1..=20_i16 {
+            let words = [n, -6293, -636, -9000, 13500, 0];
+            let out = controller.step(&to(words, n.to_be_bytes()), &mut robot);
+            assert_eq!((out.tx.as_slice(), out.moving), (&[0x06][..], true));
+            // The function of the command before, now that its position is reached.
+            assert_eq!(out.function, (n - 1).to_be_bytes());
+        }
+    }
+
+    #[test]
+    fn the_limits_are_those_of_the_configured_period() {
+        for (limits, last) in [(Limits::APPENDIX, 27), (Limits::NBS, 56), (Limits::new(100).unwrap(), 140)] {
+            let mut controller = Controller::new(limits);
+            let mut robot = Exact { joints: HOME_JOINTS, at: HOME };
+            controller.step(&ControllerInputs { start: true, ..well() }, &mut robot);
+            controller.step(&to([last, -6293, -636, -9000, 13500, 0], NO_FUNCTION), &mut robot);
+            assert_eq!((controller.warning(), robot.at.words[0]), (Warning::None, last));
+            controller.step(&to([2 * last + 1, -6293, -636, -9000, 13500, 0], NO_FUNCTION), &mut robot);
+            assert_eq!((controller.warning(), robot.at.words[0]), (Warning::Translation, last));
+        }
+    }
+
+    #[test]
+    fn a_hold_completes_what_is_begun_and_keeps_the_next() {
+        let (mut controller, mut robot) = running();
+        controller.step(&to([10, -6293, -636, -9000, 13500, 0], [1, 2]), &mut robot);
+        let mut held = to([20, -6293, -636, -9000, 13500, 0], NO_FUNCTION);
+        held.hold = true;
+        let out = controller.step(&held, &mut robot);
+        assert_eq!((out.function, out.moving, out.tx.length, robot.at.words[0]), ([1, 2], false, 0, 10));
+        let out = controller.step(&well(), &mut robot);
+        assert_eq!((out.moving, out.tx.as_slice(), robot.at.words[0]), (true, &[0x06][..], 20));
+    }
+
+    #[test]
+    fn an_interrupt_during_a_command_leaves_the_robot_where_it_was() {
+        let (mut controller, mut robot) = running();
+        let mut inputs = to([10, -6293, -636, -9000, 13500, 0], NO_FUNCTION);
+        inputs.interrupt = true;
+        let out = controller.step(&inputs, &mut robot);
+        assert_eq!((out.tx.length, out.moving, robot.at), (0, false, HOME));
+        assert_eq!(controller.warning(), Warning::Interrupt);
+        // What was interrupted is not executed after ENTER.
+        let out = controller.step(&ControllerInputs { enter: true, ..well() }, &mut robot);
+        assert_eq!((out.tx.length, out.moving), (16, false));
+        let out = controller.step(&well(), &mut robot);
+        assert_eq!((out.tx.length, out.moving, robot.at), (0, false, HOME));
+    }
+
+    #[test]
+    fn after_a_cancel_of_the_host_the_program_can_come_to_the_function_again() {
+        let (mut controller, mut robot) = running();
+        controller.step(&line(&[0x18]), &mut robot);
+        assert_eq!(controller.step(&line(&[0x05]), &mut robot).tx.length, 0);
+        let out = controller.step(&ControllerInputs { start: true, ..well() }, &mut robot);
+        assert_eq!((out.tx.length, out.dtr, controller.state()), (16, true, ControllerState::Running));
+    }
 }

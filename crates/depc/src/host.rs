@@ -23,6 +23,8 @@ use crate::{
 /// Ticks without an answer after which a frame counts as lost (DESIGN 16). Hold on the controller's panel only delays, and
 /// looks the same.
 pub const ANSWER_TICKS: u16 = 3;
+/// Bytes of a tick in which an answer is believed; the rest may be noise.
+const ANSWER_BYTES: usize = 4;
 /// Repetitions of one data command after NAKs; then the link is restarted.
 pub const MOST_RETRIES: u8 = 3;
 /// Unanswered attempts to start after which the link counts as not responding.
@@ -37,7 +39,7 @@ coded_enum! {
     ///    ▲               ▲  └─ 05 ─┘        ▲         ACK           │  ▲  │
     ///    │ DTR off       │ no answer,       └───────────────────────┤  └──┘
     ///   (any)            └──────────────────────────────────────────┘
-    ///                      unasked report            18: Cancelling ──ACK──► Ended
+    ///                      unasked report            18: Cancelling ──ACK or DTR off──► Ended
     /// ```
     pub enum HostState {
         /// The controller's DTR is off: the DEPC function does not run.
@@ -50,7 +52,7 @@ coded_enum! {
         Waiting = "waiting",
         /// A cancel is outstanding.
         Cancelling = "cancelling",
-        /// The function was cancelled.
+        /// The function was cancelled. A report, when the program comes to the function again, begins anew.
         Ended = "ended",
     }
 }
@@ -98,6 +100,12 @@ record! {
         answer_ticks: u16,
         retries: u8,
         attempts: u8,
+        /// Reports that are on their way, as far as this end can know: restarts sent since the last start, and a report that
+        /// comes unasked.
+        asked: u8,
+        /// A report that may not be the last: more than one was asked for.
+        candidate: Plate,
+        has_candidate: bool,
         fault: LinkFault,
         lost_function: [u8; 2],
         counters: LinkCounters,
@@ -178,6 +186,8 @@ impl Host {
         if self.state == HostState::Down {
             self.state = HostState::Starting;
             self.waited = 0;
+            // The controller reports of its own accord when its function begins.
+            self.asked = 1;
         }
         let bytes = rx.as_slice();
         if bytes.is_empty() {
@@ -185,10 +195,13 @@ impl Host {
         }
         let mut event = HostEvent::None;
         let mut behind = bytes.len();
+        let few = bytes.len() <= ANSWER_BYTES;
         for byte in bytes {
             behind = behind.saturating_sub(1);
-            if let Some(reply) = self.receiver.push(*byte) {
-                event = event.max(self.take(reply, behind == 0));
+            match self.receiver.push(*byte) {
+                Some(Reply::Response(_)) if !few => {}
+                Some(reply) => event = event.max(self.take(reply, behind == 0)),
+                None => {}
             }
         }
         if self.waited >= self.answer_ticks { event.max(self.without_answer()) } else { event }
@@ -210,6 +223,7 @@ impl Host {
         if self.restart_due {
             self.restart_due = false;
             count(&mut self.counters.restarts);
+            self.asked = self.asked.saturating_add(1);
             self.send(&[Control::Restart.byte()], tx);
             return *intent == Intent::Restart;
         }
@@ -254,7 +268,8 @@ impl Host {
     /// an answer, no answer comes.
     ///
     /// A report is believed only if it is the `last` of its tick: nothing is sent behind it, and the checksum does not tell
-    /// a report that has lost an FF in it from one that is closed by the first FF of the next.
+    /// a report that has lost an FF in it from one that is closed by the first FF of the next. An answer is
+    /// believed only in a tick of few bytes: it has no checksum at all, and may be a byte of a broken report.
     fn take(&mut self, reply: Reply, last: bool) -> HostEvent {
         if reply == Reply::BadChecksum {
             count(&mut self.counters.checksum_errors);
@@ -263,13 +278,15 @@ impl Host {
             count(&mut self.counters.naks);
         }
         match (self.state, reply) {
-            (HostState::Starting, Reply::Report(plate))
+            (HostState::Starting | HostState::Ended, Reply::Report(plate))
                 if last && !self.restart_due && plate.is_canonical() =>
             {
-                self.position = plate;
-                self.state = HostState::Ready;
-                self.attempts = 0;
-                HostEvent::Started
+                if self.asked <= 1 {
+                    return self.start(plate);
+                }
+                (self.candidate, self.has_candidate) = (plate, true);
+                self.waited = 0;
+                HostEvent::None
             }
             (HostState::Waiting, Reply::Response(Response::Ack)) => {
                 if let Ok(command) = DataCommand::parse(&self.frame) {
@@ -282,6 +299,7 @@ impl Host {
             }
             (HostState::Waiting, Reply::Response(Response::Nak)) => self.refused(),
             (HostState::Cancelling, Reply::Response(Response::Ack)) => {
+                self.resend_due = false;
                 self.state = HostState::Ended;
                 HostEvent::None
             }
@@ -290,10 +308,17 @@ impl Host {
                 HostEvent::None
             }
             // Nobody asked for it: the controller has stopped with a warning and begun again (A 2.4).
-            (HostState::Ready | HostState::Waiting, Reply::Report(_)) => self.lost(LinkFault::DepcError),
+            // Or the line is slow, and the report is not the only one.
+            (HostState::Ready | HostState::Waiting, Reply::Report(_)) => {
+                self.asked = 1;
+                self.lost(LinkFault::DepcError)
+            }
             (HostState::Ready | HostState::Waiting, Reply::BadChecksum) => self.lost(LinkFault::Checksum),
             (HostState::Starting, Reply::BadChecksum) => {
+                // This was one of the reports that were on their way.
+                self.asked = self.asked.saturating_sub(1);
                 self.restart_due = true;
+                self.has_candidate = false;
                 self.attempt_failed(LinkFault::Checksum);
                 HostEvent::None
             }
@@ -301,8 +326,19 @@ impl Host {
         }
     }
 
+    /// Go on from a reported position.
+    fn start(&mut self, plate: Plate) -> HostEvent {
+        self.position = plate;
+        self.state = HostState::Ready;
+        (self.attempts, self.asked, self.has_candidate) = (0, 0, false);
+        HostEvent::Started
+    }
+
+    /// A NAK. One that comes later than in the next tick may be the answer to noise behind a command whose ACK was lost: to
+    /// repeat the position does no harm then, to repeat a function would.
     fn refused(&mut self) -> HostEvent {
-        if self.retries >= MOST_RETRIES {
+        let ambiguous = self.waited > 1 && self.function() != NO_FUNCTION;
+        if self.retries >= MOST_RETRIES || ambiguous {
             return self.lost(LinkFault::NotTransmitted);
         }
         self.retries = self.retries.saturating_add(1);
@@ -316,6 +352,15 @@ impl Host {
             HostState::Waiting => {
                 count(&mut self.counters.timeouts);
                 self.lost(LinkFault::NotResponding)
+            }
+            // On a slow line the reports to all restarts come one by one, and the first would be out of date by the time the
+            // last is here: only one that stays the last for longer than the time between two restarts is believed.
+            HostState::Starting if self.has_candidate => {
+                if self.waited > self.answer_ticks {
+                    self.start(self.candidate)
+                } else {
+                    HostEvent::None
+                }
             }
             HostState::Starting => {
                 count(&mut self.counters.timeouts);
@@ -333,17 +378,25 @@ impl Host {
     }
 
     fn without_dtr(&mut self) -> HostEvent {
+        if matches!(self.state, HostState::Cancelling | HostState::Ended) {
+            // What was asked for; the ACK, which comes with it, is not waited for.
+            self.receiver.clear();
+            self.state = HostState::Ended;
+            self.resend_due = false;
+            return HostEvent::None;
+        }
         let was_running = self.is_running();
         if was_running {
             self.note_lost_function();
             self.blame(LinkFault::NotResponding);
-        } else if self.waited >= self.answer_ticks {
+        } else if self.state == HostState::Starting || self.waited >= self.answer_ticks {
             self.waited = 0;
             self.attempt_failed(LinkFault::NotResponding);
         }
         self.receiver.clear();
         self.state = HostState::Down;
-        (self.restart_due, self.resend_due) = (false, false);
+        (self.restart_due, self.resend_due, self.has_candidate) = (false, false, false);
+        self.asked = 0;
         if was_running { HostEvent::Lost } else { HostEvent::None }
     }
 
@@ -360,17 +413,20 @@ impl Host {
         if self.state != HostState::Down {
             self.receiver.clear();
             self.state = HostState::Starting;
+            self.has_candidate = false;
             self.restart_due = true;
         }
     }
 
     fn note_lost_function(&mut self) {
-        if self.state == HostState::Waiting
-            && let Ok(command) = DataCommand::parse(&self.frame)
-            && command.function != NO_FUNCTION
-        {
-            self.lost_function = command.function;
+        if self.state == HostState::Waiting && self.function() != NO_FUNCTION {
+            self.lost_function = self.function();
         }
+    }
+
+    /// Function bytes of the last data command.
+    fn function(&self) -> [u8; 2] {
+        DataCommand::parse(&self.frame).map_or(NO_FUNCTION, |command| command.function)
     }
 
     fn attempt_failed(&mut self, fault: LinkFault) {

@@ -34,6 +34,9 @@
     )
 )]
 
+#[cfg(feature = "plan")]
+extern crate std;
+
 pub mod controller;
 pub mod error;
 pub mod fault;

@@ -10,16 +10,20 @@ use rcs_core::record;
 
 use crate::{Error, Plate, plate::angle_between};
 
-/// Translation limit: 1.4 counts of 0.01 in a millisecond, here in tenths of a count.
-const TRANSLATION_TENTHS_PER_MS: u64 = 14;
-/// Orientation limit: 1 rad/s = 5.72957795 counts of 0.01 degree a millisecond, here in hundred-millionths of a count.
-const ORIENTATION_PER_MS: u64 = 572_957_795;
+/// Translation limit: 14 in/s = 0.0014 counts of 0.01 in a microsecond, here in ten-thousandths of a count.
+const TRANSLATION_PER_US: u64 = 14;
+/// Ten-thousandths of a count, squared.
+const TRANSLATION_UNIT_SQUARED: u64 = 10_000 * 10_000;
+/// Orientation limit: 1 rad/s = 0.00572957795 counts of 0.01 degree a microsecond, here in 1e-11 of a count.
+const ORIENTATION_PER_US: u64 = 572_957_795;
+/// 1e11.
+const ORIENTATION_UNIT: u64 = 100_000_000_000;
 
 record! {
     /// The limits for one period of the link.
     pub struct Limits {
-        /// Time that a data command is given to be reached, milliseconds.
-        period_ms: u16,
+        /// Time that a data command is given to be reached, microseconds.
+        period_us: u32,
     }
 }
 
@@ -43,7 +47,10 @@ impl fmt::Display for Exceeded {
 
 impl Limits {
     /// The period that NBS configured (VI.1): 40 ms; 0.56 in and 2.29 degrees.
-    pub const NBS: Self = Self { period_ms: 40 };
+    pub const NBS: Self = Self { period_us: 40_000 };
+
+    /// The period of the appendix (A 2.3): 19.76 ms; 0.27 in and 1.13 degrees.
+    pub const APPENDIX: Self = Self { period_us: 19_760 };
 
     /// Limits for a period in milliseconds.
     ///
@@ -53,27 +60,34 @@ impl Limits {
         if period_ms == 0 || period_ms > 1000 || !period_ms.is_multiple_of(10) {
             return Err(Error::BadPeriod { milliseconds: period_ms });
         }
-        Ok(Self { period_ms })
+        let [low, high] = period_ms.to_le_bytes();
+        Ok(Self { period_us: u32::from_le_bytes([low, high, 0, 0]).saturating_mul(1000) })
     }
 
-    /// The period, milliseconds.
+    /// The period, microseconds.
     #[must_use]
-    pub const fn period_ms(&self) -> u16 {
-        self.period_ms
+    pub const fn period_us(&self) -> u32 {
+        self.period_us
+    }
+
+    /// The period, milliseconds, rounded up.
+    #[must_use]
+    pub fn period_ms(&self) -> u16 {
+        u16::try_from(self.period_us.div_ceil(1000)).unwrap_or(u16::MAX)
     }
 
     /// The longest way of the end plate in a period, squared, in (0.01 in)².
     #[must_use]
     pub fn translation_squared(&self) -> u64 {
-        let tenths = TRANSLATION_TENTHS_PER_MS.saturating_mul(u64::from(self.period_ms));
-        tenths.saturating_mul(tenths).checked_div(100).unwrap_or_default()
+        let way = TRANSLATION_PER_US.saturating_mul(u64::from(self.period_us));
+        way.saturating_mul(way).checked_div(TRANSLATION_UNIT_SQUARED).unwrap_or_default()
     }
 
     /// The largest change of D, E or R in a period, 0.01 degree.
     #[must_use]
     pub fn orientation(&self) -> i32 {
-        let scaled = ORIENTATION_PER_MS.saturating_mul(u64::from(self.period_ms));
-        i32::try_from(scaled.checked_div(100_000_000).unwrap_or_default()).unwrap_or(i32::MAX)
+        let scaled = ORIENTATION_PER_US.saturating_mul(u64::from(self.period_us));
+        i32::try_from(scaled.checked_div(ORIENTATION_UNIT).unwrap_or_default()).unwrap_or(i32::MAX)
     }
 
     /// Whether the controller accepts a step between two positions.
@@ -117,6 +131,12 @@ mod tests {
         assert_eq!((Limits::NBS.translation_squared(), Limits::NBS.orientation()), (56 * 56, 229));
         let ten = Limits::new(10).unwrap();
         assert_eq!((ten.translation_squared(), ten.orientation()), (14 * 14, 57));
+        let slowest = Limits::new(1000).unwrap();
+        assert_eq!((slowest.translation_squared(), slowest.orientation()), (1400 * 1400, 5729));
+        // 0.27664 in and 1.1321 degrees.
+        assert_eq!((Limits::APPENDIX.translation_squared(), Limits::APPENDIX.orientation()), (765, 113));
+        assert_eq!((Limits::APPENDIX.period_us(), Limits::APPENDIX.period_ms()), (19_760, 20));
+        assert_eq!((ten.period_us(), ten.period_ms()), (10_000, 10));
         for bad in [0, 5, 45, 1010] {
             assert_eq!(Limits::new(bad), Err(Error::BadPeriod { milliseconds: bad }));
         }

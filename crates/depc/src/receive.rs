@@ -179,9 +179,10 @@ impl ReplyReceiver {
             self.length = self.length.saturating_add(1);
         }
         if !self.may_begin(0) {
-            // A third FF leaves the last two standing; anything else ends the search.
+            // A third FF leaves the last two standing; anything else ends the search, and may be an answer behind noise.
             self.resynchronise();
-            return Some(Reply::Garbage);
+            let answer = Response::from_byte(byte).filter(|_| self.length == 0);
+            return Some(answer.map_or(Reply::Garbage, Reply::Response));
         }
         if usize::from(self.length) < FRAME_BYTES {
             return None;
@@ -391,6 +392,16 @@ mod tests {
         assert_eq!(all(&mut receiver, &frame).len(), 1);
         assert_eq!(receiver.push(0x06), Some(Reply::Response(Response::Ack)));
         assert_eq!(receiver.push(0x15), Some(Reply::Response(Response::Nak)));
+    }
+
+    #[test]
+    fn an_answer_is_read_behind_noise_that_could_begin_a_report() {
+        for noise in [&[0xFF][..], &[0xFF, 0xFF], &[0x41]] {
+            let mut receiver = ReplyReceiver::default();
+            let line = [noise, &[0x06]].concat();
+            assert_eq!(all(&mut receiver, &line).last(), Some(&Reply::Response(Response::Ack)), "{noise:?}");
+            assert_eq!(receiver, ReplyReceiver::default());
+        }
     }
 
     #[test]

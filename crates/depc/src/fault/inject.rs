@@ -104,7 +104,8 @@ impl Injector {
             Direction::ToController => &mut self.to_controller,
             Direction::ToHost => &mut self.to_host,
         };
-        let mut work = Work { rules: self.plan.rules(), direction, tick: tick.0, line };
+        let most = if self.plan.most_per_tick == 0 { u8::MAX } else { self.plan.most_per_tick };
+        let mut work = Work { rules: self.plan.rules(), direction, tick: tick.0, line, most, struck: 0 };
         work.send(sent.as_slice());
         (work.arrive(), ready && !work.is_low())
     }
@@ -131,6 +132,10 @@ struct Work<'a> {
     direction: Direction,
     tick: u64,
     line: &'a mut Line,
+    /// Faults allowed in the tick.
+    most: u8,
+    /// Faults so far.
+    struck: u8,
 }
 
 impl Work<'_> {
@@ -147,7 +152,11 @@ impl Work<'_> {
                 struck = Some(*rule);
             }
         }
+        if self.most < u8::MAX && self.struck >= self.most {
+            return None;
+        }
         if struck.is_some() {
+            self.struck = self.struck.saturating_add(1);
             self.line.counts.note(kind);
         }
         struck
@@ -219,8 +228,7 @@ impl Work<'_> {
             return arrived;
         }
         let held = line.bytes.iter().zip(line.due).take(usize::from(line.held));
-        let count =
-            held.take_while(|(byte, due)| *due <= self.tick && arrived.push(**byte)).count();
+        let count = held.take_while(|(byte, due)| *due <= self.tick && arrived.push(**byte)).count();
         if count > 0 {
             line.bytes.rotate_left(count);
             line.due.rotate_left(count);
@@ -343,10 +351,8 @@ mod tests {
         assert_eq!(lengths, [8, 8, 0, 0, 0, 0, 40, 8, 8, 8]);
         assert_eq!(got[6].0, ABC.repeat(5));
         // A stall of given length begins in one tick; more than a tick can hold comes in the next.
-        let lengths: Vec<_> = arrived(Rule::new(FaultKind::Stall).at(1).ticks(8), &[b'Z'; 16])
-            .iter()
-            .map(Vec::len)
-            .collect();
+        let lengths: Vec<_> =
+            arrived(Rule::new(FaultKind::Stall).at(1).ticks(8), &[b'Z'; 16]).iter().map(Vec::len).collect();
         assert_eq!(lengths, [16, 0, 0, 0, 0, 0, 0, 0, 0, 64]);
     }
 
@@ -385,6 +391,18 @@ mod tests {
         assert!((7_600..8_400).contains(&faults), "{faults} of 80,000 bytes at a rate of 0.1");
         assert_eq!(first, run(1).0);
         assert_ne!(first, run(2).0);
+    }
+
+    #[test]
+    fn a_limit_of_one_fault_a_tick_is_kept() {
+        let mut plan = Plan::new(1).most_per_tick(1);
+        plan.add(Rule::new(FaultKind::Drop).rate(500_000)).unwrap();
+        plan.add(Rule::new(FaultKind::Duplicate).rate(500_000)).unwrap();
+        let mut line = Injector::new(&plan);
+        for (bytes, _) in ten(&mut line, ABC) {
+            assert!((7..=9).contains(&bytes.len()), "{bytes:?}");
+        }
+        assert!(line.total().faults() >= 9);
     }
 
     #[test]

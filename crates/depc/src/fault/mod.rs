@@ -196,8 +196,8 @@ impl Rule {
     /// Everything that `other` could act on is lost through this rule.
     fn hides(&self, other: &Self) -> bool {
         let directions = (!other.to_controller || self.to_controller) && (!other.to_host || self.to_host);
-        let ticks = !self.has_window()
-            || other.has_window() && self.from <= other.from && other.until <= self.until;
+        let ticks =
+            !self.has_window() || other.has_window() && self.from <= other.from && other.until <= self.until;
         self.kind == FaultKind::Drop
             && self.chance() == ALWAYS
             && other.kind.needs_bytes()
@@ -241,6 +241,8 @@ record! {
     /// A seed and rules, checked.
     pub struct Plan {
         seed: u64,
+        /// Faults in a tick and direction; 0: as many as come.
+        most_per_tick: u8,
         rules: [Rule; RULES],
         count: u8,
     }
@@ -251,6 +253,14 @@ impl Plan {
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self { seed, ..Self::default() }
+    }
+
+    /// The plan with at most `most` faults in a tick and direction (at least 1). With one, no frame is hit twice in a tick,
+    /// and the checksum sees every fault.
+    #[must_use]
+    pub const fn most_per_tick(mut self, most: u8) -> Self {
+        self.most_per_tick = if most == 0 { 1 } else { most };
+        self
     }
 
     /// What the numbers of the injector depend on.

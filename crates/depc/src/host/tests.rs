@@ -167,3 +167,142 @@ fn a_full_line_is_said_to_be_full() {
     assert!(!host.transmit(&position(NO_FUNCTION), &mut tx));
     assert_eq!((host.fault(), host.state()), (LinkFault::NotTransmitted, HostState::Starting));
 }
+
+#[test]
+fn an_ack_for_nothing_and_the_second_of_two_change_nothing() {
+    let mut host = running();
+    for _ in 0..5 {
+        assert_eq!(tick(&mut host, &[0x06], &Intent::Idle), (HostEvent::None, vec![]));
+    }
+    assert_eq!((host.counters().acknowledged, host.state()), (0, HostState::Ready));
+    tick(&mut host, &[], &position(NO_FUNCTION));
+    assert_eq!(tick(&mut host, &[0x06, 0x06], &Intent::Idle), (HostEvent::Acknowledged, vec![]));
+    assert_eq!(tick(&mut host, &[0x06], &Intent::Idle).0, HostEvent::None);
+    assert_eq!((host.counters().acknowledged, host.fault()), (1, LinkFault::None));
+}
+
+#[test]
+fn a_late_ack_within_the_time_is_one_and_after_it_none() {
+    let mut host = running();
+    tick(&mut host, &[], &position([1, 1]));
+    tick(&mut host, &[], &Intent::Idle);
+    assert_eq!(tick(&mut host, &[0x06], &Intent::Idle).0, HostEvent::Acknowledged);
+    assert_eq!(host.lost_function(), NO_FUNCTION);
+    tick(&mut host, &[], &position([1, 2]));
+    for _ in 0..2 {
+        tick(&mut host, &[], &Intent::Idle);
+    }
+    assert_eq!(tick(&mut host, &[], &Intent::Idle), (HostEvent::Lost, vec![0x05]));
+    assert_eq!(tick(&mut host, &[0x06], &Intent::Idle).0, HostEvent::None);
+    assert_eq!((host.lost_function(), host.counters().acknowledged), ([1, 2], 1));
+}
+
+#[test]
+fn an_ack_among_noise_is_one_and_wins_over_a_nak() {
+    for answer in [&[0x15, 0x06][..], &[0x06, 0x15], &[0x41, 0x06], &[0x06, 0x18]] {
+        let mut host = running();
+        tick(&mut host, &[], &position(NO_FUNCTION));
+        assert_eq!(tick(&mut host, answer, &Intent::Idle), (HostEvent::Acknowledged, vec![]));
+    }
+}
+
+#[test]
+fn a_byte_of_a_broken_report_is_no_answer() {
+    let mut frame = [0; 16];
+    Report { plate: Plate { words: [0x0606, 0x1515, 3, 4, 5, 6] } }.emit(&mut frame);
+    let mut host = running();
+    tick(&mut host, &[], &position(NO_FUNCTION));
+    assert_eq!(tick(&mut host, &frame[1..], &Intent::Idle), (HostEvent::None, vec![]));
+    assert_eq!((host.state(), host.counters().acknowledged), (HostState::Waiting, 0));
+}
+
+#[test]
+fn a_cancel_whose_ack_is_lost_ends_with_dtr_and_the_next_report_begins_anew() {
+    let mut host = running();
+    assert_eq!(tick(&mut host, &[], &Intent::Cancel).1, [0x18]);
+    for _ in 0..20 {
+        assert_eq!(host.receive(&LinkBytes::default(), false), HostEvent::None);
+        let mut tx = LinkBytes::default();
+        assert!(!host.transmit(&position(NO_FUNCTION), &mut tx));
+        assert_eq!((host.state(), host.fault(), tx.length), (HostState::Ended, LinkFault::None, 0));
+    }
+    assert_eq!(tick(&mut host, &report(), &position(NO_FUNCTION)), (HostEvent::Started, HOME_FRAME.to_vec()));
+}
+
+#[test]
+fn of_the_reports_to_several_restarts_the_last_is_believed() {
+    let at = |x| {
+        let mut frame = [0; 16];
+        Report { plate: Plate { words: [x, -6296, -635, -9000, 13495, 0] } }.emit(&mut frame);
+        frame
+    };
+    let mut host = running();
+    tick(&mut host, &[], &Intent::Restart);
+    for _ in 0..6 {
+        tick(&mut host, &[], &Intent::Idle);
+    }
+    assert_eq!(host.counters().restarts, 3);
+    assert_eq!(tick(&mut host, &at(1), &position(NO_FUNCTION)), (HostEvent::None, vec![]));
+    for _ in 0..2 {
+        assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::None, vec![]));
+    }
+    assert_eq!(tick(&mut host, &at(2), &position(NO_FUNCTION)), (HostEvent::None, vec![]));
+    for _ in 0..ANSWER_TICKS {
+        assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::None, vec![]));
+    }
+    assert_eq!(tick(&mut host, &[], &position(NO_FUNCTION)), (HostEvent::Started, HOME_FRAME.to_vec()));
+    assert_eq!((host.position().words[0], host.counters().restarts), (2, 3));
+}
+
+#[test]
+fn a_late_nak_repeats_a_position_but_no_function() {
+    for (function, event, sent) in
+        [(NO_FUNCTION, HostEvent::None, &HOME_FRAME[..]), ([1, 2], HostEvent::Lost, &[0x05])]
+    {
+        let mut host = running();
+        tick(&mut host, &[], &position(function));
+        tick(&mut host, &[], &Intent::Idle);
+        assert_eq!(tick(&mut host, &[0x15], &Intent::Idle), (event, sent.to_vec()));
+        assert_eq!(host.lost_function(), function);
+    }
+    // In the next tick it can only be the answer to the command.
+    let mut host = running();
+    let frame = tick(&mut host, &[], &position([1, 2])).1;
+    assert_eq!(tick(&mut host, &[0x15], &Intent::Idle), (HostEvent::None, frame));
+}
+
+#[test]
+fn a_report_that_comes_late_at_the_start_is_believed_only_if_it_is_the_last() {
+    let mut host = Host::new(ANSWER_TICKS);
+    let mut restarts = 0;
+    for _ in 0..5 {
+        restarts += tick(&mut host, &[], &Intent::Idle).1.len();
+    }
+    assert_eq!(restarts, 1);
+    // The report of the start; the answer to the restart is behind it.
+    assert_eq!(tick(&mut host, &report(), &Intent::Idle), (HostEvent::None, vec![]));
+    tick(&mut host, &[], &Intent::Idle);
+    assert_eq!(tick(&mut host, &report(), &Intent::Idle), (HostEvent::None, vec![]));
+    for _ in 0..ANSWER_TICKS {
+        assert_eq!(tick(&mut host, &[], &Intent::Idle), (HostEvent::None, vec![]));
+    }
+    assert_eq!(tick(&mut host, &[], &Intent::Idle), (HostEvent::Started, vec![]));
+}
+
+#[test]
+fn a_dtr_that_comes_and_goes_is_no_start() {
+    let mut host = Host::new(ANSWER_TICKS);
+    for tick in 0..2 * START_ATTEMPTS {
+        assert_eq!(host.fault(), LinkFault::None, "tick {tick}");
+        host.receive(&LinkBytes::default(), tick % 2 == 0);
+    }
+    assert_eq!(host.fault(), LinkFault::NotResponding);
+}
+
+#[test]
+fn a_cancel_that_is_refused_and_acknowledged_in_one_tick_is_acknowledged() {
+    let mut host = running();
+    assert_eq!(tick(&mut host, &[], &Intent::Cancel).1, [0x18]);
+    assert_eq!(tick(&mut host, &[0x15, 0x06], &Intent::Idle).1, []);
+    assert_eq!(host.state(), HostState::Ended);
+}

@@ -1,0 +1,111 @@
+//! Neither end, nor the line with its faults, allocates: counted over a whole session of good and bad ticks.
+//!
+//! This file holds one test only, because all of it runs on the counting allocator.
+
+use std::{
+    alloc::{GlobalAlloc, Layout, System},
+    cell::Cell,
+};
+
+use depc::{
+    Limits, Plate,
+    controller::{Controller, ControllerInputs, JointProblem, Robot, joints_for},
+    fault::{Direction, FaultKind, Injector, Plan, Rule},
+    host::{ANSWER_TICKS, Host, HostEvent, Intent},
+    step::{Position, step},
+    wire::{DataCommand, NO_FUNCTION},
+};
+use rcs_core::{
+    interface::device::LinkBytes,
+    kinematics::{HOME_JOINTS, Joints, T3},
+    tick::Tick,
+};
+
+struct Counting;
+
+thread_local! {
+    /// Of this thread only: the test harness has one of its own.
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get().wrapping_add(1));
+        // SAFETY: the caller's promise is passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise is passed on.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// A robot that is where it is told to be.
+struct Exact {
+    joints: Joints,
+    at: Plate,
+}
+
+impl Robot for Exact {
+    fn present(&self) -> Plate {
+        self.at
+    }
+
+    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+        self.joints = joints_for(&T3, goal, &self.joints)?;
+        self.at = *goal;
+        Ok(())
+    }
+}
+
+#[test]
+fn nothing_is_allocated() {
+    let home = T3.forward(&HOME_JOINTS);
+    let at = Plate::from_tool(&home, &T3, &Plate::default()).unwrap();
+    let mut plan = Plan::new(1);
+    for kind in FaultKind::ALL {
+        plan.add(Rule::new(*kind).rate(2_000)).unwrap();
+    }
+    let (mut host, mut controller) = (Host::new(ANSWER_TICKS), Controller::new(Limits::NBS));
+    let mut robot = Exact { joints: HOME_JOINTS, at };
+    let mut line = Injector::new(&plan);
+    let (mut rx, mut dtr) = (LinkBytes::default(), false);
+    let mut position = Position::reported(at, &T3);
+    let mut goal = home;
+    let before = ALLOCATIONS.get();
+    for tick in 0..20_000_u32 {
+        if host.receive(&rx, dtr) == HostEvent::Started {
+            position = Position::reported(host.position(), &T3);
+        }
+        goal.position.x = home.position.x + if tick % 80 < 40 { 5.0 } else { -5.0 };
+        position = step(&position, &goal, &T3, &Limits::NBS).unwrap().position;
+        let command = DataCommand { function: NO_FUNCTION, plate: position.plate };
+        let mut tx = LinkBytes::default();
+        host.transmit(&Intent::Position(command), &mut tx);
+        let now = Tick(u64::from(tick));
+        let (to_controller, cts) = line.carry(Direction::ToController, now, &tx, true);
+        let answer = tick % 50 == 0;
+        let inputs = ControllerInputs {
+            rx: to_controller,
+            cts,
+            board: true,
+            start: answer,
+            enter: answer,
+            ..Default::default()
+        };
+        let out = controller.step(&inputs, &mut robot);
+        (rx, dtr) = line.carry(Direction::ToHost, now, &out.tx, out.dtr);
+    }
+    assert_eq!(ALLOCATIONS.get(), before);
+    let (counters, counts) = (host.counters(), line.total());
+    assert!(counters.acknowledged > 2_000 && counters.restarts > 20, "{counters:?}");
+    assert!(FaultKind::ALL.iter().all(|kind| counts.of(*kind) > 10), "{counts:?}");
+    // The counter counts.
+    drop(std::hint::black_box(vec![1_u8]));
+    assert!(ALLOCATIONS.get() > before);
+}

@@ -1,0 +1,30 @@
+//! The example plans of `data/faults` are plans, and the link survives each.
+
+mod session;
+
+use std::{fs, path::Path};
+
+use depc::fault::text;
+use session::Session;
+
+#[test]
+fn the_link_survives_every_example() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/faults");
+    let mut examples = 0;
+    for entry in fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        assert_eq!(path.extension().and_then(|e| e.to_str()), Some("toml"), "{}", path.display());
+        let plan = text::load(&path).unwrap();
+        let mut session = Session::new(1, &plan);
+        for tick in 0..2000 {
+            if tick % 60 == 0 {
+                session.new_goal();
+            }
+            session.tick();
+        }
+        assert!(session.injector.total().faults() > 0, "{}: no fault in 2000 ticks", path.display());
+        session.until_reached(400);
+        examples += 1;
+    }
+    assert!(examples >= 7, "{examples} examples");
+}

@@ -1,0 +1,297 @@
+//! Both ends of the link, the line between them, a robot that watches over its moves, and the truth about every command.
+
+#![allow(dead_code, unreachable_pub, reason = "each test uses a part of it")]
+
+use depc::{
+    Limits, Plate,
+    controller::{Controller, ControllerInputs, ControllerState, JointProblem, Robot, Warning, joints_for},
+    fault::{Direction, Injector, Numbers, Plan},
+    host::{ANSWER_TICKS, Host, HostEvent, Intent},
+    step::{Position, step},
+    wire::{DataCommand, NO_FUNCTION},
+};
+use rcs_core::{
+    frame::{Frame, Vector, rotation_by},
+    interface::{device::LinkBytes, t3i::LinkFault},
+    kinematics::{HOME_JOINTS, Joints, T3},
+    tick::Tick,
+};
+
+/// Ticks after which the operator answers a warning, or starts the program again.
+const OPERATOR_TICKS: u32 = 25;
+/// Ticks in which a controller that has stopped must be reported by the host: the time for an answer, then three attempts
+/// to start.
+const REPORT_TICKS: u32 = 16;
+
+/// A robot that is where it is told to be, and watches over every step.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Watched {
+    joints: Joints,
+    pub at: Plate,
+    pub moves: usize,
+}
+
+impl Robot for Watched {
+    fn present(&self) -> Plate {
+        self.at
+    }
+
+    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+        self.joints = joints_for(&T3, goal, &self.joints)?;
+        let way = goal.to_frame().position - self.at.to_frame().position;
+        assert!(way.norm() < 0.5601, "a jump of {} in", way.norm());
+        for place in 3..6 {
+            let change = (i32::from(goal.words[place]) - i32::from(self.at.words[place])).rem_euclid(36_000);
+            assert!(change.min(36_000 - change) <= 229, "a jump of {change} in word {place}");
+        }
+        self.moves += usize::from(*goal != self.at);
+        self.at = *goal;
+        Ok(())
+    }
+}
+
+/// What was believed against what was true. Everything but `started` stays zero as long as checksums see every fault and no
+/// noise looks like one of the commands and answers that have none.
+#[derive(Clone, Copy, Default, Debug, PartialEq)]
+pub struct Truth {
+    /// Reports believed by the host.
+    pub started: u64,
+    /// Reports believed that were not, or no longer, true.
+    pub false_reports: u64,
+    /// Commands executed, or refused with a warning, that the host had not sent like this.
+    pub false_commands: u64,
+    /// Acknowledgements believed for a command that was not executed, and not refused with a warning either.
+    pub false_acks: u64,
+    /// Commands executed a second time, function and all.
+    pub repeated: u64,
+    /// The controller took noise for a cancel.
+    pub false_cancels: u64,
+    /// Warnings of the velocity limits.
+    pub velocity_warnings: u64,
+    /// Warnings of the controller, all.
+    pub warnings: u64,
+}
+
+impl Truth {
+    /// All that the line has made one end believe.
+    pub fn deceptions(&self) -> u64 {
+        self.false_reports + self.false_commands + self.false_acks + self.repeated + self.false_cancels
+    }
+
+    pub fn add(&mut self, other: &Self) {
+        self.started += other.started;
+        self.false_reports += other.false_reports;
+        self.false_commands += other.false_commands;
+        self.false_acks += other.false_acks;
+        self.repeated += other.repeated;
+        self.false_cancels += other.false_cancels;
+        self.velocity_warnings += other.velocity_warnings;
+        self.warnings += other.warnings;
+    }
+}
+
+/// A session: the host is used as T3I uses it, with a number in the function bytes of each command.
+pub struct Session {
+    pub host: Host,
+    pub controller: Controller,
+    pub robot: Watched,
+    pub injector: Injector,
+    pub truth: Truth,
+    /// Numbers of the commands executed as they were sent.
+    pub executed: Vec<u16>,
+    pub tick: u64,
+    to_host: LinkBytes,
+    dtr: bool,
+    position: Position,
+    goal: Frame,
+    numbers: Numbers,
+    /// Commands sent, number 1 first.
+    sent: Vec<Position>,
+    /// The last command on the line, and what arrived at the controller in the last tick and in this one.
+    frame: LinkBytes,
+    arrived: [LinkBytes; 2],
+    /// Position of the command that the controller has executed in the last tick.
+    moving_to: Option<Plate>,
+    /// Number of the command that was last refused with a warning.
+    refused: Option<u16>,
+    /// Ticks since the host has last believed something; a slow line goes on telling of a controller that has stopped.
+    silent: u32,
+    stopped: u32,
+    answers: u32,
+}
+
+impl Session {
+    pub fn new(seed: u64, plan: &Plan) -> Self {
+        let goal = T3.forward(&HOME_JOINTS);
+        let at = Plate::from_tool(&goal, &T3, &Plate::default()).unwrap();
+        Self {
+            host: Host::new(ANSWER_TICKS),
+            controller: Controller::new(Limits::NBS),
+            robot: Watched { joints: HOME_JOINTS, at, moves: 0 },
+            injector: Injector::new(plan),
+            truth: Truth::default(),
+            executed: Vec::new(),
+            tick: 0,
+            to_host: LinkBytes::default(),
+            dtr: false,
+            position: Position::default(),
+            goal,
+            numbers: Numbers::new(seed, 1),
+            sent: Vec::new(),
+            frame: LinkBytes::default(),
+            arrived: [LinkBytes::default(); 2],
+            moving_to: None,
+            refused: None,
+            silent: 0,
+            stopped: OPERATOR_TICKS,
+            answers: 0,
+        }
+    }
+
+    fn within(&mut self, most: f64) -> f64 {
+        (f64::from(self.numbers.draw()) / f64::from(u32::MAX) * 2.0 - 1.0) * most
+    }
+
+    pub fn new_goal(&mut self) {
+        let home = T3.forward(&HOME_JOINTS);
+        let shift = Vector::new(self.within(6.0), self.within(6.0), self.within(6.0));
+        let turn = Vector::new(self.within(0.3), self.within(0.3), self.within(0.3));
+        self.goal = Frame { position: home.position + shift, rotation: rotation_by(&turn) * home.rotation };
+    }
+
+    /// The robot stands at the goal, to the word.
+    pub fn at_goal(&self) -> bool {
+        self.robot.at.same(&Plate::from_tool(&self.goal, &T3, &self.robot.at).unwrap())
+    }
+
+    /// One tick of host, line and controller; true if the host knows the goal to be reached.
+    pub fn tick(&mut self) -> bool {
+        let acknowledged = self.receive();
+        let next = step(&self.position, &self.goal, &T3, &Limits::NBS).unwrap();
+        let reached = self.host.can_send() && next.reached && next.position.plate == self.position.plate;
+        let number = u16::try_from(self.sent.len() + 1).unwrap();
+        let command = DataCommand { function: number.to_be_bytes(), plate: next.position.plate };
+        let mut tx = LinkBytes::default();
+        if self.host.transmit(&Intent::Position(command), &mut tx) {
+            self.sent.push(next.position);
+            self.frame = tx;
+        }
+        self.control(&tx);
+        if let Some(number) = acknowledged {
+            let executed = self.executed.contains(&number);
+            self.truth.false_acks += u64::from(!executed && self.refused != Some(number));
+        }
+        self.check_that_a_stop_is_reported();
+        self.tick += 1;
+        reached
+    }
+
+    /// The host's first half. The number of the command that is acknowledged.
+    fn receive(&mut self) -> Option<u16> {
+        self.silent += 1;
+        match self.host.receive(&self.to_host, self.dtr) {
+            HostEvent::Acknowledged => {
+                self.silent = 0;
+                self.position = *self.sent.last().unwrap();
+                u16::try_from(self.sent.len()).ok()
+            }
+            HostEvent::Started => {
+                self.silent = 0;
+                self.position = Position::reported(self.host.position(), &T3);
+                self.truth.started += 1;
+                self.truth.false_reports += u64::from(self.position.plate != self.robot.at);
+                self.host.forgive();
+                None
+            }
+            HostEvent::None | HostEvent::Lost => None,
+        }
+    }
+
+    fn control(&mut self, tx: &LinkBytes) {
+        let now = Tick(self.tick);
+        let (rx, cts) = self.injector.carry(Direction::ToController, now, tx, true);
+        self.arrived = [self.arrived[1], rx];
+        let answer = self.stopped >= OPERATOR_TICKS;
+        if answer {
+            (self.stopped, self.answers) = (0, self.answers + 1);
+        }
+        let (before, state) = (self.controller.warning(), self.controller.state());
+        let warned = state == ControllerState::Warning;
+        // Every fourth warning is answered with CANCEL.
+        let give_up = self.answers % 4 == 3;
+        let inputs = ControllerInputs {
+            rx,
+            cts,
+            board: true,
+            start: answer && matches!(state, ControllerState::Off | ControllerState::Ended),
+            enter: answer && warned && !give_up,
+            cancel: answer && (warned && give_up || state == ControllerState::PreManual),
+            ..Default::default()
+        };
+        let out = self.controller.step(&inputs, &mut self.robot);
+        if out.function != NO_FUNCTION {
+            self.note_executed(u16::from_be_bytes(out.function));
+        }
+        let understood = state == ControllerState::Running && out.tx.as_slice() == [0x06];
+        if understood && !out.moving && self.controller.state() == ControllerState::Warning {
+            if self.frame_has_arrived() {
+                self.refused = u16::try_from(self.sent.len()).ok();
+            } else {
+                self.truth.false_commands += 1;
+            }
+        }
+        self.moving_to = out.moving.then(|| self.controller.commanded());
+        let warning = self.controller.warning();
+        if warning != before && warning != Warning::None {
+            self.truth.warnings += 1;
+            self.truth.velocity_warnings +=
+                u64::from(matches!(warning, Warning::Translation | Warning::Orientation));
+        }
+        if state == ControllerState::Running && self.controller.state() == ControllerState::Ended {
+            self.truth.false_cancels += 1;
+        }
+        self.stopped = if self.controller.state() == ControllerState::Running { 0 } else { self.stopped + 1 };
+        (self.to_host, self.dtr) = self.injector.carry(Direction::ToHost, now, &out.tx, out.dtr);
+    }
+
+    fn frame_has_arrived(&self) -> bool {
+        let [before, now] = &self.arrived;
+        let bytes = [before.as_slice(), now.as_slice()].concat();
+        bytes.windows(usize::from(self.frame.length)).any(|bytes| bytes == self.frame.as_slice())
+    }
+
+    /// The function of the command executed in the last tick: which command was it?
+    fn note_executed(&mut self, number: u16) {
+        let sent = usize::from(number).checked_sub(1).and_then(|place| self.sent.get(place));
+        if sent.map(|sent| sent.plate) != self.moving_to {
+            self.truth.false_commands += 1;
+        } else if self.executed.last().is_some_and(|last| *last >= number) {
+            self.truth.repeated += 1;
+        } else {
+            self.executed.push(number);
+        }
+    }
+
+    fn check_that_a_stop_is_reported(&self) {
+        assert!(
+            self.stopped <= REPORT_TICKS
+                || self.silent <= REPORT_TICKS
+                || self.host.fault() != LinkFault::None
+                || self.truth.false_acks > 0,
+            "tick {}: the controller has stopped and the host does not say so: {:?} {:?}",
+            self.tick,
+            self.host,
+            self.controller,
+        );
+    }
+
+    /// Ticks until the goal is reached and held; for a line that is mended.
+    pub fn until_reached(&mut self, most: u32) {
+        for _ in 0..most {
+            if self.tick() && self.at_goal() && self.controller.state() == ControllerState::Running {
+                return;
+            }
+        }
+        panic!("the goal is not reached in {most} ticks: {:?} {:?}", self.host, self.controller);
+    }
+}
