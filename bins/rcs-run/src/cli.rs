@@ -1,6 +1,6 @@
 //! The command line.
 
-use std::{path::PathBuf, str::FromStr};
+use std::{fmt, path::PathBuf, str::FromStr};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use executive::serial::SerialSettings;
@@ -157,6 +157,15 @@ pub enum Robot {
     Sim,
     /// One at a serial port.
     Serial(SerialSettings),
+}
+
+impl fmt::Display for Robot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sim => f.write_str("sim"),
+            Self::Serial(settings) => write!(f, "serial:{}", settings.path.display()),
+        }
+    }
 }
 
 fn robot(text: &str) -> Result<Robot, String> {

@@ -24,7 +24,7 @@ use rcs_core::{interface::device::LinkBytes, tick::TICK_MS};
 
 use self::{
     dump::{Dump, Way},
-    tally::Tally,
+    tally::{Tally, Verdict},
 };
 use crate::{
     cli::{LinkTestArguments, Robot},
@@ -49,10 +49,11 @@ pub fn link_test(arguments: &LinkTestArguments) -> Result<ExitCode, Error> {
             return Ok(ExitCode::from(STOPPED));
         }
     };
+    let modem_lines = line.has_modem_lines();
     let mut test = Test::new(line, Dump::new(arguments.dump, arguments.json));
     let ticks = u64::from(arguments.seconds) * 1000 / TICK_MS;
     test.run(ticks, || interrupted.load(Ordering::Relaxed));
-    let tally = test.finish(settings);
+    let tally = Tally { modem_lines, ..test.finish(settings) };
     if arguments.json {
         serde_json::to_writer(io::stdout().lock(), &tally).map_err(io::Error::from)?;
         println!();
@@ -62,7 +63,7 @@ pub fn link_test(arguments: &LinkTestArguments) -> Result<ExitCode, Error> {
     Ok(match tally.failure() {
         Some(reason) => {
             eprintln!("rcs-run: {reason}");
-            ExitCode::from(if tally.connected { FAILED } else { STOPPED })
+            ExitCode::from(if tally.verdict == Verdict::NoLink { STOPPED } else { FAILED })
         }
         None => ExitCode::SUCCESS,
     })
@@ -94,28 +95,28 @@ impl Test {
     /// Run so many ticks; in the last ones nothing new is sent, so that every frame has had its time.
     fn run(&mut self, ticks: u64, interrupted: impl Fn() -> bool) {
         let quiet = ticks.saturating_sub(u64::from(ANSWER_TICKS) + 1);
-        let mut rx = LinkBytes::default();
+        let (mut rx, mut held) = (LinkBytes::default(), true);
         let mut due = Instant::now();
         for tick in 0..ticks {
-            let ready = self.line.receive(&mut rx);
+            let ready = self.line.receive(&mut rx) && held;
             self.receive(&rx, ready);
             self.transmit(tick < quiet);
             // Late ticks are not made up for: the robot would be asked for more than one command a tick.
             due = (due + PERIOD).max(Instant::now());
-            rx = self.collect(due);
+            (rx, held) = self.collect(due);
             if interrupted() {
                 break;
             }
         }
     }
 
-    /// Take in what arrives until `due`.
-    fn collect(&mut self, due: Instant) -> LinkBytes {
+    /// Take in what arrives until `due`; false if the line was not ready all the time.
+    fn collect(&mut self, due: Instant) -> (LinkBytes, bool) {
         let mut rx = LinkBytes::default();
         loop {
             let left = due.saturating_duration_since(Instant::now());
             if left.is_zero() {
-                return rx;
+                return (rx, true);
             }
             let full = rx.as_slice().len() == rx.bytes.len();
             if full || !self.line.is_there() {
@@ -125,9 +126,9 @@ impl Test {
             self.line.wait(left);
             let before = rx.as_slice().len();
             if !self.line.receive(&mut rx) {
-                // A line that was lost within the tick is reported at its end.
+                // The host learns of it at the end of the tick.
                 std::thread::sleep(due.saturating_duration_since(Instant::now()));
-                return LinkBytes::default();
+                return (LinkBytes::default(), false);
             }
             let now = Instant::now();
             let fresh = rx.as_slice().get(before..).unwrap_or_default();

@@ -277,7 +277,7 @@ fn a_pulled_cable_ends_the_run_with_its_reason() {
     assert_eq!(hands.join().unwrap(), ControllerState::Running);
     assert_eq!(output.status.code(), Some(3), "{result}");
     let words = last_words(&output);
-    assert!(words.contains("T3 Interface") && words.contains("not responding"), "{words}");
+    assert!(words.contains("has disappeared; T3 Interface") && words.contains("not responding"), "{words}");
     assert_eq!(result["port"]["losses"], 1, "{result}");
     assert_eq!(result["allocations_after_start"], 0);
 }

@@ -75,6 +75,8 @@ impl Latency {
 pub struct Tally {
     /// The port.
     pub port: String,
+    /// The port has modem lines: the robot's DTR is watched, and the robot sees ours.
+    pub modem_lines: bool,
     /// The link ran at the end.
     pub connected: bool,
     /// Times that the link began: reports that were accepted.
@@ -120,6 +122,7 @@ impl Tally {
         let share_in_time = if sent == 0 { 0.0 } else { in_time as f64 / f64::from(sent) };
         Self {
             port: settings.path.display().to_string(),
+            modem_lines: false,
             connected,
             starts,
             sent,
@@ -158,7 +161,8 @@ impl Tally {
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "port       {}, lost {} times", self.port, self.port_lost)?;
+        let modem = if self.modem_lines { "with modem lines" } else { "without modem lines" };
+        writeln!(f, "port       {} {modem}, lost {} times", self.port, self.port_lost)?;
         writeln!(
             f,
             "link       {} starts, {} re-start commands, {} checksum errors",

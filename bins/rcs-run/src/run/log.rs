@@ -14,13 +14,13 @@ use record::{
     Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Pace, RecordError, Recorder, Summary,
     Transform,
 };
-use taskdata::load::{
-    Store,
-    job::{Job, Step, Workstation},
-};
+use taskdata::load::job::{Job, Step, Workstation};
 
 use super::setup::Setup;
 use crate::cli::{ClockKind, RunArguments};
+
+/// Name of the fault plan among the attachments.
+const FAULTS: &str = "faults.toml";
 
 /// A log that is being written, with what is needed to draw the cell.
 pub struct Log {
@@ -51,7 +51,7 @@ impl Log {
             joints: joints.collect(),
         };
         let links = model.links.iter().map(|link| link.name.clone()).collect();
-        let attachments = attachments(&setup.store, &setup.job, &setup.description_text);
+        let attachments = attachments(setup);
         let (pace, epoch) = match arguments.clock {
             ClockKind::Fast => (Pace::Wait, Epoch::Fixed),
             ClockKind::Real => (Pace::Drop, Epoch::now()),
@@ -106,15 +106,18 @@ fn delivered(step: &Step) -> Option<&str> {
     }
 }
 
-/// Everything that a replay needs: task data, job, cell description.
-fn attachments(store: &Store, job: &Job, description: &str) -> Vec<Attachment> {
-    let data = store
-        .sources()
-        .iter()
+/// Everything that a replay needs, and everything that makes the run what it was: task data, job, cell
+/// description, fault plan.
+fn attachments(setup: &Setup) -> Vec<Attachment> {
+    let sources = setup.store.sources().iter();
+    let data = sources
         .map(|source| Attachment::text(&format!("{}{}", Attachment::TASK_DATA, source.name), &source.text));
     let mut all: Vec<Attachment> = data.collect();
-    all.push(Attachment::text(Attachment::JOB, &job.source().text));
-    all.push(Attachment::text(Attachment::CELL, description));
+    all.push(Attachment::text(Attachment::JOB, &setup.job.source().text));
+    all.push(Attachment::text(Attachment::CELL, &setup.description_text));
+    if !setup.faults_text.is_empty() {
+        all.push(Attachment::text(FAULTS, &setup.faults_text));
+    }
     all
 }
 
@@ -134,6 +137,7 @@ fn metadata(arguments: &RunArguments, job: &Job, attachments: &[Attachment]) -> 
         ("job", job.name.clone()),
         ("seed", arguments.seed.to_string()),
         ("clock", arguments.clock.text().to_owned()),
+        ("robot", arguments.robot.to_string()),
         ("configuration_digest", configuration.to_string()),
     ];
     entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()

@@ -44,7 +44,7 @@ use self::{
     log::Log,
     progress::Progress,
     result::{CommandResult, FailureResult, FaultsResult, Page, PortResult, RunResult},
-    robot::Robot,
+    robot::{Port, Robot},
     setup::Setup,
     workstation::SimulatedWorkstation,
 };
@@ -227,6 +227,11 @@ impl Run {
             JobFailure::Command(_) => self.runner.watch().failure(processes),
             _ => None,
         };
+        let trouble = self.robot.port().and_then(Port::trouble);
+        let known = known.map(|known| match trouble {
+            Some(trouble) if known.stopped => Failure { text: format!("{trouble}; {}", known.text), ..known },
+            _ => known,
+        });
         known.unwrap_or_else(|| {
             let text = match failure {
                 JobFailure::TimeLimit(_) => {

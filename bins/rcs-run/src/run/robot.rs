@@ -63,6 +63,12 @@ impl Port {
         }
     }
 
+    /// What is wrong with the port, in words; `None` while it is there.
+    #[must_use]
+    pub fn trouble(&self) -> Option<String> {
+        (!self.line.is_there()).then(|| format!("the port {} has disappeared", self.line.path().display()))
+    }
+
     /// What went over the port.
     #[must_use]
     pub const fn counts(&self) -> SerialCounts {

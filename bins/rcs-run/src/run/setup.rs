@@ -36,6 +36,8 @@ pub struct Setup {
     pub description: CellDescription,
     /// The cell.
     pub cell: Cell,
+    /// The fault plan as written; empty without one.
+    pub faults_text: String,
     /// The other end of the line.
     pub robot: Robot,
     /// Where the log goes.
@@ -48,7 +50,7 @@ impl Setup {
     /// # Errors
     /// [`Error`], with all errors of the data.
     pub fn load(arguments: &RunArguments) -> Result<Self, Error> {
-        let plan = plan(arguments)?;
+        let (plan, faults_text) = plan(arguments)?;
         let data = &arguments.data;
         if !data.is_dir() {
             return Err(Error::NoData(data.clone()));
@@ -77,12 +79,12 @@ impl Setup {
             cli::Robot::Sim => Robot::Simulated(plan.map(|plan| Box::new(Injector::new(&plan)))),
             cli::Robot::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
         };
-        Ok(Self { store, job, description_text, description, cell, robot, log })
+        Ok(Self { store, job, description_text, description, cell, faults_text, robot, log })
     }
 }
 
-/// The fault plan, if there is one, and whether the arguments go together.
-fn plan(arguments: &RunArguments) -> Result<Option<Plan>, Error> {
+/// The fault plan, if there is one, with its text, and whether the arguments go together.
+fn plan(arguments: &RunArguments) -> Result<(Option<Plan>, String), Error> {
     if arguments.robot != cli::Robot::Sim {
         if arguments.clock != ClockKind::Real {
             return Err(Error::NotInRealTime);
@@ -91,7 +93,10 @@ fn plan(arguments: &RunArguments) -> Result<Option<Plan>, Error> {
             return Err(Error::FaultsAtPort);
         }
     }
-    Ok(arguments.faults.as_deref().map(text::load).transpose()?)
+    let Some(path) = &arguments.faults else { return Ok((None, String::new())) };
+    let text = fs::read_to_string(path).map_err(|source| Error::Read { path: path.clone(), source })?;
+    let plan = text::parse(&path.display().to_string(), &text)?;
+    Ok((Some(plan), text))
 }
 
 /// Warnings do not keep a run from beginning; one line says that there are some.

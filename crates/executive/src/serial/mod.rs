@@ -22,8 +22,8 @@ mod settings;
 
 use std::{
     fs::File,
-    io::{ErrorKind, Read as _, Write as _},
-    path::PathBuf,
+    io::{self, ErrorKind, Read as _, Write as _},
+    path::{Path, PathBuf},
     sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
     thread,
     time::Duration,
@@ -82,6 +82,7 @@ pub struct SerialCounts {
 /// A serial line that outlives its port.
 #[derive(Debug)]
 pub struct SerialLine {
+    path: PathBuf,
     port: Option<Port>,
     /// The port took a part of a frame only; the line rests for a tick.
     cut: bool,
@@ -104,11 +105,13 @@ impl SerialLine {
         let (dead, to_close) = sync_channel(1);
         let (hand_over, opened) = sync_channel(1);
         let path = settings.path.clone();
+        let unusable =
+            |error: io::Error| OpenError::Unusable { path: path.clone(), reason: error.to_string() };
         thread::Builder::new()
             .name("serial-port".into())
             .spawn(move || keep_open(&settings, &to_close, &hand_over))
-            .map_err(|error| OpenError::Unusable { path, reason: error.to_string() })?;
-        Ok(Self { port: Some(port), cut: false, counts: SerialCounts::default(), dead, opened })
+            .map_err(unusable)?;
+        Ok(Self { path, port: Some(port), cut: false, counts: SerialCounts::default(), dead, opened })
     }
 
     /// Append what has arrived to `rx`, as far as there is room; the rest stays in the port. True if the line
@@ -168,6 +171,12 @@ impl SerialLine {
         };
         // Whatever it says, the next receive finds out.
         let _ = poll(&mut [PollFd::new(&port.bytes, PollFlags::IN)], Some(&limit));
+    }
+
+    /// Device file of the port.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// True while there is a port.
@@ -237,7 +246,7 @@ impl Port {
             Errno::NOENT | Errno::NODEV | Errno::NXIO => OpenError::Missing(path.clone()),
             Errno::ACCESS | Errno::PERM => OpenError::Denied(path.clone()),
             Errno::BUSY => OpenError::Busy(path.clone()),
-            other => unusable(std::io::Error::from(other).to_string()),
+            other => unusable(io::Error::from(other).to_string()),
         })?;
         if !rustix::termios::isatty(&bytes) {
             return Err(unusable("it is no terminal device".into()));
