@@ -24,7 +24,7 @@ use rcs_core::{interface::device::LinkBytes, tick::TICK_MS};
 
 use self::{
     dump::{Dump, Way},
-    tally::{Tally, Verdict},
+    tally::{Observed, Tally, Verdict},
 };
 use crate::{
     cli::{LinkTestArguments, Robot},
@@ -49,11 +49,10 @@ pub fn link_test(arguments: &LinkTestArguments) -> Result<ExitCode, Error> {
             return Ok(ExitCode::from(STOPPED));
         }
     };
-    let modem_lines = line.has_modem_lines();
     let mut test = Test::new(line, Dump::new(arguments.dump, arguments.json));
     let ticks = u64::from(arguments.seconds) * 1000 / TICK_MS;
     test.run(ticks, || interrupted.load(Ordering::Relaxed));
-    let tally = Tally { modem_lines, ..test.finish(settings) };
+    let tally = test.finish(settings);
     if arguments.json {
         serde_json::to_writer(io::stdout().lock(), &tally).map_err(io::Error::from)?;
         println!();
@@ -82,6 +81,7 @@ struct Test {
     host: Host,
     dump: Dump,
     outstanding: Option<Outstanding>,
+    modem_lines: bool,
     starts: u32,
     latencies: Vec<Duration>,
 }
@@ -89,7 +89,8 @@ struct Test {
 impl Test {
     fn new(line: SerialLine, dump: Dump) -> Self {
         let host = Host::new(ANSWER_TICKS);
-        Self { line, host, dump, outstanding: None, starts: 0, latencies: Vec::new() }
+        let modem_lines = line.has_modem_lines();
+        Self { line, host, dump, outstanding: None, modem_lines, starts: 0, latencies: Vec::new() }
     }
 
     /// Run so many ticks; in the last ones nothing new is sent, so that every frame has had its time.
@@ -180,7 +181,12 @@ impl Test {
 
     fn finish(mut self, settings: &SerialSettings) -> Tally {
         self.dump.flush();
-        let (connected, counters) = (self.host.is_running(), self.host.counters());
-        Tally::new(settings, connected, self.starts, counters, self.line.counts(), &mut self.latencies)
+        let observed = Observed {
+            modem_lines: self.modem_lines,
+            connected: self.host.is_running(),
+            starts: self.starts,
+        };
+        let (counters, serial) = (self.host.counters(), self.line.counts());
+        Tally::new(settings, observed, counters, serial, &mut self.latencies)
     }
 }

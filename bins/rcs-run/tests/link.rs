@@ -83,6 +83,11 @@ struct Peer {
 impl Peer {
     /// A controller that answers after `delay`, or never; its port is linked at `link`.
     fn plug(link: &Path, delay: Option<Duration>) -> Self {
+        Self::plug_raised(link, delay, 0)
+    }
+
+    /// The same, with the arm so many hundredths of an inch above HOME.
+    fn plug_raised(link: &Path, delay: Option<Duration>, raised: i16) -> Self {
         // A program that another test starts meanwhile must not inherit it, or it would not hang up.
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
         grantpt(&master).unwrap();
@@ -92,7 +97,7 @@ impl Peer {
         symlink(ptsname(&master, Vec::new()).unwrap().into_string().unwrap(), link).unwrap();
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = Arc::clone(&stop);
-        let thread = thread::spawn(move || control(File::from(master), delay, &stopped));
+        let thread = thread::spawn(move || control(File::from(master), delay, raised, &stopped));
         Self { stop, thread: Some(thread) }
     }
 
@@ -112,9 +117,11 @@ impl Drop for Peer {
     }
 }
 
-fn control(mut master: File, delay: Option<Duration>, stop: &AtomicBool) -> ControllerState {
-    let at = Plate::from_frame(&T3.forward_plate(&HOME_JOINTS), &Plate::default()).unwrap();
+fn control(mut master: File, delay: Option<Duration>, raised: i16, stop: &AtomicBool) -> ControllerState {
+    let mut at = Plate::from_frame(&T3.forward_plate(&HOME_JOINTS), &Plate::default()).unwrap();
+    at.words[2] += raised;
     let mut robot = Exact { joints: HOME_JOINTS, at };
+    robot.move_to(&at).unwrap();
     let mut controller = Controller::new(Limits::NBS);
     let mut inputs = ControllerInputs { cts: true, board: true, start: true, ..Default::default() };
     let mut stepped = Instant::now();
@@ -241,13 +248,14 @@ fn a_port_that_is_unplugged_comes_back() {
         thread::sleep(Duration::from_millis(1500));
         first.pull();
         thread::sleep(Duration::from_millis(300));
-        Peer::plug(&link, PROMPT)
+        // Meanwhile the arm was led elsewhere: the old position would be a leap of 2 in, and a warning.
+        Peer::plug_raised(&link, PROMPT, 200)
     });
     let (output, tally) = link_test(&place, "6");
     assert_eq!(output.status.code(), Some(0), "{tally} {}", last_words(&output));
     assert_eq!((&tally["port_lost"], &tally["starts"]), (&1.into(), &2.into()), "{tally}");
     assert!(tally["lost"].as_u64().unwrap() <= 1, "{tally}");
-    assert_eq!(hands.join().unwrap().pull(), ControllerState::Running);
+    assert_eq!(hands.join().unwrap().pull(), ControllerState::Running, "it was not asked to jump back");
 }
 
 #[test]

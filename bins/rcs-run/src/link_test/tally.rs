@@ -105,24 +105,34 @@ pub struct Tally {
     pub verdict: Verdict,
 }
 
+/// What a test sees of a link beside the counters.
+#[derive(Clone, Copy, Debug)]
+pub struct Observed {
+    /// The port has modem lines.
+    pub modem_lines: bool,
+    /// The link runs at the end.
+    pub connected: bool,
+    /// How often it began.
+    pub starts: u32,
+}
+
 impl Tally {
-    /// Sum up: `latencies` are those of all ACKs, `connected` says whether the link runs at the end, `starts`
-    /// how often it began.
+    /// Sum up what was observed, what the two ends of the program counted, and the latencies of all ACKs.
     #[must_use]
     pub fn new(
         settings: &SerialSettings,
-        connected: bool,
-        starts: u32,
+        observed: Observed,
         counters: &LinkCounters,
         serial: SerialCounts,
         latencies: &mut [Duration],
     ) -> Self {
+        let Observed { modem_lines, connected, starts } = observed;
         let (sent, acknowledged, refused) = (counters.frames, counters.acknowledged, counters.naks);
         let in_time = latencies.iter().filter(|latency| **latency <= IN_TIME).count();
         let share_in_time = if sent == 0 { 0.0 } else { in_time as f64 / f64::from(sent) };
         Self {
             port: settings.path.display().to_string(),
-            modem_lines: false,
+            modem_lines,
             connected,
             starts,
             sent,
@@ -192,8 +202,9 @@ mod tests {
         let mut latencies: Vec<Duration> = (0..acknowledged as usize)
             .map(|n| Duration::from_millis(if n < late { 41 } else { 20 }))
             .collect();
-        let serial = SerialCounts::default();
-        Tally::new(&SerialSettings::new("/dev/x"), true, 1, &counters, serial, &mut latencies)
+        let observed = Observed { modem_lines: false, connected: true, starts: 1 };
+        let settings = SerialSettings::new("/dev/x");
+        Tally::new(&settings, observed, &counters, SerialCounts::default(), &mut latencies)
     }
 
     #[test]
