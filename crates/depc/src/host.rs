@@ -4,6 +4,10 @@
 //! frame. One frame is outstanding at a time. An answer bears no number, so a frame that got none is never sent again:
 //! it may have been executed. The host then sends a restart, discards everything until a report with a right checksum
 //! comes, and goes on from there. Only a NAK, which says that nothing was executed, is answered with the same bytes.
+//!
+//! A report bears no number either. On a slow line several may be on their way, and the robot may have moved since the
+//! first: if more than one has been asked for, the last is believed, and only when none has followed for longer than the
+//! time for an answer.
 
 use rcs_core::{
     coded_enum,
