@@ -5,7 +5,8 @@
 //!
 //! What holds unless the line deceives one of the ends: no command is executed twice or lost unnoticed, every report is
 //! true, and the velocity limits give no warning. A checksum by exclusive or does not see two changes of the same bit, and
-//! ACK, NAK, cancel and restart have no checksum at all (A 2.3); the run counts how often that happens. In the sessions
+//! ACK, NAK, cancel and restart have no checksum at all (A 2.3); a line that stands still for longer than the host waits
+//! executes what the host has given up. The run counts how often that happens. In the sessions
 //! where it has not happened the invariants are strict.
 //!
 //! `DEPC_SCHEDULES` sets how many plans are tried.

@@ -62,6 +62,8 @@ pub struct Truth {
     pub false_commands: u64,
     /// Acknowledgements believed for a command that was not executed, and not refused with a warning either.
     pub false_acks: u64,
+    /// Commands executed after the host had given them up and begun again: the line has held them back for so long.
+    pub late_commands: u64,
     /// Commands executed a second time, function and all.
     pub repeated: u64,
     /// The controller took noise for a cancel.
@@ -75,7 +77,12 @@ pub struct Truth {
 impl Truth {
     /// All that the line has made one end believe.
     pub fn deceptions(&self) -> u64 {
-        self.false_reports + self.false_commands + self.false_acks + self.repeated + self.false_cancels
+        self.false_reports
+            + self.false_commands
+            + self.false_acks
+            + self.late_commands
+            + self.repeated
+            + self.false_cancels
     }
 
     pub fn add(&mut self, other: &Self) {
@@ -83,6 +90,7 @@ impl Truth {
         self.false_reports += other.false_reports;
         self.false_commands += other.false_commands;
         self.false_acks += other.false_acks;
+        self.late_commands += other.late_commands;
         self.repeated += other.repeated;
         self.false_cancels += other.false_cancels;
         self.velocity_warnings += other.velocity_warnings;
@@ -112,6 +120,8 @@ pub struct Session {
     arrived: [LinkBytes; 2],
     /// Position of the command that the controller has executed in the last tick.
     moving_to: Option<Plate>,
+    /// That command was not the last one sent.
+    late: bool,
     /// Number of the command that was last refused with a warning.
     refused: Option<u16>,
     /// Ticks since the host has last believed something; a slow line goes on telling of a controller that has stopped.
@@ -141,6 +151,7 @@ impl Session {
             frame: LinkBytes::default(),
             arrived: [LinkBytes::default(); 2],
             moving_to: None,
+            late: false,
             refused: None,
             silent: 0,
             stopped: OPERATOR_TICKS,
@@ -240,6 +251,7 @@ impl Session {
                 self.truth.false_commands += 1;
             }
         }
+        self.late = out.moving && !self.frame_has_arrived();
         self.moving_to = out.moving.then(|| self.controller.commanded());
         let warning = self.controller.warning();
         if warning != before && warning != Warning::None {
@@ -268,6 +280,7 @@ impl Session {
         } else if self.executed.last().is_some_and(|last| *last >= number) {
             self.truth.repeated += 1;
         } else {
+            self.truth.late_commands += u64::from(self.late);
             self.executed.push(number);
         }
     }
