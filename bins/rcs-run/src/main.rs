@@ -1,8 +1,8 @@
 //! `rcs-run`: the RCS-II/T3 controller with its simulated cell.
 //!
-//! One thread runs the ticks: controller, log hand-off, cell, workstation controller, in this order
-//! ([`run`]). [`link_test`] tries the line to a robot. The other subcommands look at task data and decision tables without running anything, or clean
-//! up after killed runs.
+//! One thread runs the ticks: controller, log hand-off, cell, workstation controller, in this order ([`run`]).
+//! [`link_test`] tries the line to a robot. The other subcommands look at task data and decision tables without
+//! running anything, or clean up after killed runs.
 
 mod check;
 mod clean;

@@ -1,8 +1,8 @@
 //! `rcs-run run`: a job, from the first tick to the result.
 //!
 //! One tick is, in this order: what has come over a serial line, the controller (timed, and its allocations
-//! counted), what goes over the line, the hand-off to the log, the cell, the workstation controller. Physics allocates and takes its time; it is outside of what is
-//! counted as the controller's.
+//! counted), what goes over the line, the hand-off to the log, the cell, the workstation controller. Physics
+//! allocates and takes its time; it is outside of what is counted as the controller's.
 
 mod log;
 mod progress;
