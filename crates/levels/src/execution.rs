@@ -96,6 +96,19 @@ record! {
     }
 }
 
+/// What the table of the current command decided; `Action` is what the rows of a process can ask for.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice<Action> {
+    /// The table.
+    pub table: &'static Table,
+    /// The row that fired.
+    pub row: u8,
+    /// What to do.
+    pub action: Action,
+    /// Code of the next step.
+    pub step: u8,
+}
+
 impl Execution {
     /// Consult the upper table; `fault` is why the command cannot be executed, if so.
     pub fn consult(&mut self, number: u32, fault: impl FnOnce() -> Option<Reason>) -> Course {

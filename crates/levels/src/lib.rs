@@ -36,6 +36,8 @@
 )]
 
 pub mod emove;
+#[cfg(test)]
+mod exact_robot;
 pub mod execution;
 pub mod grip;
 pub mod ladder;

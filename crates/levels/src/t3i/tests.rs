@@ -4,7 +4,7 @@ use nalgebra::Rotation3;
 
 use depc::{
     Limits, Plate,
-    controller::{Controller, ControllerInputs, ControllerState, JointProblem, Robot, Warning, joints_for},
+    controller::{Controller, ControllerInputs, ControllerState, Warning},
     wire::DataCommand,
 };
 use rcs_core::{
@@ -21,24 +21,7 @@ use rcs_core::{
 };
 
 use super::{T3i, tables};
-
-/// A robot that is where it is told to be.
-struct Exact {
-    joints: Joints,
-    at: Plate,
-}
-
-impl Robot for Exact {
-    fn present(&self) -> Plate {
-        self.at
-    }
-
-    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
-        self.joints = joints_for(&T3, goal, &self.joints)?;
-        self.at = *goal;
-        Ok(())
-    }
-}
+use crate::exact_robot::Exact;
 
 /// T3I, the line, the controller; the test is Prim.
 struct Bench {

@@ -9,7 +9,6 @@ pub mod robot_init;
 use rcs_core::{
     coded_enum,
     interface::{Reason, prim::PrimVerb},
-    table::Table,
 };
 
 coded_enum! {
@@ -127,17 +126,7 @@ pub enum Action {
 }
 
 /// What the table of the current command decided.
-#[derive(Clone, Copy, Debug)]
-pub struct Choice {
-    /// The table.
-    pub table: &'static Table,
-    /// The row that fired.
-    pub row: u8,
-    /// What to do.
-    pub action: Action,
-    /// Code of the next step.
-    pub step: u8,
-}
+pub type Choice = crate::execution::Choice<Action>;
 
 /// Consult the table of a command. A step that the command does not have counts as its first.
 #[must_use]

@@ -2,7 +2,7 @@
 
 use depc::{
     Limits, Plate,
-    controller::{Controller, ControllerInputs, JointProblem, Robot, joints_for},
+    controller::{Controller, ControllerInputs},
 };
 use rcs_core::{
     frame::{Frame, Vector, norm, rotation_by},
@@ -12,32 +12,14 @@ use rcs_core::{
         device::{LinkBytes, RESOLVER_COUNTS},
         prim::{PrimReport, PrimVerb},
     },
-    kinematics::{HOME_JOINTS, Joints, T3},
+    kinematics::{HOME_JOINTS, T3},
     process::{Inputs, Process},
     tick::Tick,
 };
 use taskdata::files::{TaskData, TrajPara};
 
 use super::pose_record;
-use crate::{prim::Prim, t3i::T3i};
-
-/// A robot that is where it is told to be.
-struct Exact {
-    joints: Joints,
-    at: Plate,
-}
-
-impl Robot for Exact {
-    fn present(&self) -> Plate {
-        self.at
-    }
-
-    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
-        self.joints = joints_for(&T3, goal, &self.joints)?;
-        self.at = *goal;
-        Ok(())
-    }
-}
+use crate::{exact_robot::Exact, prim::Prim, t3i::T3i};
 
 /// The test is E-move.
 struct Bench {
