@@ -5,7 +5,10 @@
 
 use rcs_core::{
     coded_enum,
-    interface::{CommonMemory, ExternalInputs},
+    interface::{
+        CommonMemory, ExternalInputs, Header,
+        device::{JoystickBox, single_step},
+    },
     process::{Inputs, Process},
     record,
     table::Table,
@@ -87,6 +90,8 @@ record! {
         pub quick_change: StateOf<QuickChange>,
         /// Grip.
         pub grip: StateOf<Grip>,
+        /// Single-step buttons of the tick before.
+        pub buttons: u8,
     }
 }
 
@@ -100,6 +105,52 @@ pub struct Ladder {
     t3i: T3i,
     quick_change: QuickChange,
     grip: Grip,
+    /// Single-step buttons as they were in the tick before: pressing counts, not holding down.
+    buttons: u8,
+}
+
+/// A process that is not stepped in this tick: dormant (II.2.3), held by its switch on the joystick box, or suspended while a
+/// recorded pose is looked at (III.3.3).
+const fn is_suspended(
+    process: ProcessId,
+    before: &CommonMemory,
+    joystick: &JoystickBox,
+    pressed: u8,
+) -> bool {
+    let recording = before.prim.status.recording && !joystick.resume;
+    let switch = match process {
+        ProcessId::Task => single_step::TASK,
+        ProcessId::Subtask => single_step::SUBTASK,
+        ProcessId::Emove => single_step::EMOVE,
+        ProcessId::Prim => single_step::PRIM,
+        ProcessId::T3i | ProcessId::QuickChange | ProcessId::Grip => 0,
+    };
+    let held = joystick.hold & switch != 0 && pressed & switch == 0;
+    let dormant = match process {
+        ProcessId::Grip => before.emove.dormant.grip,
+        ProcessId::Emove | ProcessId::Prim => recording,
+        ProcessId::Task | ProcessId::Subtask | ProcessId::T3i | ProcessId::QuickChange => false,
+    };
+    held || dormant
+}
+
+/// The header of a process's outputs.
+const fn header_of(process: ProcessId, memory: &mut CommonMemory) -> &mut Header {
+    match process {
+        ProcessId::Task => &mut memory.task.header,
+        ProcessId::Subtask => &mut memory.subtask.header,
+        ProcessId::Emove => &mut memory.emove.header,
+        ProcessId::Prim => &mut memory.prim.header,
+        ProcessId::T3i => &mut memory.t3i.header,
+        ProcessId::QuickChange => &mut memory.quick_change.header,
+        ProcessId::Grip => &mut memory.grip.header,
+    }
+}
+
+/// Publish the last outputs of a process that is not stepped again, so that its readers do not take it for lost (DESIGN 16).
+const fn republish(header: &mut Header, tick: Tick) {
+    header.stamp = tick;
+    header.republished = true;
 }
 
 impl Ladder {
@@ -133,7 +184,14 @@ impl Ladder {
     ) {
         *after = *before;
         let inputs = Inputs { tick, memory: before, external, data };
-        for process in order {
+        let buttons = external.devices.joystick.single_step;
+        let pressed = buttons & !self.buttons;
+        self.buttons = buttons;
+        for &process in order {
+            if is_suspended(process, before, &external.devices.joystick, pressed) {
+                republish(header_of(process, after), tick);
+                continue;
+            }
             match process {
                 ProcessId::Task => self.task.step(&inputs, &mut after.task),
                 ProcessId::Subtask => self.subtask.step(&inputs, &mut after.subtask),
@@ -173,6 +231,7 @@ impl Ladder {
             t3i: of(&self.t3i),
             quick_change: of(&self.quick_change),
             grip: of(&self.grip),
+            buttons: self.buttons,
         }
     }
 
@@ -188,5 +247,6 @@ impl Ladder {
         to(&mut self.t3i, state.t3i);
         to(&mut self.quick_change, state.quick_change);
         to(&mut self.grip, state.grip);
+        self.buttons = state.buttons;
     }
 }

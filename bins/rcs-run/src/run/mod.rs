@@ -33,7 +33,7 @@ use executive::{
 use levels::ladder::Ladder;
 use plant::CellEvent;
 use rcs_core::{
-    interface::{DeviceInputs, ExternalInputs},
+    interface::{DataBaseStatus, DeviceInputs, ExternalInputs},
     tick::{TICK_S, Tick},
 };
 use record::Level;
@@ -183,7 +183,11 @@ impl Run {
         loop {
             self.clock.wait();
             self.robot.receive(&mut self.inputs);
-            let external = ExternalInputs { hws: *self.hwsc.command(), devices: self.inputs };
+            let external = ExternalInputs {
+                hws: *self.hwsc.command(),
+                devices: self.inputs,
+                data_base: DataBaseStatus::default(),
+            };
             let tick = self.runner.tick().next();
             if let Some(log) = &mut self.log {
                 for event in self.fresh.drain(..) {

@@ -8,8 +8,9 @@ use rcs_core::{
 
 use super::{
     buffers::{
-        DevicesReader, EmoveReader, ExecutiveReader, GripReader, HwscReader, PrimReader, Pulse,
-        QuickChangeReader, SubtaskReader, T3iReader, TaskReader,
+        DataBaseReader, DevicesReader, EmoveReader, ExecutiveReader, GripReader, HandReader, HwscReader,
+        PedestalReader, PrimReader, Pulse, QuickChangeReader, SubtaskReader, T3iReader, TableReader,
+        TaskReader, ToolGripReader, VGripReader,
     },
     publish::FIRST_EPOCH,
     runs::{self, RunName, SharedMemoryError},
@@ -44,7 +45,13 @@ struct Ports {
     t3i: T3iReader,
     quick_change: QuickChangeReader,
     grip: GripReader,
+    v_grip: VGripReader,
+    tool_grip: ToolGripReader,
+    pedestal: PedestalReader,
+    hand: HandReader,
+    table: TableReader,
     hwsc: HwscReader,
+    data_base: DataBaseReader,
     devices: DevicesReader,
     executive: ExecutiveReader,
     _node: Node<ipc::Service>,
@@ -84,7 +91,13 @@ impl Attached {
             t3i: T3iReader::open(&node, epoch)?,
             quick_change: QuickChangeReader::open(&node, epoch)?,
             grip: GripReader::open(&node, epoch)?,
+            v_grip: VGripReader::open(&node, epoch)?,
+            tool_grip: ToolGripReader::open(&node, epoch)?,
+            pedestal: PedestalReader::open(&node, epoch)?,
+            hand: HandReader::open(&node, epoch)?,
+            table: TableReader::open(&node, epoch)?,
             hwsc: HwscReader::open(&node, epoch)?,
+            data_base: DataBaseReader::open(&node, epoch)?,
             devices: DevicesReader::open(&node, epoch)?,
             executive: ExecutiveReader::open(&node, epoch)?,
             _node: node,
@@ -112,6 +125,11 @@ impl Attached {
                 t3i: unfinished(ports.t3i.read()?)?,
                 quick_change: unfinished(ports.quick_change.read()?)?,
                 grip: unfinished(ports.grip.read()?)?,
+                v_grip: unfinished(ports.v_grip.read()?)?,
+                tool_grip: unfinished(ports.tool_grip.read()?)?,
+                pedestal: unfinished(ports.pedestal.read()?)?,
+                hand: unfinished(ports.hand.read()?)?,
+                table: unfinished(ports.table.read()?)?,
             };
             let stamp = memory.task.header.stamp;
             let others = [
@@ -121,6 +139,11 @@ impl Attached {
                 &memory.t3i.header,
                 &memory.quick_change.header,
                 &memory.grip.header,
+                &memory.v_grip.header,
+                &memory.tool_grip.header,
+                &memory.pedestal.header,
+                &memory.hand.header,
+                &memory.table.header,
             ];
             if others.iter().all(|header| header.stamp == stamp) { Ok(memory) } else { Err(ReadError::Busy) }
         })
@@ -133,8 +156,10 @@ impl Attached {
     pub fn external(&self) -> Result<ExternalInputs, ReadError> {
         self.settled(|ports| {
             let (hwsc, devices) = (unfinished(ports.hwsc.read()?)?, unfinished(ports.devices.read()?)?);
-            if hwsc.header.stamp == devices.header.stamp {
-                Ok(ExternalInputs { hws: hwsc.command, devices: devices.inputs })
+            let data_base = unfinished(ports.data_base.read()?)?;
+            let stamp = hwsc.header.stamp;
+            if devices.header.stamp == stamp && data_base.header.stamp == stamp {
+                Ok(ExternalInputs { hws: hwsc.command, devices: devices.inputs, data_base: data_base.status })
             } else {
                 Err(ReadError::Busy)
             }

@@ -15,15 +15,20 @@ use iceoryx2::{
 use rcs_core::{
     digest::Digest,
     interface::{
-        ChangingPose, EmoveOutputs, GripOutputs, Header, HwsCommand, PrimOutputs, QuickChangeOutputs,
-        SubtaskOutputs, T3iOutputs, TaskOutputs,
-        device::{DeviceInputs, GripValves, LinkBytes, QuickChangeValves, VisionRequest},
-        emove::{EMOVE_POSES, EmoveCommand, EmoveStatus},
+        ChangingPose, DataBaseCommand, DataBaseStatus, EmoveOutputs, GripOutputs, Header, HwsCommand,
+        JawsOutputs, PedestalOutputs, PrimOutputs, QuickChangeOutputs, SubtaskOutputs, T3iOutputs,
+        TableOutputs, TaskOutputs,
+        device::{
+            DeviceInputs, GripValves, JawValves, LinkBytes, MotorCommand, QuickChangeValves, VisionRequest,
+        },
+        emove::{Dormancy, EMOVE_POSES, EmoveCommand, EmoveStatus},
         grip::{GripCommand, GripStatus},
         hws::{HwsStatus, TASK_POSES},
+        jaws::{JawsCommand, JawsStatus},
+        pedestal::{PedestalCommand, PedestalStatus, TableCommand, TableStatus},
         prim::{PRIM_POSES, PrimCommand, PrimStatus},
         quick_change::{QuickChangeCommand, QuickChangeStatus},
-        subtask::{SubtaskCommand, SubtaskStatus},
+        subtask::{SUBTASK_POSES, SubtaskCommand, SubtaskStatus},
         t3i::{T3iCommand, T3iStatus},
     },
     record,
@@ -62,6 +67,16 @@ record! {
         pub header: Header,
         /// To Task.
         pub command: HwsCommand,
+    }
+}
+
+record! {
+    /// Buffers of the Data System.
+    pub struct DataBaseOutputs {
+        /// Stamp: the tick that reads the buffers.
+        pub header: Header,
+        /// To Task.
+        pub status: DataBaseStatus,
     }
 }
 
@@ -224,12 +239,15 @@ services! {
     task(TaskWriter, TaskReader) = TaskOutputs {
         0 status: HwsStatus,
         1 subtask: SubtaskCommand,
-        2 poses: [ChangingPose; TASK_POSES],
+        2 data_base: DataBaseCommand,
+        3 poses: [ChangingPose; TASK_POSES],
     }
     /// Subtask (V.3.2).
     subtask(SubtaskWriter, SubtaskReader) = SubtaskOutputs {
         0 status: SubtaskStatus,
         1 emove: EmoveCommand,
+        2 pedestal: PedestalCommand,
+        3 poses: [ChangingPose; SUBTASK_POSES],
     }
     /// E-move (V.2.2).
     emove(EmoveWriter, EmoveReader) = EmoveOutputs {
@@ -237,14 +255,18 @@ services! {
         1 prim: PrimCommand,
         2 quick_change: QuickChangeCommand,
         3 grip: GripCommand,
-        4 vision: VisionRequest,
-        5 poses: [ChangingPose; EMOVE_POSES],
+        4 v_grip: JawsCommand,
+        5 tool_grip: JawsCommand,
+        6 dormant: Dormancy,
+        7 vision: VisionRequest,
+        8 poses: [ChangingPose; EMOVE_POSES],
     }
     /// Prim (V.1.2).
     prim(PrimWriter, PrimReader) = PrimOutputs {
         0 status: PrimStatus,
         1 t3i: T3iCommand,
-        2 poses: [ChangingPose; PRIM_POSES],
+        2 joystick_leds: u8,
+        3 poses: [ChangingPose; PRIM_POSES],
     }
     /// T3 Interface (VI.1.2).
     t3i(T3iWriter, T3iReader) = T3iOutputs {
@@ -261,9 +283,39 @@ services! {
         0 status: GripStatus,
         1 valves: GripValves,
     }
+    /// V-Grip (VI.4.2).
+    v_grip(VGripWriter, VGripReader) = JawsOutputs {
+        0 status: JawsStatus,
+        1 valves: JawValves,
+    }
+    /// Tool-Grip (VI.5).
+    tool_grip(ToolGripWriter, ToolGripReader) = JawsOutputs {
+        0 status: JawsStatus,
+        1 valves: JawValves,
+    }
+    /// Active Pedestal (VI.7.2).
+    pedestal(PedestalWriter, PedestalReader) = PedestalOutputs {
+        0 status: PedestalStatus,
+        1 hand: GripCommand,
+        2 table: TableCommand,
+    }
+    /// Hand of the pedestal.
+    hand(HandWriter, HandReader) = GripOutputs {
+        0 status: GripStatus,
+        1 valves: GripValves,
+    }
+    /// Rotary table of the pedestal.
+    table(TableWriter, TableReader) = TableOutputs {
+        0 status: TableStatus,
+        1 motor: MotorCommand,
+    }
     /// The workstation controller.
     hwsc(HwscWriter, HwscReader) = HwscOutputs {
         0 command: HwsCommand,
+    }
+    /// The Data System.
+    data_base(DataBaseWriter, DataBaseReader) = DataBaseOutputs {
+        0 status: DataBaseStatus,
     }
     /// The devices of the cell.
     devices(DevicesWriter, DevicesReader) = DevicesOutputs {

@@ -9,8 +9,9 @@ use rcs_core::{
 
 use super::{
     buffers::{
-        DevicesOutputs, DevicesWriter, EmoveWriter, Epoch, ExecutiveOutputs, ExecutiveWriter, GripWriter,
-        HwscOutputs, HwscWriter, PrimWriter, Pulse, QuickChangeWriter, SubtaskWriter, T3iWriter, TaskWriter,
+        DataBaseOutputs, DataBaseWriter, DevicesOutputs, DevicesWriter, EmoveWriter, Epoch, ExecutiveOutputs,
+        ExecutiveWriter, GripWriter, HandWriter, HwscOutputs, HwscWriter, PedestalWriter, PrimWriter, Pulse,
+        QuickChangeWriter, SubtaskWriter, T3iWriter, TableWriter, TaskWriter, ToolGripWriter, VGripWriter,
     },
     runs::{self, RunName, SharedMemoryError},
 };
@@ -35,7 +36,13 @@ struct Ports {
     t3i: T3iWriter,
     quick_change: QuickChangeWriter,
     grip: GripWriter,
+    v_grip: VGripWriter,
+    tool_grip: ToolGripWriter,
+    pedestal: PedestalWriter,
+    hand: HandWriter,
+    table: TableWriter,
     hwsc: HwscWriter,
+    data_base: DataBaseWriter,
     devices: DevicesWriter,
     executive: ExecutiveWriter,
     // Last: the services are closed before their node.
@@ -60,7 +67,13 @@ impl Publisher {
             t3i: T3iWriter::create(&node, epoch)?,
             quick_change: QuickChangeWriter::create(&node, epoch)?,
             grip: GripWriter::create(&node, epoch)?,
+            v_grip: VGripWriter::create(&node, epoch)?,
+            tool_grip: ToolGripWriter::create(&node, epoch)?,
+            pedestal: PedestalWriter::create(&node, epoch)?,
+            hand: HandWriter::create(&node, epoch)?,
+            table: TableWriter::create(&node, epoch)?,
             hwsc: HwscWriter::create(&node, epoch)?,
+            data_base: DataBaseWriter::create(&node, epoch)?,
             devices: DevicesWriter::create(&node, epoch)?,
             executive: ExecutiveWriter::create(&node, epoch)?,
             _node: node,
@@ -80,6 +93,7 @@ impl Publisher {
         let Some(ports) = &self.ports else { return };
         let header = stamp(pulse.tick);
         ports.hwsc.write(&HwscOutputs { header, command: external.hws });
+        ports.data_base.write(&DataBaseOutputs { header, status: external.data_base });
         ports.devices.write(&DevicesOutputs { header, inputs: external.devices });
         ports.task.write(&memory.task);
         ports.subtask.write(&memory.subtask);
@@ -88,6 +102,11 @@ impl Publisher {
         ports.t3i.write(&memory.t3i);
         ports.quick_change.write(&memory.quick_change);
         ports.grip.write(&memory.grip);
+        ports.v_grip.write(&memory.v_grip);
+        ports.tool_grip.write(&memory.tool_grip);
+        ports.pedestal.write(&memory.pedestal);
+        ports.hand.write(&memory.hand);
+        ports.table.write(&memory.table);
         ports.executive.write(&ExecutiveOutputs { header, pulse });
         self.pulse = pulse;
     }

@@ -178,7 +178,15 @@ impl Emove {
             | EmoveVerb::Pause
             | EmoveVerb::MovToLoc
             | EmoveVerb::GraspObj
-            | EmoveVerb::Release => Sort::Location,
+            | EmoveVerb::Release
+            | EmoveVerb::MovToHol
+            | EmoveVerb::QcDetach
+            | EmoveVerb::QcAttach
+            | EmoveVerb::Withdraw
+            | EmoveVerb::InsertTool
+            | EmoveVerb::ReleaseTool
+            | EmoveVerb::AcquireTool
+            | EmoveVerb::RemoveTool => Sort::Location,
         };
         self.settle(command, sort, outputs);
         self.state.execution.finish();

@@ -131,7 +131,15 @@ impl Emove {
         inputs: &Inputs<'_, TaskData<'_>>,
     ) -> Result<Option<(Route, Goal)>, Reason> {
         match command.command {
-            EmoveVerb::None => Err(Reason::UnknownCommand),
+            EmoveVerb::None
+            | EmoveVerb::MovToHol
+            | EmoveVerb::QcDetach
+            | EmoveVerb::QcAttach
+            | EmoveVerb::Withdraw
+            | EmoveVerb::InsertTool
+            | EmoveVerb::ReleaseTool
+            | EmoveVerb::AcquireTool
+            | EmoveVerb::RemoveTool => Err(Reason::UnknownCommand),
             EmoveVerb::Pause | EmoveVerb::GraspObj | EmoveVerb::Release => Ok(None),
             EmoveVerb::LocateObj => match locate::view_of(command, inputs.data) {
                 Some(_) => Ok(None),

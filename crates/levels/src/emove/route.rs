@@ -145,7 +145,15 @@ impl Goal {
             | EmoveVerb::MovToLoc
             | EmoveVerb::LocateObj
             | EmoveVerb::GraspObj
-            | EmoveVerb::Release => Ok(Self {
+            | EmoveVerb::Release
+            | EmoveVerb::MovToHol
+            | EmoveVerb::QcDetach
+            | EmoveVerb::QcAttach
+            | EmoveVerb::Withdraw
+            | EmoveVerb::InsertTool
+            | EmoveVerb::ReleaseTool
+            | EmoveVerb::AcquireTool
+            | EmoveVerb::RemoveTool => Ok(Self {
                 frame: *base,
                 approach: data.approach_location(&place).unwrap_or(PathId::NULL),
                 opening: -1,

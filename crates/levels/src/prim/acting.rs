@@ -3,7 +3,7 @@
 use rcs_core::{
     interface::{
         ChangingPose, PrimOutputs, Reason, pose_range,
-        prim::{PrimReport, PrimStatus},
+        prim::{JoystickGrip, PrimReport, PrimStatus},
         t3i::{T3iCommand, T3iVerb},
     },
     pose::{Pose, WireFrame},
@@ -97,7 +97,7 @@ impl Prim {
         let t3i = &inputs.memory.t3i.status;
         let commanded = self.state.positioned.then(|| Pose::from_frame(&self.state.motion.frame()));
         let seen = t3i.resolver_frame.to_frame().ok().filter(|_| t3i.resolver_valid);
-        let [present, sensor, detected] = &mut outputs.poses;
+        let [present, sensor, detected, _] = &mut outputs.poses;
         self.publish(present, commanded);
         self.publish(sensor, seen.map(|frame| Pose::from_frame(&frame)));
         self.publish(detected, None);
@@ -117,7 +117,10 @@ impl Prim {
             holster_right: holsters.right,
             holster_left: holsters.left,
             holster_centre: holsters.centre,
-            joystick_grip: 0,
+            joystick_grip: JoystickGrip::None,
+            recorded_pose: 0,
+            recording: false,
+            sensed: 0,
             distance: if self.state.positioned { hundredths(self.state.motion.distance()) } else { 0 },
         };
     }

@@ -34,7 +34,11 @@ const AT_GOAL_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0;
 /// The reason why the command cannot be executed.
 pub fn look_up(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Target, Reason> {
     match command.command {
-        PrimVerb::None => Err(Reason::UnknownCommand),
+        PrimVerb::None
+        | PrimVerb::GoUntil
+        | PrimVerb::GoWhile
+        | PrimVerb::DeltaMove
+        | PrimVerb::CalSensor => Err(Reason::UnknownCommand),
         PrimVerb::Pause | PrimVerb::RobotInit => Ok(Target { verb: command.command, ..Target::default() }),
         PrimVerb::GoThru | PrimVerb::GotoPt => {
             let goal = goal(command, inputs).ok_or(Reason::BadRecord)?;

@@ -21,7 +21,9 @@ const GREATEST_ID: u8 = 3;
 pub(super) fn observe<Data: ?Sized>(state: &mut State, inputs: &Inputs<'_, Data>) -> Id {
     let command = &inputs.memory.emove.quick_change;
     let _course = state.execution.consult(command.number, || match command.command {
-        QuickChangeVerb::None => Some(Reason::UnknownCommand),
+        QuickChangeVerb::None | QuickChangeVerb::Lock | QuickChangeVerb::Unlock => {
+            Some(Reason::UnknownCommand)
+        }
         QuickChangeVerb::Pause => None,
     });
     let sensors = &inputs.external.devices.quick_change;

@@ -56,7 +56,16 @@ impl<'d> Process<TaskData<'d>> for Subtask {
         let command = inputs.memory.task.subtask;
         self.state.emove.start(inputs.memory.emove.status.echo);
         let course = self.state.execution.consult(command.number, || {
-            (command.command == SubtaskVerb::None).then_some(Reason::UnknownCommand)
+            matches!(
+                command.command,
+                SubtaskVerb::None
+                    | SubtaskVerb::FixGrip
+                    | SubtaskVerb::InsertTool
+                    | SubtaskVerb::ReleaseTool
+                    | SubtaskVerb::AcquireTool
+                    | SubtaskVerb::RemoveTool
+            )
+            .then_some(Reason::UnknownCommand)
         });
         if matches!(course, Course::Begin | Course::Continue) {
             let situation = self.preprocess(&command, inputs);

@@ -284,8 +284,9 @@ impl Cell {
             quick_change: QuickChangeSensors { locked: true, unlocked: false, end_effector_id: 1 },
             // ASSUMED: the holsters of the other grippers are full, so that all their ears are seen at the seat.
             holsters: HolsterSensors { right: 0, left: 0x0F, centre: 0x0F },
-            joystick: JoystickBox { velocity: KNOB_FULL },
+            joystick: JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() },
             vision: self.camera.answer(),
+            ..DeviceInputs::default()
         }
     }
 

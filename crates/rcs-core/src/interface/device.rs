@@ -91,9 +91,9 @@ record! {
 pub const ADC_FULL_SCALE: u16 = 4095;
 
 record! {
-    /// Sensors of the parts gripper (III.3.6): 12-bit converters and beam breaks.
+    /// Sensors of the attached gripper (III.3.6 to III.3.8): 12-bit converters and beam breaks.
     pub struct GripSensors {
-        /// Finger potentiometer, 0 to 4095 counts; grows with the opening, offset and scale are found by UP-INIT.
+        /// Finger potentiometer, 0 to 4095 counts; grows with the opening; UP-INIT finds offset and scale of the parts gripper's.
         pub potentiometer: u16,
         /// Strain gage of the left finger, counts; grows with the force that closes on a part.
         pub strain_left: u16,
@@ -141,14 +141,153 @@ record! {
     }
 }
 
-/// Full speed of the velocity knob.
-pub const KNOB_FULL: u16 = 1000;
+record! {
+    /// Air to a gripper that only opens and closes: v-gripper and tool gripper (VI.4, VI.5). With neither bit the air is trapped.
+    pub struct JawValves {
+        /// Air to the side that opens.
+        pub open: bool,
+        /// Air to the side that closes.
+        pub close: bool,
+    }
+}
+
+/// Counts of a force axis without load (ASSUMED: middle of the converter's range).
+pub const FORCE_ZERO: i32 = 2048;
+/// Counts for a pound of force (ASSUMED).
+pub const FORCE_COUNTS_PER_LB: i32 = 16;
+/// Counts for an inch pound of moment (ASSUMED).
+pub const MOMENT_COUNTS_PER_IN_LB: i32 = 4;
 
 record! {
-    /// The joystick box (III.3.3), as far as it is connected.
+    /// Force sensor of the tool gripper, the four axes that are connected (III.3.8), in the axes of the sensor: 12-bit converters,
+    /// [`FORCE_ZERO`] without load. Tool X, Y, Z are sensor Z, -Y, X. 0 and [`ADC_FULL_SCALE`] mean overload.
+    ///
+    /// Positive is what pushes the fingers along the positive sensor axis.
+    pub struct ForceSensor {
+        /// Force along sensor X.
+        pub x: u16,
+        /// Force along sensor Y.
+        pub y: u16,
+        /// Force along sensor Z.
+        pub z: u16,
+        /// Moment about the tool's Y, right-hand.
+        pub moment: u16,
+        /// The sensor is connected and its conditioners have power.
+        pub valid: bool,
+    }
+}
+
+/// Full speed of the velocity knob, and full deflection of the joystick.
+pub const KNOB_FULL: u16 = 1000;
+
+/// Bits of [`JoystickBox::frame`]: the four coordinate switches.
+pub mod joystick_frame {
+    /// Switch f: translations in world coordinates.
+    pub const WORLD: u8 = 0x01;
+    /// Switch h: translations in tool coordinates.
+    pub const TOOL: u8 = 0x02;
+    /// Switch j: pitch and yaw about the tool point.
+    pub const TOOL_ORIGIN: u8 = 0x04;
+    /// Switch k: pitch and yaw about the wrist point.
+    pub const WRIST_ORIGIN: u8 = 0x08;
+}
+
+/// Bits of [`JoystickBox::hold`] and [`JoystickBox::single_step`], in the order of the box.
+pub mod single_step {
+    /// Switch N, button T.
+    pub const TASK: u8 = 0x01;
+    /// Switch P, button U.
+    pub const SUBTASK: u8 = 0x02;
+    /// Switch R, button V.
+    pub const EMOVE: u8 = 0x04;
+    /// Switch S, button W.
+    pub const PRIM: u8 = 0x08;
+}
+
+record! {
+    /// The joystick box (III.3.3). Its emergency stop is in the T3's circuit and does not come to the controller.
     pub struct JoystickBox {
-        /// Velocity knob, 0 to 1000.
+        /// Potentiometer C, the velocity knob, 0 to [`KNOB_FULL`]: whatever commands the motion.
         pub velocity: u16,
+        /// Stick L: X, or pitch; -1000 to 1000.
+        pub x: i16,
+        /// Stick M: Y, or yaw; -1000 to 1000.
+        pub y: i16,
+        /// Push-button D: along +Z.
+        pub up: bool,
+        /// Push-button E: along -Z.
+        pub down: bool,
+        /// Push-button Z: positive roll about the tool's X.
+        pub roll_plus: bool,
+        /// Push-button a: negative roll.
+        pub roll_minus: bool,
+        /// Push-button F: open the gripper.
+        pub open: bool,
+        /// Push-button H: close it.
+        pub close: bool,
+        /// Coordinate switches, bits of [`joystick_frame`]; one at most may be on. The box is active while one is.
+        pub frame: u8,
+        /// Push-button X: record the pose.
+        pub record: bool,
+        /// Carriage return at the terminal of the Prim board: go on after a recorded pose.
+        pub resume: bool,
+        /// Switches N, P, R, S: processes that are suspended, bits of [`single_step`].
+        pub hold: u8,
+        /// Push-buttons T, U, V, W: step a suspended process once, bits of [`single_step`].
+        pub single_step: u8,
+    }
+}
+
+record! {
+    /// Hand and rotary table of the Active Pedestal (III.9, III.10).
+    pub struct PedestalSensors {
+        /// Finger potentiometer, counts.
+        pub potentiometer: u16,
+        /// Strain gage of the left finger, counts.
+        pub strain_left: u16,
+        /// Strain gage of the right finger, counts.
+        pub strain_right: u16,
+        /// Potentiometer in the base of the table, counts: grows with the angle.
+        pub table_potentiometer: u16,
+        /// The table is at its + limit.
+        pub limit_plus: bool,
+        /// The table is at its - limit.
+        pub limit_minus: bool,
+        /// Number of the last order that the rotary table controller has taken.
+        pub motor_echo: u32,
+        /// Its motor turns.
+        pub motor_moving: bool,
+        /// Its step counter: steps from where it was set to a value.
+        pub motor_counter: i32,
+    }
+}
+
+/// Steps of the rotary table's motor for a tenth of a degree (ASSUMED).
+pub const TABLE_STEPS_PER_TENTH: i32 = 10;
+
+coded_enum! {
+    /// What the rotary table controller is told over its serial link (III.10; the words are ASSUMED).
+    pub enum MotorOrder {
+        /// Nothing.
+        None = "",
+        /// Turn by a number of steps; a limit switch stops it.
+        Turn = "turn",
+        /// Give the step counter a value.
+        SetCounter = "set-counter",
+        /// Stop.
+        Stop = "stop",
+    }
+}
+
+record! {
+    /// Order to the rotary table controller.
+    pub struct MotorCommand {
+        /// Changes with each order; 0 means none.
+        pub number: u32,
+        /// What to do.
+        pub order: MotorOrder,
+        /// Steps to turn, or value of the counter.
+        pub steps: i32,
     }
 }
 
@@ -224,10 +363,15 @@ record! {
         pub link_rx: LinkBytes,
         /// The line's clear-to-send (the robot's DTR, A.2).
         pub link_ready: bool,
+        /// The port has not taken all bytes of the last tick: they are not on the line.
+        pub link_unsent: bool,
         /// Joint resolvers.
         pub resolvers: Resolvers,
-        /// Parts gripper; zeros while it is not attached.
+        /// The attached gripper. All three have their potentiometer on the same connections (III.3.7, III.3.8); strain gages and
+        /// beam breaks are the parts gripper's, zeros with another one.
         pub grip: GripSensors,
+        /// Force sensor of the tool gripper; invalid with another one.
+        pub force: ForceSensor,
         /// Quick change.
         pub quick_change: QuickChangeSensors,
         /// Holsters.
@@ -236,6 +380,8 @@ record! {
         pub joystick: JoystickBox,
         /// Vision system.
         pub vision: VisionResponse,
+        /// Active Pedestal.
+        pub pedestal: PedestalSensors,
     }
 }
 
@@ -250,5 +396,15 @@ record! {
         pub quick_change: QuickChangeValves,
         /// Vision system.
         pub vision: VisionRequest,
+        /// v-gripper.
+        pub v_grip: JawValves,
+        /// Tool gripper.
+        pub tool_grip: JawValves,
+        /// LEDs b, c, d, e of the joystick box, bits of [`joystick_frame`].
+        pub joystick_leds: u8,
+        /// Fingers of the pedestal's hand: eight valves as those of the parts gripper (III.9.2).
+        pub pedestal_hand: GripValves,
+        /// Rotary table of the pedestal.
+        pub pedestal_table: MotorCommand,
     }
 }

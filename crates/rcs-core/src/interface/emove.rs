@@ -3,15 +3,15 @@
 use crate::{
     coded_enum,
     interface::{
-        ChangingPose, Header, Reason, Report, device::VisionRequest, grip::GripCommand, prim::PrimCommand,
-        quick_change::QuickChangeCommand, subtask::LocationKind,
+        ChangingPose, Header, Reason, Report, device::VisionRequest, grip::GripCommand, jaws::JawsCommand,
+        prim::PrimCommand, quick_change::QuickChangeCommand, subtask::LocationKind,
     },
     name::{Name10, Name16},
     record,
 };
 
 coded_enum! {
-    /// Commands of E-move (V.2.1), as far as the linkbar needs them.
+    /// Commands of E-move (V.2.1).
     pub enum EmoveVerb {
         /// None yet.
         None = "",
@@ -31,6 +31,22 @@ coded_enum! {
         GraspObj = "GRASP-OBJ",
         /// Open the fingers.
         Release = "RELEASE",
+        /// Move to a holster, fingers closed for it.
+        MovToHol = "MOV-TO-HOL",
+        /// Put the attached gripper into the holster and leave it there.
+        QcDetach = "QC-DETACH",
+        /// Take the gripper out of the holster.
+        QcAttach = "QC-ATTACH",
+        /// A DELTA-MOVE from above.
+        Withdraw = "WITHDRAW",
+        /// Insert a tool into the tool drum.
+        InsertTool = "INSERT-TOOL",
+        /// Let go of a tool in the drum.
+        ReleaseTool = "RELEASE-TOOL",
+        /// Move to a tool in the drum and grasp it.
+        AcquireTool = "ACQUIRE-TOOL",
+        /// Pull a tool out of the drum.
+        RemoveTool = "REMOVE-TOOL",
     }
 }
 
@@ -88,6 +104,18 @@ record! {
     }
 }
 
+record! {
+    /// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.
+    pub struct Dormancy {
+        /// Grip.
+        pub grip: bool,
+        /// V-Grip.
+        pub v_grip: bool,
+        /// Tool-Grip.
+        pub tool_grip: bool,
+    }
+}
+
 /// Changing poses of E-move: the pose departed from, the goal, a point between, and the located object.
 pub const EMOVE_POSES: usize = 4;
 
@@ -104,6 +132,12 @@ record! {
         pub quick_change: QuickChangeCommand,
         /// To Grip.
         pub grip: GripCommand,
+        /// To V-Grip.
+        pub v_grip: JawsCommand,
+        /// To Tool-Grip.
+        pub tool_grip: JawsCommand,
+        /// Which gripper processes are dormant (II.2.3): all but that of the attached gripper.
+        pub dormant: Dormancy,
         /// To the vision system.
         pub vision: VisionRequest,
         /// Departure, goal, point between, located object.

@@ -2,7 +2,7 @@
 
 use crate::{
     coded_enum,
-    interface::{ChangingPose, Header, Reason, subtask::SubtaskCommand},
+    interface::{ChangingPose, Header, Reason, data_base::DataBaseCommand, subtask::SubtaskCommand},
     name::Name16,
     record,
 };
@@ -79,6 +79,8 @@ record! {
         pub status: HwsStatus,
         /// To Subtask.
         pub subtask: SubtaskCommand,
+        /// To the Data System.
+        pub data_base: DataBaseCommand,
         /// T-POSE-1 …: poses that the commands name.
         pub poses: [ChangingPose; TASK_POSES],
     }

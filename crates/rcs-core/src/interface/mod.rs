@@ -5,10 +5,13 @@
 //! `number`, its echo is `echo`, `^-pose` is `pose` and holds a record number. What the manual does not have is marked
 //! *extension*.
 
+pub mod data_base;
 pub mod device;
 pub mod emove;
 pub mod grip;
 pub mod hws;
+pub mod jaws;
+pub mod pedestal;
 pub mod prim;
 pub mod quick_change;
 pub mod subtask;
@@ -17,10 +20,13 @@ pub mod t3i;
 use crate::{coded_enum, handshake::Lower, pose::Pose, record, tick::Tick};
 
 pub use self::{
+    data_base::{DataBaseCommand, DataBaseStatus},
     device::{DeviceInputs, DeviceOutputs},
     emove::EmoveOutputs,
     grip::GripOutputs,
     hws::{HwsCommand, TaskOutputs},
+    jaws::JawsOutputs,
+    pedestal::{PedestalOutputs, TableOutputs},
     prim::PrimOutputs,
     quick_change::QuickChangeOutputs,
     subtask::SubtaskOutputs,
@@ -149,6 +155,46 @@ coded_enum! {
         DataBase = "the data base does not accept the update",
         /// A TRAJ-PARA record with a count that is not positive.
         BadParameters = "the trajectory parameters allow no motion",
+        /// The locking ring is neither locked nor unlocked.
+        QuickChangeStuck = "the locking ring of the quick change is stuck",
+        /// The gripper did not come off.
+        NotDetached = "the gripper did not come off in the holster",
+        /// No gripper came on.
+        NotAttached = "no gripper was attached in the holster",
+        /// The gripper that came on is another one than was expected.
+        WrongGripperId = "the gripper in the holster is not the one expected",
+        /// There is a gripper in a holster that must be empty.
+        HolsterOccupied = "the holster is not empty",
+        /// There is none in a holster that must be full.
+        HolsterEmpty = "no gripper is seated in the holster",
+        /// No holster object for the gripper in the task data.
+        NoHolster = "the task data have no holster for the gripper",
+        /// The task data lack a move of the command at the location.
+        NoRelativeMove = "the task data lack a relative move of the command",
+        /// No such sensor in the task data.
+        UnknownSensor = "the sensor of the guarded move is not in the task data",
+        /// The condition of a GO-UNTIL did not come.
+        NotDetected = "the sensor condition did not come on the way to the goal",
+        /// The condition of a GO-WHILE came.
+        Detected = "the sensor condition came before the goal was reached",
+        /// The fingers stand where nothing wanted them.
+        JawsStuck = "the fingers of the gripper are stuck",
+        /// The pedestal cannot execute its command.
+        PedestalCannot = "the Active Pedestal cannot do what it is asked",
+        /// The pedestal reports an error.
+        PedestalError = "the Active Pedestal reports an error",
+        /// The pedestal does not answer.
+        PedestalSilent = "the Active Pedestal does not answer",
+        /// No PED-PARA record for the object.
+        NoPedestalData = "the task data do not say how the pedestal takes the object",
+        /// The robot does not hold, or is not where, what the command begins with.
+        NotPrepared = "what must precede the command has not been done",
+        /// The Data System does not answer.
+        DataBaseSilent = "the Data System does not answer",
+        /// The table of the pedestal does not turn as it should.
+        TableStuck = "the rotary table of the pedestal does not reach its angle",
+        /// The angle is beyond a limit of the table.
+        TableLimit = "the angle is beyond a limit of the rotary table",
     }
 }
 
@@ -162,6 +208,8 @@ pub mod pose_range {
     pub const EMOVE: u32 = 0x8200_0000;
     /// Records of Prim: present, sensor and detected poses.
     pub const PRIM: u32 = 0x8300_0000;
+    /// Records of Subtask: locations that it names itself.
+    pub const SUBTASK: u32 = 0x8400_0000;
     /// Bits of a record number that name the writer.
     pub const WRITER: u32 = 0xFF00_0000;
 
@@ -200,6 +248,16 @@ record! {
         pub quick_change: QuickChangeOutputs,
         /// Grip.
         pub grip: GripOutputs,
+        /// V-Grip.
+        pub v_grip: JawsOutputs,
+        /// Tool-Grip.
+        pub tool_grip: JawsOutputs,
+        /// Active Pedestal.
+        pub pedestal: PedestalOutputs,
+        /// Hand of the pedestal.
+        pub hand: GripOutputs,
+        /// Rotary table of the pedestal.
+        pub table: TableOutputs,
     }
 }
 
@@ -209,6 +267,7 @@ impl CommonMemory {
     pub fn changing_pose(&self, number: u32) -> Option<&Pose> {
         let records: &[ChangingPose] = match number & pose_range::WRITER {
             pose_range::TASK => &self.task.poses,
+            pose_range::SUBTASK => &self.subtask.poses,
             pose_range::EMOVE => &self.emove.poses,
             pose_range::PRIM => &self.prim.poses,
             _ => return None,
@@ -224,6 +283,11 @@ impl CommonMemory {
             grip: self.grip.valves,
             quick_change: self.quick_change.valves,
             vision: self.emove.vision,
+            v_grip: self.v_grip.valves,
+            tool_grip: self.tool_grip.valves,
+            joystick_leds: self.prim.joystick_leds,
+            pedestal_hand: self.hand.valves,
+            pedestal_table: self.table.motor,
         }
     }
 }
@@ -235,5 +299,7 @@ record! {
         pub hws: HwsCommand,
         /// From the devices.
         pub devices: DeviceInputs,
+        /// From the Data System.
+        pub data_base: DataBaseStatus,
     }
 }

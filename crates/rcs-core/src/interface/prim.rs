@@ -9,7 +9,7 @@ use crate::{
 };
 
 coded_enum! {
-    /// Commands of Prim (V.1.1), as far as the linkbar needs them.
+    /// Commands of Prim (V.1.1).
     pub enum PrimVerb {
         /// None yet.
         None = "",
@@ -21,6 +21,14 @@ coded_enum! {
         GoThru = "GO-THRU",
         /// Move to a point and stop.
         GotoPt = "GOTO-PT",
+        /// Guarded move: move until a sensor condition comes.
+        GoUntil = "GO-UNTIL",
+        /// Move unless a sensor condition comes.
+        GoWhile = "GO-WHILE",
+        /// Move relative to a pose.
+        DeltaMove = "DELTA-MOVE",
+        /// Take the force sensor's reading as no force.
+        CalSensor = "CAL-SENSOR",
     }
 }
 
@@ -93,6 +101,18 @@ impl PrimReport {
     }
 }
 
+coded_enum! {
+    /// `joy-grip-status`: the gripper buttons of the joystick box. The codes are ASSUMED.
+    pub enum JoystickGrip {
+        /// Neither button is pressed.
+        None = "none",
+        /// Open.
+        Open = "open",
+        /// Close.
+        Close = "close",
+    }
+}
+
 record! {
     /// Status from Prim to E-move.
     pub struct PrimStatus {
@@ -119,14 +139,20 @@ record! {
         /// `hol-C-status`.
         pub holster_centre: u8,
         /// `joy-grip-status`.
-        pub joystick_grip: u8,
+        pub joystick_grip: JoystickGrip,
+        /// `pres-pose-^-out` when the record button of the joystick box was pressed last; 0 for never (extension).
+        pub recorded_pose: u32,
+        /// A pose has been recorded: Prim and E-move are suspended until the operator goes on (III.3.3; extension).
+        pub recording: bool,
+        /// What the sensor of the guarded move reads: lb, in lb, or 1 while a switch is on (extension).
+        pub sensed: i32,
         /// Distance to the goal, 0.01 in of path (extension).
         pub distance: i32,
     }
 }
 
-/// Changing poses of Prim: present, sensor, detected.
-pub const PRIM_POSES: usize = 3;
+/// Changing poses of Prim: present, sensor, detected, recorded.
+pub const PRIM_POSES: usize = 4;
 
 record! {
     /// Output buffers of Prim.
@@ -137,7 +163,9 @@ record! {
         pub status: PrimStatus,
         /// To T3I.
         pub t3i: T3iCommand,
-        /// Present, sensor and detected pose.
+        /// LEDs b, c, d, e of the joystick box.
+        pub joystick_leds: u8,
+        /// Present, sensor, detected and recorded pose.
         pub poses: [ChangingPose; PRIM_POSES],
     }
 }

@@ -8,12 +8,16 @@ use crate::{
 };
 
 coded_enum! {
-    /// Commands of Quick Change (VI.2.1), as far as the linkbar needs them.
+    /// Commands of Quick Change (VI.2.1).
     pub enum QuickChangeVerb {
         /// None yet.
         None = "",
         /// Do nothing; sensors and id are read.
         Pause = "QC-PAUSE",
+        /// Lock, check, disable the port.
+        Lock = "QC-LOCK",
+        /// Unlock and check.
+        Unlock = "QC-UNLOCK",
     }
 }
 

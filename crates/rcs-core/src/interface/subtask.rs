@@ -2,13 +2,13 @@
 
 use crate::{
     coded_enum,
-    interface::{Header, Reason, Report, emove::EmoveCommand},
+    interface::{ChangingPose, Header, Reason, Report, emove::EmoveCommand, pedestal::PedestalCommand},
     name::{Name10, Name16},
     record,
 };
 
 coded_enum! {
-    /// Commands of Subtask (V.3.1), as far as the linkbar needs them.
+    /// Commands of Subtask (V.3.1).
     pub enum SubtaskVerb {
         /// None yet.
         None = "",
@@ -30,6 +30,16 @@ coded_enum! {
         Position = ">POSITION",
         /// Open the gripper.
         Release = "RELEASE",
+        /// Regrip the object with the Active Pedestal.
+        FixGrip = "FIX-GRIP",
+        /// Insert a tool into the tool drum.
+        InsertTool = "INSERT-TOOL",
+        /// Let go of a tool in the drum.
+        ReleaseTool = "RELEASE-TOOL",
+        /// Move to a tool in the drum and grasp it.
+        AcquireTool = "ACQUIRE-TOOL",
+        /// Pull a tool out of the drum.
+        RemoveTool = "REMOVE-TOOL",
     }
 }
 
@@ -97,6 +107,9 @@ record! {
     }
 }
 
+/// Changing poses of Subtask: the location that it names itself (holster, pedestal), one after the other.
+pub const SUBTASK_POSES: usize = 2;
+
 record! {
     /// Output buffers of Subtask.
     pub struct SubtaskOutputs {
@@ -106,5 +119,9 @@ record! {
         pub status: SubtaskStatus,
         /// To E-move.
         pub emove: EmoveCommand,
+        /// To the Active Pedestal.
+        pub pedestal: PedestalCommand,
+        /// Poses of locations that no Task command names.
+        pub poses: [ChangingPose; SUBTASK_POSES],
     }
 }

@@ -5,12 +5,13 @@ use rcs_core::{frame::Frame, movetable::Movetable, name::Name};
 use super::{
     ids::{
         ArrayId, EndEffId, LocptId, MovtabId, ObjGripsId, ObjectId, OwnerId, PathId, PedParaId, PoseId,
-        TrajId, TrajParaId,
+        SensorId, TrajId, TrajParaId,
     },
     index::{Index, grip_key, name_key, object_key},
     records::{
         ApprDept, Array, EndEffPara, FoundEndEff, FoundPedPara, GripLoc, Locpt, Member, MovtabRecord,
-        ObjGrips, ObjLoc, Object, Owner, Path, PathPoint, PedPara, PoseRecord, Traj, TrajPara, VisionPara,
+        ObjGrips, ObjLoc, Object, Owner, Path, PathPoint, PedPara, PoseRecord, RelativeMove, SensorPara,
+        Traj, TrajPara, VisionPara,
     },
 };
 
@@ -55,6 +56,10 @@ pub struct TaskData<'a> {
     pub visions: &'a [VisionPara],
     /// The file of the approach/depart form.
     pub appr_depts: &'a [ApprDept],
+    /// SENSOR-PARA (extension).
+    pub sensors: &'a [SensorPara],
+    /// REL-MOVES (extension).
+    pub relative_moves: &'a [RelativeMove],
     /// The indexes.
     pub indexes: Indexes<'a>,
 }
@@ -94,6 +99,10 @@ pub struct Indexes<'a> {
     pub visions: Index<'a>,
     /// Approaches and departs by direction, subject, grip and location.
     pub appr_depts: Index<'a>,
+    /// SENSOR-PARA by name.
+    pub sensors: Index<'a>,
+    /// REL-MOVES by name.
+    pub relative_moves: Index<'a>,
 }
 
 impl<'a> TaskData<'a> {
@@ -241,6 +250,12 @@ impl<'a> TaskData<'a> {
         let object = self.object_named(object)?;
         let id = PedParaId::new(self.indexes.ped_paras.find(object_key(object))?);
         Some((id, id.of(self.ped_paras)?))
+    }
+
+    /// The sensor of a name (extension).
+    #[must_use]
+    pub fn sensor<const N: usize>(&self, name: &Name<N>) -> Option<&'a SensorPara> {
+        SensorId::new(self.indexes.sensors.find(name_key(name))?).of(self.sensors)
     }
 }
 

@@ -104,6 +104,10 @@ record_numbers! {
     VisionId;
     /// Record number in the file of the approach/depart form (VII.7.7), which the manual does not name.
     ApprDeptId;
+    /// Record number in SENSOR-PARA (extension).
+    SensorId;
+    /// Record number in REL-MOVES (extension).
+    RelativeMoveId;
 }
 
 #[cfg(test)]

@@ -21,11 +21,12 @@ pub mod records;
 pub use data::TaskData;
 pub use ids::{
     ApprDeptId, ArrayId, EndEffId, GripLocId, LocptId, MovtabId, ObjGripsId, ObjLocId, ObjectId, OwnerId,
-    PathId, PedParaId, PoseId, TrajId, TrajParaId, VisionId,
+    PathId, PedParaId, PoseId, RelativeMoveId, SensorId, TrajId, TrajParaId, VisionId,
 };
 pub use index::Index;
 pub use locations::{Location, LookupError, Place};
 pub use records::{
     ApprDept, Array, Direction, EndEffPara, GripLoc, Locpt, Member, MovtabRecord, ObjGrips, ObjLoc, Object,
-    Owner, Path, PathPoint, PedPara, PoseRecord, RefType, Reference, Target, Traj, TrajPara, VisionPara,
+    Owner, Path, PathPoint, PedPara, PoseRecord, RefType, Reference, RelativeMove, SensorPara, SensorSource,
+    Target, Traj, TrajPara, VisionPara,
 };

@@ -11,10 +11,10 @@ use rcs_core::{
 
 use super::{
     data::TaskData,
-    ids::{ApprDeptId, GripLocId, MovtabId, ObjectId, PathId, TrajId, VisionId},
-    index::{approach_key, grip_at_key, object_at_key, pair_key},
+    ids::{ApprDeptId, GripLocId, MovtabId, ObjectId, PathId, RelativeMoveId, TrajId, VisionId},
+    index::{approach_key, grip_at_key, name_key, object_at_key, pair_key},
     locations::{Location, LookupError, Place},
-    records::{Direction, PathPoint, RefType, Reference, Target, VisionPara},
+    records::{Direction, PathPoint, RefType, Reference, RelativeMove, Target, VisionPara},
 };
 
 impl<'a> TaskData<'a> {
@@ -138,6 +138,14 @@ impl<'a> TaskData<'a> {
 
     fn appr_dept_path(&self, number: u32) -> Option<PathId> {
         ApprDeptId::new(number).of(self.appr_depts).map(|record| record.path)
+    }
+
+    /// The relative move that a command looks for at a place (extension).
+    #[must_use]
+    pub fn relative_move<const N: usize>(&self, name: &Name<N>, place: &Place) -> Option<&'a RelativeMove> {
+        let numbers = self.indexes.relative_moves.all(name_key(name));
+        let moves = numbers.iter().filter_map(|&number| RelativeMoveId::new(number).of(self.relative_moves));
+        self.at_place(place, |at| moves.clone().find(|entry| entry.at == at))
     }
 
     /// The intermediate trajectory from one place to another (VII.6): exact names first, then through the owner of the

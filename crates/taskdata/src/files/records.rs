@@ -365,6 +365,57 @@ record! {
     }
 }
 
+coded_enum! {
+    /// What a guarded move watches (III.3.4, III.3.6, III.3.8). The words are ours: the manual has no form for sensors.
+    pub enum SensorSource {
+        /// Force along the tool's X.
+        Fx = "fx",
+        /// Force along the tool's Y.
+        Fy = "fy",
+        /// Force along the tool's Z.
+        Fz = "fz",
+        /// Moment about the tool's Y.
+        My = "my",
+        /// Large holster sensors: the ears are near.
+        Near = "near",
+        /// Small holster sensors: the ears are seated.
+        Seated = "seated",
+        /// A beam between the fingers is broken.
+        Beam = "beam",
+    }
+}
+
+record! {
+    /// SENSOR-PARA: a sensor that Prim can watch by name (V.1.2 `"sensor"`). An extension: the manual keeps thresholds in code.
+    pub struct SensorPara {
+        /// Name of the sensor.
+        pub name: Name10,
+        /// What is watched.
+        pub source: SensorSource,
+        /// Which holster, 1 right, 2 left, 3 centre; which beam, 1 to 8, 0 for any; 0 for forces.
+        pub which: i32,
+        /// Forces only: the condition holds at this value or beyond it, away from 0; lb or in lb on the tool, sign included.
+        pub threshold: i32,
+    }
+}
+
+record! {
+    /// REL-MOVES: a relative motion of a command at a location, and the sensor that guards it. An extension: the manual keeps
+    /// those of holsters and tool drum in code.
+    pub struct RelativeMove {
+        /// What the motion is for: a name that a command of E-move looks for.
+        pub name: Name10,
+        /// Where it applies: location point, array, owner or `$$$`.
+        pub at: Reference,
+        /// Where it leads, from the pose that the command names as the start.
+        pub movetable: MovtabId,
+        /// Its parameters.
+        pub para: TrajParaId,
+        /// Sensor of a guarded move, a name of SENSOR-PARA; empty for none.
+        pub sensor: Name10,
+    }
+}
+
 /// A record with its number, as look-ups of parameters return it.
 pub type Numbered<'a, Id, T> = Option<(Id, &'a T)>;
 /// END-EFF-PARA with its number.

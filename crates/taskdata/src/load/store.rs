@@ -2,7 +2,8 @@
 
 use crate::files::{
     ApprDept, Array, EndEffPara, GripLoc, Index, Locpt, Member, MovtabRecord, ObjGrips, ObjLoc, Object,
-    Owner, Path, PathPoint, PedPara, PoseRecord, TaskData, Traj, TrajPara, VisionPara, data::Indexes,
+    Owner, Path, PathPoint, PedPara, PoseRecord, RelativeMove, SensorPara, TaskData, Traj, TrajPara,
+    VisionPara, data::Indexes,
 };
 
 use super::{report::Loaded, source::Source};
@@ -31,6 +32,8 @@ pub(super) struct Files {
     pub grip_locs: Vec<GripLoc>,
     pub visions: Vec<VisionPara>,
     pub appr_depts: Vec<ApprDept>,
+    pub sensors: Vec<SensorPara>,
+    pub relative_moves: Vec<RelativeMove>,
 }
 
 /// An index, owned.
@@ -72,6 +75,8 @@ pub(super) struct SortedIndexes {
     pub grip_locs: Sorted,
     pub visions: Sorted,
     pub appr_depts: Sorted,
+    pub sensors: Sorted,
+    pub relative_moves: Sorted,
 }
 
 /// Loaded task data: the files, their indexes and the text that they came from.
@@ -106,6 +111,8 @@ impl Store {
             grip_locs: &files.grip_locs,
             visions: &files.visions,
             appr_depts: &files.appr_depts,
+            sensors: &files.sensors,
+            relative_moves: &files.relative_moves,
             indexes: Indexes {
                 poses: indexes.poses.view(),
                 movetables: indexes.movetables.view(),
@@ -123,6 +130,8 @@ impl Store {
                 grip_locs: indexes.grip_locs.view(),
                 visions: indexes.visions.view(),
                 appr_depts: indexes.appr_depts.view(),
+                sensors: indexes.sensors.view(),
+                relative_moves: indexes.relative_moves.view(),
             },
         }
     }
@@ -154,6 +163,8 @@ impl Store {
             ("GRIP-LOC", f.grip_locs.len()),
             ("VISION-PARA", f.visions.len()),
             ("APPR-DEPT", f.appr_depts.len()),
+            ("SENSOR-PARA", f.sensors.len()),
+            ("REL-MOVES", f.relative_moves.len()),
         ]
         .map(|(file, records)| Loaded { file, records })
         .to_vec()

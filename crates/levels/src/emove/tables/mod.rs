@@ -211,7 +211,16 @@ pub type Choice = crate::execution::Choice<Action>;
 #[must_use]
 pub fn decide(verb: EmoveVerb, step: u8, s: &Situation) -> Choice {
     match verb {
-        EmoveVerb::None | EmoveVerb::Pause => pause::consult(step, s),
+        EmoveVerb::None
+        | EmoveVerb::Pause
+        | EmoveVerb::MovToHol
+        | EmoveVerb::QcDetach
+        | EmoveVerb::QcAttach
+        | EmoveVerb::Withdraw
+        | EmoveVerb::InsertTool
+        | EmoveVerb::ReleaseTool
+        | EmoveVerb::AcquireTool
+        | EmoveVerb::RemoveTool => pause::consult(step, s),
         EmoveVerb::MovToLoc => mov_to_loc::consult(step, s),
         EmoveVerb::MovToObj | EmoveVerb::MovToVu => mov_to_obj::consult(step, s),
         EmoveVerb::MovObjTo => mov_obj_to::consult(step, s),

@@ -132,7 +132,12 @@ pub type Choice = crate::execution::Choice<Action>;
 #[must_use]
 pub fn decide(verb: PrimVerb, step: u8, s: &Situation) -> Choice {
     match verb {
-        PrimVerb::None | PrimVerb::Pause => pause::consult(step, s),
+        PrimVerb::None
+        | PrimVerb::Pause
+        | PrimVerb::GoUntil
+        | PrimVerb::GoWhile
+        | PrimVerb::DeltaMove
+        | PrimVerb::CalSensor => pause::consult(step, s),
         PrimVerb::RobotInit => robot_init::consult(step, s),
         PrimVerb::GoThru => go_thru::consult(step, s),
         PrimVerb::GotoPt => goto_pt::consult(step, s),

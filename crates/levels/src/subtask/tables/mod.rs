@@ -110,7 +110,13 @@ pub type Choice = crate::execution::Choice<Action>;
 #[must_use]
 pub fn decide(verb: SubtaskVerb, step: u8, s: &Situation) -> Choice {
     match verb {
-        SubtaskVerb::None | SubtaskVerb::Pause => pause::consult(step, s),
+        SubtaskVerb::None
+        | SubtaskVerb::Pause
+        | SubtaskVerb::FixGrip
+        | SubtaskVerb::InsertTool
+        | SubtaskVerb::ReleaseTool
+        | SubtaskVerb::AcquireTool
+        | SubtaskVerb::RemoveTool => pause::consult(step, s),
         SubtaskVerb::GetEndeff => get_endeff::consult(s),
         SubtaskVerb::GetObject => get_object::consult(step, s),
         SubtaskVerb::PlaceObj => place_obj::consult(step, s),

@@ -1,0 +1,78 @@
+//! Task and the Data System (IV.4.2, IX.2): what is asked of it, apart from how it travels.
+
+use crate::{
+    coded_enum,
+    handshake::Lower,
+    name::{Name10, Name16},
+    record,
+};
+
+coded_enum! {
+    /// What Task asks of the Data System.
+    pub enum DataBaseVerb {
+        /// Nothing yet.
+        None = "",
+        /// End whatever transaction is open (reconfiguration command).
+        Abort = "ABORT",
+        /// Make this client known (reconfiguration command).
+        Initiate = "INITIATE",
+        /// Begin to take commands (reconfiguration command).
+        Startup = "STARTUP",
+        /// UPDATE EQUIP_ITEM_ACTION: where an item now is.
+        Update = "UPDATE",
+    }
+}
+
+record! {
+    /// Command from Task to the Data System: the fields of the DML string that Task stuffs (IX.2).
+    pub struct DataBaseCommand {
+        /// Command number.
+        pub number: u32,
+        /// What to do.
+        pub command: DataBaseVerb,
+        /// `ITEM-NAME`: the object.
+        pub item: Name16,
+        /// `ITEM#`: its serial number.
+        pub serial: Name16,
+        /// `STORAGE-POS`: the location where the item now is; `H_ROBOT` while the robot has it.
+        pub position: Name10,
+        /// `SECTOR#`: sector there; 0 for none.
+        pub sector: i32,
+    }
+}
+
+coded_enum! {
+    /// What the Data System makes of the last command: server status and summary status (IX.2), read together.
+    pub enum DataBaseReport {
+        /// Nothing was asked yet (extension).
+        Idle = "idle",
+        /// The command is executing.
+        Executing = "executing",
+        /// It is done.
+        Done = "done",
+        /// It was refused.
+        Refused = "refused",
+    }
+}
+
+impl DataBaseReport {
+    /// The report as a state variable of Task.
+    #[must_use]
+    pub const fn lower(self) -> Lower {
+        match self {
+            Self::Idle | Self::Done => Lower::Done,
+            Self::Executing => Lower::Executing,
+            Self::Refused => Lower::Error,
+        }
+    }
+}
+
+record! {
+    /// Status from the Data System to Task.
+    pub struct DataBaseStatus {
+        /// Number of the command that is answered.
+        pub echo: u32,
+        /// What became of it.
+        pub report: DataBaseReport,
+    }
+}
