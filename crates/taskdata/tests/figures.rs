@@ -75,6 +75,8 @@ fn kind(entry: &Entry) -> &'static str {
         Entry::Grip(_) => "grip",
         Entry::View(_) => "view",
         Entry::ApprDept(_) => "approach or depart",
+        Entry::Sensor(_) => "sensor",
+        Entry::Relative(_) => "relative move",
     }
 }
 

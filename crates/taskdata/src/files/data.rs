@@ -101,7 +101,7 @@ pub struct Indexes<'a> {
     pub appr_depts: Index<'a>,
     /// SENSOR-PARA by name.
     pub sensors: Index<'a>,
-    /// REL-MOVES by name.
+    /// REL-MOVES by name and location.
     pub relative_moves: Index<'a>,
 }
 

@@ -124,6 +124,15 @@ pub fn approach_key(direction: Direction, subject: Reference, grip: i32, at: Ref
         | u128::from(at.number)
 }
 
+/// The key of a relative move: its name and location. `None` for a name of more than ten characters, which no relative move
+/// has.
+#[must_use]
+pub fn relative_key<const N: usize>(name: &Name<N>, at: Reference) -> Option<u128> {
+    // Ten characters leave the 48 bits free in which a reference lies.
+    let name = name_key(name);
+    (name & ((1 << 48) - 1) == 0).then(|| name | reference_bits(at))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

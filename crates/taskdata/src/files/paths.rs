@@ -12,7 +12,7 @@ use rcs_core::{
 use super::{
     data::TaskData,
     ids::{ApprDeptId, GripLocId, MovtabId, ObjectId, PathId, RelativeMoveId, TrajId, VisionId},
-    index::{approach_key, grip_at_key, name_key, object_at_key, pair_key},
+    index::{approach_key, grip_at_key, object_at_key, pair_key, relative_key},
     locations::{Location, LookupError, Place},
     records::{Direction, PathPoint, RefType, Reference, RelativeMove, Target, VisionPara},
 };
@@ -143,9 +143,8 @@ impl<'a> TaskData<'a> {
     /// The relative move that a command looks for at a place (extension).
     #[must_use]
     pub fn relative_move<const N: usize>(&self, name: &Name<N>, place: &Place) -> Option<&'a RelativeMove> {
-        let numbers = self.indexes.relative_moves.all(name_key(name));
-        let moves = numbers.iter().filter_map(|&number| RelativeMoveId::new(number).of(self.relative_moves));
-        self.at_place(place, |at| moves.clone().find(|entry| entry.at == at))
+        let number = self.at_place(place, |at| self.indexes.relative_moves.find(relative_key(name, at)?))?;
+        RelativeMoveId::new(number).of(self.relative_moves)
     }
 
     /// The intermediate trajectory from one place to another (VII.6): exact names first, then through the owner of the

@@ -385,6 +385,14 @@ coded_enum! {
     }
 }
 
+impl SensorSource {
+    /// True for a force or moment of the tool gripper, which has a threshold; the others are switches.
+    #[must_use]
+    pub const fn is_force(self) -> bool {
+        matches!(self, Self::Fx | Self::Fy | Self::Fz | Self::My)
+    }
+}
+
 record! {
     /// SENSOR-PARA: a sensor that Prim can watch by name (V.1.2 `"sensor"`). An extension: the manual keeps thresholds in code.
     pub struct SensorPara {

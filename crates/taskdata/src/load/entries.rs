@@ -2,7 +2,7 @@
 
 use rcs_core::{movetable::Line, name::Name};
 
-use crate::files::{Direction, RefType, TrajPara};
+use crate::files::{Direction, RefType, SensorSource, TrajPara};
 
 use super::source::{At, BlockNumber};
 
@@ -191,6 +191,36 @@ pub struct ApprDeptEntry {
     pub at: At,
 }
 
+/// `-sen-` (extension): a sensor of a guarded move.
+#[derive(Clone, Debug)]
+pub struct SensorEntry {
+    /// Name.
+    pub name: Named<10>,
+    /// What is watched.
+    pub source: SensorSource,
+    /// Which holster or beam.
+    pub which: i32,
+    /// Threshold of a force or moment.
+    pub threshold: i32,
+}
+
+/// `-rel-` (extension): a relative move of a command at a location.
+#[derive(Clone, Debug)]
+pub struct RelativeEntry {
+    /// Name that a command looks for.
+    pub name: Named<10>,
+    /// Where it applies.
+    pub place: Typed,
+    /// Parameters.
+    pub para: TrajPara,
+    /// Where it leads.
+    pub movetable: Named<10>,
+    /// Sensor of a guarded move.
+    pub sensor: Option<Named<10>>,
+    /// The whole entry.
+    pub at: At,
+}
+
 /// An entry of any form.
 #[derive(Clone, Debug)]
 pub enum Entry {
@@ -222,6 +252,10 @@ pub enum Entry {
     View(ViewEntry),
     /// VII.7.7.
     ApprDept(ApprDeptEntry),
+    /// Extension: sensors of guarded moves.
+    Sensor(SensorEntry),
+    /// Extension: relative moves.
+    Relative(RelativeEntry),
 }
 
 /// A `n load` or `offset n OLOAD` of a directory block (VIII.9, IV.2.8).

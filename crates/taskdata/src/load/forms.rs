@@ -38,7 +38,8 @@ const FACTOR: RangeInclusive<i32> = 1..=1000;
 /// `brk-dst`, 0.01 in.
 const BREAK_DISTANCE: RangeInclusive<i32> = 0..=5000;
 
-const PLACES: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Owner, RefType::Any];
+/// Types of the locations at which an entry can apply.
+pub(super) const PLACES: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Owner, RefType::Any];
 const ENDS: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Owner];
 const MEMBERS: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Pose];
 const ASSIGNED: &[RefType] = &[RefType::Array, RefType::LocationPoint];
@@ -186,16 +187,21 @@ pub fn trajectory(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
 fn points(p: &mut Parser<'_, '_>) -> Result<Vec<PointEntry>, Skip> {
     let mut points = Vec::new();
     while let Some(word) = p.take_if("-ppt") {
-        let para = TrajPara {
-            acc_fac: p.integer("acc-fac", FACTOR)?,
-            vel_max: p.integer("vel-max", VELOCITY)?,
-            smooth: p.integer("smooth-acc", FACTOR)?,
-            brk_dst: p.integer("brk-dst", BREAK_DISTANCE)?,
-        };
+        let para = parameters(p)?;
         let target = if p.take_if("stop").is_some() { None } else { Some(p.typed("path point", POINTS)?) };
         points.push(PointEntry { para, target, at: word.at.to(p.last_at()) });
     }
     Ok(points)
+}
+
+/// The four parameters of a segment (VII.6).
+pub fn parameters(p: &mut Parser<'_, '_>) -> Result<TrajPara, Skip> {
+    Ok(TrajPara {
+        acc_fac: p.integer("acc-fac", FACTOR)?,
+        vel_max: p.integer("vel-max", VELOCITY)?,
+        smooth: p.integer("smooth-acc", FACTOR)?,
+        brk_dst: p.integer("brk-dst", BREAK_DISTANCE)?,
+    })
 }
 
 /// `-obj-` (VII.7.1).

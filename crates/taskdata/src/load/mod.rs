@@ -3,7 +3,7 @@
 //! The stages are one module each, and every stage goes on after an error, so that one load shows all that is wrong:
 //!
 //! 1. [`source`]: files into blocks; [`lex`]: blocks into words;
-//! 2. [`parse`] and [`forms`]: words into [`entries`];
+//! 2. [`parse`], [`forms`] and [`guarded`]: words into [`entries`];
 //! 3. [`directory`]: which blocks are loaded at all (Figure VIII.12);
 //! 4. `link`: names into record numbers, duplicates, unknown names;
 //! 5. `check`: geometry: every place the robot is sent to can be reached;
@@ -15,6 +15,7 @@ mod check;
 pub mod directory;
 pub mod entries;
 pub mod forms;
+pub mod guarded;
 pub mod job;
 pub mod lex;
 mod link;

@@ -12,7 +12,7 @@ use crate::files::RefType;
 
 use super::{
     entries::{Entry, LoadLine, Named, Typed},
-    forms,
+    forms, guarded,
     lex::Word,
     names::nearest,
     report::Problems,
@@ -37,6 +37,8 @@ pub const COMPILING_WORDS: &[&str] = &[
     "-vu-",
     "-appr",
     "-dept",
+    "-sen-",
+    "-rel-",
     ":S",
     ":R",
     ">FILE",
@@ -50,7 +52,7 @@ pub const COMPILING_WORDS: &[&str] = &[
 ];
 
 /// Words with which an entry can begin.
-const BEGINNINGS: &[&str] = &[
+pub const BEGINNINGS: &[&str] = &[
     "-pt-",
     "-arr-",
     "-ar-",
@@ -62,6 +64,8 @@ const BEGINNINGS: &[&str] = &[
     "-vu-",
     "-appr",
     "-dept",
+    "-sen-",
+    "-rel-",
     ":S",
     "FDEF",
     "ERASE-MOVTAB",
@@ -295,6 +299,8 @@ impl<'a> Parser<'a, '_> {
             "-grip-" => forms::grip(self).map(Some),
             "-vu-" => forms::view(self).map(Some),
             "-appr" | "-dept" => forms::approach_depart(self, word).map(Some),
+            "-sen-" => guarded::sensor(self).map(Some),
+            "-rel-" => guarded::relative_move(self).map(Some),
             ":S" => forms::show(self).map(Some),
             "==" => {
                 self.problems.error_help(

@@ -3,6 +3,7 @@
 //! All names are declared before any is looked up, so the order of blocks does not matter. One sorted index a file finds
 //! both the names and the duplicates: equal keys come to lie side by side.
 
+mod guarded;
 mod objects;
 mod places;
 
@@ -19,7 +20,7 @@ use crate::files::{
 use super::{
     entries::{
         ApprDeptEntry, ArrayEntry, Entry, GripEntry, MovetableEntry, Named, ObjLocEntry, ObjectEntry,
-        OwnerEntry, PointAt, PoseEntry, ShowEntry, TrajEntry, Typed, ViewEntry,
+        OwnerEntry, PointAt, PoseEntry, RelativeEntry, SensorEntry, ShowEntry, TrajEntry, Typed, ViewEntry,
     },
     names::nearest,
     report::{Problems, Severity},
@@ -37,6 +38,7 @@ pub(super) struct Origins {
     pub visions: Vec<At>,
     pub appr_depts: Vec<At>,
     pub path_points: Vec<At>,
+    pub relative_moves: Vec<At>,
 }
 
 /// The entries of all blocks, by form.
@@ -56,6 +58,8 @@ struct Forms {
     grips: Vec<GripEntry>,
     views: Vec<ViewEntry>,
     appr_depts: Vec<ApprDeptEntry>,
+    sensors: Vec<SensorEntry>,
+    relative_moves: Vec<RelativeEntry>,
 }
 
 impl Forms {
@@ -77,6 +81,8 @@ impl Forms {
                 Entry::Grip(e) => forms.grips.push(e),
                 Entry::View(e) => forms.views.push(e),
                 Entry::ApprDept(e) => forms.appr_depts.push(e),
+                Entry::Sensor(e) => forms.sensors.push(e),
+                Entry::Relative(e) => forms.relative_moves.push(e),
             }
         }
         forms
@@ -115,6 +121,7 @@ pub(super) fn link(
     linker.declare(&forms);
     linker.places(&forms);
     linker.objects(&forms);
+    linker.guarded_moves(&forms);
     linker.index_pairs();
     linker.check_full();
     (linker.files, linker.indexes, linker.origins)

@@ -180,7 +180,8 @@ impl Linker<'_> {
         }
     }
 
-    fn para(&mut self, para: TrajPara) -> TrajParaId {
+    /// The record of parameters; equal ones share it.
+    pub(super) fn para(&mut self, para: TrajPara) -> TrajParaId {
         let next = TrajParaId::at(self.files.traj_paras.len());
         let id = *self.paras.entry([para.acc_fac, para.vel_max, para.smooth, para.brk_dst]).or_insert(next);
         if id == next {

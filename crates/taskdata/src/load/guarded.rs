@@ -1,0 +1,82 @@
+//! Forms that the manual does not have: sensors of guarded moves, and the relative moves of holsters and tool drum.
+//!
+//! The manual keeps both in code (V.1.1, V.3.1); here they are data like everything else that depends on the cell. The
+//! forms are written in the manual's manner:
+//!
+//! ```text
+//! ( -sen-  "sensor"   source  which  threshold )
+//!   -sen-  HOL-R-NEAR near    1      0
+//!   -sen-  INS-FX     fx      0      -60
+//! ( -rel-  "name"     type "loc-name"  acc  vel  smoo  brk  "mov-name" {"sensor"} )
+//!   -rel-  INS-IN     lpt  TOOL-TRNS   4    10   10    0    T-IN       INS-FX
+//! ```
+
+use std::ops::RangeInclusive;
+
+use crate::files::SensorSource;
+
+use super::{
+    entries::{Entry, RelativeEntry, SensorEntry},
+    forms::{PLACES, parameters},
+    names::nearest,
+    parse::{BEGINNINGS, COMPILING_WORDS, Parser, Skip, is_integer},
+};
+
+/// A threshold, lb or in lb: well beyond what the tool gripper may press with.
+const THRESHOLD: RangeInclusive<i32> = -1000..=1000;
+/// The holsters right, left and centre.
+const HOLSTER: RangeInclusive<i32> = 1..=3;
+/// One of the eight beams, or 0 for any (III.3.4).
+const BEAM: RangeInclusive<i32> = 0..=8;
+
+/// `-sen- "sensor" source which threshold`.
+pub(super) fn sensor(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    let name = p.name("name of the sensor")?;
+    let Some(source) = p.peek().and_then(|w| SensorSource::from_text(w.text)) else {
+        let words: Vec<&str> = SensorSource::ALL.iter().map(|s| s.text()).collect();
+        let skip = p.expected(&format!("source of the sensor ({})", words.join(", ")));
+        return Err(skip);
+    };
+    p.take();
+    let which = match source {
+        SensorSource::Near | SensorSource::Seated => p.integer("holster", HOLSTER)?,
+        SensorSource::Beam => p.integer("beam", BEAM)?,
+        SensorSource::Fx | SensorSource::Fy | SensorSource::Fz | SensorSource::My => {
+            p.integer("which (nothing to choose for a force)", 0..=0)?
+        }
+    };
+    let threshold = if source.is_force() {
+        let threshold = p.integer("threshold", THRESHOLD)?;
+        if threshold == 0 {
+            let message = format!("the threshold of {} is 0: it would always hold", name.name);
+            let help = "give the force in lb or the moment in in lb at which the move ends, with its sign";
+            p.flaw("sensor.threshold", p.last_at(), message, Some(help.to_owned()));
+        }
+        threshold
+    } else {
+        p.integer("threshold (a switch has none)", 0..=0)?
+    };
+    Ok(Entry::Sensor(SensorEntry { name, source, which, threshold }))
+}
+
+/// `-rel- "name" loc-type "loc-name" acc-fac vel-max smooth-acc brk-dst "mov-name" {"sensor"}`.
+pub(super) fn relative_move(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    let name = p.name::<10>("name of the relative move")?;
+    let place = p.typed("location", PLACES)?;
+    let para = parameters(p)?;
+    let movetable = p.name("movetable")?;
+    let sensor = if sensor_follows(p) { Some(p.name("sensor")?) } else { None };
+    let at = name.at.to(p.last_at());
+    Ok(Entry::Relative(RelativeEntry { name, place, para, movetable, sensor, at }))
+}
+
+/// True if the next word can be a sensor's name: neither the beginning of another entry, misspelt or not, nor a heading.
+fn sensor_follows(p: &Parser<'_, '_>) -> bool {
+    p.peek().is_some_and(|word| {
+        let text = word.text;
+        !is_integer(text)
+            && !text.starts_with('"')
+            && !COMPILING_WORDS.contains(&text)
+            && nearest(text, BEGINNINGS.iter().copied()).is_none()
+    })
+}
