@@ -11,6 +11,7 @@
 pub mod alloc;
 pub mod clock;
 pub mod failure;
+pub mod generations;
 pub mod histogram;
 pub mod hwsc;
 pub mod memory;

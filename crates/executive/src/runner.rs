@@ -105,6 +105,7 @@ impl<L> Runner<L> {
         if let Some(publisher) = &mut self.publisher {
             let pulse = Pulse {
                 tick: self.tick,
+                generation: external.generation,
                 skipped,
                 allocations: alloc::allocations() - self.allocations_at_start,
                 controller_ns: self.last_ns,

@@ -34,7 +34,11 @@ fn with_stamp(tick: u64) -> (ExternalInputs, CommonMemory, Pulse) {
     external.hws.number = u32::try_from(tick.0).unwrap();
     external.hws.object = Name16::new("LINKBAR1_BH").unwrap();
     external.devices.joystick.velocity = 1000;
-    (external, memory, Pulse { tick, skipped: 3, allocations: 0, controller_ns: 4711, over: false })
+    (
+        external,
+        memory,
+        Pulse { tick, generation: 0, skipped: 3, allocations: 0, controller_ns: 4711, over: false },
+    )
 }
 
 fn traces(name: &RunName) -> Vec<String> {

@@ -108,6 +108,14 @@ pub enum ReplayError {
         /// What is wrong with them.
         source: rcs_core::record::DecodeError,
     },
+    /// A tick uses task data that are not in the log.
+    #[error("tick {tick} uses generation {generation} of the task data, which is not in the log")]
+    Generation {
+        /// The tick.
+        tick: u64,
+        /// The generation.
+        generation: u32,
+    },
     /// The attached task data does not load.
     #[error("the attached task data does not load:\n{0}")]
     TaskData(String),

@@ -58,6 +58,8 @@ pub struct Attachment {
 impl Attachment {
     /// Directory of the task data among the attachments.
     pub const TASK_DATA: &'static str = "taskdata/";
+    /// Directory of what was loaded while the robot ran: `reload/<generation>/` and the name of the file.
+    pub const RELOAD: &'static str = "reload/";
     /// Name of the job.
     pub const JOB: &'static str = "job";
     /// Name of the cell description.
@@ -80,6 +82,28 @@ impl Attachment {
             .iter()
             .map(|source| Self::text(&format!("{}{}", Self::TASK_DATA, source.name), &source.text))
             .collect()
+    }
+
+    /// Blocks that make a new generation of the task data.
+    #[must_use]
+    pub fn reload(generation: u32, sources: &[Source]) -> Vec<Self> {
+        sources
+            .iter()
+            .map(|source| Self::text(&format!("{}{generation}/{}", Self::RELOAD, source.name), &source.text))
+            .collect()
+    }
+
+    /// The generation and the source of a [`Attachment::reload`]; `None` for other attachments.
+    #[must_use]
+    pub fn as_reload(&self) -> Option<(u32, Source)> {
+        let (generation, name) = self.name.strip_prefix(Self::RELOAD)?.split_once('/')?;
+        Some((generation.parse().ok()?, self.source(name)))
+    }
+
+    /// The text of the attachment, as task data.
+    #[must_use]
+    pub fn source(&self, name: &str) -> Source {
+        Source { name: name.to_owned(), text: String::from_utf8_lossy(&self.data).into_owned().into() }
     }
 }
 

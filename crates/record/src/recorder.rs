@@ -29,7 +29,7 @@ use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::{
     error::RecordError,
-    input::{CellFrame, End, Setup},
+    input::{Attachment, CellFrame, End, Setup},
     proto::foxglove::Level,
     remarks::Remark,
     writer::{FULL_SET, LogWriter, TickRecord, Written},
@@ -45,6 +45,8 @@ const NOTE_RING: usize = 1024;
 const IDLE: Duration = Duration::from_millis(5);
 /// How long a run in fast clock sleeps when the ring is full.
 const FULL: Duration = Duration::from_micros(100);
+/// Files that the ring holds.
+const FILE_RING: usize = 64;
 /// Characters of a note; what is longer is cut.
 pub const NOTE: usize = 192;
 
@@ -87,6 +89,7 @@ pub struct Recorder {
     states: Producer<(Tick, LadderState)>,
     cells: Producer<CellFrame>,
     notes: Producer<Note>,
+    files: Producer<(Tick, Attachment)>,
     pace: Pace,
     last_state: Option<Tick>,
     gap: u32,
@@ -105,6 +108,8 @@ pub struct Lost {
     pub frames: u64,
     /// Lines for `/log`.
     pub notes: u64,
+    /// Files that came up during the run: without them it cannot be replayed to the end.
+    pub files: u64,
 }
 
 /// What became of a log.
@@ -142,6 +147,7 @@ impl Recorder {
         let (cells, cell_consumer) = ring(RING, CellFrame::new(tick));
         let note = Note { tick, level: Level::Info, source: [0; 16], text: [0; NOTE] };
         let (notes, note_consumer) = ring(NOTE_RING, note);
+        let (files, file_consumer) = RingBuffer::new(FILE_RING);
         let end = Arc::default();
         let drain = Drain {
             log,
@@ -150,6 +156,7 @@ impl Recorder {
             states: state_consumer,
             cells: cell_consumer,
             notes: note_consumer,
+            files: file_consumer,
             end: Arc::clone(&end),
         };
         let thread = thread::Builder::new()
@@ -157,7 +164,7 @@ impl Recorder {
             .spawn(move || drain.run())
             .map_err(|_| RecordError::Thread)?;
         let (last_state, gap, lost, path) = (None, 0, Lost::default(), path.to_owned());
-        Ok(Self { ticks, states, cells, notes, pace, last_state, gap, lost, path, end, thread })
+        Ok(Self { ticks, states, cells, notes, files, pace, last_state, gap, lost, path, end, thread })
     }
 
     /// Where everything in the cell is; before [`Recorder::tick`] of the same tick.
@@ -174,6 +181,14 @@ impl Recorder {
         let note = Note { tick, level, source: clipped(source), text: clipped(text) };
         if !has_room(&self.notes, Pace::Drop) || self.notes.push(note).is_err() {
             self.lost.notes += 1;
+        }
+    }
+
+    /// A file that came up during the run, such as a reload of task data; before [`Recorder::tick`] of the tick from which it
+    /// counts. The file is the caller's to allocate, outside the tick.
+    pub fn attach(&mut self, tick: Tick, attachment: Attachment) {
+        if !has_room(&self.files, self.pace) || self.files.push((tick, attachment)).is_err() {
+            self.lost.files += 1;
         }
     }
 
@@ -216,10 +231,10 @@ impl Recorder {
     /// # Errors
     /// What ended the log before the run did.
     pub fn finish(self, end: End) -> Result<Summary, RecordError> {
-        let Self { ticks, states, cells, notes, lost, path, end: slot, thread, .. } = self;
+        let Self { ticks, states, cells, notes, files, lost, path, end: slot, thread, .. } = self;
         *slot.lock().unwrap_or_else(PoisonError::into_inner) = (end, lost);
         // Without a producer the writer finishes; the ticks go last, since they are what it waits for.
-        drop((states, cells, notes));
+        drop((states, cells, notes, files));
         drop(ticks);
         let written = thread.join().map_err(|_| RecordError::Thread)??;
         Ok(Summary { path, ticks: written.ticks, lost, bytes: written.bytes })
@@ -254,6 +269,7 @@ struct Drain {
     states: Consumer<(Tick, LadderState)>,
     cells: Consumer<CellFrame>,
     notes: Consumer<Note>,
+    files: Consumer<(Tick, Attachment)>,
     end: Arc<Mutex<(End, Lost)>>,
 }
 
@@ -282,6 +298,11 @@ impl Drain {
 
     fn write(&mut self, record: &TickRecord) -> Result<(), RecordError> {
         self.write_notes(record.tick)?;
+        while self.files.peek().is_ok_and(|(tick, _)| *tick <= record.tick) {
+            if let Ok((tick, attachment)) = self.files.pop() {
+                self.log.attach(tick, attachment)?;
+            }
+        }
         let state = latest(&mut self.states, record.tick, |(tick, _)| *tick).map(|(_, state)| state);
         let cell = latest(&mut self.cells, record.tick, |frame| frame.tick);
         self.log.tick(record, state.as_ref(), cell.as_ref())?;

@@ -216,6 +216,15 @@ impl<W: Write + Seek> LogWriter<W> {
         self.output.put(self.log, tick, &data)
     }
 
+    /// Write a file that came up during the run.
+    ///
+    /// # Errors
+    /// What the sink says.
+    pub fn attach(&mut self, tick: Tick, attachment: Attachment) -> McapResult<()> {
+        let time = self.output.epoch.of(tick);
+        attach(&mut self.output, time, attachment)
+    }
+
     /// End the log: metadata and summary.
     ///
     /// # Errors
@@ -230,6 +239,7 @@ impl<W: Write + Seek> LogWriter<W> {
             ("lost_ticks", lost.ticks.to_string()),
             ("lost_frames", lost.frames.to_string()),
             ("lost_notes", lost.notes.to_string()),
+            ("lost_files", lost.files.to_string()),
         ];
         let metadata = entries.map(|(key, value)| (key.to_owned(), value));
         self.output.mcap.write_metadata(&Metadata { name: END.into(), metadata: metadata.into() })?;
@@ -283,17 +293,13 @@ fn write_head<W: Write + Seek>(output: &mut Output<W>, setup: &Setup) -> McapRes
         attachments.push(Attachment { media_type: "application/xml".into(), ..urdf });
     }
     let time = setup.epoch.of(Tick::BEFORE_START);
-    for Attachment { name, media_type, data } in attachments {
-        let data = data.into();
-        output.mcap.attach(&mcap::Attachment {
-            log_time: time,
-            create_time: time,
-            name,
-            media_type,
-            data,
-        })?;
-    }
-    Ok(())
+    attachments.into_iter().try_for_each(|attachment| attach(output, time, attachment))
+}
+
+fn attach<W: Write + Seek>(output: &mut Output<W>, time: u64, attachment: Attachment) -> McapResult<()> {
+    let Attachment { name, media_type, data } = attachment;
+    let data = data.into();
+    output.mcap.attach(&mcap::Attachment { log_time: time, create_time: time, name, media_type, data })
 }
 
 fn replay_descriptor() -> Vec<u8> {

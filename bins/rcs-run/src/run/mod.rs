@@ -187,6 +187,7 @@ impl Run {
                 hws: *self.hwsc.command(),
                 devices: self.inputs,
                 data_base: DataBaseStatus::default(),
+                generation: 0,
             };
             let tick = self.runner.tick().next();
             if let Some(log) = &mut self.log {

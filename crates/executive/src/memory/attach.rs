@@ -157,9 +157,16 @@ impl Attached {
         self.settled(|ports| {
             let (hwsc, devices) = (unfinished(ports.hwsc.read()?)?, unfinished(ports.devices.read()?)?);
             let data_base = unfinished(ports.data_base.read()?)?;
+            let executive = unfinished(ports.executive.read()?)?;
             let stamp = hwsc.header.stamp;
-            if devices.header.stamp == stamp && data_base.header.stamp == stamp {
-                Ok(ExternalInputs { hws: hwsc.command, devices: devices.inputs, data_base: data_base.status })
+            let others = [&devices.header, &data_base.header, &executive.header];
+            if others.iter().all(|header| header.stamp == stamp) {
+                Ok(ExternalInputs {
+                    hws: hwsc.command,
+                    devices: devices.inputs,
+                    data_base: data_base.status,
+                    generation: executive.pulse.generation,
+                })
             } else {
                 Err(ReadError::Busy)
             }

@@ -49,6 +49,8 @@ record! {
     pub struct Pulse {
         /// The tick that was run last.
         pub tick: Tick,
+        /// Generation of the task data that it used.
+        pub generation: u32,
         /// Slots of the 40 ms grid that were skipped so far.
         pub skipped: u64,
         /// Heap allocations of the controller since the start.

@@ -301,5 +301,7 @@ record! {
         pub devices: DeviceInputs,
         /// From the Data System.
         pub data_base: DataBaseStatus,
+        /// Generation of the task data that the tick uses: 0 as loaded before the first tick, one more after each reload.
+        pub generation: u32,
     }
 }

@@ -1,0 +1,98 @@
+//! Generations of the task data: blocks that are loaded while the robot runs (DESIGN 16 "Changing records and reload").
+//!
+//! A reload is built and checked outside the tick. It becomes visible as a whole between two ticks, and only when no command
+//! is being executed: a command in progress keeps the records that it began with. Record numbers of names that existed stay
+//! the same from one generation to the next, so that what the processes remember between commands (where the robot is, what
+//! it holds) stays true.
+
+use rcs_core::interface::{CommonMemory, Report, hws::HwsReport};
+use taskdata::load::Store;
+
+/// The task data in use, and the next ones if they wait.
+pub struct Generations {
+    current: Store,
+    number: u32,
+    next: Option<Store>,
+}
+
+impl Generations {
+    /// Generation 0: what was loaded before the first tick.
+    #[must_use]
+    pub const fn new(store: Store) -> Self {
+        Self { current: store, number: 0, next: None }
+    }
+
+    /// The task data of the next tick.
+    #[must_use]
+    pub const fn current(&self) -> &Store {
+        &self.current
+    }
+
+    /// Number of the generation in use.
+    #[must_use]
+    pub const fn number(&self) -> u32 {
+        self.number
+    }
+
+    /// What the next reload builds on: the generation that waits, or the one in use.
+    #[must_use]
+    pub const fn newest(&self) -> &Store {
+        match &self.next {
+            Some(store) => store,
+            None => &self.current,
+        }
+    }
+
+    /// Let task data wait for the end of the command in progress. Two that wait become visible as one.
+    pub fn propose(&mut self, store: Store) {
+        self.next = Some(store);
+    }
+
+    /// True while task data wait.
+    #[must_use]
+    pub const fn waiting(&self) -> bool {
+        self.next.is_some()
+    }
+
+    /// Between two ticks: use what waits, if `memory` says that no command is being executed. True if the generation is a new
+    /// one.
+    pub fn advance(&mut self, memory: &CommonMemory) -> bool {
+        if is_busy(memory) {
+            return false;
+        }
+        let Some(store) = self.next.take() else { return false };
+        self.current = store;
+        self.number = self.number.saturating_add(1);
+        true
+    }
+}
+
+fn is_busy(memory: &CommonMemory) -> bool {
+    memory.task.status.report == HwsReport::Executing
+        || memory.subtask.status.report == Report::Executing
+        || memory.emove.status.report == Report::Executing
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_command_in_progress_keeps_its_records() {
+        let mut generations = Generations::new(Store::default());
+        let mut memory = CommonMemory::default();
+        assert!(!generations.advance(&memory), "nothing waits");
+
+        memory.task.status.report = HwsReport::Executing;
+        generations.propose(Store::default());
+        assert!(!generations.advance(&memory) && generations.waiting());
+        memory.task.status.report = HwsReport::Finished;
+        memory.emove.status.report = Report::Executing;
+        assert!(!generations.advance(&memory), "the robot still moves");
+
+        memory.emove.status.report = Report::Done;
+        assert!(generations.advance(&memory));
+        assert_eq!(generations.number(), 1);
+        assert!(!generations.advance(&memory) && !generations.waiting());
+    }
+}
