@@ -169,6 +169,7 @@ impl Subtask {
             object_held: below.object_held,
             held_object: below.held_object,
             end_effector_id: below.end_effector_id,
+            at: below.at,
         };
     }
 }

@@ -123,8 +123,8 @@ coded_enum! {
         ObjectLost = "the object was lost on the way",
         /// The wrong gripper, or none, is attached, and it cannot be changed.
         WrongGripper = "the attached gripper is not the one for the object",
-        /// The grips at source and destination differ; the pedestal is needed.
-        RegripNeeded = "the object must be regripped and there is no pedestal",
+        /// The object is held with another grip than the one with which it is to be placed: FIX-GRIP comes first.
+        RegripNeeded = "the object is held with another grip than the destination needs",
         /// Vision saw nothing.
         NothingSeen = "vision sees no object",
         /// Vision saw something else.

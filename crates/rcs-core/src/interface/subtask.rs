@@ -104,6 +104,8 @@ record! {
         pub held_object: Name16,
         /// `pres-endeff-id#-out`.
         pub end_effector_id: u8,
+        /// Where the robot is, as E-move reports it; empty if unknown (extension).
+        pub at: Name10,
     }
 }
 
