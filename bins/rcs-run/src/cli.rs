@@ -48,6 +48,8 @@ pub enum Command {
     Check(CheckArguments),
     /// Print every decision table as Markdown
     Tables,
+    /// Measure how late this machine wakes a thread that sleeps on the 40 ms grid, with a verdict
+    Latency(LatencyArguments),
     /// Remove what killed runs left in shared memory
     Clean,
 }
@@ -105,6 +107,17 @@ pub struct LinkTestArguments {
     /// Print every frame in hexadecimal with direction and time (with --json on standard error)
     #[arg(long)]
     pub dump: bool,
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `latency`.
+#[derive(Clone, Debug, Args)]
+pub struct LatencyArguments {
+    /// How long to measure
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    pub seconds: u32,
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
     pub json: bool,

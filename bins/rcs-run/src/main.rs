@@ -8,6 +8,7 @@ mod check;
 mod clean;
 mod cli;
 mod error;
+mod latency;
 mod link_test;
 mod run;
 mod tables;
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         Some(Command::LinkTest(arguments)) => link_test::link_test(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Tables) => tables::tables(),
+        Some(Command::Latency(arguments)) => latency::latency(&arguments),
         Some(Command::Clean) => clean::clean(),
     };
     match outcome {

@@ -14,6 +14,7 @@ pub mod failure;
 pub mod generations;
 pub mod histogram;
 pub mod hwsc;
+pub mod machine;
 pub mod memory;
 pub mod realtime;
 pub mod runner;

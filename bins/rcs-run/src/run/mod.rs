@@ -26,6 +26,7 @@ use executive::{
     clock::Clock,
     failure::{self, Failure},
     hwsc::{self, Hwsc, JobFailure},
+    machine::Machine,
     memory::{Publisher, RunName},
     realtime,
     runner::Runner,
@@ -169,7 +170,7 @@ impl Run {
     /// The log's thread runs already: it keeps its ordinary priority.
     fn ask_for_real_time(&mut self) {
         let verdict = realtime::acquire();
-        let text = format!("real time: {verdict}");
+        let text = format!("real time: {verdict}; {}", Machine::look());
         self.progress.say(&text);
         if let Some(log) = &mut self.log {
             let level = if verdict.complete() { Level::Info } else { Level::Warning };

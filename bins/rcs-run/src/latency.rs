@@ -1,0 +1,242 @@
+//! `rcs-run latency`: how late this machine wakes a thread that sleeps on the 40 ms grid.
+//!
+//! The thread asks for the same things as the ticks of a run (locked memory, SCHED_FIFO, one core) and then does
+//! nothing but sleep until each slot begins and look at the clock. What it measures is the system's part of a
+//! tick's jitter; run it while the machine does what it will do beside the robot.
+
+use std::{
+    fmt, io,
+    process::ExitCode,
+    sync::atomic::{AtomicBool, Ordering},
+    time::Duration,
+};
+
+use executive::{
+    clock::{Monotonic, Time},
+    histogram::{Histogram, Summary},
+    machine::Machine,
+    realtime,
+};
+use rcs_core::tick::TICK_MS;
+use serde::Serialize;
+
+use crate::{cli::LatencyArguments, error::Error, run::interruption};
+
+/// Length of a slot.
+const SLOT: Duration = Duration::from_millis(TICK_MS);
+/// Up to here, p99 of the wake-ups in microseconds, a machine is good: a hundredth of a frame's time on the line.
+const GOOD_US: f64 = 200.0;
+/// Up to here it is usable: the frame of a tick is still on the line before half of the tick is over.
+const USABLE_US: f64 = 2_000.0;
+/// Edges of the printed histogram, microseconds.
+const EDGES: [u64; 10] = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 40_000];
+
+/// What a machine is good for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Fitness {
+    /// Wake-ups are so punctual that nothing of them is seen on the line.
+    Good,
+    /// Frames are on the line within their tick.
+    Usable,
+    /// Ticks will be skipped.
+    Poor,
+}
+
+impl Fitness {
+    /// The verdict on a measurement.
+    fn of(summary: &Summary, skipped: u64) -> Self {
+        if skipped > 0 || summary.p99 > USABLE_US {
+            Self::Poor
+        } else if summary.p99 > GOOD_US {
+            Self::Usable
+        } else {
+            Self::Good
+        }
+    }
+
+    const fn text(self) -> &'static str {
+        match self {
+            Self::Good => "good: wake-ups are punctual, 99 of 100 within 0.2 ms",
+            Self::Usable => {
+                "usable: every frame is on the line within its tick, but not always at the same time in it"
+            }
+            Self::Poor => {
+                "poor: slots are skipped, or wake-ups come milliseconds late; the robot will wait for points"
+            }
+        }
+    }
+}
+
+/// What was measured.
+#[derive(Debug, Serialize)]
+struct Measurement {
+    seconds: f64,
+    wakeups: u64,
+    /// Slots in which nobody woke.
+    skipped: u64,
+    late_us: Late,
+    /// Wake-ups that were at most so late: microseconds and count.
+    histogram: Vec<(u64, u64)>,
+    machine: String,
+    realtime: String,
+    verdict: Fitness,
+}
+
+#[derive(Debug, Serialize)]
+struct Late {
+    p50: f64,
+    p99: f64,
+    p999: f64,
+    max: f64,
+}
+
+/// Measure and print.
+///
+/// # Errors
+/// [`Error`] if signals cannot be caught, or nothing can be printed.
+pub fn latency(arguments: &LatencyArguments) -> Result<ExitCode, Error> {
+    let interrupted = interruption()?;
+    let machine = Machine::look();
+    let verdict = realtime::acquire();
+    let slots = u64::from(arguments.seconds) * 1000 / TICK_MS;
+    let mut watch = Watch::new();
+    watch.run(&mut Monotonic, slots, &interrupted);
+    let measurement = watch.measurement(&machine.to_string(), &verdict.to_string());
+    if arguments.json {
+        serde_json::to_writer(io::stdout().lock(), &measurement).map_err(io::Error::from)?;
+        println!();
+    } else {
+        print!("{measurement}");
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Sleeps on the grid and looks at the clock.
+struct Watch {
+    late: Box<Histogram>,
+    counts: [u64; EDGES.len()],
+    slots: u64,
+    skipped: u64,
+}
+
+impl Watch {
+    fn new() -> Self {
+        Self { late: Box::default(), counts: [0; EDGES.len()], slots: 0, skipped: 0 }
+    }
+
+    fn run(&mut self, time: &mut impl Time, slots: u64, interrupted: &AtomicBool) {
+        let start = time.now();
+        let mut slot = 0;
+        while slot < slots && !interrupted.load(Ordering::Relaxed) {
+            slot += 1;
+            let begins = start + SLOT * u32::try_from(slot).unwrap_or(u32::MAX);
+            let mut now = time.now();
+            while now < begins {
+                time.sleep_until(begins);
+                now = time.now();
+            }
+            let late = now - begins;
+            self.note(late);
+            // Slots that were slept through are not waited for.
+            let missed = u64::try_from(late.as_nanos() / SLOT.as_nanos()).unwrap_or(u64::MAX);
+            self.skipped += missed;
+            slot += missed;
+        }
+        self.slots = slot;
+    }
+
+    fn note(&mut self, late: Duration) {
+        let nanoseconds = u64::try_from(late.as_nanos()).unwrap_or(u64::MAX);
+        self.late.add(nanoseconds);
+        if let Some(at) = EDGES.iter().position(|edge| nanoseconds <= edge * 1000) {
+            self.counts[at] += 1;
+        }
+    }
+
+    fn measurement(&self, machine: &str, realtime: &str) -> Measurement {
+        let summary = self.late.summary();
+        let p999 = self.late.quantile(999) as f64 / 1000.0;
+        Measurement {
+            seconds: (SLOT * u32::try_from(self.slots).unwrap_or(u32::MAX)).as_secs_f64(),
+            wakeups: self.late.count(),
+            skipped: self.skipped,
+            late_us: Late { p50: summary.p50, p99: summary.p99, p999, max: summary.max },
+            histogram: EDGES.into_iter().zip(self.counts).collect(),
+            machine: machine.to_owned(),
+            realtime: realtime.to_owned(),
+            verdict: Fitness::of(&summary, self.skipped),
+        }
+    }
+}
+
+impl fmt::Display for Measurement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "machine    {}", self.machine)?;
+        writeln!(f, "real time  {}", self.realtime)?;
+        writeln!(
+            f,
+            "wake-ups   {} in {:.1} s, {} slots of 40 ms skipped",
+            self.wakeups, self.seconds, self.skipped
+        )?;
+        let Late { p50, p99, p999, max } = self.late_us;
+        writeln!(f, "late by    p50 {p50:.1} us, p99 {p99:.1} us, p99.9 {p999:.1} us, max {max:.1} us")?;
+        let most = self.histogram.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
+        for (edge, count) in &self.histogram {
+            let bar = "#".repeat(usize::try_from(count * 40 / most).unwrap_or(0));
+            writeln!(f, "  <= {edge:>6} us {count:>8} {bar}")?;
+        }
+        writeln!(f, "verdict    {}", self.verdict.text())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Time that passes only while asleep; each sleep ends late by the next entry.
+    struct Made {
+        now: Duration,
+        late: Vec<Duration>,
+    }
+
+    impl Time for Made {
+        fn now(&mut self) -> Duration {
+            self.now
+        }
+
+        fn sleep_until(&mut self, at: Duration) {
+            self.now = at + self.late.pop().unwrap_or_default();
+        }
+    }
+
+    fn watched(late_us: &[u64], slots: u64) -> Measurement {
+        let late = late_us.iter().rev().map(|us| Duration::from_micros(*us)).collect();
+        let mut watch = Watch::new();
+        watch.run(&mut Made { now: Duration::from_secs(7), late }, slots, &AtomicBool::new(false));
+        watch.measurement("made", "not asked for")
+    }
+
+    #[test]
+    fn lateness_is_counted_from_the_beginning_of_each_slot() {
+        let measured = watched(&[5, 15, 150], 3);
+        assert_eq!((measured.wakeups, measured.skipped, measured.verdict), (3, 0, Fitness::Good));
+        assert!((measured.late_us.max - 150.0).abs() < 1e-9);
+        assert_eq!(measured.histogram[0], (10, 1));
+        assert_eq!(measured.histogram[4], (200, 1));
+    }
+
+    #[test]
+    fn slots_that_were_slept_through_are_skipped_and_judged() {
+        let measured = watched(&[5, 85_000, 5], 5);
+        assert_eq!((measured.wakeups, measured.skipped), (3, 2));
+        assert_eq!(measured.verdict, Fitness::Poor);
+        assert!(measured.to_string().contains("2 slots of 40 ms skipped"));
+    }
+
+    #[test]
+    fn milliseconds_late_is_usable_and_more_is_poor() {
+        assert_eq!(watched(&[1_500; 10], 10).verdict, Fitness::Usable);
+        assert_eq!(watched(&[2_500; 10], 10).verdict, Fitness::Poor);
+    }
+}
