@@ -77,8 +77,12 @@ pub struct CellDescription {
     pub physics: Physics,
     /// The arm's servos and outline.
     pub robot: Robot,
+    /// The quick change.
+    pub quick_change: QuickChange,
     /// The parts gripper.
     pub gripper: Gripper,
+    /// The Active Pedestal.
+    pub pedestal: Pedestal,
     /// The camera on the wrist.
     pub camera: Camera,
     /// The programmable vise.
@@ -128,14 +132,20 @@ pub struct Robot {
     pub wrist_radius: f64,
 }
 
-/// The parts gripper.
+/// The quick change between end plate and gripper.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct QuickChange {
+    /// Its length from the end plate, in.
+    pub length: f64,
+    /// Its radius, in.
+    pub radius: f64,
+}
+
+/// A gripper of two fingers that air moves: the parts gripper, and the hand of the Active Pedestal (III.9.2).
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Gripper {
-    /// Length of the quick change, from the end plate, in.
-    pub quick_change_length: f64,
-    /// Radius of the quick change, in.
-    pub quick_change_radius: f64,
     /// Size of the body along tool X, Y, Z, in.
     pub body: [f64; 3],
     /// Length, thickness and width of a finger, in.
@@ -170,6 +180,48 @@ pub struct GripperSensors {
     pub strain_offsets: [f64; 2],
     /// Counts of the left and right strain gages for a pound.
     pub strain_scales: [f64; 2],
+    /// Greatest noise, counts.
+    pub noise: f64,
+}
+
+/// The Active Pedestal.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Pedestal {
+    /// Name of the location.
+    pub location: String,
+    /// On the axis of the table, at the fingertips of the hand, which points up; world, in.
+    pub position: [f64; 3],
+    /// Direction of the radial line from the robot, about +Z from +X, degrees.
+    pub azimuth: f64,
+    /// Stiffness of stand, hand and fingers together at the fingertips, lb/in.
+    pub stiffness: f64,
+    /// The hand.
+    pub hand: Gripper,
+    /// The rotary table.
+    pub table: RotaryTable,
+}
+
+/// The rotary table of the pedestal; angles in degrees, positive to the left seen from above.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct RotaryTable {
+    /// Motor angles of the - and the + limit switch.
+    pub limits: [f64; 2],
+    /// Motor angle at the start.
+    pub start: f64,
+    /// Motor angle and table angle at which the fingers move across the radial line.
+    pub square: f64,
+    /// A turn of the motor, and that of the table that it makes.
+    pub flip: [f64; 2],
+    /// Speed of the motor, degrees/s.
+    pub speed: f64,
+    /// Its acceleration, degrees/s².
+    pub acceleration: f64,
+    /// Counts of the potentiometer at table angle 0.
+    pub potentiometer_offset: f64,
+    /// Counts of the potentiometer for a degree of the table.
+    pub potentiometer_scale: f64,
     /// Greatest noise, counts.
     pub noise: f64,
 }
@@ -378,7 +430,7 @@ mod tests {
     fn all_faults_are_reported_at_once() {
         let text = TEXT
             .replace("speed = 0.5 ", "speed = -0.5 ")
-            .replace("quick_change_length = 3.0", "quick_change_length = 4.0")
+            .replace("length = 3.0 ", "length = 4.0 ")
             .replace("name = \"LINKBAR1\"", "name = \"LINKBAR1_BH\"");
         let Err(DescriptionError::Values(faults)) = CellDescription::from_toml(&text) else {
             panic!("accepted");

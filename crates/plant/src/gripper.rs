@@ -7,14 +7,14 @@
 //! the geometry says so ([`crate::squeeze`]); what they hold then is a [`Hold`].
 
 use rapier3d_f64::prelude::*;
-use rcs_core::interface::device::{ADC_FULL_SCALE, GripSensors, valve};
+use rcs_core::interface::device::{GripSensors, valve};
 
 use crate::{
     convert::{KILOGRAMS_PER_POUND, inches, metres, newtons},
     description::Gripper as Description,
     hold::Hold,
     noise::Noise,
-    scene::{FINGER, groups},
+    scene::groups,
     squeeze::Pads,
 };
 
@@ -151,6 +151,8 @@ pub struct Gripper {
     pub air: Air,
     /// What is held, by the index of the part.
     pub hold: Option<(usize, Hold)>,
+    /// That it slides in this hold was said.
+    pub slip_reported: bool,
     hand: RigidBodyHandle,
     fingers: [Finger; 2],
     shown: (f64, f64),
@@ -166,20 +168,27 @@ struct Finger {
 }
 
 impl Gripper {
-    /// Build the gripper at a tool pose, metres. `stiffness` is that of both fingers together at the tips, lb/in.
-    pub fn new(world: &mut PhysicsWorld, description: &Description, stiffness: f64, tool: &Pose) -> Self {
+    /// Build the gripper at a tool pose, metres. `stiffness` is that of both fingers together at the tips, lb/in; `group` the
+    /// collision group of its bodies, which do not meet each other.
+    pub fn new(
+        world: &mut PhysicsWorld,
+        description: &Description,
+        stiffness: f64,
+        tool: &Pose,
+        group: Group,
+    ) -> Self {
         let [body_x, body_y, body_z] = description.body.map(metres);
         let [finger_x, ..] = description.fingers.map(metres);
         let hand = world.insert_body(RigidBodyBuilder::kinematic_position_based().pose(*tool));
         let body = ColliderBuilder::cuboid(body_x / 2.0, body_y / 2.0, body_z / 2.0)
             .translation(Vector::new(-finger_x - body_x / 2.0, 0.0, 0.0))
-            .collision_groups(groups(FINGER, Group::ALL & !FINGER));
+            .collision_groups(groups(group, Group::ALL & !group));
         world.insert_collider(body, Some(hand));
         let air = Air::new(description);
-        let fingers = [1.0, -1.0]
-            .map(|side| Finger::new(world, description, stiffness, hand, tool, side, air.opening()));
+        let mount = Mount { hand, tool, stiffness, group };
+        let fingers = [1.0, -1.0].map(|side| Finger::new(world, description, &mount, side, air.opening()));
         let shown = (air.opening(), 0.0);
-        Self { description: description.clone(), air, hold: None, hand, fingers, shown }
+        Self { description: description.clone(), air, hold: None, slip_reported: false, hand, fingers, shown }
     }
 
     /// The body that the fingers hang on; its pose is the tool frame without load.
@@ -243,10 +252,7 @@ impl Gripper {
     /// Read the sensors; `beams` are the broken light beams.
     pub fn sensors(&self, noise: &mut Noise, beams: u8) -> GripSensors {
         let sensors = &self.description.sensors;
-        let mut counts = |value: f64| {
-            let noisy = value + noise.within(sensors.noise);
-            libm::round(noisy).clamp(0.0, f64::from(ADC_FULL_SCALE)) as u16
-        };
+        let mut counts = |value: f64| Noise::counts(value + noise.within(sensors.noise));
         let [left_offset, right_offset] = sensors.strain_offsets;
         let [left_scale, right_scale] = sensors.strain_scales;
         GripSensors {
@@ -295,16 +301,23 @@ fn finger_rest(description: &Description, side: Real, opening: f64) -> Pose {
     ))
 }
 
+/// What the fingers hang on.
+struct Mount<'a> {
+    hand: RigidBodyHandle,
+    tool: &'a Pose,
+    stiffness: f64,
+    group: Group,
+}
+
 impl Finger {
     fn new(
         world: &mut PhysicsWorld,
         description: &Description,
-        stiffness: f64,
-        hand: RigidBodyHandle,
-        tool: &Pose,
+        mount: &Mount<'_>,
         side: Real,
         opening: f64,
     ) -> Self {
+        let &Mount { hand, tool, stiffness, group } = mount;
         let rest = finger_rest(description, side, opening);
         let mass = description.finger_weight * KILOGRAMS_PER_POUND;
         let [x, y, z] = description.fingers.map(|size| metres(size / 2.0));
@@ -314,7 +327,7 @@ impl Finger {
         let collider = ColliderBuilder::cuboid(x, y, z)
             .mass(mass)
             .friction(description.friction)
-            .collision_groups(groups(FINGER, Group::ALL & !FINGER));
+            .collision_groups(groups(group, Group::ALL & !group));
         let collider = world.insert_collider(collider, Some(body));
         let linear = newtons(stiffness) / metres(1.0) / 2.0;
         // The moment arm of a fingertip is half the finger's length: the springs about the middle are made so stiff that

@@ -45,6 +45,7 @@ pub mod gripper;
 pub mod hold;
 pub mod noise;
 pub mod part;
+pub mod pedestal;
 pub mod scene;
 pub mod squeeze;
 pub mod t3;

@@ -2,6 +2,7 @@
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rcs_core::interface::device::ADC_FULL_SCALE;
 
 /// Which device draws from the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +13,8 @@ pub enum Stream {
     Camera = 2,
     /// Where a part is put down at random.
     Placement = 3,
+    /// Sensors of the Active Pedestal.
+    Pedestal = 4,
 }
 
 /// A stream of uniform noise.
@@ -32,6 +35,12 @@ impl Noise {
         // 53 random bits make the fraction of an f64 in 0..1.
         let fraction = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         greatest * (2.0 * fraction - 1.0)
+    }
+
+    /// What a 12-bit converter makes of a value.
+    #[must_use]
+    pub fn counts(value: f64) -> u16 {
+        libm::round(value).clamp(0.0, f64::from(ADC_FULL_SCALE)) as u16
     }
 }
 

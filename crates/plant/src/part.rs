@@ -7,7 +7,7 @@ use crate::{
     convert::{KILOGRAMS_PER_POUND, metres, to_frame, to_pose},
     description::PartType,
     hold::Load,
-    scene::{FINGER, JAW, PART, groups},
+    scene::{PART, groups},
 };
 
 /// Coefficient of friction of a part's surface.
@@ -72,13 +72,10 @@ impl Part {
         Load { mass, inertia }
     }
 
-    /// What holds it: fingers and jaws that hold a part do not also collide with it.
-    pub fn set_held_by(&self, world: &mut PhysicsWorld, fingers: bool, jaws: bool) {
-        let mut filter = Group::ALL;
-        filter.set(FINGER, !fingers);
-        filter.set(JAW, !jaws);
+    /// What holds it does not also collide with it: the collision groups of its holders.
+    pub fn set_holders(&self, world: &mut PhysicsWorld, holders: Group) {
         if let Some(collider) = world.colliders.get_mut(self.collider) {
-            collider.set_collision_groups(groups(PART, filter));
+            collider.set_collision_groups(groups(PART, Group::ALL & !holders));
         }
         if let Some(body) = world.bodies.get_mut(self.body) {
             body.wake_up(true);
@@ -115,7 +112,7 @@ pub struct PartState {
     pub id: u32,
     /// Its name at present.
     pub name: String,
-    /// Where it is: a unit, the vise's location, `gripper`, `floor` or `elsewhere`.
+    /// Where it is: a unit, the vise's or the pedestal's location, `gripper`, `floor` or `elsewhere`.
     pub location: String,
     /// The nearest sector of the unit, 0 elsewhere.
     pub sector: u16,

@@ -16,8 +16,10 @@ use crate::{
 pub const WORLD: Group = Group::GROUP_1;
 /// Collision group of the jaws of the vise.
 pub const JAW: Group = Group::GROUP_4;
-/// Collision group of the gripper.
+/// Collision group of the robot's gripper.
 pub const FINGER: Group = Group::GROUP_2;
+/// Collision group of the pedestal's hand.
+pub const HAND: Group = Group::GROUP_5;
 /// Collision group of parts.
 pub const PART: Group = Group::GROUP_3;
 

@@ -1,12 +1,23 @@
-//! What the fingers and the vise do to parts: stop at them, take hold, slip, let go.
+//! What hands and the vise do to parts: stop at them, take hold, slip, let go.
+//!
+//! The robot's gripper and the pedestal's hand are the same machine, and a part can be in both at once while it changes
+//! hands, or in a hand and in the vise. Which of them gives way:
+//!
+//! * a hand that closes on a part which something else has stops where its nearer finger touches, and takes the part as it
+//!   lies; it draws it to its middle when the other lets go;
+//! * the vise is stronger than a hand: the hand's springs rest where the vise has the part;
+//! * two hands both hold by their springs, and each slides beyond its friction: a robot that moves on with a part that the
+//!   pedestal has too draws it out of the weaker of the two.
 
 use rapier3d_f64::prelude::*;
 
 use super::{Cell, CellEvent};
 use crate::{
     convert::{inches, metres, on_the_side_of, to_pose},
+    gripper::Gripper,
     hold::{Clamp, Hold, Stiffness},
     part::segment_meets_box,
+    scene::{FINGER, HAND, JAW},
     squeeze::{Squeeze, squeeze},
     vise::Clamped,
 };
@@ -20,43 +31,92 @@ const TOUCHING: Real = 1e-4;
 /// Fingers and part: stiff enough that a bar sags by 0.01 mm, soft enough that friction is not a jolt.
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
 
+/// What has fingers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Hand {
+    /// The gripper on the robot.
+    Robot,
+    /// The hand of the Active Pedestal.
+    Pedestal,
+}
+
+/// All hands.
+pub(super) const HANDS: [Hand; 2] = [Hand::Robot, Hand::Pedestal];
+
+impl Hand {
+    /// The one that can have a part besides this one.
+    const fn other(self) -> Self {
+        match self {
+            Self::Robot => Self::Pedestal,
+            Self::Pedestal => Self::Robot,
+        }
+    }
+
+    /// Its name in messages.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Robot => "the fingers",
+            Self::Pedestal => "the pedestal's hand",
+        }
+    }
+}
+
 impl Cell {
-    /// Let the air move the fingers, and take or give up what is between them.
-    pub(super) fn drive_fingers(&mut self, dt: f64, valves: u8) {
-        let between = match &self.gripper.hold {
-            Some((index, _)) => self.between_fingers(*index).map(|squeeze| (*index, squeeze)),
-            None => self.first_between_fingers(),
+    /// The gripper of a hand.
+    pub(super) fn hand(&self, hand: Hand) -> &Gripper {
+        match hand {
+            Hand::Robot => &self.gripper,
+            Hand::Pedestal => &self.pedestal.hand,
+        }
+    }
+
+    /// The gripper of a hand, and the world that it works in.
+    fn hand_at_work(&mut self, hand: Hand) -> (&mut Gripper, &mut PhysicsWorld) {
+        let gripper = match hand {
+            Hand::Robot => &mut self.gripper,
+            Hand::Pedestal => &mut self.pedestal.hand,
         };
-        let stop = between.as_ref().map(|(index, squeeze)| self.finger_stop(*index, squeeze));
-        if let (Some(stop), true) = (stop, self.gripper.hold.is_some())
-            && (stop - self.gripper.air.opening()).abs() > 1e-5
-            && self.gripper.air.force() >= LEAST_FORCE
+        (gripper, &mut self.world)
+    }
+
+    /// Let the air move the fingers of a hand, and take or give up what is between them.
+    pub(super) fn drive_fingers(&mut self, dt: f64, hand: Hand, valves: u8) {
+        let between = match &self.hand(hand).hold {
+            Some((index, _)) => self.between_fingers(hand, *index).map(|squeeze| (*index, squeeze)),
+            None => self.first_between_fingers(hand),
+        };
+        let stop = between.as_ref().map(|(index, squeeze)| self.finger_stop(hand, *index, squeeze));
+        let (gripper, world) = self.hand_at_work(hand);
+        if let (Some(stop), true) = (stop, gripper.hold.is_some())
+            && (stop - gripper.air.opening()).abs() > 1e-5
+            && gripper.air.force() >= LEAST_FORCE
         {
             // The two fingers are coupled: a part that is pushed off the middle spreads them, and they follow it back.
-            self.gripper.air.spread(stop);
+            gripper.air.spread(stop);
         }
-        self.gripper.air.advance(dt, valves, stop);
-        self.gripper.move_fingers(&mut self.world);
-        self.update_grip(between);
+        gripper.air.advance(dt, valves, stop);
+        gripper.move_fingers(world);
+        self.update_grip(hand, between);
     }
 
-    /// What part `index` offers to the fingers.
-    fn between_fingers(&self, index: usize) -> Option<Squeeze> {
+    /// What part `index` offers to the fingers of a hand.
+    fn between_fingers(&self, hand: Hand, index: usize) -> Option<Squeeze> {
         let part = self.parts.get(index)?;
-        let hand = self.world.bodies[self.gripper.hand()].position();
-        squeeze(&hand.inv_mul(&part.pose(&self.world)), part.half(), &self.gripper.pads())
+        let gripper = self.hand(hand);
+        let tool = self.world.bodies[gripper.hand()].position();
+        squeeze(&tool.inv_mul(&part.pose(&self.world)), part.half(), &gripper.pads())
     }
 
-    /// The widest part that stands free between the fingers.
-    fn first_between_fingers(&self) -> Option<(usize, Squeeze)> {
-        let hand = self.world.bodies[self.gripper.hand()].translation();
-        let opening = metres(self.gripper.air.opening());
+    /// The widest part that stands free between the fingers of a hand.
+    fn first_between_fingers(&self, of: Hand) -> Option<(usize, Squeeze)> {
+        let hand = self.world.bodies[self.hand(of).hand()].translation();
+        let opening = metres(self.hand(of).air.opening());
         let reach = 0.2;
         let near =
             self.parts.iter().enumerate().filter(|(_, part)| {
                 (part.pose(&self.world).translation - hand).length() < reach + part.radius()
             });
-        near.filter_map(|(index, _)| Some((index, self.between_fingers(index)?)))
+        near.filter_map(|(index, _)| Some((index, self.between_fingers(of, index)?)))
             .filter(|(_, squeeze)| {
                 squeeze.width <= opening + TOUCHING && squeeze.centre.abs() < opening / 2.0
             })
@@ -65,8 +125,8 @@ impl Cell {
 
     /// Opening at which a part stops the fingers, in. A part that can give way is drawn to the middle; one that is held
     /// elsewhere stops the nearer finger, and the fingers are coupled.
-    fn finger_stop(&self, index: usize, squeeze: &Squeeze) -> f64 {
-        let fast = self.gripper.hold.is_some() || self.is_clamped(index);
+    fn finger_stop(&self, hand: Hand, index: usize, squeeze: &Squeeze) -> f64 {
+        let fast = self.hand(hand).hold.is_some() || self.is_held_elsewhere(hand, index);
         let aside = if fast { 2.0 * squeeze.centre.abs() } else { 0.0 };
         inches(squeeze.width + aside)
     }
@@ -75,58 +135,109 @@ impl Cell {
         self.vise.clamped.is_some_and(|clamped| clamped.part == index)
     }
 
+    /// True if `hand` has part `index`.
+    pub(super) fn is_held_by(&self, hand: Hand, index: usize) -> bool {
+        self.hand(hand).hold.as_ref().is_some_and(|(held, _)| *held == index)
+    }
+
+    /// True if the robot has part `index`.
     pub(super) fn is_held(&self, index: usize) -> bool {
-        self.gripper.hold.as_ref().is_some_and(|(held, _)| *held == index)
+        self.is_held_by(Hand::Robot, index)
+    }
+
+    /// True if something else than `hand` has part `index`.
+    fn is_held_elsewhere(&self, hand: Hand, index: usize) -> bool {
+        self.is_clamped(index) || self.is_held_by(hand.other(), index)
+    }
+
+    /// True if a hand or the vise has part `index`.
+    pub(super) fn is_had(&self, index: usize) -> bool {
+        self.is_clamped(index) || HANDS.iter().any(|hand| self.is_held_by(*hand, index))
+    }
+
+    /// What has a part knows it by its place in the list: give it the place that it has now.
+    pub(super) fn renumber(&mut self, place: impl Fn(usize) -> usize) {
+        for hand in HANDS {
+            if let (Gripper { hold: Some((held, _)), .. }, _) = self.hand_at_work(hand) {
+                *held = place(*held);
+            }
+        }
+        if let Some(clamped) = &mut self.vise.clamped {
+            clamped.part = place(clamped.part);
+        }
+    }
+
+    /// What holds a part does not also collide with it.
+    fn note_holders(&mut self, index: usize) {
+        let mut holders = Group::empty();
+        holders.set(FINGER, self.is_held_by(Hand::Robot, index));
+        holders.set(HAND, self.is_held_by(Hand::Pedestal, index));
+        holders.set(JAW, self.is_clamped(index));
+        self.parts[index].set_holders(&mut self.world, holders);
     }
 
     /// Take hold, tighten, loosen or let go, as force and geometry have it.
-    fn update_grip(&mut self, between: Option<(usize, Squeeze)>) {
-        let force = self.gripper.air.force();
-        let clamp = Clamp { force: self.gripper.force(), friction: self.gripper.friction() };
-        match (self.gripper.hold.is_some(), between) {
+    fn update_grip(&mut self, hand: Hand, between: Option<(usize, Squeeze)>) {
+        let gripper = self.hand(hand);
+        let (force, opening) = (gripper.air.force(), gripper.air.opening());
+        let clamp = Clamp { force: gripper.force(), friction: gripper.friction() };
+        match (gripper.hold.is_some(), between) {
             (true, Some((_, squeeze))) if force >= LEAST_FORCE => {
-                if let Some((_, hold)) = &mut self.gripper.hold {
-                    hold.set_clamp(&mut self.world, clamp, &squeeze);
+                let (gripper, world) = self.hand_at_work(hand);
+                if let Some((_, hold)) = &mut gripper.hold {
+                    hold.set_clamp(world, clamp, &squeeze);
                 }
             }
-            (true, between) => self.let_go(between.is_none()),
+            (true, between) => self.let_go(hand, between.is_none()),
             (false, Some((index, squeeze)))
-                if force >= LEAST_FORCE
-                    && self.gripper.air.opening() <= self.finger_stop(index, &squeeze) + 1e-6 =>
+                if force >= LEAST_FORCE && opening <= self.finger_stop(hand, index, &squeeze) + 1e-6 =>
             {
-                self.take_hold(index, &squeeze, clamp);
+                self.take_hold(hand, index, &squeeze, clamp);
             }
             (false, _) => {}
         }
     }
 
-    fn take_hold(&mut self, index: usize, squeeze: &Squeeze, clamp: Clamp) {
-        let fast = self.is_clamped(index);
+    fn take_hold(&mut self, hand: Hand, index: usize, squeeze: &Squeeze, clamp: Clamp) {
+        let fast = self.is_held_elsewhere(hand, index);
         let part = &self.parts[index];
-        part.set_held_by(&mut self.world, true, fast);
-        let hand = self.gripper.hand();
+        let (body, pose, load) = (part.body, part.pose(&self.world), part.load());
+        let (gripper, world) = self.hand_at_work(hand);
+        let pads = gripper.hand();
         let flush = if fast {
-            self.world.bodies[hand].position().inv_mul(&part.pose(&self.world))
+            world.bodies[pads].position().inv_mul(&pose)
         } else {
             let mut flush = squeeze.flush;
             flush.translation.y = 0.0;
             flush
         };
-        let mut hold = Hold::new(&mut self.world, hand, part.body, &flush, FINGER_STIFFNESS, part.load());
-        hold.set_clamp(&mut self.world, clamp, squeeze);
-        self.gripper.hold = Some((index, hold));
-        self.slip_reported = false;
+        let mut hold = Hold::new(world, pads, body, &flush, FINGER_STIFFNESS, load);
+        hold.set_clamp(world, clamp, squeeze);
+        gripper.hold = Some((index, hold));
+        gripper.slip_reported = false;
+        self.note_holders(index);
     }
 
-    /// Let go of what the fingers hold; `lost` if it was not the fingers that opened.
-    pub(super) fn let_go(&mut self, lost: bool) {
-        let Some((index, hold)) = self.gripper.hold.take() else { return };
-        hold.release(&mut self.world);
-        let clamped = self.is_clamped(index);
-        let part = &self.parts[index];
-        part.set_held_by(&mut self.world, false, clamped);
+    /// Let go of what a hand holds; `lost` if it was not the fingers that opened.
+    pub(super) fn let_go(&mut self, hand: Hand, lost: bool) {
+        let (gripper, world) = self.hand_at_work(hand);
+        let Some((index, hold)) = gripper.hold.take() else { return };
+        hold.release(world);
+        self.note_holders(index);
+        if !self.is_clamped(index) {
+            self.recover(hand.other(), index);
+        }
         if lost {
-            self.events.push(CellEvent::Dropped { part: part.kind.name.clone() });
+            let part = self.parts[index].kind.name.clone();
+            self.events.push(CellEvent::Dropped { part, hand: hand.name() });
+        }
+    }
+
+    /// What else had part `index` is gone: a hand that has it draws it to its middle.
+    fn recover(&mut self, hand: Hand, index: usize) {
+        let (gripper, world) = self.hand_at_work(hand);
+        if let Some((_, hold)) = gripper.hold.as_mut().filter(|(held, _)| *held == index) {
+            hold.recover(world);
         }
     }
 
@@ -172,12 +283,12 @@ impl Cell {
         let mut rest = squeeze.flush;
         rest.translation.y = middle;
         let body = self.parts[index].body;
-        if self.vise.clamped.is_none() {
-            let held = self.is_held(index);
-            self.parts[index].set_held_by(&mut self.world, held, true);
+        let taken = self.vise.clamped.is_none();
+        self.vise.clamped = Some(Clamped { part: index, rest });
+        if taken {
+            self.note_holders(index);
             self.world.bodies[body].set_body_type(RigidBodyType::KinematicPositionBased, true);
         }
-        self.vise.clamped = Some(Clamped { part: index, rest });
         let body = &mut self.world.bodies[body];
         let mut next = to_pose(self.vise.frame()) * rest;
         next.rotation = on_the_side_of(body.rotation(), next.rotation);
@@ -187,11 +298,10 @@ impl Cell {
     /// Let go of what the vise has.
     pub(super) fn unclamp(&mut self) {
         let Some(Clamped { part, .. }) = self.vise.clamped.take() else { return };
-        let held = self.is_held(part);
-        if let (true, Some((_, grip))) = (held, &mut self.gripper.hold) {
-            grip.recover(&mut self.world);
+        for hand in HANDS {
+            self.recover(hand, part);
         }
-        self.parts[part].set_held_by(&mut self.world, held, false);
+        self.note_holders(part);
         let body = &mut self.world.bodies[self.parts[part].body];
         body.set_body_type(RigidBodyType::Dynamic, true);
         body.set_linvel(Vector::ZERO, true);
@@ -222,25 +332,40 @@ impl Cell {
         squeeze(&base.inv_mul(&part.pose(&self.world)), part.half(), &self.vise.pads())
     }
 
+    /// Before a step: friction on what slides in a hand.
+    pub(super) fn rub_holds(&mut self, dt: f64) {
+        for hand in HANDS {
+            let (gripper, world) = self.hand_at_work(hand);
+            if let Some((_, hold)) = &mut gripper.hold {
+                hold.rub(world, dt);
+            }
+        }
+    }
+
     /// After a step: holds that are asked for more than friction gives slide.
     pub(super) fn let_holds_give_way(&mut self) {
         self.resist_in_vise();
-        let both = match (&self.gripper.hold, &self.vise.clamped) {
-            (Some((gripped, _)), Some(clamped)) => *gripped == clamped.part,
-            _ => false,
-        };
-        let Some((index, hold)) = &mut self.gripper.hold else { return };
-        if both {
+        for hand in HANDS {
+            self.let_hold_give_way(hand);
+        }
+    }
+
+    fn let_hold_give_way(&mut self, hand: Hand) {
+        let clamped = self.vise.clamped.map(|clamped| clamped.part);
+        let (gripper, world) = self.hand_at_work(hand);
+        let Some((index, hold)) = &mut gripper.hold else { return };
+        if clamped == Some(*index) {
             // The vise is the stronger: the fingers keep their force, but where the part lies in them is the vise's affair.
-            hold.relax(&mut self.world);
+            hold.relax(world);
             return;
         }
-        hold.give_way(&mut self.world);
+        hold.give_way(world);
         let distance = inches(hold.slipped());
-        if distance > SLIP && !self.slip_reported && !self.gripper.air.relieved() {
-            self.slip_reported = true;
-            let part = self.parts[*index].kind.name.clone();
-            self.events.push(CellEvent::Slipped { part, distance });
+        if distance > SLIP && !gripper.slip_reported && !gripper.air.relieved() {
+            gripper.slip_reported = true;
+            let index = *index;
+            let part = self.parts[index].kind.name.clone();
+            self.events.push(CellEvent::Slipped { part, hand: hand.name(), distance });
         }
     }
 

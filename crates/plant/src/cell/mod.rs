@@ -21,6 +21,7 @@ use rcs_core::{
     tick::TICK_S,
 };
 
+use handling::Hand;
 pub use picture::{Link, part_link};
 pub use workstation::{Placement, WorkstationAction, WorkstationError};
 
@@ -33,7 +34,8 @@ use crate::{
     gripper::Gripper,
     noise::{Noise, Stream},
     part::{Part, PartState},
-    scene::{Block, Obstacle, furniture},
+    pedestal::Pedestal,
+    scene::{Block, FINGER, Obstacle, furniture},
     t3::{Button, DriveError, T3Controller},
     vise::Vise,
 };
@@ -54,17 +56,21 @@ pub enum CellError {
 pub enum CellEvent {
     /// The robot, or what it carries, has run into something.
     Contact(Contact),
-    /// A part slides between the fingers: more was asked of them than their force and friction give.
+    /// A part slides in a hand: more was asked of it than its force and friction give.
     Slipped {
         /// The part.
         part: String,
+        /// Which hand.
+        hand: &'static str,
         /// How far it has slid since it was gripped, in.
         distance: f64,
     },
-    /// The fingers have lost a part that they had.
+    /// A hand has lost a part that it had.
     Dropped {
         /// The part.
         part: String,
+        /// Which hand.
+        hand: &'static str,
     },
     /// The gripper has forced a part out of the closed vise.
     ForcedOut {
@@ -90,10 +96,10 @@ impl fmt::Display for CellEvent {
             Self::Contact(contact) => {
                 write!(f, "{} runs into {}, {:.3} in deep", contact.mover, contact.obstacle, contact.depth)
             }
-            Self::Slipped { part, distance } => {
-                write!(f, "{part} slides in the fingers, {distance:.3} in so far")
+            Self::Slipped { part, hand, distance } => {
+                write!(f, "{part} slides in {hand}, {distance:.3} in so far")
             }
-            Self::Dropped { part } => write!(f, "{part} is lost from the fingers"),
+            Self::Dropped { part, hand } => write!(f, "{part} is lost from {hand}"),
             Self::ForcedOut { part } => write!(f, "{part} is forced out of the vise"),
             Self::Fell { part } => write!(f, "{part} lies on the floor"),
             Self::Warning(code) => write!(f, "the T3 controller shows {code}"),
@@ -112,6 +118,7 @@ pub struct Cell {
     arm: Arm,
     t3: T3Controller,
     gripper: Gripper,
+    pedestal: Pedestal,
     vise: Vise,
     camera: Camera,
     parts: Vec<Part>,
@@ -120,9 +127,9 @@ pub struct Cell {
     obstacles: Vec<Obstacle>,
     clearance: Clearance,
     gripper_noise: Noise,
+    pedestal_noise: Noise,
     placement_noise: Noise,
     events: Vec<CellEvent>,
-    slip_reported: bool,
     /// The arm cannot follow the robot; said once.
     stays_behind: bool,
     inputs: DeviceInputs,
@@ -143,7 +150,9 @@ impl Cell {
         }
         let arm = Arm::new(&description.robot);
         let tool = to_pose(&arm.tool());
-        let gripper = Gripper::new(&mut world, &description.gripper, description.robot.stiffness, &tool);
+        let stiffness = description.robot.stiffness;
+        let gripper = Gripper::new(&mut world, &description.gripper, stiffness, &tool, FINGER);
+        let pedestal = Pedestal::new(&mut world, &description.pedestal);
         let vise = Vise::new(&mut world, &description.vise);
         let mut cell = Self {
             t3: T3Controller::new(arm.joints())?,
@@ -153,15 +162,16 @@ impl Cell {
             world,
             arm,
             gripper,
+            pedestal,
             vise,
             parts: Vec::new(),
             next_part: 1,
             furniture,
             clearance: Clearance::default(),
             gripper_noise: Noise::new(seed, Stream::Gripper),
+            pedestal_noise: Noise::new(seed, Stream::Pedestal),
             placement_noise: Noise::new(seed, Stream::Placement),
             events: Vec::new(),
-            slip_reported: false,
             stays_behind: false,
             inputs: DeviceInputs::default(),
         };
@@ -210,27 +220,28 @@ impl Cell {
     /// One tick of all that moves, with a command for the arm's servos.
     fn advance(&mut self, command: Joints, outputs: &DeviceOutputs) {
         self.arm.begin_tick(Some(command));
+        self.pedestal.table.order(&outputs.pedestal_table);
         let steps = self.description.physics.substeps;
         for step in 1..=steps {
-            self.substep(f64::from(step) / f64::from(steps), outputs.grip.bits);
+            self.substep(f64::from(step) / f64::from(steps), outputs);
         }
         self.after_tick();
         self.look(outputs);
     }
 
     /// One step of the simulation, up to the given fraction of the tick.
-    fn substep(&mut self, fraction: f64, valves: u8) {
+    fn substep(&mut self, fraction: f64, outputs: &DeviceOutputs) {
         let dt = self.world.integration_parameters.dt;
         self.arm.advance(fraction, dt);
         let mut tool = to_pose(&self.arm.tool());
         let hand = &mut self.world.bodies[self.gripper.hand()];
         tool.rotation = on_the_side_of(hand.rotation(), tool.rotation);
         hand.set_next_kinematic_position(tool);
-        self.drive_fingers(dt, valves);
+        self.pedestal.turn(&mut self.world, dt);
+        self.drive_fingers(dt, Hand::Robot, outputs.grip.bits);
+        self.drive_fingers(dt, Hand::Pedestal, outputs.pedestal_hand.bits);
         self.drive_jaw(dt);
-        if let Some((_, hold)) = &mut self.gripper.hold {
-            hold.rub(&mut self.world, dt);
-        }
+        self.rub_holds(dt);
         self.world.step();
         self.let_holds_give_way();
     }
@@ -286,6 +297,7 @@ impl Cell {
             holsters: HolsterSensors { right: 0, left: 0x0F, centre: 0x0F },
             joystick: JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() },
             vision: self.camera.answer(),
+            pedestal: self.pedestal.sensors(&mut self.pedestal_noise),
             ..DeviceInputs::default()
         }
     }
@@ -306,6 +318,18 @@ impl Cell {
     #[must_use]
     pub fn fingers(&self) -> (f64, f64) {
         (self.gripper.air.opening(), self.gripper.air.force())
+    }
+
+    /// The fingertips of the pedestal's hand, X up, Y across the fingers, in.
+    #[must_use]
+    pub fn pedestal(&self) -> Frame {
+        self.pedestal.frame()
+    }
+
+    /// Finger opening, in, and force of a finger, lb, of the pedestal's hand: the truth behind the sensors.
+    #[must_use]
+    pub fn pedestal_fingers(&self) -> (f64, f64) {
+        (self.pedestal.hand.air.opening(), self.pedestal.hand.air.force())
     }
 
     /// Distance of the vise's clamping faces, in.

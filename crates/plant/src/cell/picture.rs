@@ -244,12 +244,9 @@ impl Cell {
         let at =
             |x: f64, y: f64, z: f64| Frame { position: Inches::new(x, y, z), rotation: Rotation::identity() };
         urdf.begin_link("parts_gripper");
-        let change = -T3.plate_to_tool + gripper.quick_change_length / 2.0;
-        urdf.shape(
-            &at(change, 0.0, 0.0),
-            &Outline::Cylinder(gripper.quick_change_radius, gripper.quick_change_length),
-            DARK,
-        );
+        let change = &self.description.quick_change;
+        let middle = at(-T3.plate_to_tool + change.length / 2.0, 0.0, 0.0);
+        urdf.shape(&middle, &Outline::Cylinder(change.radius, change.length), DARK);
         urdf.shape(
             &at(-length - gripper.body[0] / 2.0, 0.0, 0.0),
             &Outline::Box(Inches::from(gripper.body)),

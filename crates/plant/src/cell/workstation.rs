@@ -3,7 +3,7 @@
 use rapier3d_f64::{parry::query, prelude::*};
 use rcs_core::frame::{Frame, Vector as Inches, rotation_by, rotation_vector};
 
-use super::Cell;
+use super::{Cell, Hand};
 use crate::{
     convert::{inches, to_pose},
     description::PartType,
@@ -262,17 +262,13 @@ impl Cell {
     fn remove(&mut self, id: u32) -> Result<(), WorkstationError> {
         let index =
             self.parts.iter().position(|part| part.id == id).ok_or(WorkstationError::NoSuchPart { id })?;
-        if self.is_held(index) || self.is_clamped(index) {
+        if self.is_had(index) {
             return Err(WorkstationError::Held { part: self.parts[index].kind.name.clone() });
         }
         let part = self.parts.remove(index);
         self.world.remove_body(part.body);
         // What is held is known by its place in the list.
-        let gripped = self.gripper.hold.as_mut().map(|(held, _)| held);
-        let clamped = self.vise.clamped.as_mut().map(|clamped| &mut clamped.part);
-        for held in gripped.into_iter().chain(clamped).filter(|held| **held > index) {
-            *held -= 1;
-        }
+        self.renumber(|held| if held > index { held - 1 } else { held });
         Ok(())
     }
 
@@ -352,6 +348,9 @@ impl Cell {
         let at = frame.position;
         if self.is_held(index) && !self.is_clamped(index) {
             return ("gripper".into(), 0, None);
+        }
+        if self.is_held_by(Hand::Pedestal, index) {
+            return (self.description.pedestal.location.clone(), 0, None);
         }
         for tray in &self.description.tray {
             let shape = &self.description.tray_shape;

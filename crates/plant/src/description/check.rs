@@ -7,7 +7,7 @@ use rcs_core::{
     name::Name16,
 };
 
-use super::{CellDescription, DescriptionError, Fault, Faults};
+use super::{CellDescription, DescriptionError, Fault, Faults, Gripper};
 
 impl CellDescription {
     /// Check all numbers.
@@ -18,6 +18,7 @@ impl CellDescription {
         let mut check = Check(Vec::new());
         self.check_robot(&mut check);
         self.check_gripper_and_camera(&mut check);
+        self.check_pedestal(&mut check);
         self.check_vise_and_trays(&mut check);
         self.check_names_and_boxes(&mut check);
         if check.0.is_empty() { Ok(()) } else { Err(DescriptionError::Values(Faults(check.0))) }
@@ -45,41 +46,16 @@ impl CellDescription {
     }
 
     fn check_gripper_and_camera(&self, check: &mut Check) {
-        let gripper = &self.gripper;
-        check.positive("gripper.body", &gripper.body);
-        check.positive("gripper.fingers", &gripper.fingers);
-        check.positive(
-            "gripper.quick_change_length, quick_change_radius",
-            &[gripper.quick_change_length, gripper.quick_change_radius],
-        );
-        let length = gripper.quick_change_length + gripper.body[0] + gripper.fingers[0];
+        let (change, gripper) = (&self.quick_change, &self.gripper);
+        check.positive("quick_change: length, radius", &[change.length, change.radius]);
+        let length = change.length + gripper.body[0] + gripper.fingers[0];
         check.that(
             (length - T3.plate_to_tool).abs() < 1e-6,
-            "gripper: quick_change_length + body[0] + fingers[0]",
+            "quick_change.length + gripper.body[0] + gripper.fingers[0]",
             format!("the tool length of the arm, {} in", T3.plate_to_tool),
             length,
         );
-        let [least, greatest] = gripper.opening;
-        check.within("gripper.opening", greatest, least.max(0.0) + 0.1, 20.0);
-        check.within("gripper.opening[0]", least, 0.0, greatest);
-        check.within("gripper.initial_opening", gripper.initial_opening, least, greatest);
-        check.within("gripper.friction", gripper.friction, 0.01, 2.0);
-        check.positive(
-            "gripper: finger_weight, compressibility, greatest_force, vent_time_s",
-            &[gripper.finger_weight, gripper.compressibility, gripper.greatest_force, gripper.vent_time_s],
-        );
-        let sensors = &gripper.sensors;
-        let full = sensors.potentiometer_offset + sensors.potentiometer_scale * greatest;
-        check.within("gripper.sensors: potentiometer at the greatest opening", full, 1.0, 4095.0);
-        for (offset, scale) in sensors.strain_offsets.iter().zip(sensors.strain_scales) {
-            check.within(
-                "gripper.sensors: strain gage at the greatest force",
-                offset + scale * gripper.greatest_force,
-                1.0,
-                4095.0,
-            );
-        }
-        check.within("gripper.sensors.noise", sensors.noise, 0.0, 100.0);
+        check_gripper("gripper", gripper, check);
         let camera = &self.camera;
         check.positive("camera: view, reference_range_mm", &[camera.view, camera.reference_range_mm]);
         let noises = [
@@ -93,6 +69,24 @@ impl CellDescription {
             check.within("camera.*_noise, shape_tolerance", noise, 0.0, 10.0);
         }
         check.within("camera.tilt", camera.tilt, -90.0, 90.0);
+    }
+
+    fn check_pedestal(&self, check: &mut Check) {
+        let pedestal = &self.pedestal;
+        check.positive("pedestal.stiffness", &[pedestal.stiffness]);
+        check_gripper("pedestal.hand", &pedestal.hand, check);
+        let table = &pedestal.table;
+        let [minus, plus] = table.limits;
+        check.that(minus < plus, "pedestal.table.limits", "ascending", format!("{:?}", table.limits));
+        check.within("pedestal.table.start", table.start, minus, plus);
+        check.within("pedestal.table.square", table.square, minus, plus);
+        check.positive("pedestal.table.flip", &table.flip);
+        check.positive("pedestal.table: speed, acceleration", &[table.speed, table.acceleration]);
+        for (limit, name) in table.limits.iter().zip(["-", "+"]) {
+            let counts = table.potentiometer_offset + table.potentiometer_scale * limit;
+            check.within(&format!("pedestal.table: potentiometer at the {name} limit"), counts, 1.0, 4095.0);
+        }
+        check.within("pedestal.table.noise", table.noise, 0.0, 100.0);
     }
 
     fn check_vise_and_trays(&self, check: &mut Check) {
@@ -155,6 +149,29 @@ impl CellDescription {
             check.positive(&format!("fixture {}: size", fixture.name), &fixture.size);
         }
     }
+}
+
+fn check_gripper(name: &str, gripper: &Gripper, check: &mut Check) {
+    let entry = |what: &str| format!("{name}{what}");
+    check.positive(&entry(".body"), &gripper.body);
+    check.positive(&entry(".fingers"), &gripper.fingers);
+    let [least, greatest] = gripper.opening;
+    check.within(&entry(".opening"), greatest, least.max(0.0) + 0.1, 20.0);
+    check.within(&entry(".opening[0]"), least, 0.0, greatest);
+    check.within(&entry(".initial_opening"), gripper.initial_opening, least, greatest);
+    check.within(&entry(".friction"), gripper.friction, 0.01, 2.0);
+    check.positive(
+        &entry(": finger_weight, compressibility, greatest_force, vent_time_s"),
+        &[gripper.finger_weight, gripper.compressibility, gripper.greatest_force, gripper.vent_time_s],
+    );
+    let sensors = &gripper.sensors;
+    let full = sensors.potentiometer_offset + sensors.potentiometer_scale * greatest;
+    check.within(&entry(".sensors: potentiometer at the greatest opening"), full, 1.0, 4095.0);
+    for (offset, scale) in sensors.strain_offsets.iter().zip(sensors.strain_scales) {
+        let full = offset + scale * gripper.greatest_force;
+        check.within(&entry(".sensors: strain gage at the greatest force"), full, 1.0, 4095.0);
+    }
+    check.within(&entry(".sensors.noise"), sensors.noise, 0.0, 100.0);
 }
 
 /// Collects faults.

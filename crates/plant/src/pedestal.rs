@@ -1,0 +1,306 @@
+//! The Active Pedestal (II.1.2.3, III.9, III.10): a hand like the parts gripper, pointing up, on a table that a step motor turns.
+//!
+//! Three angles, all in degrees and positive to the left seen from above (ASSUMED):
+//!
+//! * the *counter* of the motor's controller: steps from wherever it was last set to a value. The only angle that the
+//!   controller of the pedestal has; it means nothing before somebody has run the motor to the + limit and set it;
+//! * the *motor angle*: what the counter shows after a calibration as IV.1 step 3 has it. The switches stand at fixed motor
+//!   angles. The motor stops dead at a switch and runs away from it;
+//! * the *table angle*: where the hand is. VII.7.4 lets a motor angle of 183.5 flip a part by 180, so that the gear is not
+//!   quite one to one (ASSUMED); the two agree where the fingers move across the radial line from the robot.
+
+use rapier3d_f64::prelude::*;
+use rcs_core::{
+    frame::{Frame, Vector as Inches, rotation_from_x_y},
+    interface::device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH},
+};
+
+use crate::{
+    convert::{on_the_side_of, to_pose},
+    description::{Pedestal as Description, RotaryTable},
+    gripper::Gripper,
+    noise::Noise,
+    scene::HAND,
+};
+
+/// Steps of the motor for a degree.
+const STEPS_PER_DEGREE: f64 = TABLE_STEPS_PER_TENTH as f64 * 10.0;
+/// Nearer than this to its goal, in steps, the motor stands there.
+const ON_STEP: f64 = 1e-6;
+
+/// The rotary table: motor, controller, switches, potentiometer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    description: RotaryTable,
+    /// Motor angle, steps.
+    position: f64,
+    /// Where it is to stop, steps.
+    goal: f64,
+    /// Steps a second.
+    speed: f64,
+    /// Counter less motor angle, steps.
+    offset: f64,
+    echo: u32,
+}
+
+impl Table {
+    /// A table that was left at the start position of its description, the counter at 0.
+    #[must_use]
+    pub fn new(description: &RotaryTable) -> Self {
+        let position = libm::round(description.start * STEPS_PER_DEGREE);
+        Self {
+            description: description.clone(),
+            position,
+            goal: position,
+            speed: 0.0,
+            offset: -position,
+            echo: 0,
+        }
+    }
+
+    /// Once a tick: take an order, if it is a new one.
+    pub fn order(&mut self, command: &MotorCommand) {
+        if command.number == 0 || command.number == self.echo {
+            return;
+        }
+        self.echo = command.number;
+        let here = libm::round(self.position);
+        let steps = f64::from(command.steps);
+        match command.order {
+            MotorOrder::None => {}
+            MotorOrder::Turn => self.goal = here + steps,
+            MotorOrder::SetCounter => self.offset = steps - here,
+            MotorOrder::Stop => self.goal = libm::round(self.position + self.stopping_way()),
+        }
+    }
+
+    /// Steps in which the motor comes to rest from its present speed, with their sign.
+    fn stopping_way(&self) -> f64 {
+        self.speed * self.speed.abs() / (2.0 * self.ramp())
+    }
+
+    /// Steps a second, each second.
+    fn ramp(&self) -> f64 {
+        self.description.acceleration * STEPS_PER_DEGREE
+    }
+
+    /// Turn for `dt` seconds: up to speed, and down again in time to stop at the goal.
+    pub fn advance(&mut self, dt: f64) {
+        let left = self.goal - self.position;
+        let change = self.ramp() * dt;
+        // The fastest speed from which the goal can still be kept, if one more step is made at it.
+        let slowing = libm::sqrt(change * change / 4.0 + 2.0 * self.ramp() * left.abs()) - change / 2.0;
+        let greatest = slowing.min(self.description.speed * STEPS_PER_DEGREE);
+        self.speed = (greatest.copysign(left)).clamp(self.speed - change, self.speed + change);
+        if (left - self.speed * dt) * left <= 0.0 || left.abs() < ON_STEP {
+            self.position = self.goal;
+            self.speed = 0.0;
+        } else {
+            self.position += self.speed * dt;
+        }
+        let (minus, plus) = (self.at_minus(), self.at_plus());
+        if (plus && self.goal > self.position) || (minus && self.goal < self.position) {
+            self.position = libm::round(self.position);
+            self.goal = self.position;
+            self.speed = 0.0;
+        }
+    }
+
+    fn at_plus(&self) -> bool {
+        self.position >= self.description.limits[1] * STEPS_PER_DEGREE
+    }
+
+    fn at_minus(&self) -> bool {
+        self.position <= self.description.limits[0] * STEPS_PER_DEGREE
+    }
+
+    /// True while the motor turns.
+    #[must_use]
+    pub fn moving(&self) -> bool {
+        self.position != self.goal
+    }
+
+    /// Motor angle, degrees.
+    #[must_use]
+    pub fn motor_angle(&self) -> f64 {
+        self.position / STEPS_PER_DEGREE
+    }
+
+    /// Table angle, degrees.
+    #[must_use]
+    pub fn angle(&self) -> f64 {
+        let RotaryTable { square, flip: [motor, table], .. } = self.description;
+        square + (self.motor_angle() - square) * table / motor
+    }
+
+    fn counter(&self) -> i32 {
+        libm::round(self.position + self.offset) as i32
+    }
+
+    fn potentiometer(&self, noise: &mut Noise) -> u16 {
+        let table = &self.description;
+        let counts = table.potentiometer_offset + table.potentiometer_scale * self.angle();
+        Noise::counts(counts + noise.within(table.noise))
+    }
+}
+
+/// Hand and table.
+#[derive(Debug)]
+pub struct Pedestal {
+    /// The hand; its tool frame has X up, Y across the fingers.
+    pub hand: Gripper,
+    /// The table.
+    pub table: Table,
+    description: Description,
+}
+
+impl Pedestal {
+    /// Build the pedestal.
+    pub fn new(world: &mut PhysicsWorld, description: &Description) -> Self {
+        let table = Table::new(&description.table);
+        let tool = to_pose(&hand_frame(description, table.angle()));
+        let hand = Gripper::new(world, &description.hand, description.stiffness, &tool, HAND);
+        Self { hand, table, description: description.clone() }
+    }
+
+    /// Where the hand is: its fingertips, X up, Y across the fingers; world, in.
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        hand_frame(&self.description, self.table.angle())
+    }
+
+    /// Let the table turn for `dt` seconds, and the hand with it.
+    pub fn turn(&mut self, world: &mut PhysicsWorld, dt: f64) {
+        if !self.table.moving() {
+            return;
+        }
+        self.table.advance(dt);
+        let mut next = to_pose(&self.frame());
+        let hand = &mut world.bodies[self.hand.hand()];
+        next.rotation = on_the_side_of(hand.rotation(), next.rotation);
+        hand.set_next_kinematic_position(next);
+    }
+
+    /// Read all sensors.
+    pub fn sensors(&self, noise: &mut Noise) -> PedestalSensors {
+        let grip = self.hand.sensors(noise, 0);
+        PedestalSensors {
+            potentiometer: grip.potentiometer,
+            strain_left: grip.strain_left,
+            strain_right: grip.strain_right,
+            table_potentiometer: self.table.potentiometer(noise),
+            limit_plus: self.table.at_plus(),
+            limit_minus: self.table.at_minus(),
+            motor_echo: self.table.echo,
+            motor_moving: self.table.moving(),
+            motor_counter: self.table.counter(),
+        }
+    }
+}
+
+/// The hand at a table angle in degrees: at `square` its Y lies across the radial line.
+fn hand_frame(description: &Description, angle: f64) -> Frame {
+    let across = description.azimuth + 90.0 + angle - description.table.square;
+    let (sine, cosine) = (libm::sin(across.to_radians()), libm::cos(across.to_radians()));
+    let position = Inches::from(description.position);
+    rotation_from_x_y(&Inches::z(), &Inches::new(cosine, sine, 0.0))
+        .map_or_else(|| Frame { position, ..Frame::identity() }, |rotation| Frame { position, rotation })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::CellDescription;
+
+    fn table() -> Table {
+        let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
+        Table::new(&cell.pedestal.table)
+    }
+
+    fn order(table: &mut Table, order: MotorOrder, steps: i32) {
+        let number = table.echo + 1;
+        table.order(&MotorCommand { number, order, steps });
+    }
+
+    fn run(table: &mut Table) -> f64 {
+        for step in 0..100_000 {
+            if !table.moving() {
+                return f64::from(step) * 0.0025;
+            }
+            table.advance(0.0025);
+        }
+        panic!("the table does not stop: {table:?}");
+    }
+
+    #[test]
+    fn a_turn_takes_its_time_and_ends_on_its_step() {
+        let mut table = table();
+        let start = table.motor_angle();
+        order(&mut table, MotorOrder::Turn, -4_321);
+        assert_eq!(table.echo, 1);
+        let seconds = run(&mut table);
+        assert!((table.motor_angle() - start + 43.21).abs() < 1e-9, "{}", table.motor_angle());
+        let least = 43.21 / table.description.speed;
+        assert!(seconds > least && seconds < least + 2.0, "{seconds} s for 43.21 degrees");
+        assert_eq!(table.counter(), -4_321, "the counter began at 0");
+    }
+
+    #[test]
+    fn the_same_number_is_one_order() {
+        let mut table = table();
+        let command = MotorCommand { number: 7, order: MotorOrder::Turn, steps: 100 };
+        table.order(&command);
+        run(&mut table);
+        table.order(&command);
+        assert!(!table.moving() && table.counter() == 100);
+        table.order(&MotorCommand { number: 0, ..command });
+        assert_eq!(table.echo, 7, "0 is no order");
+    }
+
+    #[test]
+    fn the_switches_stop_the_motor_and_let_it_run_back() {
+        let mut table = table();
+        order(&mut table, MotorOrder::Turn, 1_000_000);
+        run(&mut table);
+        assert!(table.at_plus() && !table.at_minus());
+        let overrun = table.motor_angle() + 20.0;
+        assert!((0.0..0.1).contains(&overrun), "a step or so beyond the switch: {overrun}");
+        order(&mut table, MotorOrder::SetCounter, -2_000);
+        assert_eq!(table.counter(), -2_000);
+        order(&mut table, MotorOrder::Turn, 500);
+        run(&mut table);
+        assert_eq!(table.counter(), -2_000, "not beyond the switch");
+        order(&mut table, MotorOrder::Turn, -1_000_000);
+        run(&mut table);
+        assert!(table.at_minus() && !table.at_plus());
+        order(&mut table, MotorOrder::Turn, 1_000);
+        run(&mut table);
+        assert!(!table.at_minus());
+    }
+
+    #[test]
+    fn a_motor_angle_of_183_5_turns_the_table_by_180() {
+        let mut table = table();
+        let here = table.angle();
+        order(&mut table, MotorOrder::Turn, -18_350);
+        run(&mut table);
+        assert!((here - table.angle() - 180.0).abs() < 1e-9);
+        let left = libm::round((-213.5 - table.motor_angle()) * 100.0) as i32;
+        order(&mut table, MotorOrder::Turn, left);
+        run(&mut table);
+        assert!((table.angle() + 213.5).abs() < 1e-9, "here the two agree: {}", table.angle());
+    }
+
+    #[test]
+    fn a_stop_is_a_ramp() {
+        let mut table = table();
+        order(&mut table, MotorOrder::Turn, -10_000);
+        (0..400).for_each(|_| table.advance(0.0025));
+        let (at, speed) = (table.motor_angle(), table.speed);
+        order(&mut table, MotorOrder::Stop, 0);
+        run(&mut table);
+        let way = (at - table.motor_angle()).abs();
+        let least = speed * speed / (2.0 * table.ramp()) / STEPS_PER_DEGREE;
+        assert!(speed < 0.0 && (way - least).abs() < 0.1, "{way} degrees, {least} expected");
+    }
+}
