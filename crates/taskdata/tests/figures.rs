@@ -75,6 +75,7 @@ fn kind(entry: &Entry) -> &'static str {
         Entry::Grip(_) => "grip",
         Entry::View(_) => "view",
         Entry::ApprDept(_) => "approach or depart",
+        Entry::File(_) => "file",
         Entry::Sensor(_) => "sensor",
         Entry::Relative(_) => "relative move",
     }

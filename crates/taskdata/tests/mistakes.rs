@@ -1,13 +1,14 @@
 //! One mistake, one message: the text that a person sees, for the mistakes that are made most.
 //!
-//! Each case changes one piece of the project's own data and compares everything that the load says.
+//! Each case changes one piece of sound data, those of the linkbar and the clevis (tests/sound), and compares everything that the
+//! load says.
 
 use std::path::Path;
 
 use taskdata::load::{Job, Report, Source, Store, source::read_blocks_under};
 
 fn sources() -> Vec<Source> {
-    read_blocks_under(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))).unwrap()
+    read_blocks_under(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/sound"))).unwrap()
 }
 
 /// What loading says when `from` in a file is `to` instead; without the warning that the data always has, and the counts.

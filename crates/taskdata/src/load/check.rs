@@ -22,7 +22,7 @@ use crate::files::{
 };
 
 use super::{
-    link::Origins,
+    origins::Origins,
     report::{Problems, Severity},
     source::At,
 };
@@ -248,9 +248,10 @@ impl Checker<'_> {
         let data = self.data;
         let mut found = Vec::new();
         for assigned in data.object_locations(object) {
+            found.extend(self.at_point(assigned));
             for (i, _) in data.owners.iter().enumerate() {
                 let owner = OwnerId::at(i);
-                if data.is_member(owner, assigned) {
+                if assigned.kind == RefType::Array && data.is_member(owner, assigned) {
                     found.extend(self.at_owner(owner, assigned));
                 }
             }

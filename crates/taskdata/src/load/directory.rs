@@ -29,14 +29,19 @@ pub struct Read {
     /// Names in entries that could not be read.
     pub broken: HashSet<String>,
     /// Blocks that were loaded.
-    pub blocks: usize,
+    pub blocks: BTreeSet<BlockNumber>,
 }
 
-/// Read the blocks of all sources that are to be loaded.
-pub fn read(sources: &[Source], problems: &mut Problems) -> Read {
+/// Read the blocks that are to be loaded of all sources from position `first` on; `known` are those that were loaded before.
+pub fn read(
+    sources: &[Source],
+    first: usize,
+    known: &BTreeSet<BlockNumber>,
+    problems: &mut Problems,
+) -> Read {
     let mut all: BTreeMap<BlockNumber, Block<'_>> = BTreeMap::new();
     let mut order = Vec::new();
-    for (index, source) in sources.iter().enumerate() {
+    for (index, source) in sources.iter().enumerate().skip(first) {
         let (found, faults) = blocks(index, source);
         for (at, fault) in faults {
             note(fault, at, problems);
@@ -50,7 +55,7 @@ pub fn read(sources: &[Source], problems: &mut Problems) -> Read {
             }
         }
     }
-    let mut loader = Loader { all: &all, loaded: BTreeSet::new(), read: Read::default(), problems };
+    let mut loader = Loader { all: &all, known, read: Read::default(), problems };
     loader.load_roots(&order);
     loader.unloaded();
     loader.read
@@ -89,7 +94,7 @@ fn note(fault: BlockFault, at: At, problems: &mut Problems) {
 
 struct Loader<'s, 'b, 'p> {
     all: &'b BTreeMap<BlockNumber, Block<'s>>,
-    loaded: BTreeSet<BlockNumber>,
+    known: &'b BTreeSet<BlockNumber>,
     read: Read,
     problems: &'p mut Problems,
 }
@@ -113,12 +118,12 @@ impl Loader<'_, '_, '_> {
     /// Load a block, unless it was; gives the blocks that it names.
     fn load(&mut self, number: BlockNumber, named: Option<At>) -> Vec<LoadLine> {
         let Some(block) = self.all.get(&number) else {
-            if let Some(at) = named {
+            if let Some(at) = named.filter(|_| !self.known.contains(&number)) {
                 self.problems.error("block.missing", at, format!("there is no {number}"));
             }
             return Vec::new();
         };
-        if !self.loaded.insert(number) {
+        if !self.read.blocks.insert(number) {
             if let Some(at) = named {
                 self.problems.warning("block.again", at, format!("{number} is loaded already"), None);
             }
@@ -128,14 +133,13 @@ impl Loader<'_, '_, '_> {
         let parsed = parse(&words, number, block.header, self.problems);
         self.read.entries.extend(parsed.entries);
         self.read.broken.extend(parsed.broken);
-        self.read.blocks += 1;
         parsed.loads
     }
 
     /// A block that no directory names would be missed silently.
     fn unloaded(&mut self) {
         for (number, block) in self.all {
-            if !self.loaded.contains(number) {
+            if !self.read.blocks.contains(number) {
                 self.problems.warning(
                     "block.unloaded",
                     block.header,

@@ -221,9 +221,22 @@ pub struct RelativeEntry {
     pub at: At,
 }
 
+/// `-file-` (extension): how many records a file may have.
+#[derive(Clone, Debug)]
+pub struct FileEntry {
+    /// The file, one of [`super::store::FILE_NAMES`].
+    pub file: &'static str,
+    /// Records that it may have.
+    pub records: usize,
+    /// The declaration.
+    pub at: At,
+}
+
 /// An entry of any form.
 #[derive(Clone, Debug)]
 pub enum Entry {
+    /// A file declaration (VII).
+    File(FileEntry),
     /// VII.1.
     Pose(PoseEntry),
     /// VII.2.

@@ -10,13 +10,14 @@ use crate::files::{Direction, RefType, TrajPara};
 
 use super::{
     entries::{
-        ApprDeptEntry, ArrayEntry, Entry, GripEntry, MovetableEntry, ObjLocEntry, ObjectEntry, OwnerEntry,
-        PointAt, PointEntry, PoseEntry, ShowEntry, TrajEntry, ViewEntry,
+        ApprDeptEntry, ArrayEntry, Entry, FileEntry, GripEntry, MovetableEntry, ObjLocEntry, ObjectEntry,
+        OwnerEntry, PointAt, PointEntry, PoseEntry, ShowEntry, TrajEntry, ViewEntry,
     },
     lex::Word,
     names::nearest,
     parse::{Parser, Skip, is_integer},
     source::At,
+    store::{FILE_NAMES, FILE_RECORDS},
 };
 
 /// A coordinate or a translation: twice the reach of the arm, 0.01 in.
@@ -47,6 +48,27 @@ const POINTS: &[RefType] = &[RefType::Pose, RefType::LocationPoint, RefType::Mov
 const OFFSET_FROM: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefType::Object];
 const SUBJECTS: &[RefType] =
     &[RefType::Object, RefType::View, RefType::LocationPoint, RefType::Array, RefType::Owner, RefType::Any];
+
+/// `-file- name records`: the declaration of a file (VII, blocks 100-199). The manual tells what declarations are for but
+/// prints none; the form is ours.
+pub fn file(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
+    let word = p.peek();
+    let Some((word, file)) = word.and_then(|w| Some((w, *FILE_NAMES.iter().find(|f| **f == w.text)?))) else {
+        let skip = p.expected("name of a file");
+        if let Some(near) = word.and_then(|w| nearest(w.text, FILE_NAMES.iter().copied())) {
+            p.nearest("file", near);
+        }
+        return Err(skip);
+    };
+    p.take();
+    let most = i32::try_from(FILE_RECORDS).unwrap_or(i32::MAX);
+    let records = p.integer("number of records", 1..=most)?;
+    Ok(Entry::File(FileEntry {
+        file,
+        records: usize::try_from(records).unwrap_or(0),
+        at: word.at.to(p.last_at()),
+    }))
+}
 
 /// Nine numbers, `-pose-`, movetable, name (VII.1).
 pub fn pose(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
@@ -347,8 +369,10 @@ fn settings_of<const N: usize>(
     for (i, (variable, _)) in settings.iter().enumerate() {
         if !known().any(|k| k == variable.text) {
             let message = format!("{} has no variable {}", file.text, variable.text);
-            let help = nearest(variable.text, known()).map(|n| format!("the nearest variable is {n}"));
-            p.flaw("show.variable", variable.at, message, help);
+            p.flaw("show.variable", variable.at, message, None);
+            if let Some(near) = nearest(variable.text, known()) {
+                p.nearest("variable", near);
+            }
             misspelt = true;
         } else if settings.iter().take(i).any(|(v, _)| v.text == variable.text) {
             p.flaw("show.twice", variable.at, format!("{} is set twice", variable.text), None);

@@ -7,19 +7,22 @@
 //! 3. [`directory`]: which blocks are loaded at all (Figure VIII.12);
 //! 4. `link`: names into record numbers, duplicates, unknown names;
 //! 5. `check`: geometry: every place the robot is sent to can be reached;
-//! 6. [`store`]: the files; [`report`]: everything that was found.
+//! 6. [`store`]: the files; [`origins`]: where each record was entered; [`report`]: everything that was found.
 //!
 //! [`job`] reads the job files, which stand beside the blocks.
 
 mod check;
+mod collected;
 pub mod directory;
 pub mod entries;
 pub mod forms;
 pub mod guarded;
+mod index;
 pub mod job;
 pub mod lex;
 mod link;
 pub mod names;
+pub mod origins;
 pub mod parse;
 pub mod report;
 pub mod source;
@@ -28,10 +31,12 @@ pub mod store;
 use std::path::Path;
 
 pub use job::{Job, Step, ViseOpening, Workstation};
+pub use origins::Origins;
 pub use report::{Diagnostic, Loaded, Report, Severity};
 pub use source::{BlockNumber, Source};
 pub use store::Store;
 
+use collected::Collected;
 use report::Problems;
 
 impl Store {
@@ -55,17 +60,40 @@ impl Store {
     /// # Errors
     /// The report, if it holds an error; every error of the data is in it.
     pub fn from_sources(sources: Vec<Source>) -> Result<(Self, Report), Box<Report>> {
+        Self::default().with_blocks(sources)
+    }
+
+    /// The next generation of the data: these data with more blocks loaded, while these stay as they are (DESIGN 16).
+    ///
+    /// An entry that says again what an entry of these data says (a pose of the same name, the same grip of the same object
+    /// at the same location …) replaces it and keeps its record number; other entries are appended. Nothing is removed, but
+    /// for the locations of an object, which its newer object location entries replace together. Numbers of paths, their
+    /// points and their parameters, which nobody knows by name, are given anew, and so are those of object locations.
+    ///
+    /// All blocks of the texts are loaded, as by `load` at a terminal, unless the texts have a root directory block; a
+    /// directory may also name blocks that these data have. The whole of the new generation is checked, not only the new part.
+    ///
+    /// # Errors
+    /// The report, if it holds an error; then there is no new generation.
+    pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Report), Box<Report>> {
         let mut problems = Problems::default();
-        let read = directory::read(&sources, &mut problems);
-        let (files, indexes, origins) = link::link(read.entries, read.broken, &sources, &mut problems);
-        let store = Self { files, indexes, sources };
+        let first = self.sources.len();
+        let mut sources = self.sources.clone();
+        sources.extend(texts);
+        let read = directory::read(&sources, first, &self.blocks, &mut problems);
+        let entries = self.entries.with(Collected::new(read.entries));
+        let (files, indexes, origins) = link::link(&entries, read.broken, &sources, &mut problems);
+        let count = read.blocks.len();
+        let blocks = self.blocks.union(&read.blocks).copied().collect();
+        let store = Self { files, indexes, sources, entries, blocks, origins };
         // Frames that could not be linked are no use in checking reach; the names come first.
         if !problems.has_errors() {
-            check::check(&store.view(), &origins, &mut problems);
+            check::check(&store.view(), &store.origins, &mut problems);
         }
         let failed = problems.has_errors();
         let loaded = if failed { Vec::new() } else { store.loaded() };
-        let report = Report::new(problems, &store.sources, read.blocks, loaded);
+        let mut report = Report::new(problems, &store.sources, count, loaded);
+        report.files = store.sources.len() - first;
         if failed { Err(Box::new(report)) } else { Ok((store, report)) }
     }
 }

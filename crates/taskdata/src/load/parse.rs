@@ -39,6 +39,7 @@ pub const COMPILING_WORDS: &[&str] = &[
     "-dept",
     "-sen-",
     "-rel-",
+    "-file-",
     ":S",
     ":R",
     ">FILE",
@@ -66,6 +67,7 @@ pub const BEGINNINGS: &[&str] = &[
     "-dept",
     "-sen-",
     "-rel-",
+    "-file-",
     ":S",
     "FDEF",
     "ERASE-MOVTAB",
@@ -164,7 +166,13 @@ impl<'a> Parser<'a, '_> {
         let (at, found) =
             self.peek().map_or((self.end, "the end of the block".to_owned()), |w| (w.at, w.text.to_owned()));
         self.problems.error("form.expected", at, format!("{what} was expected, {found} found"));
+        self.problems.expected(what);
         Skip
+    }
+
+    /// Note the nearest word, of the sort `what`, to the one that was just complained of.
+    pub fn nearest(&mut self, what: &str, word: &str) {
+        self.problems.nearest(what, word);
     }
 
     /// A whole number in a range. One that is out of range is noted, and the entry is read on.
@@ -179,6 +187,7 @@ impl<'a> Parser<'a, '_> {
                 let message =
                     format!("{what} is from {} to {}, {} found", range.start(), range.end(), word.text);
                 self.flaw("value.range", word.at, message, None);
+                self.problems.expected(format!("from {} to {}", range.start(), range.end()));
                 Ok(*range.start())
             }
         }
@@ -299,6 +308,7 @@ impl<'a> Parser<'a, '_> {
             "-grip-" => forms::grip(self).map(Some),
             "-vu-" => forms::view(self).map(Some),
             "-appr" | "-dept" => forms::approach_depart(self, word).map(Some),
+            "-file-" => forms::file(self).map(Some),
             "-sen-" => guarded::sensor(self).map(Some),
             "-rel-" => guarded::relative_move(self).map(Some),
             ":S" => forms::show(self).map(Some),
@@ -316,7 +326,7 @@ impl<'a> Parser<'a, '_> {
                 let skip = self.expected("a compiling word or a number");
                 let near = nearest(word.text, BEGINNINGS.iter().copied());
                 if let Some(near) = near {
-                    self.problems.help_last(format!("the nearest compiling word is {near}"));
+                    self.problems.nearest("compiling word", near);
                 }
                 self.next += 1;
                 Err(skip)

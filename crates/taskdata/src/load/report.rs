@@ -42,6 +42,10 @@ pub struct Problem {
     pub message: String,
     /// What to do, or the nearest known name.
     pub help: Option<String>,
+    /// What was expected in its place, for programs; the message says it too.
+    pub expected: Option<String>,
+    /// The nearest known name, for programs; the help says it too.
+    pub nearest: Option<String>,
 }
 
 /// A list of problems that is filled while forms are read and checked.
@@ -81,19 +85,50 @@ impl Problems {
         message: String,
         help: Option<String>,
     ) {
-        self.list.push(Problem { severity, code, at: Some(at), message, help });
+        self.list.push(Problem {
+            severity,
+            code,
+            at: Some(at),
+            message,
+            help,
+            expected: None,
+            nearest: None,
+        });
     }
 
     /// Give the last problem a help line.
-    pub fn help_last(&mut self, help: String) {
+    pub fn help(&mut self, help: String) {
         if let Some(last) = self.list.last_mut() {
             last.help = Some(help);
         }
     }
 
+    /// Note what was expected in the place of the last problem.
+    pub fn expected(&mut self, what: impl Into<String>) {
+        if let Some(last) = self.list.last_mut() {
+            last.expected = Some(what.into());
+        }
+    }
+
+    /// Note the nearest name, of the sort `what`, to the one of the last problem; it becomes the help too.
+    pub fn nearest(&mut self, what: &str, name: &str) {
+        if let Some(last) = self.list.last_mut() {
+            last.help = Some(format!("the nearest {what} is {name}"));
+            last.nearest = Some(name.to_owned());
+        }
+    }
+
     /// Add an error that belongs to no piece of text.
     pub fn general(&mut self, code: &'static str, message: String) {
-        self.list.push(Problem { severity: Severity::Error, code, at: None, message, help: None });
+        self.list.push(Problem {
+            severity: Severity::Error,
+            code,
+            at: None,
+            message,
+            help: None,
+            expected: None,
+            nearest: None,
+        });
     }
 
     /// Add what the operating system said about a file.
@@ -122,6 +157,8 @@ pub struct Diagnostic {
     code: &'static str,
     message: String,
     help: Option<String>,
+    expected: Option<String>,
+    nearest: Option<String>,
     file: String,
     at: Option<At>,
     text: String,
@@ -141,6 +178,8 @@ impl Diagnostic {
             code: problem.code,
             message: problem.message,
             help: problem.help,
+            expected: problem.expected,
+            nearest: problem.nearest,
             file: source.map(|s| s.name.clone()).unwrap_or_default(),
             at: problem.at,
             text,
@@ -173,6 +212,18 @@ impl Diagnostic {
         self.help.as_deref()
     }
 
+    /// What was expected, where one thing or one range was.
+    #[must_use]
+    pub fn expected(&self) -> Option<&str> {
+        self.expected.as_deref()
+    }
+
+    /// The nearest known name, if one is near.
+    #[must_use]
+    pub fn nearest(&self) -> Option<&str> {
+        self.nearest.as_deref()
+    }
+
     /// The file, relative to the data directory; empty if it could not be read.
     #[must_use]
     pub fn file(&self) -> &str {
@@ -195,6 +246,12 @@ impl Diagnostic {
     #[must_use]
     pub fn column(&self) -> Option<u32> {
         self.at.map(|at| at.column)
+    }
+
+    /// Number of bytes that are underlined.
+    #[must_use]
+    pub fn length(&self) -> Option<u32> {
+        self.at.map(|at| at.length)
     }
 
     /// The text that is underlined.

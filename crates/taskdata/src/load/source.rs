@@ -51,6 +51,19 @@ impl At {
     }
 }
 
+/// A place in words: file, block and line.
+#[must_use]
+pub fn place(sources: &[Source], at: At) -> String {
+    let file = usize::try_from(at.source)
+        .ok()
+        .and_then(|i| sources.get(i))
+        .map_or("?", |source| source.name.as_str());
+    at.block.map_or_else(
+        || format!("{file}, line {}", at.line),
+        |block| format!("{file}, {block}, line {}", at.line),
+    )
+}
+
 /// Number of a block and the offset of its area.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct BlockNumber {

@@ -1,15 +1,46 @@
 //! The files of a load, owned: what [`TaskData`] is a view of.
 
+use std::collections::BTreeSet;
+
 use crate::files::{
-    ApprDept, Array, EndEffPara, GripLoc, Index, Locpt, Member, MovtabRecord, ObjGrips, ObjLoc, Object,
-    Owner, Path, PathPoint, PedPara, PoseRecord, RelativeMove, SensorPara, TaskData, Traj, TrajPara,
-    VisionPara, data::Indexes,
+    ApprDept, Array, EndEffPara, GripLoc, Locpt, Member, MovtabRecord, ObjGrips, ObjLoc, Object, Owner, Path,
+    PathPoint, PedPara, PoseRecord, RelativeMove, SensorPara, TaskData, Traj, TrajPara, VisionPara,
+    data::Indexes,
 };
 
-use super::{report::Loaded, source::Source};
+use super::{
+    collected::Collected,
+    index::OwnedIndex,
+    origins::Origins,
+    report::Loaded,
+    source::{At, BlockNumber, Source, place},
+};
 
 /// Records that a file can hold (DESIGN 7); one more is the manual's FILE FULL.
 pub const FILE_RECORDS: usize = 100_000;
+
+/// The files, by the names that a declaration may give. Those of the object location form and of the approach/depart form are
+/// ours, as the manual names none, and so are the last two.
+pub const FILE_NAMES: [&str; 18] = [
+    "POSE",
+    "MOVTAB",
+    "LOCPT",
+    "ARRAY-TABLE",
+    "OWNER-ASCII-NAMES",
+    "TRAJ",
+    "TRAJ-PARA",
+    "PATH-PTS",
+    "OBJ-ASCII-NAMES",
+    "END-EFF-PARA",
+    "OBJ-GRIPS",
+    "OBJ-LOC",
+    "PED-PARA",
+    "GRIP-LOC",
+    "VISION-PARA",
+    "APPR-DEPT",
+    "SENSOR-PARA",
+    "REL-MOVES",
+];
 
 /// The records of all files. See [`TaskData`] for what each is.
 #[derive(Clone, Debug, Default)]
@@ -36,55 +67,66 @@ pub(super) struct Files {
     pub relative_moves: Vec<RelativeMove>,
 }
 
-/// An index, owned.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Sorted {
-    pub keys: Vec<u128>,
-    pub numbers: Vec<u32>,
-}
-
-impl Sorted {
-    /// Sort keys, given in the order of the records or with the record number of each. Equal keys keep their order.
-    pub fn new(mut pairs: Vec<(u128, u32)>) -> Self {
-        pairs.sort_by_key(|pair| pair.0);
-        let (keys, numbers) = pairs.into_iter().unzip();
-        Self { keys, numbers }
-    }
-
-    pub fn view(&self) -> Index<'_> {
-        Index::sorted(&self.keys, &self.numbers)
+impl Files {
+    /// Records of each file, in the order of [`FILE_NAMES`].
+    pub const fn records(&self) -> [usize; FILE_NAMES.len()] {
+        [
+            self.poses.len(),
+            self.movetables.len(),
+            self.locpts.len(),
+            self.arrays.len(),
+            self.owners.len(),
+            self.trajectories.len(),
+            self.traj_paras.len(),
+            self.path_points.len(),
+            self.objects.len(),
+            self.end_effs.len(),
+            self.obj_grips.len(),
+            self.obj_locs.len(),
+            self.ped_paras.len(),
+            self.grip_locs.len(),
+            self.visions.len(),
+            self.appr_depts.len(),
+            self.sensors.len(),
+            self.relative_moves.len(),
+        ]
     }
 }
 
 /// The indexes of all files. See [`Indexes`] for their keys.
 #[derive(Clone, Debug, Default)]
-pub(super) struct SortedIndexes {
-    pub poses: Sorted,
-    pub movetables: Sorted,
-    pub locpts: Sorted,
-    pub arrays: Sorted,
-    pub owners: Sorted,
-    pub members: Sorted,
-    pub trajectory_names: Sorted,
-    pub trajectories: Sorted,
-    pub objects: Sorted,
-    pub end_effs: Sorted,
-    pub obj_grips: Sorted,
-    pub obj_locs: Sorted,
-    pub ped_paras: Sorted,
-    pub grip_locs: Sorted,
-    pub visions: Sorted,
-    pub appr_depts: Sorted,
-    pub sensors: Sorted,
-    pub relative_moves: Sorted,
+pub(super) struct OwnedIndexes {
+    pub poses: OwnedIndex,
+    pub movetables: OwnedIndex,
+    pub locpts: OwnedIndex,
+    pub arrays: OwnedIndex,
+    pub owners: OwnedIndex,
+    pub members: OwnedIndex,
+    pub trajectory_names: OwnedIndex,
+    pub trajectories: OwnedIndex,
+    pub objects: OwnedIndex,
+    pub end_effs: OwnedIndex,
+    pub obj_grips: OwnedIndex,
+    pub obj_locs: OwnedIndex,
+    pub ped_paras: OwnedIndex,
+    pub grip_locs: OwnedIndex,
+    pub visions: OwnedIndex,
+    pub appr_depts: OwnedIndex,
+    pub sensors: OwnedIndex,
+    pub relative_moves: OwnedIndex,
 }
 
 /// Loaded task data: the files, their indexes and the text that they came from.
 #[derive(Clone, Debug, Default)]
 pub struct Store {
     pub(super) files: Files,
-    pub(super) indexes: SortedIndexes,
+    pub(super) indexes: OwnedIndexes,
     pub(super) sources: Vec<Source>,
+    /// What the records were made of, for the next generation.
+    pub(super) entries: Collected,
+    /// Blocks that were loaded.
+    pub(super) blocks: BTreeSet<BlockNumber>,
+    pub(super) origins: Origins,
 }
 
 impl Store {
@@ -136,37 +178,29 @@ impl Store {
         }
     }
 
-    /// The files of blocks that were read, for whoever keeps them with a log.
+    /// The files of blocks that were read, for whoever keeps them with a log: those of the first load, then those of each
+    /// [`Store::with_blocks`] in turn.
     #[must_use]
     pub fn sources(&self) -> &[Source] {
         &self.sources
     }
 
+    /// Where each record was entered.
+    #[must_use]
+    pub const fn origins(&self) -> &Origins {
+        &self.origins
+    }
+
+    /// A place of the text in words: file, block and line; "?" if the text is not known.
+    #[must_use]
+    pub fn place(&self, at: At) -> String {
+        place(&self.sources, at)
+    }
+
     /// How many records each file has, by the manual's names.
     #[must_use]
     pub fn loaded(&self) -> Vec<Loaded> {
-        let f = &self.files;
-        [
-            ("POSE", f.poses.len()),
-            ("MOVTAB", f.movetables.len()),
-            ("LOCPT", f.locpts.len()),
-            ("ARRAY-TABLE", f.arrays.len()),
-            ("OWNER-ASCII-NAMES", f.owners.len()),
-            ("TRAJ", f.trajectories.len()),
-            ("TRAJ-PARA", f.traj_paras.len()),
-            ("PATH-PTS", f.path_points.len()),
-            ("OBJ-ASCII-NAMES", f.objects.len()),
-            ("END-EFF-PARA", f.end_effs.len()),
-            ("OBJ-GRIPS", f.obj_grips.len()),
-            ("OBJ-LOC", f.obj_locs.len()),
-            ("PED-PARA", f.ped_paras.len()),
-            ("GRIP-LOC", f.grip_locs.len()),
-            ("VISION-PARA", f.visions.len()),
-            ("APPR-DEPT", f.appr_depts.len()),
-            ("SENSOR-PARA", f.sensors.len()),
-            ("REL-MOVES", f.relative_moves.len()),
-        ]
-        .map(|(file, records)| Loaded { file, records })
-        .to_vec()
+        let files = FILE_NAMES.iter().zip(self.files.records());
+        files.map(|(file, records)| Loaded { file, records }).collect()
     }
 }

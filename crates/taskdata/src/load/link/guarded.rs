@@ -4,13 +4,11 @@ use rcs_core::name::Name10;
 
 use crate::files::{RelativeMove, SensorPara, index::relative_key};
 
-use super::{Forms, Linker};
+use super::{super::collected::Collected, Linker, numbered};
 
 impl Linker<'_> {
-    pub(super) fn guarded_moves(&mut self, forms: &Forms) {
-        let names: Vec<_> = forms.sensors.iter().map(|e| e.name).collect();
-        self.indexes.sensors = self.declare_names("sensor", &names);
-        for entry in &forms.sensors {
+    pub(super) fn guarded_moves(&mut self, all: &Collected) {
+        for entry in &all.sensors {
             self.files.sensors.push(SensorPara {
                 name: entry.name.name,
                 source: entry.source,
@@ -18,8 +16,8 @@ impl Linker<'_> {
                 threshold: entry.threshold,
             });
         }
-        let mut keys = Vec::new();
-        for entry in &forms.relative_moves {
+        let (mut keys, mut ats) = (Vec::new(), Vec::new());
+        for entry in &all.relative_moves {
             let (at, movetable) = (self.reference(entry.place), self.movetable(entry.movetable));
             let sensor = match entry.sensor {
                 None => Some(Name10::EMPTY),
@@ -31,11 +29,12 @@ impl Linker<'_> {
                 let para = self.para(entry.para);
                 let name = entry.name.name;
                 self.files.relative_moves.push(RelativeMove { name, at, movetable, para, sensor });
-                self.origins.relative_moves.push(entry.at);
+                ats.push(entry.at);
                 keys.push(key);
             }
         }
-        let ats = self.origins.relative_moves.clone();
-        self.indexes.relative_moves = self.unique("this relative move at this location", keys, &ats);
+        let keys = numbered(keys.into_iter());
+        self.indexes.relative_moves = self.unique("this relative move at this location", &keys, &ats);
+        self.origins.relative_moves = ats;
     }
 }

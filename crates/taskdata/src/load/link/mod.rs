@@ -1,7 +1,7 @@
 //! From entries to records: names become record numbers.
 //!
-//! All names are declared before any is looked up, so the order of blocks does not matter. One sorted index a file finds
-//! both the names and the duplicates: equal keys come to lie side by side.
+//! All names are declared before any is looked up, so the order of blocks does not matter. One index a file finds both the
+//! names and the duplicates, which share a key.
 
 mod guarded;
 mod objects;
@@ -18,76 +18,18 @@ use crate::files::{
 };
 
 use super::{
-    entries::{
-        ApprDeptEntry, ArrayEntry, Entry, GripEntry, MovetableEntry, Named, ObjLocEntry, ObjectEntry,
-        OwnerEntry, PointAt, PoseEntry, RelativeEntry, SensorEntry, ShowEntry, TrajEntry, Typed, ViewEntry,
-    },
+    collected::Collected,
+    entries::{Named, Typed},
+    index::OwnedIndex,
     names::nearest,
-    report::{Problems, Severity},
-    source::{At, Source},
-    store::{FILE_RECORDS, Files, Sorted, SortedIndexes},
+    origins::Origins,
+    report::Problems,
+    source::{At, Source, place},
+    store::{FILE_NAMES, FILE_RECORDS, Files, OwnedIndexes},
 };
 
-/// Where the records come from, for the checks that follow.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Origins {
-    pub poses: Vec<At>,
-    pub locpts: Vec<At>,
-    pub trajectories: Vec<At>,
-    pub grip_locs: Vec<At>,
-    pub visions: Vec<At>,
-    pub appr_depts: Vec<At>,
-    pub path_points: Vec<At>,
-    pub relative_moves: Vec<At>,
-}
-
-/// The entries of all blocks, by form.
-#[derive(Debug, Default)]
-struct Forms {
-    poses: Vec<PoseEntry>,
-    movetables: Vec<MovetableEntry>,
-    locpts: Vec<PointAt>,
-    arrays: Vec<ArrayEntry>,
-    arrays_at: Vec<PointAt>,
-    owners: Vec<OwnerEntry>,
-    trajectories: Vec<TrajEntry>,
-    objects: Vec<ObjectEntry>,
-    obj_grips: Vec<ShowEntry<2>>,
-    obj_locs: Vec<ObjLocEntry>,
-    ped_paras: Vec<ShowEntry<6>>,
-    grips: Vec<GripEntry>,
-    views: Vec<ViewEntry>,
-    appr_depts: Vec<ApprDeptEntry>,
-    sensors: Vec<SensorEntry>,
-    relative_moves: Vec<RelativeEntry>,
-}
-
-impl Forms {
-    fn sort(entries: Vec<Entry>) -> Self {
-        let mut forms = Self::default();
-        for entry in entries {
-            match entry {
-                Entry::Pose(e) => forms.poses.push(e),
-                Entry::Movetable(e) => forms.movetables.push(e),
-                Entry::Locpt(e) => forms.locpts.push(e),
-                Entry::Array(e) => forms.arrays.push(e),
-                Entry::ArrayAt(e) => forms.arrays_at.push(e),
-                Entry::Owner(e) => forms.owners.push(e),
-                Entry::Traj(e) => forms.trajectories.push(e),
-                Entry::Object(e) => forms.objects.push(e),
-                Entry::ObjGrips(e) => forms.obj_grips.push(e),
-                Entry::ObjLoc(e) => forms.obj_locs.push(e),
-                Entry::PedPara(e) => forms.ped_paras.push(e),
-                Entry::Grip(e) => forms.grips.push(e),
-                Entry::View(e) => forms.views.push(e),
-                Entry::ApprDept(e) => forms.appr_depts.push(e),
-                Entry::Sensor(e) => forms.sensors.push(e),
-                Entry::Relative(e) => forms.relative_moves.push(e),
-            }
-        }
-        forms
-    }
-}
+/// Unknown names for which the nearest known one is looked for; in data where everything is unknown that would take hours.
+const NEAREST_FOR: usize = 200;
 
 /// What links the entries of a load.
 pub(super) struct Linker<'a> {
@@ -95,36 +37,43 @@ pub(super) struct Linker<'a> {
     broken: HashSet<String>,
     problems: &'a mut Problems,
     files: Files,
-    indexes: SortedIndexes,
+    indexes: OwnedIndexes,
     origins: Origins,
     /// Parameters that have a record already.
     paras: HashMap<[i32; 4], TrajParaId>,
+    /// Names that were looked for in vain.
+    unknown: usize,
 }
 
-/// Make files and indexes of entries; problems are noted.
+/// Make files and indexes of entries; problems are noted. `broken` are names in entries that could not be read.
 pub(super) fn link(
-    entries: Vec<Entry>,
+    entries: &Collected,
     broken: HashSet<String>,
     sources: &[Source],
     problems: &mut Problems,
-) -> (Files, SortedIndexes, Origins) {
-    let forms = Forms::sort(entries);
+) -> (Files, OwnedIndexes, Origins) {
     let mut linker = Linker {
         sources,
         broken,
         problems,
         files: Files::default(),
-        indexes: SortedIndexes::default(),
+        indexes: OwnedIndexes::default(),
         origins: Origins::default(),
         paras: HashMap::new(),
+        unknown: 0,
     };
-    linker.declare(&forms);
-    linker.places(&forms);
-    linker.objects(&forms);
-    linker.guarded_moves(&forms);
+    linker.declare(entries);
+    linker.places(entries);
+    linker.objects(entries);
+    linker.guarded_moves(entries);
     linker.index_pairs();
-    linker.check_full();
+    linker.check_full(entries);
     (linker.files, linker.indexes, linker.origins)
+}
+
+/// Keys with the record numbers of their records, which count from 1 in their order.
+fn numbered(keys: impl Iterator<Item = u128>) -> Vec<(u128, u32)> {
+    keys.zip(1..).collect()
 }
 
 fn number(position: usize) -> u32 {
@@ -133,72 +82,61 @@ fn number(position: usize) -> u32 {
 
 impl Linker<'_> {
     /// An index of keys in the order of the records; two records with one key are an error.
-    fn unique(&mut self, what: &str, keys: Vec<u128>, ats: &[At]) -> Sorted {
-        let pairs = keys.into_iter().enumerate().map(|(i, key)| (key, number(i).saturating_add(1))).collect();
-        let sorted = Sorted::new(pairs);
+    fn unique(&mut self, what: &str, keys: &[(u128, u32)], ats: &[At]) -> OwnedIndex {
+        let index = OwnedIndex::new(keys);
         let at = |n: &u32| {
             usize::try_from(n.saturating_sub(1)).ok().and_then(|i| ats.get(i)).copied().unwrap_or_default()
         };
-        for (keys, numbers) in sorted.keys.windows(2).zip(sorted.numbers.windows(2)) {
-            if let ([one, two], [first, second]) = (keys, numbers)
-                && one == two
-            {
-                let help = format!("the first is in {}", self.place(at(first)));
-                self.problems.error_help("duplicate", at(second), format!("{what} is given twice"), help);
+        for numbers in index.shared() {
+            for pair in numbers.windows(2) {
+                if let [first, second] = pair {
+                    let help = format!("the first is in {}", place(self.sources, at(first)));
+                    self.problems.error_help("duplicate", at(second), format!("{what} is given twice"), help);
+                }
             }
         }
-        sorted
+        index
     }
 
-    /// A place in words, for help.
-    fn place(&self, at: At) -> String {
-        let file = usize::try_from(at.source)
-            .ok()
-            .and_then(|i| self.sources.get(i))
-            .map_or("?", |s| s.name.as_str());
-        at.block.map_or_else(
-            || format!("{file}, line {}", at.line),
-            |block| format!("{file}, {block}, line {}", at.line),
-        )
-    }
-
-    fn declare_names<const N: usize>(&mut self, what: &str, names: &[Named<N>]) -> Sorted {
-        let ats: Vec<At> = names.iter().map(|n| n.at).collect();
-        self.unique(
-            &format!("a {what} of this name"),
-            names.iter().map(|n| name_key(&n.name)).collect(),
-            &ats,
-        )
+    /// An index of names; where they stand is noted with it.
+    fn declare_names<'n, const N: usize>(
+        &mut self,
+        what: &str,
+        names: impl Iterator<Item = &'n Named<N>> + Clone,
+    ) -> (OwnedIndex, Vec<At>) {
+        let ats: Vec<At> = names.clone().map(|n| n.at).collect();
+        let keys = numbered(names.map(|n| name_key(&n.name)));
+        let index = self.unique(&format!("a {what} of this name"), &keys, &ats);
+        (index, ats)
     }
 
     /// Declare all names, so that forms can be looked up in any order.
-    fn declare(&mut self, forms: &Forms) {
-        let names = |list: &[PointAt]| list.iter().map(|e| e.name).collect::<Vec<_>>();
-        let movetables: Vec<_> = forms.movetables.iter().map(|e| e.name).collect();
-        for null in movetables.iter().filter(|n| n.name.as_str() == NULL_NAME) {
-            self.problems.error("name.null", null.at, "... is the null movetable and cannot be defined");
+    fn declare(&mut self, all: &Collected) {
+        for null in all.movetables.iter().filter(|e| e.name.name.as_str() == NULL_NAME) {
+            self.problems.error("name.null", null.name.at, "... is the null movetable and cannot be defined");
         }
-        self.indexes.movetables = self.declare_names("movetable", &movetables);
-        let poses: Vec<_> = forms.poses.iter().map(|e| e.name).collect();
-        self.indexes.poses = self.declare_names("pose", &poses);
-        self.indexes.locpts = self.declare_names("location point", &names(&forms.locpts));
-        let arrays: Vec<_> = forms.arrays.iter().map(|e| e.name).collect();
-        self.indexes.arrays = self.declare_names("array", &arrays);
-        let owners: Vec<_> = forms.owners.iter().map(|e| e.name).collect();
-        self.indexes.owners = self.declare_names("owner", &owners);
-        let trajectories: Vec<_> = forms.trajectories.iter().map(|e| e.name).collect();
-        self.indexes.trajectory_names = self.declare_names("trajectory", &trajectories);
+        (self.indexes.movetables, self.origins.movetables) =
+            self.declare_names("movetable", all.movetables.iter().map(|e| &e.name));
+        self.indexes.poses = self.declare_names("pose", all.poses.iter().map(|e| &e.name)).0;
+        (self.indexes.locpts, self.origins.locpts) =
+            self.declare_names("location point", all.locpts.iter().map(|e| &e.name));
+        (self.indexes.arrays, self.origins.arrays) =
+            self.declare_names("array", all.arrays.iter().map(|e| &e.name));
+        (self.indexes.owners, self.origins.owners) =
+            self.declare_names("owner", all.owners.iter().map(|e| &e.name));
+        self.indexes.trajectory_names =
+            self.declare_names("trajectory", all.trajectories.iter().map(|e| &e.name)).0;
+        (self.indexes.sensors, self.origins.sensors) =
+            self.declare_names("sensor", all.sensors.iter().map(|e| &e.name));
 
         // An object has one form entry for each grip; its name is declared by the first.
         let mut seen = HashSet::new();
-        for entry in &forms.objects {
-            if seen.insert(entry.name.name) {
-                self.files.objects.push(Object { name: entry.name.name });
-            }
+        for entry in all.objects.iter().filter(|e| seen.insert(e.name.name)) {
+            self.files.objects.push(Object { name: entry.name.name });
+            self.origins.objects.push(entry.name.at);
         }
-        let keys = self.files.objects.iter().enumerate();
         self.indexes.objects =
-            Sorted::new(keys.map(|(i, o)| (name_key(&o.name), number(i).saturating_add(1))).collect());
+            OwnedIndex::new(&numbered(self.files.objects.iter().map(|o| name_key(&o.name))));
     }
 
     /// The record number of a name, or a note that nothing has it.
@@ -206,23 +144,27 @@ impl Linker<'_> {
         &mut self,
         what: &str,
         name: Named<N>,
-        file: impl Fn(&SortedIndexes) -> &Sorted,
+        file: impl Fn(&OwnedIndexes) -> &OwnedIndex,
     ) -> Option<u32> {
-        let sorted = file(&self.indexes);
-        if let Some(found) = sorted.view().find(name_key(&name.name)) {
+        let index = file(&self.indexes);
+        if let Some(found) = index.view().find(name_key(&name.name)) {
             return Some(found);
         }
-        let known: Vec<String> = sorted.keys.iter().map(|key| key_text(*key)).collect();
         let wanted = name.name.as_str();
-        let near = nearest(wanted, known.iter().map(String::as_str));
+        self.unknown += 1;
+        let near = (self.unknown <= NEAREST_FOR).then(|| nearest_of(wanted, index)).flatten();
         // Its definition may be in an entry that could not be read, which is noted there; a slip of the pen included.
-        let broken = || nearest(wanted, self.broken.iter().map(String::as_str)).is_some();
+        let broken = || {
+            self.unknown <= NEAREST_FOR && nearest(wanted, self.broken.iter().map(String::as_str)).is_some()
+        };
         if self.broken.contains(wanted) || (near.is_none() && broken()) {
             return None;
         }
-        let help = near.map(|n| format!("the nearest known name is {n}"));
-        let message = format!("no {what} is named {}", name.name);
-        self.problems.push(Severity::Error, "name.unknown", name.at, message, help);
+        self.problems.error("name.unknown", name.at, format!("no {what} is named {}", name.name));
+        self.problems.expected(format!("the name of a {what}"));
+        if let Some(near) = near {
+            self.problems.nearest("known name", &near);
+        }
         None
     }
 
@@ -265,25 +207,53 @@ impl Linker<'_> {
 
     /// Indexes by what records refer to.
     fn index_pairs(&mut self) {
-        let members =
+        let members: Vec<(u128, u32)> =
             self.files.members.iter().map(|m| (reference_key(m.member), m.owner.number())).collect();
-        self.indexes.members = Sorted::new(members);
+        self.indexes.members = OwnedIndex::new(&members);
         if self.files.trajectories.iter().all(|t| t.start != Reference::NONE && t.end != Reference::NONE) {
-            let keys = self.files.trajectories.iter().map(|t| pair_key(t.start, t.end)).collect();
-            let ats = self.origins.trajectories.clone();
-            self.indexes.trajectories = self.unique("a trajectory between these locations", keys, &ats);
+            let keys = numbered(self.files.trajectories.iter().map(|t| pair_key(t.start, t.end)));
+            let ats = std::mem::take(&mut self.origins.trajectories);
+            self.indexes.trajectories = self.unique("a trajectory between these locations", &keys, &ats);
+            self.origins.trajectories = ats;
         }
     }
 
-    fn check_full(&mut self) {
-        let store = super::Store { files: std::mem::take(&mut self.files), ..super::Store::default() };
-        for loaded in store.loaded().iter().filter(|l| l.records > FILE_RECORDS) {
-            let message =
-                format!("FILE FULL: {} holds {FILE_RECORDS} records, {} found", loaded.file, loaded.records);
-            self.problems.general("file.full", message);
+    /// FILE FULL (VII): a file holds what its declaration allows.
+    fn check_full(&mut self, all: &Collected) {
+        let mut declared = HashMap::new();
+        for entry in &all.files {
+            if let Some(first) = declared.insert(entry.file, entry) {
+                let help = format!("the first is in {}", place(self.sources, first.at));
+                self.problems.error_help("duplicate", entry.at, "this file is declared twice", help);
+            }
         }
-        self.files = store.files;
+        for (file, records) in FILE_NAMES.iter().zip(self.files.records()) {
+            let declaration = declared.get(file);
+            let capacity = declaration.map_or(FILE_RECORDS, |entry| entry.records);
+            if records <= capacity {
+                continue;
+            }
+            let message = format!("FILE FULL: {file} holds {capacity} records, {records} found");
+            match declaration {
+                Some(entry) => {
+                    let help = format!("raise the number in this declaration, to {FILE_RECORDS} at most");
+                    self.problems.error_help("file.full", entry.at, message, help);
+                }
+                None => {
+                    self.problems.general("file.full", message);
+                    self.problems
+                        .help(format!("the declaration is FILE_RECORDS, {FILE_RECORDS} for every file"));
+                }
+            }
+        }
     }
+}
+
+/// The nearest name in an index.
+fn nearest_of(wanted: &str, index: &OwnedIndex) -> Option<String> {
+    let mut known: Vec<String> = index.keys().map(key_text).collect();
+    known.sort_unstable();
+    nearest(wanted, known.iter().map(String::as_str)).map(str::to_owned)
 }
 
 /// The name that a key was made of.

@@ -7,17 +7,18 @@ use crate::files::{
 
 use super::{
     super::{
+        collected::Collected,
         entries::{ApprDeptEntry, Named},
+        index::OwnedIndex,
         source::At,
-        store::Sorted,
     },
-    Forms, Linker, number,
+    Linker, numbered,
 };
 
 impl Linker<'_> {
-    pub(super) fn objects(&mut self, forms: &Forms) {
+    pub(super) fn objects(&mut self, all: &Collected) {
         let mut ats = Vec::new();
-        for entry in &forms.objects {
+        for entry in &all.objects {
             let object = self.object(entry.name).unwrap_or_default();
             let [appr_size, grasp_size, grasp_force, depart_size] = entry.values;
             let record =
@@ -25,37 +26,34 @@ impl Linker<'_> {
             self.files.end_effs.push(record);
             ats.push(entry.at);
         }
-        let keys = self.files.end_effs.iter().map(|r| grip_key(r.object, r.grip)).collect();
-        self.indexes.end_effs = self.unique("this grip of this object", keys, &ats);
-        self.show_files(forms);
-        for entry in &forms.obj_locs {
-            if let (Some(object), Some(assigned)) =
-                (self.object(entry.object), self.reference(entry.assigned))
-            {
-                self.files.obj_locs.push(ObjLoc { object, assigned });
-            }
-        }
-        self.obj_loc_index(forms);
-        self.grips_and_views(forms);
-        for entry in &forms.appr_depts {
+        let keys = numbered(self.files.end_effs.iter().map(|r| grip_key(r.object, r.grip)));
+        self.indexes.end_effs = self.unique("this grip of this object", &keys, &ats);
+        self.origins.end_effs = ats;
+        self.show_files(all);
+        self.object_locations(all);
+        self.grips(all);
+        self.views(all);
+        for entry in &all.appr_depts {
             self.appr_dept(entry);
         }
         let keys = self.files.appr_depts.iter();
-        let keys = keys.map(|r| approach_key(r.direction, r.subject, r.grip, r.at)).collect();
-        let ats = self.origins.appr_depts.clone();
-        self.indexes.appr_depts = self.unique("this approach or depart", keys, &ats);
+        let keys = numbered(keys.map(|r| approach_key(r.direction, r.subject, r.grip, r.at)));
+        let ats = std::mem::take(&mut self.origins.appr_depts);
+        self.indexes.appr_depts = self.unique("this approach or depart", &keys, &ats);
+        self.origins.appr_depts = ats;
     }
 
-    fn show_files(&mut self, forms: &Forms) {
-        for entry in &forms.obj_grips {
+    fn show_files(&mut self, all: &Collected) {
+        for entry in &all.obj_grips {
             let object = self.object(entry.object).unwrap_or_default();
             let [endeff_id, tray_grip] = entry.values;
             self.files.obj_grips.push(ObjGrips { object, endeff_id, tray_grip });
         }
-        let ats: Vec<At> = forms.obj_grips.iter().map(|e| e.object.at).collect();
-        let keys = self.files.obj_grips.iter().map(|r| object_key(r.object)).collect();
-        self.indexes.obj_grips = self.unique("the gripper of this object", keys, &ats);
-        for entry in &forms.ped_paras {
+        let ats: Vec<At> = all.obj_grips.iter().map(|e| e.object.at).collect();
+        let keys = numbered(self.files.obj_grips.iter().map(|r| object_key(r.object)));
+        self.indexes.obj_grips = self.unique("the gripper of this object", &keys, &ats);
+        self.origins.obj_grips = ats;
+        for entry in &all.ped_paras {
             let object = self.object(entry.object).unwrap_or_default();
             let [appr, grasp_size, force, release_size, table_pos, flip_angle] = entry.values;
             self.files.ped_paras.push(PedPara {
@@ -68,37 +66,49 @@ impl Linker<'_> {
                 flip_angle,
             });
         }
-        let ats: Vec<At> = forms.ped_paras.iter().map(|e| e.object.at).collect();
-        let keys = self.files.ped_paras.iter().map(|r| object_key(r.object)).collect();
-        self.indexes.ped_paras = self.unique("the pedestal record of this object", keys, &ats);
+        let ats: Vec<At> = all.ped_paras.iter().map(|e| e.object.at).collect();
+        let keys = numbered(self.files.ped_paras.iter().map(|r| object_key(r.object)));
+        self.indexes.ped_paras = self.unique("the pedestal record of this object", &keys, &ats);
+        self.origins.ped_paras = ats;
     }
 
     /// An object may be assigned to members of several owners, but not twice to the same.
-    fn obj_loc_index(&mut self, forms: &Forms) {
-        let pairs = self.files.obj_locs.iter().enumerate();
-        let pairs = pairs.map(|(i, r)| (object_key(r.object), number(i).saturating_add(1))).collect();
-        self.indexes.obj_locs = Sorted::new(pairs);
-        if self.files.obj_locs.len() == forms.obj_locs.len() {
-            let ats: Vec<At> = forms.obj_locs.iter().map(|e| e.object.at).collect();
-            let keys = self.files.obj_locs.iter().map(|r| object_at_key(r.object, r.assigned)).collect();
-            self.unique("this location of this object", keys, &ats);
+    fn object_locations(&mut self, all: &Collected) {
+        let mut ats = Vec::new();
+        for entry in &all.obj_locs {
+            if let (Some(object), Some(assigned)) =
+                (self.object(entry.object), self.reference(entry.assigned))
+            {
+                self.files.obj_locs.push(ObjLoc { object, assigned });
+                ats.push(entry.object.at);
+            }
         }
+        let records = &self.files.obj_locs;
+        self.indexes.obj_locs = OwnedIndex::new(&numbered(records.iter().map(|r| object_key(r.object))));
+        let keys = numbered(records.iter().map(|r| object_at_key(r.object, r.assigned)));
+        self.unique("this location of this object", &keys, &ats);
+        self.origins.obj_locs = ats;
     }
 
-    fn grips_and_views(&mut self, forms: &Forms) {
-        for entry in &forms.grips {
+    fn grips(&mut self, all: &Collected) {
+        let mut ats = Vec::new();
+        for entry in &all.grips {
             let (object, at, movetable) =
                 (self.object(entry.object), self.reference(entry.place), self.movetable(entry.movetable));
             if let (Some(object), Some(at), Some(movetable)) = (object, at, movetable) {
                 self.known_grip(object, entry.grip, entry.object);
                 self.files.grip_locs.push(GripLoc { object, grip: entry.grip, at, movetable });
-                self.origins.grip_locs.push(entry.object.at.to(entry.movetable.at));
+                ats.push(entry.object.at.to(entry.movetable.at));
             }
         }
-        let keys = self.files.grip_locs.iter().map(|r| grip_at_key(r.object, r.grip, r.at)).collect();
-        let ats = self.origins.grip_locs.clone();
-        self.indexes.grip_locs = self.unique("this grip of this object at this location", keys, &ats);
-        for entry in &forms.views {
+        let keys = numbered(self.files.grip_locs.iter().map(|r| grip_at_key(r.object, r.grip, r.at)));
+        self.indexes.grip_locs = self.unique("this grip of this object at this location", &keys, &ats);
+        self.origins.grip_locs = ats;
+    }
+
+    fn views(&mut self, all: &Collected) {
+        let mut ats = Vec::new();
+        for entry in &all.views {
             let (object, at, movetable) =
                 (self.object(entry.object), self.reference(entry.place), self.movetable(entry.movetable));
             if let (Some(object), Some(at), Some(movetable)) = (object, at, movetable) {
@@ -113,12 +123,12 @@ impl Linker<'_> {
                     range: entry.range,
                     enabled: entry.enabled,
                 });
-                self.origins.visions.push(entry.object.at.to(entry.movetable.at));
+                ats.push(entry.object.at.to(entry.movetable.at));
             }
         }
-        let keys = self.files.visions.iter().map(|r| object_at_key(r.object, r.at)).collect();
-        let ats = self.origins.visions.clone();
-        self.indexes.visions = self.unique("the view of this object at this location", keys, &ats);
+        let keys = numbered(self.files.visions.iter().map(|r| object_at_key(r.object, r.at)));
+        self.indexes.visions = self.unique("the view of this object at this location", &keys, &ats);
+        self.origins.visions = ats;
     }
 
     /// A grip must stand in the object form, which has its openings and its force (VII.7.1).

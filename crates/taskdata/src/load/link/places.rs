@@ -9,34 +9,36 @@ use crate::files::{
 };
 
 use super::{
-    super::entries::{Named, OwnerEntry, PointEntry, PoseEntry, Typed},
-    Forms, Linker, number,
+    super::{
+        collected::Collected,
+        entries::{Named, OwnerEntry, PointEntry, PoseEntry, Typed},
+    },
+    Linker, number,
 };
 
 impl Linker<'_> {
-    pub(super) fn places(&mut self, forms: &Forms) {
-        for entry in &forms.movetables {
+    pub(super) fn places(&mut self, all: &Collected) {
+        for entry in &all.movetables {
             let movetable = Movetable::from_lines(&entry.lines).unwrap_or_default();
             self.files.movetables.push(MovtabRecord { name: entry.name.name, movetable });
         }
-        for entry in &forms.poses {
+        for entry in &all.poses {
             let record = self.pose_record(entry);
             self.files.poses.push(record);
             self.origins.poses.push(entry.at);
         }
-        for entry in &forms.locpts {
+        for entry in &all.locpts {
             let (pose, movetable) = (self.pose(entry.pose), self.movetable(entry.movetable));
             let (pose, movetable) = (pose.unwrap_or_default(), movetable.unwrap_or_default());
             let base = pose.of(&self.files.poses).map_or_else(Frame::identity, |p| p.frame);
             let frame = self.moved(&base, movetable);
             self.files.locpts.push(Locpt { name: entry.name.name, pose, movetable, frame });
-            self.origins.locpts.push(entry.name.at);
         }
-        self.arrays(forms);
-        for (i, entry) in forms.owners.iter().enumerate() {
+        self.arrays(all);
+        for (i, entry) in all.owners.iter().enumerate() {
             self.owner(OwnerId::at(i), entry);
         }
-        for entry in &forms.trajectories {
+        for entry in &all.trajectories {
             // An end that is not known is noted; the record is kept, since the name index counts it.
             let start = self.reference(entry.start).unwrap_or(Reference::NONE);
             let end = self.reference(entry.end).unwrap_or(Reference::NONE);
@@ -80,17 +82,16 @@ impl Linker<'_> {
     }
 
     /// The dimension form and the location form of each array together (VII.4).
-    fn arrays(&mut self, forms: &Forms) {
-        let at_names: Vec<_> = forms.arrays_at.iter().map(|e| e.name).collect();
-        let located = self.declare_names("array location", &at_names);
-        for entry in &forms.arrays_at {
+    fn arrays(&mut self, all: &Collected) {
+        let located = self.declare_names("array location", all.arrays_at.iter().map(|e| &e.name)).0;
+        for entry in &all.arrays_at {
             self.find("array", entry.name, |i| &i.arrays);
         }
-        for entry in &forms.arrays {
+        for entry in &all.arrays {
             let place = located
                 .view()
                 .find(name_key(&entry.name.name))
-                .and_then(|n| ArrayId::new(n).of(&forms.arrays_at));
+                .and_then(|n| ArrayId::new(n).of(&all.arrays_at));
             let (mut pose, mut offset) = (PoseId::NULL, MovtabId::NULL);
             match place {
                 Some(place) => {
@@ -132,6 +133,7 @@ impl Linker<'_> {
         for member in &entry.members {
             if let Some(reference) = self.reference(*member) {
                 self.files.members.push(Member { owner: id, member: reference });
+                self.origins.members.push(member.name.at);
             }
         }
         let of_arrays = entry.members.iter().any(|m| m.kind == RefType::Array);

@@ -1,0 +1,116 @@
+//! The entries of a load, form by form, in the order in which they were entered.
+//!
+//! The order decides the record numbers: each entry becomes the record whose number is its position here. So the next
+//! generation of the data is made by putting newer entries into the places of those that they replace and the others at
+//! the end (DESIGN 16, "Changing records and reload"): what existed keeps its number.
+
+use std::{
+    collections::{HashMap, HashSet},
+    hash::Hash,
+};
+
+use super::entries::{
+    ApprDeptEntry, ArrayEntry, Entry, FileEntry, GripEntry, MovetableEntry, ObjLocEntry, ObjectEntry,
+    OwnerEntry, PointAt, PoseEntry, RelativeEntry, SensorEntry, ShowEntry, TrajEntry, Typed, ViewEntry,
+};
+
+/// The entries of all blocks, by form.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Collected {
+    pub files: Vec<FileEntry>,
+    pub poses: Vec<PoseEntry>,
+    pub movetables: Vec<MovetableEntry>,
+    pub locpts: Vec<PointAt>,
+    pub arrays: Vec<ArrayEntry>,
+    pub arrays_at: Vec<PointAt>,
+    pub owners: Vec<OwnerEntry>,
+    pub trajectories: Vec<TrajEntry>,
+    pub objects: Vec<ObjectEntry>,
+    pub obj_grips: Vec<ShowEntry<2>>,
+    pub obj_locs: Vec<ObjLocEntry>,
+    pub ped_paras: Vec<ShowEntry<6>>,
+    pub grips: Vec<GripEntry>,
+    pub views: Vec<ViewEntry>,
+    pub appr_depts: Vec<ApprDeptEntry>,
+    pub sensors: Vec<SensorEntry>,
+    pub relative_moves: Vec<RelativeEntry>,
+}
+
+impl Collected {
+    /// Entries of all forms, each put with its like.
+    pub fn new(entries: Vec<Entry>) -> Self {
+        let mut all = Self::default();
+        for entry in entries {
+            match entry {
+                Entry::File(e) => all.files.push(e),
+                Entry::Pose(e) => all.poses.push(e),
+                Entry::Movetable(e) => all.movetables.push(e),
+                Entry::Locpt(e) => all.locpts.push(e),
+                Entry::Array(e) => all.arrays.push(e),
+                Entry::ArrayAt(e) => all.arrays_at.push(e),
+                Entry::Owner(e) => all.owners.push(e),
+                Entry::Traj(e) => all.trajectories.push(e),
+                Entry::Object(e) => all.objects.push(e),
+                Entry::ObjGrips(e) => all.obj_grips.push(e),
+                Entry::ObjLoc(e) => all.obj_locs.push(e),
+                Entry::PedPara(e) => all.ped_paras.push(e),
+                Entry::Grip(e) => all.grips.push(e),
+                Entry::View(e) => all.views.push(e),
+                Entry::ApprDept(e) => all.appr_depts.push(e),
+                Entry::Sensor(e) => all.sensors.push(e),
+                Entry::Relative(e) => all.relative_moves.push(e),
+            }
+        }
+        all
+    }
+
+    /// These entries with `newer` ones in the places of those with the same key, and the rest of the newer ones behind
+    /// them. Nothing is removed, but for the locations of an object: newer object location entries replace all that the
+    /// object had, as an object that has moved to other trays is in the old ones no more.
+    ///
+    /// A key that `newer` holds twice replaces an entry once; the second stays, so that linking finds the duplicate.
+    pub fn with(&self, newer: Self) -> Self {
+        let mut all = self.clone();
+        replace(&mut all.files, newer.files, |e| e.file);
+        replace(&mut all.poses, newer.poses, |e| e.name.name);
+        replace(&mut all.movetables, newer.movetables, |e| e.name.name);
+        replace(&mut all.locpts, newer.locpts, |e| e.name.name);
+        replace(&mut all.arrays, newer.arrays, |e| e.name.name);
+        replace(&mut all.arrays_at, newer.arrays_at, |e| e.name.name);
+        replace(&mut all.owners, newer.owners, |e| e.name.name);
+        replace(&mut all.trajectories, newer.trajectories, |e| e.name.name);
+        replace(&mut all.objects, newer.objects, |e| (e.name.name, e.grip));
+        replace(&mut all.obj_grips, newer.obj_grips, |e| e.object.name);
+        replace(&mut all.ped_paras, newer.ped_paras, |e| e.object.name);
+        replace(&mut all.grips, newer.grips, |e| (e.object.name, e.grip, typed(&e.place)));
+        replace(&mut all.views, newer.views, |e| (e.object.name, typed(&e.place)));
+        replace(&mut all.appr_depts, newer.appr_depts, |e| {
+            (e.direction.code(), typed(&e.subject), e.grip, e.place.as_ref().map(typed))
+        });
+        replace(&mut all.sensors, newer.sensors, |e| e.name.name);
+        replace(&mut all.relative_moves, newer.relative_moves, |e| (e.name.name, typed(&e.place)));
+        let moved: HashSet<_> = newer.obj_locs.iter().map(|e| e.object.name).collect();
+        all.obj_locs.retain(|e| !moved.contains(&e.object.name));
+        all.obj_locs.extend(newer.obj_locs);
+        all
+    }
+}
+
+/// A type and a name as a key.
+const fn typed(typed: &Typed) -> (u8, rcs_core::name::Name16) {
+    (typed.kind.code(), typed.name.name)
+}
+
+/// Put each newer entry into the place of the one with its key, or at the end.
+fn replace<T, K: Eq + Hash>(entries: &mut Vec<T>, newer: Vec<T>, key: impl Fn(&T) -> K) {
+    if newer.is_empty() {
+        return;
+    }
+    let mut known: HashMap<K, usize> = entries.iter().enumerate().map(|(i, e)| (key(e), i)).collect();
+    for entry in newer {
+        match known.remove(&key(&entry)).and_then(|i| entries.get_mut(i)) {
+            Some(old) => *old = entry,
+            None => entries.push(entry),
+        }
+    }
+}
