@@ -4,7 +4,8 @@
 //! sends T3I a point whenever it wants one. Three things are kept apart:
 //!
 //! * the *command* (its table decides when it is done, and when it failed);
-//! * the *motion* ([`motion`]), which goes on when a GO-THRU is done, and ramps down when a command failed;
+//! * the *motion* ([`motion`], or [`manual`] while the operator has the robot), which goes on when a GO-THRU is
+//!   done, and ramps down when a command failed;
 //! * the *path clock* ([`tables::path_clock`]), which stands while T3I has points enough.
 //!
 //! ```text
@@ -20,12 +21,17 @@
 //! queue is not cut short, and the commanded position stays exact. PAUSE goes to T3I only while Prim has no
 //! position.
 //!
+//! A frame switch of the joystick box stops every motion with `joystick-on`; only PAUSE lets the box move the robot.
+//! The sensors of guarded moves are in [`sensors`].
+//!
 //! T3I queues up to four points. Prim reads in tick k+2 what T3I says to the point of tick k, so that T3I
 //! must say `Executing` while it has room for fewer than two. With that the queue cannot overrun.
 
 mod acting;
+pub mod manual;
 pub mod motion;
 mod preprocess;
+pub mod sensors;
 pub mod state;
 pub mod tables;
 #[cfg(test)]
@@ -42,7 +48,7 @@ use self::{
     state::State,
     tables::path_clock::{Flow, path_clock},
 };
-use crate::execution::{Course, EXECUTE};
+use crate::execution::EXECUTE;
 
 /// The Prim process.
 #[derive(Clone, Debug, Default)]
@@ -61,7 +67,13 @@ impl<'d> Process<TaskData<'d>> for Prim {
         &tables::robot_init::ROBOT_INIT,
         &tables::go_thru::GO_THRU,
         &tables::goto_pt::GOTO_PT,
+        &tables::go_until::GO_UNTIL,
+        &tables::go_while::GO_WHILE,
+        &tables::delta_move::DELTA_MOVE,
+        &tables::cal_sensor::CAL_SENSOR,
+        &tables::attend::ATTEND,
         &tables::path_clock::PATH_CLOCK,
+        &tables::record_pose::RECORD_POSE,
     ];
 
     fn step(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &mut PrimOutputs) {
@@ -69,23 +81,28 @@ impl<'d> Process<TaskData<'d>> for Prim {
             self.state.t3i.start(inputs.memory.t3i.status.echo);
             self.command_t3i(T3iVerb::Pause, inputs.tick, &mut outputs.t3i);
         }
-        let course = self.take_command(inputs);
+        self.wake(inputs);
+        let course = self.take_command(inputs, outputs);
         let situation = preprocess::situation(&mut self.state, inputs, &outputs.t3i);
-        if matches!(course, Course::Begin | Course::Continue) {
+        self.state.manual.release();
+        if self.attends(course, &situation) {
             let choice = tables::decide(self.state.target.verb, self.state.execution.step, &situation);
             let tables = <Self as Process<TaskData<'d>>>::TABLES;
             self.state.execution.note(tables, choice.table, choice.row, choice.step);
-            self.act(choice.action, inputs, &mut outputs.t3i);
+            self.act(choice.action, inputs, outputs);
         }
         let posture = preprocess::posture(&self.state, situation.pace);
         let flow = path_clock(posture, situation.health, situation.pace);
+        let [_, row, _] = &mut self.state.rows;
+        *row = flow.row;
         self.state.clock = flow.next;
         match flow.action {
             Flow::Repeat => {}
             Flow::Advance => self.advance(inputs, &mut outputs.t3i),
             Flow::Abandon => self.abandon(inputs, &mut outputs.t3i),
         }
-        self.postprocess(inputs, outputs);
+        let record = self.records(&inputs.external.devices.joystick, posture);
+        self.postprocess(inputs, record, outputs);
     }
 
     fn state(&self) -> &State {

@@ -1,10 +1,13 @@
 //! What Prim remembers.
 
-use rcs_core::{handshake::Commander, interface::prim::PrimVerb, record};
+use rcs_core::{handshake::Commander, interface::prim::PrimVerb, pose::WireFrame, record};
+use taskdata::files::SensorPara;
 
 use super::{
+    manual::Manual,
     motion::{Motion, limits::Limits, segment::FrameData},
-    tables::path_clock::Clock,
+    sensors::Calibration,
+    tables::{path_clock::Clock, record_pose::Recording},
 };
 use crate::execution::Execution;
 
@@ -19,6 +22,10 @@ record! {
         pub limits: Limits,
         /// brk-dst of `^-traj-para`, inches of path.
         pub brake_distance: f64,
+        /// `"sensor"` of a guarded move.
+        pub sensor: SensorPara,
+        /// `endeff-id#-in`.
+        pub end_effector_id: u8,
     }
 }
 
@@ -27,6 +34,12 @@ impl Target {
     #[must_use]
     pub fn is_through(&self) -> bool {
         self.verb == PrimVerb::GoThru
+    }
+
+    /// A sensor is watched.
+    #[must_use]
+    pub fn is_guarded(&self) -> bool {
+        matches!(self.verb, PrimVerb::GoUntil | PrimVerb::GoWhile)
     }
 }
 
@@ -43,13 +56,38 @@ record! {
         pub positioned: bool,
         /// The commanded motion.
         pub motion: Motion,
+        /// The motion of the joystick box.
+        pub manual: Manual,
         /// Did the path clock run in the last tick?
         pub clock: Clock,
-        /// Ticks since T3I finished the last point of a GOTO-PT.
+        /// Ticks since T3I finished the last point of a motion.
         pub finished: u32,
         /// The last ticks of them at the goal.
         pub settled: u32,
+        /// The last ticks of them without motion.
+        pub still: u32,
+        /// Where the resolvers saw the robot in the tick before.
+        pub seen: WireFrame,
+        /// The force sensor.
+        pub calibration: Calibration,
+        /// What the sensor of the guarded move reads.
+        pub sensed: i32,
+        /// A recorded pose is being looked at.
+        pub recording: Recording,
+        /// The record button was pressed in the tick before.
+        pub record_button: bool,
+        /// The process is stepped singly: its switch on the joystick box was on in the tick before.
+        pub single_step: bool,
         /// Number of the newest pose record.
         pub newest_pose: u32,
+        /// Rows of the tables of every tick that fired last: ATTEND, PATH-CLOCK, RECORD-POSE.
+        pub rows: [u8; 3],
+    }
+}
+
+impl State {
+    /// What has been seen of the end of a motion does not count any more.
+    pub fn forget_rest(&mut self) {
+        (self.finished, self.settled, self.still) = (0, 0, 0);
     }
 }

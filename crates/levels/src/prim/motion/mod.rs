@@ -124,6 +124,32 @@ impl Motion {
         }
     }
 
+    /// The robot has been put elsewhere by other means while nothing moved; what waits to move starts there.
+    pub fn put(&mut self, frame: &Frame) {
+        self.at = FrameData::from(frame);
+        if !self.next.given {
+            self.goal = self.at;
+        }
+    }
+
+    /// The robot has stood for a while, wherever the motion had come to: go on from rest at the last point, straight to the
+    /// goal of the last order.
+    pub fn stand(&mut self) {
+        let order = if self.next.given {
+            self.next
+        } else if self.current.active && !self.halting {
+            self.current.order
+        } else {
+            Order::default()
+        };
+        let rested = Self::at_rest(&self.frame());
+        *self = if order.given {
+            Self { goal: self.goal, brake_distance: self.brake_distance, next: order, ..rested }
+        } else {
+            rested
+        };
+    }
+
     /// Let a tick pass on the path clock; `knob` is the velocity knob, 0 to 1000.
     pub fn step(&mut self, knob: u16) {
         if self.next.given && !self.current.active && !self.residual.active {

@@ -30,10 +30,11 @@ decision_table! {
         3: ( _     , Refused   , _            , _        ) => Fail(InterfaceRefused) , Start ;
         4: ( _     , Silent    , _            , _        ) => Fail(InterfaceSilent)  , Start ;
         5: ( _     , Orphaned  , _            , _        ) => Fail(NeighbourLost)    , Start ;
-        6: ( _     , Good      , Unpositioned , _        ) => Fail(LinkOff)          , Start ;
-        7: ( Start , Good      , _            , _        ) => Go                     , Going ;
-        8: ( Going , Good      , _            , UnderWay ) => Wait                   , Going ;
-        9: ( Going , Good      , _            , Passing  ) => Finish                 , Start ;
+        6: ( _     , Operator  , _            , _        ) => Yield                  , Start ;
+        7: ( _     , Good      , Unpositioned , _        ) => Fail(LinkOff)          , Start ;
+        8: ( Start , Good      , _            , _        ) => Go                     , Going ;
+        9: ( Going , Good      , _            , UnderWay ) => Wait                   , Going ;
+       10: ( Going , Good      , _            , Passing  ) => Finish                 , Start ;
     }
 }
 

@@ -1,15 +1,24 @@
-//! Decision tables of Prim: a file a command, and the path clock that serves them all.
+//! Decision tables of Prim: a file a command, and those of every tick: what becomes of finished commands, the path
+//! clock, the record button.
 
+pub mod attend;
+pub mod cal_sensor;
+pub mod delta_move;
 pub mod go_thru;
+pub mod go_until;
+pub mod go_while;
 pub mod goto_pt;
 pub mod path_clock;
 pub mod pause;
+pub mod record_pose;
 pub mod robot_init;
 
 use rcs_core::{
     coded_enum,
     interface::{Reason, prim::PrimVerb},
 };
+
+use self::attend::Switches;
 
 coded_enum! {
     /// What hinders a command.
@@ -26,6 +35,8 @@ coded_enum! {
         Silent = "silent",
         /// E-move does not write its buffers.
         Orphaned = "orphaned",
+        /// The operator has turned a frame switch of the joystick box on.
+        Operator = "operator",
     }
 }
 
@@ -76,16 +87,40 @@ coded_enum! {
 }
 
 coded_enum! {
-    /// The last point of a trajectory (DESIGN 16 "Done").
+    /// The end of a motion: at the goal (DESIGN 16 "Done"), or wherever the robot stands.
     pub enum Arrival {
         /// On the way.
         UnderWay = "under way",
         /// All points are finished; the resolvers are watched.
         Settling = "settling",
-        /// The resolvers say that the robot rests at the goal.
+        /// The resolvers say that the robot rests there.
         Arrived = "arrived",
         /// It should have come to rest there long ago.
         Late = "late",
+    }
+}
+
+coded_enum! {
+    /// The sensor of a guarded move.
+    pub enum Guard {
+        /// The condition does not hold.
+        Clear = "clear",
+        /// It holds.
+        Met = "met",
+        /// The sensor is overloaded, not calibrated, or not there.
+        Faulty = "faulty",
+    }
+}
+
+coded_enum! {
+    /// The readings that make a bias of the force sensor.
+    pub enum Samples {
+        /// Another one is wanted.
+        Wanted = "wanted",
+        /// There are enough.
+        Complete = "complete",
+        /// The sensor is overloaded, or not there.
+        Faulty = "faulty",
     }
 }
 
@@ -102,8 +137,16 @@ pub struct Situation {
     pub link: Link,
     /// The through point of a GO-THRU.
     pub passage: Passage,
-    /// The last point of a GOTO-PT.
+    /// The goal of a motion that stops there.
     pub arrival: Arrival,
+    /// Wherever the robot stands.
+    pub rest: Arrival,
+    /// The sensor of a guarded move.
+    pub guard: Guard,
+    /// The bias of the force sensor.
+    pub samples: Samples,
+    /// The frame switches of the joystick box.
+    pub switches: Switches,
 }
 
 /// What a row can ask for.
@@ -119,6 +162,18 @@ pub enum Action {
     Restart,
     /// Take the frame that T3I feeds back as the commanded one; report done.
     TakePosition,
+    /// Report `joystick-on`, ramp down and stop.
+    Yield,
+    /// Report `joystick-on`, and move as the box asks for.
+    Drive,
+    /// Publish where the robot is, ramp down and stop.
+    Detect,
+    /// Report `not-detected`.
+    Miss,
+    /// Take a reading of the force sensor.
+    Sample,
+    /// Take the mean of the readings as no force; report done.
+    Calibrate,
     /// Report done.
     Finish,
     /// Report an error, ramp down and stop.
@@ -132,15 +187,14 @@ pub type Choice = crate::execution::Choice<Action>;
 #[must_use]
 pub fn decide(verb: PrimVerb, step: u8, s: &Situation) -> Choice {
     match verb {
-        PrimVerb::None
-        | PrimVerb::Pause
-        | PrimVerb::GoUntil
-        | PrimVerb::GoWhile
-        | PrimVerb::DeltaMove
-        | PrimVerb::CalSensor => pause::consult(step, s),
+        PrimVerb::None | PrimVerb::Pause => pause::consult(step, s),
         PrimVerb::RobotInit => robot_init::consult(step, s),
         PrimVerb::GoThru => go_thru::consult(step, s),
         PrimVerb::GotoPt => goto_pt::consult(step, s),
+        PrimVerb::GoUntil => go_until::consult(step, s),
+        PrimVerb::GoWhile => go_while::consult(step, s),
+        PrimVerb::DeltaMove => delta_move::consult(step, s),
+        PrimVerb::CalSensor => cal_sensor::consult(step, s),
     }
 }
 

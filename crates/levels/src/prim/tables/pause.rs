@@ -1,31 +1,42 @@
-//! PAUSE (V.1.1), without the Joystick Box.
+//! PAUSE (V.1.1), with the joystick box (III.3.3).
 
 use rcs_core::{coded_enum, decision_table, table::Decision};
 
-use super::{Action, Choice, Posture, Situation};
+use super::{Action, Choice, Posture, Situation, attend::Switches};
 
 coded_enum! {
     /// Reference action of PAUSE.
     pub enum Step {
-        /// Nothing done yet.
+        /// Nothing done yet, or nothing to do.
         Start = "start",
-        /// The robot ramps down.
+        /// The motion of the command before ramps down.
         Stopping = "stopping",
+        /// The box moves the robot.
+        Driving = "driving",
     }
 }
 
 decision_table! {
-    /// PAUSE (V.1.1): do nothing. A motion ramps down within its limits; then the last point is repeated.
-    pub PAUSE: fn pause(step: Step, posture: Posture) -> (Action, Step) {
-        //    step       posture                     action   next
-        1: ( _        , Unpositioned | Standing ) => Finish , Start    ;
-        2: ( Start    , Moving | Ending         ) => Halt   , Stopping ;
-        3: ( Stopping , Moving | Ending         ) => Wait   , Stopping ;
+    /// PAUSE (V.1.1): do nothing. A motion ramps down within its limits; then the last point is repeated. From there on the
+    /// joystick box moves the robot while one of its frame switches is on.
+    pub PAUSE: fn pause(step: Step, posture: Posture, switches: Switches) -> (Action, Step) {
+        //    step               posture           switches            action   next
+        1: ( _                , Unpositioned    , Off           ) => Finish , Start    ;
+        2: ( _                , Unpositioned    , One | Several ) => Yield  , Start    ;
+        3: ( _                , Standing        , Off           ) => Finish , Start    ;
+        4: ( _                , Standing        , One           ) => Drive  , Driving  ;
+        5: ( _                , Standing        , Several       ) => Yield  , Start    ;
+        6: ( Start            , Moving | Ending , Off           ) => Halt   , Stopping ;
+        7: ( Stopping         , Moving | Ending , Off           ) => Wait   , Stopping ;
+        8: ( Start | Stopping , Moving | Ending , One | Several ) => Yield  , Stopping ;
+        9: ( Driving          , Moving | Ending , One           ) => Drive  , Driving  ;
+       10: ( Driving          , Moving | Ending , Several       ) => Yield  , Driving  ;
+       11: ( Driving          , Moving | Ending , Off           ) => Wait   , Driving  ;
     }
 }
 
 pub(super) fn consult(step: u8, s: &Situation) -> Choice {
     let step = Step::from_code(step).unwrap_or_default();
-    let Decision { row, action, next } = pause(step, s.posture);
+    let Decision { row, action, next } = pause(step, s.posture, s.switches);
     Choice { table: &PAUSE, row, action, step: next.code() }
 }

@@ -1,0 +1,173 @@
+//! The joystick box moves the robot (III.3.3): a velocity instead of a goal.
+//!
+//! Stick and buttons ask for a velocity in the coordinates of the frame switch. It is kept in world coordinates, and changes by no
+//! more than [`ACCELERATION`] allows; so a stick that is thrown over, a switch that is turned off and a tool frame that turns
+//! below the stick all make ramps. Another frame is taken up only at rest.
+//!
+//! A rotation leaves its centre where it is: the tool point, or the wrist point 30.00 in behind it (VII.2 `wo`). Its velocity is
+//! counted at the lever of [`INCHES_PER_RADIAN`], or at the tool point if that is farther from the centre, so that all
+//! frames have the same limits in inches of path.
+
+use rcs_core::{
+    coded_enum,
+    frame::{Frame, INCHES_PER_RADIAN, Vector, norm, rotation_by, rotation_from_x_y},
+    interface::device::{JoystickBox, KNOB_FULL, joystick_frame},
+    pose::POINT_DISTANCE,
+    record,
+    tick::TICK_S,
+};
+
+/// in/s of path with stick and velocity knob at their ends. ASSUMED.
+pub const SPEED: f64 = 5.0;
+/// in/s² of path at most. ASSUMED: that of a free path (VIII.10).
+pub const ACCELERATION: f64 = 10.0;
+/// in/s² that a ramp may have: a tool point that swings about the wrist at [`SPEED`] is accelerated by 5² / 30 in/s² besides.
+const RAMP: f64 = 9.0;
+/// Deflection of the stick that counts as none, of 1: potentiometers do not come back to 0. ASSUMED.
+const PLAY: f64 = 0.03;
+
+coded_enum! {
+    /// Coordinates of manual motions (III.3.3).
+    pub enum Coordinates {
+        /// No frame switch is on, or more than one.
+        None = "none",
+        /// Switch f: translations in world coordinates.
+        World = "world",
+        /// Switch h: translations in tool coordinates.
+        Tool = "tool",
+        /// Switch j: pitch and yaw about the tool point.
+        ToolOrigin = "tool origin",
+        /// Switch k: pitch and yaw about the wrist point.
+        WristOrigin = "wrist origin",
+    }
+}
+
+impl Coordinates {
+    /// The frame that the switches of a box select.
+    #[must_use]
+    pub const fn of(joystick: &JoystickBox) -> Self {
+        match joystick.frame {
+            joystick_frame::WORLD => Self::World,
+            joystick_frame::TOOL => Self::Tool,
+            joystick_frame::TOOL_ORIGIN => Self::ToolOrigin,
+            joystick_frame::WRIST_ORIGIN => Self::WristOrigin,
+            _ => Self::None,
+        }
+    }
+
+    /// Centre of rotations, inches behind the tool point.
+    const fn behind(self) -> f64 {
+        match self {
+            Self::WristOrigin => POINT_DISTANCE,
+            Self::None | Self::World | Self::Tool | Self::ToolOrigin => 0.0,
+        }
+    }
+
+    /// Inches of path in a radian.
+    const fn lever(self) -> f64 {
+        INCHES_PER_RADIAN.max(self.behind())
+    }
+}
+
+record! {
+    /// A manual motion.
+    pub struct Manual {
+        /// The box has the robot in this tick.
+        pub engaged: bool,
+        /// Coordinates of the motion.
+        pub coordinates: Coordinates,
+        /// Translation that is asked for, a share of [`SPEED`], in `coordinates`.
+        pub translate: [f64; 3],
+        /// Rotation that is asked for, a share of [`SPEED`] at the lever, about the axes of the tool.
+        pub rotate: [f64; 3],
+        /// in/s, in world coordinates.
+        pub linear: [f64; 3],
+        /// rad/s about the centre, in world coordinates.
+        pub angular: [f64; 3],
+    }
+}
+
+/// A share from -1 to 1 that two buttons ask for.
+fn buttons(plus: bool, minus: bool) -> f64 {
+    f64::from(i8::from(plus).saturating_sub(i8::from(minus)))
+}
+
+/// The share that a deflected stick asks for, from -1 to 1: it grows from nothing at the end of the play.
+fn deflection(counts: i16) -> f64 {
+    let share = f64::from(counts).abs() / f64::from(KNOB_FULL);
+    let beyond = ((share - PLAY) / (1.0 - PLAY)).clamp(0.0, 1.0);
+    if counts < 0 { -beyond } else { beyond }
+}
+
+/// A vector no longer than 1.
+fn within_one(v: Vector) -> Vector {
+    let length = norm(&v);
+    if length > 1.0 { v / length } else { v }
+}
+
+/// A velocity on its way to another one, changed by `most` at most.
+fn towards(from: [f64; 3], to: &Vector, most: f64) -> Vector {
+    let from = Vector::from(from);
+    let change = to - from;
+    let length = norm(&change);
+    if length > most { from + change * (most / length) } else { *to }
+}
+
+impl Manual {
+    /// Nothing is asked for: what moves ramps down.
+    pub fn release(&mut self) {
+        self.engaged = false;
+        (self.translate, self.rotate) = ([0.0; 3], [0.0; 3]);
+    }
+
+    /// Stick and buttons ask for a motion. While one in other coordinates ramps down they are not heard.
+    pub fn ask(&mut self, joystick: &JoystickBox) {
+        self.engaged = true;
+        let coordinates = Coordinates::of(joystick);
+        if self.has_speed() && coordinates != self.coordinates {
+            return;
+        }
+        self.coordinates = coordinates;
+        let (x, y) = (deflection(joystick.x), deflection(joystick.y));
+        let roll = buttons(joystick.roll_plus, joystick.roll_minus);
+        let (translate, rotate) = match coordinates {
+            Coordinates::World | Coordinates::Tool => {
+                (Vector::new(x, y, buttons(joystick.up, joystick.down)), Vector::new(roll, 0.0, 0.0))
+            }
+            Coordinates::ToolOrigin | Coordinates::WristOrigin => (Vector::zeros(), Vector::new(roll, x, y)),
+            Coordinates::None => (Vector::zeros(), Vector::zeros()),
+        };
+        self.translate = within_one(translate).into();
+        self.rotate = within_one(rotate).into();
+    }
+
+    fn has_speed(&self) -> bool {
+        self.linear != [0.0; 3] || self.angular != [0.0; 3]
+    }
+
+    /// Something moves, or is to move.
+    #[must_use]
+    pub fn is_moving(&self) -> bool {
+        self.has_speed() || self.translate != [0.0; 3] || self.rotate != [0.0; 3]
+    }
+
+    /// Let a tick pass; `knob` is the velocity knob, 0 to 1000. The frame after it.
+    pub fn step(&mut self, frame: &Frame, knob: u16) -> Frame {
+        let speed = SPEED * f64::from(knob.min(KNOB_FULL)) / f64::from(KNOB_FULL);
+        let lever = self.coordinates.lever();
+        let asked = Vector::from(self.translate) * speed;
+        let linear = if self.coordinates == Coordinates::Tool { frame.rotation * asked } else { asked };
+        let angular = frame.rotation * Vector::from(self.rotate) * (speed / lever);
+        let linear = towards(self.linear, &linear, RAMP * TICK_S);
+        let angular = towards(self.angular, &angular, RAMP * TICK_S / lever);
+        let mean = |before: [f64; 3], after: &Vector| (Vector::from(before) + after) * (TICK_S / 2.0);
+        let (moved, turned) = (mean(self.linear, &linear), rotation_by(&mean(self.angular, &angular)));
+        (self.linear, self.angular) = (linear.into(), angular.into());
+        let centre = Vector::new(-self.coordinates.behind(), 0.0, 0.0);
+        let turned = turned * frame.rotation;
+        // Thousands of products of rotations are no rotation any more.
+        let (x, y) = (turned.matrix().column(0).into_owned(), turned.matrix().column(1).into_owned());
+        let rotation = rotation_from_x_y(&x, &y).unwrap_or(turned);
+        Frame { position: frame.shifted(centre).position + moved, rotation }.shifted(-centre)
+    }
+}

@@ -1,0 +1,284 @@
+//! The sensors of guarded moves: device words become "the condition has come", or "the sensor cannot be trusted".
+//!
+//! Prim is where low-level sensors that affect the motion from cycle to cycle are brought in (V.1.1). A guarded move names one
+//! (SENSOR-PARA); it watches the tool gripper's force sensor (III.3.8), the proximity sensors of a holster (III.3.4) or the
+//! beams between the fingers (III.3.6).
+//!
+//! A force is the reading less the *bias*, which CAL-SENSOR takes with the robot at rest: strain gages drift, and feel the weight
+//! of what is held. Without a bias a force means nothing, and the guarded move is refused with `sensor-error`; so it is
+//! when a reading stands at an end of its converter, because beyond it every force looks alike.
+
+use rcs_core::{
+    interface::device::{
+        ADC_FULL_SCALE, DeviceInputs, FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, HolsterSensors,
+        MOMENT_COUNTS_PER_IN_LB,
+    },
+    record,
+};
+use taskdata::files::{SensorPara, SensorSource};
+
+use super::tables::{Guard, Samples};
+
+/// Readings that make a bias: 0.4 s, ten periods of a 25 Hz swing of the arm. ASSUMED.
+pub const SAMPLES: u32 = 10;
+/// Connected axes: forces along tool X, Y, Z, and the moment about tool Y.
+const AXES: usize = 4;
+/// `endeff-id#` of the gripper with the beams.
+const BEAM_GRIPPER: u8 = 1;
+/// Both large sensors of a holster: the ears are near.
+const NEAR: u8 = 0x03;
+/// Both small sensors of a holster: the ears are seated.
+const SEATED: u8 = 0x0C;
+
+record! {
+    /// The bias of the force sensor and how it is taken. Counts, in the order tool Fx, Fy, Fz, My.
+    pub struct Calibration {
+        /// What is read without a force of interest.
+        pub bias: [f64; AXES],
+        /// `bias` has been taken, and the sensor has had power ever since.
+        pub valid: bool,
+        /// Sum of the readings taken so far.
+        pub sum: [f64; AXES],
+        /// How many.
+        pub samples: u32,
+    }
+}
+
+/// What the sensor of a guarded move says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// Has the condition come?
+    pub guard: Guard,
+    /// lb or in lb, or 1 while a switch is on.
+    pub value: f64,
+}
+
+impl Default for Reading {
+    /// Nothing is watched.
+    fn default() -> Self {
+        Self::switch(false)
+    }
+}
+
+impl Reading {
+    const FAULTY: Self = Self { guard: Guard::Faulty, value: 0.0 };
+
+    fn switch(on: bool) -> Self {
+        if on { Self { guard: Guard::Met, value: 1.0 } } else { Self { guard: Guard::Clear, value: 0.0 } }
+    }
+}
+
+/// Counts off the middle of the converters as tool Fx, Fy, Fz, My: tool X, Y, Z are sensor Z, -Y, X (III.3.8). `None` if the
+/// sensor has no power, or an axis is overloaded: its neighbours cannot be trusted then either.
+fn tool_axes(force: &ForceSensor) -> Option<[f64; AXES]> {
+    let sound = |counts: u16| (1..ADC_FULL_SCALE).contains(&counts);
+    if !force.valid || ![force.x, force.y, force.z, force.moment].into_iter().all(sound) {
+        return None;
+    }
+    let off = |counts: u16| f64::from(counts) - f64::from(FORCE_ZERO);
+    Some([off(force.z), -off(force.y), off(force.x), off(force.moment)])
+}
+
+impl Calibration {
+    /// Each tick: a bias does not outlive the power of its sensor.
+    pub fn watch_power(&mut self, force: &ForceSensor) {
+        if !force.valid {
+            *self = Self::default();
+        }
+    }
+
+    /// Forget the readings of a bias that is being taken.
+    pub fn begin(&mut self) {
+        (self.sum, self.samples) = ([0.0; AXES], 0);
+    }
+
+    /// Can a reading be taken, or is there nothing left to take?
+    #[must_use]
+    pub fn progress(&self, force: &ForceSensor) -> Samples {
+        if tool_axes(force).is_none() {
+            Samples::Faulty
+        } else if self.samples < SAMPLES {
+            Samples::Wanted
+        } else {
+            Samples::Complete
+        }
+    }
+
+    /// Take a reading.
+    pub fn sample(&mut self, force: &ForceSensor) {
+        if let Some(axes) = tool_axes(force) {
+            self.sum.iter_mut().zip(axes).for_each(|(sum, axis)| *sum += axis);
+            self.samples = self.samples.saturating_add(1);
+        }
+    }
+
+    /// The mean of the readings is the bias from now on.
+    pub fn finish(&mut self) {
+        if self.samples > 0 {
+            self.bias = self.sum.map(|sum| sum / f64::from(self.samples));
+            self.valid = true;
+        }
+        self.begin();
+    }
+
+    /// Force along, or moment about, an axis of the tool: lb or in lb. `None` if it cannot be trusted.
+    fn force(&self, axis: usize, counts_per_unit: i32, force: &ForceSensor) -> Option<f64> {
+        let counts = *tool_axes(force)?.get(axis)? - *self.bias.get(axis)?;
+        self.valid.then(|| counts / f64::from(counts_per_unit))
+    }
+
+    /// What a sensor says in this tick. `end_effector` is the id of the gripper that is on.
+    #[must_use]
+    pub fn read(&self, sensor: &SensorPara, devices: &DeviceInputs, end_effector: u8) -> Reading {
+        let along = |axis| self.force(axis, FORCE_COUNTS_PER_LB, &devices.force);
+        let value = match sensor.source {
+            SensorSource::Fx => along(0),
+            SensorSource::Fy => along(1),
+            SensorSource::Fz => along(2),
+            SensorSource::My => self.force(3, MOMENT_COUNTS_PER_IN_LB, &devices.force),
+            SensorSource::Near => return holster(&devices.holsters, sensor.which, NEAR),
+            SensorSource::Seated => return holster(&devices.holsters, sensor.which, SEATED),
+            SensorSource::Beam => return beam(devices.grip.beams, sensor.which, end_effector),
+        };
+        let Some(value) = value else { return Reading::FAULTY };
+        let threshold = f64::from(sensor.threshold);
+        let met = if threshold < 0.0 { value <= threshold } else { value >= threshold };
+        Reading { guard: if met { Guard::Met } else { Guard::Clear }, value }
+    }
+}
+
+/// Do both sensors of a pair see the ears?
+fn holster(sensors: &HolsterSensors, which: i32, pair: u8) -> Reading {
+    match which {
+        1 => Reading::switch(sensors.right & pair == pair),
+        2 => Reading::switch(sensors.left & pair == pair),
+        3 => Reading::switch(sensors.centre & pair == pair),
+        _ => Reading::FAULTY,
+    }
+}
+
+/// Is a beam broken, 1 to 8, or any (0)? Grippers without beams cannot tell.
+fn beam(beams: u8, which: i32, end_effector: u8) -> Reading {
+    let mask = match u32::try_from(which) {
+        Ok(0) => u8::MAX,
+        Ok(number) => 1_u8.checked_shl(number.saturating_sub(1)).unwrap_or(0),
+        Err(_) => 0,
+    };
+    if mask == 0 || end_effector != BEAM_GRIPPER {
+        return Reading::FAULTY;
+    }
+    Reading::switch(beams & mask != 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn force(z: u16) -> ForceSensor {
+        ForceSensor { x: 2048, y: 2048, z, moment: 2048, valid: true }
+    }
+
+    fn sensor(source: SensorSource, which: i32, threshold: i32) -> SensorPara {
+        SensorPara { source, which, threshold, ..SensorPara::default() }
+    }
+
+    fn devices(force: ForceSensor) -> DeviceInputs {
+        DeviceInputs { force, ..DeviceInputs::default() }
+    }
+
+    fn calibrated(at: &ForceSensor) -> Calibration {
+        let mut calibration = Calibration::default();
+        while calibration.progress(at) == Samples::Wanted {
+            calibration.sample(at);
+        }
+        calibration.finish();
+        calibration
+    }
+
+    #[test]
+    fn axes_are_those_of_the_tool_and_the_bias_is_taken_off() {
+        let rest = ForceSensor { x: 2148, y: 1948, z: 2248, moment: 2088, valid: true };
+        let calibration = calibrated(&rest);
+        assert_eq!(calibration.bias, [200.0, 100.0, 100.0, 40.0]);
+        let pushed = ForceSensor { x: 2148 + 160, y: 1948 + 320, z: 2248 - 480, moment: 2088 - 40, ..rest };
+        for (source, value) in [
+            (SensorSource::Fx, -30.0),
+            (SensorSource::Fy, -20.0),
+            (SensorSource::Fz, 10.0),
+            (SensorSource::My, -10.0),
+        ] {
+            for (threshold, guard) in [(5, value > 0.0), (-5, value < 0.0), (90, false), (-90, false)] {
+                let reading = calibration.read(&sensor(source, 0, threshold), &devices(pushed), 3);
+                assert_eq!((reading.value, reading.guard == Guard::Met), (value, guard), "{source}");
+            }
+        }
+        // At the threshold itself the condition holds.
+        let at = calibration.read(&sensor(SensorSource::Fx, 0, -30), &devices(pushed), 3);
+        assert_eq!(at.guard, Guard::Met);
+    }
+
+    #[test]
+    fn what_cannot_be_trusted_is_faulty() {
+        let good = force(2048);
+        let watched = sensor(SensorSource::Fx, 0, 25);
+        let read = |c: &Calibration, force| c.read(&watched, &devices(force), 3).guard;
+        let mut calibration = Calibration::default();
+        assert_eq!(read(&calibration, good), Guard::Faulty, "never calibrated");
+        calibration = calibrated(&good);
+        assert_eq!(read(&calibration, good), Guard::Clear);
+        for end in [0, ADC_FULL_SCALE, u16::MAX] {
+            assert_eq!(read(&calibration, force(end)), Guard::Faulty);
+            assert_eq!(read(&calibration, ForceSensor { y: end, ..good }), Guard::Faulty, "another axis");
+            assert_eq!(calibration.progress(&force(end)), Samples::Faulty);
+        }
+        let off = ForceSensor { valid: false, ..good };
+        assert_eq!(read(&calibration, off), Guard::Faulty);
+        calibration.watch_power(&good);
+        assert_eq!(read(&calibration, good), Guard::Clear);
+        calibration.watch_power(&off);
+        assert_eq!(read(&calibration, good), Guard::Faulty, "the power was off");
+    }
+
+    #[test]
+    fn a_holster_sensor_is_a_pair() {
+        let calibration = Calibration::default();
+        for (which, sensors) in [
+            (1, HolsterSensors { right: 0x0F, ..HolsterSensors::default() }),
+            (2, HolsterSensors { left: 0x0F, ..HolsterSensors::default() }),
+            (3, HolsterSensors { centre: 0x0F, ..HolsterSensors::default() }),
+        ] {
+            for (source, pair) in [(SensorSource::Near, NEAR), (SensorSource::Seated, SEATED)] {
+                let read = |mask: u8, which: i32| {
+                    let holsters = HolsterSensors {
+                        right: sensors.right & mask,
+                        left: sensors.left & mask,
+                        centre: sensors.centre & mask,
+                    };
+                    let devices = DeviceInputs { holsters, ..DeviceInputs::default() };
+                    calibration.read(&sensor(source, which, 0), &devices, 1).guard
+                };
+                assert_eq!(read(pair, which), Guard::Met);
+                assert_eq!(read(pair & 0x05, which), Guard::Clear, "one of the two");
+                assert_eq!(read(!pair, which), Guard::Clear, "the other pair");
+                assert_eq!(read(0xFF, which % 3 + 1), Guard::Clear, "another holster");
+                assert_eq!(read(0xFF, 4), Guard::Faulty);
+            }
+        }
+    }
+
+    #[test]
+    fn beams_are_counted_from_one_and_belong_to_the_parts_gripper() {
+        let mut devices = DeviceInputs::default();
+        devices.grip.beams = 0x82;
+        let read = |which, id| {
+            Calibration::default().read(&sensor(SensorSource::Beam, which, 0), &devices, id).guard
+        };
+        for beam in 1..=8 {
+            assert_eq!(read(beam, 1), if beam == 2 || beam == 8 { Guard::Met } else { Guard::Clear });
+        }
+        assert_eq!(read(0, 1), Guard::Met);
+        for (which, id) in [(9, 1), (-1, 1), (40, 1), (2, 0), (2, 3)] {
+            assert_eq!(read(which, id), Guard::Faulty);
+        }
+    }
+}
