@@ -135,6 +135,12 @@ impl Execution {
         action
     }
 
+    /// The process was dormant in the tick before: the next command number it reads is adopted, not executed (DESIGN 16
+    /// "Handshake" e).
+    pub fn wake(&mut self) {
+        self.receiver = Receiver::default();
+    }
+
     /// Note which row of which table fired.
     pub fn note(&mut self, tables: &[&'static Table], table: &'static Table, row: u8, step: u8) {
         let position = tables.iter().position(|t| core::ptr::eq(*t, table));

@@ -40,6 +40,7 @@ pub mod emove;
 mod exact_robot;
 pub mod execution;
 pub mod grip;
+pub mod jaws;
 pub mod ladder;
 pub mod places;
 pub mod prim;

@@ -13,8 +13,8 @@
 //!
 //!         new number, Good                   Missing         Deferred, Failed
 //!                |                              |                   |
-//!                v                              | gripper comes,    | first command that
-//!            .-------.    not calibrated        | or a command      | moves the fingers
+//!                v                              | at once           | first command that
+//!            .-------.    not calibrated        |                   | moves the fingers
 //!            | Start |- - - - - - - - - - - -.  |                   |
 //!            '-------'                       :  v                   v
 //!                | calibrated                :..>.----------------.
@@ -33,7 +33,9 @@
 //!              Done                                    Valid                 Failed
 //! ```
 //!
-//! When the gripper is taken off, a calibration under way is void and all valves go off; one that was finished is kept.
+//! A gripper that is there when the system is booted is calibrated at once. One that comes later belongs to a process that was
+//! dormant, and a process that wakes moves nothing before it is told to (DESIGN 16): E-move sends UP-INIT when the gripper is
+//! clear of its holster (V.2.1 QC-ATTACH). When the gripper is taken off, a calibration under way is void and all valves go off; one that was finished is kept.
 //! PAUSE leaves the valves as they are, literally (VI.3.1): sent while a flow is on, the flow stays on.
 
 mod postprocess;
@@ -45,28 +47,73 @@ mod tests;
 
 pub use self::state::{Calibration, Command, Phase, Readings, Scale, State, Steady, Step};
 
+use core::marker::PhantomData;
+
 use rcs_core::{
-    interface::{GripOutputs, grip::GripVerb},
+    interface::{
+        CommonMemory, GripOutputs,
+        device::{DeviceInputs, GripSensors},
+        grip::{GripCommand, GripVerb},
+    },
     process::{Inputs, Process},
     table::Table,
 };
 
 use self::{
-    preprocess::Seen,
-    tables::{Action, CLOSE_GRIP, PAUSE, POSITION, UP_INIT, close_grip, pause, position, up_init},
+    preprocess::{Arriving, Seen},
+    tables::{Action, CLOSE_GRIP, Gripper, PAUSE, POSITION, UP_INIT, close_grip, pause, position, up_init},
 };
 use crate::execution::{Course, EXECUTE};
 
 /// Decision tables, the upper one first.
 const TABLES: &[&Table] = &[&EXECUTE, &POSITION, &CLOSE_GRIP, &UP_INIT, &PAUSE];
 
-/// The Grip process.
-#[derive(Clone, Debug, Default)]
-pub struct Grip {
-    state: State,
+/// Where a gripper that is servoed has its sensor words, its command and its outputs.
+///
+/// The hand of the Active Pedestal is nearly identical to the parts gripper (III.9.2): one servo serves both.
+pub trait Site {
+    /// The name of the process.
+    const NAME: &'static str;
+    /// `endeff-id#` of the gripper; 0 for one that is not on the quick change.
+    const END_EFFECTOR_ID: u8;
+
+    /// The command buffer.
+    fn command(memory: &CommonMemory) -> &GripCommand;
+    /// The sensor words, and whether the gripper that they come from is there.
+    fn sensors(devices: &DeviceInputs) -> (Gripper, GripSensors);
 }
 
-impl Grip {
+/// The parts gripper, end effector 1, on the quick change (III.3.6).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PartsGripper;
+
+impl Site for PartsGripper {
+    const NAME: &'static str = "Grip";
+    const END_EFFECTOR_ID: u8 = 1;
+
+    fn command(memory: &CommonMemory) -> &GripCommand {
+        &memory.emove.grip
+    }
+
+    fn sensors(devices: &DeviceInputs) -> (Gripper, GripSensors) {
+        let quick_change = &devices.quick_change;
+        let locked = quick_change.locked && !quick_change.unlocked;
+        let attached = locked && quick_change.end_effector_id == Self::END_EFFECTOR_ID;
+        (if attached { Gripper::Attached } else { Gripper::Detached }, devices.grip)
+    }
+}
+
+/// The process that servoes a gripper at some site.
+#[derive(Clone, Debug, Default)]
+pub struct Servo<S> {
+    state: State,
+    site: PhantomData<S>,
+}
+
+/// The Grip process.
+pub type Grip = Servo<PartsGripper>;
+
+impl<S> Servo<S> {
     /// Look up the state variables in the table that has the duty; its row gives the action and the next step.
     fn decide(&mut self, seen: &Seen) -> Action {
         let state = &mut self.state;
@@ -95,15 +142,24 @@ impl Grip {
     }
 }
 
-impl<Data: ?Sized> Process<Data> for Grip {
+impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
     type State = State;
     type Outputs = GripOutputs;
 
-    const NAME: &'static str = "Grip";
+    const NAME: &'static str = S::NAME;
     const TABLES: &'static [&'static Table] = TABLES;
 
     fn step(&mut self, inputs: &Inputs<'_, Data>, outputs: &mut GripOutputs) {
-        let seen = Seen::preprocess(&mut self.state, inputs);
+        let (gripper, sensors) = S::sensors(&inputs.external.devices);
+        let arriving = Arriving {
+            command: S::command(inputs.memory),
+            end_effector_id: S::END_EFFECTOR_ID,
+            woken: outputs.header.republished,
+            gripper,
+            sensors,
+            tick: inputs.tick,
+        };
+        let seen = Seen::preprocess(&mut self.state, &arriving);
         let action = self.decide(&seen);
         *outputs = postprocess::perform(&mut self.state, &seen, action, inputs.tick);
     }

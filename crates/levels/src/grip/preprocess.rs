@@ -7,10 +7,9 @@
 use rcs_core::{
     interface::{
         Reason,
-        device::{ADC_FULL_SCALE, GripSensors, QuickChangeSensors},
+        device::{ADC_FULL_SCALE, GripSensors},
         grip::{GripCommand, GripVerb},
     },
-    process::Inputs,
     tick::{TICK_S, Tick},
 };
 
@@ -19,9 +18,6 @@ use super::{
     tables::{Calibrating, Clock, Flow, Grasp, Gripper, Opening, Rest},
 };
 use crate::execution::Course;
-
-/// `endeff-id#` of the parts gripper (III.3.6).
-pub(super) const PARTS_GRIPPER: u8 = 1;
 
 /// Farther than this from the goal a coarse flow is used, in.
 const FAR: f64 = 0.40;
@@ -99,16 +95,32 @@ pub(super) struct Seen {
     pub measured: Measured,
 }
 
+/// What the servo finds at its site in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arriving<'a> {
+    /// The command buffer.
+    pub command: &'a GripCommand,
+    /// `endeff-id#` of the gripper.
+    pub end_effector_id: u8,
+    /// The process was dormant in the tick before.
+    pub woken: bool,
+    /// Is the gripper there?
+    pub gripper: Gripper,
+    /// Its sensor words.
+    pub sensors: GripSensors,
+    /// This tick.
+    pub tick: Tick,
+}
+
 impl Seen {
     /// Read the inputs of a tick.
-    pub fn preprocess<Data: ?Sized>(state: &mut State, inputs: &Inputs<'_, Data>) -> Self {
-        let devices = &inputs.external.devices;
-        let gripper = gripper(&devices.quick_change);
-        let course = observe(state, &inputs.memory.emove.grip, gripper);
-        sample(state, gripper, &devices.grip);
+    pub fn preprocess(state: &mut State, arriving: &Arriving<'_>) -> Self {
+        let &Arriving { gripper, tick, .. } = arriving;
+        let course = observe(state, arriving);
+        sample(state, gripper, &arriving.sensors);
         let calibrate = calibration_due(state, course, gripper);
         let measured = measure(state);
-        count(state, course, calibrate, &measured, inputs.tick);
+        count(state, course, calibrate, &measured, tick);
         let limit = if calibrate {
             CALIBRATION_LIMIT_TICKS
         } else {
@@ -119,7 +131,7 @@ impl Seen {
                 Flow::Coarse => coarse,
             }
         };
-        let clock = if inputs.tick.since(state.since) > limit { Clock::Expired } else { Clock::Running };
+        let clock = if tick.since(state.since) > limit { Clock::Expired } else { Clock::Running };
         let rest = if state.settled >= SETTLE_TICKS { Rest::Rested } else { Rest::Waiting };
         Self { course, calibrate, gripper, clock, rest, measured }
     }
@@ -185,49 +197,49 @@ pub(super) fn greatest_flow(speed: f64) -> Flow {
     }
 }
 
-fn gripper(quick_change: &QuickChangeSensors) -> Gripper {
-    let locked = quick_change.locked && !quick_change.unlocked;
-    if locked && quick_change.end_effector_id == PARTS_GRIPPER {
-        Gripper::Attached
-    } else {
-        Gripper::Detached
-    }
-}
-
 /// Read the command buffer and consult the upper table.
-fn observe(state: &mut State, command: &GripCommand, gripper: Gripper) -> Course {
+fn observe(state: &mut State, arriving: &Arriving<'_>) -> Course {
+    let &Arriving { command, gripper, woken, .. } = arriving;
+    if woken {
+        state.execution.wake();
+        state.valves = 0;
+    }
     let starting = !state.execution.receiver.started;
-    let course = state.execution.consult(command.number, || fault(command, gripper));
+    let course = state.execution.consult(command.number, || fault(arriving));
     if course == Course::Begin {
         state.command = Command::from(command);
     }
-    match gripper {
-        Gripper::Attached if starting && state.execution.receiver.adopted => state.phase = Phase::Deferred,
-        Gripper::Detached if matches!(state.phase, Phase::Deferred | Phase::Failed) => {
-            state.phase = Phase::Missing
-        }
-        Gripper::Attached | Gripper::Detached => {}
+    let late = woken || state.execution.receiver.adopted || gripper == Gripper::Detached;
+    if starting && late && state.phase != Phase::Valid {
+        state.phase = Phase::Deferred;
     }
     course
 }
 
 /// Why a command cannot be executed, if so.
-fn fault(command: &GripCommand, gripper: Gripper) -> Option<Reason> {
-    let to = Command::from(command);
-    let unattainable = match to.verb {
+fn fault(arriving: &Arriving<'_>) -> Option<Reason> {
+    let to = Command::from(arriving.command);
+    match to.verb {
         GripVerb::None => return Some(Reason::UnknownCommand),
         GripVerb::Pause => return None,
-        GripVerb::UpInit => false,
-        GripVerb::Position | GripVerb::OpenGrip => !reachable(&to),
-        GripVerb::CloseGrip => !reachable(&to) || !(0.0..=SUPPLY_FORCE).contains(&to.force),
-    };
-    let meant = matches!(to.end_effector_id, 0 | PARTS_GRIPPER);
-    if !meant || gripper == Gripper::Detached {
+        GripVerb::UpInit | GripVerb::Position | GripVerb::OpenGrip | GripVerb::CloseGrip => {}
+    }
+    let meant = to.end_effector_id == 0 || to.end_effector_id == arriving.end_effector_id;
+    if !meant || arriving.gripper == Gripper::Detached {
         Some(Reason::WrongGripper)
-    } else if unattainable {
-        Some(Reason::GripUnattainable)
-    } else {
+    } else if attainable(&to) {
         None
+    } else {
+        Some(Reason::GripUnattainable)
+    }
+}
+
+/// Can the gripper reach the opening and the force of a command?
+pub fn attainable(to: &Command) -> bool {
+    match to.verb {
+        GripVerb::Position | GripVerb::OpenGrip => reachable(to),
+        GripVerb::CloseGrip => reachable(to) && (0.0..=SUPPLY_FORCE).contains(&to.force),
+        GripVerb::UpInit | GripVerb::Pause | GripVerb::None => true,
     }
 }
 

@@ -39,10 +39,10 @@ coded_enum! {
 coded_enum! {
     /// How far the calibration has come: the reference action of UP-INIT.
     pub enum Phase {
-        /// Never done; begins as soon as the parts gripper is attached (VI.3.1).
+        /// Never done: begins at once, since the gripper is there when the system is booted (VI.3.1).
         Missing = "missing",
-        /// Never done by this process, which was started in the middle of a job: a part may be held, so it waits for
-        /// a command that moves the fingers anyway.
+        /// Never done, or interrupted: waits for UP-INIT or another command that moves the fingers. So begins a process whose gripper
+        /// comes later, which is then still in its holster, and one that was started in the middle of a job: a part may be held.
         Deferred = "deferred",
         /// The fingers close, until the readings are steady.
         Closing = "closing",

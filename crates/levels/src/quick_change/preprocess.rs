@@ -7,28 +7,53 @@ use rcs_core::{
 
 use super::{
     state::{Ring, State},
-    tables::Id,
+    tables::{Clock, Id, Step},
 };
+use crate::execution::Course;
 
 /// Ticks after which a ring that neither sensor sees is stuck (0.5 s): longer than it is on its way.
 pub(super) const STUCK_TICKS: u8 = 12;
 /// Ticks after which sensors that contradict each other, or an id that no gripper has, are a malfunction.
 pub(super) const MALFUNCTION_TICKS: u8 = 3;
+/// Ticks in which a commanded ring must arrive (1 s).
+pub(super) const TURN_TICKS: u64 = 25;
 /// The greatest id of a gripper: 1 parts, 2 v, 3 tool (III.3.6 to III.3.8); 0 is none.
 const GREATEST_ID: u8 = 3;
 
-/// Read the inputs of a tick; returns what the id is worth.
-pub(super) fn observe<Data: ?Sized>(state: &mut State, inputs: &Inputs<'_, Data>) -> Id {
-    let command = &inputs.memory.emove.quick_change;
-    let _course = state.execution.consult(command.number, || match command.command {
-        QuickChangeVerb::None | QuickChangeVerb::Lock | QuickChangeVerb::Unlock => {
-            Some(Reason::UnknownCommand)
+/// State variables of a tick, besides the ring.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    /// What the upper table says.
+    pub course: Course,
+    /// What the id is worth.
+    pub id: Id,
+    /// Time of the command.
+    pub clock: Clock,
+}
+
+impl Seen {
+    /// Read the inputs of a tick.
+    pub fn preprocess<Data: ?Sized>(state: &mut State, inputs: &Inputs<'_, Data>) -> Self {
+        let command = &inputs.memory.emove.quick_change;
+        let course = state.execution.consult(command.number, || match command.command {
+            QuickChangeVerb::None => Some(Reason::UnknownCommand),
+            QuickChangeVerb::Pause | QuickChangeVerb::Lock | QuickChangeVerb::Unlock => None,
+        });
+        match course {
+            Course::Begin => (state.command, state.since) = (command.command, inputs.tick),
+            // What the command before left behind is no answer to this one.
+            Course::Refuse => state.execution.step = Step::Watch.code(),
+            Course::Continue | Course::Rest => {}
         }
-        QuickChangeVerb::Pause => None,
-    });
-    let sensors = &inputs.external.devices.quick_change;
-    read_ring(state, sensors);
-    read_id(state, sensors.end_effector_id)
+        let sensors = &inputs.external.devices.quick_change;
+        read_ring(state, sensors);
+        let late = inputs.tick.since(state.since) > TURN_TICKS;
+        Self {
+            course,
+            id: read_id(state, sensors.end_effector_id),
+            clock: if late { Clock::Expired } else { Clock::Running },
+        }
+    }
 }
 
 fn read_ring(state: &mut State, sensors: &QuickChangeSensors) {

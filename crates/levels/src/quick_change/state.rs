@@ -1,6 +1,6 @@
 //! What Quick Change remembers from tick to tick.
 
-use rcs_core::{coded_enum, record};
+use rcs_core::{coded_enum, interface::quick_change::QuickChangeVerb, record, tick::Tick};
 
 use crate::execution::Execution;
 
@@ -25,6 +25,10 @@ record! {
     pub struct State {
         /// The current command number, its outcome and its step.
         pub execution: Execution,
+        /// The current command: a copy, because the buffer of a commander that restarts is empty.
+        pub command: QuickChangeVerb,
+        /// When it was begun.
+        pub since: Tick,
         /// The reading that counts.
         pub ring: Ring,
         /// The reading of the last tick.

@@ -16,8 +16,7 @@ use rcs_core::{
 
 use super::{
     QuickChange, TABLES,
-    preprocess::{MALFUNCTION_TICKS, STUCK_TICKS},
-    tables::QC_PAUSE,
+    preprocess::{MALFUNCTION_TICKS, STUCK_TICKS, TURN_TICKS},
 };
 
 /// A process with its inputs.
@@ -27,7 +26,7 @@ struct Bench {
     memory: CommonMemory,
     external: ExternalInputs,
     tick: Tick,
-    rows: BTreeSet<u8>,
+    rows: BTreeSet<(u8, u8)>,
 }
 
 impl Bench {
@@ -42,8 +41,7 @@ impl Bench {
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
         self.process.step(&inputs, &mut outputs);
         assert_eq!(outputs.header.stamp, self.tick);
-        assert_eq!(TABLES[usize::from(outputs.header.table) - 1].name, QC_PAUSE.name);
-        self.rows.insert(outputs.header.row);
+        self.rows.insert((outputs.header.table, outputs.header.row));
         self.memory.quick_change = outputs;
         outputs
     }
@@ -53,10 +51,65 @@ impl Bench {
     }
 }
 
+/// A ring that turns with the valves, a tick at a time.
+#[derive(Clone, Copy)]
+struct RingModel {
+    /// 0 unlocked, 1 locked.
+    place: f64,
+    /// Share of the way that it makes in a tick.
+    speed: f64,
+    /// Where it jams, if it does.
+    jam: Option<f64>,
+}
+
+impl RingModel {
+    fn turn(&mut self, valves: QuickChangeValves) {
+        let way = match (valves.port, valves.lock, valves.unlock) {
+            (true, true, false) => self.speed,
+            (true, false, true) => -self.speed,
+            _ => 0.0,
+        };
+        let next = (self.place + way).clamp(0.0, 1.0);
+        let jammed = self.jam.is_some_and(|at| (at - self.place) * (at - next) < 0.0);
+        self.place = if jammed { self.place } else { next };
+    }
+}
+
+impl Bench {
+    /// Command, and let the ring follow until the status is another than executing; returns it and the ticks.
+    fn execute(&mut self, verb: QuickChangeVerb, ring: &mut RingModel, id: u8) -> (QuickChangeOutputs, u32) {
+        self.command(self.memory.emove.quick_change.number + 1, verb);
+        for ticks in 1..200 {
+            let outputs = self.step(ring.place >= 1.0, ring.place <= 0.0, id);
+            let QuickChangeValves { lock, unlock, port } = outputs.valves;
+            assert!(!(lock && unlock) && port == (lock || unlock));
+            assert_eq!(
+                port,
+                outputs.status.report == QuickChangeReport::Executing,
+                "enabled only while the ring turns"
+            );
+            ring.turn(outputs.valves);
+            if outputs.status.report != QuickChangeReport::Executing {
+                return (outputs, ticks);
+            }
+        }
+        panic!("no end: {:?}", self.process);
+    }
+}
+
+const UNLOCKED: RingModel = RingModel { place: 0.0, speed: 0.125, jam: None };
+
 #[test]
-fn no_row_is_dead_and_every_row_fires() {
-    QC_PAUSE.dead_rows(|row| panic!("row {row} can never fire"));
+fn no_row_is_dead() {
+    for table in TABLES {
+        table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
+    }
+}
+
+#[test]
+fn every_row_fires() {
     let mut bench = Bench::default();
+    // QC-PAUSE 3 to 8.
     for (locked, unlocked, id) in [
         (false, false, 0),
         (true, false, 1),
@@ -69,7 +122,118 @@ fn no_row_is_dead_and_every_row_fires() {
             bench.step(locked, unlocked, id);
         }
     }
-    assert_eq!(bench.rows, QC_PAUSE.rows.iter().map(|row| row.number).collect());
+    // QC-LOCK 4, 5, 6, QC-UNLOCK 3, 4, 5, QC-PAUSE 1.
+    let mut ring = UNLOCKED;
+    for verb in [QuickChangeVerb::Lock, QuickChangeVerb::Unlock] {
+        bench.execute(verb, &mut ring, 1);
+        ring.jam = Some(0.55);
+        bench.execute(
+            if verb == QuickChangeVerb::Lock { QuickChangeVerb::Unlock } else { QuickChangeVerb::Lock },
+            &mut ring,
+            1,
+        );
+        bench.step(false, false, 1);
+        ring.jam = None;
+    }
+    // QC-LOCK 2, 3, QC-UNLOCK 2, QC-PAUSE 2.
+    for verb in [QuickChangeVerb::Lock, QuickChangeVerb::Unlock] {
+        for (locked, unlocked, id) in [(true, true, 1), (true, false, 9)] {
+            for _ in 0..2 {
+                bench.command(bench.memory.emove.quick_change.number + 1, verb);
+                (0..=STUCK_TICKS).for_each(|_| {
+                    bench.step(locked, unlocked, id);
+                });
+            }
+        }
+    }
+    // QC-LOCK 1, QC-UNLOCK 1: commanded before any reading counts; the upper table notes no row of its own here.
+    for verb in [QuickChangeVerb::Lock, QuickChangeVerb::Unlock] {
+        bench.process = QuickChange::default();
+        bench.command(0, verb);
+        bench.step(false, false, 0);
+        bench.command(1, verb);
+        bench.step(false, false, 0);
+    }
+    let all =
+        (2_u8..).zip(&TABLES[1..]).flat_map(|(n, table)| table.rows.iter().map(move |row| (n, row.number)));
+    let missing: Vec<_> = all.filter(|row| !bench.rows.contains(row)).collect();
+    assert!(missing.is_empty(), "never fired: {missing:?}");
+}
+
+#[test]
+fn the_ring_is_locked_and_unlocked_with_the_port_enabled_only_while_it_turns() {
+    let (mut bench, mut ring) = (Bench::default(), UNLOCKED);
+    bench.step(false, true, 1);
+    let (locked, ticks) = bench.execute(QuickChangeVerb::Lock, &mut ring, 1);
+    assert_eq!((locked.status.report, locked.status.reason), (QuickChangeReport::Locked, Reason::None));
+    assert_eq!((locked.status.echo, locked.status.end_effector_id), (1, 1));
+    assert_eq!((locked.valves, ticks), (QuickChangeValves::default(), 9));
+    let (again, ticks) = bench.execute(QuickChangeVerb::Lock, &mut ring, 1);
+    assert_eq!((again.status.report, ticks), (QuickChangeReport::Locked, 1), "locked already");
+    let (unlocked, _) = bench.execute(QuickChangeVerb::Unlock, &mut ring, 200);
+    assert_eq!(unlocked.status.report, QuickChangeReport::Unlocked, "pins that part do not matter");
+    assert_eq!((ring.place, unlocked.valves), (0.0, QuickChangeValves::default()));
+}
+
+#[test]
+fn a_ring_that_does_not_arrive_is_stuck_until_the_next_command() {
+    for (verb, place) in [(QuickChangeVerb::Lock, 0.0), (QuickChangeVerb::Unlock, 1.0)] {
+        for jam in [0.55, 0.05, 0.95] {
+            let (mut bench, mut ring) = (Bench::default(), RingModel { place, speed: 0.125, jam: Some(jam) });
+            bench.step(place >= 1.0, place <= 0.0, 1);
+            let (outputs, ticks) = bench.execute(verb, &mut ring, 1);
+            assert_eq!(outputs.status.report, QuickChangeReport::Stuck);
+            assert_eq!((outputs.status.reason, u64::from(ticks)), (Reason::QuickChangeStuck, TURN_TICKS + 2));
+            for _ in 0..50 {
+                let outputs = bench.step(place >= 1.0, place <= 0.0, 1);
+                assert_eq!(
+                    outputs.status.report,
+                    QuickChangeReport::Stuck,
+                    "though the ring is seen where it was"
+                );
+                assert_eq!(outputs.valves, QuickChangeValves::default());
+            }
+            ring.jam = None;
+            let (outputs, _) = bench.execute(verb, &mut ring, 1);
+            assert!(matches!(outputs.status.report, QuickChangeReport::Locked | QuickChangeReport::Unlocked));
+            assert_eq!(outputs.status.reason, Reason::None);
+        }
+    }
+}
+
+#[test]
+fn sensors_that_fail_on_the_way_stop_the_ring() {
+    let mut bench = Bench::default();
+    bench.step(false, true, 1);
+    bench.command(1, QuickChangeVerb::Lock);
+    for _ in 0..MALFUNCTION_TICKS {
+        assert_eq!(bench.step(false, true, 1).status.report, QuickChangeReport::Executing);
+    }
+    let outputs = (0..MALFUNCTION_TICKS).map(|_| bench.step(true, true, 1)).last().unwrap();
+    assert_eq!(outputs.status.report, QuickChangeReport::SensorMalfunction);
+    assert_eq!(
+        (outputs.status.reason, outputs.valves),
+        (Reason::QuickChangeFault, QuickChangeValves::default())
+    );
+    assert_eq!(bench.step(true, false, 1).status.report, QuickChangeReport::SensorMalfunction);
+    bench.command(2, QuickChangeVerb::Pause);
+    assert_eq!(bench.step(true, false, 1).status.report, QuickChangeReport::Locked);
+}
+
+#[test]
+fn a_restart_while_the_ring_turns_leaves_it_where_it_is() {
+    let (mut bench, mut ring) = (Bench::default(), UNLOCKED);
+    bench.step(false, true, 1);
+    bench.command(1, QuickChangeVerb::Lock);
+    for _ in 0..4 {
+        ring.turn(bench.step(ring.place >= 1.0, ring.place <= 0.0, 1).valves);
+    }
+    bench.process = QuickChange::default();
+    let outputs = (0..=STUCK_TICKS).map(|_| bench.step(false, false, 1)).last().unwrap();
+    assert_eq!((outputs.status.report, outputs.status.reason), (QuickChangeReport::Stuck, Reason::Restarted));
+    assert_eq!(outputs.valves, QuickChangeValves::default());
+    let (outputs, _) = bench.execute(QuickChangeVerb::Lock, &mut ring, 1);
+    assert_eq!((outputs.status.report, ring.place), (QuickChangeReport::Locked, 1.0));
 }
 
 #[test]
@@ -124,13 +288,29 @@ fn a_restart_and_an_unknown_command_are_named_and_the_ring_still_reported() {
 }
 
 proptest! {
-    /// Whatever the sensors say, the ring is left alone, ids are legal, and the same inputs give the same bits.
+    /// Whatever the sensors say and whatever is commanded: air and port only for a command that turns the ring, never for longer
+    /// than its time, ids are legal, and the same inputs give the same bits.
     #[test]
-    fn the_ring_is_never_moved(readings in prop::collection::vec((any::<bool>(), any::<bool>(), any::<u8>()), 1..200)) {
+    fn the_ring_is_moved_only_by_command(
+        readings in prop::collection::vec((any::<bool>(), any::<bool>(), any::<u8>(), 0_u8..40), 1..300)
+    ) {
         let (mut first, mut second) = (Bench::default(), Bench::default());
-        for (locked, unlocked, id) in readings {
+        let mut turning = 0;
+        for (locked, unlocked, id, what) in readings {
+            if let Some(verb) = QuickChangeVerb::from_code(what) {
+                let number = first.memory.emove.quick_change.number + 1;
+                first.command(number, verb);
+                second.command(number, verb);
+                turning = 0;
+            }
             let outputs = first.step(locked, unlocked, id);
-            prop_assert_eq!(outputs.valves, QuickChangeValves::default());
+            let verb = first.memory.emove.quick_change.command;
+            let QuickChangeValves { lock, unlock, port } = outputs.valves;
+            prop_assert_eq!(port, lock || unlock);
+            prop_assert!(!lock || verb == QuickChangeVerb::Lock);
+            prop_assert!(!unlock || verb == QuickChangeVerb::Unlock);
+            turning += u64::from(port);
+            prop_assert!(turning <= TURN_TICKS + 1);
             prop_assert!(outputs.status.end_effector_id <= 3);
             let image: [u8; 64] = to_bytes(&outputs);
             let again: [u8; 64] = to_bytes(&second.step(locked, unlocked, id));

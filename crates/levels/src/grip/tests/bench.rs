@@ -35,6 +35,15 @@ impl Bench {
     /// A bench with the gripper attached, after one tick in which nothing was commanded: a command that stands in the buffer
     /// in the first tick is one of the time before a restart.
     pub fn new(gripper: Gripper) -> Self {
+        Self::boot(gripper, true)
+    }
+
+    /// The same, the gripper being in its holster.
+    pub fn without(gripper: Gripper) -> Self {
+        Self::boot(gripper, false)
+    }
+
+    fn boot(gripper: Gripper, attached: bool) -> Self {
         let mut bench = Self {
             process: Grip::default(),
             memory: CommonMemory::default(),
@@ -44,9 +53,19 @@ impl Bench {
             rows: BTreeSet::new(),
             patterns: Vec::new(),
         };
-        bench.attach(true);
+        bench.attach(attached);
         bench.step();
         bench
+    }
+
+    /// Ticks in which the process is dormant: its outputs are republished.
+    pub fn sleep(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.tick = self.tick.next();
+            self.memory.grip.header.stamp = self.tick;
+            self.memory.grip.header.republished = true;
+            self.gripper.advance(self.memory.grip.valves.bits);
+        }
     }
 
     /// Attach or detach the gripper.

@@ -128,19 +128,60 @@ fn a_gripper_that_is_attached_at_the_start_calibrates_by_itself() {
 }
 
 #[test]
-fn a_gripper_that_comes_later_calibrates_then_and_keeps_the_calibration() {
-    let mut bench = Bench::new(Gripper::new(2.0, 9));
-    bench.attach(false);
+fn a_gripper_that_comes_later_is_calibrated_by_command_and_keeps_the_calibration() {
+    let mut bench = Bench::without(Gripper::new(2.0, 9));
     bench.done(GripVerb::Pause, 0.0, 0);
-    assert!(!bench.wait(50).status.initialized);
     bench.attach(true);
     let status = bench.wait(200).status;
-    assert_eq!((status.initialized, status.report), (true, GripReport::Done));
+    assert_eq!((status.initialized, bench.gripper.opening), (false, 2.0), "it is in its holster still");
+    assert!(bench.done(GripVerb::UpInit, 0.0, 0).1.status.initialized);
     bench.attach(false);
     let status = bench.wait(50).status;
     assert_eq!((status.initialized, status.position, status.left_force), (true, 0, 0));
     bench.attach(true);
     assert_eq!(bench.step().status.position, 500);
+}
+
+#[test]
+fn a_process_that_wakes_adopts_the_command_and_moves_nothing() {
+    for sleeping_with in [GripVerb::Position, GripVerb::CloseGrip, GripVerb::UpInit] {
+        let mut bench = calibrated(19);
+        bench.done(GripVerb::OpenGrip, 3.0, 0);
+        bench.attach(false);
+        bench.sleep(30);
+        bench.command(sleeping_with, 1.0, 30);
+        bench.attach(true);
+        bench.sleep(3);
+        let opening = bench.gripper.opening;
+        let status = bench.step().status;
+        assert_eq!((status.report, status.reason), (GripReport::Serror, Reason::Restarted));
+        assert_eq!(status.echo, bench.memory.emove.grip.number, "adopted");
+        assert_eq!((bench.wait(100).valves.bits, bench.gripper.opening), (0, opening));
+        assert!(bench.memory.grip.status.initialized, "the calibration outlasts the sleep");
+        bench.done(GripVerb::Position, 1.0, 0);
+    }
+}
+
+#[test]
+fn a_process_that_wakes_uncalibrated_waits_for_up_init() {
+    let mut bench = Bench::without(Gripper::new(2.0, 20));
+    bench.sleep(10);
+    bench.attach(true);
+    bench.sleep(2);
+    let status = bench.wait(200).status;
+    assert_eq!((status.report, status.initialized, bench.gripper.opening), (GripReport::Idle, false, 2.0));
+    assert!(bench.done(GripVerb::UpInit, 0.0, 0).1.status.initialized);
+}
+
+#[test]
+fn a_calibration_that_is_slept_through_is_void() {
+    let mut bench = Bench::new(Gripper::new(2.0, 21));
+    bench.wait(5);
+    assert!(bench.process.state.calibrating());
+    bench.sleep(20);
+    let status = bench.wait(100).status;
+    assert_eq!((status.initialized, status.valves), (false, 0));
+    assert_eq!(bench.process.state.phase, Phase::Deferred);
 }
 
 #[test]
@@ -423,7 +464,8 @@ fn every_row_fires() {
     // UP-INIT 3: noise hides the ends; 10: a dead strain gage; 7, 8, 9: at last.
     bench.attach(true);
     bench.gripper.noise = 40;
-    bench.wait(410);
+    bench.command(GripVerb::UpInit, 0.0, 0);
+    bench.finish();
     (bench.gripper.noise, bench.gripper.strain[0].1) = (1, 0.0);
     bench.command(GripVerb::UpInit, 0.0, 0);
     bench.finish();

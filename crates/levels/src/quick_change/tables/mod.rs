@@ -1,10 +1,30 @@
 //! Decision tables of Quick Change: a file a command.
 
+mod qc_lock;
 mod qc_pause;
+mod qc_unlock;
 
 use rcs_core::{coded_enum, interface::quick_change::QuickChangeReport};
 
-pub use self::qc_pause::{QC_PAUSE, Step, qc_pause};
+pub use self::{
+    qc_lock::{QC_LOCK, qc_lock},
+    qc_pause::{QC_PAUSE, qc_pause},
+    qc_unlock::{QC_UNLOCK, qc_unlock},
+};
+
+coded_enum! {
+    /// Reference action of all commands: it outlasts the command, so that a failure is reported until the next one.
+    pub enum Step {
+        /// Watching the sensors.
+        Watch = "watch",
+        /// The ring turns.
+        Turn = "turn",
+        /// The ring did not arrive in time.
+        Stuck = "stuck",
+        /// The sensors failed on the way.
+        Faulty = "faulty",
+    }
+}
 
 coded_enum! {
     /// What the id pins of the mated gripper are worth.
@@ -16,9 +36,25 @@ coded_enum! {
     }
 }
 
+coded_enum! {
+    /// Time for which the ring has been turning.
+    pub enum Clock {
+        /// Within the limit.
+        Running = "running",
+        /// Over the limit.
+        Expired = "expired",
+    }
+}
+
 /// What a row wants of the valves and the status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Leave the ring as it is and report.
     Report(QuickChangeReport),
+    /// Enable the port and turn the ring towards locked.
+    Lock,
+    /// Enable the port and turn the ring towards unlocked.
+    Unlock,
+    /// Disable the port: the command has failed with this status.
+    Fail(QuickChangeReport),
 }

@@ -1,27 +1,25 @@
 //! QC-PAUSE: do nothing but look.
 
-use rcs_core::{coded_enum, decision_table, interface::quick_change::QuickChangeReport};
+use rcs_core::{
+    decision_table,
+    interface::quick_change::QuickChangeReport::{Executing, Locked, SensorMalfunction, Stuck, Unlocked},
+};
 
-use super::{Action, Id};
+use super::{Action, Id, Step};
 use crate::quick_change::Ring;
 
-coded_enum! {
-    /// Reference action of QC-PAUSE.
-    pub enum Step {
-        /// Watching the sensors.
-        Watch = "watch",
-    }
-}
-
 decision_table! {
-    /// QC-PAUSE (VI.2.1): do nothing; the sensors are checked for the status.
-    pub QC_PAUSE: fn qc_pause(ring: Ring, id: Id) -> (Action, Step) {
-        //   ring                          id          action                                         next
-        1: ( Unread                      , _       ) => Report(QuickChangeReport::Executing)         , Watch ;
-        2: ( Both                        , _       ) => Report(QuickChangeReport::SensorMalfunction) , Watch ;
-        3: ( Locked | Unlocked | Between , Illegal ) => Report(QuickChangeReport::SensorMalfunction) , Watch ;
-        4: ( Locked                      , Legal   ) => Report(QuickChangeReport::Locked)            , Watch ;
-        5: ( Unlocked                    , Legal   ) => Report(QuickChangeReport::Unlocked)          , Watch ;
-        6: ( Between                     , Legal   ) => Report(QuickChangeReport::Stuck)             , Watch ;
+    /// QC-PAUSE (VI.2.1): do nothing; the sensors are checked for the status. Watches after the end of the other commands too: a
+    /// failure of theirs is reported until the next command.
+    pub QC_PAUSE: fn qc_pause(step: Step, ring: Ring, id: Id) -> (Action, Step) {
+        //   step           ring                          id          action                      next
+        1: ( Stuck        , _                           , _       ) => Report(Stuck)             , Stuck  ;
+        2: ( Faulty       , _                           , _       ) => Report(SensorMalfunction) , Faulty ;
+        3: ( Watch | Turn , Unread                      , _       ) => Report(Executing)         , Watch  ;
+        4: ( Watch | Turn , Both                        , _       ) => Report(SensorMalfunction) , Watch  ;
+        5: ( Watch | Turn , Locked | Unlocked | Between , Illegal ) => Report(SensorMalfunction) , Watch  ;
+        6: ( Watch | Turn , Locked                      , Legal   ) => Report(Locked)            , Watch  ;
+        7: ( Watch | Turn , Unlocked                    , Legal   ) => Report(Unlocked)          , Watch  ;
+        8: ( Watch | Turn , Between                     , Legal   ) => Report(Stuck)             , Watch  ;
     }
 }
