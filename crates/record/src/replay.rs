@@ -8,6 +8,7 @@
 //! first tick after the gap.
 
 use std::{
+    collections::BTreeMap,
     path::Path,
     time::{Duration, Instant},
 };
@@ -100,12 +101,11 @@ pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
     let started = Instant::now();
     let log = Log::open(path)?;
     log.check_layout()?;
-    let store = task_data(&log)?;
-    let data = store.view();
+    let generations = generations(&log)?;
     let mut replayer = Replayer::new();
     let mut first_difference = None;
     for logged in log.ticks() {
-        first_difference = replayer.tick(&logged?, &data)?;
+        first_difference = replayer.tick(&logged?, &generations)?;
         if first_difference.is_some() {
             break;
         }
@@ -132,14 +132,31 @@ pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
 /// [`ReplayError::TaskData`] with the report of the loader.
 pub fn task_data(log: &Log) -> Result<Store, ReplayError> {
     let source = |attachment: &Attachment| {
-        let name = attachment.name.strip_prefix(Attachment::TASK_DATA)?;
-        let text = String::from_utf8_lossy(&attachment.data).into_owned();
-        Some(Source { name: name.to_owned(), text: text.into() })
+        Some(attachment.source(attachment.name.strip_prefix(Attachment::TASK_DATA)?))
     };
     let sources = log.attachments.iter().filter_map(source).collect();
     let (store, _) =
         Store::from_sources(sources).map_err(|report| ReplayError::TaskData(report.render(false)))?;
     Ok(store)
+}
+
+/// The task data of a log in all their generations: as loaded, and after each reload.
+///
+/// # Errors
+/// [`ReplayError::TaskData`] with the report of the loader.
+pub fn generations(log: &Log) -> Result<Vec<Store>, ReplayError> {
+    let mut generations = vec![task_data(log)?];
+    let mut reloads: BTreeMap<u32, Vec<Source>> = BTreeMap::new();
+    for (generation, source) in log.attachments.iter().filter_map(Attachment::as_reload) {
+        reloads.entry(generation).or_default().push(source);
+    }
+    for sources in reloads.into_values() {
+        let newest = generations.last().cloned().unwrap_or_default();
+        let (store, _) =
+            newest.with_blocks(sources).map_err(|report| ReplayError::TaskData(report.render(false)))?;
+        generations.push(store);
+    }
+    Ok(generations)
 }
 
 struct Replayer {
@@ -180,7 +197,7 @@ impl Replayer {
     fn tick(
         &mut self,
         logged: &LoggedTick,
-        data: &taskdata::files::TaskData<'_>,
+        generations: &[Store],
     ) -> Result<Option<Difference>, ReplayError> {
         let tick = logged.tick;
         let before = self.before.filter(|_| tick == self.last.next());
@@ -193,9 +210,12 @@ impl Replayer {
         };
         let bad = |source| ReplayError::Inputs { tick: tick.0, source };
         let external: ExternalInputs = from_bytes(&logged.external).map_err(bad)?;
+        let missing = ReplayError::Generation { tick: tick.0, generation: external.generation };
+        let store = usize::try_from(external.generation).ok().and_then(|at| generations.get(at));
+        let data = store.ok_or(missing)?.view();
         let mut after = before;
         let started = Instant::now();
-        self.ladder.step(tick, &before, &external, data, &mut after);
+        self.ladder.step(tick, &before, &external, &data, &mut after);
         self.computing += started.elapsed();
         self.ticks += 1;
         after.encode(&mut Writer::new(&mut self.image));
