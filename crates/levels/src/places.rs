@@ -3,6 +3,20 @@
 use rcs_core::interface::{Reason, subtask::LocationKind};
 use taskdata::files::{ArrayId, LocptId, LookupError, Place};
 
+/// Locations that the processes name themselves, because no command of the workstation controller does.
+pub mod named {
+    /// Where the Active Pedestal takes an object (V.3.1 FIX-GRIP).
+    pub const PEDESTAL: &str = "PEDESTAL";
+    /// Where the robot waits while the pedestal turns the object (V.3.1 FIX-GRIP).
+    pub const PED_SAFE: &str = "PED-SAFE";
+    /// The transfer location of the tool drum (V.4.1 INSERT-TOOL).
+    pub const TOOL_TRNS: &str = "TOOL-TRNS";
+    /// The location near the tool drum from which tools are inserted (V.4.1 INSERT-TOOL).
+    pub const TOOL_SAFE: &str = "TOOL-SAFE";
+    /// Owner of the locations that the data base keeps account of, the MBD: UNIT_1 and UNIT_2 (VII.5).
+    pub const MBD: &str = "UNIT";
+}
+
 /// The place that a command names by type and record numbers.
 #[must_use]
 pub const fn place_of(kind: LocationKind, location_record: u32, location_array: u32) -> Place {

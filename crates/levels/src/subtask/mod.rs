@@ -1,33 +1,32 @@
-//! Subtask (V.3): takes a command of Task apart into commands to E-move.
+//! Subtask (V.3): takes a command of Task apart into commands to E-move, and coordinates the robot with the Active Pedestal.
 //!
 //! * [`state`]: what Subtask remembers;
+//! * [`aims`]: objects and locations that commands to E-move are aimed at, among them those that Subtask names itself;
+//! * [`sensing`]: preprocess, the state variables;
 //! * [`tables`]: the decision tables, a file for each kind of command;
-//! * this module: the three phases.
-//!
-//! Commands to the Active Pedestal (FIX-GRIP) and the exchange of grippers are not there yet: GET-ENDEFF reports the wrong gripper.
+//! * [`acting`]: postprocess, the outputs that a row asks for;
+//! * this module: the process.
 
+pub mod acting;
+pub mod aims;
+pub mod sensing;
 pub mod state;
 pub mod tables;
+#[cfg(test)]
+mod tests;
 
 use rcs_core::{
     interface::{
-        Reason, SubtaskOutputs,
-        emove::{EmoveCommand, EmoveVerb},
-        subtask::{SubtaskCommand, SubtaskStatus, SubtaskVerb},
+        ChangingPose, Reason, SubtaskOutputs, pose_range,
+        subtask::{SubtaskCommand, SubtaskVerb},
     },
     process::{Inputs, Process},
     table::Table,
 };
-use taskdata::files::TaskData;
+use taskdata::files::{PedPara, TaskData};
 
-use self::{
-    state::State,
-    tables::{Action, Gripper, Held, Named, Situation, Vision},
-};
-use crate::{
-    execution::{Course, EXECUTE},
-    places::place_of,
-};
+use self::{aims::Aims, state::State};
+use crate::execution::{Course, EXECUTE};
 
 /// The Subtask process.
 #[derive(Clone, Debug, Default)]
@@ -35,50 +34,42 @@ pub struct Subtask {
     state: State,
 }
 
+/// Decision tables of Subtask.
+pub const TABLES: &[&Table] = &[
+    &EXECUTE,
+    &tables::pause::S_PAUSE,
+    &tables::get_endeff::GET_ENDEFF,
+    &tables::get_object::GET_OBJECT,
+    &tables::fix_grip::FIX_GRIP,
+    &tables::place_obj::PLACE_OBJ,
+    &tables::move_obj::MOVE_OBJ_TO_DEST,
+    &tables::goto::GOTO,
+    &tables::position::POSITION,
+    &tables::release::RELEASE,
+    &tables::insert_tool::INSERT_TOOL,
+    &tables::release_tool::RELEASE_TOOL,
+    &tables::acquire_tool::ACQUIRE_TOOL,
+    &tables::remove_tool::REMOVE_TOOL,
+];
+
 impl<'d> Process<TaskData<'d>> for Subtask {
     type Outputs = SubtaskOutputs;
     type State = State;
 
     const NAME: &'static str = "Subtask";
-    const TABLES: &'static [&'static Table] = &[
-        &EXECUTE,
-        &tables::pause::S_PAUSE,
-        &tables::get_endeff::GET_ENDEFF,
-        &tables::get_object::GET_OBJECT,
-        &tables::place_obj::PLACE_OBJ,
-        &tables::move_obj::MOVE_OBJ_TO_DEST,
-        &tables::goto::GOTO,
-        &tables::position::POSITION,
-        &tables::release::RELEASE,
-    ];
+    const TABLES: &'static [&'static Table] = TABLES;
 
     fn step(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &mut SubtaskOutputs) {
         let command = inputs.memory.task.subtask;
-        self.state.emove.start(inputs.memory.emove.status.echo);
-        let course = self.state.execution.consult(command.number, || {
-            matches!(
-                command.command,
-                SubtaskVerb::None
-                    | SubtaskVerb::FixGrip
-                    | SubtaskVerb::InsertTool
-                    | SubtaskVerb::ReleaseTool
-                    | SubtaskVerb::AcquireTool
-                    | SubtaskVerb::RemoveTool
-            )
-            .then_some(Reason::UnknownCommand)
-        });
+        self.sense(inputs, outputs);
+        let course = self.take_command(&command, inputs, outputs);
         if matches!(course, Course::Begin | Course::Continue) {
-            let situation = self.preprocess(&command, inputs);
+            let situation = self.situation(&command, inputs);
             let choice = tables::decide(command.command, self.state.execution.step, &situation);
-            self.state.execution.note(
-                <Self as Process<TaskData<'d>>>::TABLES,
-                choice.table,
-                choice.row,
-                choice.step,
-            );
+            self.state.execution.note(TABLES, choice.table, choice.row, choice.step);
             self.act(choice.action, &situation, &command, inputs, outputs);
         }
-        self.postprocess(inputs, outputs);
+        self.report(inputs, outputs);
     }
 
     fn state(&self) -> &State {
@@ -91,111 +82,55 @@ impl<'d> Process<TaskData<'d>> for Subtask {
 }
 
 impl Subtask {
-    /// Set the state variables.
-    fn preprocess(&self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Situation {
-        let below = &inputs.memory.emove;
-        let place = place_of(command.location_kind, command.location_record, command.location_array);
-        let view = inputs.data.view(&command.object, &place).is_some_and(|(_, view)| view.enabled);
-        let present = below.status.end_effector_id;
-        Situation {
-            emove: self.state.emove.read(
-                inputs.tick,
-                &below.header,
-                below.status.echo,
-                below.status.report.lower(),
-            ),
-            held: if !below.status.object_held {
-                Held::Nothing
-            } else if below.status.held_object == command.object {
-                Held::Right
-            } else {
-                Held::Other
-            },
-            vision: if view { Vision::Needed } else { Vision::NotNeeded },
-            gripper: if present == 0 {
-                Gripper::None
-            } else if command.end_effector_id == present || command.end_effector_id == 0 {
-                Gripper::Right
-            } else {
-                Gripper::Wrong
-            },
-            named: if command.object.is_empty() { Named::Location } else { Named::Object },
-        }
-    }
-
-    /// Set the outputs that the action names.
-    fn act(
+    /// Read the command buffer; look up what a new command needs beside the location that Task names.
+    fn take_command(
         &mut self,
-        action: Action,
-        situation: &Situation,
         command: &SubtaskCommand,
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut SubtaskOutputs,
-    ) {
-        let mut send = |verb| {
-            outputs.emove = EmoveCommand {
-                number: self.state.emove.send(inputs.tick),
-                ..emove_command(verb, command, inputs.data)
-            };
-        };
-        match action {
-            Action::Wait => {}
-            Action::Pause => send(EmoveVerb::Pause),
-            Action::MovToVu => send(EmoveVerb::MovToVu),
-            Action::LocateObj => send(EmoveVerb::LocateObj),
-            Action::MovToObj => send(EmoveVerb::MovToObj),
-            Action::GraspObj => send(EmoveVerb::GraspObj),
-            Action::MovObjTo => send(EmoveVerb::MovObjTo),
-            Action::MovToLoc => send(EmoveVerb::MovToLoc),
-            Action::Release => send(EmoveVerb::Release),
-            Action::Finish => self.state.execution.finish(),
-            Action::Fail(reason) => self.state.execution.fail(reason),
-            Action::PassUp => {
-                self.state.execution.pass_up(situation.emove, inputs.memory.emove.status.reason);
-            }
+    ) -> Course {
+        let attached = inputs.memory.emove.status.end_effector_id;
+        let mut found = (Aims::default(), PedPara::default());
+        let course =
+            self.state.execution.consult(command.number, || match look_up(command, attached, inputs.data) {
+                Ok(records) => {
+                    found = records;
+                    None
+                }
+                Err(reason) => Some(reason),
+            });
+        if course == Course::Begin {
+            (self.state.aims, self.state.ped_para) = found;
+            self.publish_poses(outputs);
         }
+        course
     }
 
-    /// Write the output buffers.
-    fn postprocess(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut SubtaskOutputs) {
-        let execution = &self.state.execution;
-        let below = &inputs.memory.emove.status;
-        outputs.header = execution.header(inputs.tick);
-        outputs.status = SubtaskStatus {
-            echo: execution.receiver.echo,
-            report: execution.report(),
-            reason: execution.reason,
-            reference_pose: below.reference_pose,
-            object_held: below.object_held,
-            held_object: below.held_object,
-            end_effector_id: below.end_effector_id,
-            at: below.at,
-        };
+    /// Give the poses of a new command new record numbers.
+    fn publish_poses(&mut self, outputs: &mut SubtaskOutputs) {
+        let aims = &mut self.state.aims;
+        for ((slot, pose), aim) in
+            outputs.poses.iter_mut().zip(&aims.poses).zip([&mut aims.first, &mut aims.second])
+        {
+            if !aim.location.is_empty() {
+                self.state.last_pose = pose_range::next(pose_range::SUBTASK, self.state.last_pose);
+                *slot = ChangingPose { number: self.state.last_pose, pose: *pose };
+                aim.pose = self.state.last_pose;
+            }
+        }
+        aims.third.pose = aims.first.pose;
     }
 }
 
-/// A command to E-move with the parameters of the command from Task.
-fn emove_command(verb: EmoveVerb, command: &SubtaskCommand, data: &TaskData<'_>) -> EmoveCommand {
-    let place = place_of(command.location_kind, command.location_record, command.location_array);
-    // The object is taken with the source grip and placed with the destination grip; both name the same record file.
-    let grip = match command.command {
-        SubtaskVerb::PlaceObj | SubtaskVerb::MoveObjToDest => command.destination_grip,
-        SubtaskVerb::Position if command.source_grip == 0 => command.destination_grip,
-        _ => command.source_grip,
-    };
-    EmoveCommand {
-        number: 0,
-        command: verb,
-        object: command.object,
-        grip,
-        object_parameters: command.object_parameters,
-        object_grips: data.obj_grips_id(&command.object).map_or(0, |id| id.number()),
-        object_vision: data.view(&command.object, &place).map_or(0, |(id, _)| id.number()),
-        location: command.location,
-        location_kind: command.location_kind,
-        location_record: command.location_record,
-        location_array: command.location_array,
-        pose: command.pose,
-        end_effector_id: command.end_effector_id,
+/// The locations of a command that Subtask names itself, and for FIX-GRIP how the pedestal takes the object.
+fn look_up(command: &SubtaskCommand, attached: u8, data: &TaskData<'_>) -> Result<(Aims, PedPara), Reason> {
+    if command.command == SubtaskVerb::None {
+        return Err(Reason::UnknownCommand);
     }
+    let ped_para = match command.command {
+        SubtaskVerb::FixGrip if command.object.is_empty() => return Err(Reason::NoObjectNamed),
+        SubtaskVerb::FixGrip => *data.ped_para(&command.object).ok_or(Reason::NoPedestalData)?.1,
+        _ => PedPara::default(),
+    };
+    Ok((Aims::new(command, attached, data)?, ped_para))
 }

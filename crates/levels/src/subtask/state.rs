@@ -1,8 +1,20 @@
 //! What Subtask remembers from tick to tick.
 
-use rcs_core::{handshake::Commander, record};
+use rcs_core::{handshake::Commander, name::Name16, record};
+use taskdata::files::PedPara;
 
+use super::aims::Aims;
 use crate::execution::Execution;
+
+record! {
+    /// How the held object is gripped. The status of E-move names the object; the grip is the one with which it was last taken.
+    pub struct Grasp {
+        /// The object; empty if nothing is held, or if Subtask has not seen how it was taken.
+        pub object: Name16,
+        /// Its grip number.
+        pub grip: i32,
+    }
+}
 
 record! {
     /// State of Subtask.
@@ -11,5 +23,15 @@ record! {
         pub execution: Execution,
         /// Commands to E-move.
         pub emove: Commander,
+        /// Commands to the Active Pedestal.
+        pub pedestal: Commander,
+        /// How the held object is gripped.
+        pub grasp: Grasp,
+        /// What the current command names beside the location and the object that Task gave.
+        pub aims: Aims,
+        /// How the pedestal takes the object of the current FIX-GRIP.
+        pub ped_para: PedPara,
+        /// Last record number given to a pose of [`Aims`].
+        pub last_pose: u32,
     }
 }

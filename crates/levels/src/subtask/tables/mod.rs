@@ -1,13 +1,18 @@
 //! Decision tables of Subtask: a file a command.
 
+pub mod acquire_tool;
+pub mod fix_grip;
 pub mod get_endeff;
 pub mod get_object;
 pub mod goto;
+pub mod insert_tool;
 pub mod move_obj;
 pub mod pause;
 pub mod place_obj;
 pub mod position;
 pub mod release;
+pub mod release_tool;
+pub mod remove_tool;
 
 use rcs_core::{
     coded_enum,
@@ -24,6 +29,20 @@ coded_enum! {
         Right = "right",
         /// It holds another object.
         Other = "other",
+    }
+}
+
+coded_enum! {
+    /// With which grip the object of the command is held.
+    pub enum GripHeld {
+        /// Subtask has not seen how it was taken.
+        Unknown = "unknown",
+        /// The grip for the source location.
+        Source = "source",
+        /// The grip for the destination location, which may be the same.
+        Destination = "destination",
+        /// Neither of the two.
+        Neither = "neither",
     }
 }
 
@@ -59,6 +78,41 @@ coded_enum! {
     }
 }
 
+coded_enum! {
+    /// Pedestal status (V.3.1): what the Active Pedestal makes of the last command.
+    pub enum Pedestal {
+        /// Hand or table are moving, or the command is not echoed yet.
+        Moving = "moving",
+        /// The command is done.
+        Done = "done",
+        /// It cannot be executed.
+        Cannot = "can't-do",
+        /// An error prevents it from finishing.
+        Faulty = "error",
+        /// The pedestal does not answer.
+        Silent = "silent",
+    }
+}
+
+coded_enum! {
+    /// The hand of the pedestal, by its opening.
+    pub enum Hand {
+        /// It stands at the grasp size or below it: nothing is between its fingers.
+        Empty = "empty",
+        /// It stands above.
+        Gripping = "gripping",
+    }
+}
+
+/// Which holster is moved to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Holster {
+    /// That of the attached gripper.
+    Own,
+    /// That of the wanted gripper.
+    Wanted,
+}
+
 /// The state variables of a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation {
@@ -66,12 +120,18 @@ pub struct Situation {
     pub emove: Lower,
     /// Is the object held?
     pub held: Held,
+    /// With which grip?
+    pub grip: GripHeld,
     /// Is vision needed?
     pub vision: Vision,
     /// End effector state.
     pub gripper: Gripper,
     /// What the position is named by.
     pub named: Named,
+    /// Pedestal status.
+    pub pedestal: Pedestal,
+    /// Hand of the pedestal.
+    pub hand: Hand,
 }
 
 /// What a row can ask for.
@@ -79,7 +139,7 @@ pub struct Situation {
 pub enum Action {
     /// Nothing new.
     Wait,
-    /// E-PAUSE to E-move.
+    /// E-PAUSE to E-move, and PAUSE to a pedestal that was commanded.
     Pause,
     /// MOV-TO-VU to E-move.
     MovToVu,
@@ -95,12 +155,46 @@ pub enum Action {
     MovToLoc,
     /// RELEASE to E-move.
     Release,
+    /// MOV-TO-HOL to E-move.
+    MovToHol(Holster),
+    /// QC-DETACH to E-move, in the own holster.
+    QcDetach,
+    /// QC-ATTACH to E-move, in the wanted gripper's holster.
+    QcAttach,
+    /// PRE-GRIP to the pedestal.
+    PedPreGrip,
+    /// MOV-OBJ-TO to E-move: the object, in the source grip, to the pedestal.
+    MovObjToPed,
+    /// GRIP to the pedestal.
+    PedGrip,
+    /// RELEASE to E-move, with the object in the pedestal's hand.
+    ReleaseAtPed,
+    /// MOV-TO-LOC to E-move: out of the pedestal's way.
+    MovToPedSafe,
+    /// FLIP to the pedestal.
+    PedFlip,
+    /// MOV-TO-OBJ to E-move: the object in the pedestal's hand, in the destination grip.
+    MovToObjAtPed,
+    /// GRASP-OBJ to E-move, in the destination grip.
+    GraspObjAtPed,
+    /// RELEASE to the pedestal.
+    PedRelease,
+    /// INSERT-TOOL to E-move.
+    InsertTool,
+    /// RELEASE-TOOL to E-move.
+    ReleaseTool,
+    /// ACQUIRE-TOOL to E-move.
+    AcquireTool,
+    /// REMOVE-TOOL to E-move.
+    RemoveTool,
     /// Report done.
     Finish,
     /// Report an error.
     Fail(Reason),
     /// Report what E-move reports.
     PassUp,
+    /// Report an error with the pedestal's reason, or with this one if it gives none.
+    PassUpPedestal(Reason),
 }
 
 /// What the table of the current command decided.
@@ -110,34 +204,18 @@ pub type Choice = crate::execution::Choice<Action>;
 #[must_use]
 pub fn decide(verb: SubtaskVerb, step: u8, s: &Situation) -> Choice {
     match verb {
-        SubtaskVerb::None
-        | SubtaskVerb::Pause
-        | SubtaskVerb::FixGrip
-        | SubtaskVerb::InsertTool
-        | SubtaskVerb::ReleaseTool
-        | SubtaskVerb::AcquireTool
-        | SubtaskVerb::RemoveTool => pause::consult(step, s),
-        SubtaskVerb::GetEndeff => get_endeff::consult(s),
+        SubtaskVerb::None | SubtaskVerb::Pause => pause::consult(step, s),
+        SubtaskVerb::GetEndeff => get_endeff::consult(step, s),
         SubtaskVerb::GetObject => get_object::consult(step, s),
+        SubtaskVerb::FixGrip => fix_grip::consult(step, s),
         SubtaskVerb::PlaceObj => place_obj::consult(step, s),
         SubtaskVerb::GotoEndpt | SubtaskVerb::GotoDest => goto::consult(step, s),
         SubtaskVerb::MoveObjToDest => move_obj::consult(step, s),
         SubtaskVerb::Position => position::consult(step, s),
         SubtaskVerb::Release => release::consult(step, s),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use rcs_core::process::Process;
-    use taskdata::files::TaskData;
-
-    use crate::subtask::Subtask;
-
-    #[test]
-    fn no_row_is_dead() {
-        for table in <Subtask as Process<TaskData<'_>>>::TABLES {
-            table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
-        }
+        SubtaskVerb::InsertTool => insert_tool::consult(step, s),
+        SubtaskVerb::ReleaseTool => release_tool::consult(step, s),
+        SubtaskVerb::AcquireTool => acquire_tool::consult(step, s),
+        SubtaskVerb::RemoveTool => remove_tool::consult(step, s),
     }
 }

@@ -1,0 +1,145 @@
+//! Postprocess of Subtask: commands to E-move and to the Active Pedestal, and the status to Task.
+
+use rcs_core::{
+    interface::{
+        Reason, Report, SubtaskOutputs,
+        emove::{EmoveCommand, EmoveVerb},
+        pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
+        prim::PrimReport,
+        subtask::{SubtaskCommand, SubtaskStatus},
+    },
+    process::Inputs,
+};
+use taskdata::files::TaskData;
+
+use super::{
+    Subtask,
+    aims::Aim,
+    tables::{Action, Holster, Situation},
+};
+use crate::execution::Outcome;
+
+impl Subtask {
+    /// Set the outputs that a row asks for.
+    pub(super) fn act(
+        &mut self,
+        action: Action,
+        situation: &Situation,
+        command: &SubtaskCommand,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut SubtaskOutputs,
+    ) {
+        let (own, aims) = (Aim::of_command(command), self.state.aims);
+        let ped = self.state.ped_para;
+        let mut send = |verb, aim: &Aim| {
+            let number = self.state.emove.send(inputs.tick);
+            outputs.emove = EmoveCommand { number, ..aim.command(verb, inputs.data) };
+        };
+        match action {
+            Action::Wait => {}
+            Action::Pause => {
+                send(EmoveVerb::Pause, &own);
+                self.pause_pedestal(inputs, outputs);
+            }
+            Action::MovToVu => send(EmoveVerb::MovToVu, &own),
+            Action::LocateObj => send(EmoveVerb::LocateObj, &own),
+            Action::MovToObj => send(EmoveVerb::MovToObj, &own),
+            Action::GraspObj => send(EmoveVerb::GraspObj, &own),
+            Action::MovObjTo => send(EmoveVerb::MovObjTo, &own),
+            Action::MovToLoc => send(EmoveVerb::MovToLoc, &own),
+            Action::Release => send(EmoveVerb::Release, &own),
+            Action::MovToHol(Holster::Own) => send(EmoveVerb::MovToHol, &aims.first),
+            Action::MovToHol(Holster::Wanted) => send(EmoveVerb::MovToHol, &aims.second),
+            Action::QcDetach => send(EmoveVerb::QcDetach, &aims.first),
+            Action::QcAttach => send(EmoveVerb::QcAttach, &aims.second),
+            Action::MovObjToPed => send(EmoveVerb::MovObjTo, &aims.first),
+            Action::ReleaseAtPed => send(EmoveVerb::Release, &aims.first),
+            Action::MovToPedSafe => send(EmoveVerb::MovToLoc, &aims.second),
+            Action::MovToObjAtPed => send(EmoveVerb::MovToObj, &aims.third),
+            Action::GraspObjAtPed => send(EmoveVerb::GraspObj, &aims.third),
+            Action::InsertTool => send(EmoveVerb::InsertTool, &aims.first),
+            Action::ReleaseTool => send(EmoveVerb::ReleaseTool, &aims.first),
+            Action::AcquireTool => send(EmoveVerb::AcquireTool, &aims.first),
+            Action::RemoveTool => send(EmoveVerb::RemoveTool, &aims.first),
+            Action::PedPreGrip => {
+                self.command_pedestal(PedestalVerb::PreGrip, ped.appr, 0, ped.table_pos, inputs, outputs);
+            }
+            Action::PedGrip => {
+                self.command_pedestal(PedestalVerb::Grip, ped.grasp_size, ped.force, 0, inputs, outputs);
+            }
+            Action::PedFlip => {
+                self.command_pedestal(PedestalVerb::Flip, 0, 0, ped.flip_angle, inputs, outputs);
+            }
+            Action::PedRelease => {
+                self.command_pedestal(PedestalVerb::Release, ped.release_size, 0, 0, inputs, outputs);
+            }
+            Action::Finish => self.state.execution.finish(),
+            Action::Fail(reason) => self.state.execution.fail(reason),
+            Action::PassUp => {
+                self.state.execution.pass_up(situation.emove, inputs.memory.emove.status.reason);
+            }
+            Action::PassUpPedestal(reason) => {
+                // What hand or table report is more than that there was an error.
+                let below = &inputs.memory.pedestal.status;
+                let failed = matches!(below.report, PedestalReport::CannotDo | PedestalReport::Error);
+                let known = failed && below.reason != Reason::None && reason != Reason::PedestalSilent;
+                self.state.execution.fail(if known { below.reason } else { reason });
+            }
+        }
+    }
+
+    /// A command to the Active Pedestal: opening in 0.01 in, force in lb, angle in 0.1 degree.
+    fn command_pedestal(
+        &mut self,
+        verb: PedestalVerb,
+        grasp_size: i32,
+        grasp_force: i32,
+        table_angle: i32,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut SubtaskOutputs,
+    ) {
+        outputs.pedestal = PedestalCommand {
+            cycle: inputs.tick,
+            number: self.state.pedestal.send(inputs.tick),
+            command: verb,
+            grasp_size,
+            grasp_force,
+            table_angle,
+        };
+    }
+
+    /// A pedestal that was told to move is told to stop; one that was not needed is left alone.
+    fn pause_pedestal(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut SubtaskOutputs) {
+        if !matches!(outputs.pedestal.command, PedestalVerb::None | PedestalVerb::Pause) {
+            self.command_pedestal(PedestalVerb::Pause, 0, 0, 0, inputs, outputs);
+        }
+    }
+
+    /// Write the status to Task.
+    pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut SubtaskOutputs) {
+        let execution = &self.state.execution;
+        let below = &inputs.memory.emove.status;
+        // The operator can take the robot at any time (V.4.1 PAUSE). E-move reports it for the command that it executes;
+        // between two commands it is Prim that sees the switch.
+        let idle = below.report != Report::Executing;
+        let taken = idle && inputs.memory.prim.status.report == PrimReport::JoystickOn;
+        let (report, reason) = if taken || below.report == Report::JoystickOn {
+            (Report::JoystickOn, Reason::JoystickOn)
+        } else if execution.outcome == Outcome::Joystick {
+            (Report::Error, Reason::JoystickOn)
+        } else {
+            (execution.report(), execution.reason)
+        };
+        outputs.header = execution.header(inputs.tick);
+        outputs.status = SubtaskStatus {
+            echo: execution.receiver.echo,
+            report,
+            reason,
+            reference_pose: below.reference_pose,
+            object_held: below.object_held,
+            held_object: below.held_object,
+            end_effector_id: below.end_effector_id,
+            at: below.at,
+        };
+    }
+}

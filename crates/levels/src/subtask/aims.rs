@@ -1,0 +1,216 @@
+//! Objects and locations that commands to E-move are aimed at.
+//!
+//! Task names one location with each command. Holsters, the pedestal and the tool drum are Subtask's own: it looks them up when
+//! the command arrives, before anything moves, and publishes their poses in its own changing records.
+
+use rcs_core::{
+    interface::{
+        Reason,
+        emove::{EmoveCommand, EmoveVerb},
+        subtask::{LocationKind, SubtaskCommand, SubtaskVerb},
+    },
+    name::{Name10, Name16},
+    pose::Pose,
+    record,
+};
+use taskdata::files::{Location, LocptId, RefType, TaskData};
+
+use crate::places::{named, place_of, reason_of};
+
+/// Grip of a holster's object with which the gripper that is on the robot is put in (VII.7 by convention).
+const PUT_IN: i32 = 1;
+/// Grip of a holster's object with which the bare robot takes the gripper out.
+const TAKE_OUT: i32 = 2;
+/// The holsters' objects: what the gripper with id 1, 2, 3 is called as a thing that can be put somewhere.
+const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
+
+record! {
+    /// What a command to E-move is aimed at: an object, a location, or an object at a location.
+    pub struct Aim {
+        /// The object; empty for none.
+        pub object: Name16,
+        /// Its grip.
+        pub grip: i32,
+        /// Its record of END-EFF-PARA.
+        pub parameters: u32,
+        /// Gripper that is needed.
+        pub end_effector_id: u8,
+        /// Name of the location.
+        pub location: Name10,
+        /// Its type.
+        pub kind: LocationKind,
+        /// Record of LOCPT.
+        pub record: u32,
+        /// Record of ARRAY-TABLE.
+        pub array: u32,
+        /// Record number of its pose.
+        pub pose: u32,
+    }
+}
+
+record! {
+    /// The aims that a command of Task does not name, and the two poses that they share.
+    pub struct Aims {
+        /// GET-ENDEFF: the holster of the attached gripper. FIX-GRIP: the object brought to the pedestal. Tool commands: the drum.
+        pub first: Aim,
+        /// GET-ENDEFF: the holster of the wanted gripper. FIX-GRIP: the robot out of the pedestal's way.
+        pub second: Aim,
+        /// FIX-GRIP: the object taken from the pedestal, at the pose of the first.
+        pub third: Aim,
+        /// Poses of the first and the second aim.
+        pub poses: [Pose; 2],
+    }
+}
+
+impl Aim {
+    /// What the command of Task names.
+    #[must_use]
+    pub const fn of_command(command: &SubtaskCommand) -> Self {
+        // The object is taken with the source grip and placed with the destination grip.
+        let grip = match command.command {
+            SubtaskVerb::PlaceObj | SubtaskVerb::MoveObjToDest => command.destination_grip,
+            SubtaskVerb::Position if command.source_grip == 0 => command.destination_grip,
+            _ => command.source_grip,
+        };
+        Self {
+            object: command.object,
+            grip,
+            parameters: command.object_parameters,
+            end_effector_id: command.end_effector_id,
+            location: command.location,
+            kind: command.location_kind,
+            record: command.location_record,
+            array: command.location_array,
+            pose: command.pose,
+        }
+    }
+
+    /// A location as such; its pose record is not given yet.
+    const fn at(location: &Location, end_effector_id: u8) -> Self {
+        Self {
+            object: Name16::EMPTY,
+            grip: 0,
+            parameters: 0,
+            end_effector_id,
+            location: location.name,
+            kind: location.place.kind,
+            record: location.place.locpt.number(),
+            array: location.place.array.number(),
+            pose: 0,
+        }
+    }
+
+    /// The same location with an object in a grip.
+    fn with_object(self, object: Name16, grip: i32, data: &TaskData<'_>) -> Result<Self, Reason> {
+        let (id, _) = data.object(&object, grip).ok_or(Reason::UnknownGrip)?;
+        Ok(Self { object, grip, parameters: id.number(), ..self })
+    }
+
+    /// A command to E-move with this aim, its number still 0.
+    #[must_use]
+    pub fn command(&self, verb: EmoveVerb, data: &TaskData<'_>) -> EmoveCommand {
+        let place = place_of(self.kind, self.record, self.array);
+        EmoveCommand {
+            number: 0,
+            command: verb,
+            object: self.object,
+            grip: self.grip,
+            object_parameters: self.parameters,
+            object_grips: data.obj_grips_id(&self.object).map_or(0, |id| id.number()),
+            object_vision: data.view(&self.object, &place).map_or(0, |(id, _)| id.number()),
+            location: self.location,
+            location_kind: self.kind,
+            location_record: self.record,
+            location_array: self.array,
+            pose: self.pose,
+            end_effector_id: self.end_effector_id,
+        }
+    }
+}
+
+impl Aims {
+    /// Look up what a command needs beside its own location; `attached` is the id of the gripper on the robot, 0 for none.
+    ///
+    /// # Errors
+    /// The [`Reason`] why the command cannot be executed with these task data.
+    pub fn new(command: &SubtaskCommand, attached: u8, data: &TaskData<'_>) -> Result<Self, Reason> {
+        match command.command {
+            SubtaskVerb::GetEndeff => Self::holsters(command.end_effector_id, attached, data),
+            SubtaskVerb::FixGrip => Self::pedestal(command, data),
+            SubtaskVerb::InsertTool
+            | SubtaskVerb::ReleaseTool
+            | SubtaskVerb::AcquireTool
+            | SubtaskVerb::RemoveTool => Self::drum(command, data),
+            SubtaskVerb::None
+            | SubtaskVerb::Pause
+            | SubtaskVerb::GetObject
+            | SubtaskVerb::PlaceObj
+            | SubtaskVerb::GotoEndpt
+            | SubtaskVerb::GotoDest
+            | SubtaskVerb::MoveObjToDest
+            | SubtaskVerb::Position
+            | SubtaskVerb::Release => Ok(Self::default()),
+        }
+    }
+
+    /// GET-ENDEFF: where the attached gripper is left, and where the wanted one is.
+    fn holsters(wanted: u8, attached: u8, data: &TaskData<'_>) -> Result<Self, Reason> {
+        let mut aims = Self::default();
+        if attached != 0 && (attached == wanted || wanted == 0) {
+            return Ok(aims);
+        }
+        let [own_pose, wanted_pose] = &mut aims.poses;
+        if attached != 0 {
+            aims.first = holster(attached, PUT_IN, data, own_pose)?;
+        }
+        aims.second = holster(wanted, TAKE_OUT, data, wanted_pose)?;
+        Ok(aims)
+    }
+
+    /// FIX-GRIP: the object at the pedestal in both grips, and the place where the robot waits.
+    fn pedestal(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Reason> {
+        let (pedestal, safe) = (point(named::PEDESTAL, data)?, point(named::PED_SAFE, data)?);
+        let at = Aim::at(&pedestal, command.end_effector_id);
+        Ok(Self {
+            first: at.with_object(command.object, command.source_grip, data)?,
+            second: Aim::at(&safe, command.end_effector_id),
+            third: at.with_object(command.object, command.destination_grip, data)?,
+            poses: [Pose::from_frame(&pedestal.frame), Pose::from_frame(&safe.frame)],
+        })
+    }
+
+    /// Tool commands: the transfer location, with the object as Task gave it.
+    fn drum(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Reason> {
+        let location = point(named::TOOL_TRNS, data)?;
+        let at = Aim::at(&location, command.end_effector_id);
+        let first = Aim {
+            object: command.object,
+            grip: command.source_grip,
+            parameters: command.object_parameters,
+            ..at
+        };
+        let poses = [Pose::from_frame(&location.frame), Pose::default()];
+        Ok(Self { first, poses, ..Self::default() })
+    }
+}
+
+/// The holster of the gripper with an id: the location point that is assigned to its object (VII.7.3).
+fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<Aim, Reason> {
+    let name = usize::from(id).checked_sub(1).and_then(|position| GRIPPERS.get(position));
+    let object = Name16::clipped(name.ok_or(Reason::NoHolster)?);
+    let record = data.object_named(&object).ok_or(Reason::NoHolster)?;
+    let assigned = data
+        .object_locations(record)
+        .find(|assigned| assigned.kind == RefType::LocationPoint)
+        .ok_or(Reason::NoHolster)?;
+    let locpt = data.locpt(LocptId::new(assigned.number)).ok_or(Reason::NoHolster)?;
+    *pose = Pose::from_frame(&locpt.frame);
+    let place = data.place_of(LocptId::new(assigned.number));
+    let location = Location { name: locpt.name, place, sector: 0, frame: locpt.frame };
+    Aim::at(&location, id).with_object(object, grip, data)
+}
+
+/// A location point by name.
+fn point(name: &str, data: &TaskData<'_>) -> Result<Location, Reason> {
+    data.resolve_location(&Name10::clipped(name), 0, None::<&Name16>).map_err(|error| reason_of(&error))
+}

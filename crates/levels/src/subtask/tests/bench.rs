@@ -1,0 +1,308 @@
+//! Subtask with doubles of the processes below it: an E-move and an Active Pedestal that do at once what they are told, or fail
+//! as a test wants.
+
+use std::collections::BTreeSet;
+
+use rcs_core::{
+    handshake::{Arrival, Receiver},
+    interface::{
+        CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, Report,
+        emove::{EmoveCommand, EmoveVerb},
+        pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
+        subtask::{SubtaskCommand, SubtaskStatus, SubtaskVerb},
+    },
+    name::Name16,
+    pose::Pose,
+    process::{Inputs, Process},
+    tick::Tick,
+};
+use taskdata::files::TaskData;
+
+use super::data::data;
+use crate::{places::reason_of, subtask::Subtask};
+
+/// Ticks that a double takes for a command.
+const WORK: u32 = 3;
+
+/// How a double ends a command that a test has singled out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mishap {
+    /// With an error.
+    Error(Reason),
+    /// It does not end.
+    Hang,
+    /// It is not even echoed.
+    Silence,
+    /// The joystick box becomes active (E-move); can't-do (pedestal).
+    Special(Reason),
+    /// It is reported done and has had no effect.
+    NoEffect,
+    /// It is done, and the object is no longer held.
+    Loss,
+    /// QC-ATTACH: another gripper comes on.
+    OtherGripper(u8),
+}
+
+/// The E-move that a test sees.
+#[derive(Default)]
+pub struct EmoveDouble {
+    receiver: Receiver,
+    left: u32,
+    pub outputs: EmoveOutputs,
+    pub received: Vec<EmoveCommand>,
+    pub mishap: Option<(EmoveVerb, Mishap)>,
+}
+
+impl EmoveDouble {
+    fn step(&mut self, tick: Tick, command: &EmoveCommand) {
+        let silent =
+            self.mishap.is_some_and(|(verb, mishap)| verb == command.command && mishap == Mishap::Silence);
+        self.outputs.header = Header { stamp: tick, ..Header::default() };
+        if silent {
+            return;
+        }
+        match self.receiver.observe(command.number) {
+            Arrival::New => {
+                self.received.push(*command);
+                self.left = WORK;
+                self.outputs.status.report = Report::Executing;
+                self.outputs.status.reason = Reason::None;
+            }
+            Arrival::Same if self.left > 0 => {
+                self.left -= 1;
+                if self.left == 0 {
+                    self.end(command);
+                }
+            }
+            _ => {}
+        }
+        self.outputs.status.echo = self.receiver.echo;
+    }
+
+    fn end(&mut self, command: &EmoveCommand) {
+        let mishap = self.mishap.filter(|(verb, _)| *verb == command.command).map(|(_, mishap)| mishap);
+        let status = &mut self.outputs.status;
+        status.report = Report::Done;
+        match mishap {
+            None => self.effect(command),
+            Some(Mishap::Error(reason)) => (status.report, status.reason) = (Report::Error, reason),
+            Some(Mishap::Special(reason)) => (status.report, status.reason) = (Report::JoystickOn, reason),
+            Some(Mishap::Hang | Mishap::Silence) => status.report = Report::Executing,
+            Some(Mishap::NoEffect) => {}
+            Some(Mishap::Loss) => {
+                self.effect(command);
+                self.hold("");
+            }
+            Some(Mishap::OtherGripper(id)) => status.end_effector_id = id,
+        }
+    }
+
+    fn effect(&mut self, command: &EmoveCommand) {
+        match command.command {
+            EmoveVerb::GraspObj | EmoveVerb::AcquireTool => self.hold(command.object.as_str()),
+            EmoveVerb::Release | EmoveVerb::ReleaseTool => self.hold(""),
+            EmoveVerb::QcDetach => self.outputs.status.end_effector_id = 0,
+            EmoveVerb::QcAttach => self.outputs.status.end_effector_id = command.end_effector_id,
+            EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => {
+                self.outputs.status.at = command.location;
+            }
+            _ => {}
+        }
+    }
+
+    /// The gripper holds an object; an empty name for none.
+    pub fn hold(&mut self, object: &str) {
+        self.outputs.status.held_object = Name16::new(object).unwrap();
+        self.outputs.status.object_held = !object.is_empty();
+    }
+}
+
+/// The Active Pedestal that a test sees.
+#[derive(Default)]
+pub struct PedestalDouble {
+    receiver: Receiver,
+    left: u32,
+    pub outputs: PedestalOutputs,
+    pub received: Vec<PedestalCommand>,
+    pub mishap: Option<(PedestalVerb, Mishap)>,
+    /// Size of what is in the hand's reach, 0.01 in.
+    pub part: i32,
+    /// The hand loses the object while the table turns.
+    pub slips: bool,
+}
+
+impl PedestalDouble {
+    fn step(&mut self, tick: Tick, command: &PedestalCommand) {
+        let mishap = self.mishap.filter(|(verb, _)| *verb == command.command).map(|(_, mishap)| mishap);
+        let outputs = &mut self.outputs;
+        if mishap == Some(Mishap::Silence) {
+            return;
+        }
+        outputs.header = Header { stamp: tick, ..Header::default() };
+        let status = &mut outputs.status;
+        match self.receiver.observe(command.number) {
+            Arrival::New => {
+                self.received.push(*command);
+                self.left = WORK;
+                (status.report, status.reason) = (PedestalReport::Executing, Reason::None);
+            }
+            Arrival::Same if self.left > 0 => {
+                self.left -= 1;
+                if self.left == 0 {
+                    (status.report, status.reason) = match mishap {
+                        Some(Mishap::Error(reason)) => (PedestalReport::Error, reason),
+                        Some(Mishap::Special(reason)) => (PedestalReport::CannotDo, reason),
+                        Some(Mishap::Hang) => (PedestalReport::Executing, Reason::None),
+                        _ => (PedestalReport::Done, Reason::None),
+                    };
+                    match command.command {
+                        PedestalVerb::PreGrip | PedestalVerb::Release => {
+                            status.grip_size = command.grasp_size
+                        }
+                        PedestalVerb::Grip => status.grip_size = self.part.max(command.grasp_size),
+                        PedestalVerb::Flip if self.slips => status.grip_size = 0,
+                        _ => {}
+                    }
+                }
+            }
+            _ => {}
+        }
+        status.echo = self.receiver.echo;
+    }
+}
+
+/// Process, inputs, doubles, and what was seen.
+pub struct Bench<'d> {
+    pub process: Subtask,
+    pub memory: CommonMemory,
+    pub data: TaskData<'d>,
+    pub emove: EmoveDouble,
+    pub pedestal: PedestalDouble,
+    pub tick: Tick,
+    /// Tables and rows that fired.
+    pub rows: BTreeSet<(u8, u8)>,
+}
+
+impl Default for Bench<'static> {
+    fn default() -> Self {
+        Self::with(data())
+    }
+}
+
+impl<'d> Bench<'d> {
+    /// A bench with the parts gripper attached, after one tick in which nothing was commanded.
+    pub fn with(data: TaskData<'d>) -> Self {
+        let mut bench = Self {
+            process: Subtask::default(),
+            memory: CommonMemory::default(),
+            data,
+            emove: EmoveDouble::default(),
+            pedestal: PedestalDouble { part: 255, ..PedestalDouble::default() },
+            tick: Tick::BEFORE_START,
+            rows: BTreeSet::new(),
+        };
+        bench.emove.outputs.status.end_effector_id = 1;
+        bench.step();
+        bench
+    }
+
+    /// Write a new command for an object at a location with the grip for source and destination.
+    pub fn command(&mut self, verb: SubtaskVerb, object: &str, grips: (i32, i32), location: &str) {
+        let object = Name16::new(object).unwrap();
+        let mut poses = self.memory.task.poses;
+        let place = (!location.is_empty()).then(|| {
+            let name = Name16::new(location).unwrap();
+            self.data.resolve_location(&name, 0, None::<&Name16>).map_err(|e| reason_of(&e)).unwrap()
+        });
+        let number = self.memory.task.subtask.number + 1;
+        let mut command = SubtaskCommand {
+            number,
+            command: verb,
+            object,
+            end_effector_id: self.data.obj_grips(&object).map_or(0, |grips| grips.endeff_id as u8),
+            source_grip: grips.0,
+            destination_grip: grips.1,
+            object_parameters: self.data.object(&object, grips.0).map_or(0, |(id, _)| id.number()),
+            ..SubtaskCommand::default()
+        };
+        if let Some(place) = place {
+            poses[0].number = 0x8100_0000 + number;
+            poses[0].pose = Pose::from_frame(&place.frame);
+            command.location = place.name;
+            command.location_kind = place.place.kind;
+            command.location_record = place.place.locpt.number();
+            command.pose = poses[0].number;
+        }
+        self.memory.task.poses = poses;
+        self.memory.task.subtask = command;
+    }
+
+    /// One tick of all.
+    pub fn step(&mut self) -> SubtaskStatus {
+        self.tick = self.tick.next();
+        let mut outputs = self.memory.subtask;
+        let external = ExternalInputs::default();
+        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &external, data: &self.data };
+        self.process.step(&inputs, &mut outputs);
+        self.rows.insert((outputs.header.table, outputs.header.row));
+        let before = self.memory.subtask;
+        self.emove.step(self.tick, &before.emove);
+        self.pedestal.step(self.tick, &before.pedestal);
+        self.memory.subtask = outputs;
+        self.memory.emove = self.emove.outputs;
+        self.memory.pedestal = self.pedestal.outputs;
+        outputs.status
+    }
+
+    /// Ticks until the command has ended, and how.
+    pub fn finish(&mut self) -> (Report, Reason) {
+        for _ in 0..300 {
+            let status = self.step();
+            assert_eq!(status.echo, self.memory.task.subtask.number);
+            if status.report != Report::Executing {
+                return (status.report, status.reason);
+            }
+        }
+        panic!("no end at tick {}: {:?}", self.tick, self.process);
+    }
+
+    /// Command and finish.
+    pub fn run(
+        &mut self,
+        verb: SubtaskVerb,
+        object: &str,
+        grips: (i32, i32),
+        location: &str,
+    ) -> (Report, Reason) {
+        self.emove.received.clear();
+        self.pedestal.received.clear();
+        self.command(verb, object, grips, location);
+        self.finish()
+    }
+
+    /// The words that E-move was sent since the last command began.
+    pub fn sent(&self) -> Vec<&'static str> {
+        self.emove.received.iter().map(|command| command.command.text()).collect()
+    }
+
+    /// The words that the pedestal was sent.
+    pub fn sent_to_pedestal(&self) -> Vec<&'static str> {
+        self.pedestal.received.iter().map(|command| command.command.text()).collect()
+    }
+
+    /// An object is held that Subtask has seen grasped with a grip.
+    pub fn grasped(object: &str, grip: i32) -> Self
+    where
+        Self: Default,
+    {
+        let mut bench = Self::default();
+        bench.emove.outputs.status.end_effector_id =
+            bench.data.obj_grips(&Name16::new(object).unwrap()).map_or(1, |grips| grips.endeff_id as u8);
+        bench.step();
+        assert_eq!(bench.run(SubtaskVerb::GetObject, object, (grip, 0), "PFIXTURE"), DONE);
+        bench
+    }
+}
+
+/// How a command ends that succeeds.
+pub const DONE: (Report, Reason) = (Report::Done, Reason::None);
