@@ -13,6 +13,9 @@ use crate::{convert::inches, scene::Obstacle};
 /// Contacts that are less deep are none: parts rest on things, m.
 const LEAST_DEPTH: Real = 2.5e-5;
 
+/// A finger that has been led this deep into what is there to run against presses with hundreds of pounds, m.
+const PRESSED: Real = 2.5e-3;
+
 /// A moving shape, metres.
 pub struct Mover {
     /// Its name.
@@ -23,6 +26,8 @@ pub struct Mover {
     pub shape: SharedShape,
     /// It is a part that is carried: it may touch what is there to work on.
     pub carried: bool,
+    /// It is a finger: it may press on what is there to run against.
+    pub finger: bool,
 }
 
 /// A contact that has begun.
@@ -56,7 +61,8 @@ impl Clearance {
             for obstacle in obstacles.clone().filter(|obstacle| {
                 !(mover.carried && obstacle.work_surface) && obstacle.aabb.intersects(&aabb)
             }) {
-                let Some(depth) = depth(mover, obstacle) else { continue };
+                let allowed = if mover.finger && obstacle.strike { PRESSED } else { LEAST_DEPTH };
+                let Some(depth) = depth(mover, obstacle).filter(|depth| *depth > allowed) else { continue };
                 let pair = (mover.name.clone(), obstacle.name.clone());
                 if !self.touching.contains(&pair) && !touching.contains(&pair) {
                     let (mover, obstacle) = pair.clone();
@@ -72,7 +78,7 @@ impl Clearance {
 
 fn depth(mover: &Mover, obstacle: &Obstacle) -> Option<Real> {
     let contact = query::contact(&obstacle.pose, &obstacle.shape, &mover.pose, &*mover.shape, 0.0).ok()??;
-    (contact.dist < -LEAST_DEPTH).then_some(-contact.dist)
+    Some(-contact.dist)
 }
 
 #[cfg(test)]
@@ -88,6 +94,7 @@ mod tests {
             aabb: shape.aabb(&Pose::IDENTITY),
             shape,
             work_surface: false,
+            strike: false,
         };
         let at = |z: Real| {
             vec![Mover {
@@ -95,6 +102,7 @@ mod tests {
                 pose: Pose::translation(0.0, 0.0, z),
                 shape: SharedShape::ball(0.05),
                 carried: false,
+                finger: false,
             }]
         };
         let mut clearance = Clearance::default();

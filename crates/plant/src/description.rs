@@ -5,6 +5,7 @@
 //! fulfil, and reports all faults at once, each with the name of the entry, what was expected and what was found.
 
 mod check;
+mod tooling;
 
 use std::{fmt, path::Path};
 
@@ -14,6 +15,8 @@ use rcs_core::{
     movetable::straight_down,
 };
 use serde::Deserialize;
+
+pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChange};
 
 /// Why a cell description cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -79,8 +82,12 @@ pub struct CellDescription {
     pub robot: Robot,
     /// The quick change.
     pub quick_change: QuickChange,
-    /// The parts gripper.
-    pub gripper: Gripper,
+    /// The robot's grippers.
+    pub gripper: Grippers,
+    /// The holsters.
+    pub holsters: Holsters,
+    /// The tool drum.
+    pub drum: Drum,
     /// The Active Pedestal.
     pub pedestal: Pedestal,
     /// The camera on the wrist.
@@ -132,17 +139,25 @@ pub struct Robot {
     pub wrist_radius: f64,
 }
 
-/// The quick change between end plate and gripper.
+/// The robot's grippers.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
-pub struct QuickChange {
-    /// Its length from the end plate, in.
-    pub length: f64,
-    /// Its radius, in.
-    pub radius: f64,
+pub struct Grippers {
+    /// Weight of each, lb.
+    pub weight: f64,
+    /// Speed of the free fingers of the v-gripper and the tool gripper, in/s.
+    pub jaw_speed: f64,
+    /// The parts gripper, end effector 1.
+    pub parts: Gripper,
+    /// The v-gripper, end effector 2.
+    pub v: Gripper,
+    /// The tool gripper, end effector 3.
+    pub tool: Gripper,
+    /// The force sensor of the tool gripper.
+    pub force: ForceGages,
 }
 
-/// A gripper of two fingers that air moves: the parts gripper, and the hand of the Active Pedestal (III.9.2).
+/// A gripper of two fingers that air moves: the robot's, and the hand of the Active Pedestal (III.9.2).
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Gripper {
@@ -176,9 +191,11 @@ pub struct GripperSensors {
     pub potentiometer_offset: f64,
     /// Counts of the potentiometer for an inch.
     pub potentiometer_scale: f64,
-    /// Counts of the left and right strain gages without force.
+    /// Counts of the left and right strain gages without force; both 0 where there are none.
+    #[serde(default)]
     pub strain_offsets: [f64; 2],
     /// Counts of the left and right strain gages for a pound.
+    #[serde(default)]
     pub strain_scales: [f64; 2],
     /// Greatest noise, counts.
     pub noise: f64,
@@ -349,6 +366,14 @@ pub struct PartType {
     pub vision_id: u16,
 }
 
+impl Gripper {
+    /// The B plate's lower side, behind the tool point: body and fingers, in.
+    #[must_use]
+    pub fn plate(&self) -> f64 {
+        self.body[0] + self.fingers[0]
+    }
+}
+
 impl Tray {
     /// Frame of a sector on the tray floor: tool axes straight down, Y to the robot's left (VIII.6), counted from 1.
     #[must_use]
@@ -436,7 +461,7 @@ mod tests {
             panic!("accepted");
         };
         let entries: Vec<&str> = faults.all().iter().map(|f| f.entry.as_str()).collect();
-        assert_eq!(entries.len(), 3, "{faults}");
+        assert_eq!(entries.len(), 5, "the length is that of three grippers: {faults}");
         assert!(
             faults.to_string().contains("expected the tool length of the arm, 12 in, found 13"),
             "{faults}"

@@ -1,18 +1,20 @@
-//! The parts gripper: two fingers that move oppositely, driven by air, and what they hold.
+//! A gripper: two fingers that move oppositely, driven by air, and what they hold. The robot has three, the pedestal one.
 //!
-//! [`Air`] turns the valve bits into an opening and a force: free fingers move by the sum of the flows, blocked fingers
-//! gain force instead, and with all flows off both stay. The fingers are two bodies that hang on the hand by springs: the
+//! [`Air`] turns what the valves let flow ([`Supply`]) into an opening and a force: free fingers move by the flow, blocked
+//! fingers gain force instead, and without flow both stay. The fingers are two bodies that hang on the hand by springs: the
 //! stiffness of arm, wrist and fingers together. So whatever the gripper runs into meets a finite force, and an arm that
 //! over-travels by 0.015 in against the vise presses with 30 lb and not with the world's weight. Fingers are blocked when
 //! the geometry says so ([`crate::squeeze`]); what they hold then is a [`Hold`].
 
-use rapier3d_f64::prelude::*;
-use rcs_core::interface::device::{GripSensors, valve};
+use rapier3d_f64::{math::Rotation, prelude::*};
+use rcs_core::{frame::Vector as Inches, interface::device::GripSensors};
 
 use crate::{
-    convert::{KILOGRAMS_PER_POUND, inches, metres, newtons},
+    convert::{KILOGRAMS_PER_POUND, inches, metres, newtons, on_the_side_of, to_inches},
     description::Gripper as Description,
-    hold::Hold,
+    force::Wrench,
+    hold::{Hold, Stiffness},
+    jaws::Supply,
     noise::Noise,
     scene::groups,
     squeeze::Pads,
@@ -24,16 +26,6 @@ const FREE_GAP: f64 = 0.001;
 const BREAKAWAY_TIME: f64 = 0.25;
 /// Speed of fingers that trapped air drives, in/s: that of the coarse flow, which the same ports limit.
 const EXPANSION_SPEED: f64 = 4.0;
-
-/// Speeds of the six flow valves, in/s, opening positive ([`valve`]).
-const FLOWS: [(u8, f64); 6] = [
-    (valve::OPEN_FINE, 0.25),
-    (valve::OPEN_MEDIUM, 1.0),
-    (valve::OPEN_COARSE, 4.0),
-    (valve::CLOSE_FINE, -0.25),
-    (valve::CLOSE_MEDIUM, -1.0),
-    (valve::CLOSE_COARSE, -4.0),
-];
 
 /// Opening, force and air of the fingers.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,20 +83,15 @@ impl Air {
     }
 
     /// Let the air flow for `dt` seconds; `stop` is the opening at which something between the fingers blocks them.
-    pub fn advance(&mut self, dt: f64, bits: u8, stop: Option<f64>) {
+    pub fn advance(&mut self, dt: f64, supply: Supply, stop: Option<f64>) {
         let (before, force) = (self.opening, self.force);
         let [least, greatest] = self.range;
-        if bits & valve::VENT != 0 {
+        if supply.vent {
             self.force = (self.force - self.greatest_force * dt / self.vent_time).max(0.0);
         }
-        let flow: f64 = if bits & valve::SUPPLY != 0 {
-            FLOWS.iter().filter(|(bit, _)| bits & bit != 0).map(|(_, flow)| flow).sum()
-        } else {
-            0.0
-        };
         let stop = stop.map_or(least, |stop| stop.max(least));
         self.expand(dt, stop);
-        let wanted = flow * dt;
+        let wanted = supply.flow * dt;
         if wanted < 0.0 {
             let free = (self.opening - stop).max(0.0).min(-wanted);
             self.opening -= free;
@@ -137,6 +124,11 @@ impl Air {
         self.force -= travel * self.compressibility;
     }
 
+    /// The ports are open: the force is gone, and the fingers stay where they are.
+    pub fn cut(&mut self) {
+        (self.force, self.speed, self.relieved) = (0.0, 0.0, false);
+    }
+
     /// The part has been pushed aside between the fingers and has spread them to `opening`.
     pub fn spread(&mut self, opening: f64) {
         self.opening = opening.clamp(self.range[0], self.range[1]);
@@ -165,6 +157,8 @@ struct Finger {
     body: RigidBodyHandle,
     collider: ColliderHandle,
     joint: ImpulseJointHandle,
+    /// Of its springs, N/m and N·m/rad.
+    stiffness: Stiffness,
 }
 
 impl Gripper {
@@ -241,6 +235,51 @@ impl Gripper {
         }
     }
 
+    /// Put hand and fingers, at rest, to a tool pose, metres.
+    pub fn hang(&self, world: &mut PhysicsWorld, tool: &Pose) {
+        world.bodies[self.hand].set_position(*tool, true);
+        for (finger, rest) in self.fingers.iter().zip(self.finger_rests()) {
+            world.bodies[finger.body].set_position(*tool * rest, true);
+        }
+    }
+
+    /// Take the bodies into the simulation or out of it. A gripper that hangs still in its holster needs none.
+    pub fn set_present(&self, world: &mut PhysicsWorld, present: bool) {
+        for body in [self.hand, self.fingers[0].body, self.fingers[1].body] {
+            world.bodies[body].set_enabled(present);
+        }
+    }
+
+    /// Nothing carries it any more: let it fall, a body of `weight` lb with the fingers that hang on it.
+    pub fn fall(&self, world: &mut PhysicsWorld, weight: f64) {
+        let fingers = 2.0 * self.description.finger_weight;
+        let own = (weight - fingers).max(0.1 * weight) * KILOGRAMS_PER_POUND;
+        for collider in world.bodies[self.hand].colliders().to_vec() {
+            world.colliders[collider].set_mass(own);
+        }
+        world.bodies[self.hand].set_body_type(RigidBodyType::Dynamic, true);
+        for finger in &self.fingers {
+            world.bodies[finger.body].set_gravity_scale(1.0, true);
+        }
+    }
+
+    /// What pushes on the fingers and on what they hold, weight included, at the tool point in the axes of the tool.
+    #[must_use]
+    pub fn load(&self, world: &PhysicsWorld) -> Wrench {
+        let hand = world.bodies[self.hand].position();
+        let fingers = self.finger_rests().into_iter().zip(&self.fingers).map(|(rest, finger)| {
+            let at = hand.inv_mul(world.bodies[finger.body].position());
+            let turn = on_the_side_of(&Rotation::IDENTITY, at.rotation * rest.rotation.inverse());
+            let force = (at.translation - rest.translation) * finger.stiffness.linear;
+            wrench(at.translation, force, turn.to_scaled_axis() * finger.stiffness.angular)
+        });
+        let held = self.hold.as_ref().map(|(_, hold)| {
+            let (at, force, moment) = hold.carries(world);
+            wrench(at, force, moment)
+        });
+        fingers.chain(held).fold(Wrench::default(), |sum, one| sum.and(&one))
+    }
+
     /// The true tool frame under load, metres: the middle between the fingertips.
     #[must_use]
     pub fn loaded_tool(&self, world: &PhysicsWorld) -> Pose {
@@ -253,12 +292,15 @@ impl Gripper {
     pub fn sensors(&self, noise: &mut Noise, beams: u8) -> GripSensors {
         let sensors = &self.description.sensors;
         let mut counts = |value: f64| Noise::counts(value + noise.within(sensors.noise));
+        let potentiometer =
+            counts(sensors.potentiometer_offset + sensors.potentiometer_scale * self.air.opening());
+        if sensors.strain_scales == [0.0; 2] {
+            return GripSensors { potentiometer, ..GripSensors::default() };
+        }
         let [left_offset, right_offset] = sensors.strain_offsets;
         let [left_scale, right_scale] = sensors.strain_scales;
         GripSensors {
-            potentiometer: counts(
-                sensors.potentiometer_offset + sensors.potentiometer_scale * self.air.opening(),
-            ),
+            potentiometer,
             strain_left: counts(left_offset + left_scale * self.air.force()),
             strain_right: counts(right_offset + right_scale * self.air.force()),
             beams,
@@ -289,6 +331,12 @@ impl Gripper {
     pub fn force(&self) -> Real {
         newtons(self.air.force())
     }
+}
+
+/// Pounds and inches from a force (N) and a moment (N·m) at a point (m).
+fn wrench(point: Vector, force: Vector, moment: Vector) -> Wrench {
+    let pounds = |v: Vector| Inches::new(v.x, v.y, v.z) / newtons(1.0);
+    Wrench::at(&to_inches(point), pounds(force), pounds(moment) / metres(1.0))
 }
 
 /// Where a finger's middle stands in the tool frame, metres.
@@ -347,7 +395,7 @@ impl Finger {
             data.set_motor_model(axis, MotorModel::ForceBased).set_motor(axis, 0.0, 0.0, angular, damping);
         }
         let joint = world.insert_impulse_joint(hand, body, data);
-        Self { side, body, collider, joint }
+        Self { side, body, collider, joint, stiffness: Stiffness { linear, angular } }
     }
 }
 
@@ -363,32 +411,35 @@ pub fn body_opening(world: &PhysicsWorld, gripper: &Gripper) -> f64 {
 mod tests {
     use super::*;
     use crate::description::CellDescription;
+    use rcs_core::interface::device::valve;
 
     fn air() -> Air {
         let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
-        Air::new(&cell.gripper)
+        Air::new(&cell.gripper.parts)
     }
 
     fn run(air: &mut Air, seconds: f64, bits: u8, stop: Option<f64>) {
         for _ in 0..(seconds / 0.0025).round() as u32 {
-            air.advance(0.0025, bits, stop);
+            air.advance(0.0025, Supply::of_bits(bits), stop);
         }
     }
 
     #[test]
-    fn flows_add_up() {
+    fn free_fingers_move_to_their_stop() {
         let mut air = air();
-        run(&mut air, 0.5, valve::SUPPLY | valve::OPEN_COARSE | valve::OPEN_FINE | valve::CLOSE_MEDIUM, None);
-        assert!((air.opening() - (0.10 + 0.5 * 3.25)).abs() < 1e-9, "{}", air.opening());
+        run(&mut air, 0.5, valve::SUPPLY | valve::OPEN_COARSE, None);
+        assert!((air.opening() - (0.10 + 0.5 * 4.0)).abs() < 1e-9, "{}", air.opening());
         run(&mut air, 9.0, valve::SUPPLY | valve::OPEN_COARSE, None);
         assert_eq!(air.opening(), 5.0);
     }
 
     #[test]
-    fn without_supply_nothing_flows() {
+    fn open_ports_take_the_force_and_leave_the_fingers() {
         let mut air = air();
-        run(&mut air, 1.0, valve::OPEN_COARSE, None);
-        assert_eq!(air.opening(), 0.10);
+        run(&mut air, 0.5, valve::SUPPLY | valve::CLOSE_MEDIUM, None);
+        assert!(air.force() > 40.0, "closed on its stop");
+        air.cut();
+        assert_eq!((air.force(), air.opening()), (0.0, 0.10));
     }
 
     #[test]

@@ -84,6 +84,8 @@ pub struct Hold {
     limits: Limits,
     grip: Grip,
     slipped: Real,
+    /// Force of friction on the sliding part in the last step, N, in the axes of the pads' body.
+    rubbed: Vector,
 }
 
 /// Whether friction holds the part along the pads: it slides when more is asked for than friction bears, and sticks again
@@ -135,6 +137,7 @@ impl Hold {
             load,
             grip: Grip::Sticks,
             slipped: 0.0,
+            rubbed: Vector::ZERO,
         }
     }
 
@@ -142,6 +145,20 @@ impl Hold {
     #[must_use]
     pub fn slipped(&self) -> Real {
         self.slipped
+    }
+
+    /// What pushes on the part, weight included, as the pads' body feels it: where the part's middle is (m), force (N) and
+    /// moment about it (N·m), in the axes of the pads' body.
+    #[must_use]
+    pub fn carries(&self, world: &PhysicsWorld) -> (Vector, Vector, Vector) {
+        let present = self.present(world);
+        let turn = on_the_side_of(&Rotation::IDENTITY, present.rotation * self.rest.rotation.inverse());
+        let mut force = (present.translation - self.rest.translation) * self.stiffness.linear;
+        let mut moment = turn.to_scaled_axis() * self.stiffness.angular;
+        if self.grip == Grip::Slides {
+            (force.x, force.z, moment.y) = (-self.rubbed.x, -self.rubbed.z, 0.0);
+        }
+        (present.translation, force, moment)
     }
 
     /// Set the limits from force, friction and what is touched.
@@ -205,6 +222,7 @@ impl Hold {
             return;
         };
         let push = towards * (left.along - motion.along) + across * (left.across - motion.across);
+        self.rubbed = push * (mass / dt);
         let part = &mut world.bodies[self.part];
         part.apply_impulse(axes * (push * mass), true);
         part.apply_torque_impulse(axes * (Vector::Y * ((left.turn - turn) * inertia)), true);

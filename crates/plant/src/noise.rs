@@ -13,6 +13,8 @@ pub enum Stream {
     Camera = 2,
     /// Where a part is put down at random.
     Placement = 3,
+    /// The force sensor of the tool gripper.
+    Force = 5,
     /// Sensors of the Active Pedestal.
     Pedestal = 4,
 }

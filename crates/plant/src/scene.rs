@@ -10,6 +10,8 @@ use rcs_core::frame::{Frame, Rotation, Vector as Inches};
 use crate::{
     convert::{to_metres, to_pose},
     description::{CellDescription, Fixture, Tray, TrayShape, Vise},
+    drum::strike_plate,
+    holster::holsters,
 };
 
 /// Collision group of what stands still.
@@ -45,12 +47,14 @@ pub struct Block {
     pub work_surface: bool,
     /// It is a jaw of the vise.
     pub jaw: bool,
+    /// It is there for fingers to run against, with this coefficient of friction.
+    pub strike: Option<f64>,
 }
 
 impl Block {
     fn between(name: &str, low: Inches, high: Inches, work_surface: bool) -> Self {
         let frame = Frame { position: (low + high) / 2.0, rotation: Rotation::identity() };
-        Self { name: name.into(), frame, size: high - low, work_surface, jaw: false }
+        Self { name: name.into(), frame, size: high - low, work_surface, jaw: false, strike: None }
     }
 
     fn jaw(name: &str, low: Inches, high: Inches) -> Self {
@@ -74,7 +78,7 @@ impl Block {
         let half = self.half();
         ColliderBuilder::cuboid(half.x, half.y, half.z)
             .position(to_pose(&self.frame))
-            .friction(FRICTION)
+            .friction(self.strike.unwrap_or(FRICTION))
             .collision_groups(groups(if self.jaw { JAW } else { WORLD }, Group::ALL))
     }
 }
@@ -86,6 +90,9 @@ pub fn furniture(cell: &CellDescription) -> Vec<Block> {
     for tray in &cell.tray {
         blocks.extend(tray_blocks(tray, &cell.tray_shape));
     }
+    let drum = cell.drum.pose.frame().unwrap_or_else(Frame::identity);
+    blocks.extend(strike_plate(&drum, &cell.drum));
+    blocks.extend(holsters(cell).iter().flat_map(|holster| holster.blocks(&cell.gripper.parts)));
     let vise = vise_frame(&cell.vise);
     blocks.extend(vise_blocks(&cell.vise).iter().map(|block| block.moved(&vise)));
     blocks
@@ -100,6 +107,7 @@ fn fixture(fixture: &Fixture) -> Block {
         size: Inches::from(fixture.size),
         work_surface: false,
         jaw: false,
+        strike: None,
     }
 }
 
@@ -185,6 +193,8 @@ pub struct Obstacle {
     pub aabb: Aabb,
     /// Parts that are carried may touch it.
     pub work_surface: bool,
+    /// Fingers may press on it.
+    pub strike: bool,
 }
 
 impl From<&Block> for Obstacle {
@@ -196,6 +206,7 @@ impl From<&Block> for Obstacle {
             aabb: shape.aabb(&pose),
             shape,
             work_surface: block.work_surface,
+            strike: block.strike.is_some(),
         }
     }
 }

@@ -11,11 +11,12 @@
 
 use rapier3d_f64::prelude::*;
 
-use super::{Cell, CellEvent};
+use super::{Cell, CellEvent, changing::ROBOT_HANDS};
 use crate::{
     convert::{inches, metres, on_the_side_of, to_pose},
     gripper::Gripper,
     hold::{Clamp, Hold, Stiffness},
+    jaws::Supply,
     part::segment_meets_box,
     scene::{FINGER, HAND, JAW},
     squeeze::{Squeeze, squeeze},
@@ -34,28 +35,61 @@ const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
 /// What has fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Hand {
-    /// The gripper on the robot.
-    Robot,
+    /// The parts gripper, end effector 1.
+    Parts,
+    /// The v-gripper, end effector 2.
+    V,
+    /// The tool gripper, end effector 3.
+    Tool,
     /// The hand of the Active Pedestal.
     Pedestal,
 }
 
 /// All hands.
-pub(super) const HANDS: [Hand; 2] = [Hand::Robot, Hand::Pedestal];
+pub(super) const HANDS: [Hand; 4] = [Hand::Parts, Hand::V, Hand::Tool, Hand::Pedestal];
 
 impl Hand {
-    /// The one that can have a part besides this one.
-    const fn other(self) -> Self {
+    /// All but this one.
+    fn others(self) -> impl Iterator<Item = Self> {
+        HANDS.into_iter().filter(move |hand| *hand != self)
+    }
+
+    /// Which of the robot's grippers it is, from 0; `None` for the pedestal's hand.
+    pub(super) const fn slot(self) -> Option<usize> {
         match self {
-            Self::Robot => Self::Pedestal,
-            Self::Pedestal => Self::Robot,
+            Self::Parts => Some(0),
+            Self::V => Some(1),
+            Self::Tool => Some(2),
+            Self::Pedestal => None,
+        }
+    }
+
+    /// `endeff-id#`; 0 for what the robot cannot wear.
+    pub(super) const fn end_effector_id(self) -> u8 {
+        match self {
+            Self::Parts => 1,
+            Self::V => 2,
+            Self::Tool => 3,
+            Self::Pedestal => 0,
+        }
+    }
+
+    /// Name of its link in the picture.
+    pub(super) const fn link(self) -> &'static str {
+        match self {
+            Self::Parts => "parts_gripper",
+            Self::V => "v_gripper",
+            Self::Tool => "tool_gripper",
+            Self::Pedestal => "pedestal_hand",
         }
     }
 
     /// Its name in messages.
     pub(super) const fn name(self) -> &'static str {
         match self {
-            Self::Robot => "the fingers",
+            Self::Parts => "the fingers",
+            Self::V => "the v-gripper",
+            Self::Tool => "the tool gripper",
             Self::Pedestal => "the pedestal's hand",
         }
     }
@@ -64,23 +98,20 @@ impl Hand {
 impl Cell {
     /// The gripper of a hand.
     pub(super) fn hand(&self, hand: Hand) -> &Gripper {
-        match hand {
-            Hand::Robot => &self.gripper,
-            Hand::Pedestal => &self.pedestal.hand,
-        }
+        hand.slot().map_or(&self.pedestal.hand, |slot| &self.grippers[slot])
     }
 
     /// The gripper of a hand, and the world that it works in.
-    fn hand_at_work(&mut self, hand: Hand) -> (&mut Gripper, &mut PhysicsWorld) {
-        let gripper = match hand {
-            Hand::Robot => &mut self.gripper,
-            Hand::Pedestal => &mut self.pedestal.hand,
+    pub(super) fn hand_at_work(&mut self, hand: Hand) -> (&mut Gripper, &mut PhysicsWorld) {
+        let gripper = match hand.slot() {
+            Some(slot) => &mut self.grippers[slot],
+            None => &mut self.pedestal.hand,
         };
         (gripper, &mut self.world)
     }
 
     /// Let the air move the fingers of a hand, and take or give up what is between them.
-    pub(super) fn drive_fingers(&mut self, dt: f64, hand: Hand, valves: u8) {
+    pub(super) fn drive_fingers(&mut self, dt: f64, hand: Hand, supply: Supply) {
         let between = match &self.hand(hand).hold {
             Some((index, _)) => self.between_fingers(hand, *index).map(|squeeze| (*index, squeeze)),
             None => self.first_between_fingers(hand),
@@ -94,7 +125,7 @@ impl Cell {
             // The two fingers are coupled: a part that is pushed off the middle spreads them, and they follow it back.
             gripper.air.spread(stop);
         }
-        gripper.air.advance(dt, valves, stop);
+        gripper.air.advance(dt, supply, stop);
         gripper.move_fingers(world);
         self.update_grip(hand, between);
     }
@@ -142,12 +173,12 @@ impl Cell {
 
     /// True if the robot has part `index`.
     pub(super) fn is_held(&self, index: usize) -> bool {
-        self.is_held_by(Hand::Robot, index)
+        ROBOT_HANDS.into_iter().any(|hand| self.is_held_by(hand, index))
     }
 
     /// True if something else than `hand` has part `index`.
     fn is_held_elsewhere(&self, hand: Hand, index: usize) -> bool {
-        self.is_clamped(index) || self.is_held_by(hand.other(), index)
+        self.is_clamped(index) || hand.others().any(|other| self.is_held_by(other, index))
     }
 
     /// True if a hand or the vise has part `index`.
@@ -168,9 +199,9 @@ impl Cell {
     }
 
     /// What holds a part does not also collide with it.
-    fn note_holders(&mut self, index: usize) {
+    pub(super) fn note_holders(&mut self, index: usize) {
         let mut holders = Group::empty();
-        holders.set(FINGER, self.is_held_by(Hand::Robot, index));
+        holders.set(FINGER, self.is_held(index));
         holders.set(HAND, self.is_held_by(Hand::Pedestal, index));
         holders.set(JAW, self.is_clamped(index));
         self.parts[index].set_holders(&mut self.world, holders);
@@ -225,7 +256,7 @@ impl Cell {
         hold.release(world);
         self.note_holders(index);
         if !self.is_clamped(index) {
-            self.recover(hand.other(), index);
+            hand.others().for_each(|other| self.recover(other, index));
         }
         if lost {
             let part = self.parts[index].kind.name.clone();
@@ -234,7 +265,7 @@ impl Cell {
     }
 
     /// What else had part `index` is gone: a hand that has it draws it to its middle.
-    fn recover(&mut self, hand: Hand, index: usize) {
+    pub(super) fn recover(&mut self, hand: Hand, index: usize) {
         let (gripper, world) = self.hand_at_work(hand);
         if let Some((_, hold)) = gripper.hold.as_mut().filter(|(held, _)| *held == index) {
             hold.recover(world);
@@ -312,7 +343,8 @@ impl Cell {
     fn resist_in_vise(&mut self) {
         let Some(Clamped { part, .. }) = self.vise.clamped else { return };
         let collider = self.parts[part].collider;
-        let fingers = self.gripper.finger_colliders();
+        let Some(hand) = self.changer.carried() else { return };
+        let fingers = self.hand(hand).finger_colliders();
         let pushes = self
             .world
             .contact_pairs_with(collider)
@@ -371,15 +403,15 @@ impl Cell {
 
     /// The light beams between the fingers that a part breaks, one bit each.
     pub(super) fn broken_beams(&self) -> u8 {
-        let tool = self.gripper.loaded_tool(&self.world);
+        let gripper = self.hand(Hand::Parts);
+        let tool = gripper.loaded_tool(&self.world);
         let near: Vec<(Pose, Vector)> = self
             .parts
             .iter()
             .map(|part| (tool.inv_mul(&part.pose(&self.world)), part.half()))
             .filter(|(pose, half)| pose.translation.length() < 0.2 + half.length())
             .collect();
-        let broken = self
-            .gripper
+        let broken = gripper
             .beams()
             .map(|(from, to)| near.iter().any(|(pose, half)| segment_meets_box(from, to, pose, *half)));
         broken.enumerate().fold(0, |bits, (beam, is_broken)| bits | (u8::from(is_broken) << beam))

@@ -1,6 +1,8 @@
 //! The cell as a whole: one tick of it is one call.
 
+mod changing;
 mod handling;
+mod outline;
 mod picture;
 mod workstation;
 
@@ -14,13 +16,14 @@ use rapier3d_f64::prelude::*;
 use rcs_core::{
     frame::{Frame, Vector as Inches},
     interface::device::{
-        DeviceInputs, DeviceOutputs, HolsterSensors, JoystickBox, KNOB_FULL, LinkBytes, QuickChangeSensors,
+        DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, JoystickBox, KNOB_FULL, LinkBytes,
         RESOLVER_COUNTS, Resolvers,
     },
     kinematics::Joints,
     tick::TICK_S,
 };
 
+use changing::Changer;
 use handling::Hand;
 pub use picture::{Link, part_link};
 pub use workstation::{Placement, WorkstationAction, WorkstationError};
@@ -29,9 +32,11 @@ use crate::{
     arm::Arm,
     camera::{Camera, Subject},
     clearance::{Clearance, Contact},
-    convert::{GRAVITY, on_the_side_of, to_frame, to_pose},
+    convert::{GRAVITY, to_frame, to_pose},
     description::{CellDescription, DescriptionError},
+    force,
     gripper::Gripper,
+    jaws::Supply,
     noise::{Noise, Stream},
     part::{Part, PartState},
     pedestal::Pedestal,
@@ -77,6 +82,16 @@ pub enum CellEvent {
         /// The part.
         part: String,
     },
+    /// The quick change has let go of a gripper that was not over an empty holster.
+    GripperFell {
+        /// Its link.
+        gripper: &'static str,
+    },
+    /// The robot has lifted a gripper out of the seat of its holster, whose lips have torn it off the quick change.
+    GripperTorn {
+        /// Its link.
+        gripper: &'static str,
+    },
     /// A part lies on the floor.
     Fell {
         /// The part.
@@ -101,6 +116,10 @@ impl fmt::Display for CellEvent {
             }
             Self::Dropped { part, hand } => write!(f, "{part} is lost from {hand}"),
             Self::ForcedOut { part } => write!(f, "{part} is forced out of the vise"),
+            Self::GripperFell { gripper } => write!(f, "{gripper} falls: it was let go over no holster"),
+            Self::GripperTorn { gripper } => {
+                write!(f, "{gripper} is torn off the quick change by its holster")
+            }
             Self::Fell { part } => write!(f, "{part} lies on the floor"),
             Self::Warning(code) => write!(f, "the T3 controller shows {code}"),
             Self::CannotFollow(problem) => {
@@ -117,7 +136,9 @@ pub struct Cell {
     world: PhysicsWorld,
     arm: Arm,
     t3: T3Controller,
-    gripper: Gripper,
+    /// Parts gripper, v-gripper, tool gripper.
+    grippers: [Gripper; 3],
+    changer: Changer,
     pedestal: Pedestal,
     vise: Vise,
     camera: Camera,
@@ -128,6 +149,7 @@ pub struct Cell {
     clearance: Clearance,
     gripper_noise: Noise,
     pedestal_noise: Noise,
+    force_noise: Noise,
     placement_noise: Noise,
     events: Vec<CellEvent>,
     /// The arm cannot follow the robot; said once.
@@ -151,7 +173,11 @@ impl Cell {
         let arm = Arm::new(&description.robot);
         let tool = to_pose(&arm.tool());
         let stiffness = description.robot.stiffness;
-        let gripper = Gripper::new(&mut world, &description.gripper, stiffness, &tool, FINGER);
+        let changer = Changer::new(description);
+        let [parts, v, tools] =
+            [&description.gripper.parts, &description.gripper.v, &description.gripper.tool];
+        let grippers =
+            [parts, v, tools].map(|gripper| Gripper::new(&mut world, gripper, stiffness, &tool, FINGER));
         let pedestal = Pedestal::new(&mut world, &description.pedestal);
         let vise = Vise::new(&mut world, &description.vise);
         let mut cell = Self {
@@ -161,7 +187,8 @@ impl Cell {
             description: description.clone(),
             world,
             arm,
-            gripper,
+            grippers,
+            changer,
             pedestal,
             vise,
             parts: Vec::new(),
@@ -170,11 +197,13 @@ impl Cell {
             clearance: Clearance::default(),
             gripper_noise: Noise::new(seed, Stream::Gripper),
             pedestal_noise: Noise::new(seed, Stream::Pedestal),
+            force_noise: Noise::new(seed, Stream::Force),
             placement_noise: Noise::new(seed, Stream::Placement),
             events: Vec::new(),
             stays_behind: false,
             inputs: DeviceInputs::default(),
         };
+        cell.hang_grippers();
         cell.inputs = cell.sense(LinkBytes::default(), false);
         Ok(cell)
     }
@@ -233,23 +262,33 @@ impl Cell {
     fn substep(&mut self, fraction: f64, outputs: &DeviceOutputs) {
         let dt = self.world.integration_parameters.dt;
         self.arm.advance(fraction, dt);
-        let mut tool = to_pose(&self.arm.tool());
-        let hand = &mut self.world.bodies[self.gripper.hand()];
-        tool.rotation = on_the_side_of(hand.rotation(), tool.rotation);
-        hand.set_next_kinematic_position(tool);
+        self.change_grippers(dt, &outputs.quick_change);
         self.pedestal.turn(&mut self.world, dt);
-        self.drive_fingers(dt, Hand::Robot, outputs.grip.bits);
-        self.drive_fingers(dt, Hand::Pedestal, outputs.pedestal_hand.bits);
+        if let Some(hand) = self.changer.mated() {
+            self.drive_fingers(dt, hand, self.supply(hand, outputs));
+        }
+        self.drive_fingers(dt, Hand::Pedestal, Supply::of_bits(outputs.pedestal_hand.bits));
         self.drive_jaw(dt);
         self.rub_holds(dt);
         self.world.step();
         self.let_holds_give_way();
     }
 
+    /// What the valves let flow to a gripper of the robot.
+    fn supply(&self, hand: Hand, outputs: &DeviceOutputs) -> Supply {
+        let speed = self.description.gripper.jaw_speed;
+        match hand {
+            Hand::V => Supply::of_jaws(&outputs.v_grip, speed),
+            Hand::Tool => Supply::of_jaws(&outputs.tool_grip, speed),
+            Hand::Parts | Hand::Pedestal => Supply::of_bits(outputs.grip.bits),
+        }
+    }
+
     /// Once a tick: what has been run into, what has fallen.
     fn after_tick(&mut self) {
         let movers = self.movers();
-        let jaw = self.jaw_obstacles();
+        let mut jaw = self.jaw_obstacles();
+        jaw.extend(self.gripper_obstacles());
         let begun = self.clearance.check(&movers, self.obstacles.iter().chain(&jaw));
         self.events.extend(begun.into_iter().map(CellEvent::Contact));
         if !self.world.quarantine().is_empty() {
@@ -286,20 +325,38 @@ impl Cell {
 
     /// Read all sensors.
     fn sense(&mut self, link_rx: LinkBytes, link_ready: bool) -> DeviceInputs {
-        let beams = self.broken_beams();
+        let (grip, force) = self.sense_gripper();
         DeviceInputs {
             link_rx,
             link_ready,
             resolvers: Resolvers { counts: self.arm.joints().map(resolver), valid: true },
-            grip: self.gripper.sensors(&mut self.gripper_noise, beams),
-            quick_change: QuickChangeSensors { locked: true, unlocked: false, end_effector_id: 1 },
-            // ASSUMED: the holsters of the other grippers are full, so that all their ears are seen at the seat.
-            holsters: HolsterSensors { right: 0, left: 0x0F, centre: 0x0F },
+            grip,
+            force,
+            quick_change: self.changer.sensors(),
+            holsters: self.holster_sensors(),
             joystick: JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() },
             vision: self.camera.answer(),
             pedestal: self.pedestal.sensors(&mut self.pedestal_noise),
             ..DeviceInputs::default()
         }
+    }
+
+    /// Sensors of the gripper that is mated. All three have their potentiometer on the same connections; beam breaks and
+    /// strain gages only the parts gripper, force gages only the tool gripper has (III.3.6 to III.3.8).
+    fn sense_gripper(&mut self) -> (GripSensors, ForceSensor) {
+        let Some(hand) = self.changer.mated() else { return Default::default() };
+        let beams = if hand == Hand::Parts { self.broken_beams() } else { 0 };
+        let gripper = hand.slot().map_or(&self.pedestal.hand, |slot| &self.grippers[slot]);
+        let grip = gripper.sensors(&mut self.gripper_noise, beams);
+        let force = if hand == Hand::Tool {
+            let down = self.world.bodies[gripper.hand()].rotation().inverse() * -Vector::Z;
+            let load = gripper.load(&self.world);
+            let gages = &self.description.gripper.force;
+            force::read(gages, &load, &Inches::new(down.x, down.y, down.z), &mut self.force_noise)
+        } else {
+            ForceSensor::default()
+        };
+        (grip, force)
     }
 
     /// True joint angles, radians: base, shoulder, elbow, pitch, yaw, roll.
@@ -308,16 +365,22 @@ impl Cell {
         *self.arm.joints()
     }
 
-    /// The tool frame as the loaded arm and the fingers have it, inches: the middle between the fingertips.
+    /// The tool frame as the loaded arm and the fingers have it, inches: the middle between the fingertips; of a bare robot
+    /// where they would be.
     #[must_use]
     pub fn tool(&self) -> Frame {
-        to_frame(&self.gripper.loaded_tool(&self.world))
+        match self.changer.carried() {
+            Some(hand) => to_frame(&self.hand(hand).loaded_tool(&self.world)),
+            None => self.arm.tool(),
+        }
     }
 
-    /// Finger opening, in, and force of a finger, lb: the truth behind the sensors.
+    /// Finger opening, in, and force of a finger, lb, of the gripper that is mated: the truth behind the sensors. Zeros of a bare
+    /// robot.
     #[must_use]
     pub fn fingers(&self) -> (f64, f64) {
-        (self.gripper.air.opening(), self.gripper.air.force())
+        let gripper = self.changer.mated().map(|hand| self.hand(hand));
+        gripper.map_or((0.0, 0.0), |gripper| (gripper.air.opening(), gripper.air.force()))
     }
 
     /// The fingertips of the pedestal's hand, X up, Y across the fingers, in.

@@ -15,7 +15,6 @@ use super::Cell;
 use crate::{
     clearance::Mover,
     convert::{metres, to_frame, to_metres, to_pose},
-    gripper::body_opening,
     scene::{Block, Obstacle, along_x, jaw_blocks},
 };
 
@@ -49,7 +48,7 @@ const STARTS: [f64; 6] = [0.0, 0.0, T3.upper_arm, T3.forearm, T3.pitch_to_yaw, 0
 const VISE_BLOCKS: [&str; 3] = ["vise_body", "fixed_jaw_notch", "fixed_jaw"];
 
 /// A shape of a link for the picture, in the link's frame.
-enum Outline {
+pub(super) enum Outline {
     Box(Inches),
     /// Along the X axis: radius and length.
     Cylinder(f64, f64),
@@ -79,40 +78,16 @@ impl Cell {
             pose,
             shape: SharedShape::capsule(Vector::X * metres(from), Vector::X * metres(to), metres(radius)),
             carried: false,
+            finger: false,
         };
         let mut movers = vec![
             capsule("upper_arm", upper, T3.upper_arm / 4.0, T3.upper_arm, robot.upper_arm_radius),
             capsule("forearm", fore, 0.0, T3.forearm, robot.forearm_radius),
             capsule("wrist", plate, 0.0, T3.yaw_to_plate, robot.wrist_radius),
         ];
-        let hand = &self.world.bodies[self.gripper.hand()];
-        for collider in hand.colliders() {
-            let collider = &self.world.colliders[*collider];
-            movers.push(Mover {
-                name: "gripper".into(),
-                pose: *collider.position(),
-                shape: collider.shared_shape().clone(),
-                carried: false,
-            });
-        }
-        // The fingers give way to what they run into; how deep the arm has led them is what counts.
-        let fingers = self.gripper.finger_rests().into_iter().zip(self.gripper.finger_colliders());
-        for (name, (rest, collider)) in ["left_finger", "right_finger"].into_iter().zip(fingers) {
-            movers.push(Mover {
-                name: name.into(),
-                pose: *hand.position() * rest,
-                shape: self.world.colliders[collider].shared_shape().clone(),
-                carried: false,
-            });
-        }
-        let camera = to_metres(&Inches::from(self.description.camera.position));
-        movers.push(Mover {
-            name: "camera".into(),
-            pose: *hand.position() * Pose::from_translation(camera),
-            shape: SharedShape::cuboid(metres(1.0), metres(1.0), metres(0.75)),
-            carried: false,
-        });
-        if let Some((index, _)) = &self.gripper.hold {
+        movers.extend(self.worn());
+        let held = self.changer.carried().and_then(|hand| self.hand(hand).hold.as_ref());
+        if let Some((index, _)) = held {
             let part = &self.parts[*index];
             let half = part.half();
             movers.push(Mover {
@@ -120,6 +95,7 @@ impl Cell {
                 pose: part.pose(&self.world),
                 shape: SharedShape::cuboid(half.x, half.y, half.z),
                 carried: true,
+                finger: false,
             });
         }
         movers
@@ -140,11 +116,7 @@ impl Cell {
             let pose = Pose::new(Vector::X * metres(STARTS[joint]), Vector::from_array(axis) * angle);
             links.push(link(name, parent, &pose));
         }
-        links.push(link("parts_gripper", "end_plate", &to_pose(&gripper_mount())));
-        let hand = *self.world.bodies[self.gripper.hand()].position();
-        for (name, body) in ["left_finger", "right_finger"].into_iter().zip(self.gripper.finger_bodies()) {
-            links.push(link(name, "parts_gripper", &hand.inv_mul(self.world.bodies[body].position())));
-        }
+        links.extend(self.gripper_links());
         let vise = to_pose(self.vise.frame());
         let jaw = vise.inv_mul(self.world.bodies[self.vise.jaw()].position());
         links.push(link("vise", "world", &vise));
@@ -166,8 +138,7 @@ impl Cell {
     #[must_use]
     pub fn joint_states(&self) -> Vec<(&'static str, f64)> {
         let mut states: Vec<_> = JOINT_NAMES.into_iter().zip(self.joints()).collect();
-        let half = metres(body_opening(&self.world, &self.gripper) / 2.0);
-        states.extend([("left_finger_slide", half), ("right_finger_slide", half)]);
+        states.extend(self.finger_states());
         states.push(("jaw_slide", metres(self.vise.opening())));
         states
     }
@@ -184,7 +155,7 @@ impl Cell {
     pub fn urdf_with(&self, coming: &[&str]) -> String {
         let mut urdf = Urdf::new(&self.description.name);
         self.urdf_arm(&mut urdf);
-        self.urdf_gripper(&mut urdf);
+        self.urdf_grippers(&mut urdf);
         for block in &self.furniture {
             if !VISE_BLOCKS.contains(&block.name.as_str()) {
                 urdf.begin_link(&block.name);
@@ -238,35 +209,6 @@ impl Cell {
         }
     }
 
-    fn urdf_gripper(&self, urdf: &mut Urdf) {
-        let gripper = &self.description.gripper;
-        let [length, thickness, width] = gripper.fingers;
-        let at =
-            |x: f64, y: f64, z: f64| Frame { position: Inches::new(x, y, z), rotation: Rotation::identity() };
-        urdf.begin_link("parts_gripper");
-        let change = &self.description.quick_change;
-        let middle = at(-T3.plate_to_tool + change.length / 2.0, 0.0, 0.0);
-        urdf.shape(&middle, &Outline::Cylinder(change.radius, change.length), DARK);
-        urdf.shape(
-            &at(-length - gripper.body[0] / 2.0, 0.0, 0.0),
-            &Outline::Box(Inches::from(gripper.body)),
-            DARK,
-        );
-        let [x, y, z] = self.description.camera.position;
-        urdf.shape(&at(x, y, z), &Outline::Box(Inches::new(2.0, 2.0, 1.5)), DARK);
-        urdf.end_link();
-        urdf.joint("quick_change", "fixed", "end_plate", "parts_gripper", &gripper_mount(), None);
-        for (name, side) in [("left_finger", 1.0), ("right_finger", -1.0)] {
-            urdf.begin_link(name);
-            urdf.shape(&Frame::identity(), &Outline::Box(Inches::new(length, thickness, width)), STEEL);
-            urdf.end_link();
-            let start = at(-length / 2.0, side * thickness / 2.0, 0.0);
-            let range = (metres(0.0), metres(gripper.opening[1] / 2.0));
-            let slide = format!("{name}_slide");
-            urdf.joint(&slide, "prismatic", "parts_gripper", name, &start, Some(([0.0, side, 0.0], range)));
-        }
-    }
-
     fn urdf_vise(&self, urdf: &mut Urdf) {
         let vise = &self.description.vise;
         urdf.begin_link("vise");
@@ -290,19 +232,13 @@ impl Cell {
     }
 }
 
-/// Where the parts gripper sits on the end plate's link: its origin is the tool point.
-fn gripper_mount() -> Frame {
-    let ahead = Inches::new(T3.yaw_to_plate + T3.plate_to_tool, 0.0, 0.0);
-    Frame { position: ahead, rotation: Rotation::identity() }
-}
-
 /// Name of the link of a part.
 #[must_use]
 pub fn part_link(id: u32) -> String {
     format!("part_{id}")
 }
 
-fn link(name: &str, parent: &'static str, pose: &Pose) -> Link {
+pub(super) fn link(name: &str, parent: &'static str, pose: &Pose) -> Link {
     Link {
         name: name.into(),
         parent,
@@ -312,12 +248,12 @@ fn link(name: &str, parent: &'static str, pose: &Pose) -> Link {
 }
 
 const ROBOT: &str = "0.85 0.35 0.10 1";
-const STEEL: &str = "0.60 0.62 0.65 1";
-const DARK: &str = "0.25 0.27 0.30 1";
+pub(super) const STEEL: &str = "0.60 0.62 0.65 1";
+pub(super) const DARK: &str = "0.25 0.27 0.30 1";
 const PART: &str = "0.15 0.45 0.80 1";
 
 /// Writes URDF text.
-struct Urdf(String);
+pub(super) struct Urdf(String);
 
 impl Urdf {
     fn new(name: &str) -> Self {
@@ -332,11 +268,11 @@ impl Urdf {
         let _ = writeln!(self.0, "  {text}");
     }
 
-    fn begin_link(&mut self, name: &str) {
+    pub(super) fn begin_link(&mut self, name: &str) {
         self.line(format_args!("<link name=\"{}\">", escaped(name)));
     }
 
-    fn end_link(&mut self) {
+    pub(super) fn end_link(&mut self) {
         self.line(format_args!("</link>"));
     }
 
@@ -344,7 +280,7 @@ impl Urdf {
         self.shape(&block.frame, &Outline::Box(block.size), colour);
     }
 
-    fn shape(&mut self, frame: &Frame, outline: &Outline, colour: &str) {
+    pub(super) fn shape(&mut self, frame: &Frame, outline: &Outline, colour: &str) {
         let (frame, geometry) = match outline {
             Outline::Box(size) => {
                 let size = to_metres(size);
@@ -363,7 +299,7 @@ impl Urdf {
         ));
     }
 
-    fn joint(
+    pub(super) fn joint(
         &mut self,
         name: &str,
         kind: &str,

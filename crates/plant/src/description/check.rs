@@ -7,7 +7,7 @@ use rcs_core::{
     name::Name16,
 };
 
-use super::{CellDescription, DescriptionError, Fault, Faults, Gripper};
+use super::{CellDescription, DescriptionError, Fault, Faults, Gripper, Points};
 
 impl CellDescription {
     /// Check all numbers.
@@ -18,6 +18,8 @@ impl CellDescription {
         let mut check = Check(Vec::new());
         self.check_robot(&mut check);
         self.check_gripper_and_camera(&mut check);
+        self.check_changing(&mut check);
+        self.check_drum(&mut check);
         self.check_pedestal(&mut check);
         self.check_vise_and_trays(&mut check);
         self.check_names_and_boxes(&mut check);
@@ -46,16 +48,18 @@ impl CellDescription {
     }
 
     fn check_gripper_and_camera(&self, check: &mut Check) {
-        let (change, gripper) = (&self.quick_change, &self.gripper);
-        check.positive("quick_change: length, radius", &[change.length, change.radius]);
-        let length = change.length + gripper.body[0] + gripper.fingers[0];
-        check.that(
-            (length - T3.plate_to_tool).abs() < 1e-6,
-            "quick_change.length + gripper.body[0] + gripper.fingers[0]",
-            format!("the tool length of the arm, {} in", T3.plate_to_tool),
-            length,
-        );
-        check_gripper("gripper", gripper, check);
+        let grippers = &self.gripper;
+        check.positive("gripper: weight, jaw_speed", &[grippers.weight, grippers.jaw_speed]);
+        for (name, gripper) in [("parts", &grippers.parts), ("v", &grippers.v), ("tool", &grippers.tool)] {
+            let length = self.quick_change.length + gripper.plate();
+            check.that(
+                (length - T3.plate_to_tool).abs() < 1e-6,
+                &format!("quick_change.length + gripper.{name}.body[0] + gripper.{name}.fingers[0]"),
+                format!("the tool length of the arm, {} in", T3.plate_to_tool),
+                length,
+            );
+            check_gripper(&format!("gripper.{name}"), gripper, check);
+        }
         let camera = &self.camera;
         check.positive("camera: view, reference_range_mm", &[camera.view, camera.reference_range_mm]);
         let noises = [
@@ -69,6 +73,67 @@ impl CellDescription {
             check.within("camera.*_noise, shape_tolerance", noise, 0.0, 10.0);
         }
         check.within("camera.tilt", camera.tilt, -90.0, 90.0);
+    }
+
+    fn check_changing(&self, check: &mut Check) {
+        let change = &self.quick_change;
+        check.positive(
+            "quick_change: length, radius, travel_time_s, pins_reach, pins_play, tolerance, tolerance_degrees",
+            &[
+                change.length,
+                change.radius,
+                change.travel_time_s,
+                change.pins_reach,
+                change.pins_play,
+                change.tolerance,
+                change.tolerance_degrees,
+            ],
+        );
+        let holsters = &self.holsters;
+        let poses = [("right", holsters.right), ("left", holsters.left), ("centre", holsters.centre)];
+        for (name, points) in poses {
+            check.frame(&format!("holsters.{name}"), &points);
+        }
+        check.positive("holsters.ears", &holsters.ears);
+        check.positive(
+            "holsters: seat, detent, catch_height, catch_aside, large_range, small_range",
+            &[
+                holsters.seat,
+                holsters.detent,
+                holsters.catch_height,
+                holsters.catch_aside,
+                holsters.large_range,
+                holsters.small_range,
+            ],
+        );
+        check.within("holsters.catch_height", holsters.catch_height, 0.0, change.pins_reach);
+        check.within("holsters.detent", holsters.detent, 0.0, change.pins_play);
+        let force = &self.gripper.force;
+        check.positive("gripper.force.weight", &[force.weight]);
+        check.within("gripper.force.behind_tool", force.behind_tool, 0.0, T3.plate_to_tool);
+        check.within("gripper.force.weight_at", force.weight_at, 0.0, force.behind_tool);
+        check.within("gripper.force.noise", force.noise, 0.0, 100.0);
+        for offset in force.offsets {
+            check.within("gripper.force.offsets", offset, -1000.0, 1000.0);
+        }
+    }
+
+    fn check_drum(&self, check: &mut Check) {
+        let drum = &self.drum;
+        check.frame("drum.pose", &drum.pose);
+        check.positive(
+            "drum: finger_reach, detent_length, stop_force, seated, seated_degrees",
+            &[drum.finger_reach, drum.detent_length, drum.stop_force, drum.seated, drum.seated_degrees],
+        );
+        check.within("drum.detent_length", drum.detent_length, 0.0, drum.finger_reach);
+        check.within("drum.insertion_force", drum.insertion_force, 0.0, drum.stop_force);
+        check.within("drum.extraction_force", drum.extraction_force, 0.0, drum.stop_force);
+        check.within("drum.friction", drum.friction, 0.0, 2.0);
+        for plate in &drum.plate {
+            let ascending = plate.low.iter().zip(plate.high).all(|(low, high)| *low < high);
+            let entry = format!("drum.plate {}: low, high", plate.name);
+            check.that(ascending, &entry, "low below high", format!("{:?}, {:?}", plate.low, plate.high));
+        }
     }
 
     fn check_pedestal(&self, check: &mut Check) {
@@ -167,7 +232,8 @@ fn check_gripper(name: &str, gripper: &Gripper, check: &mut Check) {
     let sensors = &gripper.sensors;
     let full = sensors.potentiometer_offset + sensors.potentiometer_scale * greatest;
     check.within(&entry(".sensors: potentiometer at the greatest opening"), full, 1.0, 4095.0);
-    for (offset, scale) in sensors.strain_offsets.iter().zip(sensors.strain_scales) {
+    let gages = sensors.strain_offsets.iter().zip(sensors.strain_scales);
+    for (offset, scale) in gages.filter(|(_, scale)| *scale != 0.0) {
         let full = offset + scale * gripper.greatest_force;
         check.within(&entry(".sensors: strain gage at the greatest force"), full, 1.0, 4095.0);
     }
@@ -190,6 +256,11 @@ impl Check {
 
     fn within(&mut self, entry: &str, value: f64, low: f64, high: f64) {
         self.that((low..=high).contains(&value), entry, format!("{low} to {high}"), value);
+    }
+
+    fn frame(&mut self, entry: &str, points: &Points) {
+        let expected = "three points that do not stand on a line";
+        self.that(points.frame().is_some(), entry, expected, format!("{points:?}"));
     }
 
     fn positive(&mut self, entry: &str, values: &[f64]) {

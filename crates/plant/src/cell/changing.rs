@@ -1,0 +1,293 @@
+//! Which gripper is where: on the robot, in a holster, on the floor; and how it changes.
+//!
+//! The ring decides, not the controller ([`crate::quick_change`]). A gripper that the ring has is led by the arm. One that it
+//! lets go lands on the holster under it, or falls. On its holster it is led by that, and slides with an A plate whose
+//! elements are in its own. A gripper is *mated* while its pins touch, locked or not: only then it has air and its sensors are
+//! connected. The bodies of one that hangs still in its holster take no part in the simulation.
+
+use rcs_core::{
+    frame::Frame,
+    interface::device::{HolsterSensors, QuickChangeSensors, QuickChangeValves},
+};
+
+use super::{Cell, CellEvent, handling::Hand};
+use crate::{
+    convert::{on_the_side_of, to_frame, to_pose},
+    description::{CellDescription, Mounted, QuickChange},
+    holster::{Holster, Perch, ears, holsters},
+    quick_change::{Gap, Ring},
+};
+
+/// The hands that the robot can wear, in the order of their end effector ids.
+pub(super) const ROBOT_HANDS: [Hand; 3] = [Hand::Parts, Hand::V, Hand::Tool];
+
+/// Where a gripper is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Place {
+    /// The ring of the quick change has it.
+    Robot,
+    /// On a holster, right, left, centre.
+    Holster(usize, Perch),
+    /// It was let go over nothing.
+    Fallen,
+}
+
+/// Quick change, holsters, and the places of the grippers.
+pub(super) struct Changer {
+    description: QuickChange,
+    ring: Ring,
+    holsters: [Holster; 3],
+    /// Of the parts gripper, the v-gripper, the tool gripper.
+    places: [Place; 3],
+    /// The one whose pins touch.
+    mated: Option<Hand>,
+    /// The holster whose lips are over the ears of the gripper that the ring has.
+    under_lips: Option<usize>,
+}
+
+impl Changer {
+    /// As the description has it: one gripper may be on the robot, the others hang in the seats of their holsters.
+    pub(super) fn new(cell: &CellDescription) -> Self {
+        let holsters = holsters(cell);
+        let mated = match cell.quick_change.mounted {
+            Mounted::None => None,
+            Mounted::Parts => Some(Hand::Parts),
+            Mounted::V => Some(Hand::V),
+            Mounted::Tool => Some(Hand::Tool),
+        };
+        let mut places = [0, 1, 2].map(|which| Place::Holster(which, holsters[which].seated()));
+        if let Some(slot) = mated.and_then(Hand::slot) {
+            places[slot] = Place::Robot;
+        }
+        let ring = Ring::new(&cell.quick_change, mated.is_some());
+        Self { description: cell.quick_change.clone(), ring, holsters, places, mated, under_lips: None }
+    }
+
+    /// The gripper whose pins touch: it has air, and its sensors are connected.
+    pub(super) fn mated(&self) -> Option<Hand> {
+        self.mated
+    }
+
+    /// The gripper that the ring has.
+    pub(super) fn carried(&self) -> Option<Hand> {
+        ROBOT_HANDS.into_iter().find(|hand| self.place(*hand) == Some(Place::Robot))
+    }
+
+    /// Where a gripper is; `None` for a hand that the robot cannot wear.
+    pub(super) fn place(&self, hand: Hand) -> Option<Place> {
+        hand.slot().map(|slot| self.places[slot])
+    }
+
+    /// Tool frame of a gripper that is led, by the robot at `robot` or by a holster.
+    fn frame(&self, hand: Hand, robot: &Frame) -> Option<Frame> {
+        match self.place(hand)? {
+            Place::Robot => Some(*robot),
+            Place::Holster(which, perch) => Some(self.holsters[which].gripper(&perch)),
+            Place::Fallen => None,
+        }
+    }
+
+    /// It needs bodies: it moves, or can be moved, or can move something.
+    fn is_present(&self, hand: Hand) -> bool {
+        match self.place(hand) {
+            Some(Place::Holster(_, perch)) => self.mated == Some(hand) || !perch.rests(),
+            _ => true,
+        }
+    }
+
+    fn is_empty(&self, holster: usize) -> bool {
+        !self.places.iter().any(|place| matches!(place, Place::Holster(which, _) if *which == holster))
+    }
+
+    /// Where a gripper lands that the ring lets go at `robot`.
+    fn land(&self, robot: &Frame) -> Place {
+        let caught = self.holsters.iter().enumerate().find_map(|(which, holster)| {
+            let perch = holster.catch(&holster.offset(robot)).filter(|_| self.is_empty(which))?;
+            Some(Place::Holster(which, perch))
+        });
+        caught.unwrap_or(Place::Fallen)
+    }
+
+    /// The gripper that the ring has is torn off by a holster whose lips hold its ears down: where it stays.
+    fn torn(&mut self, robot: &Frame) -> Option<Place> {
+        if let Some(which) = self.under_lips {
+            let holster = &self.holsters[which];
+            let offset = holster.offset(robot);
+            if holster.tears(&offset) {
+                self.under_lips = None;
+                let forward = holster.slide(offset.forward);
+                return Some(Place::Holster(which, Perch { forward, ..holster.seated() }));
+            }
+        }
+        self.under_lips = self
+            .holsters
+            .iter()
+            .position(|holster| holster.is_near(robot) && holster.holds_down(&holster.offset(robot)));
+        None
+    }
+
+    /// A step of a gripper on its holster: it falls as far as there is room, slides with an engaged A plate, and is caught if
+    /// the ring has just locked.
+    fn step_on_holster(&mut self, hand: Hand, which: usize, mut perch: Perch, step: &Step) -> Place {
+        let holster = &self.holsters[which];
+        perch.fall(step.dt);
+        let here = holster.gripper(&perch);
+        if step.locks && Gap::between(&step.robot, &here).lies_together(&self.description) {
+            return Place::Robot;
+        }
+        if self.mated == Some(hand) {
+            let play = self.description.tolerance;
+            let robot = holster.offset(&step.robot).forward;
+            perch.forward = holster.slide(perch.forward.clamp(robot - play, robot + play));
+        }
+        Place::Holster(which, perch)
+    }
+
+    /// The gripper whose pins touch with the robot at `robot`.
+    fn find_mated(&self, robot: &Frame) -> Option<Hand> {
+        self.carried().or_else(|| {
+            ROBOT_HANDS.into_iter().find(|hand| match self.place(*hand) {
+                Some(Place::Holster(which, perch)) if self.holsters[which].is_near(robot) => {
+                    Gap::between(robot, &self.holsters[which].gripper(&perch)).engaged(&self.description)
+                }
+                _ => false,
+            })
+        })
+    }
+
+    /// Ring and pins.
+    pub(super) fn sensors(&self) -> QuickChangeSensors {
+        QuickChangeSensors {
+            locked: self.ring.locked(),
+            unlocked: self.ring.unlocked(),
+            end_effector_id: self.mated.map_or(0, Hand::end_effector_id),
+        }
+    }
+}
+
+/// What a step of the simulation brings to the grippers.
+struct Step {
+    dt: f64,
+    robot: Frame,
+    /// The ring has come to its locked end.
+    locks: bool,
+}
+
+impl Cell {
+    /// Let the ring move, and with it what it catches and lets go; then say where every gripper is.
+    pub(super) fn change_grippers(&mut self, dt: f64, valves: &QuickChangeValves) {
+        let robot = self.arm.tool();
+        let was_locked = self.changer.ring.locked();
+        self.changer.ring.advance(dt, valves);
+        let step = Step { dt, robot, locks: self.changer.ring.locked() && !was_locked };
+        for hand in ROBOT_HANDS {
+            let next = match self.changer.place(hand) {
+                Some(Place::Robot) => self.keep_or_lose(hand, &robot),
+                Some(Place::Holster(which, perch)) => {
+                    Some(self.changer.step_on_holster(hand, which, perch, &step))
+                }
+                _ => None,
+            };
+            if let (Some(place), Some(slot)) = (next, hand.slot()) {
+                self.changer.places[slot] = place;
+            }
+        }
+        self.mate(&robot);
+        self.lead_grippers(&robot);
+    }
+
+    /// Put the bodies of the grippers where they are at the start.
+    pub(super) fn hang_grippers(&mut self) {
+        let robot = self.arm.tool();
+        for hand in ROBOT_HANDS {
+            let Some(frame) = self.changer.frame(hand, &robot) else { continue };
+            let present = self.changer.is_present(hand);
+            let (gripper, world) = self.hand_at_work(hand);
+            gripper.hang(world, &to_pose(&frame));
+            gripper.set_present(world, present);
+        }
+    }
+
+    /// What becomes of the gripper that the ring has, if it does not stay there.
+    fn keep_or_lose(&mut self, hand: Hand, robot: &Frame) -> Option<Place> {
+        if self.changer.ring.unlocked() {
+            self.changer.under_lips = None;
+            let place = self.changer.land(robot);
+            if place == Place::Fallen {
+                let weight = self.description.gripper.weight;
+                let (gripper, world) = self.hand_at_work(hand);
+                gripper.fall(world, weight);
+                self.events.push(CellEvent::GripperFell { gripper: hand.link() });
+            }
+            return Some(place);
+        }
+        let place = self.changer.torn(robot)?;
+        self.events.push(CellEvent::GripperTorn { gripper: hand.link() });
+        Some(place)
+    }
+
+    /// Pins that part cut the air of a gripper.
+    fn mate(&mut self, robot: &Frame) {
+        let mated = self.changer.find_mated(robot);
+        if mated == self.changer.mated {
+            return;
+        }
+        let parted = std::mem::replace(&mut self.changer.mated, mated);
+        if let Some(hand) = parted {
+            self.let_go(hand, true);
+            let (gripper, world) = self.hand_at_work(hand);
+            gripper.air.cut();
+            gripper.move_fingers(world);
+        }
+    }
+
+    /// Lead the bodies of the grippers to where robot and holsters have them.
+    fn lead_grippers(&mut self, robot: &Frame) {
+        for (slot, hand) in ROBOT_HANDS.into_iter().enumerate() {
+            let present = self.changer.is_present(hand);
+            let gripper = &self.grippers[slot];
+            if self.world.bodies[gripper.hand()].is_enabled() != present {
+                gripper.set_present(&mut self.world, present);
+            }
+            let Some(frame) = self.changer.frame(hand, robot).filter(|_| present) else { continue };
+            let mut next = to_pose(&frame);
+            let body = &mut self.world.bodies[gripper.hand()];
+            next.rotation = on_the_side_of(body.rotation(), next.rotation);
+            body.set_next_kinematic_position(next);
+        }
+    }
+
+    /// What the proximity sensors of the holsters see.
+    pub(super) fn holster_sensors(&self) -> HolsterSensors {
+        let seen = |holster: &Holster| {
+            ROBOT_HANDS.into_iter().enumerate().fold(0, |bits, (slot, hand)| {
+                let gripper = to_frame(self.world.bodies[self.grippers[slot].hand()].position());
+                if !holster.is_near(&gripper) {
+                    return bits;
+                }
+                let ears = ears(&self.description.holsters, self.gripper_description(hand));
+                bits | holster.sensors(&gripper, &ears)
+            })
+        };
+        let [right, left, centre] = &self.changer.holsters;
+        HolsterSensors { right: seen(right), left: seen(left), centre: seen(centre) }
+    }
+
+    /// What a gripper of the robot is like.
+    pub(super) fn gripper_description(&self, hand: Hand) -> &crate::description::Gripper {
+        let grippers = &self.description.gripper;
+        match hand {
+            Hand::Parts => &grippers.parts,
+            Hand::V => &grippers.v,
+            Hand::Tool => &grippers.tool,
+            Hand::Pedestal => &self.description.pedestal.hand,
+        }
+    }
+
+    /// End effector id of the gripper that the ring of the quick change has; 0 for none. The truth behind the pins, which
+    /// also read a gripper that is mated and not locked.
+    #[must_use]
+    pub fn gripper(&self) -> u8 {
+        self.changer.carried().map_or(0, Hand::end_effector_id)
+    }
+}

@@ -1,0 +1,145 @@
+//! What the robot changes and where it keeps it: quick change, holsters, tool drum.
+
+use rcs_core::{frame::Frame, pose::Pose};
+use serde::Deserialize;
+
+/// A place as a pose form gives it: three points, 0.01 in (VII.1).
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(deny_unknown_fields)]
+pub struct Points {
+    /// A point on the axis of the end effector.
+    pub wrist: [i32; 3],
+    /// The tool point.
+    pub tool: [i32; 3],
+    /// A point to the left of the tool point.
+    pub finger: [i32; 3],
+}
+
+impl Points {
+    /// The frame of the three points, in; `None` if they do not span one, which [`super::CellDescription::validate`] reports.
+    #[must_use]
+    pub fn frame(&self) -> Option<Frame> {
+        Pose { wrist: self.wrist, tool: self.tool, finger: self.finger }.to_frame().ok()
+    }
+}
+
+/// Which gripper is on the robot.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Mounted {
+    /// None.
+    None,
+    /// The parts gripper.
+    Parts,
+    /// The v-gripper.
+    V,
+    /// The tool gripper.
+    Tool,
+}
+
+/// The quick change.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct QuickChange {
+    /// Length of both plates together, from the end plate, in.
+    pub length: f64,
+    /// Radius of the plates, in.
+    pub radius: f64,
+    /// Which gripper is on the robot at the start; the others are in their holsters.
+    pub mounted: Mounted,
+    /// Time that the locking ring takes from end to end, s.
+    pub travel_time_s: f64,
+    /// Distance of the plates at which the id pins still touch, in.
+    pub pins_reach: f64,
+    /// Offset sideways at which the plates are still in each other, in.
+    pub pins_play: f64,
+    /// How far the plates may be apart or aside for the ring to catch, in.
+    pub tolerance: f64,
+    /// How far they may be turned, degrees.
+    pub tolerance_degrees: f64,
+}
+
+/// The holsters: tool frames of a gripper whose ears rest on the holster before it slides to the seat, and what all have in
+/// common.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Holsters {
+    /// Of the parts gripper, at the right of the robot's base.
+    pub right: Points,
+    /// Of the v-gripper, at its left.
+    pub left: Points,
+    /// Of the tool gripper, freestanding in front.
+    pub centre: Points,
+    /// The seat is this far forward, along tool +Z, in.
+    pub seat: f64,
+    /// A gripper within this of the seat is drawn to it by the detent, in.
+    pub detent: f64,
+    /// Ears of a gripper: along tool X, Y and Z, in; on either side of its body, 1 in under its B plate.
+    pub ears: [f64; 3],
+    /// How far a gripper may be above its rest when it is let go and still lands on the holster, in.
+    pub catch_height: f64,
+    /// How far it may be beside the holster's middle, in, and still lands on it.
+    pub catch_aside: f64,
+    /// Height up to which the large sensors see ears, in.
+    pub large_range: f64,
+    /// Distance to the seat at which the small sensors see ears, in.
+    pub small_range: f64,
+}
+
+/// The tool drum at the transfer position, in the tool frame of that location: X into the drum.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Drum {
+    /// Name of the location.
+    pub location: String,
+    /// Its tool frame.
+    pub pose: Points,
+    /// Middle of a tool in its place, along X, in.
+    pub middle: f64,
+    /// Closed fingers stand in the way of a tool this far before its place, in.
+    pub finger_reach: f64,
+    /// Last part of the way in, which the detents resist, in.
+    pub detent_length: f64,
+    /// Their force at the end of the way in, lb.
+    pub insertion_force: f64,
+    /// Their force at the beginning of the way out, lb.
+    pub extraction_force: f64,
+    /// Force of what stands in the way, lb.
+    pub stop_force: f64,
+    /// How far a tool may be from its place for the fingers to close on it, in.
+    pub seated: f64,
+    /// How far it may be turned, degrees.
+    pub seated_degrees: f64,
+    /// Coefficient of friction of the strike plate.
+    pub friction: f64,
+    /// The strike plate.
+    pub plate: Vec<Plate>,
+}
+
+/// A box of the strike plate.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Plate {
+    /// Its name, also that of its link in the picture.
+    pub name: String,
+    /// Corner of least X, Y, Z in the frame of the drum, in.
+    pub low: [f64; 3],
+    /// Corner of greatest X, Y, Z, in.
+    pub high: [f64; 3],
+}
+
+/// The force sensor of the tool gripper (III.3.8).
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct ForceGages {
+    /// Its middle, behind the tool point, in.
+    pub behind_tool: f64,
+    /// Weight of what hangs on it, lb.
+    pub weight: f64,
+    /// Centre of that weight, behind the tool point, in.
+    pub weight_at: f64,
+    /// Counts of the bridges without load: sensor X, Y, Z and the moment, beside the nominal zero.
+    pub offsets: [f64; 4],
+    /// Greatest noise, counts.
+    pub noise: f64,
+}

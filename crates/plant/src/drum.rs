@@ -1,0 +1,255 @@
+//! The tool drum of the machine tool at its transfer position: a place for a tool, fingers that grip it, and a strike plate.
+//!
+//! The drum's frame is the tool frame of the location TOOL-TRNS: X into the drum. A tool goes in along X; over the last of
+//! its way detents resist with a force that rises like a spring's, and keep it then with a lighter one. Fingers that are
+//! closed already stand in its way, as does a tool that is there: what is pushed against them meets a hundred pounds. The
+//! fingers centre what they close on, and hold it whatever the robot does; its hold slides sooner.
+//!
+//! Detents and obstacles are one spring along X whose far end, the anchor, slides along when the force reaches its limit; so a
+//! tool at rest is at rest, and a force sensor reads a steady value.
+//!
+//! The strike plate stands beside the tool. Its front stops the fingertips of an open gripper; its shoulders stop open fingers
+//! that slide to the right (tool -Z) or come from there and stand over the tool. They are bodies as everything else, and the
+//! fingers give way to them by their springs.
+
+use rapier3d_f64::math::Real;
+use rcs_core::frame::{Frame, Rotation, Vector};
+
+use crate::{
+    convert::{metres, newtons},
+    description::Drum as Description,
+    scene::Block,
+};
+
+/// Stiffness of detents and obstacles, N/m.
+const STIFFNESS: Real = 1.0e5;
+/// Their damping, N·s/m: about critical for a tool of 6 lb.
+const DAMPING: Real = 1.0e3;
+/// What is farther aside than this is not before the drum, in.
+const BESIDE: f64 = 2.0;
+
+/// A tool before the drum or in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entering {
+    /// Way to its place, in.
+    pub left: f64,
+    /// Off the axis, in.
+    pub aside: f64,
+    /// Angle of its axis to the drum's, radians.
+    pub angle: f64,
+}
+
+/// The tool that the drum has to do with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pocketed {
+    /// Index of the part.
+    pub part: usize,
+    /// Where the spring along X is anchored, m.
+    anchor: Real,
+    /// It came while the fingers were closed.
+    barred: bool,
+    /// The drum leads it: its fingers have it, or nothing but the detents does.
+    pub fast: bool,
+}
+
+/// The drum.
+#[derive(Debug)]
+pub struct Drum {
+    frame: Frame,
+    description: Description,
+    closed: bool,
+    /// The tool in it.
+    pub tool: Option<Pocketed>,
+}
+
+impl Drum {
+    /// An empty drum with open fingers; `frame` is that of the location, in.
+    #[must_use]
+    pub fn new(frame: Frame, description: &Description) -> Self {
+        Self { frame, description: description.clone(), closed: false, tool: None }
+    }
+
+    /// Name of the location.
+    #[must_use]
+    pub fn location(&self) -> &str {
+        &self.description.location
+    }
+
+    /// The fingers are closed.
+    #[must_use]
+    pub fn closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Open or close the fingers.
+    pub fn set_closed(&mut self, closed: bool) {
+        self.closed = closed;
+    }
+
+    /// Into the drum, world.
+    #[must_use]
+    pub fn axis(&self) -> Vector {
+        self.frame.x()
+    }
+
+    /// A tool's frame in its place, with the roll about its axis that it has.
+    #[must_use]
+    pub fn place(&self, tool: &Frame) -> Frame {
+        let here = self.frame.inverse().compose(tool).rotation;
+        // The least turn that lays the tool's axis along the drum's.
+        let upright = Rotation::rotation_between(&(here * Vector::x()), &Vector::x());
+        let rotation = self.frame.rotation * upright.map_or(Rotation::identity(), |turn| turn * here);
+        Frame {
+            position: self.frame.shifted(Vector::new(self.description.middle, 0.0, 0.0)).position,
+            rotation,
+        }
+    }
+
+    /// How a tool stands to its place; `None` if it is not before the drum.
+    #[must_use]
+    pub fn entering(&self, tool: &Frame) -> Option<Entering> {
+        let here = self.frame.inverse().compose(tool);
+        let left = self.description.middle - here.position.x;
+        let aside = libm::hypot(here.position.y, here.position.z);
+        let angle = libm::acos(here.rotation.matrix()[(0, 0)].clamp(-1.0, 1.0));
+        let before = left.abs() < self.description.finger_reach && aside < BESIDE;
+        before.then_some(Entering { left, aside, angle })
+    }
+
+    /// A tool comes to the fingers.
+    pub fn admit(&mut self, part: usize, entering: &Entering) {
+        self.tool = Some(Pocketed { part, anchor: metres(-entering.left), barred: self.closed, fast: false });
+    }
+
+    /// The fingers can close on a tool there, and centre it.
+    #[must_use]
+    pub fn can_grip(&self, entering: &Entering) -> bool {
+        let Description { seated, seated_degrees, .. } = self.description;
+        entering.left.abs() <= seated
+            && entering.aside <= seated
+            && entering.angle <= seated_degrees.to_radians()
+    }
+
+    /// The fingers have the tool.
+    #[must_use]
+    pub fn grips(&self, pocketed: &Pocketed) -> bool {
+        self.closed && !pocketed.barred
+    }
+
+    /// The detents keep a tool there that nothing else has.
+    #[must_use]
+    pub fn keeps(&self, pocketed: &Pocketed, entering: &Entering) -> bool {
+        !pocketed.barred
+            && entering.left <= self.description.detent_length
+            && entering.aside <= self.description.seated
+    }
+
+    /// Greatest forces against going in and against coming out, N.
+    fn limits(&self, pocketed: &Pocketed, entering: &Entering) -> (Real, Real) {
+        let Description { detent_length, insertion_force, extraction_force, stop_force, .. } =
+            self.description;
+        if pocketed.barred || entering.left <= 0.0 {
+            return (newtons(stop_force), newtons(if pocketed.barred { 0.0 } else { extraction_force }));
+        }
+        let share = (1.0 - entering.left / detent_length).clamp(0.0, 1.0);
+        (newtons(insertion_force * share), newtons(extraction_force * share))
+    }
+
+    /// Force along X, N, on a tool that the robot moves there, `speed` m/s along X.
+    pub fn resist(&mut self, entering: &Entering, speed: Real) -> Real {
+        let Some(mut pocketed) = self.tool else { return 0.0 };
+        let at = metres(-entering.left);
+        let (inward, outward) = self.limits(&pocketed, entering);
+        let spring = (STIFFNESS * (pocketed.anchor - at)).clamp(-inward, outward);
+        pocketed.anchor = at + spring / STIFFNESS;
+        self.tool = Some(pocketed);
+        (spring - DAMPING * speed).clamp(-inward, outward)
+    }
+
+    /// The spring along X rests where the tool is.
+    pub fn relax(&mut self, entering: &Entering) {
+        if let Some(pocketed) = &mut self.tool {
+            pocketed.anchor = metres(-entering.left);
+        }
+    }
+}
+
+/// The strike plate, world.
+#[must_use]
+pub fn strike_plate(frame: &Frame, drum: &Description) -> Vec<Block> {
+    let block = |plate: &crate::description::Plate| {
+        let (low, high) = (Vector::from(plate.low), Vector::from(plate.high));
+        let middle = Frame { position: (low + high) / 2.0, rotation: Rotation::identity() };
+        Block {
+            name: plate.name.clone(),
+            frame: frame.compose(&middle),
+            size: high - low,
+            work_surface: true,
+            jaw: false,
+            strike: Some(drum.friction),
+        }
+    };
+    drum.plate.iter().map(block).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::CellDescription;
+
+    fn drum() -> Drum {
+        let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
+        Drum::new(cell.drum.pose.frame().unwrap(), &cell.drum)
+    }
+
+    fn before(drum: &Drum, left: f64) -> Entering {
+        let tool = drum.frame.shifted(Vector::new(drum.description.middle - left, 0.0, 0.0));
+        drum.entering(&tool).unwrap()
+    }
+
+    /// Push a tool in from `from` to `to` inches before its place and read the force in pounds.
+    fn push(drum: &mut Drum, from: f64, to: f64) -> f64 {
+        let mut force = 0.0;
+        for step in 0..=100 {
+            let left = from + (to - from) * f64::from(step) / 100.0;
+            force = drum.resist(&before(drum, left), 0.0);
+        }
+        force / newtons(1.0)
+    }
+
+    #[test]
+    fn detents_resist_going_in_and_less_coming_out() {
+        let mut drum = drum();
+        drum.admit(0, &before(&drum, 1.0));
+        assert_eq!(push(&mut drum, 1.0, 0.35), 0.0);
+        assert!((push(&mut drum, 0.35, 0.15) + 15.0).abs() < 0.5);
+        let full = push(&mut drum, 0.15, 0.001);
+        assert!((full + 30.0).abs() < 1.0, "{full}");
+        assert!((push(&mut drum, 0.001, 0.10) - 10.0).abs() < 1e-6, "out it goes more lightly");
+        assert!((push(&mut drum, 0.10, 0.29) - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn beyond_its_place_and_against_closed_fingers_it_is_stopped() {
+        let mut drum = drum();
+        drum.admit(0, &before(&drum, 1.0));
+        assert!((push(&mut drum, 1.0, -0.2) + 100.0).abs() < 1e-6, "the bottom");
+        drum.set_closed(true);
+        drum.admit(0, &before(&drum, 1.3));
+        let stopped = push(&mut drum, 1.3, 1.1);
+        assert!((stopped + 100.0).abs() < 1e-6, "closed fingers: {stopped}");
+        assert!(!drum.grips(&drum.tool.unwrap()));
+    }
+
+    #[test]
+    fn a_tool_is_centred_with_the_roll_that_it_has() {
+        let drum = drum();
+        let turn = rcs_core::frame::rotation_by(&Vector::new(0.7, 0.0, 0.0));
+        let tool = drum.place(&drum.frame.turned(&turn));
+        let rolled = drum.frame.inverse().compose(&tool);
+        assert!((rolled.position.x - drum.description.middle).abs() < 1e-12);
+        assert!((rolled.rotation.matrix() - turn.matrix()).norm() < 1e-9);
+        let entering = drum.entering(&tool).unwrap();
+        assert!(drum.can_grip(&entering) && entering.left.abs() < 1e-9);
+    }
+}

@@ -1,0 +1,324 @@
+//! Holsters: where a gripper hangs by its ears while the robot wears another one.
+//!
+//! A gripper that is let go over a holster drops until its ears lie on the cheeks, and can then be slid forward (tool +Z) to
+//! the seat, where lips over the ears keep it from being lifted and a detent keeps it from wandering. Four proximity
+//! sensors look at the ears (III.3.4): two large ones from the side, two small ones at the seat.
+//!
+//! All is said in the frame of the holster: the tool frame of a gripper that rests on it, not yet slid forward. Its X points
+//! down, along the gripper. All grippers have the same ears, so any of them fits; which one belongs where is the
+//! controller's affair.
+
+use rcs_core::frame::{Frame, Rotation, Vector, rotation_vector};
+
+use crate::{
+    description::{CellDescription, Gripper, Holsters, Points},
+    scene::Block,
+};
+
+/// Free fall, in/s².
+const GRAVITY: f64 = 386.1;
+/// Ears hang this far under the B plate, in.
+const UNDER_PLATE: f64 = 1.0;
+/// Gap between the body of a gripper and the cheeks, and between ears and lips, in.
+const GAP: f64 = 0.25;
+/// Thickness of cheeks and lips, in.
+const THICK: f64 = 1.0;
+/// A lip begins this far before the seat's ears end, in: a gripper slid back by more than half the way is free of it.
+const LIP: f64 = 0.75;
+/// A gripper that was let go this far askew does not find the cheeks, radians (3 degrees).
+const ASKEW: f64 = 0.052_36;
+/// A gripper may be this far under its rest, in: pressed down by the robot.
+const PRESSED: f64 = 0.10;
+/// What is farther than this from the rest has nothing to do with the holster, in.
+const NEAR: f64 = 6.0;
+/// A gripper that is lifted by this much under the lips is stopped by them, in.
+const LIP_PLAY: f64 = 0.15;
+
+/// A holster.
+#[derive(Clone, Debug)]
+pub struct Holster {
+    name: &'static str,
+    frame: Frame,
+    description: Holsters,
+}
+
+/// Where a gripper is, seen from its rest on a holster.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offset {
+    /// Above the rest, in.
+    pub up: f64,
+    /// To the left, in.
+    pub aside: f64,
+    /// Towards the seat, in.
+    pub forward: f64,
+    /// How far it is turned, radians.
+    pub angle: f64,
+}
+
+/// A gripper on its holster, or dropping onto it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Perch {
+    /// Above the rest, in.
+    pub up: f64,
+    /// Speed of falling, in/s.
+    pub speed: f64,
+    /// Towards the seat, in.
+    pub forward: f64,
+}
+
+impl Perch {
+    /// Fall for `dt` seconds, as far as there is room.
+    pub fn fall(&mut self, dt: f64) {
+        self.speed += GRAVITY * dt;
+        self.up -= self.speed * dt;
+        if self.up <= 0.0 {
+            (self.up, self.speed) = (0.0, 0.0);
+        }
+    }
+
+    /// It lies on the holster.
+    #[must_use]
+    pub fn rests(&self) -> bool {
+        self.up <= 0.0
+    }
+}
+
+impl Holster {
+    /// A holster at the tool frame of a gripper that rests on it.
+    #[must_use]
+    pub fn new(name: &'static str, frame: Frame, description: &Holsters) -> Self {
+        Self { name, frame, description: description.clone() }
+    }
+
+    /// A gripper there may have to do with this holster.
+    #[must_use]
+    pub fn is_near(&self, gripper: &Frame) -> bool {
+        (gripper.position - self.frame.position).norm() < NEAR
+    }
+
+    /// Where a gripper's tool frame is in this holster.
+    #[must_use]
+    pub fn offset(&self, gripper: &Frame) -> Offset {
+        let here = self.frame.inverse().compose(gripper);
+        Offset {
+            up: -here.position.x,
+            aside: here.position.y,
+            forward: here.position.z,
+            angle: rotation_vector(&here.rotation).norm(),
+        }
+    }
+
+    /// The tool frame of a gripper that is perched here.
+    #[must_use]
+    pub fn gripper(&self, perch: &Perch) -> Frame {
+        self.frame.shifted(Vector::new(-perch.up, 0.0, perch.forward))
+    }
+
+    /// A gripper in the seat.
+    #[must_use]
+    pub fn seated(&self) -> Perch {
+        Perch { up: 0.0, speed: 0.0, forward: self.description.seat }
+    }
+
+    /// Where a gripper that is let go lands; `None` if it misses the cheeks.
+    #[must_use]
+    pub fn catch(&self, offset: &Offset) -> Option<Perch> {
+        let Holsters { catch_height, catch_aside, seat, .. } = self.description;
+        let over = (-PRESSED..=catch_height).contains(&offset.up)
+            && offset.aside.abs() <= catch_aside
+            && (-catch_aside..=seat + catch_aside).contains(&offset.forward)
+            && offset.angle <= ASKEW;
+        over.then(|| Perch { up: offset.up.max(0.0), speed: 0.0, forward: self.slide(offset.forward) })
+    }
+
+    /// Where a gripper comes to lie that is drawn to `forward`: not beyond the seat, and into its detent.
+    #[must_use]
+    pub fn slide(&self, forward: f64) -> f64 {
+        let Holsters { seat, detent, .. } = self.description;
+        if forward >= seat - detent { seat } else { forward }
+    }
+
+    /// The lips are over the ears of a gripper there.
+    fn under_lips(&self, offset: &Offset) -> bool {
+        let beside = self.description.ears[1] + self.description.catch_aside;
+        (self.description.seat - LIP..=self.description.seat + LIP).contains(&offset.forward)
+            && offset.aside.abs() <= beside
+    }
+
+    /// The ears lie on the cheeks under the lips: lifting is prevented.
+    #[must_use]
+    pub fn holds_down(&self, offset: &Offset) -> bool {
+        self.under_lips(offset) && offset.up.abs() <= LIP_PLAY
+    }
+
+    /// A gripper that was held down is being torn upwards.
+    #[must_use]
+    pub fn tears(&self, offset: &Offset) -> bool {
+        self.under_lips(offset) && offset.up > LIP_PLAY
+    }
+
+    /// Bits of [`rcs_core::interface::device::HolsterSensors`] for one gripper, wherever it is.
+    #[must_use]
+    pub fn sensors(&self, gripper: &Frame, ears: &[Frame; 2]) -> u8 {
+        let Holsters { large_range, small_range, seat, .. } = self.description;
+        let here = self.frame.inverse();
+        ears.iter().enumerate().fold(0, |bits, (side, ear)| {
+            let rest = Vector::new(ear.position.x, ear.position.y, 0.0);
+            let away = here.compose(&gripper.compose(ear)).position - rest;
+            let large = (-large_range..=large_range).contains(&-away.x)
+                && away.y.abs() <= large_range
+                && (-large_range..=seat + large_range).contains(&away.z);
+            let small = away.x.abs() <= small_range
+                && away.y.abs() <= 2.0 * small_range
+                && (away.z - seat).abs() <= small_range;
+            bits | (u8::from(large) << side) | (u8::from(small) << (side + 2))
+        })
+    }
+
+    /// Cheeks, lips and foot, world.
+    #[must_use]
+    pub fn blocks(&self, gripper: &Gripper) -> Vec<Block> {
+        let [thick, wide, long] = self.description.ears;
+        let [plate, body] = [gripper.plate(), gripper.body[1] / 2.0];
+        let rest = -plate + UNDER_PLATE + thick;
+        let (inner, outer) = (body + GAP, body + GAP + THICK.max(wide));
+        let (back, front) = (-long / 2.0 - GAP, self.description.seat + long / 2.0 + GAP);
+        let lip = self.description.seat + long / 2.0 - LIP;
+        let mut blocks = Vec::with_capacity(5);
+        for (side, sign) in [("left", 1.0), ("right", -1.0)] {
+            let mut part = |what: &str, x: [f64; 2], z: [f64; 2]| {
+                let name = format!("{}_{side}_{what}", self.name);
+                let (low, high) =
+                    (Vector::new(x[0], sign * inner, z[0]), Vector::new(x[1], sign * outer, z[1]));
+                blocks.push(self.block(&name, low, high));
+            };
+            part("cheek", [rest, 1.0], [back, front]);
+            part("lip", [rest - thick - GAP - THICK / 2.0, rest - thick - GAP], [lip, front]);
+        }
+        let foot = format!("{}_foot", self.name);
+        blocks.push(self.block(
+            &foot,
+            Vector::new(1.0, -outer, back),
+            Vector::new(1.0 + THICK, outer, front),
+        ));
+        blocks
+    }
+
+    fn block(&self, name: &str, low: Vector, high: Vector) -> Block {
+        let here = Frame { position: (low + high) / 2.0, rotation: Rotation::identity() };
+        Block {
+            name: name.into(),
+            frame: self.frame.compose(&here),
+            size: (high - low).map(f64::abs),
+            work_surface: false,
+            jaw: false,
+            strike: None,
+        }
+    }
+}
+
+/// The holsters: right, left, centre. The description has been validated: its points span frames.
+#[must_use]
+pub fn holsters(cell: &CellDescription) -> [Holster; 3] {
+    let Holsters { right, left, centre, .. } = &cell.holsters;
+    let holster = |name, points: &Points| {
+        Holster::new(name, points.frame().unwrap_or_else(Frame::identity), &cell.holsters)
+    };
+    [holster("holster_right", right), holster("holster_left", left), holster("holster_centre", centre)]
+}
+
+/// Middles of the left and the right ear in a gripper's tool frame, in.
+#[must_use]
+pub fn ears(holsters: &Holsters, gripper: &Gripper) -> [Frame; 2] {
+    let [thick, wide, _] = holsters.ears;
+    [1.0, -1.0].map(|side| Frame {
+        position: Vector::new(
+            -gripper.plate() + UNDER_PLATE + thick / 2.0,
+            side * (gripper.body[1] + wide) / 2.0,
+            0.0,
+        ),
+        rotation: Rotation::identity(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::CellDescription;
+    use rcs_core::frame::rotation_by;
+
+    fn cell() -> CellDescription {
+        CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap()
+    }
+
+    fn holster() -> Holster {
+        let cell = cell();
+        Holster::new("holster_right", cell.holsters.right.frame().unwrap(), &cell.holsters)
+    }
+
+    fn seen(up: f64, forward: f64) -> u8 {
+        let cell = cell();
+        let holster = holster();
+        let gripper = holster.gripper(&Perch { up, speed: 0.0, forward });
+        holster.sensors(&gripper, &ears(&cell.holsters, &cell.gripper.parts))
+    }
+
+    #[test]
+    fn large_sensors_see_the_height_and_small_ones_the_seat() {
+        assert_eq!(seen(0.55, 0.0), 0);
+        assert_eq!(seen(0.45, 0.0), 0b0011);
+        assert_eq!(seen(0.0, 0.0), 0b0011);
+        assert_eq!(seen(0.0, 1.38), 0b0011);
+        assert_eq!(seen(0.0, 1.45), 0b1111);
+        assert_eq!(seen(0.2, 1.5), 0b0011);
+    }
+
+    #[test]
+    fn a_gripper_lands_on_the_cheeks_or_misses_them() {
+        let holster = holster();
+        let at = |up: f64, aside: f64, roll: f64| {
+            let gripper = holster
+                .gripper(&Perch { up, speed: 0.0, forward: 0.1 })
+                .shifted(Vector::new(0.0, aside, 0.0))
+                .turned(&rotation_by(&Vector::new(roll, 0.0, 0.0)));
+            holster.catch(&holster.offset(&gripper))
+        };
+        let landed = at(0.4, 0.1, 0.01).unwrap();
+        assert!((landed.up - 0.4).abs() < 1e-9 && (landed.forward - 0.1).abs() < 1e-9);
+        assert_eq!(at(0.7, 0.0, 0.0), None, "too high");
+        assert_eq!(at(0.4, 0.6, 0.0), None, "beside it");
+        assert_eq!(at(0.4, 0.0, 0.1), None, "askew");
+        let mut dropping = landed;
+        for _ in 0..24 {
+            dropping.fall(0.0025);
+        }
+        assert!(dropping.rests(), "0.4 in in 60 ms: {dropping:?}");
+    }
+
+    #[test]
+    fn the_detent_draws_to_the_seat_and_the_lips_hold_down() {
+        let holster = holster();
+        assert_eq!([holster.slide(1.30), holster.slide(1.42), holster.slide(1.7)], [1.30, 1.5, 1.5]);
+        let held = |up, forward| {
+            let offset = Offset { up, aside: 0.0, forward, angle: 0.0 };
+            (holster.holds_down(&offset), holster.tears(&offset))
+        };
+        assert_eq!(held(0.0, 1.5), (true, false));
+        assert_eq!(held(0.2, 1.5), (false, true));
+        assert_eq!(held(0.2, 0.0), (false, false), "slid back it is free");
+    }
+
+    #[test]
+    fn a_gripper_in_its_holster_touches_only_what_carries_it() {
+        let cell = cell();
+        let holster = holster();
+        let [thick, ..] = cell.holsters.ears;
+        let blocks = holster.blocks(&cell.gripper.parts);
+        let cheek = blocks.iter().find(|block| block.name.ends_with("left_cheek")).unwrap();
+        let here = holster.frame.inverse().compose(&cheek.frame);
+        let [ear, _] = ears(&cell.holsters, &cell.gripper.parts);
+        let top = here.position.x - cheek.size.x / 2.0;
+        assert!((ear.position.x + thick / 2.0 - top).abs() < 1e-9, "ears lie on the cheek");
+        assert!(here.position.y - cheek.size.y / 2.0 > cell.gripper.parts.body[1] / 2.0);
+    }
+}

@@ -1,0 +1,72 @@
+//! Air to a gripper: what the valves let flow.
+//!
+//! The parts gripper and the hand of the pedestal have eight valves, whose flows add up (III.3.6); the v-gripper and the tool
+//! gripper have two, and open or close at one speed (VI.4, VI.5). Both drive the same cylinder ([`crate::gripper::Air`]):
+//! free fingers move, blocked fingers gain force, and trapped air keeps both.
+
+use rcs_core::interface::device::{JawValves, valve};
+
+/// Speeds of the six flow valves, in/s, opening positive ([`valve`]).
+const FLOWS: [(u8, f64); 6] = [
+    (valve::OPEN_FINE, 0.25),
+    (valve::OPEN_MEDIUM, 1.0),
+    (valve::OPEN_COARSE, 4.0),
+    (valve::CLOSE_FINE, -0.25),
+    (valve::CLOSE_MEDIUM, -1.0),
+    (valve::CLOSE_COARSE, -4.0),
+];
+
+/// What the valves of a gripper let through.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Supply {
+    /// Speed of free fingers, in/s, opening positive.
+    pub flow: f64,
+    /// Both sides are vented: the force goes.
+    pub vent: bool,
+}
+
+impl Supply {
+    /// A gripper that is off the robot: its ports are open.
+    pub const CUT: Self = Self { flow: 0.0, vent: true };
+
+    /// Of eight valves.
+    #[must_use]
+    pub fn of_bits(bits: u8) -> Self {
+        let supplied = bits & valve::SUPPLY != 0;
+        let flow = FLOWS.iter().filter(|(bit, _)| supplied && bits & bit != 0).map(|(_, flow)| flow).sum();
+        Self { flow, vent: bits & valve::VENT != 0 }
+    }
+
+    /// Of two valves that move free fingers at `speed` in/s; with air on both sides they balance.
+    #[must_use]
+    pub fn of_jaws(valves: &JawValves, speed: f64) -> Self {
+        let flow = match (valves.open, valves.close) {
+            (true, false) => speed,
+            (false, true) => -speed,
+            _ => 0.0,
+        };
+        Self { flow, vent: false }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flows_add_up_while_the_supply_is_on() {
+        let bits = valve::OPEN_COARSE | valve::OPEN_FINE | valve::CLOSE_MEDIUM;
+        assert_eq!(Supply::of_bits(valve::SUPPLY | bits), Supply { flow: 3.25, vent: false });
+        assert_eq!(Supply::of_bits(bits), Supply::default());
+        assert!(Supply::of_bits(valve::VENT).vent);
+    }
+
+    #[test]
+    fn two_valves_open_close_or_balance() {
+        let flow = |open, close| Supply::of_jaws(&JawValves { open, close }, 2.0).flow;
+        assert_eq!(
+            [flow(true, false), flow(false, true), flow(true, true), flow(false, false)],
+            [2.0, -2.0, 0.0, 0.0]
+        );
+    }
+}

@@ -1,0 +1,138 @@
+//! The quick change: the A plate on the wrist with its locking ring, and how it meets the B plate of a gripper.
+//!
+//! Air turns the ring between its two ends as long as the control port is enabled; two reflectance sensors see the ends and
+//! nothing between (VI.2). The ring catches a B plate only if it is locked while the plates lie together, and lets go of it
+//! at its unlocked end. The id pins are longer than the play of the plates: they read the gripper that lies under the A
+//! plate whether it is locked or not, also after it has dropped onto its holster (V.2.1 QC-DETACH).
+//!
+//! What carries a gripper, and what happens to it when nothing does, is in [`crate::cell`].
+
+use rcs_core::{
+    frame::{Frame, rotation_vector},
+    interface::device::QuickChangeValves,
+};
+
+use crate::description::QuickChange as Description;
+
+/// The ring is seen in an end position within this share of its way.
+const SEEN: f64 = 0.02;
+/// Plates that are pressed together this far, in, are still on their pins; beyond it something has been run into.
+const PRESSED: f64 = 0.30;
+/// Pins meet their pads within this angle, radians (3 degrees).
+const PINS_ANGLE: f64 = 0.052_36;
+
+/// The locking ring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ring {
+    /// 0 unlocked, 1 locked.
+    place: f64,
+    travel_time: f64,
+}
+
+impl Ring {
+    /// A ring at one of its ends.
+    #[must_use]
+    pub fn new(description: &Description, locked: bool) -> Self {
+        Self { place: f64::from(u8::from(locked)), travel_time: description.travel_time_s }
+    }
+
+    /// Let the air act for `dt` seconds. Air on both sides, or on none, leaves the ring where it is.
+    pub fn advance(&mut self, dt: f64, valves: &QuickChangeValves) {
+        let way = dt / self.travel_time;
+        let towards = match (valves.port, valves.lock, valves.unlock) {
+            (true, true, false) => way,
+            (true, false, true) => -way,
+            _ => return,
+        };
+        self.place = (self.place + towards).clamp(0.0, 1.0);
+    }
+
+    /// The sensor of the locked position sees the ring.
+    #[must_use]
+    pub fn locked(&self) -> bool {
+        self.place >= 1.0 - SEEN
+    }
+
+    /// The sensor of the unlocked position sees the ring.
+    #[must_use]
+    pub fn unlocked(&self) -> bool {
+        self.place <= SEEN
+    }
+}
+
+/// How the A plate stands over a B plate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// Distance of the plates, in; negative if they are pressed together.
+    pub apart: f64,
+    /// Offset in the plane of the plates, in.
+    pub aside: f64,
+    /// Angle between them, radians.
+    pub angle: f64,
+}
+
+impl Gap {
+    /// Between the robot's tool frame and that of a gripper; where they coincide the plates lie together.
+    #[must_use]
+    pub fn between(robot: &Frame, gripper: &Frame) -> Self {
+        let gripper = robot.inverse().compose(gripper);
+        let at = gripper.position;
+        Self { apart: at.x, aside: libm::hypot(at.y, at.z), angle: rotation_vector(&gripper.rotation).norm() }
+    }
+
+    /// The mating elements are in each other: the id pins touch, and the plates take each other along sideways.
+    #[must_use]
+    pub fn engaged(&self, description: &Description) -> bool {
+        (-PRESSED..=description.pins_reach).contains(&self.apart)
+            && self.aside <= description.pins_play
+            && self.angle <= PINS_ANGLE
+    }
+
+    /// The ring reaches the B plate.
+    #[must_use]
+    pub fn lies_together(&self, description: &Description) -> bool {
+        self.apart.abs() <= description.tolerance
+            && self.aside <= description.tolerance
+            && self.angle <= description.tolerance_degrees.to_radians()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::description::CellDescription;
+    use rcs_core::frame::{Vector, rotation_by};
+
+    fn description() -> Description {
+        CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap().quick_change
+    }
+
+    #[test]
+    fn the_ring_moves_with_port_and_air_and_is_seen_at_its_ends() {
+        let mut ring = Ring::new(&description(), true);
+        let unlock = QuickChangeValves { unlock: true, port: true, lock: false };
+        ring.advance(10.0, &QuickChangeValves { port: false, ..unlock });
+        assert!(ring.locked(), "the port is disabled");
+        ring.advance(10.0, &QuickChangeValves { lock: true, ..unlock });
+        assert!(ring.locked(), "air on both sides");
+        ring.advance(description().travel_time_s / 2.0, &unlock);
+        assert!(!ring.locked() && !ring.unlocked(), "neither while between");
+        ring.advance(description().travel_time_s, &unlock);
+        assert!(ring.unlocked() && !ring.locked());
+    }
+
+    #[test]
+    fn plates_lie_together_within_their_tolerance() {
+        let (quick_change, robot) = (description(), Frame::identity());
+        let at = |x: f64, y: f64, degrees: f64| {
+            let turned = robot.turned(&rotation_by(&Vector::new(0.0, degrees.to_radians(), 0.0)));
+            let gap = Gap::between(&robot, &turned.shifted(Vector::new(x, y, 0.0)));
+            (gap.engaged(&quick_change), gap.lies_together(&quick_change))
+        };
+        assert_eq!(at(0.04, 0.04, 0.5), (true, true));
+        assert_eq!(at(0.60, 0.0, 0.0), (true, false), "dropped: the pins still touch");
+        assert_eq!(at(0.0, 0.0, 1.5), (true, false));
+        assert_eq!(at(0.70, 0.0, 0.0), (false, false));
+        assert_eq!(at(0.0, 0.2, 0.0), (false, false));
+    }
+}
