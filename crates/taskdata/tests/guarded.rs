@@ -52,7 +52,7 @@ fn sensors_and_relative_moves_are_found_by_name_and_location() {
   -rel- INS-NEAR lpt TOOL-TRNS 4 20 8 0 IN
   -rel- INS-IN   lpt TOOL-TRNS 4 10 8 0 IN   INS-FX
   -rel- QCD-DOWN own HOLSTER   4 12 8 0 IN   HOL-R-NEAR
-  -rel- QCD-DOWN lpt HOLSTER-L 4  9 8 0 ...
+  -rel- QCD-DOWN lpt HOLSTER-L 4  9 8 0 ...  BEAM
   -rel- QCA-UP   $$$           4 30 8 0 OUT
 "
     ))
@@ -66,7 +66,7 @@ fn sensors_and_relative_moves_are_found_by_name_and_location() {
     assert_eq!(move_at(&data, "INS-NEAR", "TOOL-TRNS"), Some((20, Name10::EMPTY)));
     assert_eq!(move_at(&data, "INS-IN", "TOOL-TRNS"), Some((10, named("INS-FX"))));
     assert_eq!(move_at(&data, "QCD-DOWN", "HOLSTER-R"), Some((12, named("HOL-R-NEAR"))), "by its owner");
-    assert_eq!(move_at(&data, "QCD-DOWN", "HOLSTER-L"), Some((9, Name10::EMPTY)), "the exact entry wins");
+    assert_eq!(move_at(&data, "QCD-DOWN", "HOLSTER-L"), Some((9, named("BEAM"))), "the exact entry wins");
     assert_eq!(move_at(&data, "QCA-UP", "HOLSTER-L"), Some((30, Name10::EMPTY)), "the wild card");
     assert_eq!(move_at(&data, "QCD-DOWN", "TOOL-TRNS"), None);
     assert_eq!(move_at(&data, "QCD-DOWN-AND-ON", "HOLSTER-L"), None, "no name is that long");
@@ -131,5 +131,73 @@ fn a_misspelt_beginning_is_no_sensor() {
             "a compiling word or a number was expected, -rle- found",
             "help: the nearest compiling word is -rel-",
         ]
+    );
+}
+
+/// The warnings that `lines` cause after the cell, a line each: message and help.
+fn warned(lines: &str) -> Vec<String> {
+    let text = format!("{CELL}BLOCK# 602 OFFSET 21000\n{lines}\n");
+    let source = Source { name: "try.blk".to_owned(), text: text.into() };
+    let (_, report) = Store::from_sources(vec![source]).unwrap_or_else(|report| panic!("{report}"));
+    report
+        .warnings()
+        .flat_map(|w| [w.message().to_owned(), w.help().unwrap_or_default().to_owned()])
+        .collect()
+}
+
+#[test]
+fn a_guarded_move_is_slow_enough_to_stop() {
+    assert_eq!(
+        warned("  -rel- INS-IN lpt TOOL-TRNS 4 2 8 0 IN INS-FX"),
+        [
+            "INS-IN at 0.2 in/s against something hard ends at 140 lb; INS-FX overloads at 128",
+            "the robot stands 0.2 s after 60 lb: vel-max 1 at most",
+        ]
+    );
+    assert_eq!(warned("  -rel- INS-IN lpt TOOL-TRNS 4 1 8 0 IN INS-FX"), Vec::<String>::new());
+    assert_eq!(
+        warned("  -sen- STIFF my 0 -500\n  -rel- INS-IN lpt TOOL-TRNS 4 1 8 0 IN STIFF"),
+        [
+            "INS-IN at 0.1 in/s against something hard ends at 820 in lb; STIFF overloads at 512",
+            "the robot stands 0.2 s after 500 in lb: take a smaller threshold",
+        ]
+    );
+    let switch = warned("  -rel- QCD-DOWN own HOLSTER 4 100 8 0 IN HOL-R-NEAR");
+    assert_eq!(switch, Vec::<String>::new(), "a switch is not pressed upon");
+}
+
+#[test]
+fn relative_moves_are_those_that_commands_look_for() {
+    assert_eq!(
+        said("  -rel- INS-IN lpt TOOL-TRNS 4 1 8 0 IN"),
+        [
+            "INS-IN is a guarded move and names no sensor",
+            "help: write the name of a sensor (-sen-) behind the movetable",
+        ]
+    );
+    assert_eq!(
+        warned("  -rel- INS-NEAR lpt TOOL-TRNS 4 1 8 0 IN INS-FX"),
+        ["INS-NEAR is no guarded move: nothing watches INS-FX", "leave the sensor out"]
+    );
+    assert_eq!(
+        warned("  -rel- INS-NAER lpt TOOL-TRNS 4 1 8 0 IN"),
+        ["no command looks for a relative move INS-NAER", "the nearest known name is INS-NEAR"]
+    );
+}
+
+#[test]
+fn relative_moves_are_tried_from_where_they_lead() {
+    let far = "  1 t 0 0 -1500 -mtb- SLIDE   1 t 2500 0 0 -mtb- FAR\n";
+    // The slide leads down to the height of the shoulder, from where the arm reaches farther.
+    let slide = "  -rel- REL-SLIDE lpt TOOL-TRNS 4 1 8 0 SLIDE INS-FX\n";
+    let back = "  -rel- REL-BACK lpt TOOL-TRNS 4 1 8 0 OUT\n";
+    assert!(warned(&format!("{far}{slide}{back}")).is_empty());
+    assert_eq!(
+        said(&format!("{far}  -rel- REL-BACK lpt TOOL-TRNS 4 1 8 0 FAR")).first().map(String::as_str),
+        Some("relative move REL-BACK at TOOL-TRNS: out of reach by 13.29 in")
+    );
+    assert_eq!(
+        said(&format!("{far}{slide}  -rel- REL-BACK lpt TOOL-TRNS 4 1 8 0 FAR")).first().map(String::as_str),
+        Some("relative move REL-BACK at TOOL-TRNS: out of reach by 12.08 in")
     );
 }

@@ -229,7 +229,7 @@ fn a_file_has_an_end() {
     let text: String = blocks
         .chunks(16)
         .enumerate()
-        .map(|(i, c)| format!("BLOCK# {i} OFFSET 21001\n{}", c.concat()))
+        .map(|(i, c)| format!("BLOCK# {} OFFSET {}\n{}", i % 1000, 30_000 + i / 1000 * 1000, c.concat()))
         .collect();
     assert_eq!(said(&text), ["error: FILE FULL: MOVTAB holds 100000 records, 100001 found"]);
 }

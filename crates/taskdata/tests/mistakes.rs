@@ -258,7 +258,7 @@ error: objects/linkbar.blk: block 260 (offset 20000), line 5, column 9: grip 2 o
 error: objects/linkbar.blk: block 260 (offset 20000), line 9, column 9: grip 2 of LINKBAR1 at UNIT_1 sector 1: out of reach by 1.28 in
      -grip- LINKBAR1         2     $$$                  LK-GRP-1
             ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
-    help: its tool point is at (-82.25, -0.25, -16.35) in; the same at 3 more places
+    help: its tool point is at (-82.25, -0.25, -16.35) in; the same at 1 more place
 error: objects/linkbar.blk: block 260 (offset 20000), line 11, column 9: grip 2 of LINKBAR1 at UNIT_2 sector 1: out of reach by 5.11 in
      -grip- LINKBAR1         2     lpt    UNIT_2        LK-GRP-1
             ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
@@ -284,7 +284,7 @@ warning: objects/linkbar.blk: block 260 (offset 20000), line 5, column 9: grip 2
 warning: objects/linkbar.blk: block 260 (offset 20000), line 9, column 9: grip 2 of LINKBAR1 at UNIT_1 sector 1: the gripper is 1.0 degrees from vertical
      -grip- LINKBAR1         2     $$$                  LK-GRP-1
             ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
-    help: tilt the gripper by 3 degrees or more, as LK-GRP-1 does (VIII.9.5); the same at 7 more places
+    help: tilt the gripper by 3 degrees or more, as LK-GRP-1 does (VIII.9.5); the same at 3 more places
 warning: objects/linkbar.blk: block 260 (offset 20000), line 11, column 9: grip 2 of LINKBAR1 at UNIT_2 sector 1: the gripper is 1.0 degrees from vertical
      -grip- LINKBAR1         2     lpt    UNIT_2        LK-GRP-1
             ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
@@ -365,6 +365,84 @@ error: objects/linkbar.blk: block 261 (offset 20000), line 7, column 2: a compil
      -grp- S-LINKBAR1_BH    1     lpt    PFIXTURE      LK-S-GRP
      ^^^^^
     help: the nearest compiling word is -grip-
+"#;
+    assert_eq!(said, expected.trim_matches('\n'), "\n{said}");
+}
+
+#[test]
+fn blocks_are_numbered_to_999() {
+    let said = said("objects/clevis.blk", "BLOCK# 457 OFFSET 20000", "BLOCK# 1457 OFFSET 20000");
+    let expected = r#"
+error: objects/clevis.blk: block 451 (offset 20000), line 5, column 33: there is no block 457 (offset 20000)
+      456 load ( o-loc     )        457 load ( pedestal  )
+                                    ^^^^^^^^
+error: objects/clevis.blk: line 59, column 1: the blocks of an offset are numbered 0 to 999, 1457 found
+    BLOCK# 1457 OFFSET 20000
+    ^^^^^^^^^^^^^^^^^^^^^^^^
+    help: go on at the next offset, 1000 further
+"#;
+    assert_eq!(said, expected.trim_matches('\n'), "\n{said}");
+}
+
+#[test]
+fn a_full_file_names_its_declaration() {
+    let said =
+        said("directory.blk", "BLOCK# 905 OFFSET 21000\n", "BLOCK# 905 OFFSET 21000\n-file- MOVTAB 20\n");
+    let expected = r#"
+error: directory.blk: block 905 (offset 21000), line 0, column 8: FILE FULL: MOVTAB holds 20 records, 41 found
+    -file- MOVTAB 20
+           ^^^^^^^^^
+    help: raise the number in this declaration, to 100000 at most
+"#;
+    assert_eq!(said, expected.trim_matches('\n'), "\n{said}");
+}
+
+#[test]
+fn a_sector_lies_in_its_tray() {
+    let said = said("locations.blk", "SECTORS        2    2     2 ", "SECTORS        2    2     3 ");
+    let expected = r#"
+error: locations.blk: block 702 (offset 21000), line 5, column 10: sector 5 of SECTORS is 5.25 in outside its tray
+      -arr-  SECTORS        2    2     3     -1050ty    -1050tz    0
+             ^^^^^^^
+    help: a tray is 21.00 in square; its corner is UNIT_1, columns lead along tool -Y and rows along -Z; the same at 1 more place
+"#;
+    assert_eq!(said, expected.trim_matches('\n'), "\n{said}");
+}
+
+#[test]
+fn a_trajectory_leads_from_one_location_to_another() {
+    let said = said(
+        "trajectories.blk",
+        "-traj   HOME-PFIX       lpt     HOME    lpt    PFIXTURE",
+        "-traj   HOME-PFIX       lpt     HOME    lpt    HOME",
+    );
+    let expected = r#"
+warning: trajectories.blk: block 853 (offset 21000), line 5, column 33: no command can reach the trajectory HOME-PFIX: it ends at the location where it starts
+    -traj   HOME-PFIX       lpt     HOME    lpt    HOME
+                                    ^^^^^^^^^^^^^^^^^^^
+    help: within one location only depart and approach are flown
+"#;
+    assert_eq!(said, expected.trim_matches('\n'), "\n{said}");
+}
+
+#[test]
+fn objects_differ_in_more_than_their_vision_ids() {
+    let more = "BLOCK# 1 OFFSET 22000
+-obj- ONE 1 300 60 30 350   -obj- TWO 1 300 60 30 350
+-grip- ONE 1 lpt UNIT_1 LK-GRP-1
+-grip- TWO 1 lpt UNIT_1 LK-GRP-1
+-vu- ONE 1 21 lpt UNIT_1 GR-PIC lpt 561 1
+-vu- TWO 1 22 lpt UNIT_1 GR-PIC lpt 561 1
+";
+    let mut sources = sources();
+    sources.push(Source { name: "more.blk".to_owned(), text: more.into() });
+    let (_, report) = Store::from_sources(sources).unwrap_or_else(|report| panic!("{report}"));
+    let said = shown(&report);
+    let expected = r#"
+warning: more.blk: block 1 (offset 22000), line 0, column 35: TWO differs from ONE in nothing but its vision id
+    -obj- ONE 1 300 60 30 350   -obj- TWO 1 300 60 30 350
+                                      ^^^
+    help: nothing but the camera can tell the two apart: is one a copy that was not finished?
 "#;
     assert_eq!(said, expected.trim_matches('\n'), "\n{said}");
 }

@@ -31,9 +31,15 @@ impl<'a> TaskData<'a> {
         grip: i32,
         place: &Place,
     ) -> Option<MovtabId> {
+        self.grip_loc(object, grip, place)?.of(self.grip_locs).map(|record| record.movetable)
+    }
+
+    /// The record number in GRIP-LOC for a grip of an object at a place (VII.7.5).
+    #[must_use]
+    pub fn grip_loc<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<GripLocId> {
         let object = self.object_named(object)?;
         let number = self.at_place(place, |at| self.indexes.grip_locs.find(grip_at_key(object, grip, at)))?;
-        GripLocId::new(number).of(self.grip_locs).map(|record| record.movetable)
+        Some(GripLocId::new(number))
     }
 
     /// Where the tool frame is when an object at a location is held with a grip.
@@ -151,11 +157,17 @@ impl<'a> TaskData<'a> {
     /// end, of the start, of both.
     #[must_use]
     pub fn trajectory(&self, from: &Place, to: &Place) -> Option<PathId> {
+        self.trajectory_id(from, to)?.of(self.trajectories).map(|record| record.path)
+    }
+
+    /// The record number of that trajectory.
+    #[must_use]
+    pub fn trajectory_id(&self, from: &Place, to: &Place) -> Option<TrajId> {
         let ends = self.aliases(to);
         let number = self.aliases(from).find_map(|start| {
             ends.clone().find_map(|end| self.indexes.trajectories.find(pair_key(start, end)))
         })?;
-        TrajId::new(number).of(self.trajectories).map(|record| record.path)
+        Some(TrajId::new(number))
     }
 
     /// Where a point of a path is, with the frame that its movetables refer to: the goal of an approach, the start of a

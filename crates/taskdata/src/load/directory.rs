@@ -11,7 +11,7 @@ use super::{
     lex,
     parse::parse,
     report::Problems,
-    source::{At, BLOCK_COLUMNS, BLOCK_LINES, Block, BlockFault, BlockNumber, Source, blocks},
+    source::{At, BLOCK_COLUMNS, BLOCK_LINES, Block, BlockFault, BlockNumber, LAST_BLOCK, Source, blocks},
 };
 
 /// Blocks with which loading begins.
@@ -65,6 +65,15 @@ fn note(fault: BlockFault, at: At, problems: &mut Problems) {
     match fault {
         BlockFault::Header => {
             problems.error("block.header", at, "a header like `BLOCK# 619 OFFSET 21000` was expected");
+        }
+        BlockFault::Number(number) => {
+            problems.error_help(
+                "block.number",
+                at,
+                format!("the blocks of an offset are numbered 0 to {LAST_BLOCK}, {number} found"),
+                "go on at the next offset, 1000 further",
+            );
+            problems.expected(format!("from 0 to {LAST_BLOCK}"));
         }
         BlockFault::NoHeader => problems.error_help(
             "block.header",
@@ -138,7 +147,8 @@ impl Loader<'_, '_, '_> {
 
     /// A block that no directory names would be missed silently.
     fn unloaded(&mut self) {
-        for (number, block) in self.all {
+        // One whose number is refused cannot be named.
+        for (number, block) in self.all.iter().filter(|(number, _)| number.number <= LAST_BLOCK) {
             if !self.read.blocks.contains(number) {
                 self.problems.warning(
                     "block.unloaded",

@@ -22,6 +22,57 @@ use super::{
     parse::{BEGINNINGS, COMPILING_WORDS, Parser, Skip, is_integer},
 };
 
+/// From where a relative move leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beginning {
+    /// From the pose of the command's location.
+    Location,
+    /// From where another relative move of the same command ended.
+    After(&'static str),
+}
+
+/// A relative move that a command of E-move looks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct KnownMove {
+    /// Its name in the task data.
+    pub name: &'static str,
+    /// From where it leads.
+    pub from: Beginning,
+    /// A sensor guards it (GO-UNTIL, GO-WHILE).
+    pub guarded: bool,
+}
+
+const fn known(name: &'static str, from: Beginning, guarded: bool) -> KnownMove {
+    KnownMove { name, from, guarded }
+}
+
+/// All relative moves that commands look for (V.2.1), in the order in which a command makes them.
+pub const RELATIVE_MOVES: &[KnownMove] = &[
+    known("QCD-DOWN", Beginning::Location, true),
+    known("QCD-SEAT", Beginning::After("QCD-DOWN"), true),
+    known("QCD-UP", Beginning::After("QCD-SEAT"), false),
+    known("QCA-FAST", Beginning::Location, false),
+    known("QCA-SLOW", Beginning::Location, false),
+    known("QCA-BACK", Beginning::Location, false),
+    known("QCA-LIFT", Beginning::Location, false),
+    known("QCA-UP", Beginning::Location, false),
+    known("WITHDRAW", Beginning::Location, false),
+    known("INS-NEAR", Beginning::Location, false),
+    known("INS-IN", Beginning::Location, true),
+    known("REL-SLIDE", Beginning::Location, true),
+    known("REL-BACK", Beginning::After("REL-SLIDE"), false),
+    known("ACQ-NEAR", Beginning::Location, false),
+    known("ACQ-STRIKE", Beginning::Location, true),
+    known("ACQ-SLIDE", Beginning::After("ACQ-STRIKE"), true),
+    known("REM-OUT", Beginning::Location, true),
+];
+
+/// The relative move of a name that a command looks for.
+#[must_use]
+pub fn relative_move_named(name: &str) -> Option<&'static KnownMove> {
+    RELATIVE_MOVES.iter().find(|known| known.name == name)
+}
+
 /// A threshold, lb or in lb: well beyond what the tool gripper may press with.
 const THRESHOLD: RangeInclusive<i32> = -1000..=1000;
 /// The holsters right, left and centre.

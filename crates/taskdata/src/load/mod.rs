@@ -6,7 +6,7 @@
 //! 2. [`parse`], [`forms`] and [`guarded`]: words into [`entries`];
 //! 3. [`directory`]: which blocks are loaded at all (Figure VIII.12);
 //! 4. `link`: names into record numbers, duplicates, unknown names;
-//! 5. `check`: geometry: every place the robot is sent to can be reached;
+//! 5. `check`: what a command would run into; every place the robot is sent to can be reached;
 //! 6. [`store`]: the files; [`origins`]: where each record was entered; [`report`]: everything that was found.
 //!
 //! [`job`] reads the job files, which stand beside the blocks.
@@ -76,6 +76,24 @@ impl Store {
     /// # Errors
     /// The report, if it holds an error; then there is no new generation.
     pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Report), Box<Report>> {
+        let (store, mut problems, blocks) = self.linked(texts);
+        if !problems.has_errors() {
+            check::reach(&store.view(), &store.origins, &mut problems);
+        }
+        store.reported(self.sources.len(), problems, blocks)
+    }
+
+    /// The same as [`Store::with_blocks`], but the targets are not tried against the arm.
+    ///
+    /// # Errors
+    /// The report, if it holds an error; then there is no new generation.
+    pub fn with_blocks_untried(&self, texts: Vec<Source>) -> Result<(Self, Report), Box<Report>> {
+        let (store, problems, blocks) = self.linked(texts);
+        store.reported(self.sources.len(), problems, blocks)
+    }
+
+    /// Read, link and check all but the reach; gives the number of blocks that were read too.
+    fn linked(&self, texts: Vec<Source>) -> (Self, Problems, usize) {
         let mut problems = Problems::default();
         let first = self.sources.len();
         let mut sources = self.sources.clone();
@@ -86,14 +104,24 @@ impl Store {
         let count = read.blocks.len();
         let blocks = self.blocks.union(&read.blocks).copied().collect();
         let store = Self { files, indexes, sources, entries, blocks, origins };
-        // Frames that could not be linked are no use in checking reach; the names come first.
+        // Records that name nothing are no use in further checks; the names come first.
         if !problems.has_errors() {
             check::check(&store.view(), &store.origins, &mut problems);
         }
+        (store, problems, count)
+    }
+
+    /// The store and its report, or the report alone if it holds an error; `before` texts were there before.
+    fn reported(
+        self,
+        before: usize,
+        problems: Problems,
+        blocks: usize,
+    ) -> Result<(Self, Report), Box<Report>> {
         let failed = problems.has_errors();
-        let loaded = if failed { Vec::new() } else { store.loaded() };
-        let mut report = Report::new(problems, &store.sources, count, loaded);
-        report.files = store.sources.len() - first;
-        if failed { Err(Box::new(report)) } else { Ok((store, report)) }
+        let loaded = if failed { Vec::new() } else { self.loaded() };
+        let mut report = Report::new(problems, &self.sources, blocks, loaded);
+        report.files = self.sources.len() - before;
+        if failed { Err(Box::new(report)) } else { Ok((self, report)) }
     }
 }

@@ -9,6 +9,8 @@ use std::{fs, io, path::Path, sync::Arc};
 
 /// Lines of a block.
 pub const BLOCK_LINES: usize = 16;
+/// The greatest number of a block; the next block is 0 of the next offset (IV.2.7).
+pub const LAST_BLOCK: u32 = 999;
 /// Columns of a line.
 pub const BLOCK_COLUMNS: usize = 64;
 /// Begins a remark on the file.
@@ -104,6 +106,8 @@ pub struct Block<'a> {
 pub enum BlockFault {
     /// A header without two numbers.
     Header,
+    /// A block of a number that no block has; the number.
+    Number(u32),
     /// Text before the first header.
     NoHeader,
     /// A seventeenth line.
@@ -205,7 +209,12 @@ pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockF
         }
         if text.starts_with(HEADER) {
             match header_number(text) {
-                Some(number) => found.push(Block { number, header: at, lines: Vec::new() }),
+                Some(number) => {
+                    if number.number > LAST_BLOCK {
+                        faults.push((at, BlockFault::Number(number.number)));
+                    }
+                    found.push(Block { number, header: at, lines: Vec::new() });
+                }
                 None => faults.push((at, BlockFault::Header)),
             }
             continue;

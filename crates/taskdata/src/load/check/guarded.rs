@@ -1,0 +1,107 @@
+//! Relative moves: that a command looks for each, that guarded ones have a sensor, and that the robot can stop in time.
+
+use rcs_core::interface::device::{ADC_FULL_SCALE, FORCE_COUNTS_PER_LB, FORCE_ZERO, MOMENT_COUNTS_PER_IN_LB};
+
+use crate::files::{RelativeMove, SensorSource, TaskData};
+
+use super::{
+    super::{
+        guarded::{RELATIVE_MOVES, relative_move_named},
+        names::nearest,
+    },
+    Findings, Origins, origin,
+};
+
+/// From the moment when a sensor's condition comes to the halt of the robot, s (DESIGN 16 "Done").
+const HALT: f64 = 0.2;
+/// How fast the force grows while the tool moves on against something hard, lb/in: that of the arm of the cell (ASSUMED).
+const STIFFNESS: f64 = 2000.0;
+/// From the tool point to the middle of the force sensor, in: what makes a moment of a force (ASSUMED, `data/cell.toml`).
+const LEVER: f64 = 8.0;
+/// in/s in a count of `vel-max` (ASSUMED, as `levels::prim::motion::limits` has it; DESIGN 8).
+const VELOCITY_COUNT: f64 = 0.1;
+
+/// The greatest force or moment that an axis can read, lb or in lb: more is an overload, which ends the move in an error.
+fn overload(source: SensorSource) -> f64 {
+    let counts = f64::from(i32::from(ADC_FULL_SCALE) - FORCE_ZERO);
+    match source {
+        SensorSource::My => counts / f64::from(MOMENT_COUNTS_PER_IN_LB),
+        _ => counts / f64::from(FORCE_COUNTS_PER_LB),
+    }
+}
+
+/// What is added to the reading for each in/s of speed until the robot stands.
+fn growth(source: SensorSource) -> f64 {
+    let force = HALT * STIFFNESS;
+    if source == SensorSource::My { force * LEVER } else { force }
+}
+
+/// Note what is wrong with relative moves.
+pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
+    for (i, record) in data.relative_moves.iter().enumerate() {
+        let at = origin(&origins.relative_moves, i);
+        let name = record.name;
+        let Some(known) = relative_move_named(name.as_str()) else {
+            let near = nearest(name.as_str(), RELATIVE_MOVES.iter().map(|m| m.name));
+            findings.warning(
+                "relative.unused",
+                at,
+                format!("no command looks for a relative move {name}"),
+                near.map_or_else(
+                    || "V.2.1 QC-DETACH to REMOVE-TOOL name what they look for".to_owned(),
+                    |near| format!("the nearest known name is {near}"),
+                ),
+            );
+            continue;
+        };
+        match (known.guarded, record.sensor.is_empty()) {
+            (true, true) => findings.error(
+                "relative.sensor",
+                at,
+                format!("{name} is a guarded move and names no sensor"),
+                "write the name of a sensor (-sen-) behind the movetable".to_owned(),
+            ),
+            (false, false) => findings.warning(
+                "relative.sensor",
+                at,
+                format!("{name} is no guarded move: nothing watches {}", record.sensor),
+                "leave the sensor out".to_owned(),
+            ),
+            _ => {}
+        }
+        speed(data, record, at, findings);
+    }
+}
+
+/// Warn of a guarded move that would overload the force sensor before the robot stands.
+fn speed(data: &TaskData<'_>, record: &RelativeMove, at: super::At, findings: &mut Findings) {
+    let (Some(sensor), Some(para)) = (data.sensor(&record.sensor), data.traj_para(record.para)) else {
+        return;
+    };
+    if !sensor.source.is_force() {
+        return;
+    }
+    let threshold = f64::from(sensor.threshold).abs();
+    let velocity = f64::from(para.vel_max) * VELOCITY_COUNT;
+    let (most, growth) = (overload(sensor.source), growth(sensor.source));
+    let reached = threshold + velocity * growth;
+    if reached <= most {
+        return;
+    }
+    let unit = if sensor.source == SensorSource::My { "in lb" } else { "lb" };
+    let slow = ((most - threshold) / growth / VELOCITY_COUNT).floor();
+    let help = if slow >= 1.0 {
+        format!("the robot stands {HALT} s after {threshold:.0} {unit}: vel-max {slow:.0} at most")
+    } else {
+        format!("the robot stands {HALT} s after {threshold:.0} {unit}: take a smaller threshold")
+    };
+    findings.warning(
+        "relative.speed",
+        at,
+        format!(
+            "{} at {velocity:.1} in/s against something hard ends at {reached:.0} {unit}; {} overloads at {most:.0}",
+            record.name, sensor.name
+        ),
+        help,
+    );
+}

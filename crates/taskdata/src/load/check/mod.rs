@@ -1,0 +1,200 @@
+//! Checks of data whose names are all known: what a command would run into while the robot moves is found before the first
+//! tick.
+//!
+//! * [`trays`]: sectors within their trays;
+//! * [`objects`]: objects that only the camera can tell apart;
+//! * [`routes`]: trajectories that no command can reach;
+//! * [`guarded`]: sensors and speeds of relative moves;
+//! * [`reach`]: every target that a command can send the robot to, against the arm. This takes time in proportion to all
+//!   targets, so it runs on all processors, and can be left out.
+
+mod guarded;
+mod objects;
+mod reach;
+mod routes;
+mod trays;
+
+use std::collections::HashMap;
+
+use crate::files::{
+    ArrayId, Location, LocptId, ObjectId, OwnerId, Place, RefType, Reference, TaskData, index::reference_key,
+};
+use rcs_core::interface::subtask::LocationKind;
+
+use super::{
+    origins::Origins,
+    report::{Problems, Severity},
+    source::At,
+};
+
+pub(super) use reach::check as reach;
+
+/// All checks but that of the reach.
+pub(super) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Problems) {
+    let mut findings = Findings::default();
+    trays::check(data, origins, &mut findings);
+    objects::check(data, origins, &mut findings);
+    routes::check(data, origins, &mut findings);
+    guarded::check(data, origins, &mut findings);
+    findings.report(problems);
+}
+
+/// What is wrong with an entry at the first place where it is wrong, and at how many more.
+#[derive(Debug)]
+struct Finding {
+    severity: Severity,
+    code: &'static str,
+    at: At,
+    message: String,
+    help: String,
+    /// How many more; `None` if the entry is wrong by itself and not at places.
+    more: Option<usize>,
+}
+
+/// Findings in the order in which they were made. An entry with the wild card can be wrong at every sector: it is listed once.
+#[derive(Debug, Default)]
+struct Findings {
+    list: Vec<Finding>,
+    /// Position in `list` by source, first byte and code.
+    known: HashMap<(u32, u32, &'static str), usize>,
+}
+
+impl Findings {
+    fn error(&mut self, code: &'static str, at: At, message: String, help: String) {
+        self.add(Finding { severity: Severity::Error, code, at, message, help, more: Some(0) });
+    }
+
+    fn warning(&mut self, code: &'static str, at: At, message: String, help: String) {
+        self.add(Finding { severity: Severity::Warning, code, at, message, help, more: Some(0) });
+    }
+
+    fn add(&mut self, finding: Finding) {
+        let next = self.list.len();
+        let position = *self.known.entry((finding.at.source, finding.at.start, finding.code)).or_insert(next);
+        match self.list.get_mut(position) {
+            Some(first) => first.more = first.more.zip(finding.more).map(|(one, other)| one + other + 1),
+            None => self.list.push(finding),
+        }
+    }
+
+    /// An error of an entry by itself, however many others it spoils.
+    fn error_once(&mut self, code: &'static str, at: At, message: String, help: String) {
+        self.add(Finding { severity: Severity::Error, code, at, message, help, more: None });
+    }
+
+    /// Add findings that were made elsewhere after these.
+    fn merge(&mut self, later: Self) {
+        for finding in later.list {
+            self.add(finding);
+        }
+    }
+
+    fn report(self, problems: &mut Problems) {
+        for finding in self.list {
+            let mut help = finding.help;
+            if let Some(more) = finding.more.filter(|more| *more > 0) {
+                let places = if more == 1 { "place" } else { "places" };
+                help = format!("{help}; the same at {more} more {places}");
+            }
+            problems.push(finding.severity, finding.code, finding.at, finding.message, Some(help));
+        }
+    }
+}
+
+/// The origin of a record at a position.
+fn origin(list: &[At], position: usize) -> At {
+    list.get(position).copied().unwrap_or_default()
+}
+
+/// A location and its sector in words.
+fn shown(location: &Location) -> String {
+    if location.sector == 0 {
+        location.name.to_string()
+    } else {
+        format!("{} sector {}", location.name, location.sector)
+    }
+}
+
+/// The location point that a reference means.
+fn at_point(data: &TaskData<'_>, at: Reference) -> Option<Location> {
+    let id = LocptId::new(at.number);
+    let point = data.locpt(id).filter(|_| at.kind == RefType::LocationPoint)?;
+    Some(Location { name: point.name, place: data.place_of(id), sector: 0, frame: point.frame })
+}
+
+/// The owners that have a member.
+fn owners_of<'a>(data: &TaskData<'a>, member: Reference) -> impl Iterator<Item = OwnerId> + use<'a> {
+    data.indexes.members.all(reference_key(member)).iter().map(|&number| OwnerId::new(number))
+}
+
+/// All sectors of an array at an owner; none if the owner's first member is no location point.
+fn sectors(data: &TaskData<'_>, owner: OwnerId, array_id: ArrayId) -> Vec<Location> {
+    let corner = data.members_of(owner).first().and_then(|m| at_point(data, m.member));
+    let (Some(array), Some(corner)) = (data.array(array_id), corner) else { return Vec::new() };
+    let place = Place { kind: LocationKind::Owner, array: array_id, ..corner.place };
+    let sector = |n| {
+        let frame = data.sector_frame(array, &corner.frame, n)?;
+        Some(Location { name: corner.name, place, sector: n, frame })
+    };
+    (1..=array.sectors()).filter_map(sector).collect()
+}
+
+/// All sectors of an array with a pose of its own.
+fn static_sectors(data: &TaskData<'_>, array_id: ArrayId) -> Vec<Location> {
+    let Some((array, pose)) = data.array(array_id).and_then(|a| Some((a, data.pose(a.pose)?))) else {
+        return Vec::new();
+    };
+    let place = Place { kind: LocationKind::Array, locpt: LocptId::NULL, array: array_id };
+    let sector = |n| {
+        let frame = data.sector_frame(array, &pose.frame, n)?;
+        Some(Location { name: array.name, place, sector: n, frame })
+    };
+    (1..=array.sectors()).filter_map(sector).collect()
+}
+
+/// The locations at which an entry applies, if it names no object: points, members of an owner, sectors.
+fn locations(data: &TaskData<'_>, at: Reference) -> Vec<Location> {
+    match at.kind {
+        RefType::LocationPoint => at_point(data, at).into_iter().collect(),
+        RefType::Owner => {
+            let members = data.members_of(OwnerId::new(at.number)).iter();
+            members.flat_map(|m| locations_of_member(data, OwnerId::new(at.number), m.member)).collect()
+        }
+        RefType::Array => {
+            let id = ArrayId::new(at.number);
+            let used = owners_of(data, at).flat_map(|owner| sectors(data, owner, id));
+            used.chain(static_sectors(data, id)).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn locations_of_member(data: &TaskData<'_>, owner: OwnerId, member: Reference) -> Vec<Location> {
+    match member.kind {
+        RefType::Array => sectors(data, owner, ArrayId::new(member.number)),
+        _ => at_point(data, member).into_iter().collect(),
+    }
+}
+
+/// The locations at which an object can be and an entry applies: the sectors and location points that are assigned to it, or
+/// what the entry names.
+fn locations_of(data: &TaskData<'_>, object: ObjectId, at: Reference) -> Vec<Location> {
+    let mut found = Vec::new();
+    for assigned in data.object_locations(object) {
+        found.extend(at_point(data, assigned));
+        if assigned.kind == RefType::Array {
+            let id = ArrayId::new(assigned.number);
+            found.extend(owners_of(data, assigned).flat_map(|owner| sectors(data, owner, id)));
+            found.extend(static_sectors(data, id));
+        }
+    }
+    found
+        .retain(|location| at.kind == RefType::Any || data.aliases(&location.place).any(|alias| alias == at));
+    if found.is_empty() && at.kind != RefType::Array {
+        let mut named = locations(data, at);
+        // At an owner of arrays an object that is assigned to none of them is at the location point.
+        named.retain(|location| location.sector == 0);
+        found = named;
+    }
+    found
+}

@@ -1,0 +1,396 @@
+//! Every target that a command can send the robot to is tried against the arm: reach, joint limits, distance from vertical.
+//!
+//! Targets are location points, what lies in their sectors gripped in each way, views, and the points of the approaches, departs,
+//! trajectories and relative moves there. A base pose is no target of its own: it is complained of where a target that
+//! is derived from it cannot be reached, and then in place of that target, since the mistake is in the pose.
+//!
+//! The gripper axis within 2 degrees of vertical is warned of: the Euler angles of the link are singular there (VIII
+//! introduction). The corners of trays are taught vertical and not driven to (VIII.3); they are left out.
+//!
+//! The wild card `$$$` is tried at the locations that are assigned to the object (VII.7.3).
+
+use std::{
+    collections::{HashMap, HashSet},
+    num::NonZero,
+    ops::Range,
+    thread,
+};
+
+use rcs_core::{
+    frame::Frame,
+    kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
+    name::Name10,
+};
+
+use crate::files::{
+    Direction, Location, LocptId, MovtabId, OwnerId, PathId, PathPoint, PoseId, RefType, Reference,
+    RelativeMove, Target, TaskData, TrajId,
+};
+
+use super::{
+    super::{
+        guarded::{Beginning, relative_move_named},
+        report::Problems,
+        source::At,
+    },
+    Findings, Origins, at_point, locations, locations_of, origin, shown,
+};
+
+/// Nearer to vertical than this is warned of, degrees.
+const VERTICAL: f64 = 2.0;
+/// Entries that are worth a thread of their own.
+const WORTH_A_THREAD: usize = 512;
+
+/// Try all targets; the data must be linked without error.
+pub(crate) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Problems) {
+    let mut findings = Findings::default();
+    let reach = Reach::new(data, origins, &mut findings);
+    for list in [
+        spread(data.trajectories.len(), |i, f| reach.trajectory(i, f)),
+        spread(data.grip_locs.len(), |i, f| reach.grip(i, f)),
+        spread(data.visions.len(), |i, f| reach.view(i, f)),
+        spread(data.appr_depts.len(), |i, f| reach.plain(i, f)),
+        spread(data.relative_moves.len(), |i, f| reach.relative(i, f)),
+    ] {
+        findings.merge(list);
+    }
+    findings.report(problems);
+}
+
+/// Try entries `0..count` on all processors; the findings come in the order of the entries.
+fn spread(count: usize, entry: impl Fn(usize, &mut Findings) + Sync) -> Findings {
+    let processors = thread::available_parallelism().map_or(1, NonZero::get);
+    let threads = processors.min(count.div_ceil(WORTH_A_THREAD)).max(1);
+    let share = count.div_ceil(threads);
+    let part = |range: Range<usize>| {
+        let mut findings = Findings::default();
+        range.for_each(|i| entry(i, &mut findings));
+        findings
+    };
+    if threads == 1 {
+        return part(0..count);
+    }
+    thread::scope(|scope| {
+        let part = &part;
+        let begin = |thread: usize| {
+            let range = (thread * share).min(count)..((thread + 1) * share).min(count);
+            scope.spawn(move || part(range))
+        };
+        let running: Vec<_> = (0..threads).map(begin).collect();
+        let mut findings = Findings::default();
+        for thread in running {
+            match thread.join() {
+                Ok(part) => findings.merge(part),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        findings
+    })
+}
+
+/// Degrees of the gripper axis from vertical, up or down.
+fn from_vertical(frame: &Frame) -> f64 {
+    let axis = frame.x();
+    axis.x.hypot(axis.y).atan2(axis.z.abs()).to_degrees()
+}
+
+/// Why the arm cannot take a frame.
+struct Fault {
+    code: &'static str,
+    message: String,
+    help: String,
+}
+
+/// Try a frame: the joint that is beyond its limit and by how much, or how far out of reach it is.
+fn fault(frame: &Frame) -> Option<Fault> {
+    let joints = match T3.inverse(frame, &HOME_JOINTS) {
+        Ok(joints) => T3.within_limits(&joints),
+        Err(error) => {
+            let p = frame.position;
+            let help = format!("its tool point is at ({:.2}, {:.2}, {:.2}) in", p.x, p.y, p.z);
+            return Some(Fault { code: "reach", message: error.to_string(), help });
+        }
+    };
+    let margin = T3.margin(&joints);
+    if margin.radians >= 0.0 {
+        return None;
+    }
+    let name = JOINT_NAMES.get(margin.joint).copied().unwrap_or("joint");
+    let angle = joints.get(margin.joint).copied().unwrap_or_default().to_degrees();
+    let (low, high) = T3.limits.get(margin.joint).copied().unwrap_or_default();
+    let message =
+        format!("{name} at {angle:.1} degrees, {:.1} beyond its limit", -margin.radians.to_degrees());
+    let help =
+        format!("the limits of {name} are {:.0} and {:.0} degrees", low.to_degrees(), high.to_degrees());
+    Some(Fault { code: "limit", message, help })
+}
+
+struct Reach<'a> {
+    data: &'a TaskData<'a>,
+    origins: &'a Origins,
+    /// Location points out of reach: what is derived from them is not complained of again.
+    bad_points: HashSet<LocptId>,
+    /// Trajectories that begin with a movetable, by their start: where their points lie depends on what is departed from.
+    relative_starts: HashMap<(u8, u32), Vec<TrajId>>,
+}
+
+impl<'a> Reach<'a> {
+    fn new(data: &'a TaskData<'a>, origins: &'a Origins, findings: &mut Findings) -> Self {
+        let mut relative_starts: HashMap<(u8, u32), Vec<TrajId>> = HashMap::new();
+        for (i, trajectory) in data.trajectories.iter().enumerate() {
+            let first = data.path(trajectory.path).first();
+            if first.is_some_and(|point| matches!(point.target, Target::Movetable(_))) {
+                let start = (trajectory.start.kind.code(), trajectory.start.number);
+                relative_starts.entry(start).or_default().push(TrajId::at(i));
+            }
+        }
+        let mut reach = Self { data, origins, bad_points: HashSet::new(), relative_starts };
+        reach.location_points(findings);
+        reach
+    }
+
+    /// Location points at which arrays are used: the bases of sectors.
+    fn corners(&self) -> HashSet<LocptId> {
+        let owners = (0..self.data.owners.len()).map(|i| self.data.members_of(OwnerId::at(i)));
+        let of_arrays = owners.filter(|members| members.iter().any(|m| m.member.kind == RefType::Array));
+        of_arrays.filter_map(|members| members.first()).map(|m| LocptId::new(m.member.number)).collect()
+    }
+
+    fn location_points(&mut self, findings: &mut Findings) {
+        let corners = self.corners();
+        for (i, point) in self.data.locpts.iter().enumerate() {
+            let id = LocptId::at(i);
+            if corners.contains(&id) {
+                continue;
+            }
+            let at = origin(&self.origins.locpts, i);
+            let what = format!("location point {}", point.name);
+            if !self.target(&what, &point.frame, at, point.pose, findings) {
+                self.bad_points.insert(id);
+            }
+        }
+    }
+
+    /// Try a target that is derived from a pose; true if it is reached. One near the vertical is warned of.
+    fn target(&self, what: &str, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
+        let Some(found) = fault(frame) else {
+            vertical(what, frame, at, findings);
+            return true;
+        };
+        match self.data.pose(base).and_then(|pose| Some((pose.name, fault(&pose.frame)?))) {
+            Some((name, cause)) => {
+                let at = origin(&self.origins.poses, base.index().unwrap_or(0));
+                findings.error_once(cause.code, at, format!("pose {name}: {}", cause.message), cause.help);
+            }
+            None => findings.error(found.code, at, format!("{what}: {}", found.message), found.help),
+        }
+        false
+    }
+
+    fn base_of(&self, location: &Location) -> PoseId {
+        self.data
+            .locpt(location.place.locpt)
+            .map(|point| point.pose)
+            .or_else(|| self.data.array(location.place.array).map(|array| array.pose))
+            .unwrap_or(PoseId::NULL)
+    }
+
+    /// Points of a trajectory, from the location points at which it can begin; from what is gripped there see
+    /// [`Reach::departures`].
+    fn trajectory(&self, i: usize, findings: &mut Findings) {
+        let Some(record) = self.data.trajectories.get(i) else { return };
+        let what = format!("trajectory {}", record.name);
+        let starts = locations(self.data, record.start);
+        let mut points = starts.iter().filter(|start| start.sector == 0);
+        match points.next() {
+            Some(start) => {
+                self.follow(record.path, &start.frame, &what, false, findings);
+                // From the others only points that are relative to the start can be elsewhere.
+                if self.relative_starts.contains_key(&(record.start.kind.code(), record.start.number)) {
+                    points.for_each(|start| self.follow(record.path, &start.frame, &what, false, findings));
+                }
+            }
+            None => {
+                if let Some(start) = starts.first() {
+                    self.follow(record.path, &start.frame, &what, false, findings);
+                }
+            }
+        }
+    }
+
+    /// Try the points of a path; `fixed` if all its movetables refer to `reference`, else each to the point before it.
+    fn follow(&self, path: PathId, reference: &Frame, what: &str, fixed: bool, findings: &mut Findings) {
+        let data = self.data;
+        let first = path.of(data.paths).map_or(0, |p| usize::try_from(p.first).unwrap_or(0));
+        let upright = from_vertical(reference) < VERTICAL;
+        let mut before = *reference;
+        for (i, point) in data.path(path).iter().enumerate() {
+            let base = if fixed { reference } else { &before };
+            let Some(frame) = data.point_frame(point, base) else { continue };
+            let at = origin(&self.origins.path_points, first + i);
+            let what = || format!("{what}, {}", self.point_name(point));
+            match point.target {
+                // Where the reference is vertical and warned of, its points need no warning of their own.
+                Target::Movetable(_) if upright => {
+                    if let Some(fault) = fault(&frame) {
+                        findings.error(fault.code, at, format!("{}: {}", what(), fault.message), fault.help);
+                    }
+                }
+                Target::Movetable(_) => {
+                    self.target(&what(), &frame, at, PoseId::NULL, findings);
+                }
+                Target::Pose(id) => {
+                    self.target(&what(), &frame, at, id, findings);
+                }
+                // Its reach was tried with the location points; here it is driven to even if it is a corner.
+                Target::LocationPoint(_) => vertical(&what(), &frame, at, findings),
+                Target::Stop => {}
+            }
+            before = frame;
+        }
+    }
+
+    fn point_name(&self, point: &PathPoint) -> String {
+        match point.target {
+            Target::Movetable(id) => {
+                id.of(self.data.movetables).map_or("...".to_owned(), |m| m.name.to_string())
+            }
+            Target::Pose(id) => self.data.pose(id).map_or(String::new(), |p| p.name.to_string()),
+            Target::LocationPoint(id) => self.data.locpt(id).map_or(String::new(), |l| l.name.to_string()),
+            Target::Stop => "stop".to_owned(),
+        }
+    }
+
+    fn good(&self, locations: Vec<Location>) -> impl Iterator<Item = Location> {
+        locations.into_iter().filter(|location| !self.bad_points.contains(&location.place.locpt))
+    }
+
+    /// A grip wherever it is valid, with its approach and depart.
+    fn grip(&self, i: usize, findings: &mut Findings) {
+        let data = self.data;
+        let Some(record) = data.grip_locs.get(i) else { return };
+        let at = origin(&self.origins.grip_locs, i);
+        let object = data.object_name(record.object);
+        for location in self.good(locations_of(data, record.object, record.at)) {
+            // A more exact entry may hold at this location.
+            if data.grip_loc(&object, record.grip, &location.place).and_then(|id| id.index()) != Some(i) {
+                continue;
+            }
+            let what = format!("grip {} of {object} at {}", record.grip, shown(&location));
+            let frame = data.moved(&location.frame, record.movetable);
+            if !self.target(&what, &frame, at, self.base_of(&location), findings) {
+                continue;
+            }
+            for (word, path) in [
+                ("approach of", data.approach(&object, record.grip, &location.place)),
+                ("depart of", data.depart(&object, record.grip, &location.place)),
+            ] {
+                self.follow(path.unwrap_or_default(), &frame, &format!("{word} {what}"), true, findings);
+            }
+            self.departures(&location, &frame, &what, findings);
+        }
+    }
+
+    /// Trajectories that begin relative to what is departed from.
+    fn departures(&self, location: &Location, frame: &Frame, what: &str, findings: &mut Findings) {
+        if self.relative_starts.is_empty() {
+            return;
+        }
+        for alias in self.data.aliases(&location.place) {
+            for id in self.relative_starts.get(&(alias.kind.code(), alias.number)).into_iter().flatten() {
+                if let Some(record) = id.of(self.data.trajectories) {
+                    let what = format!("trajectory {} from {what}", record.name);
+                    self.follow(record.path, frame, &what, false, findings);
+                }
+            }
+        }
+    }
+
+    /// A view wherever it is valid, with its approach and depart. A view that refers to the object has no frame before the
+    /// object is found.
+    fn view(&self, i: usize, findings: &mut Findings) {
+        let data = self.data;
+        let Some(record) = data.visions.get(i).filter(|r| r.offset_from != RefType::Object) else { return };
+        let at = origin(&self.origins.visions, i);
+        let object = data.object_name(record.object);
+        for location in self.good(locations_of(data, record.object, record.at)) {
+            // A more exact entry may hold at this location.
+            if data.view(&object, &location.place).and_then(|(id, _)| id.index()) != Some(i) {
+                continue;
+            }
+            let what = format!("view of {object} at {}", shown(&location));
+            let frame = data.moved(&location.frame, record.movetable);
+            if !self.target(&what, &frame, at, self.base_of(&location), findings) {
+                continue;
+            }
+            for (word, path) in [
+                ("approach of", data.view_approach(&object, record.grip, &location.place)),
+                ("depart of", data.view_depart(&object, record.grip, &location.place)),
+            ] {
+                self.follow(path.unwrap_or_default(), &frame, &format!("{word} {what}"), true, findings);
+            }
+        }
+    }
+
+    /// An approach or depart of a location as such. The wild card is tried at all location points.
+    fn plain(&self, i: usize, findings: &mut Findings) {
+        let data = self.data;
+        let Some(record) = data.appr_depts.get(i) else { return };
+        if matches!(record.subject.kind, RefType::Object | RefType::View) {
+            return;
+        }
+        let points = if record.at == Reference::ANY {
+            let all = 0..data.locpts.len();
+            all.filter_map(|n| at_point(data, Reference::location_point(LocptId::at(n)))).collect()
+        } else {
+            locations(data, record.at)
+        };
+        for location in self.good(points) {
+            let (word, path) = match record.direction {
+                Direction::Approach => ("approach", data.approach_location(&location.place)),
+                Direction::Depart => ("depart", data.depart_location(&location.place)),
+            };
+            // A corner that is not driven to has no approach of its own either.
+            if path == Some(record.path) && fault(&location.frame).is_none() {
+                let what = format!("{word} of {}", shown(&location));
+                self.follow(record.path, &location.frame, &what, true, findings);
+            }
+        }
+    }
+
+    /// Where a relative move leads at each location where it is valid.
+    fn relative(&self, i: usize, findings: &mut Findings) {
+        let data = self.data;
+        let Some(record) = data.relative_moves.get(i) else { return };
+        let at = origin(&self.origins.relative_moves, i);
+        for location in self.good(locations(data, record.at)) {
+            if !data.relative_move(&record.name, &location.place).is_some_and(|r| std::ptr::eq(r, record)) {
+                continue;
+            }
+            let frame = data.moved(&self.beginning(record, &location), record.movetable);
+            let what = format!("relative move {} at {}", record.name, shown(&location));
+            self.target(&what, &frame, at, self.base_of(&location), findings);
+        }
+    }
+
+    /// From where a relative move leads: the location, or the ends of those before it.
+    fn beginning(&self, record: &RelativeMove, location: &Location) -> Frame {
+        let mut before: Vec<MovtabId> = Vec::new();
+        let mut name = record.name;
+        while let Some(Beginning::After(earlier)) = relative_move_named(name.as_str()).map(|m| m.from) {
+            name = Name10::clipped(earlier);
+            before.extend(self.data.relative_move(&name, &location.place).map(|r| r.movetable));
+        }
+        before.into_iter().rev().fold(location.frame, |frame, step| self.data.moved(&frame, step))
+    }
+}
+
+/// Warn of a frame near the vertical.
+fn vertical(what: &str, frame: &Frame, at: At, findings: &mut Findings) {
+    let degrees = from_vertical(frame);
+    if degrees < VERTICAL {
+        let help = "tilt the gripper by 3 degrees or more, as LK-GRP-1 does (VIII.9.5)".to_owned();
+        let message = format!("{what}: the gripper is {degrees:.1} degrees from vertical");
+        findings.warning("vertical", at, message, help);
+    }
+}

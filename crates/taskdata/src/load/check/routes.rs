@@ -1,0 +1,97 @@
+//! Trajectories that no command can reach: another entry is always found before them, or both ends are one location (VII.6).
+
+use crate::files::{ArrayId, LocptId, OwnerId, Place, RefType, Reference, TaskData, TrajId};
+use rcs_core::interface::subtask::LocationKind;
+
+use super::{Findings, Origins, at_point, origin, owners_of};
+
+/// Places of an end that are tried; an owner of more is taken to be reachable.
+const TRIED: usize = 64;
+
+/// Note each trajectory that is never looked up.
+pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
+    for (i, trajectory) in data.trajectories.iter().enumerate() {
+        let id = TrajId::at(i);
+        let (starts, ends) = (places(data, trajectory.start), places(data, trajectory.end));
+        if starts.len() >= TRIED || ends.len() >= TRIED {
+            continue;
+        }
+        let at = origin(&origins.trajectories, i);
+        let name = trajectory.name;
+        let pairs = || starts.iter().flat_map(|from| ends.iter().map(move |to| (from, to)));
+        if pairs().next().is_none() {
+            findings.warning(
+                "trajectory.unused",
+                at,
+                format!("no command can reach the trajectory {name}: nothing is at one of its ends"),
+                "an array is a location through an owner or by a pose of its own (VII.4)".to_owned(),
+            );
+        } else if pairs().all(|(from, to)| same_location(from, to)) {
+            findings.warning(
+                "trajectory.unused",
+                at,
+                format!(
+                    "no command can reach the trajectory {name}: it ends at the location where it starts"
+                ),
+                "within one location only depart and approach are flown".to_owned(),
+            );
+        } else if !pairs()
+            .any(|(from, to)| !same_location(from, to) && data.trajectory_id(from, to) == Some(id))
+        {
+            findings.warning(
+                "trajectory.unused",
+                at,
+                format!("no command can reach the trajectory {name}: others are found before it"),
+                "the entry for the exact location points wins, then that of an array, then that of an owner"
+                    .to_owned(),
+            );
+        }
+    }
+}
+
+/// True if no trajectory is flown between the two (DESIGN 16 "Finger opening").
+fn same_location(a: &Place, b: &Place) -> bool {
+    a.locpt == b.locpt && (!a.locpt.is_null() || a.array == b.array)
+}
+
+/// The places that a name at an end means, up to [`TRIED`].
+fn places(data: &TaskData<'_>, end: Reference) -> Vec<Place> {
+    match end.kind {
+        RefType::LocationPoint => at_point(data, end).map(|l| l.place).into_iter().collect(),
+        RefType::Array => at_array(data, end),
+        RefType::Owner => {
+            let members = data.members_of(OwnerId::new(end.number)).iter().take(TRIED);
+            let mut found: Vec<Place> = Vec::new();
+            for member in members {
+                match member.member.kind {
+                    RefType::LocationPoint => found.extend(at_point(data, member.member).map(|l| l.place)),
+                    RefType::Array => found.extend(at_array(data, member.member)),
+                    // A pose stands for the location points at it.
+                    RefType::Pose => {
+                        let points = data.locpts.iter().enumerate();
+                        let at_pose = points.filter(|(_, p)| p.pose.number() == member.member.number);
+                        found.extend(at_pose.take(TRIED).map(|(i, _)| data.place_of(LocptId::at(i))));
+                    }
+                    _ => {}
+                }
+            }
+            found
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// An array at the corners of its owners, or at its own pose.
+fn at_array(data: &TaskData<'_>, array: Reference) -> Vec<Place> {
+    let id = ArrayId::new(array.number);
+    let corners = owners_of(data, array)
+        .filter_map(|owner| data.members_of(owner).first())
+        .filter_map(|member| at_point(data, member.member))
+        .map(|corner| Place { kind: LocationKind::Owner, array: id, ..corner.place });
+    let own = data.array(id).filter(|array| !array.pose.is_null()).map(|_| Place {
+        kind: LocationKind::Array,
+        locpt: LocptId::NULL,
+        array: id,
+    });
+    corners.chain(own).take(TRIED).collect()
+}

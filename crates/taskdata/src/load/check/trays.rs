@@ -1,0 +1,49 @@
+//! Sectors of arrays lie within their trays (VII.4).
+
+use rcs_core::frame::Frame;
+
+use crate::files::{ArrayId, RefType, Reference, TaskData};
+
+use super::{Findings, Origins, at_point, origin, owners_of};
+
+/// Sides of a tray, inches. The manual gives no size: a square of 21.00 is what all three printed arrays fill with equal margins
+/// (VIII.6; SPECNOTES).
+const TRAY: f64 = 21.0;
+/// What rounding of the integers of a form may do, inches.
+const ROUNDING: f64 = 0.01;
+
+/// Note each array that has a sector outside the tray at which it is used.
+pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
+    for (i, array) in data.arrays.iter().enumerate() {
+        let reference = Reference::array(ArrayId::at(i));
+        // An array is the same at all its trays.
+        let corner = owners_of(data, reference)
+            .filter_map(|owner| data.members_of(owner).first())
+            .find(|member| member.member.kind == RefType::LocationPoint)
+            .and_then(|member| at_point(data, member.member));
+        let Some(corner) = corner else { continue };
+        for sector in 1..=array.sectors() {
+            let Some(frame) = data.sector_frame(array, &corner.frame, sector) else { continue };
+            let outside = outside(&corner.frame, &frame);
+            if outside > ROUNDING {
+                findings.error(
+                    "array.tray",
+                    origin(&origins.arrays, i),
+                    format!("sector {sector} of {} is {outside:.2} in outside its tray", array.name),
+                    format!(
+                        "a tray is {TRAY:.2} in square; its corner is {}, columns lead along tool -Y and rows along -Z",
+                        corner.name
+                    ),
+                );
+            }
+        }
+    }
+}
+
+/// How far a sector lies outside the tray that begins at a corner. The corner's tool frame points down, and the tray extends
+/// along its -Y and -Z (VIII.6).
+fn outside(corner: &Frame, sector: &Frame) -> f64 {
+    let seen = corner.inverse().compose(sector).position;
+    let beyond = |along: f64| (along - TRAY).max(-along);
+    beyond(-seen.y).max(beyond(-seen.z))
+}
