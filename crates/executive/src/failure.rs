@@ -5,20 +5,26 @@
 //! on: [`Watch`] therefore keeps, for each process, common memory as it was in the tick when the process
 //! began to report its reason.
 
-use levels::ladder::ProcessInfo;
+use levels::ladder::{PROCESS_COUNT, ProcessInfo};
 use rcs_core::{
-    interface::{CommonMemory, ExternalInputs, Header, HwsCommand, Reason, t3i::LinkFault},
+    interface::{
+        CommonMemory, ExternalInputs, Header, HwsCommand, Reason,
+        grip::{GripCommand, GripVerb},
+        jaws::{JawsCommand, JawsVerb},
+        pedestal::{PedestalCommand, PedestalVerb, TableVerb},
+        t3i::LinkFault,
+    },
     record::Field,
     table::{RowText, Table},
     tick::Tick,
 };
 
 /// Processes of [`CommonMemory`], in its order.
-pub const PROCESSES: usize = 7;
+pub const PROCESSES: usize = PROCESS_COUNT;
 
-/// Processes from the lowest upward, as positions in [`CommonMemory`]: T3I, Grip, Quick Change, Prim, E-move,
-/// Subtask, Task.
-const UPWARD: [usize; PROCESSES] = [4, 6, 5, 3, 2, 1, 0];
+/// Processes from the lowest upward, as positions in [`CommonMemory`]: T3I, Grip, V-Grip, Tool-Grip, Quick
+/// Change, hand and table of the pedestal, the pedestal, Prim, E-move, Subtask, Task.
+const UPWARD: [usize; PROCESSES] = [4, 6, 7, 8, 5, 10, 11, 9, 3, 2, 1, 0];
 
 /// Position of Task.
 const TASK: usize = 0;
@@ -189,6 +195,11 @@ fn reports(memory: &CommonMemory) -> [Report; PROCESSES] {
         Report::Link(memory.t3i.status.fault),
         Report::Reason(memory.quick_change.status.reason),
         Report::Reason(memory.grip.status.reason),
+        Report::Reason(memory.v_grip.status.reason),
+        Report::Reason(memory.tool_grip.status.reason),
+        Report::Reason(memory.pedestal.status.reason),
+        Report::Reason(memory.hand.status.reason),
+        Report::Reason(memory.table.status.reason),
     ]
 }
 
@@ -203,6 +214,11 @@ pub const fn headers(memory: &CommonMemory) -> [Header; PROCESSES] {
         memory.t3i.header,
         memory.quick_change.header,
         memory.grip.header,
+        memory.v_grip.header,
+        memory.tool_grip.header,
+        memory.pedestal.header,
+        memory.hand.header,
+        memory.table.header,
     ]
 }
 
@@ -240,16 +256,58 @@ pub fn command(process: usize, hws: &HwsCommand, memory: &CommonMemory) -> Strin
         }
         4 => words(&[&memory.prim.t3i.command]),
         5 => words(&[&memory.emove.quick_change.command]),
-        6 => {
-            let command = &memory.emove.grip;
-            if command.command.text().is_empty() {
-                return String::new();
+        6 => grip(&memory.emove.grip),
+        7 => jaws("VG", &memory.emove.v_grip),
+        8 => jaws("TG", &memory.emove.tool_grip),
+        9 => pedestal(&memory.subtask.pedestal),
+        10 => grip(&memory.pedestal.hand),
+        11 => {
+            let command = &memory.pedestal.table;
+            match command.command {
+                TableVerb::Turn => format!("{} to {}", command.command, degrees(command.angle)),
+                _ => command.command.to_string(),
             }
-            let (inches, pounds) = (f64::from(command.position) / 100.0, command.force);
-            format!("{} (opening {inches:.2} in, force {pounds} lb)", command.command)
         }
         _ => String::new(),
     }
+}
+
+fn grip(command: &GripCommand) -> String {
+    match command.command {
+        GripVerb::None => String::new(),
+        verb => format!("{verb} (opening {}, force {} lb)", inches(command.position), command.force),
+    }
+}
+
+/// V-Grip's VG-GRASP, VG-RELEASE, VGRIP-POSE, VG-PAUSE, and Tool-Grip's with TG (VI.4.1, VI.5).
+fn jaws(prefix: &str, command: &JawsCommand) -> String {
+    match command.command {
+        JawsVerb::None => String::new(),
+        JawsVerb::Pose => format!("{prefix}RIP-{}", command.command),
+        JawsVerb::Pause => format!("{prefix}-{}", command.command),
+        verb => format!("{prefix}-{verb} (size {})", inches(command.size)),
+    }
+}
+
+fn pedestal(command: &PedestalCommand) -> String {
+    let (size, angle) = (inches(command.grasp_size), degrees(command.table_angle));
+    match command.command {
+        PedestalVerb::None | PedestalVerb::Pause => command.command.to_string(),
+        PedestalVerb::PreGrip => format!("{} (opening {size}, table at {angle})", command.command),
+        PedestalVerb::Grip => format!("{} (size {size}, force {} lb)", command.command, command.grasp_force),
+        PedestalVerb::Flip => format!("{} by {angle}", command.command),
+        PedestalVerb::Release => format!("{} (opening {size})", command.command),
+    }
+}
+
+/// Hundredths of an inch.
+fn inches(hundredths: i32) -> String {
+    format!("{:.2} in", f64::from(hundredths) / 100.0)
+}
+
+/// Tenths of a degree.
+fn degrees(tenths: i32) -> String {
+    format!("{:.1} degrees", f64::from(tenths) / 10.0)
 }
 
 fn at(location: &dyn std::fmt::Display, sector: i32) -> String {
@@ -292,7 +350,7 @@ mod tests {
     use super::*;
     use rcs_core::{
         coded_enum, decision_table,
-        interface::{grip::GripVerb, subtask::SubtaskVerb},
+        interface::{pedestal::TableCommand, subtask::SubtaskVerb},
         name::Name10,
     };
 
@@ -311,8 +369,21 @@ mod tests {
     const TABLES: &[&rcs_core::table::Table] = &[&CLOSE_GRIP];
 
     fn processes() -> [ProcessInfo; PROCESSES] {
-        ["Task", "Subtask", "E-move", "Prim", "T3I", "Quick Change", "Grip"]
-            .map(|name| ProcessInfo { name, tables: if name == "Grip" { TABLES } else { &[] } })
+        let names = [
+            "Task",
+            "Subtask",
+            "E-move",
+            "Prim",
+            "T3I",
+            "Quick Change",
+            "Grip",
+            "V-Grip",
+            "Tool-Grip",
+            "Pedestal",
+            "Hand",
+            "Table",
+        ];
+        names.map(|name| ProcessInfo { name, tables: if name == "Grip" { TABLES } else { &[] } })
     }
 
     /// Plays ticks: each closure changes common memory, the watch looks on.
@@ -390,6 +461,51 @@ mod tests {
         assert_eq!(
             failure.text,
             "Subtask: the object has no such grip, while it executed GET-OBJECT at UNIT_1"
+        );
+    }
+
+    #[test]
+    fn every_process_tells_its_command() {
+        let mut memory = CommonMemory::default();
+        memory.emove.v_grip = JawsCommand { command: JawsVerb::Grasp, size: 200, ..JawsCommand::default() };
+        memory.emove.tool_grip.command = JawsVerb::Pose;
+        memory.subtask.pedestal.command = PedestalVerb::Flip;
+        memory.subtask.pedestal.table_angle = 1835;
+        memory.pedestal.hand.command = GripVerb::CloseGrip;
+        memory.pedestal.table = TableCommand { number: 1, command: TableVerb::Turn, angle: -300 };
+        let told = |process| command(process, &HwsCommand::default(), &memory);
+        let commands: Vec<String> = (7..PROCESSES).map(told).collect();
+        assert_eq!(
+            commands,
+            [
+                "VG-GRASP (size 2.00 in)",
+                "TGRIP-POSE",
+                "FLIP by 183.5 degrees",
+                "CLOSE-GRIP (opening 0.00 in, force 0 lb)",
+                "TURN to -30.0 degrees",
+            ]
+        );
+        assert!(
+            (0..PROCESSES).all(|p| command(p, &HwsCommand::default(), &CommonMemory::default()).is_empty())
+        );
+    }
+
+    #[test]
+    fn a_table_that_is_stuck_explains_the_error_of_the_pedestal() {
+        let watch = watched(&[
+            |memory| {
+                memory.pedestal.table = TableCommand { number: 1, command: TableVerb::Turn, angle: -300 }
+            },
+            |memory| memory.table.status.reason = Reason::TableStuck,
+            |memory| memory.pedestal.status.reason = Reason::TableStuck,
+            |memory| memory.subtask.status.reason = Reason::TableStuck,
+            |memory| memory.task.status.reason = Reason::TableStuck,
+        ]);
+        let failure = watch.failure(&processes()).expect("Task reports a reason");
+        assert_eq!((failure.tick, failure.process.as_str()), (Tick(2), "Table"));
+        assert_eq!(
+            failure.text,
+            "Table: the rotary table of the pedestal does not reach its angle, while it executed TURN to -30.0 degrees"
         );
     }
 

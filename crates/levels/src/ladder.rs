@@ -17,7 +17,15 @@ use rcs_core::{
 use taskdata::files::TaskData;
 
 use crate::{
-    emove::Emove, grip::Grip, prim::Prim, quick_change::QuickChange, subtask::Subtask, t3i::T3i, task::Task,
+    emove::Emove,
+    grip::Grip,
+    jaws::{ToolGrip, VGrip},
+    pedestal::{Hand, Pedestal, Table as RotaryTable},
+    prim::Prim,
+    quick_change::QuickChange,
+    subtask::Subtask,
+    t3i::T3i,
+    task::Task,
 };
 
 coded_enum! {
@@ -37,6 +45,16 @@ coded_enum! {
         QuickChange = "Quick Change",
         /// Grip (VI.3).
         Grip = "Grip",
+        /// V-Grip (VI.4).
+        VGrip = "V-Grip",
+        /// Tool-Grip (VI.5).
+        ToolGrip = "Tool-Grip",
+        /// Active Pedestal (VI.7).
+        Pedestal = "Active Pedestal",
+        /// Hand of the pedestal.
+        Hand = "Pedestal Hand",
+        /// Rotary table of the pedestal.
+        RotaryTable = "Rotary Table",
     }
 }
 
@@ -61,7 +79,10 @@ const fn info<P: Process<TaskData<'static>>>() -> ProcessInfo {
     ProcessInfo { name: P::NAME, tables: P::TABLES }
 }
 
-static PROCESSES: [ProcessInfo; 7] = [
+/// How many processes there are.
+pub const PROCESS_COUNT: usize = ProcessId::ALL.len();
+
+static PROCESSES: [ProcessInfo; PROCESS_COUNT] = [
     info::<Task>(),
     info::<Subtask>(),
     info::<Emove>(),
@@ -69,6 +90,11 @@ static PROCESSES: [ProcessInfo; 7] = [
     info::<T3i>(),
     info::<QuickChange>(),
     info::<Grip>(),
+    info::<VGrip>(),
+    info::<ToolGrip>(),
+    info::<Pedestal>(),
+    info::<Hand>(),
+    info::<RotaryTable>(),
 ];
 
 type StateOf<P> = <P as Process<TaskData<'static>>>::State;
@@ -90,6 +116,16 @@ record! {
         pub quick_change: StateOf<QuickChange>,
         /// Grip.
         pub grip: StateOf<Grip>,
+        /// V-Grip.
+        pub v_grip: StateOf<VGrip>,
+        /// Tool-Grip.
+        pub tool_grip: StateOf<ToolGrip>,
+        /// Active Pedestal.
+        pub pedestal: StateOf<Pedestal>,
+        /// Hand of the pedestal.
+        pub hand: StateOf<Hand>,
+        /// Rotary table of the pedestal.
+        pub table: StateOf<RotaryTable>,
         /// Single-step buttons of the tick before.
         pub buttons: u8,
     }
@@ -105,6 +141,11 @@ pub struct Ladder {
     t3i: T3i,
     quick_change: QuickChange,
     grip: Grip,
+    v_grip: VGrip,
+    tool_grip: ToolGrip,
+    pedestal: Pedestal,
+    hand: Hand,
+    table: RotaryTable,
     /// Single-step buttons as they were in the tick before: pressing counts, not holding down.
     buttons: u8,
 }
@@ -123,13 +164,28 @@ const fn is_suspended(
         ProcessId::Subtask => single_step::SUBTASK,
         ProcessId::Emove => single_step::EMOVE,
         ProcessId::Prim => single_step::PRIM,
-        ProcessId::T3i | ProcessId::QuickChange | ProcessId::Grip => 0,
+        ProcessId::T3i
+        | ProcessId::QuickChange
+        | ProcessId::Grip
+        | ProcessId::VGrip
+        | ProcessId::ToolGrip
+        | ProcessId::Pedestal
+        | ProcessId::Hand
+        | ProcessId::RotaryTable => 0,
     };
     let held = joystick.hold & switch != 0 && pressed & switch == 0;
     let dormant = match process {
         ProcessId::Grip => before.emove.dormant.grip,
+        ProcessId::VGrip => before.emove.dormant.v_grip,
+        ProcessId::ToolGrip => before.emove.dormant.tool_grip,
         ProcessId::Emove | ProcessId::Prim => recording,
-        ProcessId::Task | ProcessId::Subtask | ProcessId::T3i | ProcessId::QuickChange => false,
+        ProcessId::Task
+        | ProcessId::Subtask
+        | ProcessId::T3i
+        | ProcessId::QuickChange
+        | ProcessId::Pedestal
+        | ProcessId::Hand
+        | ProcessId::RotaryTable => false,
     };
     held || dormant
 }
@@ -144,6 +200,11 @@ const fn header_of(process: ProcessId, memory: &mut CommonMemory) -> &mut Header
         ProcessId::T3i => &mut memory.t3i.header,
         ProcessId::QuickChange => &mut memory.quick_change.header,
         ProcessId::Grip => &mut memory.grip.header,
+        ProcessId::VGrip => &mut memory.v_grip.header,
+        ProcessId::ToolGrip => &mut memory.tool_grip.header,
+        ProcessId::Pedestal => &mut memory.pedestal.header,
+        ProcessId::Hand => &mut memory.hand.header,
+        ProcessId::RotaryTable => &mut memory.table.header,
     }
 }
 
@@ -156,7 +217,7 @@ const fn republish(header: &mut Header, tick: Tick) {
 impl Ladder {
     /// The processes and their tables, in the order of [`ProcessId`].
     #[must_use]
-    pub const fn processes() -> &'static [ProcessInfo; 7] {
+    pub const fn processes() -> &'static [ProcessInfo; PROCESS_COUNT] {
         &PROCESSES
     }
 
@@ -200,6 +261,11 @@ impl Ladder {
                 ProcessId::T3i => self.t3i.step(&inputs, &mut after.t3i),
                 ProcessId::QuickChange => self.quick_change.step(&inputs, &mut after.quick_change),
                 ProcessId::Grip => self.grip.step(&inputs, &mut after.grip),
+                ProcessId::VGrip => self.v_grip.step(&inputs, &mut after.v_grip),
+                ProcessId::ToolGrip => self.tool_grip.step(&inputs, &mut after.tool_grip),
+                ProcessId::Pedestal => self.pedestal.step(&inputs, &mut after.pedestal),
+                ProcessId::Hand => self.hand.step(&inputs, &mut after.hand),
+                ProcessId::RotaryTable => self.table.step(&inputs, &mut after.table),
             }
         }
     }
@@ -214,6 +280,11 @@ impl Ladder {
             ProcessId::T3i => self.t3i = T3i::default(),
             ProcessId::QuickChange => self.quick_change = QuickChange::default(),
             ProcessId::Grip => self.grip = Grip::default(),
+            ProcessId::VGrip => self.v_grip = VGrip::default(),
+            ProcessId::ToolGrip => self.tool_grip = ToolGrip::default(),
+            ProcessId::Pedestal => self.pedestal = Pedestal::default(),
+            ProcessId::Hand => self.hand = Hand::default(),
+            ProcessId::RotaryTable => self.table = RotaryTable::default(),
         }
     }
 
@@ -231,6 +302,11 @@ impl Ladder {
             t3i: of(&self.t3i),
             quick_change: of(&self.quick_change),
             grip: of(&self.grip),
+            v_grip: of(&self.v_grip),
+            tool_grip: of(&self.tool_grip),
+            pedestal: of(&self.pedestal),
+            hand: of(&self.hand),
+            table: of(&self.table),
             buttons: self.buttons,
         }
     }
@@ -247,6 +323,11 @@ impl Ladder {
         to(&mut self.t3i, state.t3i);
         to(&mut self.quick_change, state.quick_change);
         to(&mut self.grip, state.grip);
+        to(&mut self.v_grip, state.v_grip);
+        to(&mut self.tool_grip, state.tool_grip);
+        to(&mut self.pedestal, state.pedestal);
+        to(&mut self.hand, state.hand);
+        to(&mut self.table, state.table);
         self.buttons = state.buttons;
     }
 }

@@ -42,6 +42,7 @@ pub mod execution;
 pub mod grip;
 pub mod jaws;
 pub mod ladder;
+pub mod pedestal;
 pub mod places;
 pub mod prim;
 pub mod quick_change;

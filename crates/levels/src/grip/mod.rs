@@ -45,6 +45,7 @@ pub mod tables;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use self::preprocess::attainable;
 pub use self::state::{Calibration, Command, Phase, Readings, Scale, State, Steady, Step};
 
 use core::marker::PhantomData;

@@ -218,8 +218,8 @@ fn observe(state: &mut State, arriving: &Arriving<'_>) -> Course {
 
 /// Why a command cannot be executed, if so.
 fn fault(arriving: &Arriving<'_>) -> Option<Reason> {
-    let to = Command::from(arriving.command);
-    match to.verb {
+    let to = arriving.command;
+    match to.command {
         GripVerb::None => return Some(Reason::UnknownCommand),
         GripVerb::Pause => return None,
         GripVerb::UpInit | GripVerb::Position | GripVerb::OpenGrip | GripVerb::CloseGrip => {}
@@ -227,24 +227,22 @@ fn fault(arriving: &Arriving<'_>) -> Option<Reason> {
     let meant = to.end_effector_id == 0 || to.end_effector_id == arriving.end_effector_id;
     if !meant || arriving.gripper == Gripper::Detached {
         Some(Reason::WrongGripper)
-    } else if attainable(&to) {
+    } else if attainable(to) {
         None
     } else {
         Some(Reason::GripUnattainable)
     }
 }
 
-/// Can the gripper reach the opening and the force of a command?
-pub fn attainable(to: &Command) -> bool {
+/// Can a gripper of this sort reach the opening and the force of a command?
+pub fn attainable(command: &GripCommand) -> bool {
+    let to = Command::from(command);
+    let reachable = (CLOSED_END..=OPEN_END).contains(&to.opening) && to.speed >= 0.0;
     match to.verb {
-        GripVerb::Position | GripVerb::OpenGrip => reachable(to),
-        GripVerb::CloseGrip => reachable(to) && (0.0..=SUPPLY_FORCE).contains(&to.force),
+        GripVerb::Position | GripVerb::OpenGrip => reachable,
+        GripVerb::CloseGrip => reachable && (0.0..=SUPPLY_FORCE).contains(&to.force),
         GripVerb::UpInit | GripVerb::Pause | GripVerb::None => true,
     }
-}
-
-fn reachable(to: &Command) -> bool {
-    (CLOSED_END..=OPEN_END).contains(&to.opening) && to.speed >= 0.0
 }
 
 /// Take the readings of this tick.

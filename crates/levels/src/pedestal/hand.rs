@@ -1,0 +1,36 @@
+//! The hand of the pedestal (III.9.2): "nearly identical" to the parts gripper, so that the servo of Grip serves it.
+
+use rcs_core::interface::{
+    CommonMemory,
+    device::{DeviceInputs, GripSensors},
+    grip::GripCommand,
+};
+
+use crate::grip::{Servo, Site, tables::Gripper};
+
+/// The gripper on the rotary table. It has finger position and force sensing and nothing else, and is always there.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PedestalHand;
+
+impl Site for PedestalHand {
+    const NAME: &'static str = "Pedestal Hand";
+    const END_EFFECTOR_ID: u8 = 0;
+
+    fn command(memory: &CommonMemory) -> &GripCommand {
+        &memory.pedestal.hand
+    }
+
+    fn sensors(devices: &DeviceInputs) -> (Gripper, GripSensors) {
+        let pedestal = &devices.pedestal;
+        let sensors = GripSensors {
+            potentiometer: pedestal.potentiometer,
+            strain_left: pedestal.strain_left,
+            strain_right: pedestal.strain_right,
+            beams: 0,
+        };
+        (Gripper::Attached, sensors)
+    }
+}
+
+/// The hand process.
+pub type Hand = Servo<PedestalHand>;
