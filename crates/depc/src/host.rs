@@ -181,6 +181,26 @@ impl Host {
         count(&mut self.counters.limited);
     }
 
+    /// Before the first half of a tick: the port has not taken all bytes of the last one (`status-arg-out` 4, VI.1.2). What
+    /// was on the line was torn, so that it counts as lost; the port may have been stuck for longer than the controller waits.
+    pub fn unsent(&mut self) -> HostEvent {
+        match self.state {
+            HostState::Waiting => self.lost(LinkFault::NotTransmitted),
+            HostState::Starting => {
+                // The restart itself: no report will answer it.
+                self.asked = self.asked.saturating_sub(1);
+                self.restart_due = true;
+                self.attempt_failed(LinkFault::NotTransmitted);
+                HostEvent::None
+            }
+            HostState::Cancelling => {
+                self.resend_due = true;
+                HostEvent::None
+            }
+            HostState::Down | HostState::Ready | HostState::Ended => HostEvent::None,
+        }
+    }
+
     /// First half of a tick: the bytes that arrived, and the controller's DTR (`ready`).
     pub fn receive(&mut self, rx: &LinkBytes, ready: bool) -> HostEvent {
         self.waited = self.waited.saturating_add(1);

@@ -122,12 +122,14 @@ fn a_line_that_takes_nothing_more_is_reported_and_rests_for_a_tick() {
     // A pseudo-terminal takes some ten thousand bytes that nobody reads.
     let sent = (0..2000).take_while(|_| line.send(&bytes(&[3; 64]))).count();
     assert!(sent > 0 && sent < 2000, "{sent} frames were taken");
-    assert!(line.counts().unsent > 0);
+    assert!(line.counts().unsent > 0 && line.has_unsent());
     assert!(started.elapsed() < Duration::from_secs(5), "it has waited");
     let mut rx = LinkBytes::default();
     assert!(!line.receive(&mut rx) && line.is_there(), "the link must begin again");
     assert!(line.receive(&mut rx));
+    assert!(line.has_unsent(), "receiving sends nothing");
     assert!(line.send(&bytes(&[5])), "what waited was thrown away");
+    assert!(!line.has_unsent());
 }
 
 #[test]

@@ -52,7 +52,7 @@ impl Port {
 
     fn send(&mut self, tx: &LinkBytes) {
         let now = Instant::now();
-        // What the port does not take is counted by the line, and makes it rest for a tick.
+        // What the port does not take is counted by the line, makes it rest for a tick, and is told to T3I.
         self.line.send(tx);
         if tx.as_slice().len() != FRAME_BYTES {
             return;
@@ -89,6 +89,7 @@ impl Robot {
         let _section = Section::enter();
         inputs.link_rx = LinkBytes::default();
         inputs.link_ready = port.line.receive(&mut inputs.link_rx);
+        inputs.link_unsent = port.line.has_unsent();
     }
 
     /// After the controller's tick: what goes over the line. Counted as a part of the tick.

@@ -65,6 +65,32 @@ fn a_nak_brings_the_same_bytes_and_not_for_ever() {
 }
 
 #[test]
+fn what_the_port_has_not_taken_is_lost_and_named() {
+    let mut host = running();
+    assert_eq!(host.unsent(), HostEvent::None, "nothing was on the line");
+    tick(&mut host, &[], &position([7, 9]));
+    assert_eq!(host.unsent(), HostEvent::Lost);
+    assert_eq!((host.fault(), host.lost_function()), (LinkFault::NotTransmitted, [7, 9]));
+    // An answer that comes all the same is none to this.
+    assert_eq!(tick(&mut host, &[0x06], &position(NO_FUNCTION)), (HostEvent::None, vec![0x05]));
+    assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
+    host.forgive();
+    // A restart that stays in the port is sent again, and after three of them that is the fault.
+    tick(&mut host, &[], &Intent::Restart);
+    for attempt in 1..=START_ATTEMPTS {
+        assert_eq!(host.fault(), LinkFault::None, "attempt {attempt}");
+        assert_eq!(host.unsent(), HostEvent::None);
+        assert_eq!(tick(&mut host, &[], &Intent::Idle).1, [0x05]);
+    }
+    assert_eq!(host.fault(), LinkFault::NotTransmitted);
+    // One report answers the one restart that went out.
+    assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
+    tick(&mut host, &[], &Intent::Cancel);
+    assert_eq!(host.unsent(), HostEvent::None);
+    assert_eq!(tick(&mut host, &[], &Intent::Idle).1, [0x18]);
+}
+
+#[test]
 fn without_an_answer_the_link_is_restarted_and_nothing_is_repeated() {
     let mut host = running();
     tick(&mut host, &[], &position([7, 9]));

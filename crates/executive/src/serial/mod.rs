@@ -86,6 +86,8 @@ pub struct SerialLine {
     port: Option<Port>,
     /// The port took a part of a frame only; the line rests for a tick.
     cut: bool,
+    /// The port, or the lack of one, has left bytes of the last tick over.
+    unsent: bool,
     counts: SerialCounts,
     dead: SyncSender<Port>,
     opened: Receiver<Port>,
@@ -111,7 +113,7 @@ impl SerialLine {
             .name("serial-port".into())
             .spawn(move || keep_open(&settings, &to_close, &hand_over))
             .map_err(unusable)?;
-        Ok(Self { path, port: Some(port), cut: false, counts: SerialCounts::default(), dead, opened })
+        Ok(Self { path, port: Some(port), cut: false, unsent: false, counts: SerialCounts::default(), dead, opened })
     }
 
     /// Append what has arrived to `rx`, as far as there is room; the rest stays in the port. True if the line
@@ -148,6 +150,7 @@ impl SerialLine {
     pub fn send(&mut self, tx: &LinkBytes) -> bool {
         let bytes = tx.as_slice();
         if bytes.is_empty() {
+            self.unsent = false;
             return true;
         }
         let taken = match self.port.as_mut().map(|port| port.send(bytes)) {
@@ -160,8 +163,16 @@ impl SerialLine {
         };
         self.counts.sent += taken as u64;
         self.counts.unsent += (bytes.len() - taken) as u64;
-        self.cut = self.port.is_some() && taken < bytes.len();
-        taken == bytes.len()
+        self.unsent = taken < bytes.len();
+        self.cut = self.port.is_some() && self.unsent;
+        !self.unsent
+    }
+
+    /// True if not all bytes of the last [`SerialLine::send`] went out: `link_unsent` of
+    /// [`rcs_core::interface::DeviceInputs`].
+    #[must_use]
+    pub const fn has_unsent(&self) -> bool {
+        self.unsent
     }
 
     /// Wait until bytes are there, or for `timeout`; may return early. Not for use in a tick.

@@ -116,7 +116,9 @@ impl T3i {
     fn preprocess<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> Seen {
         let state = &mut self.state;
         let devices = &inputs.external.devices;
-        match state.host.receive(&devices.link_rx, devices.link_ready) {
+        // First, because a port that has taken a part of a frame is not ready either, and this says more.
+        let torn = if devices.link_unsent { state.host.unsent() } else { HostEvent::None };
+        match state.host.receive(&devices.link_rx, devices.link_ready).max(torn) {
             HostEvent::Started => {
                 state.position = Position::reported(state.host.position(), &T3);
                 state.empty();
@@ -152,7 +154,7 @@ impl T3i {
             _ => Link::Failed,
         };
         let taken = tables::receive(seen.arrival, command.command, seen.order, link, state.refusal);
-        state.refusal = taken.next;
+        (state.refusal, state.intake_row) = (taken.next, taken.row);
         if matches!(seen.arrival, Arrival::New | Arrival::Restarted) {
             state.command = command.command;
         }

@@ -36,6 +36,8 @@ record! {
         pub table: u8,
         /// Row of it.
         pub row: u8,
+        /// Row of RECEIVE that fired last: the header names it for refusals only.
+        pub intake_row: u8,
     }
 }
 

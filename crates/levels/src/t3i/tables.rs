@@ -165,19 +165,23 @@ decision_table! {
 
 decision_table! {
     /// POINT (VI.1.1): one point a tick. "Ready" is said one point ahead: Prim's answer to it arrives two ticks later.
+    /// While Prim stands still the robot is held at once; what is said then is for a Prim that is stepped singly, whose next
+    /// point lets one out of the queue.
     pub POINT: fn point(trouble: Trouble, above: Above, line: Line, queue: Queue) -> (Output, T3iReport) {
-        //    trouble  above   line          queue      output    report
-        1: ( None   , Live  , Free        , Empty ) => Repeat  , Finished  ;
-        2: ( None   , Live  , Free        , One   ) => Advance , Ready     ;
-        3: ( None   , Live  , Free        , More  ) => Advance , Executing ;
-        4: ( None   , Live  , Busy        , Empty ) => Nothing , Ready     ;
-        5: ( None   , Live  , Busy        , One   ) => Nothing , Ready     ;
-        6: ( None   , Live  , Busy        , More  ) => Nothing , Executing ;
-        7: ( None   , Still , Free        , _     ) => Repeat  , Executing ;
-        8: ( None   , Still , Busy        , _     ) => Nothing , Executing ;
-        9: ( None   , _     , Down        , _     ) => Nothing , Executing ;
-       10: ( Some   , _     , Free        , _     ) => Repeat  , Error     ;
-       11: ( Some   , _     , Down | Busy , _     ) => Nothing , Error     ;
+        //    trouble  above   line   queue      output    report
+        1: ( None   , Live  , Free , Empty ) => Repeat  , Finished  ;
+        2: ( None   , Live  , Free , One   ) => Advance , Ready     ;
+        3: ( None   , Live  , Free , More  ) => Advance , Executing ;
+        4: ( None   , Live  , Busy , Empty ) => Nothing , Ready     ;
+        5: ( None   , Live  , Busy , One   ) => Nothing , Ready     ;
+        6: ( None   , Live  , Busy , More  ) => Nothing , Executing ;
+        7: ( None   , Still , Free , Empty ) => Repeat  , Finished  ;
+        8: ( None   , Still , Free , One   ) => Repeat  , Ready     ;
+        9: ( None   , Still , Free , More  ) => Repeat  , Executing ;
+       10: ( None   , Still , Busy , _     ) => Nothing , Executing ;
+       11: ( Some   , _     , Free , _     ) => Repeat  , Error     ;
+       12: ( Some   , _     , Busy , _     ) => Nothing , Error     ;
+       13: ( _      , _     , Down , _     ) => Nothing , Error     ;
     }
 }
 

@@ -2,6 +2,10 @@
 
 use nalgebra::Rotation3;
 
+mod rows;
+
+use std::collections::BTreeSet;
+
 use depc::{
     Limits, Plate,
     controller::{Controller, ControllerInputs, ControllerState, Warning},
@@ -36,6 +40,8 @@ struct Bench {
     /// The line carries bytes.
     connected: bool,
     hold: bool,
+    /// Tables and rows that fired.
+    rows: BTreeSet<(u8, u8)>,
 }
 
 fn home() -> Frame {
@@ -62,6 +68,7 @@ impl Bench {
             prim_runs: true,
             connected: true,
             hold: false,
+            rows: BTreeSet::new(),
         };
         bench.external.devices.resolvers.valid = true;
         bench.cell(&LinkBytes::default(), true);
@@ -101,6 +108,7 @@ impl Bench {
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
         Process::<()>::step(&mut self.t3i, &inputs, &mut outputs);
         self.memory.t3i = outputs;
+        self.rows.extend([(1, self.t3i.state.intake_row), (outputs.header.table, outputs.header.row)]);
         self.cell(&outputs.link_tx, false);
         &self.memory.t3i
     }
@@ -346,6 +354,47 @@ fn a_cut_line_is_noticed_reported_and_mended_only_by_restart() {
     bench.point(&beside(bench.robot_tool().position.x - home().position.x));
     bench.tick();
     assert_eq!(bench.report(), T3iReport::Ready);
+}
+
+#[test]
+fn bytes_that_the_port_did_not_take_are_said_to_be_not_transmitted() {
+    let mut bench = Bench::running();
+    bench.point(&beside(5.0));
+    bench.tick();
+    let at = bench.robot.at;
+    // The serial line is not ready either after a torn frame.
+    (bench.external.devices.link_unsent, bench.external.devices.link_ready) = (true, false);
+    bench.tick();
+    assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::NotTransmitted));
+    assert_eq!(LinkFault::NotTransmitted.code(), 4);
+    bench.external.devices.link_unsent = false;
+    for _ in 0..5 {
+        bench.tick();
+        assert_eq!((bench.fault(), bench.robot.at), (LinkFault::NotTransmitted, at));
+    }
+    bench.command(T3iVerb::Restart);
+    for _ in 0..12 {
+        bench.tick();
+    }
+    assert_eq!((bench.report(), bench.fault()), (T3iReport::Finished, LinkFault::None));
+}
+
+#[test]
+fn a_prim_that_is_stepped_singly_lets_one_point_out_a_step() {
+    let mut bench = Bench::running();
+    for n in 1..=6 {
+        // Its answer to the report of the tick before; then it stands again.
+        assert!(matches!(bench.report(), T3iReport::Ready | T3iReport::Finished));
+        bench.memory.prim.header.republished = false;
+        bench.point(&beside(0.4 * f64::from(n)));
+        bench.tick();
+        bench.memory.prim.header.republished = true;
+        for _ in 0..5 {
+            bench.tick();
+            let x = bench.robot_tool().position.x;
+            assert!((x - 0.4 * f64::from(n)).abs() < 0.01, "{x} after {n} steps");
+        }
+    }
 }
 
 #[test]
