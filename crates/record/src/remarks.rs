@@ -141,7 +141,8 @@ fn name_of(headers: &[HeaderPlace], field: &str) -> String {
 }
 
 /// A command of the workstation as people write it: the words that it has.
-fn hws_text(command: &HwsCommand) -> String {
+#[must_use]
+pub fn hws_text(command: &HwsCommand) -> String {
     let mut words = vec![command.command.to_string()];
     let place = |name: &str, sector: i32| match sector {
         0 => name.to_owned(),

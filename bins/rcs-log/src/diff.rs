@@ -1,0 +1,253 @@
+//! `rcs-log diff`: where two runs differ: the first tick, and then by buffer and field.
+//!
+//! Ticks are aligned by their number, or by command: then the ticks of a command are counted from the one in which Task
+//! took it, so that a command which took longer in one run does not make all that follows it different.
+
+use std::{
+    collections::{BTreeMap, HashMap},
+    fmt,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+use clap::ValueEnum;
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs},
+    record::{Field, Writer},
+};
+use record::layout::{self, Leaf};
+use serde::Serialize;
+
+use crate::{
+    Answer, DIFFERENT, Error, print,
+    story::{Moment, open, walk},
+};
+
+/// Fields that are listed.
+const LISTED: usize = 40;
+
+/// Arguments of `diff`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Arguments {
+    /// The one log
+    pub a: PathBuf,
+    /// The other log
+    pub b: PathBuf,
+    /// What is compared with what
+    #[arg(long, value_enum, default_value_t = Align::Tick)]
+    pub align: Align,
+    #[command(flatten)]
+    answer: Answer,
+}
+
+/// Which ticks belong together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Align {
+    /// Those of the same number
+    Tick,
+    /// Those as far from the beginning of the same command
+    Command,
+}
+
+/// What belongs together: command and ticks since it began.
+type Key = (u32, u64);
+
+/// How two runs differ.
+#[derive(Debug, Serialize)]
+struct Differences {
+    /// Ticks that both have.
+    compared: u64,
+    /// Ticks that only the first has.
+    only_a: u64,
+    /// Ticks that only the second has.
+    only_b: u64,
+    /// Compared ticks in which something differs.
+    different: u64,
+    first: Option<First>,
+    /// Fields that differ, in the order in which they begin to.
+    fields: Vec<FieldStory>,
+    /// Fields that differ and are not listed.
+    more_fields: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct First {
+    tick_a: u64,
+    tick_b: u64,
+    field: String,
+    a: String,
+    b: String,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct FieldStory {
+    field: String,
+    first_tick: u64,
+    ticks: u64,
+}
+
+/// Compare two logs and print how they differ.
+pub fn diff(arguments: &Arguments) -> Result<ExitCode, Error> {
+    let differences = compare(&arguments.a, &arguments.b, arguments.align)?;
+    print(&differences, arguments.answer.json)?;
+    let same = differences.different + differences.only_a + differences.only_b == 0;
+    Ok(ExitCode::from(if same { 0 } else { DIFFERENT }))
+}
+
+/// Images of a tick: inputs and output buffers.
+struct Images {
+    tick: u64,
+    external: Box<[u8]>,
+    memory: Box<[u8]>,
+}
+
+impl Images {
+    fn of(moment: &Moment) -> Self {
+        let mut external = vec![0; ExternalInputs::SIZE].into_boxed_slice();
+        moment.external.encode(&mut Writer::new(&mut external));
+        let mut memory = vec![0; CommonMemory::SIZE].into_boxed_slice();
+        moment.after.encode(&mut Writer::new(&mut memory));
+        Self { tick: moment.tick.0, external, memory }
+    }
+}
+
+/// Gives each tick its key.
+struct Keys {
+    align: Align,
+    command: u32,
+    since: u64,
+}
+
+impl Keys {
+    const fn new(align: Align) -> Self {
+        Self { align, command: 0, since: 0 }
+    }
+
+    fn of(&mut self, moment: &Moment) -> Key {
+        let echo = moment.after.task.status.echo;
+        match self.align {
+            Align::Tick => (0, moment.tick.0),
+            Align::Command if echo != self.command => {
+                (self.command, self.since) = (echo, moment.tick.0);
+                (echo, 0)
+            }
+            Align::Command => (echo, moment.tick.0 - self.since),
+        }
+    }
+}
+
+fn compare(a: &Path, b: &Path, align: Align) -> Result<Differences, Error> {
+    let (log_a, log_b) = (open(a)?, open(b)?);
+    let mut of_b = HashMap::new();
+    let mut keys = Keys::new(align);
+    walk(&log_b, b, |moment| {
+        of_b.insert(keys.of(moment), Images::of(moment));
+        true
+    })?;
+    let mut found = Comparison::new();
+    let mut keys = Keys::new(align);
+    walk(&log_a, a, |moment| {
+        let other = of_b.remove(&keys.of(moment));
+        found.note(&Images::of(moment), other.as_ref());
+        true
+    })?;
+    Ok(found.differences(of_b.len()))
+}
+
+struct Comparison {
+    external: Vec<Leaf>,
+    memory: Vec<Leaf>,
+    fields: BTreeMap<String, FieldStory>,
+    first: Option<First>,
+    compared: u64,
+    only_a: u64,
+    different: u64,
+}
+
+impl Comparison {
+    fn new() -> Self {
+        Self {
+            external: layout::leaves(ExternalInputs::RECORD),
+            memory: layout::leaves(CommonMemory::RECORD),
+            fields: BTreeMap::new(),
+            first: None,
+            compared: 0,
+            only_a: 0,
+            different: 0,
+        }
+    }
+
+    fn note(&mut self, a: &Images, b: Option<&Images>) {
+        let Some(b) = b else {
+            self.only_a += 1;
+            return;
+        };
+        self.compared += 1;
+        // Stamps differ wherever ticks are aligned by command.
+        let matters = |leaf: &&Leaf| a.tick == b.tick || !leaf.path.ends_with("stamp");
+        let pairs = [
+            (&self.external, "external.", &a.external, &b.external),
+            (&self.memory, "", &a.memory, &b.memory),
+        ];
+        let mut different = false;
+        for (leaves, prefix, was, is) in pairs {
+            if was == is {
+                continue;
+            }
+            for leaf in leaves.iter().filter(matters).filter(|leaf| leaf.bytes(was) != leaf.bytes(is)) {
+                different = true;
+                let field = format!("{prefix}{}", leaf.path);
+                let value = |image| layout::value_text(leaf.schema, leaf.bytes(image));
+                self.first.get_or_insert_with(|| First {
+                    tick_a: a.tick,
+                    tick_b: b.tick,
+                    field: field.clone(),
+                    a: value(was),
+                    b: value(is),
+                });
+                self.fields
+                    .entry(field.clone())
+                    .or_insert(FieldStory { field, first_tick: a.tick, ticks: 0 })
+                    .ticks += 1;
+            }
+        }
+        self.different += u64::from(different);
+    }
+
+    fn differences(self, only_b: usize) -> Differences {
+        let mut fields: Vec<FieldStory> = self.fields.into_values().collect();
+        fields.sort_by_key(|story| story.first_tick);
+        let more_fields = fields.len().saturating_sub(LISTED);
+        fields.truncate(LISTED);
+        Differences {
+            compared: self.compared,
+            only_a: self.only_a,
+            only_b: only_b as u64,
+            different: self.different,
+            first: self.first,
+            fields,
+            more_fields,
+        }
+    }
+}
+
+impl fmt::Display for Differences {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { compared, only_a, only_b, different, .. } = self;
+        writeln!(
+            f,
+            "{compared} ticks compared, {different} different; {only_a} only in the first log, {only_b} only in the second"
+        )?;
+        let Some(First { tick_a, tick_b, field, a, b }) = &self.first else { return Ok(()) };
+        let ticks = if tick_a == tick_b { tick_a.to_string() } else { format!("{tick_a} and {tick_b}") };
+        writeln!(f, "first      tick {ticks}, {field}: {a} and {b}")?;
+        writeln!(f, "\n  from tick   ticks  field")?;
+        for story in &self.fields {
+            writeln!(f, "  {:>9} {:>7}  {}", story.first_tick, story.ticks, story.field)?;
+        }
+        if self.more_fields > 0 {
+            writeln!(f, "  and {} more fields", self.more_fields)?;
+        }
+        Ok(())
+    }
+}

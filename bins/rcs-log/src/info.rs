@@ -1,0 +1,168 @@
+//! `rcs-log info`: what ran, how long it took, with which commands, and how it ended.
+
+use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode};
+
+use rcs_core::{
+    interface::t3i::LinkCounters,
+    tick::{TICK_S, Tick},
+};
+use record::{Log, proto::foxglove::Level};
+use serde::Serialize;
+
+use crate::{
+    Answer, Error, print,
+    story::{Chronicle, CommandStory, open, walk},
+};
+
+/// Arguments of `info`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Arguments {
+    /// The log
+    pub file: PathBuf,
+    #[command(flatten)]
+    answer: Answer,
+}
+
+/// What a log says of its run.
+#[derive(Debug, Serialize)]
+struct Info {
+    file: String,
+    bytes: usize,
+    /// What the run wrote about itself at its start.
+    run: BTreeMap<String, String>,
+    ticks: u64,
+    seconds: f64,
+    /// Ticks that the log could not keep up with.
+    missing_ticks: u64,
+    /// The log has its end; a killed run's has not.
+    complete: bool,
+    result: Option<String>,
+    digest: Option<String>,
+    commands: Vec<CommandStory>,
+    link: Link,
+    failure: Option<String>,
+    /// Warnings and errors on `/log`.
+    warnings: usize,
+    errors: usize,
+    attachments: Vec<String>,
+}
+
+#[derive(Debug, Default, Serialize)]
+struct Link {
+    frames: u32,
+    acknowledged: u32,
+    naks: u32,
+    timeouts: u32,
+    restarts: u32,
+    checksum_errors: u32,
+    limited: u32,
+}
+
+impl From<&LinkCounters> for Link {
+    fn from(counters: &LinkCounters) -> Self {
+        Self {
+            frames: counters.frames,
+            acknowledged: counters.acknowledged,
+            naks: counters.naks,
+            timeouts: counters.timeouts,
+            restarts: counters.restarts,
+            checksum_errors: counters.checksum_errors,
+            limited: counters.limited,
+        }
+    }
+}
+
+/// Print what a log says of its run.
+pub fn info(arguments: &Arguments) -> Result<ExitCode, Error> {
+    let log = open(&arguments.file)?;
+    print(&look(&log, arguments)?, arguments.answer.json)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn look(log: &Log, arguments: &Arguments) -> Result<Info, Error> {
+    let (mut chronicle, mut link) = (Chronicle::default(), Link::default());
+    let (mut ticks, mut missing, mut last) = (0, 0, Tick::BEFORE_START);
+    walk(log, &arguments.file, |moment| {
+        chronicle.note(moment);
+        link = Link::from(&moment.after.t3i.status.counters);
+        missing += moment.gap;
+        ticks += 1;
+        last = moment.tick;
+        true
+    })?;
+    if ticks == 0 {
+        return Err(Error::Empty(arguments.file.clone()));
+    }
+    let level = |level| log.lines().filter(|line| line.level == level).count();
+    let end = |key: &str| log.end.as_ref().and_then(|end| end.get(key)).cloned();
+    Ok(Info {
+        file: arguments.file.display().to_string(),
+        bytes: log.size(),
+        run: log.run.clone(),
+        ticks,
+        seconds: last.0 as f64 * TICK_S,
+        missing_ticks: missing,
+        complete: log.complete,
+        result: end("result"),
+        digest: end("digest"),
+        commands: chronicle.commands,
+        link,
+        failure: chronicle.failure.map(|failure| failure.text),
+        warnings: level(Level::Warning),
+        errors: level(Level::Error),
+        attachments: log.attachments.iter().map(|attachment| attachment.name.clone()).collect(),
+    })
+}
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let of = |key: &str| self.run.get(key).map_or("unknown", String::as_str);
+        writeln!(
+            f,
+            "run        {} {}, commit {}, job {}, seed {}, clock {}, robot {}",
+            of("program"),
+            of("version"),
+            of("commit"),
+            of("job"),
+            of("seed"),
+            of("clock"),
+            of("robot")
+        )?;
+        writeln!(f, "started    {}", of("command_line"))?;
+        let end = match (&self.result, self.complete) {
+            (Some(result), true) => result.clone(),
+            _ => "the log has no end: the run was killed, or its log broke off".to_owned(),
+        };
+        writeln!(f, "ended      {end}")?;
+        writeln!(
+            f,
+            "length     {} ticks, {:.1} s; {} ticks missing; {:.1} MB, {} warnings, {} errors",
+            self.ticks,
+            self.seconds,
+            self.missing_ticks,
+            self.bytes as f64 / 1e6,
+            self.warnings,
+            self.errors
+        )?;
+        let Link { frames, acknowledged, naks, timeouts, restarts, checksum_errors, limited } = &self.link;
+        writeln!(
+            f,
+            "link       {frames} frames, {acknowledged} acknowledged, {naks} NAKs, {timeouts} without answer, \
+             {restarts} re-starts, {checksum_errors} checksum errors, {limited} points limited"
+        )?;
+        if let Some(digest) = &self.digest {
+            writeln!(f, "digest     {digest}")?;
+        }
+        writeln!(f, "\n  tick       s  for s  status     command")?;
+        for command in &self.commands {
+            let begin = command.first_tick as f64 * TICK_S;
+            let length = (command.last_tick - command.first_tick + 1) as f64 * TICK_S;
+            let (tick, status) = (command.first_tick, &command.status);
+            writeln!(f, "{tick:>6} {begin:>7.1} {length:>6.1}  {status:<10} {}", command.text)?;
+        }
+        match &self.failure {
+            Some(failure) => writeln!(f, "\nfailure    {failure}"),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! `rcs-log`: looks into the logs of runs.
+//!
+//! | subcommand | question |
+//! |---|---|
+//! | [`info`] | what ran, how long did it take, how did it end? |
+//! | [`why`] | what did each level do in a tick, by which row, and what failed first? |
+//! | [`replay`] | would the program of today do the same on the same inputs? |
+//! | [`diff`] | where do two runs differ? |
+
+mod diff;
+mod info;
+mod replay;
+mod story;
+mod why;
+
+use std::{io, path::PathBuf, process::ExitCode};
+
+use clap::{Args, Parser, Subcommand};
+
+/// Exit status of an answer that is no: a replay that differs, two logs that differ.
+const DIFFERENT: u8 = 1;
+/// Exit status of a usage or file error.
+const UNUSABLE: u8 = 2;
+
+/// Looks into the logs of runs: what happened, why, and whether today's program would do the same.
+#[derive(Debug, Parser)]
+#[command(
+    name = "rcs-log",
+    version,
+    about,
+    after_help = "\
+Examples:
+  rcs-log info runs/linkbar.mcap            what ran, its commands, link, end
+  rcs-log why runs/linkbar.mcap             why it failed, from Task down to the link
+  rcs-log why runs/linkbar.mcap --tick 1200 what each level did in a tick, and by which row
+  rcs-log replay runs/*.mcap                compute every tick again and compare every bit
+  rcs-log diff a.mcap b.mcap                where two runs differ
+
+Exit status: 0 done, and the same where something is compared; 1 different; 2 usage, or a file that cannot be used.
+The reason is the last line on standard error."
+)]
+struct Cli {
+    /// What to look for.
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// What ran, how long, with which commands, and how it ended
+    Info(info::Arguments),
+    /// What each level did, and by which row: in the tick of the failure, or in any other
+    Why(why::Arguments),
+    /// Compute the control processes again on the recorded inputs, and compare every output buffer of every tick
+    Replay(replay::Arguments),
+    /// Where two runs differ: first, and then by buffer and field
+    Diff(diff::Arguments),
+}
+
+/// Files and the form of the answer: what all subcommands have.
+#[derive(Clone, Debug, Args)]
+struct Answer {
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long)]
+    json: bool,
+}
+
+/// Why a log cannot be looked into.
+#[derive(Debug, thiserror::Error)]
+enum Error {
+    /// It cannot be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: record::ReadError,
+    },
+    /// A tick that the log does not have.
+    #[error("{}: tick {tick} is not in the log, which has ticks {first} to {last}", path.display())]
+    NoTick {
+        /// The file.
+        path: PathBuf,
+        /// As asked for.
+        tick: u64,
+        /// First tick there.
+        first: u64,
+        /// Last tick there.
+        last: u64,
+    },
+    /// A log without ticks.
+    #[error("{}: the log holds no tick", .0.display())]
+    Empty(PathBuf),
+    /// The answer cannot be written.
+    #[error("the answer cannot be written: {0}")]
+    Output(#[from] io::Error),
+}
+
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Info(arguments) => info::info(&arguments),
+        Command::Why(arguments) => why::why(&arguments),
+        Command::Replay(arguments) => replay::replay(&arguments),
+        Command::Diff(arguments) => diff::diff(&arguments),
+    };
+    outcome.unwrap_or_else(|error| {
+        eprintln!("rcs-log: {error}");
+        ExitCode::from(UNUSABLE)
+    })
+}
+
+/// Print an answer: as JSON, or as the lines that people read.
+fn print<T: serde::Serialize + std::fmt::Display>(answer: &T, json: bool) -> Result<(), Error> {
+    use io::Write as _;
+    let mut out = io::stdout().lock();
+    if json {
+        serde_json::to_writer(&mut out, answer).map_err(io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        write!(out, "{answer}")?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definitions_are_consistent() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,150 @@
+//! `rcs-log replay`: computes the control processes again on the recorded inputs, and compares every output
+//! buffer of every tick, bit for bit. Several logs are replayed at once.
+
+use std::{
+    fmt,
+    num::NonZero,
+    path::PathBuf,
+    process::ExitCode,
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicUsize, Ordering},
+    },
+    thread,
+};
+
+use record::{ReplayError, ReplayReport};
+use serde::Serialize;
+
+use crate::{Answer, DIFFERENT, Error, UNUSABLE, print};
+
+/// Arguments of `replay`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Arguments {
+    /// The logs
+    #[arg(required = true)]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    answer: Answer,
+}
+
+/// What became of all logs.
+#[derive(Debug, Serialize)]
+struct Outcome {
+    logs: Vec<OneLog>,
+}
+
+#[derive(Debug, Serialize)]
+struct OneLog {
+    file: String,
+    /// Every computed tick was the same.
+    same: bool,
+    ticks: u64,
+    /// Ticks that could not be computed: those of gaps, and where the replay began anew after them.
+    skipped: u64,
+    /// The log has its end.
+    complete: bool,
+    times_real_time: f64,
+    digest: Option<String>,
+    /// Where the replay first went another way.
+    difference: Option<String>,
+    /// Why there was no replay.
+    error: Option<String>,
+}
+
+impl OneLog {
+    fn new(file: String, outcome: Result<ReplayReport, ReplayError>) -> Self {
+        match outcome {
+            Ok(report) => Self {
+                file,
+                same: report.is_same(),
+                ticks: report.ticks,
+                skipped: report.skipped,
+                complete: report.complete,
+                times_real_time: report.speed(),
+                digest: Some(report.digest.to_string()),
+                difference: report.first_difference.as_ref().map(ToString::to_string),
+                error: None,
+            },
+            Err(error) => Self {
+                file,
+                same: false,
+                ticks: 0,
+                skipped: 0,
+                complete: false,
+                times_real_time: 0.0,
+                digest: None,
+                difference: None,
+                error: Some(error.to_string()),
+            },
+        }
+    }
+}
+
+/// Replay all logs and print what was found.
+pub fn replay(arguments: &Arguments) -> Result<ExitCode, Error> {
+    let outcome = Outcome { logs: replay_all(&arguments.files) };
+    print(&outcome, arguments.answer.json)?;
+    let worst = |log: &OneLog| match (log.same, &log.error) {
+        (_, Some(_)) => UNUSABLE,
+        (false, None) => DIFFERENT,
+        (true, None) => 0,
+    };
+    let status = outcome.logs.iter().map(worst).max().unwrap_or(0);
+    if status != 0 {
+        let failed = outcome.logs.iter().filter(|log| !log.same).count();
+        eprintln!("rcs-log: {failed} of {} logs did not replay", outcome.logs.len());
+    }
+    Ok(ExitCode::from(status))
+}
+
+/// As many at once as the machine has cores; the answers are in the order of the files.
+fn replay_all(files: &[PathBuf]) -> Vec<OneLog> {
+    let workers = thread::available_parallelism().map_or(1, NonZero::get).min(files.len());
+    let next = AtomicUsize::new(0);
+    let done = Mutex::new(Vec::with_capacity(files.len()));
+    thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| {
+                while let Some((at, path)) = take(files, &next) {
+                    let log = OneLog::new(path.display().to_string(), record::replay(path));
+                    done.lock().unwrap_or_else(PoisonError::into_inner).push((at, log));
+                }
+            });
+        }
+    });
+    let mut logs = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    logs.sort_by_key(|(at, _)| *at);
+    logs.into_iter().map(|(_, log)| log).collect()
+}
+
+fn take<'a>(files: &'a [PathBuf], next: &AtomicUsize) -> Option<(usize, &'a PathBuf)> {
+    let at = next.fetch_add(1, Ordering::Relaxed);
+    Some((at, files.get(at)?))
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for log in &self.logs {
+            if let Some(error) = &log.error {
+                writeln!(f, "{}: not replayed: {error}", log.file)?;
+                continue;
+            }
+            let verdict = if log.same { "same" } else { "DIFFERENT" };
+            let end = if log.complete { "" } else { "; the log has no end" };
+            let gaps =
+                if log.skipped > 0 { format!("; {} ticks skipped", log.skipped) } else { String::new() };
+            writeln!(
+                f,
+                "{}: {verdict}, {} ticks, {:.0} x real time{gaps}{end}",
+                log.file, log.ticks, log.times_real_time
+            )?;
+            match &log.difference {
+                Some(difference) => writeln!(f, "  {difference}")?,
+                None if !log.same => writeln!(f, "  every tick is the same, but not the digest at the end")?,
+                None => {}
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,144 @@
+//! `rcs-log` as a program: what it answers to logs that the recorder wrote.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+};
+
+use levels::ladder::Ladder;
+use rcs_core::{
+    digest::Digest,
+    interface::{CommonMemory, ExternalInputs},
+    name::Name16,
+    record::Field,
+    tick::Tick,
+};
+use record::{End, Epoch, Pace, Recorder, Setup};
+use taskdata::files::TaskData;
+
+const TICKS: u64 = 120;
+/// Tick in which the workstation commands something that cannot be done.
+const COMMANDED: u64 = 50;
+
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("rcs-log-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).expect("a directory for scratch files");
+        Self(path)
+    }
+
+    /// A run without task data, in which TRANSFER fails; `speed` is the velocity knob.
+    fn log(&self, name: &str, speed: u16) -> PathBuf {
+        let path = self.0.join(name);
+        let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
+        let run = [text("program", "test"), text("job", "nothing"), text("seed", "7")].into();
+        let setup = Setup { epoch: Epoch::Fixed, run, ..Setup::default() };
+        let mut recorder = Recorder::start(&path, Pace::Wait, setup).expect("the log begins");
+        let (mut ladder, mut memory, mut digest) =
+            (Ladder::default(), CommonMemory::default(), Digest::new());
+        for tick in (1..=TICKS).map(Tick) {
+            let mut external = ExternalInputs::default();
+            external.devices.joystick.velocity = speed;
+            external.hws.number = u32::from(tick.0 >= COMMANDED);
+            external.hws.command = Name16::new("TRANSFER").expect("a word");
+            external.hws.object = Name16::new("NOBODY").expect("a word");
+            let before = memory;
+            ladder.step(tick, &before, &external, &TaskData::default(), &mut memory);
+            digest.add_record(&memory, &mut [0; CommonMemory::SIZE]);
+            recorder.tick(tick, &external, &memory, || ladder.state());
+        }
+        let end = End { digest: Some(digest.value()), result: "failed".into() };
+        recorder.finish(end).expect("the log ends");
+        path
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn rcs_log(arguments: &[&str], files: &[&Path]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_rcs-log")).args(arguments).args(files).output().expect("rcs-log runs")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+#[test]
+fn info_tells_commands_and_failure() {
+    let scratch = Scratch::new("info");
+    let log = scratch.log("run.mcap", 1000);
+    let output = rcs_log(&["info"], &[&log]);
+    let text = stdout(&output);
+    assert!(output.status.success(), "{text}");
+    assert!(text.contains("job nothing, seed 7"), "{text}");
+    assert!(text.contains("120 ticks, 4.8 s; 0 ticks missing"), "{text}");
+    assert!(text.contains("TRANSFER NOBODY"), "{text}");
+    assert!(text.contains("failure    Task: the object is not in the task data"), "{text}");
+
+    let output = rcs_log(&["info", "--json"], &[&log]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    assert_eq!(json["commands"][0]["first_tick"], COMMANDED);
+    assert_eq!(json["commands"][0]["status"], "error");
+    assert_eq!(json["complete"], true);
+}
+
+#[test]
+fn why_finds_the_tick_of_the_failure_and_names_the_row() {
+    let scratch = Scratch::new("why");
+    let log = scratch.log("run.mcap", 1000);
+    let text = stdout(&rcs_log(&["why"], &[&log]));
+    assert!(text.starts_with("Task: the object is not in the task data"), "{text}");
+    assert!(text.contains("In tick 50 (2.00 s), from Task down:"), "{text}");
+    assert!(text.contains("execute row 3: Refuse"), "{text}");
+
+    let output = rcs_log(&["why", "--tick", "7", "--json"], &[&log]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    assert_eq!(json["tick"], 7);
+    assert_eq!(json["levels"][0]["process"], "Task");
+
+    let output = rcs_log(&["why", "--tick", "4711"], &[&log]);
+    assert_eq!(output.status.code(), Some(2));
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(text.contains("tick 4711 is not in the log, which has ticks 1 to 120"), "{text}");
+}
+
+#[test]
+fn replay_takes_several_logs_and_says_which_cannot_be_used() {
+    let scratch = Scratch::new("replay");
+    let (one, two) = (scratch.log("one.mcap", 1000), scratch.log("two.mcap", 500));
+    let output = rcs_log(&["replay"], &[&one, &two]);
+    let text = stdout(&output);
+    assert!(output.status.success(), "{text}");
+    assert_eq!(text.matches(": same, 120 ticks").count(), 2, "{text}");
+
+    let broken = scratch.0.join("broken.mcap");
+    fs::write(&broken, b"no log").expect("a file");
+    let output = rcs_log(&["replay"], &[&one, &broken]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stdout(&output).contains("broken.mcap: not replayed:"), "{}", stdout(&output));
+}
+
+#[test]
+fn diff_names_the_first_field_and_counts_the_others() {
+    let scratch = Scratch::new("diff");
+    let (one, two) = (scratch.log("one.mcap", 1000), scratch.log("two.mcap", 500));
+    assert_eq!(rcs_log(&["diff"], &[&one, &one]).status.code(), Some(0));
+    for align in ["tick", "command"] {
+        let output = rcs_log(&["diff", "--align", align], &[&one, &two]);
+        let text = stdout(&output);
+        assert_eq!(output.status.code(), Some(1), "{text}");
+        assert!(text.contains("120 ticks compared, 120 different; 0 only in the first log"), "{text}");
+        assert!(
+            text.contains("first      tick 1, external.devices.joystick.velocity: 1000 and 500"),
+            "{text}"
+        );
+    }
+}
