@@ -117,8 +117,8 @@ impl Cell {
                 let change = &self.description.quick_change;
                 let plate = Inches::new(-description.plate() - change.length / 4.0, 0.0, 0.0);
                 let plate = Frame { position: plate, rotation: Rotation::identity() };
-                // A square of the area of the round plate.
-                let side = change.radius * libm::sqrt(core::f64::consts::PI);
+                // The square in the round plate: the camera looks past the round.
+                let side = change.radius * core::f64::consts::SQRT_2;
                 let mut boxes = self.body_boxes(description, 0.0);
                 boxes.push((plate, Inches::new(change.length / 2.0, side, side)));
                 boxes.into_iter().map(move |(place, size)| {

@@ -83,7 +83,8 @@ impl Cell {
         let mut movers = vec![
             capsule("upper_arm", upper, T3.upper_arm / 4.0, T3.upper_arm, robot.upper_arm_radius),
             capsule("forearm", fore, 0.0, T3.forearm, robot.forearm_radius),
-            capsule("wrist", plate, 0.0, T3.yaw_to_plate, robot.wrist_radius),
+            // Its round end is behind the end plate, before which the quick change sits.
+            capsule("wrist", plate, 0.0, T3.yaw_to_plate - robot.wrist_radius, robot.wrist_radius),
         ];
         movers.extend(self.worn());
         let held = self.changer.carried().and_then(|hand| self.hand(hand).hold.as_ref());
