@@ -1,30 +1,28 @@
-//! Postprocess of E-move: commands to Prim, Grip, Quick Change and vision, and the status to Subtask.
+//! Postprocess of E-move: commands to Prim, the gripper and Quick Change, and the status to Subtask.
 
 use rcs_core::{
-    frame::Frame,
+    handshake::Lower,
     interface::{
-        EmoveOutputs, Reason,
+        EmoveOutputs, Reason, Report,
         device::Picture,
-        emove::{EmoveCommand, EmoveStatus, EmoveVerb},
-        grip::{GripCommand, GripVerb},
-        prim::{PrimCommand, PrimVerb},
-        quick_change::{QuickChangeCommand, QuickChangeVerb},
+        emove::{EmoveCommand, EmoveStatus},
+        prim::{PrimCommand, PrimReport, PrimVerb},
+        quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
     },
     name::{Name10, Name16},
     pose::Pose,
     process::Inputs,
 };
-use taskdata::files::{EndEffId, EndEffPara, MovtabId, TaskData, TrajParaId};
+use taskdata::files::{MovtabId, TaskData, TrajParaId};
 
 use super::{
     Emove, Slot,
-    locate::{centred, looked_at, part_frame, request, view_of},
-    route::{Ahead, FULL_OPENING, LegGoal},
-    sensing::present_frame,
-    state::{Held, Located, Sort, Stance},
+    gripper::{Gripper, Order, Request},
+    route::{Ahead, LegGoal},
+    state::Sort,
     tables::{Action, Situation},
 };
-use crate::places::place_of;
+use crate::execution::Outcome;
 
 impl Emove {
     /// Set the outputs that a row asks for.
@@ -36,60 +34,90 @@ impl Emove {
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut EmoveOutputs,
     ) {
-        let parameters = inputs.data.end_eff(EndEffId::new(command.object_parameters));
         match action {
             Action::Wait => {}
             Action::RobotInit => self.send_prim(PrimVerb::RobotInit, inputs, outputs),
-            Action::Pause => self.pause_all(command, inputs, outputs),
+            Action::Pause => self.pause_all(inputs, outputs),
+            Action::Manual => {
+                self.state.searched = 0;
+                self.state.execution.pass_up(Lower::Joystick, Reason::JoystickOn);
+            }
             Action::GoThru | Action::GotoPt => self.send_leg(situation, inputs, outputs),
-            Action::Open => {
-                self.state.route.opening_sent = true;
-                let opening = self.state.route.opening;
-                self.send_grip(GripVerb::Position, opening, 0, inputs, outputs);
-            }
-            Action::Close => {
-                let (size, force) = parameters.map_or((0, 0), |p| (p.grasp_size, p.grasp_force));
-                self.send_grip(GripVerb::CloseGrip, size, force, inputs, outputs);
-            }
-            Action::OpenToDepart => {
-                let held = inputs.data.end_eff(self.state.held.parameters);
-                let opening = held.or(parameters).map_or(FULL_OPENING, |p: &EndEffPara| p.depart_size);
-                self.send_grip(GripVerb::OpenGrip, opening, 0, inputs, outputs);
-            }
+            Action::DeltaMove(by) => self.send_relative(PrimVerb::DeltaMove, by, command, inputs, outputs),
+            Action::GoUntil(by) => self.send_relative(PrimVerb::GoUntil, by, command, inputs, outputs),
+            Action::GoWhile(by) => self.send_relative(PrimVerb::GoWhile, by, command, inputs, outputs),
+            Action::CalSensor => self.send_prim(PrimVerb::CalSensor, inputs, outputs),
+            Action::Lock => self.send_quick_change(QuickChangeVerb::Lock, inputs, outputs),
+            Action::Unlock => self.send_quick_change(QuickChangeVerb::Unlock, inputs, outputs),
+            Action::Open
+            | Action::OpenToApproach
+            | Action::CloseForHolster
+            | Action::Close
+            | Action::OpenToDepart
+            | Action::Calibrate
+            | Action::OpenByHand
+            | Action::CloseByHand => self.order(action, command, inputs, outputs),
             Action::Arrive => self.arrive(command, outputs),
-            Action::Grasped => self.grasped(command, parameters),
-            Action::Released => {
-                self.state.held = Held::default();
-                self.state.execution.finish();
+            Action::Stand => self.stand(Sort::Location, command, inputs),
+            Action::StandInDrum => self.stand(Sort::Drum, command, inputs),
+            Action::Grasped => self.grasped(command, inputs),
+            Action::Acquired => {
+                self.grasped(command, inputs);
+                self.stand(Sort::Drum, command, inputs);
             }
             Action::Flood | Action::FloodAgain => {
-                self.take_picture(Picture::FastFlood, action, command, inputs, outputs)
+                self.take_picture(Picture::FastFlood, action, command, inputs, outputs);
             }
             Action::Precise | Action::PreciseAgain => {
                 self.take_picture(Picture::Precise, action, command, inputs, outputs);
             }
             Action::Centre | Action::Align => self.move_camera(action, command, inputs, outputs),
-            Action::Located => {
-                self.settle(command, Sort::View, outputs);
-                self.state.execution.finish();
-            }
-            Action::Finish => self.state.execution.finish(),
+            Action::Located => self.arrive(command, outputs),
+            Action::Finish => self.finish(),
             Action::Fail(reason) => self.fail(reason, inputs, outputs),
             Action::FailGrip => {
-                let below = inputs.memory.grip.status.reason;
-                let reason = if below == Reason::None { Reason::NeighbourLost } else { below };
+                let reason = self.state.grippers.fault(inputs.tick, inputs.memory);
                 self.fail(reason, inputs, outputs);
             }
+            Action::FailRing => self.fail(self.ring_fault(inputs), inputs, outputs),
             Action::PassUp => {
                 self.state.execution.pass_up(situation.prim, inputs.memory.prim.status.reason);
             }
         }
     }
 
+    /// Report done.
+    pub(super) fn finish(&mut self) {
+        self.state.execution.reason = Reason::None;
+        self.state.execution.finish();
+    }
+
     /// Stop the robot and report an error.
-    fn fail(&mut self, reason: Reason, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
+    pub(super) fn fail(
+        &mut self,
+        reason: Reason,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut EmoveOutputs,
+    ) {
         self.stop_prim(inputs, outputs);
         self.state.execution.fail(reason);
+    }
+
+    /// What is wrong with the quick change.
+    fn ring_fault(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Reason {
+        let ring = &inputs.memory.quick_change;
+        let lower = ring.status.report.lower();
+        if self.state.quick_change.read(inputs.tick, &ring.header, ring.status.echo, lower) == Lower::Lost {
+            return Reason::NeighbourLost;
+        }
+        match ring.status.report {
+            QuickChangeReport::Stuck => Reason::QuickChangeStuck,
+            QuickChangeReport::Idle
+            | QuickChangeReport::Executing
+            | QuickChangeReport::Locked
+            | QuickChangeReport::Unlocked
+            | QuickChangeReport::SensorMalfunction => Reason::QuickChangeFault,
+        }
     }
 
     /// PAUSE to Prim: ramp down and hold.
@@ -97,24 +125,31 @@ impl Emove {
         self.send_prim(PrimVerb::Pause, inputs, outputs);
     }
 
-    fn pause_all(
+    fn pause_all(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
+        self.state.searched = 0;
+        self.stop_prim(inputs, outputs);
+        let request = Request { order: Order::Pause, ..Request::default() };
+        self.state.grippers.send(request, inputs.tick, inputs.memory, outputs);
+        self.send_quick_change(QuickChangeVerb::Pause, inputs, outputs);
+    }
+
+    fn send_quick_change(
         &mut self,
-        command: &EmoveCommand,
+        verb: QuickChangeVerb,
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut EmoveOutputs,
     ) {
-        self.state.searched = 0;
-        self.send_prim(PrimVerb::Pause, inputs, outputs);
-        self.send_grip(GripVerb::Pause, 0, 0, inputs, outputs);
-        outputs.grip.end_effector_id = command.end_effector_id;
-        outputs.quick_change = QuickChangeCommand {
-            number: self.state.quick_change.send(inputs.tick),
-            command: QuickChangeVerb::Pause,
-        };
+        outputs.quick_change =
+            QuickChangeCommand { number: self.state.quick_change.send(inputs.tick), command: verb };
     }
 
     /// A command to Prim that names no goal.
-    fn send_prim(&mut self, verb: PrimVerb, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
+    pub(super) fn send_prim(
+        &mut self,
+        verb: PrimVerb,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut EmoveOutputs,
+    ) {
         outputs.prim = PrimCommand {
             number: self.state.prim.send(inputs.tick),
             command: verb,
@@ -151,140 +186,43 @@ impl Emove {
         self.state.stance.known = false;
     }
 
-    fn send_grip(
+    /// Give the attached gripper the order that an action stands for.
+    fn order(
         &mut self,
-        verb: GripVerb,
-        position: i32,
-        force: i32,
-        inputs: &Inputs<'_, TaskData<'_>>,
-        outputs: &mut EmoveOutputs,
-    ) {
-        outputs.grip = GripCommand {
-            number: self.state.grip.send(inputs.tick),
-            command: verb,
-            force,
-            position,
-            velocity: 0,
-            end_effector_id: inputs.memory.quick_change.status.end_effector_id,
-        };
-    }
-
-    /// The robot is at the goal of the current command.
-    fn arrive(&mut self, command: &EmoveCommand, outputs: &EmoveOutputs) {
-        let sort = match command.command {
-            EmoveVerb::MovToObj | EmoveVerb::MovObjTo => Sort::Object,
-            EmoveVerb::MovToVu | EmoveVerb::LocateObj => Sort::View,
-            EmoveVerb::None
-            | EmoveVerb::Pause
-            | EmoveVerb::MovToLoc
-            | EmoveVerb::GraspObj
-            | EmoveVerb::Release
-            | EmoveVerb::MovToHol
-            | EmoveVerb::QcDetach
-            | EmoveVerb::QcAttach
-            | EmoveVerb::Withdraw
-            | EmoveVerb::InsertTool
-            | EmoveVerb::ReleaseTool
-            | EmoveVerb::AcquireTool
-            | EmoveVerb::RemoveTool => Sort::Location,
-        };
-        self.settle(command, sort, outputs);
-        self.state.execution.finish();
-    }
-
-    /// The robot has come to rest at the goal record: remember where that is.
-    fn settle(&mut self, command: &EmoveCommand, sort: Sort, outputs: &EmoveOutputs) {
-        let [_, goal, ..] = outputs.poses;
-        self.state.stance = Stance {
-            known: true,
-            sort,
-            location: command.location,
-            kind: command.location_kind,
-            record: command.location_record,
-            array: command.location_array,
-            object: command.object,
-            grip: command.grip,
-            pose: goal.pose,
-        };
-    }
-
-    fn grasped(&mut self, command: &EmoveCommand, parameters: Option<&EndEffPara>) {
-        self.state.held = Held {
-            object: command.object,
-            parameters: EndEffId::new(command.object_parameters),
-            grasp_size: parameters.map_or(0, |p| p.grasp_size),
-        };
-        self.state.located = Located::default();
-        self.state.execution.finish();
-    }
-
-    fn take_picture(
-        &mut self,
-        picture: Picture,
         action: Action,
         command: &EmoveCommand,
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut EmoveOutputs,
     ) {
-        let again = matches!(action, Action::FloodAgain | Action::PreciseAgain);
-        self.state.tries = if again { self.state.tries.saturating_add(1) } else { 0 };
-        match action {
-            Action::Flood => self.state.located = Located::default(),
-            Action::Precise => self.settle(command, Sort::View, outputs),
-            _ => {}
+        let request = self.request(action, command, inputs);
+        self.state.route.opening_sent |= action == Action::Open;
+        self.state.grippers.send(request, inputs.tick, inputs.memory, outputs);
+    }
+
+    /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was done before; a command
+    /// that was given up for it ends in an error and is not resumed (DESIGN 16 "Failure upward").
+    fn outcome(&self, inputs: &Inputs<'_, TaskData<'_>>) -> (Report, Reason) {
+        let execution = &self.state.execution;
+        let prim = &inputs.memory.prim;
+        let taken =
+            prim.status.report == PrimReport::JoystickOn && prim.header.stamp == inputs.tick.previous();
+        match (taken, execution.outcome) {
+            (true, Outcome::Done | Outcome::Joystick) => (Report::JoystickOn, Reason::JoystickOn),
+            (false, Outcome::Joystick) => (Report::Error, Reason::JoystickOn),
+            _ => (execution.report(), execution.reason),
         }
-        let Some(view) = view_of(command, inputs.data) else {
-            return self.fail(Reason::BadRecord, inputs, outputs);
-        };
-        outputs.vision = request(self.state.vision.send(inputs.tick), picture, self.state.tries, view);
     }
 
-    /// Move the camera over the centroid, and for [`Action::Align`] turn it with the part.
-    fn move_camera(
-        &mut self,
-        action: Action,
-        command: &EmoveCommand,
-        inputs: &Inputs<'_, TaskData<'_>>,
-        outputs: &mut EmoveOutputs,
-    ) {
-        let place = place_of(command.location_kind, command.location_record, command.location_array);
-        let found = view_of(command, inputs.data).zip(present_frame(inputs.memory));
-        let approach = inputs.data.view_approach(&command.object, command.grip, &place);
-        let parameters = approach.and_then(|path| Some(inputs.data.path(path).last()?.para));
-        let (Some((view, tool)), Some(parameters)) = (found, parameters) else {
-            return self.fail(Reason::BadRecord, inputs, outputs);
-        };
-        let seen = &inputs.external.devices.vision;
-        let middle = looked_at(&tool, view.movetable, inputs.data);
-        let target: Frame = if action == Action::Align {
-            let part = part_frame(&middle, seen);
-            let pose = Pose::from_frame(&part);
-            self.publish(Slot::Located, pose, outputs);
-            self.state.located = Located {
-                object: command.object,
-                record: command.location_record,
-                array: command.location_array,
-                pose,
-            };
-            part
-        } else {
-            centred(&middle, seen)
-        };
-        let goal = Pose::from_frame(&inputs.data.moved(&target, view.movetable));
-        let record = self.publish(Slot::Goal, goal, outputs);
-        self.send_prim(PrimVerb::GotoPt, inputs, outputs);
-        outputs.prim.pose = record;
-        outputs.prim.trajectory_parameters = parameters.number();
-    }
-
-    /// Write the status to Subtask.
+    /// Write the status to Subtask and the flags of the gripper processes.
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
         let state = &self.state;
+        let (report, reason) = self.outcome(inputs);
         outputs.header = state.execution.header(inputs.tick);
+        outputs.dormant = Gripper::attached(inputs.memory).dormancy();
         outputs.status = EmoveStatus {
             echo: state.execution.receiver.echo,
-            report: state.execution.report(),
-            reason: state.execution.reason,
+            report,
+            reason,
             reference_pose: inputs.memory.prim.status.sensor_pose,
             object_held: !state.held.object.is_empty(),
             end_effector_id: inputs.memory.quick_change.status.end_effector_id,

@@ -2,34 +2,45 @@
 //! with them.
 //!
 //! * [`state`]: what E-move remembers: among it *where the robot is* and what it holds;
+//! * [`plan`]: what a command needs, looked up before anything moves;
 //! * [`route`]: depart, trajectory, approach and stop as one list of points;
 //! * [`locate`]: from a picture to a part frame;
-//! * [`sensing`]: preprocess, the state variables;
+//! * [`relative`]: the short moves at holsters and tool drum;
+//! * [`gripper`]: the three grippers as one;
+//! * [`sensing`] and [`fingers`]: preprocess, the state variables;
 //! * [`tables`]: the decision tables, a file a command;
-//! * [`acting`]: postprocess, the outputs that a row asks for;
+//! * [`acting`], [`camera`] and [`stance`]: postprocess, the outputs that a row asks for;
 //! * this module: the process.
 
 pub mod acting;
+pub mod camera;
+pub mod fingers;
+pub mod gripper;
 pub mod locate;
+pub mod plan;
+pub mod relative;
 pub mod route;
 pub mod sensing;
+pub mod stance;
 pub mod state;
 pub mod tables;
+#[cfg(test)]
+mod tests;
 
 use rcs_core::{
-    frame::Frame,
-    interface::{ChangingPose, EmoveOutputs, Reason, emove::EmoveCommand, emove::EmoveVerb, pose_range},
+    interface::{
+        ChangingPose, EmoveOutputs,
+        emove::{EmoveCommand, EmoveVerb},
+        pose_range,
+    },
     pose::Pose,
     process::{Inputs, Process},
     table::Table,
 };
 use taskdata::files::TaskData;
 
-use self::{
-    route::{Goal, Route},
-    state::State,
-};
-use crate::execution::{Course, EXECUTE};
+use self::{route::Route, state::State};
+use crate::execution::{Course, EXECUTE, Outcome};
 
 /// The E-move process.
 #[derive(Clone, Debug, Default)]
@@ -57,16 +68,24 @@ impl<'d> Process<TaskData<'d>> for Emove {
         &tables::mov_to_loc::MOV_TO_LOC,
         &tables::mov_to_obj::MOV_TO_OBJ,
         &tables::mov_obj_to::MOV_OBJ_TO,
+        &tables::mov_to_hol::MOV_TO_HOL,
         &tables::locate_obj::LOCATE_OBJ,
         &tables::grasp_obj::GRASP_OBJ,
         &tables::release::RELEASE,
+        &tables::qc_detach::QC_DETACH,
+        &tables::qc_attach::QC_ATTACH,
+        &tables::withdraw::WITHDRAW,
+        &tables::insert_tool::INSERT_TOOL,
+        &tables::release_tool::RELEASE_TOOL,
+        &tables::acquire_tool::ACQUIRE_TOOL,
+        &tables::remove_tool::REMOVE_TOOL,
     ];
 
     fn step(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &mut EmoveOutputs) {
         let command = inputs.memory.subtask.emove;
         self.sense(inputs);
         let course = self.take_command(&command, inputs, outputs);
-        if matches!(course, Course::Begin | Course::Continue) {
+        if matches!(course, Course::Begin | Course::Continue) || self.is_standing(&command) {
             let situation = self.situation(&command, inputs);
             let choice = tables::decide(command.command, self.state.execution.step, &situation);
             self.state.execution.note(
@@ -77,6 +96,7 @@ impl<'d> Process<TaskData<'d>> for Emove {
             );
             self.act(choice.action, &situation, &command, inputs, outputs);
         }
+        self.state.button = inputs.memory.prim.status.joystick_grip;
         self.report(inputs, outputs);
     }
 
@@ -90,6 +110,13 @@ impl<'d> Process<TaskData<'d>> for Emove {
 }
 
 impl Emove {
+    /// E-PAUSE goes on after it is done, for as long as it is the command: the joystick box may take the robot (V.1.1 PAUSE).
+    fn is_standing(&self, command: &EmoveCommand) -> bool {
+        command.command == EmoveVerb::Pause
+            && self.state.execution.step == tables::pause::Step::Standing.code()
+            && matches!(self.state.execution.outcome, Outcome::Done | Outcome::Joystick)
+    }
+
     /// Read the command buffer; plan the way of a new motion command.
     fn take_command(
         &mut self,
@@ -107,6 +134,8 @@ impl Emove {
         match course {
             Course::Begin => {
                 self.state.tries = 0;
+                self.state.undetected = 0;
+                self.state.carrying = !self.state.held.object.is_empty();
                 self.state.route = Route { complete: true, opening: -1, ..Route::default() };
                 if let Ok(Some((route, goal))) = plan {
                     let departure = self.state.stance.pose;
@@ -122,52 +151,6 @@ impl Emove {
             Course::Refuse | Course::Rest | Course::Continue => {}
         }
         course
-    }
-
-    /// The route of a motion command; `None` for commands without one.
-    fn plan(
-        &self,
-        command: &EmoveCommand,
-        inputs: &Inputs<'_, TaskData<'_>>,
-    ) -> Result<Option<(Route, Goal)>, Reason> {
-        match command.command {
-            EmoveVerb::None
-            | EmoveVerb::MovToHol
-            | EmoveVerb::QcDetach
-            | EmoveVerb::QcAttach
-            | EmoveVerb::Withdraw
-            | EmoveVerb::InsertTool
-            | EmoveVerb::ReleaseTool
-            | EmoveVerb::AcquireTool
-            | EmoveVerb::RemoveTool => Err(Reason::UnknownCommand),
-            EmoveVerb::Pause | EmoveVerb::GraspObj | EmoveVerb::Release => Ok(None),
-            EmoveVerb::LocateObj => match locate::view_of(command, inputs.data) {
-                Some(_) => Ok(None),
-                None => Err(Reason::BadRecord),
-            },
-            EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToVu => {
-                let base = self.base_frame(command, inputs)?;
-                let goal = Goal::new(command, &base, inputs.data)?;
-                let route = Route::plan(command, &goal, &self.state.stance, inputs.data)?;
-                Ok(Some((route, goal)))
-            }
-        }
-    }
-
-    /// The pose of a command, or where vision has found the object.
-    fn base_frame(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Frame, Reason> {
-        let located = &self.state.located;
-        let found = command.command == EmoveVerb::MovToObj
-            && located.object == command.object
-            && !located.object.is_empty()
-            && located.record == command.location_record
-            && located.array == command.location_array;
-        let pose = if found {
-            &located.pose
-        } else {
-            inputs.memory.changing_pose(command.pose).ok_or(Reason::NoDestination)?
-        };
-        pose.to_frame().map_err(|_| Reason::BadRecord)
     }
 
     /// Give a changing pose a new record number and value.

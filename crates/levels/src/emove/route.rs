@@ -21,7 +21,8 @@ use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Place, Target, Task
 use super::state::{Sort, Stance};
 use crate::places::place_of;
 
-/// Opening of the parts gripper, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU).
+/// Opening, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU). The parts gripper opens as
+/// wide; the others open to their stop.
 pub const FULL_OPENING: i32 = 500;
 /// The robot is at a goal if it is within this many inches …
 pub const THERE_INCHES: f64 = 0.02;
@@ -116,7 +117,7 @@ impl Goal {
         };
         let approach = || data.approach(&command.object, command.grip, &place).ok_or(Reason::NoApproach);
         match command.command {
-            EmoveVerb::MovToObj => {
+            EmoveVerb::MovToObj | EmoveVerb::MovToHol => {
                 let parameters =
                     data.end_eff(EndEffId::new(command.object_parameters)).ok_or(Reason::UnknownGrip)?;
                 Ok(Self {
@@ -146,7 +147,6 @@ impl Goal {
             | EmoveVerb::LocateObj
             | EmoveVerb::GraspObj
             | EmoveVerb::Release
-            | EmoveVerb::MovToHol
             | EmoveVerb::QcDetach
             | EmoveVerb::QcAttach
             | EmoveVerb::Withdraw
@@ -164,7 +164,8 @@ impl Goal {
 }
 
 /// True if two places are the same location: no intermediate trajectory leads from one to the other.
-fn same_location(a: &Place, b: &Place) -> bool {
+#[must_use]
+pub fn same_location(a: &Place, b: &Place) -> bool {
     a.locpt == b.locpt && (!a.locpt.is_null() || a.array == b.array)
 }
 
@@ -179,7 +180,8 @@ impl Route {
     /// Plan the way to `goal` from where the robot is.
     ///
     /// # Errors
-    /// [`Reason::UnknownStart`] if it is not known where the robot is, [`Reason::NoTrajectory`] if no trajectory leads from
+    /// [`Reason::UnknownStart`] if it is not known where the robot is, [`Reason::NotPrepared`] if its fingers are around a tool in the
+    /// drum, [`Reason::NoTrajectory`] if no trajectory leads from
     /// there to the goal's location, [`Reason::NoApproach`] if nothing says how fast the goal is approached.
     pub fn plan(
         command: &EmoveCommand,
@@ -198,6 +200,7 @@ impl Route {
             return Ok(Self { complete: true, opening: goal.opening, ..Self::default() });
         }
         let depart = match stance.sort {
+            Sort::Drum => return Err(Reason::NotPrepared),
             Sort::Location => data.depart_location(&from),
             Sort::Object => data.depart(&stance.object, stance.grip, &from),
             Sort::View => data.view_depart(&stance.object, stance.grip, &from),

@@ -4,21 +4,30 @@ use rcs_core::{
     frame::Frame,
     handshake::Lower,
     interface::{
-        CommonMemory, device::VisionStatus, emove::EmoveCommand, emove::EmoveVerb, subtask::LocationKind,
+        CommonMemory,
+        device::VisionStatus,
+        emove::{EmoveCommand, EmoveVerb},
+        prim::{JoystickGrip, PrimReport},
+        quick_change::QuickChangeReport,
+        subtask::LocationKind,
     },
     name::Name16,
     pose::Pose,
     process::Inputs,
 };
-use taskdata::files::{EndEffId, LocptId, TaskData};
+use taskdata::files::{LocptId, TaskData};
 
 use super::{
     Emove,
-    route::near,
-    state::{Held as HeldObject, Sort, Stance},
-    tables::{Fingers, Held, Link, Motion, Opening, Sight, Situation, Tooling, Tries, Whereabouts},
+    gripper::Gripper,
+    route::{near, same_location},
+    state::{Sort, Stance},
+    tables::{
+        Calibration, Detection, Held, Holster, Link, Load, Mate, Motion, Ring, Sight, Situation, Station,
+        Tooling, Tries, Whereabouts,
+    },
 };
-use crate::execution::Outcome;
+use crate::{execution::Outcome, places::place_of};
 
 /// The robot is no longer where its last move ended if it is more than this many inches … (DESIGN 16 "Where the robot is")
 const LOST_INCHES: f64 = 0.5;
@@ -30,8 +39,10 @@ const SEARCH_PER_TICK: u32 = 64;
 const VISION_LIMIT: u64 = 100;
 /// Pictures of a kind that are taken in vain before LOCATE-OBJ gives up.
 const MAX_TRIES: u8 = 3;
-/// Id of the parts gripper (III.3.6).
-const PARTS_GRIPPER: u8 = 1;
+/// Ticks for which a GO-UNTIL may stay not-detected (1 s): the robot stands, and what has not come by then does not come.
+const PATIENCE: u32 = 25;
+/// Bits of the four sensors of a holster (V.1.2).
+const HOLSTER_SENSORS: u8 = 0x0F;
 
 /// Where the resolvers say that the robot is.
 #[must_use]
@@ -39,21 +50,40 @@ pub fn present_frame(memory: &CommonMemory) -> Option<Frame> {
     memory.changing_pose(memory.prim.status.sensor_pose)?.to_frame().ok()
 }
 
+/// What the sensors of a gripper's own holster see: parts gripper right, v-gripper left, tool gripper
+/// centre (ASSUMED).
+fn holster(gripper: u8, memory: &CommonMemory) -> Holster {
+    let status = &memory.prim.status;
+    let bits = match Gripper::of(gripper) {
+        Gripper::None => return Holster::Empty,
+        Gripper::Parts => status.holster_right,
+        Gripper::V => status.holster_left,
+        Gripper::Tool => status.holster_centre,
+    };
+    match bits & HOLSTER_SENSORS {
+        0 => Holster::Empty,
+        HOLSTER_SENSORS => Holster::Full,
+        _ => Holster::Partial,
+    }
+}
+
 impl Emove {
     /// What is true whatever the command: neighbours, what is held, where the robot is.
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
         self.state.prim.start(memory.prim.status.echo);
-        self.state.grip.start(memory.grip.status.echo);
+        self.state.grippers.start(memory);
         self.state.quick_change.start(memory.quick_change.status.echo);
         self.state.vision.start(inputs.external.devices.vision.echo);
 
-        let held = &mut self.state.held;
-        // A gripper that was restarted knows no opening: what was held is not lost for that.
-        let grip = &memory.grip.status;
-        if !held.object.is_empty() && grip.initialized && grip.position <= held.grasp_size {
-            *held = HeldObject::default();
-        }
+        self.sense_held(inputs);
+        let prim = &memory.prim.status;
+        let answers = prim.echo == self.state.prim.number;
+        self.state.undetected = if answers && prim.report == PrimReport::NotDetected {
+            self.state.undetected.saturating_add(1)
+        } else {
+            0
+        };
         let Some(present) = present_frame(memory) else { return };
         let stance = &mut self.state.stance;
         let there = |pose: &Pose| {
@@ -61,7 +91,7 @@ impl Emove {
         };
         stance.known &= there(&stance.pose);
         let pausing = memory.subtask.emove.command == EmoveVerb::Pause
-            && self.state.execution.outcome == Outcome::Executing;
+            && matches!(self.state.execution.outcome, Outcome::Executing | Outcome::Done | Outcome::Joystick);
         if pausing && !stance.known {
             self.search(&present, inputs.data);
         }
@@ -98,12 +128,19 @@ impl Emove {
         let prim = &memory.prim;
         let commanded_prim =
             state.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
-        let grip = self.grip(inputs);
+        let gripper = state.grippers.status(inputs.tick, memory);
+        let ring = self.ring(inputs);
         Situation {
             ahead: state.route.ahead(inputs.data),
             prim: if starting { Lower::Done } else { commanded_prim },
-            grip,
-            opening: self.opening(grip, inputs.data),
+            detection: if state.undetected > PATIENCE { Detection::Overdue } else { Detection::Awaited },
+            gripper,
+            calibration: if Gripper::attached(memory) == Gripper::Parts && !memory.grip.status.initialized {
+                Calibration::Missing
+            } else {
+                Calibration::Valid
+            },
+            opening: self.opening(gripper, inputs),
             held: if state.held.object.is_empty() {
                 Held::Nothing
             } else if state.held.object == command.object {
@@ -111,9 +148,22 @@ impl Emove {
             } else {
                 Held::Other
             },
+            load: if state.carrying && state.held.object.is_empty() { Load::Lost } else { Load::Kept },
             fingers: self.fingers(command, inputs),
+            spread: self.spread(gripper, command, inputs),
+            button: match prim.status.joystick_grip {
+                pressed if pressed == state.button => JoystickGrip::None,
+                pressed => pressed,
+            },
             link: if prim.status.link_running { Link::Up } else { Link::Down },
-            tooling: self.tooling(inputs),
+            tooling: self.tooling(ring, gripper, memory),
+            mate: match memory.quick_change.status.end_effector_id {
+                0 => Mate::None,
+                id if id == command.end_effector_id => Mate::Right,
+                _ => Mate::Wrong,
+            },
+            ring,
+            holster: holster(command.end_effector_id, memory),
             whereabouts: if state.stance.known {
                 Whereabouts::Known
             } else if inputs.data.locpt(LocptId::new(state.searched.saturating_add(1))).is_some() {
@@ -121,54 +171,53 @@ impl Emove {
             } else {
                 Whereabouts::Unknown
             },
+            station: self.station(command),
             sight: self.sight(inputs),
             tries: if state.tries.saturating_add(1) < MAX_TRIES { Tries::Left } else { Tries::Spent },
         }
     }
 
-    fn grip(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
-        let grip = &inputs.memory.grip;
-        self.state.grip.read(inputs.tick, &grip.header, grip.status.echo, grip.status.report.lower())
-    }
-
-    fn opening(&self, grip: Lower, data: &TaskData<'_>) -> Opening {
-        let route = &self.state.route;
-        if route.opening < 0 {
-            Opening::Set
-        } else if !route.opening_sent {
-            if route.departing(data) { Opening::Departing } else { Opening::Due }
-        } else {
-            match grip {
-                Lower::Pending | Lower::Executing => Opening::Moving,
-                Lower::Done => Opening::Set,
-                Lower::Error | Lower::Joystick | Lower::Lost => Opening::Failed,
-            }
+    /// Where the robot is, seen from the command's location.
+    fn station(&self, command: &EmoveCommand) -> Station {
+        let stance = &self.state.stance;
+        let place = place_of(command.location_kind, command.location_record, command.location_array);
+        match stance.sort {
+            _ if !stance.known || !same_location(&stance.place(), &place) => Station::Elsewhere,
+            Sort::Drum => Station::InDrum,
+            Sort::Location | Sort::Object | Sort::View => Station::There,
         }
     }
 
-    fn fingers(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Fingers {
-        let grasp_size =
-            inputs.data.end_eff(EndEffId::new(command.object_parameters)).map_or(0, |p| p.grasp_size);
-        if inputs.memory.grip.status.position > grasp_size { Fingers::Gripping } else { Fingers::Empty }
+    /// What Quick Change says of its ring to the last command.
+    fn ring(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Ring {
+        let ring = &inputs.memory.quick_change;
+        let report = ring.status.report;
+        match self.state.quick_change.read(inputs.tick, &ring.header, ring.status.echo, report.lower()) {
+            Lower::Pending | Lower::Executing => Ring::Busy,
+            Lower::Error | Lower::Joystick | Lower::Lost => Ring::Faulty,
+            Lower::Done => match report {
+                QuickChangeReport::Locked => Ring::Locked,
+                QuickChangeReport::Unlocked => Ring::Unlocked,
+                QuickChangeReport::Idle
+                | QuickChangeReport::Executing
+                | QuickChangeReport::SensorMalfunction
+                | QuickChangeReport::Stuck => Ring::Busy,
+            },
+        }
     }
 
-    fn tooling(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Tooling {
-        let ring = &inputs.memory.quick_change;
-        let ring_lower = self.state.quick_change.read(
-            inputs.tick,
-            &ring.header,
-            ring.status.echo,
-            ring.status.report.lower(),
-        );
-        let grip = self.grip(inputs);
-        match (ring_lower, grip) {
-            (Lower::Error | Lower::Joystick | Lower::Lost, _) => Tooling::RingFaulty,
-            (Lower::Pending | Lower::Executing, _) => Tooling::Busy,
-            (Lower::Done, _) if ring.status.end_effector_id != PARTS_GRIPPER => Tooling::Ready,
-            (Lower::Done, Lower::Error | Lower::Joystick | Lower::Lost) => Tooling::GripFaulty,
-            (Lower::Done, Lower::Pending | Lower::Executing) => Tooling::Busy,
-            // At the start Grip's PAUSE is done only when the calibration is (VI.3.1 UP-INIT).
-            (Lower::Done, Lower::Done) => Tooling::Ready,
+    /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is (VI.3.1 UP-INIT); with no
+    /// gripper, or one that has come since, there is nothing to wait for.
+    fn tooling(&self, ring: Ring, gripper: Lower, memory: &CommonMemory) -> Tooling {
+        let asked = self.state.grippers.to == Gripper::attached(memory);
+        match (ring, gripper) {
+            (Ring::Faulty, _) => Tooling::RingFaulty,
+            (Ring::Busy, _) => Tooling::Busy,
+            (Ring::Locked | Ring::Unlocked, Lower::Error | Lower::Joystick | Lower::Lost) if asked => {
+                Tooling::GripFaulty
+            }
+            (Ring::Locked | Ring::Unlocked, Lower::Pending | Lower::Executing) => Tooling::Busy,
+            (Ring::Locked | Ring::Unlocked, _) => Tooling::Ready,
         }
     }
 

@@ -3,14 +3,17 @@
 use rcs_core::{
     coded_enum,
     handshake::Commander,
-    interface::subtask::LocationKind,
+    interface::{prim::JoystickGrip, subtask::LocationKind},
     name::{Name10, Name16},
     pose::Pose,
     record,
 };
 use taskdata::files::{EndEffId, Place};
 
-use super::route::Route;
+use super::{
+    gripper::{Gripper, Grippers},
+    route::Route,
+};
 use crate::{execution::Execution, places::place_of};
 
 coded_enum! {
@@ -22,6 +25,8 @@ coded_enum! {
         Object = "object",
         /// The place from which pictures of an object are taken.
         View = "view",
+        /// The tool drum, with the fingers around a tool in it: only the tool commands lead away from there.
+        Drum = "drum",
     }
 }
 
@@ -64,8 +69,12 @@ record! {
         pub object: Name16,
         /// Its record of END-EFF-PARA.
         pub parameters: EndEffId,
-        /// Opening, 0.01 in, at or below which nothing is between the fingers.
+        /// The gripper that holds it.
+        pub gripper: Gripper,
+        /// Grasp size of the object, 0.01 in: what [`Gripper::grips`] is asked about.
         pub grasp_size: i32,
+        /// Opening when it was grasped, 0.01 in.
+        pub opening: i32,
     }
 }
 
@@ -90,8 +99,8 @@ record! {
         pub execution: Execution,
         /// Commands to Prim.
         pub prim: Commander,
-        /// Commands to Grip.
-        pub grip: Commander,
+        /// Commands to the gripper processes.
+        pub grippers: Grippers,
         /// Commands to Quick Change.
         pub quick_change: Commander,
         /// Requests to vision: number and tick of the last one.
@@ -108,6 +117,12 @@ record! {
         pub held: Held,
         /// What vision has located.
         pub located: Located,
+        /// Something was held when the current command came.
+        pub carrying: bool,
+        /// Ticks for which Prim has reported not-detected.
+        pub undetected: u32,
+        /// Gripper button of the joystick box in the tick before: pressing counts, not holding down.
+        pub button: JoystickGrip,
         /// Last record number given to a changing pose.
         pub last_pose: u32,
     }

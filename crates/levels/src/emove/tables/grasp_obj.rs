@@ -16,8 +16,8 @@ coded_enum! {
 
 decision_table! {
     /// GRASP-OBJ (V.2.1): close the gripper on the object; done at once if it is held.
-    pub GRASP_OBJ: fn grasp_obj(step: Step, held: Held, fingers: Fingers, grip: Lower) -> (Action, Step) {
-        //    step      held      fingers    Grip                       action                        next
+    pub GRASP_OBJ: fn grasp_obj(step: Step, held: Held, fingers: Fingers, gripper: Lower) -> (Action, Step) {
+        //    step      held      fingers    gripper                     action                        next
         1: ( Start   , Right   , _        , _                       ) => Finish                       , Start   ;
         2: ( Start   , Other   , _        , _                       ) => Fail(Reason::AlreadyHolding) , Start   ;
         3: ( Start   , Nothing , _        , _                       ) => Close                        , Closing ;
@@ -30,6 +30,6 @@ decision_table! {
 
 pub(super) fn consult(step: u8, s: &Situation) -> Choice {
     let step = Step::from_code(step).unwrap_or_default();
-    let Decision { row, action, next } = grasp_obj(step, s.held, s.fingers, s.grip);
+    let Decision { row, action, next } = grasp_obj(step, s.held, s.fingers, s.gripper);
     Choice { table: &GRASP_OBJ, row, action, step: next.code() }
 }

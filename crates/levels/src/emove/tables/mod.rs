@@ -1,159 +1,29 @@
 //! Decision tables of E-move: a file a command, MOV-TO-VU with MOV-TO-OBJ.
 
+pub mod acquire_tool;
 pub mod grasp_obj;
+pub mod insert_tool;
 pub mod locate_obj;
 pub mod mov_obj_to;
+pub mod mov_to_hol;
 pub mod mov_to_loc;
 pub mod mov_to_obj;
 pub mod pause;
+pub mod qc_attach;
+pub mod qc_detach;
 pub mod release;
+pub mod release_tool;
+pub mod remove_tool;
+mod variables;
+pub mod withdraw;
 
-use rcs_core::{
-    coded_enum,
-    handshake::Lower,
-    interface::{Reason, emove::EmoveVerb},
+use rcs_core::interface::{Reason, emove::EmoveVerb};
+
+pub use self::variables::{
+    Calibration, Detection, Fingers, Held, Holster, Link, Load, Mate, Motion, Opening, Ring, Sight,
+    Situation, Spread, Station, Tooling, Tries, Whereabouts,
 };
-
-use super::route::Ahead;
-
-coded_enum! {
-    /// Steps of a motion command: the reference action of all MOV-… commands.
-    pub enum Motion {
-        /// Nothing commanded yet.
-        Start = "start",
-        /// On the way through points.
-        Moving = "moving",
-        /// On the final motion.
-        Stopping = "stopping",
-    }
-}
-
-coded_enum! {
-    /// The opening of the fingers for the goal.
-    pub enum Opening {
-        /// As it should be, or it does not matter.
-        Set = "set",
-        /// Not yet: the next point is a depart point.
-        Departing = "departing",
-        /// To be commanded now.
-        Due = "due",
-        /// The fingers are moving.
-        Moving = "moving",
-        /// The gripper reports an error.
-        Failed = "failed",
-    }
-}
-
-coded_enum! {
-    /// Is the object of the command held?
-    pub enum Held {
-        /// The gripper holds nothing.
-        Nothing = "nothing",
-        /// It holds the object of the command.
-        Right = "right",
-        /// It holds another object.
-        Other = "other",
-    }
-}
-
-coded_enum! {
-    /// What closed fingers have between them.
-    pub enum Fingers {
-        /// Nothing: they are closed to the grasp size or less.
-        Empty = "empty",
-        /// Something.
-        Gripping = "gripping",
-    }
-}
-
-coded_enum! {
-    /// The DEPC link.
-    pub enum Link {
-        /// Prim does not command the robot.
-        Down = "down",
-        /// It does.
-        Up = "up",
-    }
-}
-
-coded_enum! {
-    /// Quick change and gripper after the start.
-    pub enum Tooling {
-        /// Not read or not calibrated yet.
-        Busy = "busy",
-        /// Read and calibrated.
-        Ready = "ready",
-        /// The quick change reports an error.
-        RingFaulty = "ring faulty",
-        /// The gripper reports an error.
-        GripFaulty = "grip faulty",
-    }
-}
-
-coded_enum! {
-    /// Is it known where the robot is?
-    pub enum Whereabouts {
-        /// It is at a known location.
-        Known = "known",
-        /// The location points are being looked through.
-        Searching = "searching",
-        /// It is at none of them.
-        Unknown = "unknown",
-    }
-}
-
-coded_enum! {
-    /// What vision says to the last request.
-    pub enum Sight {
-        /// Nothing yet.
-        Waiting = "waiting",
-        /// It sees the object.
-        Seen = "seen",
-        /// It sees nothing.
-        Missing = "missing",
-        /// It sees something else.
-        Unrecognised = "unrecognised",
-        /// It does not answer.
-        Silent = "silent",
-    }
-}
-
-coded_enum! {
-    /// May a picture be taken again?
-    pub enum Tries {
-        /// Yes, with other parameters.
-        Left = "left",
-        /// No.
-        Spent = "spent",
-    }
-}
-
-/// The state variables of a tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Situation {
-    /// What lies ahead on the route.
-    pub ahead: Ahead,
-    /// Status of Prim; `Done` as long as the current command has sent it nothing.
-    pub prim: Lower,
-    /// Status of Grip.
-    pub grip: Lower,
-    /// The opening of the fingers.
-    pub opening: Opening,
-    /// Is the object held?
-    pub held: Held,
-    /// What the fingers have between them.
-    pub fingers: Fingers,
-    /// The link.
-    pub link: Link,
-    /// Quick change and gripper.
-    pub tooling: Tooling,
-    /// Is it known where the robot is?
-    pub whereabouts: Whereabouts,
-    /// What vision says.
-    pub sight: Sight,
-    /// May a picture be taken again?
-    pub tries: Tries,
-}
+use super::{relative::Relative, route::Ahead};
 
 /// What a row can ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -162,24 +32,52 @@ pub enum Action {
     Wait,
     /// ROBOT-INIT to Prim.
     RobotInit,
-    /// PAUSE to Prim and Grip, QC-PAUSE to Quick Change.
+    /// PAUSE to Prim and the gripper, QC-PAUSE to Quick Change.
     Pause,
+    /// Report joystick-on: the operator has the robot.
+    Manual,
+    /// Open the fingers for the operator.
+    OpenByHand,
+    /// Close the fingers for the operator.
+    CloseByHand,
     /// GO-THRU to Prim with the next point.
     GoThru,
     /// GOTO-PT to Prim with the goal.
     GotoPt,
-    /// POSITION to Grip with the opening for the goal.
+    /// DELTA-MOVE to Prim.
+    DeltaMove(Relative),
+    /// GO-UNTIL to Prim, with the sensor that task data name.
+    GoUntil(Relative),
+    /// GO-WHILE to Prim, with the sensor that task data name.
+    GoWhile(Relative),
+    /// CAL-SENSOR to Prim.
+    CalSensor,
+    /// QC-LOCK to Quick Change.
+    Lock,
+    /// QC-UNLOCK to Quick Change.
+    Unlock,
+    /// Bring the fingers to the opening for the goal.
     Open,
-    /// CLOSE-GRIP to Grip.
+    /// Bring the fingers to the approach size of the object.
+    OpenToApproach,
+    /// Bring the fingers to the opening with which the gripper goes through its holster.
+    CloseForHolster,
+    /// Close on the object.
     Close,
-    /// OPEN-GRIP to Grip with the depart size.
+    /// Open to the depart size.
     OpenToDepart,
+    /// UP-INIT to the gripper.
+    Calibrate,
     /// Report done: the robot is at the goal.
     Arrive,
+    /// Report done: the robot is at the location of the command, at rest where it was told to stand.
+    Stand,
+    /// Report done: the fingers are around a tool in the drum.
+    StandInDrum,
     /// Report done: the object is held.
     Grasped,
-    /// Report done: nothing is held.
-    Released,
+    /// Report done: the tool in the drum is held.
+    Acquired,
     /// Ask vision for the first picture.
     Flood,
     /// Ask for it again with other parameters.
@@ -198,8 +96,10 @@ pub enum Action {
     Finish,
     /// Stop the robot and report an error.
     Fail(Reason),
-    /// Stop the robot and report what Grip reports.
+    /// Stop the robot and report what the gripper reports.
     FailGrip,
+    /// Stop the robot and report what Quick Change reports.
+    FailRing,
     /// Report what Prim reports.
     PassUp,
 }
@@ -211,22 +111,21 @@ pub type Choice = crate::execution::Choice<Action>;
 #[must_use]
 pub fn decide(verb: EmoveVerb, step: u8, s: &Situation) -> Choice {
     match verb {
-        EmoveVerb::None
-        | EmoveVerb::Pause
-        | EmoveVerb::MovToHol
-        | EmoveVerb::QcDetach
-        | EmoveVerb::QcAttach
-        | EmoveVerb::Withdraw
-        | EmoveVerb::InsertTool
-        | EmoveVerb::ReleaseTool
-        | EmoveVerb::AcquireTool
-        | EmoveVerb::RemoveTool => pause::consult(step, s),
+        EmoveVerb::None | EmoveVerb::Pause => pause::consult(step, s),
         EmoveVerb::MovToLoc => mov_to_loc::consult(step, s),
         EmoveVerb::MovToObj | EmoveVerb::MovToVu => mov_to_obj::consult(step, s),
         EmoveVerb::MovObjTo => mov_obj_to::consult(step, s),
+        EmoveVerb::MovToHol => mov_to_hol::consult(step, s),
         EmoveVerb::LocateObj => locate_obj::consult(step, s),
         EmoveVerb::GraspObj => grasp_obj::consult(step, s),
         EmoveVerb::Release => release::consult(step, s),
+        EmoveVerb::QcDetach => qc_detach::consult(step, s),
+        EmoveVerb::QcAttach => qc_attach::consult(step, s),
+        EmoveVerb::Withdraw => withdraw::consult(step, s),
+        EmoveVerb::InsertTool => insert_tool::consult(step, s),
+        EmoveVerb::ReleaseTool => release_tool::consult(step, s),
+        EmoveVerb::AcquireTool => acquire_tool::consult(step, s),
+        EmoveVerb::RemoveTool => remove_tool::consult(step, s),
     }
 }
 

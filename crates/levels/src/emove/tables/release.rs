@@ -2,7 +2,7 @@
 
 use rcs_core::{coded_enum, decision_table, handshake::Lower, table::Decision};
 
-use super::{Action, Choice, Situation};
+use super::{Action, Choice, Held, Situation, Spread};
 
 coded_enum! {
     /// Reference action of RELEASE.
@@ -15,18 +15,20 @@ coded_enum! {
 }
 
 decision_table! {
-    /// RELEASE (V.2.1): open the gripper to the depart size.
-    pub RELEASE: fn release(step: Step, grip: Lower) -> (Action, Step) {
-        //    step      Grip                       action         next
-        1: ( Start   , _                       ) => OpenToDepart , Opening ;
-        2: ( Opening , Pending | Executing     ) => Wait         , Opening ;
-        3: ( Opening , Done                    ) => Released     , Start   ;
-        4: ( Opening , Error | Joystick | Lost ) => FailGrip     , Start   ;
+    /// RELEASE (V.2.1): open the gripper to the depart size; done at once if it is open and holds nothing.
+    pub RELEASE: fn release(step: Step, held: Held, spread: Spread, gripper: Lower) -> (Action, Step) {
+        //    step      held            spread   gripper                    action         next
+        1: ( Start   , Nothing       , Open   , _                       ) => Finish       , Start   ;
+        2: ( Start   , Nothing       , Narrow , _                       ) => OpenToDepart , Opening ;
+        3: ( Start   , Right | Other , _      , _                       ) => OpenToDepart , Opening ;
+        4: ( Opening , _             , _      , Pending | Executing     ) => Wait         , Opening ;
+        5: ( Opening , _             , _      , Done                    ) => Finish       , Start   ;
+        6: ( Opening , _             , _      , Error | Joystick | Lost ) => FailGrip     , Start   ;
     }
 }
 
 pub(super) fn consult(step: u8, s: &Situation) -> Choice {
     let step = Step::from_code(step).unwrap_or_default();
-    let Decision { row, action, next } = release(step, s.grip);
+    let Decision { row, action, next } = release(step, s.held, s.spread, s.gripper);
     Choice { table: &RELEASE, row, action, step: next.code() }
 }

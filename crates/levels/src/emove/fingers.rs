@@ -1,0 +1,130 @@
+//! What the fingers are to do and what they have done: openings and sizes of the object forms (VII.7.1) as orders to the attached
+//! gripper, and its opening as state variables.
+
+use rcs_core::{handshake::Lower, interface::emove::EmoveCommand, name::Name16, process::Inputs};
+use taskdata::files::{EndEffId, EndEffPara, TaskData};
+
+use super::{
+    Emove,
+    gripper::{Gripper, Order, Request},
+    route::FULL_OPENING,
+    state::Held,
+    tables::{Action, Fingers, Opening, Spread},
+};
+
+/// Grip number of a holster object with the gripper on the robot; its approach size is the opening with which the gripper goes
+/// through the holster.
+const GRIPPER_ON: i32 = 1;
+/// Force with which the joystick box closes the parts gripper, lb: the least of the usual ones (VIII.9.1; ASSUMED).
+const HAND_FORCE: i32 = 30;
+
+/// Parameters of a holster object with the gripper on.
+pub(super) fn gripper_on<'d>(object: &Name16, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
+    data.object(object, GRIPPER_ON).map(|(_, parameters)| parameters)
+}
+
+impl Emove {
+    /// Preprocess: is what was held still there?
+    pub(super) fn sense_held(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
+        let memory = inputs.memory;
+        let held = &self.state.held;
+        if held.object.is_empty() {
+            return;
+        }
+        // A gripper that was restarted knows no opening: what was held is not lost for that.
+        let slipped = held
+            .gripper
+            .opening(memory)
+            .is_some_and(|opening| !held.gripper.still_grips(opening, held.grasp_size, held.opening));
+        let gone = Gripper::attached(memory) != held.gripper;
+        if slipped || gone || self.state.grippers.has_let_go(inputs.tick, memory) {
+            self.state.held = Held::default();
+        }
+    }
+
+    /// The opening to let go of what is held, or of the object of the command, 0.01 in.
+    fn depart_opening(&self, command: &EmoveCommand, data: &TaskData<'_>) -> i32 {
+        let held = data.end_eff(self.state.held.parameters);
+        let named = data.end_eff(EndEffId::new(command.object_parameters));
+        held.or(named).map_or(FULL_OPENING, |parameters| parameters.depart_size)
+    }
+
+    /// The order that an action stands for.
+    pub(super) fn request(
+        &self,
+        action: Action,
+        command: &EmoveCommand,
+        inputs: &Inputs<'_, TaskData<'_>>,
+    ) -> Request {
+        let parameters =
+            inputs.data.end_eff(EndEffId::new(command.object_parameters)).copied().unwrap_or_default();
+        match action {
+            Action::Open => Request::to(Order::Stand, self.state.route.opening),
+            Action::OpenToApproach => Request::to(Order::Stand, parameters.appr_size),
+            Action::CloseForHolster => {
+                let opening = gripper_on(&command.object, inputs.data).map_or(0, |on| on.appr_size);
+                Request::to(Order::Stand, opening)
+            }
+            Action::OpenToDepart => Request::to(Order::Release, self.depart_opening(command, inputs.data)),
+            Action::OpenByHand => Request::to(Order::Release, FULL_OPENING),
+            Action::Close => {
+                Request { order: Order::Grasp, opening: parameters.grasp_size, force: parameters.grasp_force }
+            }
+            Action::CloseByHand => {
+                let opening = Gripper::attached(inputs.memory).closed();
+                Request { order: Order::Grasp, opening, force: HAND_FORCE }
+            }
+            Action::Calibrate => Request { order: Order::Calibrate, ..Request::default() },
+            _ => Request { order: Order::Pause, ..Request::default() },
+        }
+    }
+
+    /// The opening for the goal of the route.
+    pub(super) fn opening(&self, gripper: Lower, inputs: &Inputs<'_, TaskData<'_>>) -> Opening {
+        let route = &self.state.route;
+        if route.opening < 0 {
+            Opening::Set
+        } else if route.opening_sent {
+            match gripper {
+                Lower::Pending | Lower::Executing => Opening::Moving,
+                Lower::Done => Opening::Set,
+                Lower::Error | Lower::Joystick | Lower::Lost => Opening::Failed,
+            }
+        } else if gripper == Lower::Done && self.attached_stands_at(route.opening, inputs) {
+            Opening::Set
+        } else if route.departing(inputs.data) {
+            Opening::Departing
+        } else {
+            Opening::Due
+        }
+    }
+
+    fn attached_stands_at(&self, opening: i32, inputs: &Inputs<'_, TaskData<'_>>) -> bool {
+        let attached = Gripper::attached(inputs.memory);
+        attached != Gripper::None && attached.stands_at(opening, inputs.memory)
+    }
+
+    /// What the fingers have between them.
+    pub(super) fn fingers(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Fingers {
+        let grasp_size =
+            inputs.data.end_eff(EndEffId::new(command.object_parameters)).map_or(0, |p| p.grasp_size);
+        let gripper = Gripper::attached(inputs.memory);
+        match gripper.opening(inputs.memory) {
+            Some(opening) if gripper.grips(opening, grasp_size) => Fingers::Gripping,
+            _ => Fingers::Empty,
+        }
+    }
+
+    /// Are the fingers as wide open as letting go would leave them?
+    pub(super) fn spread(
+        &self,
+        gripper: Lower,
+        command: &EmoveCommand,
+        inputs: &Inputs<'_, TaskData<'_>>,
+    ) -> Spread {
+        let attached = Gripper::attached(inputs.memory);
+        let open = attached.is_open(self.depart_opening(command, inputs.data), inputs.memory);
+        let at_rest = attached == Gripper::None || gripper == Lower::Done;
+        if open && at_rest { Spread::Open } else { Spread::Narrow }
+    }
+}

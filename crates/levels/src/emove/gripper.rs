@@ -1,0 +1,359 @@
+//! Whichever gripper is attached, in one set of words (V.2: E-move coordinates the robot with "various gripper processes").
+//!
+//! The parts gripper servoes an opening or a force and takes five commands (VI.3.1); v-gripper and tool gripper open or close, no
+//! more, and take four (VI.4.1, VI.5). The tables of E-move see neither: they give an [`Order`], read one [`Lower`] and know one
+//! opening. Which process is meant is what Quick Change reads from the id pins, every tick anew; only that one is stepped.
+//!
+//! | order     | Grip                  | V-Grip, Tool-Grip                                          |
+//! |-----------|-----------------------|------------------------------------------------------------|
+//! | Pause     | PAUSE                 | PAUSE, with the size commanded last                        |
+//! | Stand     | POSITION              | POSE; GRASP if the opening is nearer to the closed stop    |
+//! | Release   | OPEN-GRIP             | RELEASE                                                    |
+//! | Grasp     | CLOSE-GRIP            | GRASP                                                      |
+//! | Calibrate | UP-INIT               | PAUSE: there is nothing to calibrate                       |
+//!
+//! Fingers that stop at the end that nobody sent them to end in `opened` or `closed` as well (VI.4.2): that is an error here.
+
+use rcs_core::{
+    coded_enum,
+    handshake::{Commander, Lower},
+    interface::{
+        CommonMemory, EmoveOutputs, JawsOutputs, Reason,
+        emove::Dormancy,
+        grip::{GripCommand, GripVerb},
+        jaws::{JawsCommand, JawsReport, JawsVerb},
+    },
+    record,
+    tick::Tick,
+    units::hundredths,
+};
+
+use crate::jaws::{CylindricalPartGripper, Kind, Parameters, ToolGripper};
+
+/// Opening at which the parts gripper is closed, 0.01 in.
+const PARTS_CLOSED: i32 = 10;
+/// An opening of the parts gripper is right within this, 0.01 in (its servo's own band, `levels::grip`).
+const PARTS_BAND: i32 = 2;
+/// Fingers slower than this stand still, 0.01 in/s: above the noise of the potentiometer, below the finest flow of air.
+const STILL: i32 = 10;
+/// Fingers of the parts gripper this much wider than at the grasp have let go, 0.01 in.
+const LET_GO: i32 = 25;
+/// v-gripper and tool gripper hold an object if the opening differs from the grasp size by no more than this, 0.01 in (ASSUMED).
+const JAWS_BAND: i32 = 10;
+/// They are at a stop within this, 0.01 in.
+const STOP_BAND: i32 = 5;
+
+coded_enum! {
+    /// The gripper on the robot; the code is `endeff-id#` (III.3.6 to III.3.8).
+    pub enum Gripper {
+        /// None: the robot is bare.
+        None = "none",
+        /// Parts gripper.
+        Parts = "parts gripper",
+        /// v-gripper.
+        V = "v-gripper",
+        /// Tool gripper.
+        Tool = "tool gripper",
+    }
+}
+
+impl Gripper {
+    /// The gripper with an id; an id that none has counts as none (Quick Change passes no such id on).
+    #[must_use]
+    pub fn of(id: u8) -> Self {
+        Self::from_code(id).unwrap_or_default()
+    }
+
+    /// The gripper that Quick Change reads: mated, locked or not.
+    #[must_use]
+    pub fn attached(memory: &CommonMemory) -> Self {
+        Self::of(memory.quick_change.status.end_effector_id)
+    }
+
+    /// Closed and open stop of the grippers that know nothing between, 0.01 in.
+    fn stops(self) -> Option<(i32, i32)> {
+        let Parameters { closed, opened, .. } = match self {
+            Self::V => CylindricalPartGripper::PARAMETERS,
+            Self::Tool => ToolGripper::PARAMETERS,
+            Self::None | Self::Parts => return None,
+        };
+        Some((hundredths(closed), hundredths(opened)))
+    }
+
+    /// The least opening, 0.01 in.
+    #[must_use]
+    pub fn closed(self) -> i32 {
+        match self.stops() {
+            Some((closed, _)) => closed,
+            None => PARTS_CLOSED,
+        }
+    }
+
+    /// The flags that let only the process of this gripper run (II.2.3).
+    #[must_use]
+    pub const fn dormancy(self) -> Dormancy {
+        Dormancy {
+            grip: !matches!(self, Self::Parts),
+            v_grip: !matches!(self, Self::V),
+            tool_grip: !matches!(self, Self::Tool),
+        }
+    }
+
+    /// Output buffers of the process of a gripper with jaws.
+    const fn jaws(self, memory: &CommonMemory) -> Option<&JawsOutputs> {
+        match self {
+            Self::V => Some(&memory.v_grip),
+            Self::Tool => Some(&memory.tool_grip),
+            Self::None | Self::Parts => None,
+        }
+    }
+
+    /// The opening, 0.01 in; `None` while it is not known: not calibrated, not read since the process woke, or no gripper.
+    #[must_use]
+    pub fn opening(self, memory: &CommonMemory) -> Option<i32> {
+        match self.jaws(memory) {
+            Some(jaws) => (!jaws.header.republished).then_some(jaws.status.size),
+            None if self == Self::Parts && memory.grip.status.initialized => {
+                Some(memory.grip.status.position)
+            }
+            None => None,
+        }
+    }
+
+    /// Do the fingers stand still?
+    fn is_still(self, memory: &CommonMemory) -> bool {
+        let velocity = self.jaws(memory).map_or(memory.grip.status.velocity, |jaws| jaws.status.velocity);
+        velocity.saturating_abs() < STILL
+    }
+
+    /// Would closed fingers with this opening have something between them that is gripped at `grasp_size`? (0.01 in.)
+    ///
+    /// The parts gripper closes until it feels the object: anything above the grasp size is one (VIII.9.1). Jaws stop at the
+    /// object or at their stop: only the size itself tells.
+    #[must_use]
+    pub fn grips(self, opening: i32, grasp_size: i32) -> bool {
+        match self.stops() {
+            Some((closed, _)) => {
+                opening.saturating_sub(grasp_size).saturating_abs() <= JAWS_BAND
+                    && opening > closed.saturating_add(STOP_BAND)
+            }
+            None => opening > grasp_size,
+        }
+    }
+
+    /// Does an object that was grasped at the opening `grasped` still keep the fingers apart? (0.01 in.)
+    #[must_use]
+    pub fn still_grips(self, opening: i32, grasp_size: i32, grasped: i32) -> bool {
+        self.grips(opening, grasp_size) && opening <= grasped.saturating_add(LET_GO)
+    }
+
+    /// Does bringing jaws to an opening mean to close them?
+    fn closes_for(self, opening: i32) -> bool {
+        match self.stops() {
+            Some((closed, open)) => {
+                opening.saturating_sub(closed).saturating_abs()
+                    < opening.saturating_sub(open).saturating_abs()
+            }
+            None => false,
+        }
+    }
+
+    /// Do the fingers stand where [`Order::Stand`] with `opening` would bring them?
+    #[must_use]
+    pub fn stands_at(self, opening: i32, memory: &CommonMemory) -> bool {
+        let Some(now) = self.opening(memory) else { return self == Self::None };
+        let at = match self.stops() {
+            Some((closed, _)) if self.closes_for(opening) => now <= closed.saturating_add(STOP_BAND),
+            Some((_, open)) => now >= open.saturating_sub(JAWS_BAND),
+            None => now.saturating_sub(opening).saturating_abs() <= PARTS_BAND,
+        };
+        at && self.is_still(memory)
+    }
+
+    /// Are the fingers at least as wide open as [`Order::Release`] with `opening` would bring them? True without a gripper.
+    #[must_use]
+    pub fn is_open(self, opening: i32, memory: &CommonMemory) -> bool {
+        let Some(now) = self.opening(memory) else { return self == Self::None };
+        let least = match self.stops() {
+            Some((_, open)) => opening.min(open).saturating_sub(JAWS_BAND),
+            None => opening.saturating_sub(PARTS_BAND),
+        };
+        now >= least && self.is_still(memory)
+    }
+}
+
+coded_enum! {
+    /// What is asked of the attached gripper.
+    pub enum Order {
+        /// Nothing yet.
+        None = "",
+        /// Leave the fingers as they are.
+        Pause = "pause",
+        /// Bring the fingers to an opening, nothing between them.
+        Stand = "stand",
+        /// Open and let go.
+        Release = "release",
+        /// Close on an object.
+        Grasp = "grasp",
+        /// Calibrate the sensors.
+        Calibrate = "calibrate",
+    }
+}
+
+/// An [`Order`] with what goes with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Request {
+    /// What to do.
+    pub order: Order,
+    /// Opening, or size of the object, 0.01 in.
+    pub opening: i32,
+    /// Force of a grasp, lb.
+    pub force: i32,
+}
+
+impl Request {
+    /// A request that needs an opening and no force.
+    #[must_use]
+    pub const fn to(order: Order, opening: i32) -> Self {
+        Self { order, opening, force: 0 }
+    }
+}
+
+record! {
+    /// E-move's side of the interfaces to the three gripper processes, and the order that was given last.
+    pub struct Grippers {
+        /// Commands to Grip.
+        pub parts: Commander,
+        /// Commands to V-Grip.
+        pub v: Commander,
+        /// Commands to Tool-Grip.
+        pub tool: Commander,
+        /// The gripper that has the last order.
+        pub to: Gripper,
+        /// The last order.
+        pub order: Order,
+        /// Size commanded last to jaws, 0.01 in.
+        pub size: i32,
+        /// Jaws were told to close by it.
+        pub closing: bool,
+    }
+}
+
+impl Grippers {
+    /// Before anything else in a tick: follow the echoes until the first command.
+    pub fn start(&mut self, memory: &CommonMemory) {
+        self.parts.start(memory.grip.status.echo);
+        self.v.start(memory.v_grip.status.echo);
+        self.tool.start(memory.tool_grip.status.echo);
+    }
+
+    /// Give the attached gripper an order; without a gripper there is nobody to give it to.
+    pub fn send(&mut self, request: Request, tick: Tick, memory: &CommonMemory, outputs: &mut EmoveOutputs) {
+        self.to = Gripper::attached(memory);
+        self.order = request.order;
+        match self.to {
+            Gripper::None => {}
+            Gripper::Parts => {
+                outputs.grip = GripCommand {
+                    number: self.parts.send(tick),
+                    command: match request.order {
+                        Order::None | Order::Pause => GripVerb::Pause,
+                        Order::Stand => GripVerb::Position,
+                        Order::Release => GripVerb::OpenGrip,
+                        Order::Grasp => GripVerb::CloseGrip,
+                        Order::Calibrate => GripVerb::UpInit,
+                    },
+                    force: request.force,
+                    position: request.opening,
+                    velocity: 0,
+                    end_effector_id: self.to.code(),
+                };
+            }
+            Gripper::V => outputs.v_grip = self.jaws_command(request, tick),
+            Gripper::Tool => outputs.tool_grip = self.jaws_command(request, tick),
+        }
+    }
+
+    /// The order as a command of the gripper with jaws that it goes to.
+    fn jaws_command(&mut self, request: Request, tick: Tick) -> JawsCommand {
+        let (closed, open) = self.to.stops().unwrap_or_default();
+        let command = match request.order {
+            Order::None | Order::Pause | Order::Calibrate => JawsVerb::Pause,
+            Order::Stand if self.to.closes_for(request.opening) => JawsVerb::Grasp,
+            Order::Stand => JawsVerb::Pose,
+            Order::Release => JawsVerb::Release,
+            Order::Grasp => JawsVerb::Grasp,
+        };
+        if command != JawsVerb::Pause {
+            self.size = request.opening.clamp(closed, open);
+            self.closing = command == JawsVerb::Grasp;
+        }
+        let commander = if self.to == Gripper::V { &mut self.v } else { &mut self.tool };
+        JawsCommand {
+            number: commander.send(tick),
+            command,
+            force: request.force,
+            size: self.size,
+            velocity: 0,
+            end_effector_id: self.to.code(),
+        }
+    }
+
+    /// How far the last order has come. `Lost` if the gripper that has it is no longer the attached one.
+    #[must_use]
+    pub fn status(&self, tick: Tick, memory: &CommonMemory) -> Lower {
+        let attached = Gripper::attached(memory);
+        if attached != self.to {
+            return Lower::Lost;
+        }
+        let grip = &memory.grip;
+        let (commander, jaws) = match attached {
+            Gripper::None => return Lower::Done,
+            Gripper::Parts => {
+                return self.parts.read(tick, &grip.header, grip.status.echo, grip.status.report.lower());
+            }
+            Gripper::V => (&self.v, &memory.v_grip),
+            Gripper::Tool => (&self.tool, &memory.tool_grip),
+        };
+        let report = jaws.status.report;
+        match commander.read(tick, &jaws.header, jaws.status.echo, report.lower()) {
+            // Fingers that are to be left alone may stand anywhere: on an object of another size, or moved by hand.
+            Lower::Error if self.order == Order::Pause && report == JawsReport::Stuck => Lower::Done,
+            Lower::Done if self.moves_fingers() && report == self.wrong_end() => Lower::Error,
+            lower => lower,
+        }
+    }
+
+    const fn moves_fingers(&self) -> bool {
+        matches!(self.order, Order::Stand | Order::Release | Order::Grasp)
+    }
+
+    /// The report of jaws that went nowhere.
+    const fn wrong_end(&self) -> JawsReport {
+        if self.closing { JawsReport::Opened } else { JawsReport::Closed }
+    }
+
+    /// Why the last order failed: what the process says, or what can be seen from here.
+    #[must_use]
+    pub fn fault(&self, tick: Tick, memory: &CommonMemory) -> Reason {
+        let attached = Gripper::attached(memory);
+        let said = attached.jaws(memory).map_or(memory.grip.status.reason, |jaws| jaws.status.reason);
+        if attached != self.to || attached == Gripper::None {
+            Reason::WrongGripper
+        } else if self.status(tick, memory) == Lower::Lost {
+            Reason::NeighbourLost
+        } else if said != Reason::None {
+            said
+        } else if attached == Gripper::Parts {
+            Reason::GripUnattainable
+        } else {
+            Reason::JawsStuck
+        }
+    }
+
+    /// True when the attached gripper has done what [`Order::Release`] asks for: nothing is held any more.
+    #[must_use]
+    pub fn has_let_go(&self, tick: Tick, memory: &CommonMemory) -> bool {
+        self.order == Order::Release && self.status(tick, memory) == Lower::Done
+    }
+}

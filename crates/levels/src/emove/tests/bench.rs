@@ -1,0 +1,256 @@
+//! E-move with doubles of its neighbours, tick by tick. The test is Subtask.
+
+use std::{cell::RefCell, collections::BTreeSet, sync::OnceLock};
+
+use rcs_core::{
+    frame::Frame,
+    handshake::successor,
+    interface::{
+        CommonMemory, ExternalInputs, Reason, Report,
+        emove::{EmoveCommand, EmoveVerb},
+        pose_range,
+        prim::JoystickGrip,
+        subtask::LocationKind,
+    },
+    name::Name16,
+    pose::Pose,
+    process::{Inputs, Process},
+    tick::Tick,
+};
+use taskdata::{
+    files::TaskData,
+    load::{Source, Store},
+};
+
+use super::doubles::{Grip, Jaws, Mishap, Prim, Ring, Vision, World};
+use crate::emove::Emove;
+
+thread_local! {
+    /// The rows that have fired in this thread: table and number.
+    pub static ROWS: RefCell<BTreeSet<(&'static str, u8)>> = const { RefCell::new(BTreeSet::new()) };
+}
+
+/// The task data of the tests.
+pub fn data() -> TaskData<'static> {
+    static STORE: OnceLock<Store> = OnceLock::new();
+    let store = STORE.get_or_init(|| {
+        let source = Source { name: "cell.blk".to_owned(), text: include_str!("cell.blk").into() };
+        match Store::from_sources(vec![source]) {
+            Ok((store, _)) => store,
+            Err(report) => panic!("{report}"),
+        }
+    });
+    store.view()
+}
+
+/// The frame of a location point.
+pub fn frame_of(location: &str) -> Frame {
+    let id = data().locpt_named(&Name16::clipped(location)).expect("a location point");
+    data().locpt(id).expect("its record").frame
+}
+
+/// A frame with movetables applied, one after the other.
+pub fn moved(frame: Frame, movetables: &[&str]) -> Frame {
+    movetables.iter().fold(frame, |frame, name| {
+        let id = data().movetable_named(&Name16::clipped(name)).expect("a movetable");
+        data().moved(&frame, id)
+    })
+}
+
+pub struct Bench {
+    pub process: Emove,
+    pub memory: CommonMemory,
+    pub external: ExternalInputs,
+    pub tick: Tick,
+    pub world: World,
+    pub prim: Prim,
+    pub ring: Ring,
+    pub grip: Grip,
+    pub v_grip: Jaws,
+    pub tool_grip: Jaws,
+    pub vision: Vision,
+    pub data: TaskData<'static>,
+    /// Processes that have died.
+    pub dead: Vec<&'static str>,
+}
+
+impl Bench {
+    /// A cell whose robot stands at a location with a gripper; the other grippers are in their holsters.
+    pub fn new(location: &str, gripper: u8) -> Self {
+        let mut resident = [1, 2, 3];
+        let mut holsters = [0b1111; 3];
+        if gripper != 0 {
+            let which = usize::from(gripper) - 1;
+            (resident[which], holsters[which]) = (0, 0);
+        }
+        let mut bench = Self {
+            process: Emove::default(),
+            memory: CommonMemory::default(),
+            external: ExternalInputs::default(),
+            tick: Tick::BEFORE_START,
+            world: World {
+                frame: frame_of(location),
+                mated: gripper,
+                resident,
+                holsters,
+                locked: gripper != 0,
+                object: None,
+                joystick: false,
+                button: JoystickGrip::None,
+                mishaps: Vec::new(),
+                log: Vec::new(),
+                answers: Vec::new(),
+            },
+            prim: Prim::default(),
+            ring: Ring::default(),
+            grip: Grip::default(),
+            v_grip: Jaws::new((50, 350)),
+            tool_grip: Jaws::new((100, 400)),
+            vision: Vision::default(),
+            data: data(),
+            dead: Vec::new(),
+        };
+        bench.step();
+        bench.step();
+        bench
+    }
+
+    /// The same after E-PAUSE: the link runs, and it is known where the robot is.
+    pub fn ready(location: &str, gripper: u8) -> Self {
+        let mut bench = Self::new(location, gripper);
+        assert_eq!(bench.pause(), DONE);
+        assert_eq!(bench.memory.emove.status.at.as_str(), location);
+        bench.world.log.clear();
+        bench
+    }
+
+    pub fn step(&mut self) {
+        self.tick = self.tick.next();
+        let before = self.memory;
+        let after = &mut self.memory;
+        let data = self.data;
+        let alive = |name| !self.dead.contains(&name);
+        if alive("E-move") {
+            let inputs = Inputs { tick: self.tick, memory: &before, external: &self.external, data: &data };
+            self.process.step(&inputs, &mut after.emove);
+        }
+        if alive("Prim") {
+            after.prim = self.prim.step(self.tick, &before, &data, &mut self.world);
+        }
+        if alive("Quick Change") {
+            after.quick_change = self.ring.step(self.tick, &before, &mut self.world);
+        }
+        if alive("gripper") {
+            after.grip = self.grip.step(self.tick, &before, &mut self.world);
+            let (asleep, to) = (before.emove.dormant, &before.emove);
+            let world = &mut self.world;
+            after.v_grip = self.v_grip.step(self.tick, asleep.v_grip, &to.v_grip, &before.v_grip, world);
+            after.tool_grip =
+                self.tool_grip.step(self.tick, asleep.tool_grip, &to.tool_grip, &before.tool_grip, world);
+        }
+        if alive("vision") {
+            self.vision.step(&before, &mut self.external, &mut self.world);
+        }
+        self.note_row();
+    }
+
+    fn note_row(&self) {
+        let header = self.memory.emove.header;
+        let tables = <Emove as Process<TaskData<'_>>>::TABLES;
+        if let Some(table) = usize::from(header.table).checked_sub(1).and_then(|at| tables.get(at)) {
+            ROWS.with_borrow_mut(|rows| rows.insert((table.name, header.row)));
+        }
+    }
+
+    pub fn steps(&mut self, ticks: u32) {
+        (0..ticks).for_each(|_| self.step());
+    }
+
+    /// Write a command; its location and the records of the object are looked up as Subtask would.
+    pub fn command(&mut self, verb: EmoveVerb, object: &str, grip: i32, location: &str, gripper: u8) {
+        // What the test has changed is seen by the neighbours, and then by E-move.
+        self.steps(2);
+        let object = Name16::clipped(object);
+        let place = Name16::clipped(location);
+        let data = data();
+        let found = data.locpt_named(&place).and_then(|id| Some((id, data.locpt(id)?)));
+        let pose = &mut self.memory.subtask.poses[0];
+        let mut command = EmoveCommand {
+            number: successor(self.memory.subtask.emove.number),
+            command: verb,
+            object,
+            grip,
+            object_parameters: data.object(&object, grip).map_or(0, |(id, _)| id.number()),
+            end_effector_id: gripper,
+            ..EmoveCommand::default()
+        };
+        if let Some((id, locpt)) = found {
+            pose.number = pose_range::next(pose_range::SUBTASK, pose.number);
+            pose.pose = Pose::from_frame(&locpt.frame);
+            command.location = locpt.name;
+            command.location_kind = LocationKind::Point;
+            command.location_record = id.number();
+            command.pose = pose.number;
+            command.object_vision = data.view(&object, &data.place_of(id)).map_or(0, |(id, _)| id.number());
+        }
+        self.memory.subtask.emove = command;
+    }
+
+    /// Run until the command has ended.
+    pub fn finish(&mut self) -> (Report, Reason) {
+        for _ in 0..1000 {
+            self.step();
+            let status = self.memory.emove.status;
+            if status.echo == self.memory.subtask.emove.number && status.report != Report::Executing {
+                return (status.report, status.reason);
+            }
+        }
+        panic!("never over: {:#?} {:?}", self.process.state().execution, self.world.log);
+    }
+
+    /// Command and run until it has ended.
+    pub fn run(
+        &mut self,
+        verb: EmoveVerb,
+        object: &str,
+        grip: i32,
+        location: &str,
+        gripper: u8,
+    ) -> (Report, Reason) {
+        self.world.log.clear();
+        self.command(verb, object, grip, location, gripper);
+        self.finish()
+    }
+
+    pub fn pause(&mut self) -> (Report, Reason) {
+        self.run(EmoveVerb::Pause, "", 0, "", 0)
+    }
+
+    /// Let something go wrong in the command whose text contains a word.
+    pub fn spoil(&mut self, word: &'static str, mishap: Mishap) -> &mut Self {
+        self.world.mishaps.push((word, mishap));
+        self
+    }
+
+    /// The gripper finds an object of a size and holds it.
+    pub fn hold(&mut self, object: &str, size: i32, gripper: u8) {
+        self.world.object = Some(size);
+        assert_eq!(self.run(EmoveVerb::GraspObj, object, 1, "", gripper), DONE);
+        assert_eq!(self.memory.emove.status.held_object.as_str(), object);
+    }
+
+    pub fn log(&self) -> Vec<&str> {
+        self.world.log.iter().map(String::as_str).collect()
+    }
+
+    /// How far the robot is from a frame.
+    pub fn off(&self, frame: &Frame) -> f64 {
+        self.world.frame.distance(frame).path()
+    }
+}
+
+pub const DONE: (Report, Reason) = (Report::Done, Reason::None);
+
+pub const fn error(reason: Reason) -> (Report, Reason) {
+    (Report::Error, reason)
+}

@@ -1,0 +1,410 @@
+//! Test doubles of E-move's neighbours, each a dozen lines that do what the manual's chapter says of the process, and the little
+//! world that they share.
+
+use rcs_core::{
+    frame::Frame,
+    handshake::{Arrival, Receiver},
+    interface::{
+        CommonMemory, ExternalInputs, GripOutputs, Header, JawsOutputs, PrimOutputs, QuickChangeOutputs,
+        Reason,
+        device::{Picture, VisionStatus},
+        grip::{GripReport, GripVerb},
+        jaws::{JawsCommand, JawsReport, JawsVerb},
+        pose_range,
+        prim::{JoystickGrip, PrimReport, PrimVerb},
+        quick_change::{QuickChangeReport, QuickChangeVerb},
+    },
+    pose::Pose,
+    tick::Tick,
+};
+use taskdata::files::{MovtabId, PoseId, TaskData};
+
+/// Ticks that a double takes for a command.
+const TICKS: u32 = 4;
+
+/// What happens to a command whose text contains a word.
+#[derive(Clone, Copy, Debug)]
+pub enum Mishap {
+    /// Prim reports this at the end.
+    Prim(PrimReport, Reason),
+    /// Grip reports `serror`.
+    Grip(Reason),
+    /// V-Grip or Tool-Grip reports this wherever the fingers are.
+    Jaws(JawsReport),
+    /// Quick Change reports this for ever.
+    Ring(QuickChangeReport),
+    /// The operator takes the robot.
+    Joystick,
+    /// What is between the fingers slips out.
+    Slip,
+    /// The gripper stays on the robot, or drops off it, or is another one.
+    Mated(u8),
+    /// The sensors of the holster see this.
+    Holster(u8),
+    /// The command never ends.
+    Never,
+}
+
+/// What is where.
+pub struct World {
+    /// Where the robot is.
+    pub frame: Frame,
+    /// The gripper that is mated, and what hangs in the holsters right, left, centre.
+    pub mated: u8,
+    /// Grippers in the holsters.
+    pub resident: [u8; 3],
+    /// Sensors of the holsters.
+    pub holsters: [u8; 3],
+    /// The ring is locked.
+    pub locked: bool,
+    /// Size of what is where the fingers are, 0.01 in.
+    pub object: Option<i32>,
+    /// The operator has the robot.
+    pub joystick: bool,
+    /// The gripper button that is pressed.
+    pub button: JoystickGrip,
+    /// What goes wrong.
+    pub mishaps: Vec<(&'static str, Mishap)>,
+    /// All commands of E-move in their order.
+    pub log: Vec<String>,
+    /// Answers of vision; `Done` after the last.
+    pub answers: Vec<VisionStatus>,
+}
+
+impl World {
+    fn mishap(&self, text: &str) -> Option<Mishap> {
+        self.mishaps.iter().find(|(word, _)| text.contains(word)).map(|(_, mishap)| *mishap)
+    }
+
+    /// A motion has ended: what that does to grippers and holsters.
+    fn moved(&mut self, text: &str, gripper: u8) {
+        let which = usize::from(gripper.clamp(1, 3)) - 1;
+        let seen = &mut self.holsters[which];
+        if text.contains("QCD-DOWN") || text.contains("QCA-BACK") {
+            *seen = 0b0011;
+        } else if text.contains("QCD-SEAT") {
+            *seen = 0b1111;
+        } else if text.contains("QCD-UP") && !self.locked {
+            self.resident[which] = self.mated;
+            self.mated = 0;
+        } else if text.contains("QCA-SLOW") {
+            self.mated = self.resident[which];
+        } else if text.contains("QCA-LIFT") {
+            *seen = 0;
+            self.resident[which] = 0;
+        }
+        match self.mishap(text) {
+            Some(Mishap::Mated(id)) => self.mated = id,
+            Some(Mishap::Holster(bits)) => self.holsters[which] = bits,
+            _ => {}
+        }
+    }
+}
+
+/// Receives commands and counts the ticks that they take.
+#[derive(Default)]
+struct Receiving {
+    receiver: Receiver,
+    left: u32,
+    text: String,
+}
+
+impl Receiving {
+    /// True in the tick in which the command is done.
+    fn step(
+        &mut self,
+        number: u32,
+        ticks: u32,
+        text: impl FnOnce() -> String,
+        log: &mut Vec<String>,
+    ) -> bool {
+        if self.receiver.observe(number) == Arrival::New {
+            (self.left, self.text) = (ticks, text());
+            log.push(self.text.clone());
+            return false;
+        }
+        let ends = self.left == 1;
+        self.left = self.left.saturating_sub(1);
+        ends
+    }
+}
+
+/// Prim: is where it is sent after a while.
+#[derive(Default)]
+pub struct Prim {
+    receiving: Receiving,
+    report: PrimReport,
+    reason: Reason,
+    link: bool,
+    poses: u32,
+}
+
+impl Prim {
+    fn text(memory: &CommonMemory, data: &TaskData<'_>) -> String {
+        let command = &memory.emove.prim;
+        let table = MovtabId::new(command.movetable).of(data.movetables).map(|record| record.name);
+        let words = [
+            command.command.text().to_owned(),
+            table.map_or(String::new(), |n| n.to_string()),
+            command.sensor.to_string(),
+        ];
+        words.iter().filter(|word| !word.is_empty()).cloned().collect::<Vec<_>>().join(" ")
+    }
+
+    fn goal(memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
+        let command = &memory.emove.prim;
+        let base = if command.pose < pose_range::CHANGING {
+            data.pose(PoseId::new(command.pose))?.frame
+        } else {
+            memory.changing_pose(command.pose)?.to_frame().ok()?
+        };
+        Some(data.moved(&base, MovtabId::new(command.movetable)))
+    }
+
+    pub fn step(
+        &mut self,
+        tick: Tick,
+        memory: &CommonMemory,
+        data: &TaskData<'_>,
+        world: &mut World,
+    ) -> PrimOutputs {
+        let command = &memory.emove.prim;
+        let new = command.number != self.receiving.receiver.echo;
+        let ends = self.receiving.step(command.number, TICKS, || Self::text(memory, data), &mut world.log);
+        if new {
+            (self.report, self.reason) = (PrimReport::Executing, Reason::None);
+        }
+        let text = self.receiving.text.clone();
+        if ends && self.report == PrimReport::Executing {
+            self.end(&text, memory, data, world);
+        }
+        let pausing = command.command == PrimVerb::Pause;
+        if world.joystick && (pausing || self.report != PrimReport::Done) {
+            (self.report, self.reason) = (PrimReport::JoystickOn, Reason::JoystickOn);
+        } else if pausing && self.report == PrimReport::JoystickOn {
+            (self.report, self.reason) = (PrimReport::Done, Reason::None);
+        }
+        self.outputs(tick, world)
+    }
+
+    fn end(&mut self, text: &str, memory: &CommonMemory, data: &TaskData<'_>, world: &mut World) {
+        let command = &memory.emove.prim;
+        self.report = PrimReport::Done;
+        match world.mishap(text) {
+            Some(Mishap::Prim(report, reason)) => (self.report, self.reason) = (report, reason),
+            Some(Mishap::Joystick) => (world.joystick, self.report) = (true, PrimReport::JoystickOn),
+            Some(Mishap::Never) => self.report = PrimReport::Executing,
+            Some(Mishap::Slip) => world.object = None,
+            _ => {}
+        }
+        match command.command {
+            PrimVerb::RobotInit => self.link = self.report == PrimReport::Done,
+            PrimVerb::None | PrimVerb::Pause | PrimVerb::CalSensor => {}
+            _ if matches!(self.report, PrimReport::Done | PrimReport::NotDetected) => {
+                world.frame = Self::goal(memory, data).expect("Prim is sent to records that exist");
+                world.moved(text, memory.subtask.emove.end_effector_id);
+            }
+            _ => {}
+        }
+    }
+
+    fn outputs(&mut self, tick: Tick, world: &World) -> PrimOutputs {
+        let mut outputs =
+            PrimOutputs { header: Header { stamp: tick, ..Header::default() }, ..PrimOutputs::default() };
+        for record in &mut outputs.poses[..2] {
+            self.poses = pose_range::next(pose_range::PRIM, self.poses);
+            (record.number, record.pose) = (self.poses, Pose::from_frame(&world.frame));
+        }
+        let status = &mut outputs.status;
+        status.echo = self.receiving.receiver.echo;
+        (status.report, status.reason) = (self.report, self.reason);
+        status.link_running = self.link;
+        (status.present_pose, status.sensor_pose) = (outputs.poses[0].number, outputs.poses[1].number);
+        [status.holster_right, status.holster_left, status.holster_centre] = world.holsters;
+        status.joystick_grip = world.button;
+        outputs
+    }
+}
+
+/// Quick Change: locks and unlocks.
+#[derive(Default)]
+pub struct Ring {
+    receiving: Receiving,
+    failed: Option<QuickChangeReport>,
+}
+
+impl Ring {
+    pub fn step(&mut self, tick: Tick, memory: &CommonMemory, world: &mut World) -> QuickChangeOutputs {
+        let command = &memory.emove.quick_change;
+        let text = || command.command.text().to_owned();
+        let new = command.number != self.receiving.receiver.echo;
+        if self.receiving.step(command.number, TICKS, text, &mut world.log) {
+            match world.mishap(command.command.text()) {
+                Some(Mishap::Ring(report)) => self.failed = Some(report),
+                _ if command.command == QuickChangeVerb::Lock => world.locked = true,
+                _ if command.command == QuickChangeVerb::Unlock => world.locked = false,
+                _ => {}
+            }
+        } else if new {
+            self.failed = None;
+        }
+        let mut outputs = QuickChangeOutputs {
+            header: Header { stamp: tick, ..Header::default() },
+            ..QuickChangeOutputs::default()
+        };
+        outputs.status.echo = self.receiving.receiver.echo;
+        outputs.status.end_effector_id = world.mated;
+        outputs.status.report = match self.failed {
+            Some(report) => report,
+            None if self.receiving.left > 0 => QuickChangeReport::Executing,
+            None if world.locked => QuickChangeReport::Locked,
+            None => QuickChangeReport::Unlocked,
+        };
+        outputs
+    }
+}
+
+/// Publish again what a dormant process wrote last.
+fn sleep(header: &mut Header, tick: Tick) {
+    (header.stamp, header.republished) = (tick, true);
+}
+
+/// Grip: opens and closes to what it is told, or to the object.
+pub struct Grip {
+    receiving: Receiving,
+    report: GripReport,
+    reason: Reason,
+    pub initialized: bool,
+    pub opening: i32,
+}
+
+impl Default for Grip {
+    fn default() -> Self {
+        Self {
+            receiving: Receiving::default(),
+            report: GripReport::Idle,
+            reason: Reason::None,
+            initialized: true,
+            opening: 200,
+        }
+    }
+}
+
+impl Grip {
+    pub fn step(&mut self, tick: Tick, memory: &CommonMemory, world: &mut World) -> GripOutputs {
+        let mut outputs = memory.grip;
+        if memory.emove.dormant.grip {
+            sleep(&mut outputs.header, tick);
+            return outputs;
+        }
+        let command = &memory.emove.grip;
+        let new = command.number != self.receiving.receiver.echo;
+        if self.receiving.step(command.number, TICKS, || command.command.text().to_owned(), &mut world.log) {
+            self.report = GripReport::Done;
+            match (world.mishap(command.command.text()), command.command) {
+                (Some(Mishap::Grip(reason)), _) => (self.report, self.reason) = (GripReport::Serror, reason),
+                (Some(Mishap::Never), _) => self.report = GripReport::Executing,
+                (_, GripVerb::Position | GripVerb::OpenGrip) => {
+                    self.opening = command.position;
+                    world.object = world.object.filter(|size| *size > command.position);
+                }
+                (_, GripVerb::CloseGrip) => self.opening = world.object.unwrap_or(command.position),
+                (_, GripVerb::UpInit) => (self.initialized, self.opening) = (true, 500),
+                (_, GripVerb::None | GripVerb::Pause) => {}
+            }
+        } else if new {
+            (self.report, self.reason) = (GripReport::Executing, Reason::None);
+        }
+        outputs.header = Header { stamp: tick, ..Header::default() };
+        outputs.status.echo = self.receiving.receiver.echo;
+        (outputs.status.report, outputs.status.reason) = (self.report, self.reason);
+        (outputs.status.initialized, outputs.status.position) = (self.initialized, self.opening);
+        outputs
+    }
+}
+
+/// V-Grip or Tool-Grip: opens and closes, and finds an object on the way.
+pub struct Jaws {
+    receiving: Receiving,
+    report: JawsReport,
+    stops: (i32, i32),
+    pub opening: i32,
+}
+
+impl Jaws {
+    pub fn new(stops: (i32, i32)) -> Self {
+        Self { receiving: Receiving::default(), report: JawsReport::Idle, stops, opening: 300 }
+    }
+
+    pub fn step(
+        &mut self,
+        tick: Tick,
+        dormant: bool,
+        command: &JawsCommand,
+        before: &JawsOutputs,
+        world: &mut World,
+    ) -> JawsOutputs {
+        let mut outputs = *before;
+        if dormant {
+            sleep(&mut outputs.header, tick);
+            return outputs;
+        }
+        let text = || format!("{} {}", command.command.text(), command.size);
+        let new = command.number != self.receiving.receiver.echo;
+        if self.receiving.step(command.number, TICKS, text, &mut world.log) {
+            match (world.mishap(command.command.text()), command.command) {
+                (Some(Mishap::Jaws(report)), _) => self.report = report,
+                (_, JawsVerb::Pose | JawsVerb::Release) => {
+                    (self.opening, self.report) = (self.stops.1, JawsReport::Opened);
+                    world.object = None;
+                }
+                (_, JawsVerb::Grasp) => {
+                    self.opening = world.object.unwrap_or(self.stops.0);
+                    let expected = self.opening == self.stops.0 || (self.opening - command.size).abs() <= 10;
+                    self.report = if expected { JawsReport::Closed } else { JawsReport::Stuck };
+                }
+                (_, JawsVerb::None | JawsVerb::Pause) => {
+                    self.report = match self.opening {
+                        at if at == self.stops.0 => JawsReport::Closed,
+                        at if at == self.stops.1 => JawsReport::Opened,
+                        at if at == command.size => JawsReport::AtPosition,
+                        _ => JawsReport::Stuck,
+                    };
+                }
+            }
+        } else if new {
+            self.report = JawsReport::Executing;
+        }
+        outputs.header = Header { stamp: tick, ..Header::default() };
+        outputs.status.echo = self.receiving.receiver.echo;
+        (outputs.status.report, outputs.status.size) = (self.report, self.opening);
+        if self.report == JawsReport::Stuck {
+            outputs.status.reason = Reason::JawsStuck;
+        }
+        outputs
+    }
+}
+
+/// Vision: answers what it is told to, a little off the middle of the picture.
+#[derive(Default)]
+pub struct Vision {
+    left: u32,
+}
+
+impl Vision {
+    pub fn step(&mut self, memory: &CommonMemory, external: &mut ExternalInputs, world: &mut World) {
+        let (request, answer) = (&memory.emove.vision, &mut external.devices.vision);
+        if request.number != answer.echo {
+            (answer.echo, answer.status, self.left) = (request.number, VisionStatus::Busy, TICKS);
+            let picture = if request.picture == Picture::Precise { "precise" } else { "flood" };
+            world.log.push(format!("{picture} {}", request.variation));
+        } else if self.left > 0 {
+            self.left -= 1;
+            if self.left == 0 {
+                let next =
+                    if world.answers.is_empty() { VisionStatus::Done } else { world.answers.remove(0) };
+                (answer.status, answer.y, answer.z, answer.angle) = (next, 20, -10, 1000);
+            }
+        }
+    }
+}

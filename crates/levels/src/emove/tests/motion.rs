@@ -1,0 +1,377 @@
+//! MOV-…, GRASP-OBJ, RELEASE, LOCATE-OBJ and WITHDRAW with each gripper.
+
+use rcs_core::{
+    interface::{
+        Reason, Report,
+        device::VisionStatus,
+        emove::EmoveVerb::{
+            GraspObj, LocateObj, MovObjTo, MovToHol, MovToLoc, MovToObj, MovToVu, Release, RemoveTool,
+            Withdraw,
+        },
+        jaws::JawsReport,
+        pose_range,
+        prim::PrimReport,
+    },
+    name::Name16,
+};
+
+use super::{
+    bench::{Bench, DONE, data, error, frame_of, moved},
+    doubles::Mishap,
+};
+
+pub const SCENARIOS: &[fn()] = &[
+    a_robot_moves_with_any_gripper_and_with_none,
+    a_move_to_where_the_robot_is_is_done_at_once,
+    a_pose_may_be_a_static_record,
+    a_part_is_taken_placed_and_left,
+    jaws_take_and_leave_their_parts,
+    fingers_that_stand_right_are_left_alone,
+    fingers_do_not_open_over_a_held_part,
+    a_gripper_that_fails_stops_the_move,
+    what_prim_reports_goes_up,
+    a_lost_part_is_noticed_with_every_gripper,
+    the_wrong_gripper_is_refused,
+    what_is_not_gripped_is_reported,
+    a_release_of_nothing_opens_or_is_done,
+    an_object_is_located,
+    vision_that_fails_is_asked_again_and_given_up,
+    the_robot_withdraws,
+    missing_data_are_named,
+];
+
+/// Gripper, an object for it, and its size, 0.01 in.
+const PARTS: [(u8, &str, i32); 3] = [(1, "BLOCK", 75), (2, "SHAFT", 204), (3, "CUTTER", 246)];
+
+#[test]
+fn a_robot_moves_with_any_gripper_and_with_none() {
+    for gripper in 0..=3 {
+        let mut bench = Bench::ready("HOME", gripper);
+        assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE);
+        assert_eq!(bench.log(), ["GO-THRU", "GO-THRU", "GOTO-PT"], "no gripper commands");
+        assert!(bench.off(&frame_of("VISE")) < 0.02);
+        assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
+        assert!(bench.off(&frame_of("HOME")) < 0.02);
+        assert_eq!(bench.memory.emove.status.at.as_str(), "HOME");
+    }
+}
+
+#[test]
+fn a_move_to_where_the_robot_is_is_done_at_once() {
+    let mut bench = Bench::ready("HOME", 0);
+    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
+    assert!(bench.log().is_empty());
+}
+
+#[test]
+fn a_pose_may_be_a_static_record() {
+    let mut bench = Bench::ready("HOME", 0);
+    bench.command(MovToLoc, "", 0, "VISE", 0);
+    bench.memory.subtask.emove.pose = data().pose_named(&Name16::clipped("VISE-P")).unwrap().number();
+    assert_eq!(bench.finish(), DONE);
+    assert!(bench.off(&frame_of("VISE")) < 0.02);
+}
+
+#[test]
+fn a_part_is_taken_placed_and_left() {
+    let mut bench = Bench::ready("HOME", 1);
+    assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE);
+    assert_eq!(bench.log(), ["POSITION", "GO-THRU", "GO-THRU", "GO-THRU A/D-5", "GOTO-PT"]);
+    assert!(bench.off(&moved(frame_of("BENCH"), &["GRASP-MTB"])) < 0.02);
+    bench.world.object = Some(75);
+    assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
+    assert_eq!(bench.log(), ["CLOSE-GRIP"]);
+    let command = bench.memory.emove.grip;
+    assert_eq!((command.position, command.force, command.end_effector_id), (60, 30, 1));
+    assert!(bench.memory.emove.status.object_held);
+    assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE, "it is held");
+    assert!(bench.log().is_empty());
+    assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE, "so it has been gone to");
+    assert!(bench.log().is_empty());
+    assert_eq!(bench.run(MovObjTo, "BLOCK", 1, "VISE", 1), DONE);
+    assert_eq!(bench.log(), ["GO-THRU A/D-5", "GO-THRU", "GO-THRU A/D-5", "GOTO-PT"]);
+    assert_eq!(bench.run(MovObjTo, "BLOCK", 1, "VISE", 1), DONE, "it is there");
+    assert!(bench.log().is_empty());
+    assert_eq!(bench.run(Release, "BLOCK", 1, "VISE", 1), DONE);
+    assert_eq!(bench.log(), ["OPEN-GRIP"]);
+    assert_eq!((bench.memory.emove.grip.position, bench.memory.emove.status.object_held), (350, false));
+    assert_eq!(bench.run(Release, "BLOCK", 1, "VISE", 1), DONE, "nothing is held and the fingers are open");
+    assert!(bench.log().is_empty());
+    assert_eq!(bench.run(MovToObj, "BLOCK", 1, "VISE", 1), DONE);
+    assert_eq!(bench.log(), ["POSITION"], "the robot is there; the fingers are not as they should be");
+}
+
+#[test]
+fn jaws_take_and_leave_their_parts() {
+    for (gripper, object, size, opened, stop) in
+        [(2, "SHAFT", 204, "POSE 350", 350), (3, "CUTTER", 246, "POSE 400", 400)]
+    {
+        let mut bench = Bench::ready("HOME", gripper);
+        assert_eq!(bench.run(MovToObj, object, 1, "BENCH", gripper), DONE);
+        assert_eq!(bench.log(), [opened, "GO-THRU", "GO-THRU", "GOTO-PT"]);
+        bench.world.object = Some(size);
+        assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), DONE);
+        assert_eq!(bench.log(), [format!("GRASP {}", if gripper == 2 { 200 } else { 250 })]);
+        assert_eq!(bench.pause(), DONE, "a pause leaves it held");
+        assert!(bench.memory.emove.status.object_held);
+        assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), DONE);
+        assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
+        assert_eq!(bench.log(), [format!("RELEASE {}", if gripper == 2 { 350 } else { 400 })]);
+        assert!(!bench.memory.emove.status.object_held);
+        assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
+        assert!(bench.log().is_empty());
+        let opening = if gripper == 2 { bench.v_grip.opening } else { bench.tool_grip.opening };
+        assert_eq!(opening, stop);
+    }
+}
+
+#[test]
+fn fingers_that_stand_right_are_left_alone() {
+    let mut bench = Bench::ready("HOME", 1);
+    bench.grip.opening = 300;
+    assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE);
+    assert!(!bench.log().contains(&"POSITION"));
+    let mut bench = Bench::ready("HOME", 2);
+    bench.v_grip.opening = 350;
+    assert_eq!(bench.run(MovToObj, "SHAFT", 1, "BENCH", 2), DONE);
+    assert!(!bench.log().contains(&"POSE 350"));
+}
+
+/// Fingers move only after the last depart point, and the final motion waits for them.
+#[test]
+fn fingers_do_not_open_over_a_held_part() {
+    let mut bench = Bench::ready("HOME", 1);
+    assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE);
+    assert_eq!(bench.run(Release, "BLOCK", 1, "BENCH", 1), DONE);
+    assert_eq!(bench.run(MovToObj, "BLOCK", 1, "VISE", 1), DONE);
+    assert_eq!(bench.log(), ["GO-THRU A/D-5", "POSITION", "GO-THRU", "GO-THRU A/D-5", "GOTO-PT"]);
+    bench.hold("BLOCK", 75, 1);
+    assert_eq!(bench.run(MovToObj, "PIN", 1, "BENCH", 1), error(Reason::AlreadyHolding));
+    assert_eq!(bench.run(MovToVu, "PIN", 1, "BENCH", 1), error(Reason::BadRecord), "there is no view of it");
+    assert_eq!(bench.run(GraspObj, "PIN", 1, "BENCH", 1), error(Reason::AlreadyHolding));
+    assert_eq!(bench.run(MovToHol, "GRIPPER-1", 1, "HOLSTER-R", 1), error(Reason::NoTrajectory));
+    assert!(bench.memory.emove.status.object_held);
+}
+
+#[test]
+fn a_gripper_that_fails_stops_the_move() {
+    let mut bench = Bench::ready("HOME", 1);
+    bench.spoil("POSITION", Mishap::Grip(Reason::GripTimeout));
+    assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), error(Reason::GripTimeout));
+    bench.step();
+    assert_eq!(bench.log().last(), Some(&"PAUSE"), "the robot stops");
+    let mut bench = Bench::ready("HOME", 2);
+    bench.spoil("POSE", Mishap::Jaws(JawsReport::Closed));
+    assert_eq!(bench.run(MovToObj, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck), "they went nowhere");
+    let mut bench = Bench::ready("HOME", 2);
+    bench.world.object = Some(250);
+    assert_eq!(bench.run(GraspObj, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck), "another size");
+    let mut bench = Bench::ready("HOME", 2);
+    bench.spoil("GRASP", Mishap::Jaws(JawsReport::Opened));
+    assert_eq!(bench.run(GraspObj, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck));
+    bench.world.object = Some(200);
+    bench.world.mishaps.clear();
+    bench.hold("SHAFT", 200, 2);
+    bench.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
+    assert_eq!(bench.run(Release, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck));
+    let mut bench = Bench::ready("HOME", 1);
+    bench.dead.push("gripper");
+    assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), error(Reason::NeighbourLost));
+    let mut bench = Bench::ready("HOME", 1);
+    bench.command(MovToObj, "BLOCK", 1, "BENCH", 1);
+    bench.steps(5);
+    bench.world.mated = 0;
+    assert_eq!(bench.finish(), error(Reason::WrongGripper), "the gripper is gone");
+}
+
+#[test]
+fn what_prim_reports_goes_up() {
+    for (report, reason) in [
+        (PrimReport::T3LinkOff, Reason::LinkOff),
+        (PrimReport::T3LinkErr, Reason::LinkError),
+        (PrimReport::NoRespT3i, Reason::InterfaceSilent),
+        (PrimReport::T3BadCommand, Reason::InterfaceRefused),
+        (PrimReport::SensorError, Reason::SensorError),
+        (PrimReport::Error, Reason::NotAtGoal),
+    ] {
+        for (verb, object, gripper) in
+            [(MovToLoc, "", 0), (MovToObj, "BLOCK", 1), (MovToHol, "GRIPPER-1", 1), (MovObjTo, "BLOCK", 1)]
+        {
+            let mut bench = Bench::ready("HOME", gripper);
+            if verb == MovObjTo {
+                bench.hold("BLOCK", 75, 1);
+            }
+            let location = if verb == MovToHol { "HOLSTER-R" } else { "BENCH" };
+            bench.spoil("GO-THRU", Mishap::Prim(report, reason));
+            assert_eq!(bench.run(verb, object, 1, location, gripper), error(reason), "{verb}");
+            assert!(bench.memory.emove.status.at.is_empty(), "nobody knows where the robot is");
+        }
+    }
+    let mut bench = Bench::ready("HOME", 0);
+    bench.dead.push("Prim");
+    assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), error(Reason::NeighbourLost));
+    let mut bench = Bench::ready("HOME", 0);
+    bench.spoil("GOTO-PT", Mishap::Joystick);
+    assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), (Report::JoystickOn, Reason::JoystickOn));
+}
+
+#[test]
+fn a_lost_part_is_noticed_with_every_gripper() {
+    for (gripper, object, size) in PARTS {
+        for verb in [MovObjTo, MovToLoc] {
+            for gone in [Mishap::Slip, Mishap::Mated(0)] {
+                let mut bench = Bench::ready("HOME", gripper);
+                bench.hold(object, size, gripper);
+                bench.command(verb, object, 1, "VISE", gripper);
+                bench.steps(6);
+                match gone {
+                    Mishap::Slip => {
+                        (bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening) = (60, 50, 100);
+                    }
+                    _ => bench.world.mated = 0,
+                }
+                assert_eq!(bench.finish(), error(Reason::ObjectLost), "{object} {verb}");
+                assert!(!bench.memory.emove.status.object_held);
+            }
+        }
+        let mut bench = Bench::ready("HOME", gripper);
+        bench.hold(object, size, gripper);
+        (bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening) =
+            (size + 30, size + 30, size + 30);
+        bench.steps(3);
+        assert!(!bench.memory.emove.status.object_held, "open fingers hold nothing");
+        assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), error(Reason::NothingHeld));
+    }
+}
+
+#[test]
+fn the_wrong_gripper_is_refused() {
+    for (verb, location) in [
+        (MovToObj, "BENCH"),
+        (MovObjTo, "BENCH"),
+        (MovToVu, "BENCH"),
+        (LocateObj, "BENCH"),
+        (GraspObj, "BENCH"),
+        (RemoveTool, "TOOL-TRNS"),
+    ] {
+        for attached in [0, 2, 3] {
+            let mut bench = Bench::ready("HOME", attached);
+            assert_eq!(bench.run(verb, "BLOCK", 1, location, 1), error(Reason::WrongGripper), "{verb}");
+            bench.steps(3);
+            assert_eq!(bench.log(), ["PAUSE"], "a refused command stops what was under way");
+        }
+    }
+    let mut bench = Bench::ready("HOME", 2);
+    assert_eq!(bench.run(MovToHol, "GRIPPER-1", 1, "HOLSTER-R", 1), error(Reason::WrongGripper));
+}
+
+#[test]
+fn what_is_not_gripped_is_reported() {
+    for (gripper, object, _) in PARTS {
+        let mut bench = Bench::ready("HOME", gripper);
+        assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), error(Reason::GraspMissed));
+        assert!(!bench.memory.emove.status.object_held);
+    }
+    let mut bench = Bench::ready("HOME", 1);
+    assert_eq!(bench.run(GraspObj, "BLOCK", 7, "BENCH", 1), error(Reason::UnknownGrip));
+}
+
+#[test]
+fn a_release_of_nothing_opens_or_is_done() {
+    let mut bench = Bench::ready("HOME", 1);
+    assert_eq!(bench.run(Release, "BLOCK", 1, "", 1), DONE);
+    assert_eq!(bench.log(), ["OPEN-GRIP"], "the fingers were narrow");
+    let mut bench = Bench::ready("HOME", 0);
+    assert_eq!(bench.run(Release, "", 0, "", 0), DONE);
+    assert!(bench.log().is_empty(), "a bare robot holds nothing");
+    let mut bench = Bench::ready("HOME", 1);
+    bench.spoil("OPEN-GRIP", Mishap::Grip(Reason::None));
+    assert_eq!(bench.run(Release, "BLOCK", 1, "", 1), error(Reason::GripUnattainable));
+    // What is held is released by whatever holds it, with its own depart size.
+    let mut bench = Bench::ready("HOME", 1);
+    bench.hold("BLOCK", 75, 1);
+    assert_eq!(bench.run(Release, "CUTTER", 1, "", 3), DONE);
+    assert_eq!(bench.memory.emove.grip.position, 350);
+}
+
+#[test]
+fn an_object_is_located() {
+    let mut bench = Bench::ready("HOME", 1);
+    assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
+    assert_eq!(bench.log(), ["POSITION", "GO-THRU", "GO-THRU", "GOTO-PT"]);
+    assert_eq!(bench.memory.emove.grip.position, 500, "the camera looks between open fingers");
+    assert!(bench.off(&moved(frame_of("BENCH"), &["GR-PIC"])) < 0.02);
+    assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), DONE);
+    assert_eq!(bench.log(), ["flood 0", "GOTO-PT", "precise 0", "GOTO-PT"]);
+    // Two answers of (0.20, -0.10) in, and a turn of 10 degrees.
+    assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE);
+    let distance = bench.world.frame.distance(&moved(frame_of("BENCH"), &["GRASP-MTB"]));
+    assert!((distance.inches - 0.2_f64.hypot(0.1) * 2.0).abs() < 0.03, "{} in", distance.inches);
+    assert!((distance.radians.to_degrees() - 10.0).abs() < 0.1, "{} rad", distance.radians);
+    assert_eq!(bench.run(MovToVu, "SHAFT", 1, "BENCH", 0), error(Reason::BadRecord));
+}
+
+#[test]
+fn vision_that_fails_is_asked_again_and_given_up() {
+    use VisionStatus::{Done, NotRecognised, NothingSeen};
+    for (answers, end, log) in [
+        (vec![NothingSeen, Done, NotRecognised, NothingSeen, Done], DONE, 7),
+        (vec![NothingSeen; 3], error(Reason::NothingSeen), 3),
+        (vec![NotRecognised; 3], error(Reason::NothingSeen), 3),
+        (vec![Done, NothingSeen, NothingSeen, NothingSeen], error(Reason::NothingSeen), 5),
+        (vec![Done, NotRecognised, NotRecognised, NotRecognised], error(Reason::NotRecognised), 5),
+    ] {
+        let mut bench = Bench::ready("HOME", 1);
+        assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
+        bench.world.answers.clone_from(&answers);
+        assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), end, "{answers:?}");
+        assert_eq!(bench.log().len(), log, "{:?}", bench.log());
+    }
+    let mut bench = Bench::ready("HOME", 1);
+    bench.dead.push("vision");
+    assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::VisionSilent));
+    let mut bench = Bench::ready("HOME", 1);
+    bench.spoil("GOTO-PT", Mishap::Prim(PrimReport::Error, Reason::NotAtGoal));
+    assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::NotAtGoal));
+}
+
+#[test]
+fn the_robot_withdraws() {
+    let mut bench = Bench::ready("BENCH", 1);
+    bench.hold("BLOCK", 75, 1);
+    assert_eq!(bench.run(Withdraw, "", 0, "BENCH", 0), DONE);
+    assert_eq!(bench.log(), ["DELTA-MOVE WITHDRAW"]);
+    assert!(bench.off(&moved(frame_of("BENCH"), &["WITHDRAW"])) < 0.02);
+    assert_eq!(bench.memory.emove.status.at.as_str(), "BENCH");
+    bench.command(Withdraw, "", 0, "BENCH", 0);
+    bench.steps(3);
+    bench.grip.opening = 60;
+    assert_eq!(bench.finish(), error(Reason::ObjectLost));
+    let mut bench = Bench::ready("BENCH", 0);
+    bench.spoil("WITHDRAW", Mishap::Prim(PrimReport::Error, Reason::NotAtGoal));
+    assert_eq!(bench.run(Withdraw, "", 0, "BENCH", 0), error(Reason::NotAtGoal));
+    assert_eq!(bench.run(Withdraw, "", 0, "HOME", 0), error(Reason::NoRelativeMove));
+}
+
+#[test]
+fn missing_data_are_named() {
+    let mut bench = Bench::ready("HOME", 1);
+    assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-TRNS", 0), error(Reason::NoTrajectory));
+    assert_eq!(bench.run(MovToLoc, "", 0, "", 0), error(Reason::NoDestination));
+    assert_eq!(bench.run(MovToObj, "BLOCK", 7, "BENCH", 1), error(Reason::UnknownGrip));
+    assert_eq!(bench.run(MovToObj, "PIN", 1, "VISE", 1), error(Reason::NoApproach));
+    assert_eq!(bench.run(LocateObj, "PIN", 1, "VISE", 1), error(Reason::BadRecord));
+    bench.command(MovToLoc, "", 0, "BENCH", 0);
+    bench.memory.subtask.emove.pose = 4_000_000;
+    assert_eq!(bench.finish(), error(Reason::NoDestination), "no such POSE record");
+    bench.command(MovToLoc, "", 0, "BENCH", 0);
+    bench.memory.subtask.emove.pose = pose_range::next(pose_range::SUBTASK, bench.memory.subtask.emove.pose);
+    assert_eq!(bench.finish(), error(Reason::NoDestination), "no such changing record");
+    assert_eq!(
+        bench.run(rcs_core::interface::emove::EmoveVerb::None, "", 0, "", 0),
+        error(Reason::UnknownCommand)
+    );
+    bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
+    bench.steps(2);
+    assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), error(Reason::UnknownStart));
+}

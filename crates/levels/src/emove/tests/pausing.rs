@@ -1,0 +1,192 @@
+//! E-PAUSE: the start, the dormancy of the gripper processes, and the joystick box.
+
+use rcs_core::interface::{
+    Reason, Report,
+    emove::{
+        Dormancy,
+        EmoveVerb::{GraspObj, MovToLoc, Pause},
+    },
+    jaws::JawsReport,
+    prim::{JoystickGrip, PrimReport},
+    quick_change::QuickChangeReport,
+};
+
+use super::{
+    bench::{Bench, DONE, error, frame_of, moved},
+    doubles::Mishap,
+};
+
+pub const SCENARIOS: &[fn()] = &[
+    the_first_pause_brings_the_link_up,
+    every_gripper_and_none_can_be_on_at_the_start,
+    a_pause_waits_for_the_calibration,
+    only_the_process_of_the_attached_gripper_runs,
+    a_pause_that_fails_says_why,
+    the_robot_is_found_where_it_stands,
+    the_operator_moves_the_robot_and_the_fingers,
+    the_operator_interrupts_a_command,
+    a_restarted_e_move_executes_nothing,
+];
+
+#[test]
+fn the_first_pause_brings_the_link_up() {
+    let mut bench = Bench::new("HOME", 1);
+    assert_eq!(bench.pause(), DONE);
+    assert_eq!(bench.log(), ["ROBOT-INIT", "PAUSE", "QC-PAUSE", "PAUSE"], "Prim, Quick Change, Grip");
+    assert_eq!(bench.pause(), DONE);
+    assert!(!bench.log().contains(&"ROBOT-INIT"), "it runs");
+}
+
+#[test]
+fn every_gripper_and_none_can_be_on_at_the_start() {
+    for gripper in 0..=3 {
+        let mut bench = Bench::new("HOME", gripper);
+        // Fingers on something of any size are not the pause's business.
+        (bench.v_grip.opening, bench.tool_grip.opening) = (200, 200);
+        assert_eq!(bench.pause(), DONE);
+        assert_eq!(bench.memory.emove.status.end_effector_id, gripper);
+    }
+}
+
+#[test]
+fn a_pause_waits_for_the_calibration() {
+    let mut bench = Bench::new("HOME", 1);
+    bench.spoil("PAUSE", Mishap::Never);
+    bench.command(Pause, "", 0, "", 0);
+    bench.steps(200);
+    assert_eq!(bench.memory.emove.status.report, Report::Executing);
+}
+
+#[test]
+fn only_the_process_of_the_attached_gripper_runs() {
+    let all = Dormancy { grip: true, v_grip: true, tool_grip: true };
+    for (gripper, dormant) in [
+        (0, all),
+        (1, Dormancy { grip: false, ..all }),
+        (2, Dormancy { v_grip: false, ..all }),
+        (3, Dormancy { tool_grip: false, ..all }),
+    ] {
+        let mut bench = Bench::new("HOME", 0);
+        bench.world.mated = gripper;
+        bench.steps(2);
+        assert_eq!(bench.memory.emove.dormant, dormant, "gripper {gripper}, without any command");
+    }
+}
+
+#[test]
+fn a_pause_that_fails_says_why() {
+    for (report, reason) in [
+        (QuickChangeReport::Stuck, Reason::QuickChangeStuck),
+        (QuickChangeReport::SensorMalfunction, Reason::QuickChangeFault),
+    ] {
+        let mut bench = Bench::new("HOME", 1);
+        bench.spoil("QC-PAUSE", Mishap::Ring(report));
+        assert_eq!(bench.pause(), error(reason));
+    }
+    let mut bench = Bench::new("HOME", 1);
+    bench.command(Pause, "", 0, "", 0);
+    bench.steps(10);
+    bench.dead.push("Quick Change");
+    assert_eq!(bench.finish(), error(Reason::NeighbourLost));
+    let mut bench = Bench::new("HOME", 2);
+    bench.command(Pause, "", 0, "", 0);
+    bench.steps(10);
+    bench.dead.push("gripper");
+    assert_eq!(bench.finish(), error(Reason::NeighbourLost));
+    let mut bench = Bench::new("HOME", 1);
+    bench.spoil("ROBOT-INIT", Mishap::Prim(PrimReport::T3LinkOff, Reason::LinkOff));
+    assert_eq!(bench.pause(), error(Reason::LinkOff));
+    let mut bench = Bench::new("HOME", 1);
+    bench.spoil("ROBOT-INIT", Mishap::Joystick);
+    assert_eq!(bench.pause().1, Reason::JoystickOn);
+    let mut bench = Bench::new("HOME", 1);
+    bench.command(Pause, "", 0, "", 0);
+    bench.steps(3);
+    bench.world.mated = 2;
+    assert_eq!(bench.finish(), DONE, "a gripper that has come since is not waited for");
+}
+
+#[test]
+fn the_robot_is_found_where_it_stands() {
+    let mut bench = Bench::new("HOLSTER-C", 0);
+    assert_eq!(bench.pause(), DONE);
+    assert_eq!(bench.memory.emove.status.at.as_str(), "HOLSTER-C");
+    bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
+    assert_eq!(bench.pause(), DONE, "it need not be anywhere");
+    assert!(bench.memory.emove.status.at.is_empty());
+}
+
+#[test]
+fn the_operator_moves_the_robot_and_the_fingers() {
+    for gripper in 1..=3 {
+        let mut bench = Bench::ready("HOME", gripper);
+        let (object, size) = [("BLOCK", 75), ("SHAFT", 200), ("CUTTER", 250)][usize::from(gripper) - 1];
+        bench.hold(object, size, gripper);
+        assert_eq!(bench.pause(), DONE);
+        bench.world.joystick = true;
+        bench.steps(3);
+        let status = bench.memory.emove.status;
+        assert_eq!((status.report, status.reason), (Report::JoystickOn, Reason::JoystickOn));
+        bench.world.log.clear();
+        bench.world.button = JoystickGrip::Open;
+        bench.steps(20);
+        assert_eq!(bench.log().len(), 1, "pressing counts, not holding down: {:?}", bench.log());
+        assert!(!bench.memory.emove.status.object_held, "the fingers are open");
+        bench.world.button = JoystickGrip::None;
+        bench.steps(3);
+        bench.world.button = JoystickGrip::Close;
+        bench.steps(20);
+        assert_eq!(bench.log().len(), 2);
+        let closed = [bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening];
+        assert_eq!(closed[usize::from(gripper) - 1], [10, 50, 100][usize::from(gripper) - 1]);
+        // The operator has carried the robot to the vise and gives it back.
+        bench.world.frame = frame_of("VISE");
+        (bench.world.joystick, bench.world.button) = (false, JoystickGrip::None);
+        bench.steps(10);
+        let status = bench.memory.emove.status;
+        assert_eq!((status.report, status.reason, status.at.as_str()), (Report::Done, Reason::None, "VISE"));
+    }
+    // Without frame switches the buttons work as well, and a robot that is switched over while it pauses is the operator's.
+    let mut bench = Bench::ready("HOME", 1);
+    bench.world.joystick = true;
+    assert_eq!(bench.pause(), (Report::JoystickOn, Reason::JoystickOn));
+    bench.world.joystick = false;
+    bench.steps(5);
+    bench.dead.push("Prim");
+    bench.steps(5);
+    assert_eq!(bench.memory.emove.status.report, Report::Done, "done stays");
+}
+
+#[test]
+fn the_operator_interrupts_a_command() {
+    let mut bench = Bench::ready("HOME", 1);
+    bench.command(MovToLoc, "", 0, "VISE", 0);
+    bench.steps(7);
+    bench.world.joystick = true;
+    assert_eq!(bench.finish(), (Report::JoystickOn, Reason::JoystickOn));
+    assert_eq!(bench.pause(), (Report::JoystickOn, Reason::JoystickOn));
+    bench.world.joystick = false;
+    bench.steps(5);
+    assert_eq!(bench.memory.emove.status.report, Report::Done);
+    // A command that was interrupted and not followed by a pause ends in an error when the box is let go.
+    let mut bench = Bench::ready("HOME", 1);
+    bench.spoil("GO-THRU", Mishap::Joystick);
+    assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), (Report::JoystickOn, Reason::JoystickOn));
+    bench.memory.prim.status.report = PrimReport::Done;
+    bench.dead.push("Prim");
+    bench.steps(2);
+    let status = bench.memory.emove.status;
+    assert_eq!((status.report, status.reason), error(Reason::JoystickOn));
+}
+
+#[test]
+fn a_restarted_e_move_executes_nothing() {
+    let mut bench = Bench::ready("HOME", 2);
+    bench.hold("SHAFT", 200, 2);
+    bench.process = crate::emove::Emove::default();
+    assert_eq!(bench.finish(), error(Reason::Restarted));
+    assert_eq!(bench.pause(), DONE);
+    assert_eq!(bench.memory.v_grip.status.report, JawsReport::Stuck, "it does not know the size any more");
+    bench.world.object = Some(200);
+    assert_eq!(bench.run(GraspObj, "SHAFT", 1, "", 2), DONE);
+}
