@@ -119,8 +119,8 @@ impl Subtask {
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut SubtaskOutputs) {
         let execution = &self.state.execution;
         let below = &inputs.memory.emove.status;
-        // The operator can take the robot at any time (V.4.1 PAUSE). E-move reports it for the command that it executes;
-        // between two commands it is Prim that sees the switch.
+        // The operator can take the robot at any time (V.4.1 PAUSE). E-move reports it for the command that
+        // it executes; between two commands it is Prim that sees the switch.
         let idle = below.report != Report::Executing;
         let taken = idle && inputs.memory.prim.status.report == PrimReport::JoystickOn;
         let (report, reason) = if taken || below.report == Report::JoystickOn {

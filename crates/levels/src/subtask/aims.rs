@@ -1,7 +1,8 @@
 //! Objects and locations that commands to E-move are aimed at.
 //!
-//! Task names one location with each command. Holsters, the pedestal and the tool drum are Subtask's own: it looks them up when
-//! the command arrives, before anything moves, and publishes their poses in its own changing records.
+//! Task names one location with each command. Holsters, the pedestal and the tool drum are Subtask's own: it
+//! looks them up when the command arrives, before anything moves, and publishes their poses in its own
+//! changing records.
 
 use rcs_core::{
     interface::{
@@ -51,7 +52,8 @@ record! {
 record! {
     /// The aims that a command of Task does not name, and the two poses that they share.
     pub struct Aims {
-        /// GET-ENDEFF: the holster of the attached gripper. FIX-GRIP: the object brought to the pedestal. Tool commands: the drum.
+        /// GET-ENDEFF: the holster of the attached gripper. FIX-GRIP: the object brought to the pedestal.
+        /// Tool commands: the drum.
         pub first: Aim,
         /// GET-ENDEFF: the holster of the wanted gripper. FIX-GRIP: the robot out of the pedestal's way.
         pub second: Aim,
@@ -129,7 +131,8 @@ impl Aim {
 }
 
 impl Aims {
-    /// Look up what a command needs beside its own location; `attached` is the id of the gripper on the robot, 0 for none.
+    /// Look up what a command needs beside its own location; `attached` is the id of the gripper on the
+    /// robot, 0 for none.
     ///
     /// # Errors
     /// The [`Reason`] why the command cannot be executed with these task data.

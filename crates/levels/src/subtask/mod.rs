@@ -1,7 +1,9 @@
-//! Subtask (V.3): takes a command of Task apart into commands to E-move, and coordinates the robot with the Active Pedestal.
+//! Subtask (V.3): takes a command of Task apart into commands to E-move, and coordinates the robot with the
+//! Active Pedestal.
 //!
 //! * [`state`]: what Subtask remembers;
-//! * [`aims`]: objects and locations that commands to E-move are aimed at, among them those that Subtask names itself;
+//! * [`aims`]: objects and locations that commands to E-move are aimed at, among them those that Subtask
+//!   names itself;
 //! * [`sensing`]: preprocess, the state variables;
 //! * [`tables`]: the decision tables, a file for each kind of command;
 //! * [`acting`]: postprocess, the outputs that a row asks for;
@@ -13,7 +15,7 @@ pub mod sensing;
 pub mod state;
 pub mod tables;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use rcs_core::{
     interface::{

@@ -7,7 +7,8 @@ use super::aims::Aims;
 use crate::execution::Execution;
 
 record! {
-    /// How the held object is gripped. The status of E-move names the object; the grip is the one with which it was last taken.
+    /// How the held object is gripped. The status of E-move names the object; the grip is the one with which
+    /// it was last taken.
     pub struct Grasp {
         /// The object; empty if nothing is held, or if Subtask has not seen how it was taken.
         pub object: Name16,

@@ -1,4 +1,5 @@
-//! A command of the workstation controller with its names looked up (V.4.2): TRANSLATE-HWS-CMD of Figure IV.1.
+//! A command of the workstation controller with its names looked up (V.4.2): TRANSLATE-HWS-CMD of Figure
+//! IV.1.
 
 use rcs_core::{
     coded_enum,
@@ -7,13 +8,12 @@ use rcs_core::{
     pose::Pose,
     record,
 };
-use taskdata::files::TaskData;
+use taskdata::files::{Reference, TaskData};
 
-use super::verb_of;
-use crate::places::reason_of;
+use crate::places::{named, reason_of};
 
 coded_enum! {
-    /// Commands of Task (V.4.1), as far as the linkbar needs them.
+    /// Commands of Task (V.4.1).
     pub enum TaskVerb {
         /// None yet.
         None = "",
@@ -27,8 +27,25 @@ coded_enum! {
         Position = "POSITION",
         /// Move to an object and grasp it.
         Acquire = "ACQUIRE",
+        /// Take an object, regrip it on the pedestal and move it to a location.
+        Refixture = "REFIXTURE",
+        /// Insert a tool into the tool drum.
+        InsertTool = "INSERT-TOOL",
+        /// Let go of a tool in the drum.
+        ReleaseTool = "RELEASE-TOOL",
+        /// Move to a tool in the drum and grasp it.
+        AcquireTool = "ACQUIRE-TOOL",
+        /// Pull a tool out of the drum.
+        RemoveTool = "REMOVE-TOOL",
+        /// Connect the Data System.
+        Startup = "STARTUP",
+        /// Disconnect it.
+        Shutdown = "SHUTDOWN",
     }
 }
+
+/// `endeff-id#` of the tool gripper (VII.7.2).
+pub const TOOL_GRIPPER: u8 = 3;
 
 record! {
     /// One of the three locations of a command.
@@ -41,6 +58,8 @@ record! {
         pub record: u32,
         /// Record of ARRAY-TABLE.
         pub array: u32,
+        /// Sector from 1, or 0.
+        pub sector: i32,
         /// Record number of its T-POSE.
         pub pose: u32,
         /// Grip of the object there.
@@ -57,6 +76,8 @@ record! {
         pub verb: TaskVerb,
         /// The object; empty for none.
         pub object: Name16,
+        /// Its serial number.
+        pub serial: Name16,
         /// Gripper for the object; 0 if any will do.
         pub end_effector_id: u8,
         /// Where the object is.
@@ -65,6 +86,8 @@ record! {
         pub destination: Site,
         /// Where the robot is to be at the end.
         pub end_at: Site,
+        /// The object is moved from or to the MBD, of which the data base keeps account.
+        pub concerns_mbd: bool,
         /// Poses of the three sites.
         pub poses: [Pose; 3],
     }
@@ -78,16 +101,46 @@ struct Needs {
 }
 
 impl TaskVerb {
+    /// The command that a word means. Ten characters are compared, as all processes below do (contradiction
+    /// 22).
+    #[must_use]
+    pub fn of(word: &Name16) -> Option<Self> {
+        let word = Name10::clipped(word.as_str());
+        Self::ALL.iter().copied().find(|verb| *verb != Self::None && Name10::clipped(verb.text()) == word)
+    }
+
     /// Which fields the command must have; an object that is moved must be somewhere.
     const fn needs(self, handles_object: bool) -> Needs {
-        match self {
-            Self::None | Self::Pause | Self::Position => {
-                Needs { object: false, source: false, destination: false }
-            }
-            Self::Transfer => Needs { object: true, source: true, destination: true },
-            Self::Move => Needs { object: false, source: handles_object, destination: true },
-            Self::Acquire => Needs { object: true, source: true, destination: false },
-        }
+        let (object, source, destination) = match self {
+            Self::None
+            | Self::Pause
+            | Self::Startup
+            | Self::Shutdown
+            | Self::Position
+            | Self::InsertTool
+            | Self::ReleaseTool
+            | Self::RemoveTool => (false, false, false),
+            Self::Transfer | Self::Refixture => (true, true, true),
+            Self::Move => (false, handles_object, true),
+            Self::Acquire => (true, true, false),
+            Self::AcquireTool => (true, false, true),
+        };
+        Needs { object, source, destination }
+    }
+
+    /// True if the fields of the command mean nothing.
+    const fn is_bare(self) -> bool {
+        matches!(self, Self::None | Self::Pause | Self::Startup | Self::Shutdown)
+    }
+
+    /// True for the four tool commands.
+    const fn is_for_tools(self) -> bool {
+        matches!(self, Self::InsertTool | Self::ReleaseTool | Self::AcquireTool | Self::RemoveTool)
+    }
+
+    /// True if the object is carried from the source to the destination.
+    const fn carries(self) -> bool {
+        matches!(self, Self::Transfer | Self::Move | Self::Refixture)
     }
 }
 
@@ -97,17 +150,21 @@ impl Plan {
     /// # Errors
     /// The [`Reason`] why it cannot be executed.
     pub fn new(command: &HwsCommand, data: &TaskData<'_>) -> Result<Self, Reason> {
-        let verb = verb_of(command)?;
-        let mut plan = Self { verb, object: command.object, ..Self::default() };
-        if verb == TaskVerb::Pause {
+        let verb = TaskVerb::of(&command.command).ok_or(Reason::UnknownCommand)?;
+        let mut plan = Self { verb, ..Self::default() };
+        if verb.is_bare() {
             return Ok(plan);
         }
+        (plan.object, plan.serial) = (command.object, command.serial);
         let handles_object = !command.object.is_empty();
         if handles_object && data.object_named(&command.object).is_none() {
             return Err(Reason::UnknownObject);
         }
         let gripper = data.obj_grips(&command.object).map_or(0, |grips| grips.endeff_id);
         plan.end_effector_id = u8::try_from(gripper).map_err(|_| Reason::WrongGripper)?;
+        if verb.is_for_tools() && !handles_object {
+            plan.end_effector_id = TOOL_GRIPPER;
+        }
 
         let [source, destination, end_at] = &mut plan.poses;
         plan.source =
@@ -121,11 +178,14 @@ impl Plan {
             destination,
         )?;
         plan.end_at = Site::new(command, &command.end_at, command.end_at_sector, 0, data, end_at)?;
-        plan.check(verb.needs(handles_object))
+        plan.concerns_mbd = handles_object
+            && matches!(verb, TaskVerb::Transfer | TaskVerb::Move)
+            && (plan.source.is_in_mbd(data) || plan.destination.is_in_mbd(data));
+        plan.check(verb.needs(handles_object), data)
     }
 
     /// All that the command needs is there.
-    fn check(self, needs: Needs) -> Result<Self, Reason> {
+    fn check(self, needs: Needs, data: &TaskData<'_>) -> Result<Self, Reason> {
         let handles_object = !self.object.is_empty();
         if needs.object && !handles_object {
             return Err(Reason::NoObjectNamed);
@@ -134,31 +194,57 @@ impl Plan {
             if needed && site.location.is_empty() {
                 return Err(Reason::NoDestination);
             }
-            if needed && handles_object && site.parameters == 0 {
+            if needed && handles_object && site.parameters == 0 && !self.verb.is_for_tools() {
                 return Err(Reason::UnknownGrip);
             }
         }
         if self.verb == TaskVerb::Position {
-            let site = self.position_site();
-            if site.location.is_empty() {
-                return Err(Reason::NoDestination);
+            self.check_position()?;
+        }
+        if self.verb.is_for_tools() && handles_object {
+            if self.end_effector_id != TOOL_GRIPPER {
+                return Err(Reason::WrongGripper);
             }
-            if handles_object && site.parameters == 0 {
+            if self.tool_grip().1 == 0 {
                 return Err(Reason::UnknownGrip);
             }
+        }
+        let regrip = handles_object && self.verb.carries() && self.source.grip != self.destination.grip;
+        if regrip && data.ped_para(&self.object).is_none() {
+            return Err(Reason::NoPedestalData);
         }
         Ok(self)
     }
 
-    /// Where POSITION goes: the source location, an object where it is; the destination if the source is null (contradiction 24).
+    fn check_position(&self) -> Result<(), Reason> {
+        let site = self.position_site();
+        if site.location.is_empty() {
+            Err(Reason::NoDestination)
+        } else if !self.object.is_empty() && site.parameters == 0 {
+            Err(Reason::UnknownGrip)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Where POSITION goes: the source location, an object where it is; the destination if the source is null
+    /// (contradiction 24).
     #[must_use]
     pub const fn position_site(&self) -> Site {
         if self.source.record == 0 && self.source.array == 0 { self.destination } else { self.source }
     }
+
+    /// The grip of a tool command's tool, and its record of END-EFF-PARA: those of the source if it has one,
+    /// else those of the destination.
+    #[must_use]
+    pub const fn tool_grip(&self) -> (i32, u32) {
+        let site = if self.source.parameters == 0 { &self.destination } else { &self.source };
+        (site.grip, site.parameters)
+    }
 }
 
 impl Site {
-    /// Look a location up; an empty name gives an empty site. The pose goes to `pose`.
+    /// Look a location up; an empty name gives a site without one. The pose goes to `pose`.
     fn new(
         command: &HwsCommand,
         name: &Name16,
@@ -167,8 +253,9 @@ impl Site {
         data: &TaskData<'_>,
         pose: &mut Pose,
     ) -> Result<Self, Reason> {
+        let parameters = data.object(&command.object, grip).map_or(0, |(id, _)| id.number());
         if name.is_empty() {
-            return Ok(Self { grip, ..Self::default() });
+            return Ok(Self { grip, parameters, ..Self::default() });
         }
         let object = if command.object.is_empty() { None } else { Some(&command.object) };
         let location = data.resolve_location(name, sector, object).map_err(|e| reason_of(&e))?;
@@ -178,9 +265,17 @@ impl Site {
             kind: location.place.kind,
             record: location.place.locpt.number(),
             array: location.place.array.number(),
+            sector: location.sector,
             pose: 0,
             grip,
-            parameters: data.object(&command.object, grip).map_or(0, |(id, _)| id.number()),
+            parameters,
         })
+    }
+
+    /// True if the location is one of the MBD's.
+    fn is_in_mbd(&self, data: &TaskData<'_>) -> bool {
+        let owner = data.owner_named(&Name10::clipped(named::MBD));
+        let point = crate::places::place_of(self.kind, self.record, self.array).locpt;
+        owner.is_some_and(|owner| !point.is_null() && data.is_member(owner, Reference::location_point(point)))
     }
 }

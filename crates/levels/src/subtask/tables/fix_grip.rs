@@ -31,8 +31,8 @@ coded_enum! {
 }
 
 decision_table! {
-    /// FIX-GRIP (V.3.1): regrip the object with the Active Pedestal; done at once if it is held as it is to be. While anything is
-    /// wrong with the pedestal the robot stays where it is and keeps its grip.
+    /// FIX-GRIP (V.3.1): regrip the object with the Active Pedestal; done at once if it is held as it is to
+    /// be. While anything is wrong with the pedestal the robot stays where it is and keeps its grip.
     pub FIX_GRIP: fn fix_grip(step: Step, held: Held, grip: GripHeld, emove: Lower, pedestal: Pedestal, hand: Hand) -> (Action, Step) {
         //     step                                                      held              grip               E-move                     pedestal   hand          action                                      next
         1:  ( Start                                                   , Nothing | Other , _                , _                       , _        , _        ) => Fail(Reason::NothingHeld)                , Start       ;

@@ -21,7 +21,8 @@ coded_enum! {
 }
 
 decision_table! {
-    /// GET-ENDEFF (V.3.1): connect the proper gripper; done at once if it is on. A gripper that holds something is not left.
+    /// GET-ENDEFF (V.3.1): connect the proper gripper; done at once if it is on. A gripper that holds
+    /// something is not left.
     pub GET_ENDEFF: fn get_endeff(step: Step, gripper: Gripper, held: Held, emove: Lower) -> (Action, Step) {
         //     step                                           gripper         held            E-move                     action                         next
         1:  ( Start                                        , Right         , _             , _                       ) => Finish                       , Start     ;

@@ -21,7 +21,8 @@ coded_enum! {
 }
 
 decision_table! {
-    /// GET-OBJECT (V.3.1): find the object if vision is needed, move to it and grasp it; done at once if it is held.
+    /// GET-OBJECT (V.3.1): find the object if vision is needed, move to it and grasp it; done at once if it
+    /// is held.
     pub GET_OBJECT: fn get_object(step: Step, held: Held, vision: Vision, emove: Lower) -> (Action, Step) {
         //     step                                        held              vision      E-move                     action                        next
         1:  ( Start                                     , Right           , _         , _                       ) => Finish                       , Start    ;

@@ -17,7 +17,8 @@ coded_enum! {
 }
 
 decision_table! {
-    /// PLACE-OBJ (V.3.1): move an object to a location and release it. E-move reports an object that is lost on the way.
+    /// PLACE-OBJ (V.3.1): move an object to a location and release it. E-move reports an object that is lost
+    /// on the way.
     pub PLACE_OBJ: fn place_obj(step: Step, held: Held, grip: GripHeld, emove: Lower) -> (Action, Step) {
         //    step                 held              grip                    E-move                     action                      next
         1: ( Start              , Right           , Destination | Unknown , _                       ) => MovObjTo                   , Moving    ;

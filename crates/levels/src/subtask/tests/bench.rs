@@ -1,5 +1,5 @@
-//! Subtask with doubles of the processes below it: an E-move and an Active Pedestal that do at once what they are told, or fail
-//! as a test wants.
+//! Subtask with doubles of the processes below it: an E-move and an Active Pedestal that do at once what they
+//! are told, or fail as a test wants.
 
 use std::collections::BTreeSet;
 

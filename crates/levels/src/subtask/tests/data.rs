@@ -1,5 +1,5 @@
-//! Task data for tests of Subtask and Task: a tray of the MBD, a vise, the pedestal, the drum, three holsters, and an object for
-//! each gripper.
+//! Task data for tests of Subtask and Task: a tray of the MBD, a vise, the pedestal, the drum, three
+//! holsters, and an object for each gripper.
 
 use std::sync::OnceLock;
 

@@ -1,7 +1,7 @@
 //! Scenarios of Subtask with doubles of E-move and of the Active Pedestal.
 
 mod bench;
-pub mod data;
+pub(crate) mod data;
 
 use std::collections::BTreeSet;
 
@@ -626,7 +626,8 @@ fn every_row_of_every_table_fires() {
         .flat_map(|(table, number)| table.rows.iter().map(move |row| (table.name, number, row.number)))
         .filter(|(_, table, row)| !fired.contains(&(*table, *row)))
         .collect();
-    // Nothing ever commanded leaves the number of the last row at 0: EXECUTE reports its row only when it refuses.
+    // Nothing ever commanded leaves the number of the last row at 0: EXECUTE reports its row only when it
+    // refuses.
     let quiet = |row: u8| ("execute", 1, row);
     assert_eq!(missing, [1, 4, 5, 6, 7, 8, 9].map(quiet));
 }

@@ -1,9 +1,17 @@
-//! Decision tables of Task: a file a command.
+//! Decision tables of Task: a file a command, and one for the joystick box.
 
 pub mod acquire;
+pub mod acquire_tool;
+pub mod insert_tool;
+pub mod joystick;
 pub mod mov;
 pub mod pause;
 pub mod position;
+pub mod refixture;
+pub mod release_tool;
+pub mod remove_tool;
+pub mod shutdown;
+pub mod startup;
 pub mod transfer;
 
 use rcs_core::{coded_enum, handshake::Lower, interface::Reason};
@@ -21,12 +29,14 @@ coded_enum! {
 }
 
 coded_enum! {
-    /// Does the gripper hold something?
+    /// Object status (V.4.1): does the gripper hold something?
     pub enum Holding {
         /// Nothing.
         NotHeld = "not held",
-        /// Something.
+        /// The object of the command.
         Held = "held",
+        /// Something else.
+        Other = "other",
     }
 }
 
@@ -45,20 +55,63 @@ coded_enum! {
     pub enum Ends {
         /// Where the command leaves it.
         Here = "here",
-        /// At the end-at location.
+        /// At the end-at location, where it is now.
+        There = "there",
+        /// At the end-at location, where it is not.
         Elsewhere = "elsewhere",
     }
 }
 
 coded_enum! {
-    /// State of the data base; `Done` while no Data System is connected (DB-DONE, IV.3.2).
+    /// State of the data base (V.4.1): what the Data System makes of the last command to it.
     pub enum DataBase {
-        /// It has taken the update, or there is none to take it.
+        /// It is done.
         Done = "done",
-        /// It is taking the update.
+        /// It is executing, or not answered yet.
         Executing = "executing",
-        /// It refused.
-        Error = "error",
+        /// It was refused.
+        Refused = "refused",
+        /// It is not done in time, and can be written again.
+        Overdue = "overdue",
+        /// It is not done in time, however often it was written.
+        Silent = "silent",
+    }
+}
+
+coded_enum! {
+    /// What the Data System is to be told.
+    pub enum Books {
+        /// Nothing: the object is not moved from or to the MBD, it has been told, or no Data System is
+        /// connected (DB-DONE, IV.3.2).
+        Closed = "closed",
+        /// The move of this command.
+        Open = "open",
+        /// An update that was written and is not taken yet.
+        Owed = "owed",
+    }
+}
+
+coded_enum! {
+    /// The tool gripper.
+    pub enum Tool {
+        /// It is not on, or it holds another tool than the command names.
+        None = "none",
+        /// It holds nothing.
+        Free = "free",
+        /// It holds the tool.
+        Held = "held",
+    }
+}
+
+coded_enum! {
+    /// Where the robot is, for the tool commands.
+    pub enum Station {
+        /// At none of the following.
+        Elsewhere = "elsewhere",
+        /// Near the drum: at TOOL-SAFE, or at the source location that the command names.
+        Safe = "safe",
+        /// In the transfer location of the drum.
+        Transfer = "transfer",
     }
 }
 
@@ -73,10 +126,16 @@ pub struct Situation {
     pub holding: Holding,
     /// Source and destination grips.
     pub grips: Grips,
-    /// Is there an end-at location?
+    /// Is there an end-at location, and is the robot there?
     pub ends: Ends,
     /// State of the data base.
     pub data_base: DataBase,
+    /// What it is to be told.
+    pub books: Books,
+    /// The tool gripper.
+    pub tool: Tool,
+    /// Where the robot is.
+    pub station: Station,
 }
 
 /// What a row can ask for.
@@ -90,6 +149,8 @@ pub enum Action {
     GetEndeff,
     /// GET-OBJECT to Subtask.
     GetObject,
+    /// FIX-GRIP to Subtask.
+    FixGrip,
     /// PLACE-OBJ to Subtask.
     PlaceObj,
     /// MOVE-OBJ>D to Subtask.
@@ -102,8 +163,34 @@ pub enum Action {
     Position,
     /// RELEASE to Subtask.
     Release,
-    /// Tell the Data System what was moved.
-    UpdateDataBase,
+    /// INSERT-TOOL to Subtask.
+    InsertTool,
+    /// RELEASE-TOOL to Subtask.
+    ReleaseTool,
+    /// ACQUIRE-TOOL to Subtask.
+    AcquireTool,
+    /// REMOVE-TOOL to Subtask.
+    RemoveTool,
+    /// Abort to the Data System.
+    Abort,
+    /// Initiate to the Data System.
+    Initiate,
+    /// Startup to the Data System.
+    Startup,
+    /// Abort to the Data System, which is no longer connected from now on.
+    Disconnect,
+    /// The Data System is connected: report finished.
+    Connect,
+    /// The Data System is connected; tell it the update that it has not taken.
+    ConnectAndTell,
+    /// Tell the Data System the update that it has not taken.
+    TellOwed,
+    /// Write the last command to the Data System again.
+    AskAgain,
+    /// Tell the Data System where the object now is.
+    Update,
+    /// Tell the Data System where the object now is, and GOTO-ENDPT to Subtask.
+    UpdateAndGotoEndpt,
     /// Report finished.
     Finish,
     /// Report an error.
@@ -124,20 +211,12 @@ pub fn decide(verb: TaskVerb, step: u8, s: &Situation) -> Choice {
         TaskVerb::Move => mov::consult(step, s),
         TaskVerb::Position => position::consult(step, s),
         TaskVerb::Acquire => acquire::consult(step, s),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use rcs_core::process::Process;
-    use taskdata::files::TaskData;
-
-    use crate::task::Task;
-
-    #[test]
-    fn no_row_is_dead() {
-        for table in <Task as Process<TaskData<'_>>>::TABLES {
-            table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
-        }
+        TaskVerb::Refixture => refixture::consult(step, s),
+        TaskVerb::InsertTool => insert_tool::consult(step, s),
+        TaskVerb::ReleaseTool => release_tool::consult(step, s),
+        TaskVerb::AcquireTool => acquire_tool::consult(step, s),
+        TaskVerb::RemoveTool => remove_tool::consult(step, s),
+        TaskVerb::Startup => startup::consult(step, s),
+        TaskVerb::Shutdown => shutdown::consult(step, s),
     }
 }

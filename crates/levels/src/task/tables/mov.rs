@@ -2,47 +2,60 @@
 
 use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
 
-use super::{Action, Choice, DataBase, Grips, Handling, Situation};
+use super::{Action, Books, Choice, DataBase, Grips, Handling, Situation};
 
 coded_enum! {
     /// Reference action of MOVE.
     pub enum Step {
         /// Nothing done yet.
         Start = "start",
+        /// An earlier update is told again.
+        Settling = "settling",
         /// The gripper is being fetched.
         Gripper = "gripper",
         /// The object is being fetched.
         Object = "object",
+        /// It is being regripped on the pedestal.
+        Regripping = "regripping",
         /// The object, or the robot alone, is on its way.
         Moving = "moving",
         /// The data base is being told.
-        Update = "update",
+        Telling = "telling",
     }
 }
 
 decision_table! {
-    /// MOVE (V.4.1): move an object to a location and hold it there, or move the robot; the end-at location is ignored.
-    pub MOVE: fn mov(step: Step, handling: Handling, grips: Grips, subtask: Lower, data_base: DataBase) -> (Action, Step) {
-        //     step                        handling   grips       subtask                    data base    action                  next
-        1:  ( Start                     , NoObject , _         , _                       , _         ) => GotoDest             , Moving  ;
-        2:  ( Start                     , Object   , Different , _                       , _         ) => Fail(Reason::RegripNeeded), Start ;
-        3:  ( Start                     , Object   , Same      , _                       , _         ) => GetEndeff            , Gripper ;
-        4:  ( Gripper                   , _        , _         , Pending | Executing     , _         ) => Wait                 , Gripper ;
-        5:  ( Gripper                   , _        , _         , Done                    , _         ) => GetObject            , Object  ;
-        6:  ( Object                    , _        , _         , Pending | Executing     , _         ) => Wait                 , Object  ;
-        7:  ( Object                    , _        , _         , Done                    , _         ) => MoveObjToDest        , Moving  ;
-        8:  ( Moving                    , _        , _         , Pending | Executing     , _         ) => Wait                 , Moving  ;
-        9:  ( Moving                    , NoObject , _         , Done                    , _         ) => Finish               , Start   ;
-        10: ( Moving                    , Object   , _         , Done                    , _         ) => UpdateDataBase       , Update  ;
-        11: ( Update                    , _        , _         , _                       , Executing ) => Wait                 , Update  ;
-        12: ( Update                    , _        , _         , _                       , Done      ) => Finish               , Start   ;
-        13: ( Update                    , _        , _         , _                       , Error     ) => Fail(Reason::DataBase), Start  ;
-        14: ( Gripper | Object | Moving , _        , _         , Error | Joystick | Lost , _         ) => PassUp               , Start   ;
+    /// MOVE (V.4.1): move an object to a location and hold it there, or move the robot; the end-at location
+    /// is ignored.
+    pub MOVE: fn mov(step: Step, handling: Handling, grips: Grips, subtask: Lower, data_base: DataBase, books: Books) -> (Action, Step) {
+        //     step                                      handling   grips       subtask                    data base   books            action                         next
+        1:  ( Start                                    , NoObject , _         , _                       , _         , _             ) => GotoDest                     , Moving     ;
+        2:  ( Start                                    , Object   , _         , _                       , _         , Owed          ) => TellOwed                     , Settling   ;
+        3:  ( Start                                    , Object   , _         , _                       , _         , Closed | Open ) => GetEndeff                    , Gripper    ;
+        4:  ( Settling                                 , _        , _         , _                       , Executing , _             ) => Wait                         , Settling   ;
+        5:  ( Settling                                 , _        , _         , _                       , Overdue   , _             ) => AskAgain                     , Settling   ;
+        6:  ( Settling                                 , _        , _         , _                       , Done      , _             ) => GetEndeff                    , Gripper    ;
+        7:  ( Gripper                                  , _        , _         , Pending | Executing     , _         , _             ) => Wait                         , Gripper    ;
+        8:  ( Gripper                                  , _        , _         , Done                    , _         , _             ) => GetObject                    , Object     ;
+        9:  ( Object                                   , _        , _         , Pending | Executing     , _         , _             ) => Wait                         , Object     ;
+        10: ( Object                                   , _        , Same      , Done                    , _         , _             ) => MoveObjToDest                , Moving     ;
+        11: ( Object                                   , _        , Different , Done                    , _         , _             ) => FixGrip                      , Regripping ;
+        12: ( Regripping                               , _        , _         , Pending | Executing     , _         , _             ) => Wait                         , Regripping ;
+        13: ( Regripping                               , _        , _         , Done                    , _         , _             ) => MoveObjToDest                , Moving     ;
+        14: ( Moving                                   , _        , _         , Pending | Executing     , _         , _             ) => Wait                         , Moving     ;
+        15: ( Moving                                   , _        , _         , Done                    , _         , Closed | Owed ) => Finish                       , Start      ;
+        16: ( Moving                                   , _        , _         , Done                    , _         , Open          ) => Update                       , Telling    ;
+        17: ( Telling                                  , _        , _         , _                       , Executing , _             ) => Wait                         , Telling    ;
+        18: ( Telling                                  , _        , _         , _                       , Overdue   , _             ) => AskAgain                     , Telling    ;
+        19: ( Telling                                  , _        , _         , _                       , Done      , _             ) => Finish                       , Start      ;
+        20: ( Settling | Telling                       , _        , _         , _                       , Refused   , _             ) => Fail(Reason::DataBase)       , Start      ;
+        21: ( Settling | Telling                       , _        , _         , _                       , Silent    , _             ) => Fail(Reason::DataBaseSilent) , Start      ;
+        22: ( Gripper | Object | Regripping | Moving   , _        , _         , Error | Joystick | Lost , _         , _             ) => PassUp                       , Start      ;
     }
 }
 
 pub(super) fn consult(step: u8, s: &Situation) -> Choice {
     let step = Step::from_code(step).unwrap_or_default();
-    let Decision { row, action, next } = mov(step, s.handling, s.grips, s.subtask, s.data_base);
+    let Decision { row, action, next } = mov(step, s.handling, s.grips, s.subtask, s.data_base, s.books);
     Choice { table: &MOVE, row, action, step: next.code() }
 }

@@ -17,16 +17,17 @@ coded_enum! {
 }
 
 decision_table! {
-    /// POSITION (V.4.1): release what is held, then move to the position, with the parameters of a virtual object if one is named.
+    /// POSITION (V.4.1): release what is held, then move to the position, with the parameters of a virtual
+    /// object if one is named.
     pub POSITION: fn position(step: Step, holding: Holding, subtask: Lower) -> (Action, Step) {
-        //    step                 holding   subtask                    action     next
-        1: ( Start              , Held    , _                       ) => Release  , Releasing ;
-        2: ( Start              , NotHeld , _                       ) => Position , Moving    ;
-        3: ( Releasing          , _       , Pending | Executing     ) => Wait     , Releasing ;
-        4: ( Releasing          , _       , Done                    ) => Position , Moving    ;
-        5: ( Moving             , _       , Pending | Executing     ) => Wait     , Moving    ;
-        6: ( Moving             , _       , Done                    ) => Finish   , Start     ;
-        7: ( Releasing | Moving , _       , Error | Joystick | Lost ) => PassUp   , Start     ;
+        //    step                 holding        subtask                    action     next
+        1: ( Start              , Held | Other , _                       ) => Release  , Releasing ;
+        2: ( Start              , NotHeld      , _                       ) => Position , Moving    ;
+        3: ( Releasing          , _            , Pending | Executing     ) => Wait     , Releasing ;
+        4: ( Releasing          , _            , Done                    ) => Position , Moving    ;
+        5: ( Moving             , _            , Pending | Executing     ) => Wait     , Moving    ;
+        6: ( Moving             , _            , Done                    ) => Finish   , Start     ;
+        7: ( Releasing | Moving , _            , Error | Joystick | Lost ) => PassUp   , Start     ;
     }
 }
 

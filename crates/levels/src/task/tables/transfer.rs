@@ -2,50 +2,67 @@
 
 use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
 
-use super::{Action, Choice, DataBase, Ends, Grips, Situation};
+use super::{Action, Books, Choice, DataBase, Ends, Grips, Situation};
 
 coded_enum! {
     /// Reference action of TRANSFER.
     pub enum Step {
         /// Nothing done yet.
         Start = "start",
+        /// An earlier update is told again.
+        Settling = "settling",
         /// The gripper is being fetched.
         Gripper = "gripper",
         /// The object is being fetched.
         Object = "object",
-        /// The object is being placed.
+        /// It is being regripped on the pedestal.
+        Regripping = "regripping",
+        /// It is being placed.
         Placing = "placing",
         /// The robot is on its way to the end-at location.
         Leaving = "leaving",
         /// The data base is being told.
-        Update = "update",
+        Telling = "telling",
     }
 }
 
 decision_table! {
-    /// TRANSFER (V.4.1): move an object from one location to another, then go to the end-at location.
-    pub TRANSFER: fn transfer(step: Step, grips: Grips, ends: Ends, subtask: Lower, data_base: DataBase) -> (Action, Step) {
-        //     step                                  grips       ends        subtask                    data base    action         next
-        1:  ( Start                               , Different , _         , _                       , _         ) => Fail(Reason::RegripNeeded), Start ;
-        2:  ( Start                               , Same      , _         , _                       , _         ) => GetEndeff      , Gripper ;
-        3:  ( Gripper                             , _         , _         , Pending | Executing     , _         ) => Wait           , Gripper ;
-        4:  ( Gripper                             , _         , _         , Done                    , _         ) => GetObject      , Object  ;
-        5:  ( Object                              , _         , _         , Pending | Executing     , _         ) => Wait           , Object  ;
-        6:  ( Object                              , _         , _         , Done                    , _         ) => PlaceObj       , Placing ;
-        7:  ( Placing                             , _         , _         , Pending | Executing     , _         ) => Wait           , Placing ;
-        8:  ( Placing                             , _         , Elsewhere , Done                    , _         ) => GotoEndpt      , Leaving ;
-        9:  ( Placing                             , _         , Here      , Done                    , _         ) => UpdateDataBase , Update  ;
-        10: ( Leaving                             , _         , _         , Pending | Executing     , _         ) => Wait           , Leaving ;
-        11: ( Leaving                             , _         , _         , Done                    , _         ) => UpdateDataBase , Update  ;
-        12: ( Update                              , _         , _         , _                       , Executing ) => Wait           , Update  ;
-        13: ( Update                              , _         , _         , _                       , Done      ) => Finish         , Start   ;
-        14: ( Update                              , _         , _         , _                       , Error     ) => Fail(Reason::DataBase), Start ;
-        15: ( Gripper | Object | Placing | Leaving, _         , _         , Error | Joystick | Lost , _         ) => PassUp         , Start   ;
+    /// TRANSFER (V.4.1): move an object from one location to another, then go to the end-at location. The
+    /// data base is told as soon as the object is there, so that a robot that cannot leave does not leave it
+    /// wrong.
+    pub TRANSFER: fn transfer(step: Step, grips: Grips, ends: Ends, subtask: Lower, data_base: DataBase, books: Books) -> (Action, Step) {
+        //     step                                                grips       ends                subtask                    data base   books            action                         next
+        1:  ( Start                                              , _         , _                 , _                       , _         , Owed          ) => TellOwed                     , Settling   ;
+        2:  ( Start                                              , _         , _                 , _                       , _         , Closed | Open ) => GetEndeff                    , Gripper    ;
+        3:  ( Settling                                           , _         , _                 , _                       , Executing , _             ) => Wait                         , Settling   ;
+        4:  ( Settling                                           , _         , _                 , _                       , Overdue   , _             ) => AskAgain                     , Settling   ;
+        5:  ( Settling                                           , _         , _                 , _                       , Done      , _             ) => GetEndeff                    , Gripper    ;
+        6:  ( Gripper                                            , _         , _                 , Pending | Executing     , _         , _             ) => Wait                         , Gripper    ;
+        7:  ( Gripper                                            , _         , _                 , Done                    , _         , _             ) => GetObject                    , Object     ;
+        8:  ( Object                                             , _         , _                 , Pending | Executing     , _         , _             ) => Wait                         , Object     ;
+        9:  ( Object                                             , Same      , _                 , Done                    , _         , _             ) => PlaceObj                     , Placing    ;
+        10: ( Object                                             , Different , _                 , Done                    , _         , _             ) => FixGrip                      , Regripping ;
+        11: ( Regripping                                         , _         , _                 , Pending | Executing     , _         , _             ) => Wait                         , Regripping ;
+        12: ( Regripping                                         , _         , _                 , Done                    , _         , _             ) => PlaceObj                     , Placing    ;
+        13: ( Placing                                            , _         , _                 , Pending | Executing     , _         , _             ) => Wait                         , Placing    ;
+        14: ( Placing                                            , _         , There | Elsewhere , Done                    , _         , Closed | Owed ) => GotoEndpt                    , Leaving    ;
+        15: ( Placing                                            , _         , There | Elsewhere , Done                    , _         , Open          ) => UpdateAndGotoEndpt           , Leaving    ;
+        16: ( Placing                                            , _         , Here              , Done                    , _         , Closed | Owed ) => Finish                       , Start      ;
+        17: ( Placing                                            , _         , Here              , Done                    , _         , Open          ) => Update                       , Telling    ;
+        18: ( Leaving                                            , _         , _                 , Pending | Executing     , _         , _             ) => Wait                         , Leaving    ;
+        19: ( Leaving                                            , _         , _                 , Done                    , _         , Owed          ) => Wait                         , Telling    ;
+        20: ( Leaving                                            , _         , _                 , Done                    , _         , Closed | Open ) => Finish                       , Start      ;
+        21: ( Telling                                            , _         , _                 , _                       , Executing , _             ) => Wait                         , Telling    ;
+        22: ( Telling                                            , _         , _                 , _                       , Overdue   , _             ) => AskAgain                     , Telling    ;
+        23: ( Telling                                            , _         , _                 , _                       , Done      , _             ) => Finish                       , Start      ;
+        24: ( Settling | Telling                                 , _         , _                 , _                       , Refused   , _             ) => Fail(Reason::DataBase)       , Start      ;
+        25: ( Settling | Telling                                 , _         , _                 , _                       , Silent    , _             ) => Fail(Reason::DataBaseSilent) , Start      ;
+        26: ( Gripper | Object | Regripping | Placing | Leaving  , _         , _                 , Error | Joystick | Lost , _         , _             ) => PassUp                       , Start      ;
     }
 }
 
 pub(super) fn consult(step: u8, s: &Situation) -> Choice {
     let step = Step::from_code(step).unwrap_or_default();
-    let Decision { row, action, next } = transfer(step, s.grips, s.ends, s.subtask, s.data_base);
+    let Decision { row, action, next } = transfer(step, s.grips, s.ends, s.subtask, s.data_base, s.books);
     Choice { table: &TRANSFER, row, action, step: next.code() }
 }

@@ -1,0 +1,301 @@
+//! Task with doubles of its neighbours: a Subtask that does at once what it is told, and a Data System.
+
+use std::collections::BTreeSet;
+
+use rcs_core::{
+    handshake::{Arrival, Receiver},
+    interface::{
+        CommonMemory, DataBaseCommand, DataBaseStatus, ExternalInputs, Header, HwsCommand, Reason, Report,
+        SubtaskOutputs,
+        data_base::{DataBaseReport, DataBaseVerb},
+        hws::{HwsReport, HwsStatus},
+        subtask::{SubtaskCommand, SubtaskVerb},
+    },
+    name::{Name10, Name16},
+    process::{Inputs, Process},
+    tick::Tick,
+};
+use taskdata::files::TaskData;
+
+use crate::{subtask::tests::data::data, task::Task};
+
+/// Ticks that a double takes for a command.
+const WORK: u32 = 3;
+
+/// How the Subtask of a test ends a command that the test has singled out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mishap {
+    /// With an error.
+    Error(Reason),
+    /// It is not even echoed.
+    Silence,
+}
+
+/// The Subtask that a test sees.
+#[derive(Default)]
+pub struct SubtaskDouble {
+    receiver: Receiver,
+    left: u32,
+    pub outputs: SubtaskOutputs,
+    pub received: Vec<SubtaskCommand>,
+    pub mishap: Option<(SubtaskVerb, Mishap)>,
+    /// The joystick box is on.
+    pub joystick: bool,
+}
+
+impl SubtaskDouble {
+    fn step(&mut self, tick: Tick, command: &SubtaskCommand) {
+        let mishap = self.mishap.filter(|(verb, _)| *verb == command.command).map(|(_, mishap)| mishap);
+        self.outputs.header = Header { stamp: tick, ..Header::default() };
+        if mishap == Some(Mishap::Silence) {
+            return;
+        }
+        let status = &mut self.outputs.status;
+        match self.receiver.observe(command.number) {
+            Arrival::New => {
+                self.received.push(*command);
+                self.left = WORK;
+                (status.report, status.reason) = (Report::Executing, Reason::None);
+            }
+            Arrival::Same if self.left > 0 => {
+                self.left -= 1;
+                if self.left == 0 {
+                    (status.report, status.reason) = match mishap {
+                        Some(Mishap::Error(reason)) => (Report::Error, reason),
+                        _ => (Report::Done, Reason::None),
+                    };
+                    if mishap.is_none() {
+                        self.effect(command);
+                    }
+                }
+            }
+            _ => {}
+        }
+        let status = &mut self.outputs.status;
+        status.echo = self.receiver.echo;
+        if self.joystick {
+            self.left = 0;
+            (status.report, status.reason) = (Report::JoystickOn, Reason::JoystickOn);
+        } else if status.report == Report::JoystickOn {
+            status.report = Report::Error;
+        }
+    }
+
+    fn effect(&mut self, command: &SubtaskCommand) {
+        let status = &mut self.outputs.status;
+        match command.command {
+            SubtaskVerb::GetEndeff if command.end_effector_id != 0 => {
+                status.end_effector_id = command.end_effector_id;
+            }
+            SubtaskVerb::GetObject => self.hold(command.object.as_str()),
+            SubtaskVerb::AcquireTool => {
+                self.hold(command.object.as_str());
+                self.stand("TOOL-TRNS");
+            }
+            SubtaskVerb::InsertTool => self.stand("TOOL-TRNS"),
+            SubtaskVerb::Release | SubtaskVerb::ReleaseTool => self.hold(""),
+            SubtaskVerb::PlaceObj => {
+                self.hold("");
+                self.stand(command.location.as_str());
+            }
+            SubtaskVerb::GotoDest
+            | SubtaskVerb::GotoEndpt
+            | SubtaskVerb::MoveObjToDest
+            | SubtaskVerb::Position => self.stand(command.location.as_str()),
+            _ => {}
+        }
+    }
+
+    /// The gripper holds an object; an empty name for none.
+    pub fn hold(&mut self, object: &str) {
+        self.outputs.status.held_object = Name16::new(object).unwrap();
+        self.outputs.status.object_held = !object.is_empty();
+    }
+
+    /// The robot stands at a location; an empty name for none that is known.
+    pub fn stand(&mut self, location: &str) {
+        self.outputs.status.at = Name10::new(location).unwrap();
+    }
+}
+
+/// How the Data System of a test answers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Answer {
+    /// It is not there.
+    #[default]
+    Absent,
+    /// It executes a command for so many ticks.
+    After(u64),
+    /// It refuses.
+    Refuse,
+}
+
+/// The Data System that a test sees.
+#[derive(Default)]
+pub struct DataSystem {
+    receiver: Receiver,
+    since: u64,
+    pub status: DataBaseStatus,
+    pub received: Vec<DataBaseCommand>,
+    pub answer: Answer,
+    /// A command to which it gives another answer.
+    pub except: Option<(DataBaseVerb, Answer)>,
+}
+
+impl DataSystem {
+    fn step(&mut self, tick: Tick, command: &DataBaseCommand) {
+        if self.receiver.observe(command.number) == Arrival::New {
+            self.received.push(*command);
+            self.since = tick.0;
+        }
+        let except = self.except.filter(|(verb, _)| *verb == command.command).map(|(_, answer)| answer);
+        let report = match except.unwrap_or(self.answer) {
+            Answer::Absent => return,
+            Answer::After(ticks) if tick.0 - self.since < ticks => DataBaseReport::Executing,
+            Answer::After(_) => DataBaseReport::Done,
+            Answer::Refuse => DataBaseReport::Refused,
+        };
+        if self.receiver.echo != 0 {
+            self.status = DataBaseStatus { echo: self.receiver.echo, report };
+        }
+    }
+}
+
+/// Process, inputs, doubles, and what was seen.
+pub struct Bench<'d> {
+    pub process: Task,
+    pub memory: CommonMemory,
+    pub external: ExternalInputs,
+    pub data: TaskData<'d>,
+    pub subtask: SubtaskDouble,
+    pub data_system: DataSystem,
+    pub tick: Tick,
+    /// Tables and rows that fired.
+    pub rows: BTreeSet<(u8, u8)>,
+}
+
+impl Default for Bench<'static> {
+    fn default() -> Self {
+        Self::with(data())
+    }
+}
+
+impl<'d> Bench<'d> {
+    /// A bench with the parts gripper attached, after two ticks in which nothing was commanded.
+    pub fn with(data: TaskData<'d>) -> Self {
+        let mut bench = Self {
+            process: Task::default(),
+            memory: CommonMemory::default(),
+            external: ExternalInputs::default(),
+            data,
+            subtask: SubtaskDouble::default(),
+            data_system: DataSystem::default(),
+            tick: Tick::BEFORE_START,
+            rows: BTreeSet::new(),
+        };
+        bench.subtask.outputs.status.end_effector_id = 1;
+        bench.step();
+        bench.step();
+        bench
+    }
+
+    /// A bench whose Data System is connected and answers after two ticks.
+    pub fn connected() -> Self
+    where
+        Self: Default,
+    {
+        let mut bench = Self::default();
+        bench.data_system.answer = Answer::After(2);
+        assert_eq!(bench.run("STARTUP -- 0 -- 0 0 -- 0 -- 0"), FINISHED);
+        bench.data_system.received.clear();
+        bench
+    }
+
+    /// Write a new command: the words after `==` of a job line (Figure VIII.4).
+    pub fn command(&mut self, line: &str) {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let name = |at: usize| match words[at] {
+            "--" => Name16::EMPTY,
+            word => Name16::new(word).unwrap(),
+        };
+        let number = |at: usize| words[at].parse().unwrap();
+        self.external.hws = HwsCommand {
+            number: self.external.hws.number + 1,
+            command: name(0),
+            object: name(1),
+            serial: Name16::new("S-17").unwrap(),
+            source_grip: number(2),
+            source: name(3),
+            source_sector: number(4),
+            destination_grip: number(5),
+            destination: name(6),
+            destination_sector: number(7),
+            end_at: name(8),
+            end_at_sector: number(9),
+        };
+    }
+
+    /// One tick of all.
+    pub fn step(&mut self) -> HwsStatus {
+        self.tick = self.tick.next();
+        let mut outputs = self.memory.task;
+        let inputs =
+            Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &self.data };
+        self.process.step(&inputs, &mut outputs);
+        self.rows.insert((outputs.header.table, outputs.header.row));
+        self.subtask.step(self.tick, &self.memory.task.subtask);
+        self.data_system.step(self.tick, &outputs.data_base);
+        self.memory.task = outputs;
+        self.memory.subtask = self.subtask.outputs;
+        self.external.data_base = self.data_system.status;
+        outputs.status
+    }
+
+    /// Let ticks pass.
+    pub fn wait(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            self.step();
+        }
+    }
+
+    /// Ticks until the command has ended, and how.
+    pub fn finish(&mut self) -> (HwsReport, Reason) {
+        for _ in 0..3000 {
+            let status = self.step();
+            assert_eq!(status.echo, self.external.hws.number);
+            if status.report != HwsReport::Executing {
+                return (status.report, status.reason);
+            }
+        }
+        panic!("no end at tick {}: {:?}", self.tick, self.process);
+    }
+
+    /// Command and finish.
+    pub fn run(&mut self, line: &str) -> (HwsReport, Reason) {
+        self.subtask.received.clear();
+        self.data_system.received.clear();
+        self.command(line);
+        self.finish()
+    }
+
+    /// The words that Subtask was sent since the last command began.
+    pub fn sent(&self) -> Vec<&'static str> {
+        self.subtask.received.iter().map(|command| command.command.text()).collect()
+    }
+
+    /// The words that the Data System was sent.
+    pub fn asked(&self) -> Vec<&'static str> {
+        self.data_system.received.iter().map(|command| command.command.text()).collect()
+    }
+
+    /// The gripper with an id is on, it holds an object, and the robot stands at a location.
+    pub fn set(&mut self, gripper: u8, object: &str, at: &str) {
+        self.subtask.outputs.status.end_effector_id = gripper;
+        self.subtask.hold(object);
+        self.subtask.stand(at);
+        self.step();
+    }
+}
+
+/// How a command ends that succeeds.
+pub const FINISHED: (HwsReport, Reason) = (HwsReport::Finished, Reason::None);

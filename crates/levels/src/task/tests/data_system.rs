@@ -1,0 +1,211 @@
+//! Scenarios of Task and the Data System (IV.4.2, IX.2).
+
+use rcs_core::{
+    interface::{Reason, data_base::DataBaseVerb, hws::HwsReport},
+    name::Name16,
+};
+
+use super::{
+    bench::{Answer, Bench, FINISHED},
+    error,
+};
+use crate::task::ledger::{ANSWER_LIMIT, MAX_TRIES};
+
+const STARTUP: &str = "STARTUP -- 0 -- 0 0 -- 0 -- 0";
+const SHUTDOWN: &str = "SHUTDOWN -- 0 -- 0 0 -- 0 -- 0";
+const TO_TRAY: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0";
+const TO_TRAY_AND_STAY: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 -- 0";
+const FROM_TRAY: &str = "MOVE PART +1 UNIT_1 2 +1 PFIXTURE 0 -- 0";
+
+/// What the last update says: item, serial number, position, sector.
+fn update(bench: &Bench<'_>) -> (String, String, String, i32) {
+    let told = bench.data_system.received.iter().rfind(|c| c.command == DataBaseVerb::Update).unwrap();
+    (told.item.to_string(), told.serial.to_string(), told.position.to_string(), told.sector)
+}
+
+#[test]
+fn startup_sends_abort_initiate_and_startup() {
+    let mut bench = Bench::default();
+    bench.data_system.answer = Answer::After(5);
+    assert_eq!(bench.run(STARTUP), FINISHED);
+    assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP"]);
+    assert!(bench.sent().is_empty(), "the robot has nothing to do with it");
+    assert_eq!(bench.run(SHUTDOWN), FINISHED);
+    assert_eq!(bench.asked(), ["ABORT"]);
+}
+
+#[test]
+fn a_data_system_that_is_not_connected_is_not_waited_for() {
+    let mut bench = Bench::default();
+    for line in [TO_TRAY, FROM_TRAY] {
+        assert_eq!(bench.run(line), FINISHED);
+    }
+    assert!(bench.asked().is_empty());
+    let mut bench = Bench::connected();
+    assert_eq!(bench.run(SHUTDOWN), FINISHED);
+    bench.data_system.answer = Answer::Absent;
+    assert_eq!(bench.run(TO_TRAY), FINISHED);
+    assert!(bench.asked().is_empty());
+}
+
+#[test]
+fn moves_from_and_to_the_mbd_are_told_and_no_others() {
+    let mut bench = Bench::connected();
+    assert_eq!(bench.run(TO_TRAY), FINISHED);
+    let words = |item: &str, position: &str, sector| {
+        (item.to_owned(), "S-17".to_owned(), position.to_owned(), sector)
+    };
+    assert_eq!(update(&bench), words("PART", "UNIT_1", 2));
+    assert_eq!(bench.run(TO_TRAY_AND_STAY), FINISHED);
+    assert_eq!((bench.asked(), update(&bench)), (vec!["UPDATE"], words("PART", "UNIT_1", 2)));
+    assert_eq!(bench.run(FROM_TRAY), FINISHED);
+    assert_eq!((bench.asked(), update(&bench)), (vec!["UPDATE"], words("PART", "H_ROBOT", 0)));
+    bench.subtask.hold("");
+    assert_eq!(bench.run("TRANSFER PART +1 UNIT_1 1 +1 PFIXTURE 0 SAFE 0"), FINISHED);
+    assert_eq!((bench.asked(), update(&bench)), (vec!["UPDATE"], words("PART", "PFIXTURE", 0)));
+    for line in ["TRANSFER PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", "MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0"] {
+        assert_eq!(bench.run(line), FINISHED);
+        assert!(bench.asked().is_empty(), "{line}");
+    }
+    assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+    assert!(bench.asked().is_empty());
+}
+
+#[test]
+fn the_data_base_is_told_before_the_robot_leaves() {
+    let mut bench = Bench::connected();
+    bench.command(TO_TRAY);
+    while bench.asked().is_empty() {
+        bench.step();
+    }
+    assert_eq!(bench.sent().last(), Some(&"PLACE-OBJ"), "GOTO-ENDPT has not arrived yet");
+    assert_eq!(bench.finish(), FINISHED);
+    assert_eq!(bench.asked(), ["UPDATE"]);
+}
+
+#[test]
+fn a_slow_data_system_is_waited_for() {
+    let mut bench = Bench::connected();
+    bench.data_system.answer = Answer::After(200);
+    for line in [TO_TRAY, FROM_TRAY] {
+        let before = bench.tick;
+        assert_eq!(bench.run(line), FINISHED);
+        assert!(bench.tick.since(before) > 200);
+        assert_eq!(bench.asked(), ["UPDATE"]);
+    }
+}
+
+#[test]
+fn a_silent_data_system_is_asked_again_and_then_an_error() {
+    for line in [TO_TRAY, TO_TRAY_AND_STAY, FROM_TRAY] {
+        let mut bench = Bench::connected();
+        bench.data_system.answer = Answer::Absent;
+        let before = bench.tick;
+        assert_eq!(bench.run(line), error(Reason::DataBaseSilent), "{line}");
+        assert!(bench.tick.since(before) > u64::from(MAX_TRIES) * ANSWER_LIMIT);
+        assert_eq!(bench.asked(), ["UPDATE"; MAX_TRIES as usize]);
+        let numbers: Vec<_> = bench.data_system.received.iter().map(|c| c.number).collect();
+        assert!(numbers.windows(2).all(|pair| pair[1] == pair[0] + 1));
+    }
+}
+
+#[test]
+fn a_late_answer_to_an_update_that_was_repeated_is_not_believed() {
+    let mut bench = Bench::connected();
+    bench.data_system.answer = Answer::Absent;
+    bench.command(TO_TRAY);
+    while bench.data_system.received.len() < 2 {
+        assert_eq!(bench.step().report, HwsReport::Executing);
+    }
+    bench.external.data_base.report = rcs_core::interface::data_base::DataBaseReport::Done;
+    bench.external.data_base.echo = bench.data_system.received[0].number;
+    bench.data_system.status = bench.external.data_base;
+    (0..20).for_each(|_| assert_eq!(bench.step().report, HwsReport::Executing));
+    bench.data_system.answer = Answer::After(0);
+    assert_eq!(bench.finish(), FINISHED);
+}
+
+#[test]
+fn an_update_that_is_not_taken_is_kept_and_told_before_the_next_object_moves() {
+    for trouble in [Answer::Absent, Answer::Refuse] {
+        let reason = if trouble == Answer::Refuse { Reason::DataBase } else { Reason::DataBaseSilent };
+        let mut bench = Bench::connected();
+        bench.data_system.answer = trouble;
+        assert_eq!(bench.run(TO_TRAY), error(reason));
+        let kept = update(&bench);
+        // The robot alone can be moved.
+        assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+        // An object cannot, while the update is not taken; nothing moves.
+        for line in [FROM_TRAY, TO_TRAY] {
+            assert_eq!(bench.run(line), error(reason));
+            assert_eq!((bench.sent(), update(&bench)), (vec![], kept.clone()));
+        }
+        bench.data_system.answer = Answer::After(1);
+        assert_eq!(bench.run(FROM_TRAY), FINISHED);
+        assert_eq!(bench.asked(), ["UPDATE", "UPDATE"]);
+        let first = bench.data_system.received[0];
+        assert_eq!((first.position.as_str(), first.sector), ("UNIT_1", 2));
+        assert_eq!(update(&bench).2, "H_ROBOT");
+    }
+}
+
+#[test]
+fn an_update_that_is_not_taken_is_told_at_the_end_of_the_next_startup() {
+    let mut bench = Bench::connected();
+    bench.data_system.answer = Answer::Absent;
+    assert_eq!(bench.run(TO_TRAY), error(Reason::DataBaseSilent));
+    bench.data_system.answer = Answer::After(1);
+    assert_eq!(bench.run(STARTUP), FINISHED);
+    assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP", "UPDATE"]);
+    assert_eq!(bench.run(STARTUP), FINISHED);
+    assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP"], "it is owed no longer");
+    // SHUTDOWN ends what was owed.
+    bench.data_system.answer = Answer::Absent;
+    assert_eq!(bench.run(FROM_TRAY), error(Reason::DataBaseSilent));
+    assert_eq!(bench.run(SHUTDOWN), error(Reason::DataBaseSilent));
+    bench.data_system.answer = Answer::After(1);
+    assert_eq!(bench.run(STARTUP), FINISHED);
+    assert_eq!(bench.asked(), ["ABORT", "INITIATE", "STARTUP"]);
+}
+
+#[test]
+fn an_answer_that_comes_after_the_command_has_failed_settles_the_update() {
+    let mut bench = Bench::connected();
+    bench.data_system.answer = Answer::Absent;
+    assert_eq!(bench.run(TO_TRAY), error(Reason::DataBaseSilent));
+    bench.data_system.answer = Answer::After(0);
+    bench.wait(3);
+    assert_eq!(bench.run(FROM_TRAY), FINISHED);
+    assert_eq!(bench.asked(), ["UPDATE"], "only that of this command");
+}
+
+#[test]
+fn a_data_system_that_does_not_let_itself_be_connected_is_an_error() {
+    for verb in [DataBaseVerb::Abort, DataBaseVerb::Initiate, DataBaseVerb::Startup] {
+        for (answer, reason) in [(Answer::Refuse, Reason::DataBase), (Answer::Absent, Reason::DataBaseSilent)]
+        {
+            let mut bench = Bench::default();
+            bench.data_system.answer = Answer::After(1);
+            bench.data_system.except = Some((verb, answer));
+            assert_eq!(bench.run(STARTUP), error(reason), "{verb}");
+            // It is not connected: nothing is told.
+            assert_eq!(bench.run(TO_TRAY), FINISHED);
+            assert!(bench.asked().is_empty());
+        }
+    }
+    for (answer, reason) in [(Answer::Refuse, Reason::DataBase), (Answer::Absent, Reason::DataBaseSilent)] {
+        let mut bench = Bench::connected();
+        bench.data_system.answer = answer;
+        assert_eq!(bench.run(SHUTDOWN), error(reason));
+        assert_eq!(bench.run(TO_TRAY), FINISHED, "it counts as gone all the same");
+    }
+}
+
+#[test]
+fn the_serial_number_of_the_command_goes_to_the_data_system() {
+    let mut bench = Bench::connected();
+    bench.command(FROM_TRAY);
+    bench.external.hws.serial = Name16::new("LB-0042").unwrap();
+    assert_eq!(bench.finish(), FINISHED);
+    assert_eq!(update(&bench).1, "LB-0042");
+}

@@ -1,0 +1,329 @@
+//! Scenarios of Task with doubles of Subtask and of the Data System.
+
+mod bench;
+mod coverage;
+mod data_system;
+
+use rcs_core::{
+    interface::{Reason, hws::HwsReport, subtask::SubtaskVerb},
+    name::Name16,
+};
+
+use self::bench::{Bench, FINISHED, Mishap};
+use super::{
+    TABLES, Task,
+    plan::{Plan, TaskVerb},
+};
+use crate::subtask::tests::data::without;
+
+fn error(reason: Reason) -> (HwsReport, Reason) {
+    (HwsReport::Error, reason)
+}
+
+#[test]
+fn no_row_is_dead() {
+    for table in TABLES {
+        table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
+    }
+}
+
+#[test]
+fn a_command_is_known_by_its_first_ten_characters() {
+    for verb in TaskVerb::ALL.iter().filter(|verb| **verb != TaskVerb::None) {
+        assert_eq!(TaskVerb::of(&Name16::new(verb.text()).unwrap()), Some(*verb));
+        let ten: String = verb.text().chars().take(10).collect();
+        assert_eq!(TaskVerb::of(&Name16::new(&ten).unwrap()), Some(*verb), "{ten}");
+    }
+    for word in ["", "DANCE", "TRANSFE", "TRANSFERS", "RELEASE", "INSERT-TO"] {
+        assert_eq!(TaskVerb::of(&Name16::new(word).unwrap()), None, "{word}");
+    }
+}
+
+#[test]
+fn transfer_fetches_places_and_leaves() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0"), FINISHED);
+    assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ", "GOTO-ENDPT"]);
+    let [_, get, place, leave] = bench.subtask.received[..] else { panic!() };
+    assert_eq!((get.location.as_str(), place.location.as_str()), ("PFIXTURE", "UNIT_1"));
+    assert_eq!(leave.location.as_str(), "SAFE");
+    assert_eq!((place.location_array, place.source_grip, place.destination_grip), (1, 1, 1));
+    assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 -- 0"), FINISHED);
+    assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ"]);
+}
+
+#[test]
+fn an_object_is_regripped_when_the_grips_differ() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 -1 UNIT_1 2 SAFE 0"), FINISHED);
+    assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "FIX-GRIP", "PLACE-OBJ", "GOTO-ENDPT"]);
+    let [_, get, fix, place, _] = bench.subtask.received[..] else { panic!() };
+    assert_eq!((fix.source_grip, fix.destination_grip), (1, -1));
+    let grip = |grip| bench.data.object(&Name16::new("PART").unwrap(), grip).unwrap().0.number();
+    assert_eq!((get.object_parameters, place.object_parameters), (grip(1), grip(-1)));
+    assert_eq!(bench.run("MOVE PART +1 PFIXTURE 0 -1 SAFE 0 -- 0"), FINISHED);
+    assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "FIX-GRIP", "MOVE-OBJ>D"]);
+    assert_eq!(bench.run("TRANSFER BAR +1 PFIXTURE 0 +2 UNIT_1 2 SAFE 0"), error(Reason::NoPedestalData));
+    assert!(bench.sent().is_empty(), "nothing moves");
+}
+
+#[test]
+fn move_moves_an_object_or_the_robot() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run("MOVE PART +1 UNIT_1 1 +1 PFIXTURE 0 -- 0"), FINISHED);
+    assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "MOVE-OBJ>D"]);
+    assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+    assert_eq!(bench.sent(), ["GOTO-DEST"]);
+    assert!(bench.subtask.outputs.status.object_held, "what is held is kept");
+}
+
+#[test]
+fn position_releases_what_is_held_first() {
+    let mut bench = Bench::default();
+    for held in ["BAR", "PART"] {
+        bench.set(1, held, "PFIXTURE");
+        assert_eq!(bench.run("POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
+        assert_eq!(bench.sent(), ["RELEASE", ">POSITION"]);
+    }
+    assert_eq!(bench.run("POSITION -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+    assert_eq!(bench.sent(), [">POSITION"]);
+    assert_eq!(bench.subtask.outputs.status.at.as_str(), "SAFE");
+}
+
+#[test]
+fn acquire_gets_the_gripper_and_the_object() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run("ACQUIRE CYLINDER +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
+    assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT"]);
+    assert_eq!(bench.subtask.received[0].end_effector_id, 2);
+}
+
+#[test]
+fn refixture_skips_what_is_done_already() {
+    let line = "REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0";
+    let mut bench = Bench::default();
+    assert_eq!(bench.run(line), FINISHED);
+    assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "FIX-GRIP", "MOVE-OBJ>D"]);
+    let mut bench = Bench::default();
+    assert_eq!(bench.run("ACQUIRE PART +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
+    assert_eq!(bench.run(line), FINISHED);
+    assert_eq!(bench.sent(), ["GET-OBJECT", "FIX-GRIP", "MOVE-OBJ>D"]);
+    assert_eq!(bench.run("REFIXTURE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0"), FINISHED);
+    assert_eq!(bench.sent(), ["GET-OBJECT", "MOVE-OBJ>D"]);
+    assert_eq!(bench.run("REFIXTURE BAR +1 PFIXTURE 0 +2 SAFE 0 -- 0"), error(Reason::NoPedestalData));
+}
+
+const INSERT: &str = "INSERT-TOOL TOOL-1 +1 TOOL-SAFE 0 0 -- 0 -- 0";
+const RELEASE: &str = "RELEASE-TOOL TOOL-1 +1 -- 0 0 -- 0 TOOL-SAFE 0";
+const ACQUIRE: &str = "ACQUIRE-TOOL TOOL-1 0 -- 0 +1 TOOL-SAFE 0 -- 0";
+const REMOVE: &str = "REMOVE-TOOL TOOL-1 +1 -- 0 0 -- 0 TOOL-SAFE 0";
+
+#[test]
+fn a_tool_is_inserted_and_released() {
+    let mut bench = Bench::default();
+    bench.set(3, "TOOL-1", "TOOL-SAFE");
+    assert_eq!(bench.run(INSERT), FINISHED);
+    assert_eq!(bench.sent(), ["INSERT-TOOL"]);
+    let command = bench.subtask.received[0];
+    let parameters = bench.data.object(&Name16::new("TOOL-1").unwrap(), 1).unwrap().0.number();
+    assert_eq!((command.end_effector_id, command.object_parameters, command.source_grip), (3, parameters, 1));
+    assert_eq!((bench.run(INSERT), bench.sent()), (FINISHED, vec![]), "it is there already");
+    assert_eq!(bench.run(RELEASE), FINISHED);
+    assert_eq!(bench.sent(), ["RELEASE-TOOL", "GOTO-ENDPT"]);
+    assert_eq!((bench.run(RELEASE), bench.sent()), (FINISHED, vec![]), "it is released already");
+}
+
+#[test]
+fn a_tool_is_acquired_and_removed() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run(ACQUIRE), FINISHED);
+    assert_eq!(bench.sent(), ["GET-ENDEFF", "GOTO-DEST", "ACQUIRE-TOOL"]);
+    let [gripper, near, acquire] = bench.subtask.received[..] else { panic!() };
+    assert_eq!((gripper.end_effector_id, near.location.as_str()), (3, "TOOL-SAFE"));
+    assert_eq!((acquire.object.as_str(), acquire.source_grip), ("TOOL-1", 1));
+    assert_eq!((bench.run(ACQUIRE), bench.sent()), (FINISHED, vec![]), "it is held already");
+    assert_eq!(bench.run(REMOVE), FINISHED);
+    assert_eq!(bench.sent(), ["REMOVE-TOOL", "GOTO-ENDPT"]);
+    assert_eq!((bench.run(REMOVE), bench.sent()), (FINISHED, vec![]), "it is removed already");
+}
+
+#[test]
+fn a_tool_command_without_an_end_stays_where_it_is_and_without_a_name_means_the_tool_held() {
+    let mut bench = Bench::default();
+    bench.set(3, "TOOL-1", "TOOL-TRNS");
+    for (line, word) in [
+        ("REMOVE-TOOL -- 0 -- 0 0 -- 0 -- 0", "REMOVE-TOOL"),
+        ("RELEASE-TOOL -- 0 -- 0 0 -- 0 -- 0", "RELEASE-TOOL"),
+    ] {
+        assert_eq!(bench.run(line), FINISHED);
+        assert_eq!(bench.sent(), [word]);
+        assert_eq!(bench.subtask.received[0].object.as_str(), "TOOL-1");
+        assert_eq!(bench.subtask.received[0].end_effector_id, 3);
+    }
+    // At the location that the command names as its source.
+    bench.set(3, "TOOL-1", "HOME");
+    assert_eq!(bench.run("INSERT-TOOL TOOL-1 +1 HOME 0 0 -- 0 -- 0"), FINISHED);
+}
+
+#[test]
+fn a_tool_command_that_is_not_prepared_is_refused() {
+    for (line, gripper, object, at, reason) in [
+        (INSERT, 3, "TOOL-1", "HOME", Reason::NotPrepared),
+        (INSERT, 3, "TOOL-1", "", Reason::NotPrepared),
+        (INSERT, 3, "", "TOOL-SAFE", Reason::NotPrepared),
+        (INSERT, 3, "PART", "TOOL-SAFE", Reason::NotPrepared),
+        (INSERT, 1, "TOOL-1", "TOOL-SAFE", Reason::NotPrepared),
+        (INSERT, 0, "", "TOOL-SAFE", Reason::NotPrepared),
+        (RELEASE, 3, "TOOL-1", "TOOL-SAFE", Reason::NotPrepared),
+        (RELEASE, 3, "TOOL-1", "HOME", Reason::NotPrepared),
+        (RELEASE, 3, "", "TOOL-TRNS", Reason::NotPrepared),
+        (RELEASE, 1, "", "TOOL-SAFE", Reason::NotPrepared),
+        (REMOVE, 3, "TOOL-1", "HOME", Reason::NotPrepared),
+        (REMOVE, 3, "", "TOOL-TRNS", Reason::NotPrepared),
+        (REMOVE, 1, "", "TOOL-TRNS", Reason::NotPrepared),
+        (ACQUIRE, 3, "TOOL-1", "TOOL-SAFE", Reason::AlreadyHolding),
+        (ACQUIRE, 1, "PART", "HOME", Reason::AlreadyHolding),
+    ] {
+        let mut bench = Bench::default();
+        bench.set(gripper, object, at);
+        assert_eq!(bench.run(line), error(reason), "{line}, gripper {gripper}, {object} at {at}");
+        assert!(bench.sent().is_empty());
+    }
+}
+
+#[test]
+fn a_command_with_a_bad_name_is_refused_before_anything_moves() {
+    for (line, reason) in [
+        ("DANCE -- 0 -- 0 0 -- 0 -- 0", Reason::UnknownCommand),
+        ("MOVE NOBODY +1 UNIT_1 1 +1 SAFE 0 -- 0", Reason::UnknownObject),
+        ("MOVE -- 0 -- 0 0 NOWHERE 0 -- 0", Reason::UnknownLocation),
+        ("MOVE -- 0 -- 0 0 -- 0 -- 0", Reason::NoDestination),
+        ("MOVE PART +1 -- 0 +1 SAFE 0 -- 0", Reason::NoDestination),
+        ("MOVE PART +1 UNIT_1 9 +1 SAFE 0 -- 0", Reason::SectorOutOfRange),
+        ("MOVE PART +7 UNIT_1 1 +7 SAFE 0 -- 0", Reason::UnknownGrip),
+        ("TRANSFER -- 0 UNIT_1 0 0 SAFE 0 -- 0", Reason::NoObjectNamed),
+        ("POSITION -- 0 -- 0 0 -- 0 -- 0", Reason::NoDestination),
+        ("POSITION PART 0 -- 0 +7 SAFE 0 -- 0", Reason::UnknownGrip),
+        ("REFIXTURE PART +1 PFIXTURE 0 -1 -- 0 -- 0", Reason::NoDestination),
+        ("ACQUIRE -- 0 PFIXTURE 0 0 -- 0 -- 0", Reason::NoObjectNamed),
+        ("ACQUIRE-TOOL -- 0 -- 0 0 TOOL-SAFE 0 -- 0", Reason::NoObjectNamed),
+        ("ACQUIRE-TOOL TOOL-1 0 -- 0 +1 -- 0 -- 0", Reason::NoDestination),
+        ("ACQUIRE-TOOL TOOL-1 0 -- 0 +4 TOOL-SAFE 0 -- 0", Reason::UnknownGrip),
+        ("ACQUIRE-TOOL PART 0 -- 0 +1 TOOL-SAFE 0 -- 0", Reason::WrongGripper),
+        ("INSERT-TOOL PART +1 TOOL-SAFE 0 0 -- 0 -- 0", Reason::WrongGripper),
+    ] {
+        let mut bench = Bench::default();
+        assert_eq!(bench.run(line), error(reason), "{line}");
+        assert!(bench.sent().is_empty());
+    }
+    let store = without(&["-o-loc- PART"]);
+    let mut bench = Bench::with(store.view());
+    assert_eq!(bench.run("MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0"), error(Reason::NoArrayForObject));
+}
+
+#[test]
+fn an_error_below_is_passed_up_by_every_command() {
+    for (line, verb, gripper, object, at) in [
+        ("PAUSE -- 0 -- 0 0 -- 0 -- 0", SubtaskVerb::Pause, 1, "", ""),
+        ("TRANSFER PART +1 PFIXTURE 0 -1 UNIT_1 2 SAFE 0", SubtaskVerb::FixGrip, 1, "", ""),
+        ("MOVE PART +1 PFIXTURE 0 -1 SAFE 0 -- 0", SubtaskVerb::MoveObjToDest, 1, "", ""),
+        ("POSITION -- 0 -- 0 0 SAFE 0 -- 0", SubtaskVerb::Position, 1, "", ""),
+        ("ACQUIRE PART +1 PFIXTURE 0 0 -- 0 -- 0", SubtaskVerb::GetObject, 1, "", ""),
+        ("REFIXTURE PART +1 PFIXTURE 0 -1 SAFE 0 -- 0", SubtaskVerb::GetEndeff, 1, "", ""),
+        (INSERT, SubtaskVerb::InsertTool, 3, "TOOL-1", "TOOL-SAFE"),
+        (RELEASE, SubtaskVerb::GotoEndpt, 3, "TOOL-1", "TOOL-TRNS"),
+        (ACQUIRE, SubtaskVerb::AcquireTool, 3, "", "HOME"),
+        (REMOVE, SubtaskVerb::RemoveTool, 3, "TOOL-1", "TOOL-TRNS"),
+    ] {
+        for (mishap, reason) in
+            [(Mishap::Error(Reason::NotAtGoal), Reason::NotAtGoal), (Mishap::Silence, Reason::NeighbourLost)]
+        {
+            let mut bench = Bench::default();
+            bench.set(gripper, object, at);
+            bench.subtask.mishap = Some((verb, mishap));
+            assert_eq!(bench.run(line), error(reason), "{line}");
+            let sent = bench.subtask.received.len();
+            (0..20).for_each(|_| assert_eq!(bench.step().report, HwsReport::Error));
+            assert_eq!(bench.subtask.received.len(), sent, "nothing is sent after an error");
+        }
+    }
+}
+
+#[test]
+fn the_operator_takes_the_robot_from_a_command_and_gives_it_back() {
+    let mut bench = Bench::default();
+    bench.command("MOVE -- 0 -- 0 0 SAFE 0 -- 0");
+    (0..3).for_each(|_| assert_eq!(bench.step().report, HwsReport::Executing));
+    bench.subtask.joystick = true;
+    bench.step();
+    bench.step();
+    for _ in 0..30 {
+        let status = bench.step();
+        assert_eq!((status.report, status.reason), (HwsReport::JoystickOn, Reason::JoystickOn));
+    }
+    assert_eq!(bench.sent(), ["GOTO-DEST", "S-PAUSE"], "one pause is enough");
+    // Nothing is executed while the operator has the robot.
+    assert_eq!(bench.run("MOVE -- 0 -- 0 0 HOME 0 -- 0"), (HwsReport::JoystickOn, Reason::JoystickOn));
+    assert!(bench.sent().is_empty());
+    bench.subtask.joystick = false;
+    bench.wait(5);
+    for _ in 0..30 {
+        let status = bench.step();
+        assert_eq!((status.report, status.reason), (HwsReport::Error, Reason::JoystickOn));
+    }
+    assert!(bench.sent().is_empty(), "the interrupted command is not resumed");
+    assert_eq!(bench.run("MOVE -- 0 -- 0 0 HOME 0 -- 0"), FINISHED);
+}
+
+#[test]
+fn the_operator_can_take_the_robot_between_two_commands() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+    bench.subtask.joystick = true;
+    bench.wait(30);
+    assert_eq!(bench.sent(), ["GOTO-DEST", "S-PAUSE"]);
+    assert_eq!(bench.memory.task.status.report, HwsReport::JoystickOn);
+    bench.subtask.joystick = false;
+    bench.wait(5);
+    assert_eq!((bench.step().report, bench.step().reason), (HwsReport::Idle, Reason::None));
+    // Before any command.
+    let mut bench = Bench::default();
+    bench.subtask.joystick = true;
+    bench.wait(30);
+    assert_eq!((bench.sent(), bench.memory.task.status.report), (vec!["S-PAUSE"], HwsReport::JoystickOn));
+}
+
+#[test]
+fn a_pause_is_accepted_while_the_operator_has_the_robot() {
+    let mut bench = Bench::default();
+    bench.subtask.joystick = true;
+    bench.wait(10);
+    bench.command("PAUSE -- 0 -- 0 0 -- 0 -- 0");
+    (0..30).for_each(|_| assert_eq!(bench.step().report, HwsReport::JoystickOn));
+    assert_eq!(bench.sent(), ["S-PAUSE", "S-PAUSE"]);
+    bench.subtask.joystick = false;
+    bench.wait(5);
+    assert_eq!(bench.step().reason, Reason::JoystickOn);
+    assert_eq!(bench.run("PAUSE -- 0 -- 0 0 -- 0 -- 0"), FINISHED);
+}
+
+#[test]
+fn a_restarted_task_executes_nothing_old_and_is_not_connected() {
+    let mut bench = Bench::connected();
+    bench.command("MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0");
+    bench.step();
+    bench.process = Task::default();
+    assert_eq!(bench.finish(), error(Reason::Restarted));
+    assert_eq!(bench.run("MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0"), FINISHED);
+    assert!(bench.asked().is_empty());
+}
+
+#[test]
+fn each_location_of_a_command_has_a_pose_of_its_own() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0"), FINISHED);
+    let plan = Plan::new(&bench.external.hws, &bench.data).unwrap();
+    for (command, pose) in bench.subtask.received[1..].iter().zip(plan.poses) {
+        assert_eq!(bench.memory.changing_pose(command.pose), Some(&pose), "{}", command.command);
+    }
+}
