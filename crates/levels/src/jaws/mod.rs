@@ -22,6 +22,8 @@ mod postprocess;
 mod preprocess;
 mod state;
 pub mod tables;
+#[cfg(test)]
+mod tests;
 
 pub use self::{
     preprocess::{POTENTIOMETER_OFFSET, POTENTIOMETER_SCALE},
