@@ -4,7 +4,8 @@
 //! between them. The emulator first sends PAUSE, as the startup sequence does (V.4.1), and then one step
 //! after the other: a command is over when Task answers its number with `finished`, an action when the
 //! workstation is no longer busy. An error, a lost Task, a fault of the workstation or a step that takes too
-//! long end the job with a [`JobFailure`].
+//! long end the job with a [`JobFailure`]. While the workstation does something, the operator may have the
+//! robot: a joystick box that is on ends only a command.
 //!
 //! ```text
 //!           PAUSE           command finished, or workstation idle
@@ -12,6 +13,10 @@
 //!                     |
 //!                     +---- error, lost, fault, time limit -------------------------> Failed
 //! ```
+//!
+//! Actions that are to happen while the robot executes a command stand in the job before that command. They
+//! are kept until it is sent, and begun when their time comes, whatever step is going on then. A job is not
+//! over before they are.
 
 use rcs_core::{
     handshake::{Commander, Lower},
@@ -118,6 +123,23 @@ pub struct Hwsc {
     records: Vec<Record>,
     progress: Progress,
     time_limit: u64,
+    later: Vec<Later>,
+}
+
+/// An action that waits for its time.
+#[derive(Debug)]
+struct Later {
+    /// Ticks from the command.
+    ticks: u64,
+    action: Action,
+    /// When the command was sent; `None` as long as it was not.
+    since: Option<Tick>,
+}
+
+impl Later {
+    fn is_due(&self, tick: Tick) -> bool {
+        self.since.is_some_and(|since| tick.since(since) >= self.ticks)
+    }
 }
 
 impl Hwsc {
@@ -134,6 +156,7 @@ impl Hwsc {
             records,
             progress: Progress::Running,
             time_limit,
+            later: Vec::new(),
         }
     }
 
@@ -174,6 +197,14 @@ impl Hwsc {
             return &self.progress;
         }
         self.commander.start(task.status.echo);
+        if let Err(refused) = self.begin_later(tick, workstation) {
+            self.fail(JobFailure::Workstation(refused));
+            return &self.progress;
+        }
+        if self.current > self.steps.len() {
+            self.end(workstation);
+            return &self.progress;
+        }
         let ended = match self.began {
             None => Some(Ok(())),
             Some(began) => self.end_of_step(tick, began, task, workstation),
@@ -209,21 +240,39 @@ impl Hwsc {
         }
         let lower =
             self.commander.read(tick.next(), &task.header, task.status.echo, lower(task.status.report));
-        let finished = match lower {
-            Lower::Lost => return Some(Err(JobFailure::Lost)),
-            Lower::Error => return Some(Err(JobFailure::Command(task.status.reason))),
-            Lower::Joystick => return Some(Err(JobFailure::Joystick)),
-            Lower::Pending | Lower::Executing => false,
-            Lower::Done => true,
+        let step = self.step_at(self.current).map(|line| line.step);
+        let finished = match (step, lower) {
+            (_, Lower::Lost) => return Some(Err(JobFailure::Lost)),
+            (Some(Step::Workstation(Action::Wait { ticks: wanted })), _) => {
+                return (ticks >= u64::from(wanted)).then_some(Ok(()));
+            }
+            (Some(Step::Workstation(_) | Step::After { .. }), _) => !workstation.busy(),
+            (_, Lower::Error) => return Some(Err(JobFailure::Command(task.status.reason))),
+            (_, Lower::Joystick) => return Some(Err(JobFailure::Joystick)),
+            (_, Lower::Pending | Lower::Executing) => false,
+            (_, Lower::Done) => true,
         };
-        let waits_for_workstation =
-            self.step_at(self.current).is_some_and(|line| matches!(line.step, Step::Workstation(_)));
-        if finished && !(waits_for_workstation && workstation.busy()) {
+        if finished {
             Some(Ok(()))
         } else if ticks >= self.time_limit {
             Some(Err(JobFailure::TimeLimit(self.time_limit)))
         } else {
             None
+        }
+    }
+
+    /// Begin the actions whose time has come.
+    fn begin_later(&mut self, tick: Tick, workstation: &mut impl Workstation) -> Result<(), String> {
+        for later in self.later.extract_if(.., |later| later.is_due(tick)) {
+            workstation.begin(&later.action)?;
+        }
+        Ok(())
+    }
+
+    /// After the last step: the last actions may still wait for their time.
+    fn end(&mut self, workstation: &impl Workstation) {
+        if self.later.is_empty() && !workstation.busy() {
+            self.progress = Progress::Over;
         }
     }
 
@@ -240,12 +289,21 @@ impl Hwsc {
                 ("PAUSE".to_owned(), Some(pause), None)
             }
             None => {
-                self.progress = Progress::Over;
+                self.end(workstation);
                 return;
             }
             Some(JobLine { step: Step::Command(command), text, .. }) => (text.clone(), Some(*command), None),
+            Some(JobLine { step: Step::Workstation(Action::Wait { .. }), text, .. }) => {
+                (text.clone(), None, None)
+            }
             Some(JobLine { step: Step::Workstation(action), text, .. }) => {
                 (text.clone(), None, workstation.begin(action).err())
+            }
+            Some(JobLine { step: Step::After { ticks, action }, text, .. }) => {
+                let later = Later { ticks: u64::from(*ticks), action: *action, since: None };
+                let text = text.clone();
+                self.later.push(later);
+                (text, None, None)
             }
         };
         self.records.push(Record {
@@ -255,6 +313,7 @@ impl Hwsc {
             ticks: 0,
         });
         if let Some(command) = command {
+            self.later.iter_mut().for_each(|later| later.since = later.since.or(Some(tick)));
             self.command = HwsCommand { number: self.commander.send(tick.next()), ..command };
         }
         if let Some(refused) = refused {
@@ -305,6 +364,7 @@ mod tests {
         received: Vec<String>,
         fails_at: Option<usize>,
         silent: bool,
+        joystick: bool,
     }
 
     impl Task {
@@ -328,6 +388,9 @@ mod tests {
                 0 => HwsReport::Finished,
                 _ => HwsReport::Executing,
             };
+            if self.joystick {
+                outputs.status.report = HwsReport::JoystickOn;
+            }
             if outputs.status.report == HwsReport::Error {
                 outputs.status.reason = Reason::GraspMissed;
             }
@@ -345,7 +408,7 @@ mod tests {
 
     impl Workstation for Vise {
         fn begin(&mut self, action: &Action) -> Result<(), String> {
-            let Action::Vise { opening, location } = action else { return Err("this is a vise".into()) };
+            let Action::Vise { opening, location, .. } = action else { return Err("this is a vise".into()) };
             if location.name.as_str() != "PFIXTURE" {
                 return Err(format!("there is no vise at {}", location.name));
             }
@@ -373,7 +436,12 @@ mod tests {
         let name = Name10::new(name).unwrap();
         let location = Location { name, place: Place::default(), sector: 0, frame: Frame::identity() };
         let text = format!("** vise {opening:?} {name}");
-        JobLine { step: Step::Workstation(Action::Vise { opening, location }), text, line: 1 }
+        JobLine { step: Step::Workstation(Action::Vise { opening, location, program: None }), text, line: 1 }
+    }
+
+    fn later(ticks: u32, opening: ViseOpening) -> JobLine {
+        let JobLine { step: Step::Workstation(action), text, .. } = vise(opening) else { unreachable!() };
+        JobLine { step: Step::After { ticks, action }, text, line: 1 }
     }
 
     fn vise(opening: ViseOpening) -> JobLine {
@@ -382,7 +450,11 @@ mod tests {
 
     /// Plays a job for at most 200 ticks; the last tick comes back.
     fn play(hwsc: &mut Hwsc, task: &mut Task, vise: &mut Vise) -> u64 {
-        for tick in 1..200 {
+        play_on(hwsc, task, vise, 1)
+    }
+
+    fn play_on(hwsc: &mut Hwsc, task: &mut Task, vise: &mut Vise, from: u64) -> u64 {
+        for tick in from..200 {
             let outputs = task.step(Tick(tick), hwsc.command());
             if *hwsc.step(Tick(tick), &outputs, vise) != Progress::Running {
                 return tick;
@@ -456,6 +528,54 @@ mod tests {
         play(&mut hwsc, &mut Task::default(), &mut Vise::default());
         assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::TimeLimit(5)));
         assert_eq!(hwsc.records().len(), 2, "PAUSE is finished within five ticks");
+    }
+
+    #[test]
+    fn a_wait_takes_its_ticks_and_no_more() {
+        let step = Step::Workstation(Action::Wait { ticks: 30 });
+        let wait = JobLine { step, text: "** wait 30".into(), line: 1 };
+        let mut hwsc = Hwsc::new(vec![wait, command("MOVE")], 10);
+        play(&mut hwsc, &mut Task::default(), &mut Vise::default());
+        assert_eq!(*hwsc.progress(), Progress::Over, "the time limit is not for waiting");
+        assert_eq!(hwsc.records()[1].ticks, 30);
+    }
+
+    #[test]
+    fn what_is_to_happen_later_happens_while_the_command_goes_on() {
+        let steps = vec![later(2, ViseOpening::Open), command("MOVE")];
+        let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
+        let mut tick = 0;
+        while jaws.told.is_empty() {
+            tick += 1;
+            let outputs = task.step(Tick(tick), hwsc.command());
+            assert_eq!(*hwsc.step(Tick(tick), &outputs, &mut jaws), Progress::Running);
+        }
+        assert_eq!(task.received, ["PAUSE", "MOVE"]);
+        assert_eq!(hwsc.records().last().map(|r| (r.outcome, r.ticks)), Some((Outcome::Executing, 2)));
+        play_on(&mut hwsc, &mut task, &mut jaws, tick + 1);
+        assert_eq!(*hwsc.progress(), Progress::Over);
+    }
+
+    #[test]
+    fn a_job_waits_for_what_is_to_happen_later() {
+        let steps = vec![later(90, ViseOpening::Open), command("MOVE")];
+        let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
+        let last = play(&mut hwsc, &mut task, &mut jaws);
+        assert_eq!((hwsc.progress(), jaws.told.as_slice()), (&Progress::Over, &[ViseOpening::Open][..]));
+        assert!(last > 90, "{last}");
+    }
+
+    #[test]
+    fn the_operator_may_have_the_robot_between_commands_but_not_in_one() {
+        let mut task = Task { joystick: true, ..Task::default() };
+        let mut hwsc = Hwsc::new(vec![vise(ViseOpening::Open)], 100);
+        hwsc.current = 1;
+        hwsc.began = Some(Tick(0));
+        play(&mut hwsc, &mut task, &mut Vise::default());
+        assert_eq!(*hwsc.progress(), Progress::Over);
+        let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
+        play(&mut hwsc, &mut task, &mut Vise::default());
+        assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Joystick));
     }
 
     #[test]

@@ -47,6 +47,7 @@ pub mod gripper;
 pub mod hold;
 pub mod holster;
 pub mod jaws;
+pub mod joystick;
 pub mod noise;
 pub mod part;
 pub mod pedestal;
@@ -58,5 +59,6 @@ pub mod vise;
 
 pub use cell::{Cell, CellError, CellEvent, Link, Placement, WorkstationAction, WorkstationError, part_link};
 pub use description::CellDescription;
+pub use joystick::{BoxAction, BoxButton};
 pub use part::PartState;
 pub use t3::Button;

@@ -14,7 +14,7 @@ use record::{
     Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Pace, RecordError, Recorder, Summary,
     Transform,
 };
-use taskdata::load::job::{Job, Step, Workstation};
+use taskdata::load::job::{Drum, Job, Step, Workstation};
 
 use super::setup::Setup;
 use crate::cli::{ClockKind, RunArguments};
@@ -101,7 +101,9 @@ fn transform(link: &plant::Link) -> Transform {
 /// The part that a step puts into the cell.
 fn delivered(step: &Step) -> Option<&str> {
     match step {
-        Step::Workstation(Workstation::Tray { object, .. }) => Some(object.as_str()),
+        Step::Workstation(Workstation::Tray { object, .. } | Workstation::Drum(Drum::Tool(object))) => {
+            Some(object.as_str())
+        }
         _ => None,
     }
 }

@@ -1,8 +1,11 @@
 //! The workstation of the simulated cell, as the workstation controller's emulator sees it.
 
 use executive::hwsc::Workstation;
-use plant::{Cell, CellEvent, Placement, WorkstationAction};
-use taskdata::load::job::{Offset, ViseOpening, Workstation as Action};
+use plant::{BoxAction, BoxButton, Cell, CellEvent, Placement, WorkstationAction};
+use rcs_core::interface::device::{joystick_frame, single_step};
+use taskdata::load::job::{
+    Joystick, JoystickButton, JoystickFrame, Offset, Stepped, ViseOpening, Workstation as Action,
+};
 
 /// The cell, with what went wrong in it.
 pub struct SimulatedWorkstation {
@@ -46,7 +49,7 @@ impl SimulatedWorkstation {
                     .map_err(|_| format!("{} is no sector", location.sector))?,
                 placement: offset.as_ref().map_or(Placement::Random, placement),
             },
-            Action::Vise { opening, location } => {
+            Action::Vise { opening, location, program: _ } => {
                 self.at_vise(location.name.as_str())?;
                 match opening {
                     ViseOpening::Partial => WorkstationAction::VisePartial,
@@ -58,7 +61,49 @@ impl SimulatedWorkstation {
                 self.at_vise(location.name.as_str())?;
                 WorkstationAction::Machine { from: blank.to_string(), to: part.to_string() }
             }
+            Action::Joystick(action) => WorkstationAction::Joystick(at_the_box(*action)),
+            Action::Drum(_) | Action::Wait { .. } => return Err("the cell has no such device".to_owned()),
         })
+    }
+}
+
+/// The words of a job are those of a person, the box has switches.
+const fn at_the_box(action: Joystick) -> BoxAction {
+    match action {
+        Joystick::Frame(frame) => BoxAction::Frame(match frame {
+            JoystickFrame::World => joystick_frame::WORLD,
+            JoystickFrame::Tool => joystick_frame::TOOL,
+            JoystickFrame::ToolOrigin => joystick_frame::TOOL_ORIGIN,
+            JoystickFrame::WristOrigin => joystick_frame::WRIST_ORIGIN,
+            JoystickFrame::Off => 0,
+        }),
+        Joystick::Stick { x, y, ticks } => BoxAction::Stick { x, y, ticks },
+        Joystick::Press { button, ticks } => BoxAction::Press(
+            match button {
+                JoystickButton::Up => BoxButton::Up,
+                JoystickButton::Down => BoxButton::Down,
+                JoystickButton::RollPlus => BoxButton::RollPlus,
+                JoystickButton::RollMinus => BoxButton::RollMinus,
+                JoystickButton::Open => BoxButton::Open,
+                JoystickButton::Close => BoxButton::Close,
+            },
+            ticks,
+        ),
+        Joystick::Velocity(knob) => BoxAction::Velocity(knob),
+        Joystick::Record => BoxAction::Record,
+        Joystick::Resume => BoxAction::Resume,
+        Joystick::Hold(process) => BoxAction::Hold(switch(process)),
+        Joystick::Free(process) => BoxAction::Free(switch(process)),
+        Joystick::Step { process, count } => BoxAction::Step(switch(process), count),
+    }
+}
+
+const fn switch(process: Stepped) -> u8 {
+    match process {
+        Stepped::Task => single_step::TASK,
+        Stepped::Subtask => single_step::SUBTASK,
+        Stepped::Emove => single_step::EMOVE,
+        Stepped::Prim => single_step::PRIM,
     }
 }
 

@@ -16,8 +16,7 @@ use rapier3d_f64::prelude::*;
 use rcs_core::{
     frame::{Frame, Vector as Inches},
     interface::device::{
-        DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, JoystickBox, KNOB_FULL, LinkBytes,
-        RESOLVER_COUNTS, Resolvers,
+        DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, LinkBytes, RESOLVER_COUNTS, Resolvers,
     },
     kinematics::Joints,
     tick::TICK_S,
@@ -37,6 +36,7 @@ use crate::{
     force,
     gripper::Gripper,
     jaws::Supply,
+    joystick::Joystick,
     noise::{Noise, Stream},
     part::{Part, PartState},
     pedestal::Pedestal,
@@ -142,6 +142,7 @@ pub struct Cell {
     pedestal: Pedestal,
     vise: Vise,
     camera: Camera,
+    joystick: Joystick,
     parts: Vec<Part>,
     next_part: u32,
     furniture: Vec<Block>,
@@ -184,6 +185,7 @@ impl Cell {
             t3: T3Controller::new(arm.joints())?,
             camera: Camera::new(&description.camera, Noise::new(seed, Stream::Camera)),
             obstacles: furniture.iter().map(Obstacle::from).collect(),
+            joystick: Joystick::default(),
             description: description.clone(),
             world,
             arm,
@@ -334,7 +336,7 @@ impl Cell {
             force,
             quick_change: self.changer.sensors(),
             holsters: self.holster_sensors(),
-            joystick: JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() },
+            joystick: self.joystick.read(),
             vision: self.camera.answer(),
             pedestal: self.pedestal.sensors(&mut self.pedestal_noise),
             ..DeviceInputs::default()

@@ -7,6 +7,7 @@ use super::{Cell, Hand};
 use crate::{
     convert::{inches, to_pose},
     description::PartType,
+    joystick::BoxAction,
     part::{Part, PartState},
     vise::Jaws,
 };
@@ -77,6 +78,8 @@ pub enum WorkstationAction {
         /// What it becomes.
         to: String,
     },
+    /// Do something at the joystick box.
+    Joystick(BoxAction),
 }
 
 /// Why the workstation cannot do that.
@@ -188,13 +191,17 @@ impl Cell {
             WorkstationAction::VisePartial => self.work_vise(Jaws::Partial),
             WorkstationAction::ViseClose => self.work_vise(Jaws::Closed),
             WorkstationAction::Machine { from, to } => self.machine(from, to),
+            WorkstationAction::Joystick(action) => {
+                self.joystick.act(*action);
+                Ok(())
+            }
         }
     }
 
-    /// True while the vise is moving.
+    /// True while the vise is moving, or something at the joystick box is held down.
     #[must_use]
     pub fn workstation_busy(&self) -> bool {
-        self.vise.moving()
+        self.vise.moving() || self.joystick.busy()
     }
 
     fn kind(&self, name: &str) -> Result<PartType, WorkstationError> {

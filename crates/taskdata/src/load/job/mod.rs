@@ -8,21 +8,34 @@
 //! ```text
 //! ** tray UNIT_1 4 LINKBAR1_BH            a part is delivered into a sector, somewhere (a seed decides)
 //! ** tray UNIT_1 4 LINKBAR1_BH 50 -20 1500   or at an x, y (0.01 in) and an angle (0.01 degree) from its centre
-//! ** vise partial|close|open PFIXTURE      the jaws of a vise move
-//! ** machine LINKBAR1_BH LINKBAR1 PFIXTURE  the blank in a vise becomes the finished part
+//! ** vise partial|close|open PFIXTURE [CLEVIS]  the jaws of a vise move, by a program from here on
+//! ** machine LINKBAR1_BH LINKBAR1 PFIXTURE  the blank in a vise or a nest becomes the finished part
+//! ** drum grip|release                     the tool drum closes or opens its fingers
+//! ** drum tool ENDMILL-1                   a tool is put into the drum
+//! ** joystick frame WORLD|TOOL|TOOL-ORIGIN|WRIST-ORIGIN|OFF
+//! ** joystick stick 1000 -500 25           X, Y (-1000 to 1000) for so many ticks
+//! ** joystick up|down|roll+|roll-|open|close 25   a button, for so many ticks
+//! ** joystick velocity 500                 the knob (0 to 1000)
+//! ** joystick record, ** joystick resume   the record button, and the carriage return after it
+//! ** joystick hold|free EMOVE              a process is suspended, or runs on
+//! ** joystick step EMOVE [3]               a suspended process runs once, or so often
+//! ** wait 50                               so many ticks
+//! ** after 50 joystick hold PRIM           any of these, so many ticks after the next command was sent
 //! ```
 //!
 //! Commands are checked against the task data, and so is the way from each to the next: a job which cannot run is refused
 //! before the first tick.
 
+mod action;
 mod read;
 mod walk;
+mod workstation;
 
 use std::path::Path;
 
-use rcs_core::{interface::hws::HwsCommand, name::Name16};
+use rcs_core::interface::hws::HwsCommand;
 
-use crate::files::Location;
+pub use action::{Drum, Joystick, JoystickButton, JoystickFrame, Offset, Stepped, ViseOpening, Workstation};
 
 use super::{
     Store,
@@ -46,58 +59,6 @@ pub const TASK_COMMANDS: &[&str] = &[
     "SHUTDOWN",
 ];
 
-/// How far a vise is to open or close (VIII.2).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ViseOpening {
-    /// Far enough to put a blank in, near enough to hold it upright.
-    Partial,
-    /// On the part.
-    Close,
-    /// Wide enough to take the part out, or to let it drop onto the ledge.
-    Open,
-}
-
-/// Where a part lies in its sector.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Offset {
-    /// From the centre of the sector along world X, 0.01 in.
-    pub x: i32,
-    /// From the centre of the sector along world Y, 0.01 in.
-    pub y: i32,
-    /// Angle about world Z, 0.01 degree.
-    pub angle: i32,
-}
-
-/// What the workstation itself does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Workstation {
-    /// A part is delivered into a sector of a tray.
-    Tray {
-        /// The sector, resolved for the part.
-        location: Location,
-        /// The part.
-        object: Name16,
-        /// Where in the sector; `None` leaves it to the seed of the run.
-        offset: Option<Offset>,
-    },
-    /// A vise moves its jaws.
-    Vise {
-        /// How far.
-        opening: ViseOpening,
-        /// The vise.
-        location: Location,
-    },
-    /// A part is machined in a vise.
-    Machine {
-        /// What goes in.
-        blank: Name16,
-        /// What comes out.
-        part: Name16,
-        /// The vise.
-        location: Location,
-    },
-}
-
 /// A step of a job.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
@@ -105,6 +66,13 @@ pub enum Step {
     Command(HwsCommand),
     /// Something that the workstation does.
     Workstation(Workstation),
+    /// Something that happens while the robot executes the next command.
+    After {
+        /// Ticks from the one in which that command is sent.
+        ticks: u32,
+        /// What happens.
+        action: Workstation,
+    },
 }
 
 /// A step with its line.
@@ -152,6 +120,7 @@ impl Job {
         let mut problems = Problems::default();
         let mut reader = read::Reader::new(store.view(), &mut problems);
         let steps = source_lines(&source).filter_map(|line| reader.line(&line)).collect();
+        reader.end();
         let failed = problems.has_errors();
         let report = Report::new(problems, std::slice::from_ref(&source), 0, Vec::new());
         if failed {

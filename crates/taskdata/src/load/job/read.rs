@@ -12,41 +12,46 @@ use super::{
         report::{Problems, Severity},
         source::{At, Line},
     },
-    JobLine, Offset, Step, TASK_COMMANDS, ViseOpening, Workstation,
+    JobLine, Step, TASK_COMMANDS,
     walk::{Visit, Visits, Walk},
 };
 
 /// The words of one line, taken from left to right.
-struct Fields<'a, 'w> {
+pub(super) struct Fields<'a, 'w> {
     words: &'w [Word<'a>],
     next: usize,
 }
 
 impl<'a> Fields<'a, '_> {
-    fn take(&mut self) -> Option<Word<'a>> {
+    /// True if a word is left.
+    pub(super) const fn more(&self) -> bool {
+        self.next < self.words.len()
+    }
+
+    pub(super) fn take(&mut self) -> Option<Word<'a>> {
         let word = self.words.get(self.next).copied();
         self.next += 1;
         word
     }
 
     /// Where the next word is, or the last one if there is no next.
-    fn at(&self) -> At {
+    pub(super) fn at(&self) -> At {
         self.words.get(self.next).or_else(|| self.words.last()).map_or_else(At::default, |w| w.at)
     }
 }
 
 /// A number and where it stands.
 #[derive(Clone, Copy)]
-struct Number {
-    value: i32,
-    at: At,
+pub(super) struct Number {
+    pub(super) value: i32,
+    pub(super) at: At,
 }
 
 /// A name field and where it stands; empty for `--`.
 #[derive(Clone, Copy)]
-struct Field {
-    name: Name16,
-    at: At,
+pub(super) struct Field {
+    pub(super) name: Name16,
+    pub(super) at: At,
 }
 
 impl Field {
@@ -58,17 +63,31 @@ impl Field {
 /// Reads the lines of a job in their order.
 pub(super) struct Reader<'s, 'p> {
     data: TaskData<'s>,
-    problems: &'p mut Problems,
+    pub(super) problems: &'p mut Problems,
     walk: Walk,
+    /// The last line with `after` that no command has followed yet.
+    pub(super) after: Option<At>,
 }
 
 impl<'s, 'p> Reader<'s, 'p> {
     pub(super) fn new(data: TaskData<'s>, problems: &'p mut Problems) -> Self {
-        Self { data, problems, walk: Walk::default() }
+        Self { data, problems, walk: Walk::default(), after: None }
     }
 }
 
 impl Reader<'_, '_> {
+    /// After the last line.
+    pub(super) fn end(&mut self) {
+        if let Some(at) = self.after {
+            self.problems.error_help(
+                "job.after",
+                at,
+                "no command follows this line",
+                "after counts its ticks from the next line with ==; ** wait waits by itself",
+            );
+        }
+    }
+
     /// The step of a line; `None` if it has none, or if it cannot be read, which is noted.
     pub(super) fn line(&mut self, line: &Line<'_>) -> Option<JobLine> {
         let words = words_of_line(line);
@@ -76,7 +95,7 @@ impl Reader<'_, '_> {
         let mut fields = Fields { words: &words, next: 1 };
         let step = match first.text {
             "==" => self.command(&mut fields).map(Step::Command),
-            "**" => self.workstation(&mut fields).map(Step::Workstation),
+            "**" => self.workstation(&mut fields),
             _ => {
                 self.problems.error_help(
                     "job.line",
@@ -96,11 +115,11 @@ impl Reader<'_, '_> {
         Some(JobLine { step, text: text.trim().to_owned(), line: line.at.line })
     }
 
-    fn missing(&mut self, what: &str, at: At) {
+    pub(super) fn missing(&mut self, what: &str, at: At) {
         self.problems.error("job.fields", at, format!("{what} was expected, the line ends"));
     }
 
-    fn field(&mut self, fields: &mut Fields<'_, '_>, what: &str) -> Option<Field> {
+    pub(super) fn field(&mut self, fields: &mut Fields<'_, '_>, what: &str) -> Option<Field> {
         let at = fields.at();
         let Some(word) = fields.take() else {
             self.missing(what, at);
@@ -129,6 +148,11 @@ impl Reader<'_, '_> {
     }
 
     fn integer(&mut self, fields: &mut Fields<'_, '_>, what: &str) -> Option<Number> {
+        self.number(fields, what, NINE_FIELDS)
+    }
+
+    /// A whole number; `help` says what the line should look like.
+    pub(super) fn number(&mut self, fields: &mut Fields<'_, '_>, what: &str, help: &str) -> Option<Number> {
         let at = fields.at();
         let Some(word) = fields.take() else {
             self.missing(what, at);
@@ -137,13 +161,14 @@ impl Reader<'_, '_> {
         let value = word.text.parse::<i32>().ok().filter(|v| v.abs() <= MOST);
         if value.is_none() {
             let message = format!("{what}, a whole number, was expected; {} found", word.text);
-            self.problems.error_help("job.fields", word.at, message, NINE_FIELDS);
+            self.problems.error_help("job.fields", word.at, message, help);
         }
         value.map(|value| Number { value, at: word.at })
     }
 
     /// The command and its nine fields (V.4.2, Figure VIII.4).
     fn command(&mut self, fields: &mut Fields<'_, '_>) -> Option<HwsCommand> {
+        self.after = None;
         let verb = self.field(fields, "a command")?;
         let object = self.field(fields, "object")?;
         let source_grip = self.integer(fields, "source grip")?;
@@ -155,7 +180,7 @@ impl Reader<'_, '_> {
         let end_at = self.field(fields, "end-at location")?;
         let end_at_sector = self.integer(fields, "end-at sector")?;
         if !TASK_COMMANDS.contains(&verb.name.as_str()) {
-            self.unknown("command of Task", verb, TASK_COMMANDS.iter().copied().map(str::to_owned).collect());
+            self.unknown("command of Task", shown(&verb), verb.at, TASK_COMMANDS);
         }
         let known = !object.given() || self.object(object);
         if known {
@@ -191,77 +216,15 @@ impl Reader<'_, '_> {
         Some(Visit { location, object, at: field.at })
     }
 
-    fn workstation(&mut self, fields: &mut Fields<'_, '_>) -> Option<Workstation> {
-        let verb = self.field(fields, "tray, vise or machine")?;
-        match verb.name.as_str() {
-            "tray" => {
-                let place = self.field(fields, "a tray")?;
-                let sector = self.integer(fields, "a sector")?;
-                let object = self.field(fields, "an object")?;
-                let offset = if fields.next < fields.words.len() {
-                    let x = self.integer(fields, "x in 0.01 in")?;
-                    let y = self.integer(fields, "y in 0.01 in")?;
-                    let angle = self.integer(fields, "an angle in 0.01 degree")?;
-                    Some(Offset { x: x.value, y: y.value, angle: angle.value })
-                } else {
-                    None
-                };
-                self.object(object).then_some(())?;
-                let location = self.place(place, sector, Some(object.name), None)?;
-                Some(Workstation::Tray { location, object: object.name, offset })
-            }
-            "vise" => {
-                let opening = self.field(fields, "partial, close or open")?;
-                let place = self.field(fields, "a vise")?;
-                let location = self.plain_place(place);
-                let opening = match opening.name.as_str() {
-                    "partial" => ViseOpening::Partial,
-                    "close" => ViseOpening::Close,
-                    "open" => ViseOpening::Open,
-                    _ => {
-                        self.unknown(
-                            "opening of a vise",
-                            opening,
-                            ["partial", "close", "open"].map(str::to_owned).to_vec(),
-                        );
-                        return None;
-                    }
-                };
-                Some(Workstation::Vise { opening, location: location? })
-            }
-            "machine" => {
-                let blank = self.field(fields, "the blank")?;
-                let part = self.field(fields, "the finished part")?;
-                let place = self.field(fields, "a vise")?;
-                let both = [blank, part].map(|field| self.object(field));
-                let location = self.plain_place(place)?;
-                both.iter().all(|known| *known).then_some(Workstation::Machine {
-                    blank: blank.name,
-                    part: part.name,
-                    location,
-                })
-            }
-            _ => {
-                self.unknown(
-                    "step of the workstation",
-                    verb,
-                    ["tray", "vise", "machine"].map(str::to_owned).to_vec(),
-                );
-                None
-            }
-        }
-    }
-
-    fn unknown(&mut self, what: &str, field: Field, known: Vec<String>) {
-        let near = nearest(field.name.as_str(), known.iter().map(String::as_str));
+    pub(super) fn unknown(&mut self, what: &str, name: &str, at: At, known: &[&str]) {
+        let near = nearest(name, known.iter().copied());
         let help =
             near.map_or_else(|| format!("there are {}", known.join(", ")), |n| format!("the nearest is {n}"));
-        let message = format!("no {what} is named {}", shown(&field));
-        self.problems.error_help("name.unknown", field.at, message, help);
+        self.problems.error_help("name.unknown", at, format!("no {what} is named {name}"), help);
     }
 
     /// True if the object is known; else it is noted.
-    fn object(&mut self, field: Field) -> bool {
+    pub(super) fn object(&mut self, field: Field) -> bool {
         if self.data.object_named(&field.name).is_some() {
             return true;
         }
@@ -274,12 +237,12 @@ impl Reader<'_, '_> {
     }
 
     /// A location without sector or object.
-    fn plain_place(&mut self, field: Field) -> Option<Location> {
+    pub(super) fn plain_place(&mut self, field: Field) -> Option<Location> {
         self.place(field, Number { value: 0, at: field.at }, None, None)
     }
 
     /// A location with its sector, and the grip of the object there if one is given.
-    fn place(
+    pub(super) fn place(
         &mut self,
         field: Field,
         sector: Number,
@@ -335,7 +298,7 @@ impl Reader<'_, '_> {
 const NINE_FIELDS: &str = "a command has nine fields: object, grip, location, sector, grip, location, sector, end-at, sector; -- is null";
 
 /// Greatest number in a job line.
-const MOST: i32 = 36_000;
+pub(super) const MOST: i32 = 36_000;
 
 fn shown(field: &Field) -> &str {
     if field.given() { field.name.as_str() } else { "--" }

@@ -1,0 +1,221 @@
+//! The joystick box (III.3.3) and the hand that works it.
+//!
+//! Switches and knob stay as they were set; stick and buttons go back by themselves when the hand has held them for as long
+//! as it was told. One hand: what is told while it still holds something begins at once and is held beside it.
+
+use rcs_core::interface::device::{JoystickBox, KNOB_FULL};
+
+/// Ticks that a short press takes: long enough to be seen, whatever runs when.
+const PRESS: u32 = 2;
+/// Ticks between two short presses of the same button.
+const PAUSE: u32 = 2;
+
+/// A push-button that is held down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoxButton {
+    /// D: along +Z.
+    Up,
+    /// E: along -Z.
+    Down,
+    /// Z: positive roll about the tool's X.
+    RollPlus,
+    /// a: negative roll.
+    RollMinus,
+    /// F: open the gripper.
+    Open,
+    /// H: close it.
+    Close,
+}
+
+/// What is done at the box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoxAction {
+    /// Set the coordinate switches: bits of [`rcs_core::interface::device::joystick_frame`].
+    Frame(u8),
+    /// Deflect the stick for so many ticks: -1000 to 1000.
+    Stick {
+        /// Along X, or pitch.
+        x: i16,
+        /// Along Y, or yaw.
+        y: i16,
+        /// How long.
+        ticks: u32,
+    },
+    /// Hold a button down for so many ticks.
+    Press(BoxButton, u32),
+    /// Turn the velocity knob: 0 to 1000.
+    Velocity(u16),
+    /// Press the record button.
+    Record,
+    /// Enter the carriage return.
+    Resume,
+    /// Throw the switches that suspend processes: bits of [`rcs_core::interface::device::single_step`].
+    Hold(u8),
+    /// Throw them back.
+    Free(u8),
+    /// Press the button that steps a process, so often.
+    Step(u8, u32),
+}
+
+/// What is held down, and for how many more ticks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Held {
+    Stick([i16; 2]),
+    Button(BoxButton),
+    Record,
+    Resume,
+    Step(u8),
+}
+
+/// The box.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Joystick {
+    velocity: u16,
+    frame: u8,
+    hold: u8,
+    held: Vec<(Held, u32)>,
+    /// Presses of a step button that are still to come, and the ticks until the next.
+    steps: Vec<(u8, u32, u32)>,
+}
+
+impl Default for Joystick {
+    fn default() -> Self {
+        Self { velocity: KNOB_FULL, frame: 0, hold: 0, held: Vec::new(), steps: Vec::new() }
+    }
+}
+
+impl Joystick {
+    /// Begin to do something.
+    pub fn act(&mut self, action: BoxAction) {
+        match action {
+            BoxAction::Frame(frame) => self.frame = frame,
+            BoxAction::Velocity(velocity) => self.velocity = velocity.min(KNOB_FULL),
+            BoxAction::Hold(processes) => self.hold |= processes,
+            BoxAction::Free(processes) => self.hold &= !processes,
+            BoxAction::Stick { x, y, ticks } => self.hold_down(Held::Stick([x, y]), ticks),
+            BoxAction::Press(button, ticks) => self.hold_down(Held::Button(button), ticks),
+            BoxAction::Record => self.hold_down(Held::Record, PRESS),
+            BoxAction::Resume => self.hold_down(Held::Resume, PRESS),
+            BoxAction::Step(process, count) => self.steps.push((process, count, 0)),
+        }
+    }
+
+    fn hold_down(&mut self, what: Held, ticks: u32) {
+        if ticks > 0 {
+            self.held.push((what, ticks));
+        }
+    }
+
+    /// True while something is held down or is still to be pressed.
+    #[must_use]
+    pub fn busy(&self) -> bool {
+        !self.held.is_empty() || !self.steps.is_empty()
+    }
+
+    /// What the controller reads in the next tick; once a tick.
+    pub fn read(&mut self) -> JoystickBox {
+        for (process, count, wait) in &mut self.steps {
+            if *wait == 0 {
+                self.held.push((Held::Step(*process), PRESS));
+                *count -= 1;
+                *wait = PRESS + PAUSE;
+            }
+            *wait -= 1;
+        }
+        self.steps.retain(|(_, count, _)| *count > 0);
+        let mut shown = JoystickBox {
+            velocity: self.velocity,
+            frame: self.frame,
+            hold: self.hold,
+            ..JoystickBox::default()
+        };
+        for (what, ticks) in &mut self.held {
+            *ticks -= 1;
+            what.show(&mut shown);
+        }
+        self.held.retain(|(_, ticks)| *ticks > 0);
+        shown
+    }
+}
+
+impl Held {
+    fn show(self, shown: &mut JoystickBox) {
+        match self {
+            Self::Stick([x, y]) => (shown.x, shown.y) = (x, y),
+            Self::Button(BoxButton::Up) => shown.up = true,
+            Self::Button(BoxButton::Down) => shown.down = true,
+            Self::Button(BoxButton::RollPlus) => shown.roll_plus = true,
+            Self::Button(BoxButton::RollMinus) => shown.roll_minus = true,
+            Self::Button(BoxButton::Open) => shown.open = true,
+            Self::Button(BoxButton::Close) => shown.close = true,
+            Self::Record => shown.record = true,
+            Self::Resume => shown.resume = true,
+            Self::Step(process) => shown.single_step |= process,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rcs_core::interface::device::{joystick_frame, single_step};
+
+    #[test]
+    fn at_the_start_the_shownis_off_and_the_knob_full() {
+        let shown = Joystick::default().read();
+        assert_eq!(shown, JoystickBox { velocity: KNOB_FULL, ..JoystickBox::default() });
+    }
+
+    #[test]
+    fn switches_stay_and_the_stick_goes_back() {
+        let mut joystick = Joystick::default();
+        joystick.act(BoxAction::Frame(joystick_frame::WORLD));
+        joystick.act(BoxAction::Velocity(5000));
+        joystick.act(BoxAction::Stick { x: 700, y: -20, ticks: 3 });
+        joystick.act(BoxAction::Press(BoxButton::Up, 1));
+        let shown: Vec<_> = (0..5).map(|_| joystick.read()).collect();
+        assert_eq!(
+            shown.iter().map(|s| (s.x, s.y)).collect::<Vec<_>>(),
+            [(700, -20), (700, -20), (700, -20), (0, 0), (0, 0)]
+        );
+        assert_eq!(shown.iter().map(|s| s.up).collect::<Vec<_>>(), [true, false, false, false, false]);
+        assert!(shown.iter().all(|s| s.frame == joystick_frame::WORLD && s.velocity == KNOB_FULL));
+        assert!(!joystick.busy());
+    }
+
+    #[test]
+    fn steps_are_presses_with_pauses_between() {
+        let mut joystick = Joystick::default();
+        joystick.act(BoxAction::Hold(single_step::PRIM | single_step::TASK));
+        joystick.act(BoxAction::Free(single_step::TASK));
+        joystick.act(BoxAction::Step(single_step::PRIM, 3));
+        assert!(joystick.busy());
+        let shown: Vec<_> = (0..12).map(|_| joystick.read()).collect();
+        assert!(shown.iter().all(|s| s.hold == single_step::PRIM));
+        let rises = shown.windows(2).filter(|w| w[0].single_step == 0 && w[1].single_step != 0).count();
+        assert_eq!((shown[0].single_step, rises), (single_step::PRIM, 2), "three presses");
+        assert!(!joystick.busy());
+    }
+
+    #[test]
+    fn every_button_shows_on_its_own_line() {
+        let buttons = [
+            BoxAction::Press(BoxButton::Up, 1),
+            BoxAction::Press(BoxButton::Down, 1),
+            BoxAction::Press(BoxButton::RollPlus, 1),
+            BoxAction::Press(BoxButton::RollMinus, 1),
+            BoxAction::Press(BoxButton::Open, 1),
+            BoxAction::Press(BoxButton::Close, 1),
+            BoxAction::Record,
+            BoxAction::Resume,
+        ];
+        for (index, action) in buttons.into_iter().enumerate() {
+            let mut joystick = Joystick::default();
+            joystick.act(action);
+            let s = joystick.read();
+            let lines = [s.up, s.down, s.roll_plus, s.roll_minus, s.open, s.close, s.record, s.resume];
+            let on: Vec<usize> = (0..lines.len()).filter(|line| lines[*line]).collect();
+            assert_eq!(on, [index]);
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! What stands beside the robot in a job: things that the workstation does, and hands at the joystick box.
+
+use rcs_core::name::Name16;
+
+use crate::files::Location;
+
+/// How far a vise is to open or close (VIII.2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViseOpening {
+    /// Far enough to put a blank in, near enough to hold it upright.
+    Partial,
+    /// On the part.
+    Close,
+    /// Wide enough to take the part out, or to let it drop onto the ledge.
+    Open,
+}
+
+/// Where a part lies in its sector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Offset {
+    /// From the centre of the sector along world X, 0.01 in.
+    pub x: i32,
+    /// From the centre of the sector along world Y, 0.01 in.
+    pub y: i32,
+    /// Angle about world Z, 0.01 degree.
+    pub angle: i32,
+}
+
+/// What the tool drum does, and what is done to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drum {
+    /// Its fingers close.
+    Grip,
+    /// Its fingers open.
+    Release,
+    /// Somebody puts a tool into it.
+    Tool(Name16),
+}
+
+/// The coordinate switches of the joystick box (III.3.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JoystickFrame {
+    /// Translations in world coordinates.
+    World,
+    /// Translations in tool coordinates.
+    Tool,
+    /// Pitch and yaw about the tool point.
+    ToolOrigin,
+    /// Pitch and yaw about the wrist point.
+    WristOrigin,
+    /// No switch is on: the box is not active.
+    Off,
+}
+
+/// The push-buttons of the joystick box that are held down while the robot moves (III.3.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JoystickButton {
+    /// Along +Z.
+    Up,
+    /// Along -Z.
+    Down,
+    /// Positive roll about the tool's X.
+    RollPlus,
+    /// Negative roll.
+    RollMinus,
+    /// Open the gripper.
+    Open,
+    /// Close the gripper.
+    Close,
+}
+
+/// The processes that the joystick box can suspend (III.3.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stepped {
+    /// Task.
+    Task,
+    /// Subtask.
+    Subtask,
+    /// E-move.
+    Emove,
+    /// Prim.
+    Prim,
+}
+
+/// What a person does at the joystick box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Joystick {
+    /// Set the coordinate switches.
+    Frame(JoystickFrame),
+    /// Deflect the stick, then let it go.
+    Stick {
+        /// -1000 to 1000.
+        x: i16,
+        /// -1000 to 1000.
+        y: i16,
+        /// How long.
+        ticks: u32,
+    },
+    /// Hold a button down.
+    Press {
+        /// Which.
+        button: JoystickButton,
+        /// How long.
+        ticks: u32,
+    },
+    /// Turn the velocity knob: 0 to 1000.
+    Velocity(u16),
+    /// Press the record button.
+    Record,
+    /// Enter the carriage return after a recorded pose.
+    Resume,
+    /// Suspend a process.
+    Hold(Stepped),
+    /// Let a process run on.
+    Free(Stepped),
+    /// Step a suspended process.
+    Step {
+        /// Which.
+        process: Stepped,
+        /// How often.
+        count: u32,
+    },
+}
+
+/// What happens beside the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Workstation {
+    /// A part is delivered into a sector of a tray.
+    Tray {
+        /// The sector, resolved for the part.
+        location: Location,
+        /// The part.
+        object: Name16,
+        /// Where in the sector; `None` leaves it to the seed of the run.
+        offset: Option<Offset>,
+    },
+    /// A vise moves its jaws.
+    Vise {
+        /// How far.
+        opening: ViseOpening,
+        /// The vise.
+        location: Location,
+        /// By which program from now on; `None` stays with the one that was named last.
+        program: Option<Name16>,
+    },
+    /// A part is machined in a vise or a nest.
+    Machine {
+        /// What goes in.
+        blank: Name16,
+        /// What comes out.
+        part: Name16,
+        /// The vise or the nest.
+        location: Location,
+    },
+    /// The tool drum.
+    Drum(Drum),
+    /// The joystick box.
+    Joystick(Joystick),
+    /// Nothing for a while.
+    Wait {
+        /// How long.
+        ticks: u32,
+    },
+}
