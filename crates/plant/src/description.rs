@@ -364,6 +364,9 @@ pub struct PartType {
     /// Vision id (VII.7.6); 0 for none.
     #[serde(default)]
     pub vision_id: u16,
+    /// It is a tool of the machine: it fits into the drum, its X along the drum's.
+    #[serde(default)]
+    pub tool: bool,
 }
 
 impl Gripper {

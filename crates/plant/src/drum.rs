@@ -84,12 +84,21 @@ impl Drum {
     /// Open or close the fingers.
     pub fn set_closed(&mut self, closed: bool) {
         self.closed = closed;
+        if let Some(tool) = self.tool.as_mut().filter(|_| !closed) {
+            tool.barred = false;
+        }
     }
 
     /// Into the drum, world.
     #[must_use]
     pub fn axis(&self) -> Vector {
         self.frame.x()
+    }
+
+    /// A tool's frame in its place, its axes those of the drum.
+    #[must_use]
+    pub fn seat(&self) -> Frame {
+        self.frame.shifted(Vector::new(self.description.middle, 0.0, 0.0))
     }
 
     /// A tool's frame in its place, with the roll about its axis that it has.
@@ -99,10 +108,7 @@ impl Drum {
         // The least turn that lays the tool's axis along the drum's.
         let upright = Rotation::rotation_between(&(here * Vector::x()), &Vector::x());
         let rotation = self.frame.rotation * upright.map_or(Rotation::identity(), |turn| turn * here);
-        Frame {
-            position: self.frame.shifted(Vector::new(self.description.middle, 0.0, 0.0)).position,
-            rotation,
-        }
+        Frame { rotation, ..self.seat() }
     }
 
     /// How a tool stands to its place; `None` if it is not before the drum.
@@ -166,9 +172,10 @@ impl Drum {
         (spring - DAMPING * speed).clamp(-inward, outward)
     }
 
-    /// The spring along X rests where the tool is.
-    pub fn relax(&mut self, entering: &Entering) {
+    /// From now on the drum leads the tool, or something else does; the spring along X rests where the tool is.
+    pub fn lead(&mut self, fast: bool, entering: &Entering) {
         if let Some(pocketed) = &mut self.tool {
+            pocketed.fast = fast;
             pocketed.anchor = metres(-entering.left);
         }
     }

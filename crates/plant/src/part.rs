@@ -112,7 +112,7 @@ pub struct PartState {
     pub id: u32,
     /// Its name at present.
     pub name: String,
-    /// Where it is: a unit, the vise's or the pedestal's location, `gripper`, `floor` or `elsewhere`.
+    /// Where it is: a unit, the vise's, the drum's or the pedestal's location, `gripper`, `floor` or `elsewhere`.
     pub location: String,
     /// The nearest sector of the unit, 0 elsewhere.
     pub sector: u16,

@@ -1,6 +1,7 @@
 //! The cell as a whole: one tick of it is one call.
 
 mod changing;
+mod drumming;
 mod handling;
 mod outline;
 mod picture;
@@ -32,7 +33,8 @@ use crate::{
     camera::{Camera, Subject},
     clearance::{Clearance, Contact},
     convert::{GRAVITY, to_frame, to_pose},
-    description::{CellDescription, DescriptionError},
+    description::{CellDescription, DescriptionError, Points},
+    drum::Drum,
     force,
     gripper::Gripper,
     jaws::Supply,
@@ -139,6 +141,7 @@ pub struct Cell {
     /// Parts gripper, v-gripper, tool gripper.
     grippers: [Gripper; 3],
     changer: Changer,
+    drum: Drum,
     pedestal: Pedestal,
     vise: Vise,
     camera: Camera,
@@ -191,6 +194,7 @@ impl Cell {
             arm,
             grippers,
             changer,
+            drum: Drum::new(place(&description.drum.pose), &description.drum),
             pedestal,
             vise,
             parts: Vec::new(),
@@ -272,6 +276,7 @@ impl Cell {
         self.drive_fingers(dt, Hand::Pedestal, Supply::of_bits(outputs.pedestal_hand.bits));
         self.drive_jaw(dt);
         self.rub_holds(dt);
+        self.work_drum(dt);
         self.world.step();
         self.let_holds_give_way();
     }
@@ -443,6 +448,11 @@ impl Cell {
     pub fn drive(&mut self, plate: &Frame) -> Result<(), DriveError> {
         self.t3.drive(plate)
     }
+}
+
+/// The frame of three points; the description has been validated.
+fn place(points: &Points) -> Frame {
+    points.frame().unwrap_or_else(Frame::identity)
 }
 
 /// Counts of a resolver at an angle in radians: 17 bits a turn, 0 at 0.

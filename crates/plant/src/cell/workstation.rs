@@ -78,6 +78,15 @@ pub enum WorkstationAction {
         /// What it becomes.
         to: String,
     },
+    /// Close the fingers of the tool drum.
+    DrumGrip,
+    /// Open the fingers of the tool drum.
+    DrumRelease,
+    /// Put a tool into its place in the drum, whose fingers then hold it.
+    DrumTool {
+        /// Name of a part of the description.
+        part: String,
+    },
     /// Do something at the joystick box.
     Joystick(BoxAction),
 }
@@ -148,6 +157,16 @@ pub enum WorkstationError {
         /// What is there.
         found: String,
     },
+    /// The fingers of the drum cannot close on the tool that is there.
+    #[error("the drum cannot grip {tool}: it is {distance:.3} in and {degrees:.2} degrees from its place")]
+    NotInPlace {
+        /// The tool.
+        tool: String,
+        /// How far its middle is from its place, in.
+        distance: f64,
+        /// How far its axis is turned, degrees.
+        degrees: f64,
+    },
     /// The part is clamped, but not where it belongs.
     #[error(
         "{part} is clamped {distance:.3} in and {degrees:.2} degrees from its seat; {SEATED} in and 1 degree are allowed"
@@ -191,6 +210,12 @@ impl Cell {
             WorkstationAction::VisePartial => self.work_vise(Jaws::Partial),
             WorkstationAction::ViseClose => self.work_vise(Jaws::Closed),
             WorkstationAction::Machine { from, to } => self.machine(from, to),
+            WorkstationAction::DrumGrip => self.set_drum_fingers(true),
+            WorkstationAction::DrumRelease => self.set_drum_fingers(false),
+            WorkstationAction::DrumTool { part } => {
+                let kind = self.kind(part)?;
+                self.put_into_drum(&kind)
+            }
             WorkstationAction::Joystick(action) => {
                 self.joystick.act(*action);
                 Ok(())
@@ -240,7 +265,7 @@ impl Cell {
         Ok(Frame { position: turned.position + Inches::new(x, y, up), ..turned })
     }
 
-    fn put(&mut self, kind: &PartType, frame: &Frame) -> Result<(), WorkstationError> {
+    pub(super) fn put(&mut self, kind: &PartType, frame: &Frame) -> Result<(), WorkstationError> {
         if let Some(by) = self.in_the_way(kind, frame) {
             return Err(WorkstationError::Occupied { part: kind.name.clone(), by });
         }
@@ -353,6 +378,9 @@ impl Cell {
 
     fn locate(&self, index: usize, part: &Part, frame: &Frame) -> (String, u16, Option<f64>) {
         let at = frame.position;
+        if self.is_in_drum(index) {
+            return (self.drum_location().into(), 0, self.drum_error(index));
+        }
         if self.is_held(index) && !self.is_clamped(index) {
             return ("gripper".into(), 0, None);
         }
@@ -414,7 +442,7 @@ mod tests {
 
     #[test]
     fn a_part_has_its_sizes_along_the_vise() {
-        let kind = PartType { name: "P".into(), size: [1.0, 2.0, 3.0], weight: 1.0, vision_id: 0 };
+        let kind = PartType { name: "P".into(), size: [1.0, 2.0, 3.0], weight: 1.0, vision_id: 0, tool: false };
         // Part X down, Y along vise X, a little askew.
         let upright =
             rcs_core::frame::rotation_from_x_y(&Inches::new(0.02, 0.01, -1.0), &Inches::x()).unwrap();
