@@ -25,7 +25,7 @@ use super::{
     tables::{
         Action, Posture, Situation,
         attend::{Attention, Kind, attend},
-        record_pose::{Note, Recording, Wish, record_pose},
+        record_pose::{Button, Note, Recording, record_pose},
     },
 };
 use crate::execution::{Course, Outcome};
@@ -145,16 +145,11 @@ impl Prim {
         self.state.forget_rest();
     }
 
-    /// The record button and the terminal: is the commanded pose recorded in this tick?
+    /// The record button: is the commanded pose recorded in this tick?
     pub(super) fn records(&mut self, joystick: &JoystickBox, posture: Posture) -> bool {
         let pressed = joystick.record && !self.state.record_button;
         self.state.record_button = joystick.record;
-        let wish = match (joystick.resume, pressed) {
-            (true, _) => Wish::Resume,
-            (false, true) => Wish::Record,
-            (false, false) => Wish::None,
-        };
-        let decision = record_pose(self.state.recording, wish, posture);
+        let decision = record_pose(if pressed { Button::Pressed } else { Button::Idle }, posture);
         let [_, _, row] = &mut self.state.rows;
         *row = decision.row;
         self.state.recording = decision.next;

@@ -5,24 +5,22 @@ use rcs_core::{coded_enum, decision_table};
 use super::Posture;
 
 coded_enum! {
+    /// Push-button X.
+    pub enum Button {
+        /// Not pressed, or held down since an earlier tick.
+        Idle = "idle",
+        /// Pressed in this tick.
+        Pressed = "pressed",
+    }
+}
+
+coded_enum! {
     /// A pose was recorded, and Prim and E-move wait for the operator.
     pub enum Recording {
         /// No.
         Off = "off",
         /// Yes.
         On = "on",
-    }
-}
-
-coded_enum! {
-    /// What the operator has just done. Going on comes first.
-    pub enum Wish {
-        /// Nothing.
-        None = "none",
-        /// Pressed button X.
-        Record = "record",
-        /// Pressed carriage return at the terminal.
-        Resume = "resume",
     }
 }
 
@@ -36,13 +34,12 @@ pub enum Note {
 }
 
 decision_table! {
-    /// RECORD-POSE (III.3.3): record the pose, and suspend Prim and E-move until the operator goes on.
-    pub RECORD_POSE: fn record_pose(recording: Recording, wish: Wish, posture: Posture) -> (Note, Recording) {
-        //   recording wish            posture                        note     recording
-        1: ( Off     , Record        , Moving | Ending | Standing ) => Record , On  ;
-        2: ( Off     , Record        , Unpositioned               ) => Keep   , Off ;
-        3: ( Off     , None | Resume , _                          ) => Keep   , Off ;
-        4: ( On      , None | Record , _                          ) => Keep   , On  ;
-        5: ( On      , Resume        , _                          ) => Keep   , Off ;
+    /// RECORD-POSE (III.3.3): record the pose, and suspend Prim and E-move until the operator goes on. A Prim that is
+    /// stepped is not suspended any more.
+    pub RECORD_POSE: fn record_pose(button: Button, posture: Posture) -> (Note, Recording) {
+        //   button    posture                        note     recording
+        1: ( Pressed , Moving | Ending | Standing ) => Record , On  ;
+        2: ( Pressed , Unpositioned               ) => Keep   , Off ;
+        3: ( Idle    , _                          ) => Keep   , Off ;
     }
 }

@@ -1,8 +1,15 @@
 //! Prim against a model of T3I that stalls, fails and watches the order of points; in [`line`], against T3I itself.
 
+mod guarded;
+mod joystick;
 mod line;
+mod random;
+mod rows;
 
-use std::collections::VecDeque;
+use std::{
+    collections::{BTreeSet, VecDeque},
+    sync::LazyLock,
+};
 
 use rcs_core::{
     frame::{Frame, Vector, norm},
@@ -18,7 +25,10 @@ use rcs_core::{
     process::{Inputs, Process},
     tick::Tick,
 };
-use taskdata::files::{MovtabId, MovtabRecord, PoseRecord, TaskData, TrajPara};
+use taskdata::{
+    files::{MovtabId, MovtabRecord, PoseRecord, TaskData, TrajPara},
+    load::{Source, Store},
+};
 
 use super::Prim;
 
@@ -81,6 +91,7 @@ impl ModelT3i {
             (self.starting, self.running) = (None, true);
         }
         self.starting = self.starting.map(|left| left - 1);
+        let stalled = stalled || memory.prim.header.republished;
         if self.fault != LinkFault::None {
             self.running = false;
             self.queue.clear();
@@ -132,6 +143,21 @@ fn pose_record(name: &str, frame: Frame) -> PoseRecord {
     }
 }
 
+/// Sensors by name.
+static SENSORS: LazyLock<Store> = LazyLock::new(|| {
+    let text = "BLOCK# 1 OFFSET 21000
+        -sen- NEAR-R near 1 0
+        -sen- SEATED-R seated 1 0
+        -sen- PUSH-X fx 0 25
+        -sen- BEAM-3 beam 3 0
+    ";
+    let source = Source { name: "sensors.blk".to_owned(), text: text.into() };
+    match Store::from_sources(vec![source]) {
+        Ok((store, _)) => store,
+        Err(report) => panic!("{report}"),
+    }
+});
+
 /// POSE, MOVTAB and TRAJ-PARA of the tests.
 struct Files {
     poses: Vec<PoseRecord>,
@@ -164,7 +190,7 @@ impl Files {
             poses: &self.poses,
             movetables: &self.movetables,
             traj_paras: &self.parameters,
-            ..TaskData::default()
+            ..SENSORS.view()
         }
     }
 }
@@ -181,6 +207,10 @@ struct Rig {
     stalls: u64,
     noise: u64,
     emove_dead: bool,
+    /// Prim is not stepped; its last outputs are republished.
+    held: bool,
+    /// Tables and rows that fired.
+    rows: BTreeSet<(u8, u8)>,
 }
 
 impl Rig {
@@ -198,6 +228,8 @@ impl Rig {
             stalls: 0,
             noise: 1,
             emove_dead: false,
+            held: false,
+            rows: BTreeSet::new(),
         }
     }
 
@@ -214,7 +246,14 @@ impl Rig {
         let data = self.files.data();
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &data };
         let mut prim: PrimOutputs = self.memory.prim;
-        self.prim.step(&inputs, &mut prim);
+        let recording = prim.status.recording && !self.external.devices.joystick.resume;
+        if self.held || recording {
+            (prim.header.stamp, prim.header.republished) = (self.tick, true);
+        } else {
+            self.prim.step(&inputs, &mut prim);
+            self.rows.insert((prim.header.table, prim.header.row));
+            self.rows.extend((rows::EVERY_TICK..).zip(self.prim.state().rows));
+        }
         let t3i = self.t3i.step(self.tick, &self.memory, stalled);
         self.memory.prim = prim;
         self.memory.t3i = t3i;
@@ -258,6 +297,18 @@ impl Rig {
         self.until_over()
     }
 
+    /// A command that watches a sensor.
+    fn guard(&mut self, verb: PrimVerb, pose: u32, sensor: &str) {
+        self.command(verb, pose);
+        let command = &mut self.memory.emove.prim;
+        (command.sensor, command.end_effector_id) = (Name10::new(sensor).unwrap(), 1);
+    }
+
+    /// The commanded frame, without rounding.
+    fn commanded(&self) -> Frame {
+        self.prim.state().motion.frame()
+    }
+
     fn initialized() -> Self {
         let mut rig = Self::new();
         rig.steps(3);
@@ -267,7 +318,7 @@ impl Rig {
 
     /// The points that went to the robot never jump, and speed changes as the parameters allow.
     fn check_path(&self, from: &Frame) {
-        let mut points = vec![from.position];
+        let mut points = vec![from.position; 2];
         points.extend(self.t3i.path.iter().map(|wire| wire.to_frame().unwrap().position));
         // Rounding to 0.01 in: half a count in each of three axes at each end.
         let rounding = 0.009;

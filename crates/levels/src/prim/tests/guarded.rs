@@ -1,0 +1,262 @@
+//! Guarded moves, DELTA-MOVE and CAL-SENSOR.
+
+use rcs_core::{
+    interface::device::{FORCE_COUNTS_PER_LB, ForceSensor},
+    tick::TICK_S,
+};
+
+use super::*;
+
+/// A force sensor at rest with something in the gripper.
+const LOADED: ForceSensor = ForceSensor { x: 2100, y: 2000, z: 1900, moment: 2048, valid: true };
+
+/// The reading of [`LOADED`] with a push of so many pounds along tool X.
+fn pushed(pounds: i32) -> ForceSensor {
+    let z = i32::from(LOADED.z) + pounds * FORCE_COUNTS_PER_LB;
+    ForceSensor { z: z.clamp(0, 4095) as u16, ..LOADED }
+}
+
+/// Path of a stop from the speed of the last tick, inches, whatever the acceleration was.
+pub(super) fn stopping_path(speed: f64, acceleration: f64, jerk: f64) -> f64 {
+    let ramp = acceleration / jerk;
+    let fastest = speed + acceleration * TICK_S + acceleration * ramp / 2.0;
+    fastest * (fastest / (2.0 * acceleration) + 1.5 * ramp)
+}
+
+impl Rig {
+    fn calibrated() -> Self {
+        let mut rig = Self::initialized();
+        rig.external.devices.force = LOADED;
+        assert_eq!(rig.run(PrimVerb::CalSensor, 0), PrimReport::Done);
+        rig
+    }
+
+    /// The ears come near when the robot is `x` inches from the start.
+    fn step_to_holster(&mut self, x: i32) {
+        let there = self.t3i.output.tool[0] >= WireFrame::from_frame(&shifted(f64::from(x), 0.0)).tool[0];
+        self.external.devices.holsters.right = if there { 0x03 } else { 0x01 };
+        self.step();
+    }
+
+    fn moved(&self) -> f64 {
+        norm(&(self.commanded().position - start().position))
+    }
+
+    fn reason(&self) -> Reason {
+        self.memory.prim.status.reason
+    }
+}
+
+#[test]
+fn go_until_ramps_down_where_it_trips_and_says_where_that_was() {
+    for stalls in [0, 3] {
+        let mut rig = Rig::initialized();
+        rig.stalls = stalls;
+        rig.guard(PrimVerb::GoUntil, 3, "NEAR-R");
+        let trip = loop {
+            let speed = rig.commanded();
+            rig.step_to_holster(8);
+            if rig.memory.prim.status.sensed == 1 {
+                break speed;
+            }
+            assert_eq!(rig.memory.prim.status.detected_pose, 0);
+        };
+        // The tick of the trip: T3I has told in it where the resolvers see the robot.
+        let seen = rig.memory.changing_pose(rig.memory.prim.status.sensor_pose).copied();
+        let status = rig.memory.prim.status;
+        assert_eq!(rig.memory.changing_pose(status.detected_pose).copied(), seen);
+        assert_eq!(status.report, PrimReport::Executing, "done when it stands, not before");
+        assert_eq!(rig.until_over(), PrimReport::Done);
+        assert!(rig.prim.state().motion.is_at_rest());
+        assert_eq!(rig.t3i.output, WireFrame::from_frame(&rig.commanded()));
+        let beyond = rig.commanded().distance(&trip).path();
+        assert!(beyond > 0.5 && beyond <= stopping_path(10.0, 10.0, 500.0), "{beyond}");
+        rig.check_path(&start());
+        // The pose stays until the next guarded move.
+        assert_eq!(rig.run(PrimVerb::GotoPt, 1), PrimReport::Done);
+        assert_eq!(rig.memory.changing_pose(rig.memory.prim.status.detected_pose).copied(), seen);
+        rig.external.devices.holsters.right = 0;
+        rig.guard(PrimVerb::GoUntil, 3, "NEAR-R");
+        rig.steps(2);
+        assert_eq!(rig.memory.prim.status.detected_pose, 0);
+    }
+}
+
+#[test]
+fn a_condition_that_holds_already_ends_a_guarded_move_without_motion() {
+    for (verb, report) in
+        [(PrimVerb::GoUntil, PrimReport::Done), (PrimVerb::GoWhile, PrimReport::DetectedErr)]
+    {
+        let mut rig = Rig::initialized();
+        rig.external.devices.holsters.right = 0x0C;
+        rig.guard(verb, 3, "SEATED-R");
+        assert_eq!(rig.until_over(), report);
+        rig.steps(20);
+        assert_eq!((rig.moved(), rig.t3i.path.len(), rig.report()), (0.0, 0, report));
+        let detected = rig.memory.changing_pose(rig.memory.prim.status.detected_pose);
+        let expected = (verb == PrimVerb::GoUntil).then(|| Pose::from_frame(&start()));
+        assert_eq!(detected.copied(), expected);
+    }
+}
+
+#[test]
+fn a_goal_without_the_condition_is_not_detected_until_it_comes() {
+    let mut rig = Rig::initialized();
+    rig.guard(PrimVerb::GoUntil, 1, "NEAR-R");
+    assert_eq!(rig.until_over(), PrimReport::NotDetected);
+    assert_eq!(rig.memory.prim.status.reason, Reason::NotDetected);
+    assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(10.0, 0.0)));
+    rig.steps(100);
+    assert_eq!(rig.report(), PrimReport::NotDetected);
+    rig.external.devices.holsters.right = 0x03;
+    rig.step();
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    assert_eq!(rig.reason(), Reason::None);
+    let detected = rig.memory.changing_pose(rig.memory.prim.status.detected_pose);
+    assert_eq!(detected, Some(&Pose::from_frame(&shifted(10.0, 0.0))));
+    // A new command ends it as well.
+    rig.external.devices.holsters.right = 0;
+    rig.guard(PrimVerb::GoUntil, 1, "NEAR-R");
+    assert_eq!(rig.until_over(), PrimReport::NotDetected);
+    assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+}
+
+#[test]
+fn go_while_reaches_its_goal_or_stops_with_an_error() {
+    let mut rig = Rig::calibrated();
+    rig.external.devices.force = pushed(24);
+    rig.guard(PrimVerb::GoWhile, 1, "PUSH-X");
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    assert_eq!(
+        (rig.t3i.output, rig.memory.prim.status.sensed),
+        (WireFrame::from_frame(&shifted(10.0, 0.0)), 24)
+    );
+    rig.guard(PrimVerb::GoWhile, 3, "PUSH-X");
+    rig.steps(30);
+    rig.external.devices.force = pushed(25);
+    let at = rig.commanded();
+    assert_eq!(rig.until_over(), PrimReport::DetectedErr);
+    assert_eq!(rig.reason(), Reason::Detected);
+    rig.external.devices.force = pushed(0);
+    rig.steps(80);
+    assert_eq!(rig.report(), PrimReport::DetectedErr);
+    assert!(rig.prim.state().motion.is_at_rest());
+    assert!(rig.commanded().distance(&at).path() < stopping_path(10.0, 10.0, 500.0));
+    rig.check_path(&start());
+}
+
+#[test]
+fn a_force_sensor_that_cannot_be_trusted_stops_the_robot() {
+    let dead = ForceSensor { valid: false, ..LOADED };
+    let overloaded = ForceSensor { moment: 4095, ..LOADED };
+    for verb in [PrimVerb::GoUntil, PrimVerb::GoWhile] {
+        for force in [dead, overloaded, pushed(-200)] {
+            let mut rig = Rig::calibrated();
+            rig.guard(verb, 3, "PUSH-X");
+            rig.steps(30);
+            assert_eq!(rig.report(), PrimReport::Executing);
+            rig.external.devices.force = force;
+            assert_eq!(rig.until_over(), PrimReport::SensorError);
+            assert_eq!(rig.reason(), Reason::SensorError);
+            rig.steps(80);
+            assert!(rig.prim.state().motion.is_at_rest() && rig.moved() < 30.0);
+            rig.check_path(&start());
+        }
+        // Without a calibration nothing moves.
+        let mut rig = Rig::initialized();
+        rig.external.devices.force = LOADED;
+        rig.guard(verb, 3, "PUSH-X");
+        assert_eq!((rig.until_over(), rig.moved()), (PrimReport::SensorError, 0.0));
+    }
+}
+
+#[test]
+fn cal_sensor_stops_the_robot_first_and_takes_the_mean() {
+    let mut rig = Rig::initialized();
+    rig.external.devices.force = pushed(90);
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(30);
+    rig.command(PrimVerb::CalSensor, 0);
+    let mut noise = 0_i32;
+    for _ in 0..300 {
+        // What is read while the robot moves does not count; at rest the readings swing by 2 lb.
+        noise = 2 - noise;
+        if rig.prim.state().motion.is_at_rest() {
+            rig.external.devices.force = pushed(noise);
+        }
+        rig.step();
+    }
+    assert_eq!(rig.report(), PrimReport::Done);
+    rig.check_path(&start());
+    let bias = rig.prim.state().calibration.bias;
+    let expected = f64::from(LOADED.z) - 2048.0 + f64::from(FORCE_COUNTS_PER_LB);
+    assert!((bias[0] - expected).abs() < 1e-9, "{bias:?}");
+    // 1 lb of the bias is noise: 25 lb are reached at 26.
+    rig.external.devices.force = pushed(25);
+    rig.guard(PrimVerb::GoUntil, 1, "PUSH-X");
+    rig.steps(3);
+    assert_eq!((rig.report(), rig.memory.prim.status.sensed), (PrimReport::Executing, 24));
+    rig.external.devices.force = pushed(26);
+    rig.step();
+    assert_eq!(rig.until_over(), PrimReport::Done);
+}
+
+#[test]
+fn a_sensor_that_cannot_be_calibrated_is_an_error() {
+    let mut rig = Rig::calibrated();
+    for force in [ForceSensor { valid: false, ..LOADED }, ForceSensor { y: 0, ..LOADED }] {
+        rig.external.devices.force = force;
+        assert_eq!(rig.run(PrimVerb::CalSensor, 0), PrimReport::SensorError);
+    }
+    // A robot that swings is not at rest.
+    rig.external.devices.force = LOADED;
+    rig.command(PrimVerb::CalSensor, 0);
+    while rig.report() != PrimReport::Error {
+        rig.t3i.off = if rig.tick.0.is_multiple_of(3) { 3 } else { 0 };
+        rig.step();
+        assert_ne!(
+            (rig.report(), rig.memory.prim.status.echo),
+            (PrimReport::Done, rig.memory.emove.prim.number)
+        );
+    }
+    assert_eq!(rig.reason(), Reason::NotAtGoal);
+}
+
+#[test]
+fn a_sensor_that_is_not_in_the_task_data_is_refused() {
+    let mut rig = Rig::initialized();
+    for verb in [PrimVerb::GoUntil, PrimVerb::GoWhile] {
+        rig.guard(verb, 3, "NOSE");
+        assert_eq!((rig.until_over(), rig.reason()), (PrimReport::Error, Reason::UnknownSensor));
+        assert_eq!(rig.moved(), 0.0);
+    }
+}
+
+#[test]
+fn beams_guard_too() {
+    let mut rig = Rig::initialized();
+    rig.guard(PrimVerb::GoUntil, 3, "BEAM-3");
+    rig.steps(20);
+    rig.external.devices.grip.beams = 0x04;
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    assert!(rig.moved() > 0.5 && rig.moved() < 10.0);
+}
+
+#[test]
+fn all_three_motions_take_a_movetable_and_delta_move_ends_as_goto_pt_does() {
+    for verb in [PrimVerb::DeltaMove, PrimVerb::GoWhile, PrimVerb::GoUntil] {
+        let mut rig = Rig::initialized();
+        rig.guard(verb, 1, "NEAR-R");
+        rig.memory.emove.prim.movetable = 1;
+        let over = rig.until_over();
+        let expected = if verb == PrimVerb::GoUntil { PrimReport::NotDetected } else { PrimReport::Done };
+        let mut goal = shifted(10.0, 0.0);
+        goal.position.z += 3.0;
+        assert_eq!((over, rig.t3i.output), (expected, WireFrame::from_frame(&goal)));
+        rig.check_path(&start());
+    }
+    let mut rig = Rig::initialized();
+    rig.t3i.off = 3;
+    assert_eq!(rig.run(PrimVerb::DeltaMove, 2), PrimReport::Error);
+    assert_eq!(rig.reason(), Reason::NotAtGoal);
+}

@@ -1,0 +1,367 @@
+//! PAUSE with the joystick box, the record button, and what becomes of a Prim that was held.
+
+use rcs_core::{
+    frame::{Rotation, rotation_vector},
+    interface::{
+        device::{joystick_frame, single_step},
+        prim::JoystickGrip,
+    },
+    pose::POINT_DISTANCE,
+    tick::TICK_S,
+};
+
+use super::*;
+use crate::prim::manual::{ACCELERATION, SPEED};
+
+const FULL: i16 = 1000;
+
+impl Rig {
+    /// A rig on which PAUSE stands.
+    pub(super) fn paused() -> Self {
+        let mut rig = Self::initialized();
+        assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::Done);
+        rig
+    }
+
+    pub(super) fn frame_switch(&mut self, frame: u8) {
+        self.external.devices.joystick.frame = frame;
+    }
+
+    pub(super) fn stick(&mut self, x: i16, y: i16) {
+        let joystick = &mut self.external.devices.joystick;
+        (joystick.x, joystick.y) = (x, y);
+    }
+
+    /// Both sticks back, no button; then until nothing moves.
+    fn let_go(&mut self) {
+        let joystick = &mut self.external.devices.joystick;
+        (joystick.x, joystick.y) = (0, 0);
+        (joystick.up, joystick.down, joystick.roll_plus, joystick.roll_minus) = (false, false, false, false);
+        self.steps(40);
+        assert!(!self.prim.state().manual.is_moving());
+    }
+
+    fn leds(&self) -> u8 {
+        self.memory.prim.joystick_leds
+    }
+}
+
+/// The wrist point of the pose (VII.1).
+fn wrist(frame: &Frame) -> Vector {
+    frame.position - frame.x() * POINT_DISTANCE
+}
+
+fn turn(from: &Frame, to: &Frame) -> Vector {
+    let by: Rotation = to.rotation * from.rotation.inverse();
+    rotation_vector(&by)
+}
+
+#[test]
+fn translations_follow_the_axes_of_the_frame_at_the_speed_of_the_knob() {
+    let mut rig = Rig::paused();
+    let at = rig.commanded();
+    for (switch, axes) in [
+        (joystick_frame::WORLD, [Vector::x(), Vector::y(), Vector::z()]),
+        (joystick_frame::TOOL, [at.x(), at.y(), at.z()]),
+    ] {
+        for (axis, (x, y, up)) in axes.iter().zip([(FULL, 0, false), (0, FULL, false), (0, 0, true)]) {
+            for (sign, knob) in [(1_i16, 1000_u16), (-1, 500)] {
+                rig.external.devices.joystick.velocity = knob;
+                rig.frame_switch(switch);
+                rig.stick(sign * x, sign * y);
+                rig.external.devices.joystick.up = up && sign > 0;
+                rig.external.devices.joystick.down = up && sign < 0;
+                let before = rig.commanded();
+                rig.steps(60);
+                let here = rig.commanded();
+                rig.step();
+                let speed = (rig.commanded().position - here.position) / TICK_S;
+                let expected = axis * (SPEED * f64::from(sign) * f64::from(knob) / 1000.0);
+                assert!(norm(&(speed - expected)) < 1e-9, "{speed:?} for {expected:?}");
+                assert!(norm(&turn(&before, &rig.commanded())) < 1e-9);
+                assert_eq!((rig.report(), rig.leds()), (PrimReport::JoystickOn, switch));
+                rig.let_go();
+            }
+        }
+    }
+    assert_eq!(rig.t3i.output, WireFrame::from_frame(&rig.commanded()));
+}
+
+#[test]
+fn rotations_leave_their_centre_where_it_is() {
+    for (switch, x, y, roll) in [
+        (joystick_frame::TOOL_ORIGIN, FULL, 0, false),
+        (joystick_frame::TOOL_ORIGIN, 0, FULL, false),
+        (joystick_frame::WRIST_ORIGIN, FULL, 0, false),
+        (joystick_frame::WRIST_ORIGIN, 0, -FULL, false),
+        (joystick_frame::WORLD, 0, 0, true),
+        (joystick_frame::TOOL, 0, 0, true),
+        (joystick_frame::TOOL_ORIGIN, 0, 0, true),
+        (joystick_frame::WRIST_ORIGIN, 0, 0, true),
+    ] {
+        let mut rig = Rig::paused();
+        let at = rig.commanded();
+        rig.frame_switch(switch);
+        rig.stick(x, y);
+        rig.external.devices.joystick.roll_plus = roll;
+        rig.steps(60);
+        let here = rig.commanded();
+        let axis = at.y() * f64::from(x.signum()) + at.z() * f64::from(y.signum());
+        let axis = if roll { at.x() } else { axis };
+        let by = turn(&at, &here);
+        assert!(norm(&by) > 0.2 && norm(&(by.normalize() - axis)) < 1e-6, "{by:?} about {axis:?}");
+        let (tool, wrist) = (norm(&(here.position - at.position)), norm(&(wrist(&here) - wrist(&at))));
+        if switch == joystick_frame::WRIST_ORIGIN {
+            assert!(wrist < 1e-9, "{wrist}");
+        } else {
+            assert!(tool < 1e-9, "{tool}");
+        }
+        // The speed of the point that is farther off is that of a translation.
+        rig.step();
+        let lever = if switch == joystick_frame::WRIST_ORIGIN { POINT_DISTANCE } else { 14.0 };
+        let rate = norm(&turn(&here, &rig.commanded())) / TICK_S;
+        assert!((rate * lever - SPEED).abs() < 1e-6, "{rate} rad/s");
+        rig.external.devices.joystick.roll_minus = roll;
+        rig.let_go();
+    }
+}
+
+#[test]
+fn a_stick_that_is_not_quite_centred_moves_nothing() {
+    let mut rig = Rig::paused();
+    let at = rig.commanded();
+    rig.frame_switch(joystick_frame::WORLD);
+    rig.stick(30, -30);
+    rig.external.devices.joystick.up = true;
+    rig.external.devices.joystick.down = true;
+    rig.steps(50);
+    assert_eq!((rig.commanded(), rig.report()), (at, PrimReport::JoystickOn));
+}
+
+#[test]
+fn the_box_is_done_when_the_robot_stands() {
+    let mut rig = Rig::paused();
+    rig.frame_switch(joystick_frame::WORLD);
+    rig.stick(FULL, FULL);
+    rig.steps(30);
+    rig.frame_switch(0);
+    rig.step();
+    assert_eq!((rig.report(), rig.leds()), (PrimReport::Executing, 0));
+    let at = rig.commanded();
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    let path = rig.commanded().distance(&at).path();
+    assert!(path > 0.5 && path < SPEED * SPEED / ACCELERATION, "{path}");
+    let held = rig.commanded();
+    rig.steps(20);
+    assert_eq!((rig.commanded(), rig.t3i.output), (held, WireFrame::from_frame(&held)));
+    // It can be taken again, by the same PAUSE.
+    rig.frame_switch(joystick_frame::TOOL);
+    rig.steps(20);
+    assert_eq!(rig.report(), PrimReport::JoystickOn);
+    assert_ne!(rig.commanded(), held);
+}
+
+#[test]
+fn two_frames_are_none() {
+    let mut rig = Rig::paused();
+    let at = rig.commanded();
+    rig.frame_switch(joystick_frame::WORLD | joystick_frame::TOOL);
+    rig.stick(FULL, 0);
+    rig.steps(30);
+    assert_eq!((rig.commanded(), rig.report(), rig.leds()), (at, PrimReport::JoystickOn, 0));
+    // A bit that is no switch of the box is no frame either.
+    rig.frame_switch(0x40);
+    rig.steps(30);
+    assert_eq!((rig.commanded(), rig.report(), rig.leds()), (at, PrimReport::JoystickOn, 0));
+    rig.frame_switch(joystick_frame::WORLD);
+    rig.steps(30);
+    assert_eq!(rig.leds(), joystick_frame::WORLD);
+    // The second one while it moves: ramp down.
+    rig.frame_switch(joystick_frame::WORLD | joystick_frame::WRIST_ORIGIN);
+    rig.steps(40);
+    let held = rig.commanded();
+    rig.steps(10);
+    assert_eq!((rig.commanded(), rig.report(), rig.leds()), (held, PrimReport::JoystickOn, 0));
+}
+
+#[test]
+fn a_switch_stops_every_motion_and_the_commander_hears_of_it() {
+    for verb in
+        [PrimVerb::GoThru, PrimVerb::GotoPt, PrimVerb::GoUntil, PrimVerb::GoWhile, PrimVerb::DeltaMove]
+    {
+        let mut rig = Rig::initialized();
+        rig.guard(verb, 3, "NEAR-R");
+        rig.stick(FULL, 0);
+        rig.steps(30);
+        rig.frame_switch(joystick_frame::WORLD);
+        rig.step();
+        assert_eq!(
+            (rig.report(), rig.memory.prim.status.reason),
+            (PrimReport::JoystickOn, Reason::JoystickOn)
+        );
+        rig.steps(80);
+        assert!(rig.prim.state().motion.is_at_rest());
+        assert_eq!(rig.leds(), 0, "the box moves nothing before PAUSE");
+        let held = rig.commanded();
+        rig.frame_switch(0);
+        rig.steps(20);
+        assert_eq!((rig.report(), rig.commanded()), (PrimReport::JoystickOn, held), "it is not resumed");
+        rig.check_path(&start());
+        rig.command(PrimVerb::Pause, 0);
+        assert_eq!(rig.until_over(), PrimReport::Done);
+        rig.frame_switch(joystick_frame::WORLD);
+        rig.steps(20);
+        assert_ne!(rig.commanded(), held);
+        // With the switch on no motion begins.
+        rig.let_go();
+        let held = rig.commanded();
+        rig.guard(verb, 3, "NEAR-R");
+        assert_eq!((rig.until_over(), rig.commanded()), (PrimReport::JoystickOn, held));
+    }
+}
+
+#[test]
+fn a_switch_is_heard_of_after_a_motion_is_done() {
+    let mut rig = Rig::initialized();
+    assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done);
+    let flying = rig.commanded();
+    rig.frame_switch(joystick_frame::TOOL);
+    rig.step();
+    assert_eq!(rig.report(), PrimReport::JoystickOn);
+    rig.steps(80);
+    assert!(rig.prim.state().motion.is_at_rest());
+    assert!(rig.commanded().distance(&flying).path() < 10.0);
+    rig.check_path(&start());
+}
+
+#[test]
+fn a_command_in_the_middle_of_a_manual_motion_begins_when_that_has_ramped_down() {
+    let mut rig = Rig::paused();
+    rig.frame_switch(joystick_frame::WORLD);
+    rig.stick(-FULL, FULL);
+    rig.steps(30);
+    rig.frame_switch(0);
+    assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+    assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(10.0, 10.0)));
+    rig.check_path(&start());
+}
+
+#[test]
+fn without_a_position_the_box_moves_nothing() {
+    let mut rig = Rig::new();
+    rig.steps(3);
+    rig.frame_switch(joystick_frame::WORLD);
+    rig.stick(FULL, 0);
+    assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::JoystickOn);
+    rig.steps(10);
+    assert_eq!((rig.leds(), rig.memory.prim.t3i.command), (0, T3iVerb::Pause));
+    // ROBOT-INIT moves nothing either, and is not hindered.
+    assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Done);
+    assert_eq!(rig.run(PrimVerb::CalSensor, 0), PrimReport::JoystickOn);
+}
+
+#[test]
+fn the_gripper_buttons_are_passed_on_while_the_box_has_the_robot() {
+    let mut rig = Rig::paused();
+    let joystick = |rig: &mut Rig, frame, open, close| {
+        let joystick = &mut rig.external.devices.joystick;
+        (joystick.frame, joystick.open, joystick.close) = (frame, open, close);
+        rig.step();
+        rig.memory.prim.status.joystick_grip
+    };
+    assert_eq!(joystick(&mut rig, 0, true, false), JoystickGrip::None);
+    assert_eq!(joystick(&mut rig, joystick_frame::TOOL, true, false), JoystickGrip::Open);
+    assert_eq!(joystick(&mut rig, joystick_frame::TOOL, false, true), JoystickGrip::Close);
+    assert_eq!(joystick(&mut rig, joystick_frame::TOOL, true, true), JoystickGrip::None);
+    assert_eq!(
+        joystick(&mut rig, joystick_frame::TOOL | joystick_frame::WORLD, true, false),
+        JoystickGrip::None
+    );
+}
+
+#[test]
+fn a_recorded_pose_suspends_until_the_operator_goes_on() {
+    let mut rig = Rig::paused();
+    assert_eq!((rig.memory.prim.status.recorded_pose, rig.memory.prim.status.recording), (0, false));
+    rig.frame_switch(joystick_frame::WORLD);
+    rig.stick(FULL, 0);
+    rig.steps(30);
+    rig.external.devices.joystick.record = true;
+    rig.step();
+    let status = rig.memory.prim.status;
+    assert!(status.recording);
+    let pose = rig.memory.changing_pose(status.recorded_pose).copied();
+    assert_eq!(pose, Some(Pose::from_frame(&rig.commanded())));
+    assert_eq!(pose, rig.memory.changing_pose(status.present_pose).copied());
+    // The last point is the one recorded, and the robot holds it.
+    rig.steps(2);
+    let held = rig.t3i.output;
+    assert_eq!(held, WireFrame::from_frame(&rig.commanded()));
+    rig.steps(50);
+    assert_eq!((rig.t3i.output, rig.memory.prim.header.republished), (held, true));
+    rig.t3i.path.clear();
+    rig.external.devices.joystick.resume = true;
+    rig.step();
+    assert!(!rig.memory.prim.status.recording && !rig.memory.prim.header.republished);
+    rig.external.devices.joystick.resume = false;
+    rig.steps(40);
+    assert!(!rig.memory.prim.status.recording, "the button was never let go");
+    assert_eq!(rig.memory.changing_pose(rig.memory.prim.status.recorded_pose).copied(), pose);
+    // The stick was held all the time: from rest again.
+    rig.check_path(&held.to_frame().unwrap());
+    assert_ne!(rig.t3i.output, held);
+}
+
+#[test]
+fn a_prim_that_was_held_goes_on_from_rest_to_its_goal() {
+    for verb in [PrimVerb::GotoPt, PrimVerb::GoThru, PrimVerb::Pause] {
+        let mut rig = Rig::initialized();
+        if verb == PrimVerb::Pause {
+            rig.command(PrimVerb::GotoPt, 3);
+            rig.steps(30);
+        }
+        rig.command(verb, 3);
+        rig.steps(if verb == PrimVerb::Pause { 5 } else { 30 });
+        (rig.held, rig.external.devices.joystick.hold) = (true, single_step::PRIM);
+        rig.steps(2);
+        let held = rig.t3i.output;
+        rig.steps(30);
+        assert_eq!(rig.t3i.output, held);
+        (rig.held, rig.external.devices.joystick.hold) = (false, 0);
+        rig.t3i.path.clear();
+        assert_eq!(rig.until_over(), PrimReport::Done);
+        rig.check_path(&held.to_frame().unwrap());
+        if verb == PrimVerb::Pause {
+            assert_eq!(rig.t3i.output, held, "what ramped down stands already");
+        } else {
+            rig.steps(100);
+            assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(40.0, 3.0)));
+        }
+    }
+}
+
+#[test]
+fn a_step_is_a_knot_point_of_the_trajectory() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(60);
+    (rig.held, rig.external.devices.joystick.hold) = (true, single_step::PRIM);
+    rig.steps(10);
+    for _ in 0..5 {
+        let before = rig.t3i.path.len();
+        rig.held = false;
+        rig.step();
+        rig.held = true;
+        rig.steps(10);
+        let [.., a, b] = rig.t3i.path.as_slice() else { panic!("no path") };
+        assert_eq!(rig.t3i.path.len(), before + 1);
+        let step = a.to_frame().unwrap().distance(&b.to_frame().unwrap()).inches;
+        assert!((step - 0.4).abs() < 0.02, "{step} in: the points lie where they would");
+    }
+    // Let go in the tick after a step: from rest all the same.
+    let held = rig.t3i.output;
+    (rig.held, rig.external.devices.joystick.hold) = (false, 0);
+    rig.t3i.path.clear();
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    rig.check_path(&held.to_frame().unwrap());
+}

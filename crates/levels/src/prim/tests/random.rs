@@ -1,0 +1,189 @@
+//! Random commands, sensors and operators: whatever they do, the points stay within the limits.
+
+use rcs_core::{
+    frame::{INCHES_PER_RADIAN, Rotation, rotation_vector},
+    interface::device::ForceSensor,
+    tick::TICK_S,
+};
+
+use super::{guarded::stopping_path, *};
+use crate::prim::manual::ACCELERATION;
+
+/// in/s of every set of parameters at most.
+const VELOCITY: f64 = 10.0;
+/// in/s³ of the smoothest of them.
+const JERK: f64 = 250.0;
+
+/// Judges the points that Prim sends, one after the other.
+struct Watch {
+    number: u32,
+    frames: [Frame; 3],
+    /// Frame and speed at the trip of the current guarded move.
+    trip: Option<(u32, Frame, f64)>,
+}
+
+impl Watch {
+    fn new(rig: &Rig) -> Self {
+        Self { number: rig.memory.prim.t3i.number, frames: [rig.commanded(); 3], trip: None }
+    }
+
+    fn speed(&self) -> f64 {
+        self.frames[1].distance(&self.frames[2]).path() / TICK_S
+    }
+
+    /// A tick of the rig, judged. Points are counted, not ticks: without a point the path stands.
+    fn step(&mut self, rig: &mut Rig) -> Result<(), String> {
+        let before = rig.commanded();
+        rig.step();
+        let (header, command) = (rig.memory.prim.header, rig.memory.prim.status.echo);
+        // GO-UNTIL 8, 9 and GO-WHILE 8, 9: the condition, or a sensor that fails.
+        if matches!((header.table, header.row), (6 | 7, 8 | 9)) && !rig.prim.state().motion.is_at_rest() {
+            self.trip.get_or_insert((command, before, self.speed()));
+        }
+        if rig.memory.prim.t3i.number == self.number {
+            return Ok(());
+        }
+        self.number = rig.memory.prim.t3i.number;
+        self.frames.rotate_left(1);
+        self.frames[2] = rig.commanded();
+        self.judge()?;
+        match self.trip {
+            Some((of, at, speed)) if of == command => {
+                let (beyond, path) =
+                    (at.distance(&self.frames[2]).path(), stopping_path(speed, ACCELERATION, JERK));
+                if beyond > path + 1e-9 {
+                    Err(format!("{beyond} in beyond the trip, not {path}"))
+                } else {
+                    Ok(())
+                }
+            }
+            _ => {
+                self.trip = None;
+                Ok(())
+            }
+        }
+    }
+
+    fn judge(&self) -> Result<(), String> {
+        let rate = |a: &Frame, b: &Frame| {
+            let turn: Rotation = b.rotation * a.rotation.inverse();
+            ((b.position - a.position) / TICK_S, rotation_vector(&turn) * (INCHES_PER_RADIAN / TICK_S))
+        };
+        let [a, b, c] = &self.frames;
+        let (before, now) = (rate(a, b), rate(b, c));
+        for (what, value, limit) in [
+            ("velocity", norm(&now.0), VELOCITY),
+            ("angular velocity", norm(&now.1), VELOCITY),
+            ("acceleration", norm(&(now.0 - before.0)) / TICK_S, ACCELERATION),
+            ("angular acceleration", norm(&(now.1 - before.1)) / TICK_S, ACCELERATION),
+        ] {
+            // Rotation vectors are exact to 1e-9 rad or so.
+            if value > limit * (1.0 + 1e-9) + 1e-4 {
+                return Err(format!("{what} {value} over {limit}"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Rig {
+    fn below(&mut self, n: u64) -> u64 {
+        self.stalled();
+        (self.noise >> 11) % n
+    }
+
+    /// The world around Prim does something.
+    fn disturb(&mut self, operator: bool) {
+        if self.below(30) == 0 {
+            self.external.devices.holsters.right = [0, 3, 15][self.below(3) as usize];
+        }
+        if self.below(20) == 0 {
+            let z = [2048, 2048, 2440, 2460, 4095, 0][self.below(6) as usize];
+            self.external.devices.force =
+                ForceSensor { x: 2048, y: 2048, z, moment: 2048, valid: self.below(9) > 0 };
+        }
+        if self.below(40) == 0 {
+            self.external.devices.joystick.velocity = [0, 1, 300, 1000, 1000][self.below(5) as usize];
+        }
+        if operator && self.below(25) == 0 {
+            let frame = [0, 0, 1, 1, 2, 4, 8, 8, 3, 0x40][self.below(10) as usize];
+            self.frame_switch(frame);
+        }
+        if operator && self.below(10) == 0 {
+            let (x, y) = (self.below(2400) as i16 - 1200, self.below(2400) as i16 - 1200);
+            self.stick(x, y);
+            let bits = self.below(16);
+            let joystick = &mut self.external.devices.joystick;
+            (joystick.up, joystick.down) = (bits & 1 != 0, bits & 2 != 0);
+            (joystick.roll_plus, joystick.roll_minus) = (bits & 4 != 0, bits & 8 != 0);
+        }
+    }
+
+    fn random_command(&mut self) {
+        let verb = [
+            PrimVerb::GoUntil,
+            PrimVerb::GoUntil,
+            PrimVerb::GoWhile,
+            PrimVerb::DeltaMove,
+            PrimVerb::CalSensor,
+            PrimVerb::Pause,
+            PrimVerb::Pause,
+        ][self.below(7) as usize];
+        let sensor = ["NEAR-R", "SEATED-R", "PUSH-X"][self.below(3) as usize];
+        let pose = 1 + self.below(3) as u32;
+        self.guard(verb, pose, sensor);
+        self.memory.emove.prim.trajectory_parameters = [1, 3, 4][self.below(3) as usize];
+    }
+}
+
+/// A run of random commands; what was wrong.
+fn run(seed: u64, operator: bool) -> Result<BTreeSet<(u8, u8)>, String> {
+    let mut rig = Rig::initialized();
+    for (vel_max, smooth) in [(30, 4), (60, 40)] {
+        rig.files.parameters.push(TrajPara { acc_fac: 4, vel_max, smooth, brk_dst: 0 });
+    }
+    (rig.noise, rig.stalls) = (seed, seed % 8);
+    let mut watch = Watch::new(&rig);
+    for number in 0..12 {
+        rig.random_command();
+        for tick in 0..rig.below(120) {
+            rig.disturb(operator);
+            watch
+                .step(&mut rig)
+                .map_err(|text| format!("seed {seed}, command {number}, tick {tick}: {text}"))?;
+        }
+    }
+    // Whatever was done, it can be ended.
+    (rig.external.devices.joystick.velocity, rig.stalls) = (1000, 0);
+    rig.frame_switch(0);
+    rig.command(PrimVerb::GotoPt, 2);
+    for _ in 0..2000 {
+        watch.step(&mut rig).map_err(|text| format!("seed {seed}, at the end: {text}"))?;
+    }
+    assert_eq!(rig.report(), PrimReport::Done, "seed {seed}: {:#?}", rig.prim.state());
+    assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(10.0, 10.0)));
+    Ok(rig.rows)
+}
+
+#[test]
+fn random_guarded_moves_break_no_limit_and_stop_where_they_trip() {
+    let mut rows = BTreeSet::new();
+    for seed in 1..=600 {
+        rows.append(&mut run(seed, false).unwrap_or_else(|text| panic!("{text}")));
+    }
+    // They have tripped, missed and failed.
+    for row in [8, 9, 12, 16] {
+        assert!(rows.contains(&(6, row)), "GO-UNTIL {row} has not fired");
+    }
+}
+
+#[test]
+fn a_random_operator_breaks_no_limit() {
+    let mut rows = BTreeSet::new();
+    for seed in 1..=600 {
+        rows.append(&mut run(seed, true).unwrap_or_else(|text| panic!("{text}")));
+    }
+    for row in 3..=11 {
+        assert!(rows.contains(&(2, row)), "PAUSE {row} has not fired");
+    }
+}
