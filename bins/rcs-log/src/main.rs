@@ -6,10 +6,12 @@
 //! | [`why`] | what did each level do in a tick, by which row, and what failed first? |
 //! | [`replay`] | would the program of today do the same on the same inputs? |
 //! | [`diff`] | where do two runs differ? |
+//! | [`report`] | the run on one page |
 
 mod diff;
 mod info;
 mod replay;
+mod report;
 mod story;
 mod why;
 
@@ -35,6 +37,7 @@ Examples:
   rcs-log why runs/linkbar.mcap --tick 1200 what each level did in a tick, and by which row
   rcs-log replay runs/*.mcap                compute every tick again and compare every bit
   rcs-log diff a.mcap b.mcap                where two runs differ
+  rcs-log report runs/linkbar.mcap          the run as a page, runs/linkbar.html
 
 Exit status: 0 done, and the same where something is compared; 1 different; 2 usage, or a file that cannot be used.
 The reason is the last line on standard error."
@@ -55,6 +58,8 @@ enum Command {
     Replay(replay::Arguments),
     /// Where two runs differ: first, and then by buffer and field
     Diff(diff::Arguments),
+    /// Write the run as one page of HTML that needs nothing else
+    Report(report::Arguments),
 }
 
 /// Files and the form of the answer: what all subcommands have.
@@ -91,6 +96,14 @@ enum Error {
     /// A log without ticks.
     #[error("{}: the log holds no tick", .0.display())]
     Empty(PathBuf),
+    /// The page cannot be written.
+    #[error("{}: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
     /// The answer cannot be written.
     #[error("the answer cannot be written: {0}")]
     Output(#[from] io::Error),
@@ -102,6 +115,7 @@ fn main() -> ExitCode {
         Command::Why(arguments) => why::why(&arguments),
         Command::Replay(arguments) => replay::replay(&arguments),
         Command::Diff(arguments) => diff::diff(&arguments),
+        Command::Report(arguments) => report::report(&arguments),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("rcs-log: {error}");

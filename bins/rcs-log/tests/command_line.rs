@@ -142,3 +142,17 @@ fn diff_names_the_first_field_and_counts_the_others() {
         );
     }
 }
+
+#[test]
+fn a_report_is_one_page_with_the_failure_on_it() {
+    let scratch = Scratch::new("report");
+    let log = scratch.log("run.mcap", 1000);
+    let output = rcs_log(&["report"], &[&log]);
+    assert!(output.status.success());
+    let page = fs::read_to_string(log.with_extension("html")).expect("the page is there");
+    assert!(page.contains("the object is not in the task data"), "{page}");
+    assert!(page.contains("TRANSFER NOBODY") && page.ends_with("</body></html>\n"));
+    assert!(!page.contains("http"), "the page needs nothing from elsewhere");
+    let output = rcs_log(&["report", "--output", "/nowhere/page.html"], &[&log]);
+    assert_eq!(output.status.code(), Some(2));
+}

@@ -1,0 +1,31 @@
+//! `rcs-log report`: a run on one page of HTML that needs nothing else: commands by level over time, speed against the
+//! limits of the link, gripper, link, paths from above and from the side, and what was worth a line in the log.
+
+mod gather;
+mod page;
+mod svg;
+
+use std::{fs, path::PathBuf, process::ExitCode};
+
+use crate::{Error, story::open};
+
+/// Arguments of `report`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Arguments {
+    /// The log
+    pub file: PathBuf,
+    /// Where to write the page [default: the log's name with .html]
+    #[arg(long, short, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// Write the page of a log.
+pub fn report(arguments: &Arguments) -> Result<ExitCode, Error> {
+    let log = open(&arguments.file)?;
+    let run = gather::gather(&log, &arguments.file)?;
+    let output = arguments.output.clone().unwrap_or_else(|| arguments.file.with_extension("html"));
+    fs::write(&output, page::page(&log, &run))
+        .map_err(|source| Error::Write { path: output.clone(), source })?;
+    println!("{}", output.display());
+    Ok(ExitCode::SUCCESS)
+}
