@@ -43,7 +43,7 @@ mod preprocess;
 mod state;
 pub mod tables;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub(crate) use self::preprocess::attainable;
 pub use self::state::{Calibration, Command, Phase, Readings, Scale, State, Steady, Step};

@@ -1,7 +1,7 @@
 //! Scenarios of Grip with a simulated gripper.
 
 mod bench;
-mod gripper;
+pub mod gripper;
 
 use proptest::prelude::*;
 use rcs_core::{

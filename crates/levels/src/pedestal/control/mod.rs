@@ -14,6 +14,8 @@ mod postprocess;
 mod preprocess;
 mod state;
 pub mod tables;
+#[cfg(test)]
+mod tests;
 
 pub use self::state::State;
 

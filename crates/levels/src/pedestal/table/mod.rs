@@ -28,6 +28,8 @@ mod postprocess;
 mod preprocess;
 mod state;
 pub mod tables;
+#[cfg(test)]
+pub(super) mod tests;
 
 pub(super) use self::{postprocess::report, preprocess::within_limits};
 pub use self::{

@@ -52,9 +52,10 @@ pub(super) fn perform(
         Action::Lose(reason) => {
             state.phase = Phase::Failed;
             stop(state, tick);
-            // A PAUSE that has waited for a calibration goes on without it.
-            let waited = seen.calibrate && state.command.command == TableVerb::Pause;
-            if executing && !waited {
+            // A PAUSE that has waited for a calibration goes on without it, and its time begins now.
+            if seen.calibrate && state.command.command == TableVerb::Pause {
+                state.since = tick;
+            } else if executing {
                 state.execution.fail(reason);
             }
         }

@@ -1,0 +1,469 @@
+//! Scenarios of the pedestal process: against statuses by hand, and together with hand and table and their devices.
+
+use std::collections::BTreeSet;
+
+use proptest::prelude::*;
+use rcs_core::{
+    interface::{
+        CommonMemory, ExternalInputs, Header, PedestalOutputs, Reason,
+        grip::{GripReport, GripVerb},
+        pedestal::{PedestalCommand, PedestalReport, PedestalVerb, TableVerb},
+    },
+    process::{Inputs, Process},
+    record::{Field, to_bytes},
+    tick::Tick,
+};
+
+use super::{Pedestal, State, TABLES};
+use crate::{
+    grip::tests::gripper::{Gripper, Object},
+    pedestal::{Hand, Table, table::tests::Rotary},
+};
+
+/// The pedestal process, and what its lower neighbours are made to say.
+#[derive(Default)]
+struct Bench {
+    process: Pedestal,
+    memory: CommonMemory,
+    tick: Tick,
+    rows: BTreeSet<(u8, u8)>,
+}
+
+impl Bench {
+    /// A bench after a tick in which nothing was commanded, with hand and table calibrated.
+    fn new() -> Self {
+        let mut bench = Self::default();
+        bench.memory.hand.status.initialized = true;
+        bench.memory.hand.status.position = 500;
+        bench.memory.table.status.calibrated = true;
+        bench.memory.table.status.position = -2135;
+        bench.step();
+        bench
+    }
+
+    fn send(&mut self, command: PedestalVerb, grasp_size: i32, grasp_force: i32, table_angle: i32) {
+        let number = self.memory.subtask.pedestal.number + 1;
+        let cycle = self.tick;
+        self.memory.subtask.pedestal =
+            PedestalCommand { cycle, number, command, grasp_size, grasp_force, table_angle };
+    }
+
+    fn step(&mut self) -> PedestalOutputs {
+        self.tick = self.tick.next();
+        for header in [&mut self.memory.hand.header, &mut self.memory.table.header] {
+            header.stamp = self.tick.previous();
+        }
+        let mut outputs = self.memory.pedestal;
+        let external = ExternalInputs::default();
+        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &external, data: &() };
+        self.process.step(&inputs, &mut outputs);
+        assert_eq!(outputs.status.cycle_echo, self.memory.subtask.pedestal.cycle);
+        self.rows.insert((outputs.header.table, outputs.header.row));
+        self.memory.pedestal = outputs;
+        outputs
+    }
+
+    /// The hand answers its last command.
+    fn hand(&mut self, report: GripReport, position: i32) -> &mut Self {
+        let status = &mut self.memory.hand.status;
+        (status.echo, status.report, status.position) = (self.memory.pedestal.hand.number, report, position);
+        self
+    }
+
+    /// The table answers its last command.
+    fn table(&mut self, report: PedestalReport) -> &mut Self {
+        let status = &mut self.memory.table.status;
+        (status.echo, status.report) = (self.memory.pedestal.table.number, report);
+        self
+    }
+
+    fn end(&mut self) -> (PedestalReport, Reason) {
+        let status = self.step().status;
+        (status.report, status.reason)
+    }
+}
+
+const EXECUTING: (PedestalReport, Reason) = (PedestalReport::Executing, Reason::None);
+const DONE: (PedestalReport, Reason) = (PedestalReport::Done, Reason::None);
+
+#[test]
+fn no_row_is_dead() {
+    for table in TABLES {
+        table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
+    }
+}
+
+#[test]
+fn pre_grip_opens_the_hand_and_turns_the_table_at_once() {
+    let mut bench = Bench::new();
+    bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
+    let outputs = bench.step();
+    assert_eq!((outputs.hand.command, outputs.hand.position), (GripVerb::OpenGrip, 450));
+    assert_eq!((outputs.table.command, outputs.table.angle), (TableVerb::Turn, -1000));
+    assert_eq!(bench.end(), EXECUTING, "not echoed yet");
+    bench.hand(GripReport::Done, 450).table(PedestalReport::Executing);
+    assert_eq!(bench.end(), EXECUTING);
+    bench.hand(GripReport::Executing, 450).table(PedestalReport::Done);
+    assert_eq!(bench.end(), EXECUTING);
+    bench.hand(GripReport::Done, 450);
+    assert_eq!(bench.end(), DONE);
+}
+
+#[test]
+fn grip_flip_and_release_command_one_neighbour_each() {
+    let mut bench = Bench::new();
+    bench.send(PedestalVerb::Grip, 250, 50, 0);
+    let outputs = bench.step();
+    assert_eq!(
+        (outputs.hand.command, outputs.hand.position, outputs.hand.force),
+        (GripVerb::CloseGrip, 250, 50)
+    );
+    assert_eq!(outputs.table.number, 0, "no command is sent to the rotary table");
+    bench.memory.hand.status.left_force = 49;
+    bench.memory.hand.status.right_force = 52;
+    assert_eq!(bench.hand(GripReport::Done, 256).end(), DONE);
+    let status = bench.memory.pedestal.status;
+    assert_eq!((status.grip_size, status.grip_force, status.table_position), (256, 51, -2135));
+
+    let gripping = bench.memory.pedestal.hand;
+    bench.send(PedestalVerb::Flip, 0, 0, 1835);
+    let outputs = bench.step();
+    assert_eq!((outputs.table.command, outputs.table.angle), (TableVerb::Turn, -300), "relative");
+    assert_eq!(outputs.hand, gripping, "no command is sent to the hand");
+    assert_eq!(bench.table(PedestalReport::Executing).end(), EXECUTING);
+    assert_eq!(bench.table(PedestalReport::Done).end(), DONE);
+
+    let turned = bench.memory.pedestal.table;
+    bench.send(PedestalVerb::Release, 450, 0, 0);
+    let outputs = bench.step();
+    assert_eq!((outputs.hand.command, outputs.hand.position), (GripVerb::OpenGrip, 450));
+    assert_eq!(outputs.table, turned);
+    assert_eq!(bench.hand(GripReport::Done, 450).end(), DONE);
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_before_anything_moves() {
+    for (verb, size, force, angle, reason) in [
+        (PedestalVerb::None, 0, 0, 0, Reason::UnknownCommand),
+        (PedestalVerb::PreGrip, 450, 0, -100, Reason::TableLimit),
+        (PedestalVerb::PreGrip, 450, 0, i32::MIN, Reason::TableLimit),
+        (PedestalVerb::PreGrip, 600, 0, -1000, Reason::GripUnattainable),
+        (PedestalVerb::Grip, 250, 500, 0, Reason::GripUnattainable),
+        (PedestalVerb::Grip, -1, 50, 0, Reason::GripUnattainable),
+        (PedestalVerb::Flip, 0, 0, 2000, Reason::TableLimit),
+        (PedestalVerb::Flip, 0, 0, i32::MAX, Reason::TableLimit),
+        (PedestalVerb::Release, 501, 0, 0, Reason::GripUnattainable),
+    ] {
+        let mut bench = Bench::new();
+        let before = bench.memory.pedestal;
+        bench.send(verb, size, force, angle);
+        assert_eq!(bench.end(), (PedestalReport::CannotDo, reason), "{verb} {size} {force} {angle}");
+        let after = bench.memory.pedestal;
+        assert_eq!((after.hand, after.table), (before.hand, before.table));
+    }
+    let mut bench = Bench::new();
+    bench.memory.table.status.calibrated = false;
+    bench.send(PedestalVerb::Flip, 0, 0, 1835);
+    assert_eq!(bench.end(), (PedestalReport::CannotDo, Reason::NotPrepared), "from where?");
+}
+
+#[test]
+fn a_hand_that_closes_on_nothing_is_an_error() {
+    let mut bench = Bench::new();
+    bench.send(PedestalVerb::Grip, 250, 50, 0);
+    bench.step();
+    assert_eq!(bench.hand(GripReport::Done, 250).end(), (PedestalReport::Error, Reason::GraspMissed));
+}
+
+#[test]
+fn an_object_that_comes_loose_is_noticed_while_it_is_turned() {
+    for when in [0, 1, 5] {
+        let mut bench = Bench::new();
+        bench.send(PedestalVerb::Grip, 250, 50, 0);
+        bench.step();
+        bench.hand(GripReport::Done, 256).end();
+        bench.send(PedestalVerb::Flip, 0, 0, 1835);
+        for _ in 0..when {
+            bench.table(PedestalReport::Executing).step();
+        }
+        bench.memory.hand.status.position = 10;
+        assert_eq!(bench.end(), (PedestalReport::Error, Reason::ObjectLost));
+    }
+}
+
+#[test]
+fn failures_below_are_passed_up_and_send_nothing_to_the_hand() {
+    let pass_up = |verb, fail: &dyn Fn(&mut Bench), reason| {
+        let mut bench = Bench::new();
+        bench.send(PedestalVerb::Grip, 250, 50, 0);
+        bench.step();
+        bench.hand(GripReport::Done, 256).step();
+        bench.send(verb, 250, 50, if verb == PedestalVerb::Flip { 1835 } else { -1000 });
+        bench.step();
+        let hand = bench.memory.pedestal.hand;
+        bench.hand(GripReport::Executing, 256).table(PedestalReport::Executing).step();
+        fail(&mut bench);
+        assert_eq!(bench.end(), (PedestalReport::Error, reason), "{verb}");
+        for _ in 0..20 {
+            assert_eq!(bench.step().hand, hand, "{verb}");
+        }
+    };
+    let hand_fails = |bench: &mut Bench| {
+        bench.hand(GripReport::Serror, 256).memory.hand.status.reason = Reason::GripTimeout;
+    };
+    let table_fails = |bench: &mut Bench| {
+        bench.table(PedestalReport::Error).memory.table.status.reason = Reason::TableStuck;
+    };
+    for verb in [PedestalVerb::PreGrip, PedestalVerb::Grip, PedestalVerb::Release] {
+        pass_up(verb, &hand_fails, Reason::GripTimeout);
+    }
+    for verb in [PedestalVerb::PreGrip, PedestalVerb::Flip, PedestalVerb::Pause] {
+        pass_up(verb, &table_fails, Reason::TableStuck);
+    }
+}
+
+#[test]
+fn a_neighbour_that_does_not_answer_is_lost() {
+    for (verb, angle) in [(PedestalVerb::Grip, 0), (PedestalVerb::Flip, 100)] {
+        let mut bench = Bench::new();
+        bench.send(verb, 250, 50, angle);
+        assert_eq!((0..4).map(|_| bench.end()).collect::<BTreeSet<_>>().len(), 1, "it has some time");
+        assert_eq!(bench.end(), (PedestalReport::Error, Reason::NeighbourLost), "{verb}");
+    }
+}
+
+#[test]
+fn pause_stops_the_table_and_leaves_the_hand_alone() {
+    let mut bench = Bench::new();
+    bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
+    let before = bench.step();
+    bench.hand(GripReport::Executing, 300).table(PedestalReport::Executing).step();
+    bench.send(PedestalVerb::Pause, 0, 0, 0);
+    let outputs = bench.step();
+    assert_eq!((outputs.table.command, outputs.hand), (TableVerb::Pause, before.hand));
+    assert_eq!(bench.table(PedestalReport::Executing).end(), EXECUTING);
+    assert_eq!(bench.table(PedestalReport::Done).end(), DONE);
+}
+
+#[test]
+fn a_restarted_process_adopts_the_command() {
+    let mut bench = Bench::new();
+    bench.send(PedestalVerb::Release, 450, 0, 0);
+    bench.process = Pedestal::default();
+    bench.memory.pedestal = PedestalOutputs::default();
+    assert_eq!(bench.end(), (PedestalReport::Error, Reason::Restarted));
+    assert_eq!(bench.memory.pedestal.hand.number, 0, "the hand is not opened");
+    bench.send(PedestalVerb::Flip, 0, 0, 100);
+    bench.step();
+    assert_eq!(bench.table(PedestalReport::Done).end(), DONE, "whatever the hand holds");
+}
+
+#[test]
+fn every_row_fires() {
+    let mut bench = Bench::new();
+    let mut play = |verb, hands: &[(GripReport, i32)], tables: &[PedestalReport]| {
+        for (position, report) in hands.iter().map(|(report, position)| (*position, *report)) {
+            for &table in tables {
+                bench.send(verb, 250, 50, if verb == PedestalVerb::Flip { 10 } else { -1000 });
+                bench.step();
+                bench.hand(report, position).table(table);
+                bench.step();
+                bench.hand(GripReport::Done, position).table(PedestalReport::Done);
+                bench.step();
+            }
+        }
+    };
+    let hands = [
+        (GripReport::Serror, 256),
+        (GripReport::Executing, 256),
+        (GripReport::Done, 10),
+        (GripReport::Done, 256),
+    ];
+    let tables = [PedestalReport::Error, PedestalReport::Executing, PedestalReport::Done];
+    for verb in [PedestalVerb::PreGrip, PedestalVerb::Grip] {
+        play(verb, &hands, &tables);
+    }
+    for verb in [PedestalVerb::Flip, PedestalVerb::Pause] {
+        play(verb, &[(GripReport::Done, 256)], &tables);
+    }
+    play(PedestalVerb::Flip, &[(GripReport::Done, 10)], &tables);
+    play(PedestalVerb::Release, &hands, &tables);
+    // The upper table notes refusals only.
+    play(PedestalVerb::None, &[(GripReport::Done, 10)], &[PedestalReport::Done]);
+    bench.process = Pedestal::default();
+    bench.step();
+    let all = TABLES.iter().zip(1_u8..).flat_map(|(table, number)| {
+        let noted = move |row: &u8| number > 1 || matches!(row, 2 | 3);
+        table.rows.iter().map(|row| row.number).filter(noted).map(move |row| (number, row))
+    });
+    let missing: Vec<_> = all.filter(|row| !bench.rows.contains(row)).collect();
+    assert!(missing.is_empty(), "never fired: {missing:?}");
+}
+
+/// All three processes with a simulated hand and a simulated table.
+struct Cell {
+    pedestal: Pedestal,
+    hand: Hand,
+    table: Table,
+    memory: CommonMemory,
+    external: ExternalInputs,
+    fingers: Gripper,
+    rotary: Rotary,
+    tick: Tick,
+}
+
+impl Cell {
+    fn new(opening: f64, angle: i32) -> Self {
+        let mut cell = Self {
+            pedestal: Pedestal::default(),
+            hand: Hand::default(),
+            table: Table::default(),
+            memory: CommonMemory::default(),
+            external: ExternalInputs::default(),
+            fingers: Gripper::new(opening, 1987),
+            rotary: Rotary::new(angle),
+            tick: Tick::BEFORE_START,
+        };
+        cell.step();
+        cell
+    }
+
+    fn step(&mut self) {
+        self.tick = self.tick.next();
+        let sensors = &mut self.external.devices.pedestal;
+        let grip = self.fingers.sensors();
+        sensors.potentiometer = grip.potentiometer;
+        (sensors.strain_left, sensors.strain_right) = (grip.strain_left, grip.strain_right);
+        self.rotary.sense(sensors);
+        let mut after = self.memory;
+        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
+        self.pedestal.step(&inputs, &mut after.pedestal);
+        self.hand.step(&inputs, &mut after.hand);
+        self.table.step(&inputs, &mut after.table);
+        self.memory = after;
+        self.fingers.advance(after.hand.valves.bits);
+        self.rotary.advance(&after.table.motor);
+    }
+
+    fn execute(
+        &mut self,
+        command: PedestalVerb,
+        grasp_size: i32,
+        table_angle: i32,
+    ) -> (PedestalReport, Reason) {
+        let number = self.memory.subtask.pedestal.number + 1;
+        let grasp_force = 50;
+        self.memory.subtask.pedestal =
+            PedestalCommand { cycle: self.tick, number, command, grasp_size, grasp_force, table_angle };
+        for _ in 0..5000 {
+            self.step();
+            let status = self.memory.pedestal.status;
+            if status.echo == number && status.report != PedestalReport::Executing {
+                return (status.report, status.reason);
+            }
+        }
+        panic!("no end: {:#?}", self.memory.pedestal);
+    }
+
+    /// An object is taken, as in Figure VII.13.
+    fn take(&mut self) {
+        assert_eq!(self.execute(PedestalVerb::PreGrip, 500, -2135), DONE);
+        self.fingers.object = Some(Object { size: 2.56, off_centre: 0.05 });
+        assert_eq!(self.execute(PedestalVerb::Grip, 250, 0), DONE);
+    }
+}
+
+/// FIX-GRIP (V.3.1) with the clevis of Figure VII.13, from booting on.
+#[test]
+fn the_pedestal_takes_turns_and_gives_back_an_object() {
+    let mut cell = Cell::new(1.0, -1200);
+    cell.take();
+    assert!((cell.rotary.angle() + 213.5).abs() < 0.06);
+    assert!((cell.fingers.force - 50.0).abs() <= 3.0);
+    assert_eq!(cell.execute(PedestalVerb::Flip, 0, 1835), DONE);
+    assert!((cell.rotary.angle() + 30.0).abs() < 0.06);
+    assert!((cell.fingers.force - 50.0).abs() <= 3.0, "still held");
+    let status = cell.memory.pedestal.status;
+    assert!((status.grip_size - 256).abs() <= 2 && (status.grip_force - 50).abs() <= 3);
+    assert!((status.table_position + 300).abs() <= 1);
+    assert_eq!(cell.execute(PedestalVerb::Release, 450, 0), DONE);
+    assert!((cell.fingers.opening - 4.5).abs() <= 0.02 && cell.fingers.force == 0.0);
+}
+
+#[test]
+fn the_object_stays_gripped_whatever_fails() {
+    for (fault, breakage) in [
+        ("the table is blocked", (|c: &mut Cell| c.rotary.blocked = true) as fn(&mut Cell)),
+        ("the table's controller is off", |c| c.rotary.off = true),
+        ("steps are lost", |c| c.rotary.slip = 4),
+        ("the pedestal process is restarted", |c| c.pedestal = Pedestal::default()),
+        ("the hand process is restarted", |c| c.hand = Hand::default()),
+        ("the table process is restarted", |c| c.table = Table::default()),
+        ("the angle is beyond the limit", |c| c.memory.subtask.pedestal.table_angle = 9000),
+        ("the command is none", |c| c.memory.subtask.pedestal.command = PedestalVerb::None),
+    ] {
+        for later in [0, 30] {
+            let mut cell = Cell::new(1.0, -1200);
+            cell.take();
+            let force = cell.fingers.force;
+            let number = cell.memory.subtask.pedestal.number + 1;
+            cell.memory.subtask.pedestal = PedestalCommand {
+                number,
+                command: PedestalVerb::Flip,
+                table_angle: 1835,
+                ..PedestalCommand::default()
+            };
+            (0..later).for_each(|_| cell.step());
+            breakage(&mut cell);
+            (0..2500).for_each(|_| cell.step());
+            assert!((cell.fingers.force - force).abs() <= 2.0, "{fault}: {} lb", cell.fingers.force);
+            assert_ne!(cell.memory.pedestal.status.report, PedestalReport::Executing, "{fault}");
+            cell.execute(PedestalVerb::Pause, 0, 0);
+            assert!(
+                (cell.fingers.force - force).abs() <= 2.0,
+                "{fault}: {} lb after PAUSE",
+                cell.fingers.force
+            );
+        }
+    }
+}
+
+proptest! {
+    /// Whatever is commanded and whatever the neighbours say: no panic, the hand is opened only for PRE-GRIP and RELEASE, and the
+    /// same inputs give the same bits.
+    #[test]
+    fn nonsense(ticks in prop::collection::vec((0_u8..20, any::<i32>(), any::<i32>(), 0_u8..5, any::<bool>()), 1..200)) {
+        let (mut bench, mut twin) = (Bench::new(), Bench::new());
+        for (what, a, b, report, answers) in ticks {
+            for bench in [&mut bench, &mut twin] {
+                if let Some(verb) = PedestalVerb::from_code(what) {
+                    bench.send(verb, a, b, if what % 2 == 0 { b } else { -1000 });
+                }
+                match what {
+                    10 => bench.process = Pedestal::default(),
+                    11 => bench.memory.table.header = Header::default(),
+                    12 => bench.memory.hand.status.position = a,
+                    13 => bench.memory.table.status.position = b,
+                    _ => {}
+                }
+                if answers {
+                    bench.hand(GripReport::from_code(report).unwrap(), a);
+                    bench.table(PedestalReport::from_code(report).unwrap());
+                }
+                let sent = bench.memory.pedestal.hand.number;
+                let outputs = bench.step();
+                let verb = bench.memory.subtask.pedestal.command;
+                if outputs.hand.number != sent && outputs.hand.command == GripVerb::OpenGrip {
+                    prop_assert!(matches!(verb, PedestalVerb::PreGrip | PedestalVerb::Release));
+                }
+            }
+            let state = *<Pedestal as Process<()>>::state(&twin.process);
+            twin.process = Pedestal::default();
+            Process::<()>::restore(&mut twin.process, state);
+            let (one, two): ([u8; 128], [u8; 128]) =
+                (to_bytes(&bench.memory.pedestal), to_bytes(&twin.memory.pedestal));
+            prop_assert_eq!(one, two);
+        }
+        prop_assert!(State::SIZE < 128 && PedestalOutputs::SIZE <= 128);
+    }
+}

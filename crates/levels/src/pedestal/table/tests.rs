@@ -1,0 +1,438 @@
+//! Scenarios of the table process with a simulated rotary table.
+
+use std::collections::BTreeSet;
+
+use proptest::prelude::*;
+use rcs_core::{
+    interface::{
+        CommonMemory, ExternalInputs, Reason, TableOutputs,
+        device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH},
+        pedestal::{PedestalReport, TableCommand, TableVerb},
+    },
+    process::{Inputs, Process},
+    record::{Field, to_bytes},
+    tick::Tick,
+};
+
+use super::{LIMIT_MINUS, LIMIT_PLUS, Phase, State, TABLES, Table, preprocess::LIMIT_TICKS};
+
+/// Motor, controller, switches and potentiometer.
+#[derive(Clone, Debug)]
+pub struct Rotary {
+    /// Steps; 0 where the calibrated counter is 0.
+    pub position: i32,
+    goal: i32,
+    offset: i32,
+    echo: u32,
+    /// Steps a tick.
+    pub speed: i32,
+    /// Ticks that an order needs on the line.
+    pub delay: u8,
+    waiting: (MotorCommand, u8),
+    /// Steps lost in each tick of a turn.
+    pub slip: i32,
+    /// The table is blocked.
+    pub blocked: bool,
+    /// The controller takes no orders.
+    pub off: bool,
+    /// The motor does not stop, whatever it is told.
+    pub runs_on: bool,
+    /// Counts that the potentiometer is wrong by.
+    pub wrong: f64,
+}
+
+impl Rotary {
+    /// A table that was left at an angle, 0.1 degree.
+    pub fn new(angle: i32) -> Self {
+        let position = angle * TABLE_STEPS_PER_TENTH;
+        Self {
+            position,
+            goal: position,
+            offset: -position,
+            echo: 57,
+            speed: 120,
+            delay: 0,
+            waiting: (MotorCommand::default(), 0),
+            slip: 0,
+            blocked: false,
+            off: false,
+            runs_on: false,
+            wrong: 0.0,
+        }
+    }
+
+    /// One tick.
+    pub fn advance(&mut self, command: &MotorCommand) {
+        if command.number != self.waiting.0.number {
+            self.waiting = (*command, self.delay);
+        } else {
+            self.waiting.1 = self.waiting.1.saturating_sub(1);
+        }
+        let (order, wait) = self.waiting;
+        if wait == 0 && order.number != 0 && order.number != self.echo && !self.off {
+            self.echo = order.number;
+            match order.order {
+                MotorOrder::None => {}
+                MotorOrder::Turn => self.goal = self.position + order.steps,
+                MotorOrder::SetCounter => self.offset = order.steps - self.position,
+                MotorOrder::Stop => self.goal = self.position,
+            }
+        }
+        if self.blocked {
+            return;
+        }
+        let way = (self.goal - self.position).clamp(-self.speed, self.speed);
+        self.position += way;
+        if way != 0 {
+            self.position -= self.slip;
+            self.offset += self.slip;
+            self.goal -= self.slip;
+        }
+        // A switch stops the motor a few steps late, and lets it run away from it.
+        if way > 0 && self.at_plus() {
+            self.position = LIMIT_PLUS * TABLE_STEPS_PER_TENTH + 2;
+            self.goal = self.position;
+        }
+        if way < 0 && self.at_minus() {
+            self.goal = self.position;
+        }
+    }
+
+    fn at_plus(&self) -> bool {
+        self.position >= LIMIT_PLUS * TABLE_STEPS_PER_TENTH
+    }
+
+    fn at_minus(&self) -> bool {
+        self.position <= (LIMIT_MINUS - 50) * TABLE_STEPS_PER_TENTH
+    }
+
+    /// Degrees on the calibrated counter.
+    pub fn angle(&self) -> f64 {
+        f64::from(self.position) / f64::from(10 * TABLE_STEPS_PER_TENTH)
+    }
+
+    /// Words of table and motor; those of the hand stay.
+    pub fn sense(&self, sensors: &mut PedestalSensors) {
+        let counts = 4000.0 + self.angle() * 10.0 * 180.0 / 183.5 + self.wrong;
+        sensors.table_potentiometer = counts.round().clamp(0.0, 4095.0) as u16;
+        (sensors.limit_plus, sensors.limit_minus) = (self.at_plus(), self.at_minus());
+        (sensors.motor_echo, sensors.motor_moving) = (self.echo, self.runs_on || self.goal != self.position);
+        sensors.motor_counter = self.position + self.offset;
+    }
+}
+
+/// Process, buffers and plant.
+struct Bench {
+    process: Table,
+    memory: CommonMemory,
+    external: ExternalInputs,
+    table: Rotary,
+    tick: Tick,
+    rows: BTreeSet<(u8, u8)>,
+}
+
+impl Bench {
+    fn new(table: Rotary) -> Self {
+        let mut bench = Self {
+            process: Table::default(),
+            memory: CommonMemory::default(),
+            external: ExternalInputs::default(),
+            table,
+            tick: Tick::BEFORE_START,
+            rows: BTreeSet::new(),
+        };
+        bench.step();
+        bench
+    }
+
+    /// A bench with a calibrated table.
+    fn calibrated() -> Self {
+        let mut bench = Self::new(Rotary::new(-1200));
+        assert_eq!(bench.execute(TableVerb::Calibrate, 0), DONE);
+        bench
+    }
+
+    fn send(&mut self, command: TableVerb, angle: i32) {
+        let number = self.memory.pedestal.table.number + 1;
+        self.memory.pedestal.table = TableCommand { number, command, angle };
+    }
+
+    fn step(&mut self) -> TableOutputs {
+        self.tick = self.tick.next();
+        self.table.sense(&mut self.external.devices.pedestal);
+        let mut outputs = self.memory.table;
+        let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
+        self.process.step(&inputs, &mut outputs);
+        self.rows.insert((outputs.header.table, outputs.header.row));
+        self.table.advance(&outputs.motor);
+        self.memory.table = outputs;
+        outputs
+    }
+
+    fn wait(&mut self, ticks: u32) -> TableOutputs {
+        (0..ticks).for_each(|_| {
+            self.step();
+        });
+        self.memory.table
+    }
+
+    fn execute(&mut self, command: TableVerb, angle: i32) -> (PedestalReport, Reason) {
+        self.send(command, angle);
+        self.finish()
+    }
+
+    fn finish(&mut self) -> (PedestalReport, Reason) {
+        for _ in 0..3 * LIMIT_TICKS {
+            let status = self.step().status;
+            assert_eq!(status.echo, self.memory.pedestal.table.number);
+            if status.report != PedestalReport::Executing {
+                return (status.report, status.reason);
+            }
+        }
+        panic!("no end at tick {}: {:?}", self.tick, self.process.state);
+    }
+}
+
+const DONE: (PedestalReport, Reason) = (PedestalReport::Done, Reason::None);
+const STUCK: (PedestalReport, Reason) = (PedestalReport::Error, Reason::TableStuck);
+
+#[test]
+fn no_row_is_dead() {
+    for table in TABLES {
+        table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
+    }
+}
+
+#[test]
+fn a_table_that_is_booted_calibrates_itself() {
+    for start in [-3400, -1200, -210, LIMIT_PLUS] {
+        let mut bench = Bench::new(Rotary::new(start));
+        let status = bench.wait(600).status;
+        assert_eq!(
+            (status.calibrated, status.report, status.reason),
+            (true, PedestalReport::Idle, Reason::None)
+        );
+        assert_eq!((status.position, status.echo), (LIMIT_PLUS, 0));
+        assert!((bench.table.angle() + 20.0).abs() < 0.05, "{}", bench.table.angle());
+        let rows = bench.rows.clone();
+        bench.wait(100);
+        assert_eq!(bench.rows, rows, "once is enough");
+    }
+}
+
+#[test]
+fn angles_are_reached_and_reported() {
+    let mut bench = Bench::calibrated();
+    for angle in [-2135, -300, -235, LIMIT_MINUS, LIMIT_PLUS, -1000, -1000, -1001] {
+        assert_eq!(bench.execute(TableVerb::Turn, angle), DONE, "{angle}");
+        assert!(
+            (bench.table.angle() - f64::from(angle) / 10.0).abs() < 0.06,
+            "{angle}: {}",
+            bench.table.angle()
+        );
+        assert!((bench.memory.table.status.position - angle).abs() <= 1);
+    }
+}
+
+#[test]
+fn angles_beyond_the_limits_cannot_be_done() {
+    let mut bench = Bench::calibrated();
+    for angle in [LIMIT_PLUS + 1, LIMIT_MINUS - 1, 1600, i32::MAX, i32::MIN] {
+        let before = bench.table.position;
+        assert_eq!(bench.execute(TableVerb::Turn, angle), (PedestalReport::CannotDo, Reason::TableLimit));
+        assert_eq!((bench.table.position, bench.memory.table.status.calibrated), (before, true));
+    }
+    assert_eq!(bench.execute(TableVerb::None, 0), (PedestalReport::CannotDo, Reason::UnknownCommand));
+}
+
+#[test]
+fn a_turn_before_the_calibration_is_made_after_it() {
+    let mut bench = Bench::new(Rotary::new(-1200));
+    bench.wait(4);
+    assert_eq!(bench.execute(TableVerb::Turn, -2135), DONE);
+    assert!((bench.table.angle() + 213.5).abs() < 0.06);
+    let mut bench = Bench::new(Rotary::new(-1200));
+    assert_eq!(bench.execute(TableVerb::Pause, 0), DONE, "PAUSE waits as well");
+    assert!(bench.memory.table.status.calibrated);
+}
+
+#[test]
+fn pause_stops_a_turning_table_and_a_new_turn_starts_from_rest() {
+    let mut bench = Bench::calibrated();
+    bench.send(TableVerb::Turn, -3000);
+    bench.wait(40);
+    assert_eq!(bench.execute(TableVerb::Pause, 0), DONE);
+    let stopped = bench.table.position;
+    bench.wait(50);
+    assert_eq!(bench.table.position, stopped);
+    assert!(stopped > -30_000 && stopped < LIMIT_PLUS * TABLE_STEPS_PER_TENTH);
+    bench.send(TableVerb::Turn, -3000);
+    bench.wait(20);
+    assert_eq!(bench.execute(TableVerb::Turn, -300), DONE, "back, out of the middle of a turn");
+    assert!((bench.table.angle() + 30.0).abs() < 0.06);
+}
+
+#[test]
+fn a_slow_line_is_waited_for() {
+    let mut table = Rotary::new(-1200);
+    table.delay = 8;
+    let mut bench = Bench::new(table);
+    for angle in [-2135, -300] {
+        assert_eq!(bench.execute(TableVerb::Turn, angle), DONE);
+        assert!((bench.table.angle() - f64::from(angle) / 10.0).abs() < 0.06);
+    }
+}
+
+#[test]
+fn what_keeps_the_table_from_its_angle_is_an_error_and_the_next_turn_calibrates_again() {
+    for (fault, breakage) in [
+        ("lost steps", (|t: &mut Rotary| t.slip = 4) as fn(&mut Rotary)),
+        ("potentiometer", |t| t.wrong = 200.0),
+        ("blocked", |t| t.blocked = true),
+        ("no answer", |t| t.off = true),
+        ("a counter that has lost its setting", |t| t.offset += 5_000),
+    ] {
+        let mut bench = Bench::calibrated();
+        bench.execute(TableVerb::Turn, -1000);
+        breakage(&mut bench.table);
+        assert_eq!(bench.execute(TableVerb::Turn, -2135), STUCK, "{fault}");
+        assert!(!bench.memory.table.status.calibrated, "{fault}");
+        bench.wait(LIMIT_TICKS as u32);
+        let (good, broken) = (Rotary::new(0), &mut bench.table);
+        *broken = Rotary {
+            position: broken.position,
+            goal: broken.position,
+            offset: broken.offset,
+            echo: broken.echo,
+            ..good
+        };
+        assert_eq!(bench.execute(TableVerb::Turn, -2135), DONE, "{fault}");
+        assert!((bench.table.angle() + 213.5).abs() < 0.06, "{fault}: {}", bench.table.angle());
+    }
+}
+
+#[test]
+fn a_calibration_that_fails_fails_the_command_that_needs_it_and_no_other() {
+    for breakage in [(|t: &mut Rotary| t.blocked = true) as fn(&mut Rotary), |t| t.off = true] {
+        for (verb, end) in [(TableVerb::Turn, STUCK), (TableVerb::Calibrate, STUCK), (TableVerb::Pause, DONE)]
+        {
+            let mut table = Rotary::new(-1200);
+            breakage(&mut table);
+            let mut bench = Bench::new(table);
+            assert_eq!(bench.execute(verb, -1000), end, "{verb}");
+            assert_eq!(bench.process.state.phase, Phase::Failed);
+        }
+    }
+}
+
+#[test]
+fn a_restarted_process_turns_nothing_until_it_must() {
+    let mut bench = Bench::calibrated();
+    bench.execute(TableVerb::Turn, -1000);
+    bench.process = Table::default();
+    let before = bench.table.position;
+    let status = bench.wait(200).status;
+    assert_eq!((status.report, status.reason), (PedestalReport::Error, Reason::Restarted));
+    assert_eq!((bench.table.position, status.calibrated), (before, false));
+    assert_eq!(bench.execute(TableVerb::Pause, 0), DONE);
+    assert_eq!(bench.wait(100).status.calibrated, false);
+    assert_eq!(bench.execute(TableVerb::Turn, -2135), DONE);
+    assert!((bench.table.angle() + 213.5).abs() < 0.06);
+}
+
+#[test]
+fn every_row_fires() {
+    let mut bench = Bench::calibrated();
+    // TURN 2 to 8, PAUSE 1 to 4.
+    bench.table.delay = 3;
+    bench.execute(TableVerb::Turn, -1000);
+    bench.send(TableVerb::Turn, -3000);
+    bench.wait(20);
+    bench.execute(TableVerb::Turn, -1000);
+    bench.send(TableVerb::Turn, -3000);
+    bench.wait(20);
+    bench.execute(TableVerb::Pause, 0);
+    bench.table.slip = 4;
+    bench.execute(TableVerb::Turn, -300);
+    bench.table.slip = 0;
+    bench.execute(TableVerb::Turn, -300);
+    // TURN 2, PAUSE 3: the motor turns for ever.
+    for verb in [TableVerb::Turn, TableVerb::Pause] {
+        bench.execute(TableVerb::Turn, -300);
+        bench.table.runs_on = true;
+        bench.execute(verb, -1000);
+        bench.table.runs_on = false;
+    }
+    // A table that does not answer: CALIBRATE 2, TURN 1.
+    bench.execute(TableVerb::Turn, -1000);
+    bench.table.off = true;
+    bench.execute(TableVerb::Turn, -300);
+    bench.execute(TableVerb::Turn, -300);
+    bench.table.off = false;
+    // CALIBRATE 8: it stops before the limit. CALIBRATE 5: it never stops.
+    bench.send(TableVerb::Calibrate, 0);
+    bench.wait(10);
+    bench.table.goal = bench.table.position;
+    bench.finish();
+    bench.table.speed = 0;
+    bench.execute(TableVerb::Calibrate, 0);
+    // The upper table notes refusals only.
+    bench.execute(TableVerb::Turn, 0);
+    bench.process = Table::default();
+    bench.step();
+    let all = TABLES.iter().zip(1_u8..).flat_map(|(table, number)| {
+        let noted = move |row: &u8| number > 1 || matches!(row, 2 | 3);
+        table.rows.iter().map(|row| row.number).filter(noted).map(move |row| (number, row))
+    });
+    let missing: Vec<_> = all.filter(|row| !bench.rows.contains(row)).collect();
+    assert!(missing.is_empty(), "never fired: {missing:?}");
+}
+
+proptest! {
+    /// From any angle to any other, over lines of any delay: reached to 0.06 degree, and the same bits twice.
+    #[test]
+    fn turns(
+        start in LIMIT_MINUS..=LIMIT_PLUS,
+        delay in 0_u8..12,
+        speed in 20_i32..400,
+        angles in prop::collection::vec(LIMIT_MINUS..=LIMIT_PLUS, 1..6),
+    ) {
+        let run = || {
+            let mut table = Rotary::new(start);
+            (table.delay, table.speed) = (delay, speed);
+            let mut bench = Bench::new(table);
+            let mut images = Vec::new();
+            for angle in &angles {
+                prop_assert_eq!(bench.execute(TableVerb::Turn, *angle), DONE);
+                prop_assert!((bench.table.angle() - f64::from(*angle) / 10.0).abs() < 0.06);
+                images.push(to_bytes::<64, _>(&bench.memory.table));
+            }
+            Ok(images)
+        };
+        prop_assert_eq!(run()?, run()?);
+    }
+
+    /// Whatever is commanded and whatever the sensors read: no panic, and every order has a number of its own.
+    #[test]
+    fn nonsense(ticks in prop::collection::vec((0_u8..30, any::<i32>(), any::<u32>()), 1..200)) {
+        let mut bench = Bench::new(Rotary::new(-1200));
+        let mut last = MotorCommand::default();
+        for (what, a, b) in ticks {
+            if let Some(verb) = TableVerb::from_code(what) {
+                bench.send(verb, a);
+            }
+            match what {
+                10 => bench.process = Table::default(),
+                11 => bench.table.off = !bench.table.off,
+                12 => bench.table.blocked = !bench.table.blocked,
+                13 => bench.table.offset = a / 4,
+                14 => bench.table.echo = b,
+                _ => {}
+            }
+            let motor = bench.step().motor;
+            prop_assert!(motor.number == 0 || motor == last || motor.number != last.number);
+            last = motor;
+        }
+        prop_assert!(State::SIZE < 128 && TableOutputs::SIZE <= 64);
+    }
+}
