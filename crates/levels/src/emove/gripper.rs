@@ -120,6 +120,12 @@ impl Gripper {
         }
     }
 
+    /// Must the gripper be calibrated before it can be commanded (VI.3.1 UP-INIT)?
+    #[must_use]
+    pub fn is_raw(self, memory: &CommonMemory) -> bool {
+        self == Self::Parts && !memory.grip.status.initialized
+    }
+
     /// Do the fingers stand still?
     fn is_still(self, memory: &CommonMemory) -> bool {
         let velocity = self.jaws(memory).map_or(memory.grip.status.velocity, |jaws| jaws.status.velocity);

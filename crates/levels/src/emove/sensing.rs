@@ -23,8 +23,8 @@ use super::{
     route::{near, same_location},
     state::{Sort, Stance},
     tables::{
-        Calibration, Detection, Held, Holster, Link, Load, Mate, Motion, Ring, Sight, Situation, Station,
-        Tooling, Tries, Whereabouts,
+        Held, Holster, Link, Load, Mate, Motion, Readiness, Ring, Sight, Situation, Station, Tooling, Travel,
+        Tries, Whereabouts,
     },
 };
 use crate::{execution::Outcome, places::place_of};
@@ -133,12 +133,18 @@ impl Emove {
         Situation {
             ahead: state.route.ahead(inputs.data),
             prim: if starting { Lower::Done } else { commanded_prim },
-            detection: if state.undetected > PATIENCE { Detection::Overdue } else { Detection::Awaited },
+            travel: match commanded_prim {
+                Lower::Pending | Lower::Executing if state.undetected > PATIENCE => Travel::Missed,
+                Lower::Pending | Lower::Executing => Travel::UnderWay,
+                Lower::Done => Travel::Over,
+                Lower::Error | Lower::Joystick | Lower::Lost => Travel::Failed,
+            },
             gripper,
-            calibration: if Gripper::attached(memory) == Gripper::Parts && !memory.grip.status.initialized {
-                Calibration::Missing
-            } else {
-                Calibration::Valid
+            readiness: match gripper {
+                Lower::Pending | Lower::Executing => Readiness::Busy,
+                Lower::Done if Gripper::attached(memory).is_raw(memory) => Readiness::Raw,
+                Lower::Done => Readiness::Ready,
+                Lower::Error | Lower::Joystick | Lower::Lost => Readiness::Faulty,
             },
             opening: self.opening(gripper, inputs),
             held: if state.held.object.is_empty() {

@@ -20,8 +20,8 @@ pub mod withdraw;
 use rcs_core::interface::{Reason, emove::EmoveVerb};
 
 pub use self::variables::{
-    Calibration, Detection, Fingers, Held, Holster, Link, Load, Mate, Motion, Opening, Ring, Sight,
-    Situation, Spread, Station, Tooling, Tries, Whereabouts,
+    Fingers, Held, Holster, Link, Load, Mate, Motion, Opening, Readiness, Ring, Sight, Situation, Spread,
+    Station, Tooling, Travel, Tries, Whereabouts,
 };
 use super::{relative::Relative, route::Ahead};
 

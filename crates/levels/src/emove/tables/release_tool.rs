@@ -2,7 +2,7 @@
 
 use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
 
-use super::{Action, Choice, Detection, Held, Situation, Spread, Station};
+use super::{Action, Choice, Held, Situation, Spread, Station, Travel};
 use crate::emove::relative::Relative::{RelBack, RelSlide};
 
 coded_enum! {
@@ -24,30 +24,29 @@ coded_enum! {
 decision_table! {
     /// RELEASE-TOOL (V.2.1): open the tool gripper, calibrate, slide to the right until the strike plate gives a moment, pull back. Done
     /// at once by who stands before the drum with open fingers and nothing in them.
-    pub RELEASE_TOOL: fn release_tool(step: Step, station: Station, held: Held, spread: Spread, gripper: Lower, detection: Detection, prim: Lower) -> (Action, Step) {
-        //     step                                  station     held            spread   gripper                    detection Prim                       action                      next
-        1:  ( Start                               , InDrum    , _             , _      , _                       , _       , _                       ) => OpenToDepart              , Opening     ;
-        2:  ( Start                               , There     , Nothing       , Open   , _                       , _       , _                       ) => Finish                    , Start       ;
-        3:  ( Start                               , There     , Nothing       , Narrow , _                       , _       , _                       ) => Fail(Reason::NotPrepared) , Start       ;
-        4:  ( Start                               , There     , Right | Other , _      , _                       , _       , _                       ) => Fail(Reason::NotPrepared) , Start       ;
-        5:  ( Start                               , Elsewhere , _             , _      , _                       , _       , _                       ) => Fail(Reason::NotPrepared) , Start       ;
-        6:  ( Opening                             , _         , _             , _      , Pending | Executing     , _       , _                       ) => Wait                      , Opening     ;
-        7:  ( Opening                             , _         , _             , _      , Error | Joystick | Lost , _       , _                       ) => FailGrip                  , Start       ;
-        8:  ( Opening                             , _         , _             , _      , Done                    , _       , _                       ) => CalSensor                 , Calibrating ;
-        9:  ( Calibrating | Sliding | Withdrawing , _         , _             , _      , _                       , _       , Error | Joystick | Lost ) => PassUp                    , Start       ;
-        10: ( Calibrating                         , _         , _             , _      , _                       , _       , Pending | Executing     ) => Wait                      , Calibrating ;
-        11: ( Calibrating                         , _         , _             , _      , _                       , _       , Done                    ) => GoUntil(RelSlide)         , Sliding     ;
-        12: ( Sliding                             , _         , _             , _      , _                       , Awaited , Pending | Executing     ) => Wait                      , Sliding     ;
-        13: ( Sliding                             , _         , _             , _      , _                       , Overdue , Pending | Executing     ) => Fail(Reason::NotDetected) , Start       ;
-        14: ( Sliding                             , _         , _             , _      , _                       , _       , Done                    ) => DeltaMove(RelBack)        , Withdrawing ;
-        15: ( Withdrawing                         , _         , _             , _      , _                       , _       , Pending | Executing     ) => Wait                      , Withdrawing ;
-        16: ( Withdrawing                         , _         , _             , _      , _                       , _       , Done                    ) => Stand                     , Start       ;
+    pub RELEASE_TOOL: fn release_tool(step: Step, station: Station, held: Held, spread: Spread, gripper: Lower, travel: Travel) -> (Action, Step) {
+        //     step                                  station     held            spread   gripper                   travel                 action                      next
+        1:  ( Start                               , InDrum    , _             , _      , _                       , _                 ) => OpenToDepart              , Opening     ;
+        2:  ( Start                               , There     , Nothing       , Open   , _                       , _                 ) => Finish                    , Start       ;
+        3:  ( Start                               , There     , Nothing       , Narrow , _                       , _                 ) => Fail(Reason::NotPrepared) , Start       ;
+        4:  ( Start                               , There     , Right | Other , _      , _                       , _                 ) => Fail(Reason::NotPrepared) , Start       ;
+        5:  ( Start                               , Elsewhere , _             , _      , _                       , _                 ) => Fail(Reason::NotPrepared) , Start       ;
+        6:  ( Opening                             , _         , _             , _      , Pending | Executing     , _                 ) => Wait                      , Opening     ;
+        7:  ( Opening                             , _         , _             , _      , Error | Joystick | Lost , _                 ) => FailGrip                  , Start       ;
+        8:  ( Opening                             , _         , _             , _      , Done                    , _                 ) => CalSensor                 , Calibrating ;
+        9:  ( Calibrating                         , _         , _             , _      , _                       , UnderWay | Missed ) => Wait                      , Calibrating ;
+        10: ( Calibrating                         , _         , _             , _      , _                       , Over              ) => GoUntil(RelSlide)         , Sliding     ;
+        11: ( Sliding                             , _         , _             , _      , _                       , UnderWay          ) => Wait                      , Sliding     ;
+        12: ( Sliding                             , _         , _             , _      , _                       , Missed            ) => Fail(Reason::NotDetected) , Start       ;
+        13: ( Sliding                             , _         , _             , _      , _                       , Over              ) => DeltaMove(RelBack)        , Withdrawing ;
+        14: ( Withdrawing                         , _         , _             , _      , _                       , UnderWay | Missed ) => Wait                      , Withdrawing ;
+        15: ( Withdrawing                         , _         , _             , _      , _                       , Over              ) => Stand                     , Start       ;
+        16: ( Calibrating | Sliding | Withdrawing , _         , _             , _      , _                       , Failed            ) => PassUp                    , Start       ;
     }
 }
 
 pub(super) fn consult(step: u8, s: &Situation) -> Choice {
     let step = Step::from_code(step).unwrap_or_default();
-    let Decision { row, action, next } =
-        release_tool(step, s.station, s.held, s.spread, s.gripper, s.detection, s.prim);
+    let Decision { row, action, next } = release_tool(step, s.station, s.held, s.spread, s.gripper, s.travel);
     Choice { table: &RELEASE_TOOL, row, action, step: next.code() }
 }

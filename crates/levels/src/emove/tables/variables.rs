@@ -161,22 +161,30 @@ coded_enum! {
 }
 
 coded_enum! {
-    /// The condition of a GO-UNTIL.
-    pub enum Detection {
-        /// It came, or may still come.
-        Awaited = "awaited",
-        /// The robot stands at the end of the move, and it did not come.
-        Overdue = "overdue",
+    /// How the last motion stands.
+    pub enum Travel {
+        /// The robot is on its way, or Prim has not answered yet.
+        UnderWay = "under way",
+        /// It stands at the goal of a GO-UNTIL, and the condition has not come for a second.
+        Missed = "missed",
+        /// It has come to its end.
+        Over = "over",
+        /// It was given up.
+        Failed = "failed",
     }
 }
 
 coded_enum! {
-    /// Must the attached gripper be calibrated (VI.3.1 UP-INIT)?
-    pub enum Calibration {
-        /// No: it was, or it has nothing to calibrate.
-        Valid = "valid",
-        /// Yes: it is the parts gripper, attached for the first time.
-        Missing = "missing",
+    /// The attached gripper after an order.
+    pub enum Readiness {
+        /// It has not done what was ordered yet.
+        Busy = "busy",
+        /// It has.
+        Ready = "ready",
+        /// It has, and must be calibrated: the parts gripper, attached for the first time (VI.3.1 UP-INIT).
+        Raw = "raw",
+        /// It cannot.
+        Faulty = "faulty",
     }
 }
 
@@ -213,12 +221,12 @@ pub struct Situation {
     pub ahead: Ahead,
     /// Status of Prim; `Done` as long as the current command has sent it nothing.
     pub prim: Lower,
-    /// The condition of the current GO-UNTIL.
-    pub detection: Detection,
+    /// The same, with a GO-UNTIL that is in vain.
+    pub travel: Travel,
     /// Status of the attached gripper.
     pub gripper: Lower,
-    /// Is it calibrated?
-    pub calibration: Calibration,
+    /// The same, with its calibration.
+    pub readiness: Readiness,
     /// The opening of the fingers.
     pub opening: Opening,
     /// Is the object held?

@@ -34,7 +34,19 @@ thread_local! {
 pub fn data() -> TaskData<'static> {
     static STORE: OnceLock<Store> = OnceLock::new();
     let store = STORE.get_or_init(|| {
-        let source = Source { name: "cell.blk".to_owned(), text: include_str!("cell.blk").into() };
+        // More location points than are looked at while Prim pauses.
+        let many: String = (0..720)
+            .map(|n| {
+                let block = if n % 15 == 0 {
+                    format!("BLOCK# {} OFFSET 21000\n", 700 + n / 15)
+                } else {
+                    String::new()
+                };
+                format!("{block}  -pt-  POINT-{n}  VIA-1  ...\n")
+            })
+            .collect();
+        let text = include_str!("cell.blk").to_owned() + &many;
+        let source = Source { name: "cell.blk".to_owned(), text: text.into() };
         match Store::from_sources(vec![source]) {
             Ok((store, _)) => store,
             Err(report) => panic!("{report}"),
@@ -170,6 +182,11 @@ impl Bench {
     pub fn command(&mut self, verb: EmoveVerb, object: &str, grip: i32, location: &str, gripper: u8) {
         // What the test has changed is seen by the neighbours, and then by E-move.
         self.steps(2);
+        self.write(verb, object, grip, location, gripper);
+    }
+
+    /// Write a command, at once.
+    pub fn write(&mut self, verb: EmoveVerb, object: &str, grip: i32, location: &str, gripper: u8) {
         let object = Name16::clipped(object);
         let place = Name16::clipped(location);
         let data = data();

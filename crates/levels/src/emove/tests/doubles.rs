@@ -41,7 +41,7 @@ pub enum Mishap {
     Mated(u8),
     /// The sensors of the holster see this.
     Holster(u8),
-    /// The command never ends.
+    /// Grip never ends.
     Never,
 }
 
@@ -193,7 +193,6 @@ impl Prim {
         match world.mishap(text) {
             Some(Mishap::Prim(report, reason)) => (self.report, self.reason) = (report, reason),
             Some(Mishap::Joystick) => (world.joystick, self.report) = (true, PrimReport::JoystickOn),
-            Some(Mishap::Never) => self.report = PrimReport::Executing,
             Some(Mishap::Slip) => world.object = None,
             _ => {}
         }

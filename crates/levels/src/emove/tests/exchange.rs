@@ -290,6 +290,13 @@ fn motions_that_fail_end_the_command() {
     let mut bench = bare(2);
     bench.spoil("GRASP", Mishap::Jaws(JawsReport::Opened));
     assert_eq!(attach(&mut bench, 2), error(Reason::JawsStuck), "it does not close");
+    let mut bench = bare(2);
+    bench.command(QcAttach, "GRIPPER-2", 2, "HOLSTER-L", 2);
+    while !bench.log().contains(&"DELTA-MOVE QCA-UP") {
+        bench.step();
+    }
+    bench.dead.push("gripper");
+    assert_eq!(bench.finish(), error(Reason::NeighbourLost), "its process has died on the way");
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod doubles;
 mod drum;
 mod exchange;
 mod motion;
+mod nonsense;
 mod pausing;
 
 use std::collections::BTreeSet;

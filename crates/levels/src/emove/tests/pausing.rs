@@ -54,7 +54,8 @@ fn a_pause_waits_for_the_calibration() {
     bench.spoil("PAUSE", Mishap::Never);
     bench.command(Pause, "", 0, "", 0);
     bench.steps(200);
-    assert_eq!(bench.memory.emove.status.report, Report::Executing);
+    assert_eq!(bench.memory.prim.status.report, PrimReport::Done);
+    assert_eq!(bench.memory.emove.status.report, Report::Executing, "Grip's PAUSE is not done before");
 }
 
 #[test]
