@@ -311,9 +311,9 @@ fn check_stop(p: &mut Parser<'_, '_>, direction: Direction, at: At, points: &[Po
 }
 
 /// Variables of OBJ-GRIPS (VII.7.2).
-const OBJ_GRIPS: &[(&str, RangeInclusive<i32>)] = &[("endeff-id#", 1..=3), ("tray-grip#", GRIP)];
+pub(super) const OBJ_GRIPS: &[(&str, RangeInclusive<i32>)] = &[("endeff-id#", 1..=3), ("tray-grip#", GRIP)];
 /// Variables of PED-PARA (VII.7.4).
-const PED_PARA: &[(&str, RangeInclusive<i32>)] = &[
+pub(super) const PED_PARA: &[(&str, RangeInclusive<i32>)] = &[
     ("ped-appr", OPENING),
     ("ped-grasp-size", OPENING),
     ("ped-force", FORCE),

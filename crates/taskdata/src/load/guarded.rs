@@ -128,6 +128,6 @@ fn sensor_follows(p: &Parser<'_, '_>) -> bool {
         !is_integer(text)
             && !text.starts_with('"')
             && !COMPILING_WORDS.contains(&text)
-            && nearest(text, BEGINNINGS.iter().copied()).is_none()
+            && !(text.starts_with('-') && nearest(text, BEGINNINGS.iter().copied()).is_some())
     })
 }

@@ -9,7 +9,7 @@
 //! 5. `check`: what a command would run into; every place the robot is sent to can be reached;
 //! 6. [`store`]: the files; [`origins`]: where each record was entered; [`report`]: everything that was found.
 //!
-//! [`job`] reads the job files, which stand beside the blocks.
+//! [`print`] writes entries as forms again. [`job`] reads the job files, which stand beside the blocks.
 
 mod check;
 mod collected;
@@ -24,6 +24,7 @@ mod link;
 pub mod names;
 pub mod origins;
 pub mod parse;
+pub mod print;
 pub mod report;
 pub mod source;
 pub mod store;
