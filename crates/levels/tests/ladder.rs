@@ -6,19 +6,19 @@
 use std::{path::Path, sync::OnceLock};
 
 use depc::{Limits, Plate, controller};
-use levels::ladder::{Ladder, ProcessId};
+use levels::ladder::{Ladder, LadderState, ProcessId};
 use proptest::prelude::*;
 use rcs_core::{
     digest::Digest,
     frame::Frame,
     interface::{
-        CommonMemory, ExternalInputs, HwsCommand, Reason,
-        device::{LinkBytes, RESOLVER_COUNTS, valve},
+        CommonMemory, ExternalInputs, Header, HwsCommand, Reason,
+        device::{LinkBytes, RESOLVER_COUNTS, single_step, valve},
         hws::HwsReport,
     },
     kinematics::{HOME_JOINTS, Joints, T3},
     name::Name16,
-    record::Field,
+    record::{Field, Writer, from_bytes},
     tick::Tick,
 };
 use taskdata::load::Store;
@@ -59,6 +59,8 @@ struct Rig {
     arm: PlainArm,
     opening: f64,
     force: f64,
+    /// Gripper on the quick change.
+    gripper: u8,
     digest: Digest,
     warnings: u32,
 }
@@ -76,6 +78,7 @@ impl Rig {
             arm: PlainArm { joints: HOME_JOINTS, plate },
             opening: 2.0,
             force: 0.0,
+            gripper: 1,
             digest: Digest::new(),
             warnings: 0,
         };
@@ -96,7 +99,7 @@ impl Rig {
         }
         devices.resolvers.valid = true;
         devices.quick_change.locked = true;
-        devices.quick_change.end_effector_id = 1;
+        devices.quick_change.end_effector_id = self.gripper;
         devices.joystick.velocity = 1000;
         devices.grip.potentiometer = (200.0 + 700.0 * self.opening) as u16;
         let strain = (100.0 + 40.0 * self.force) as u16;
@@ -314,6 +317,185 @@ proptest! {
             prop_assert!(rig.at("HOME"));
         }
     }
+}
+
+/// Processes that the joystick box can hold, with their switches (III.3.3).
+const HELD: [(ProcessId, u8); 4] = [
+    (ProcessId::Task, single_step::TASK),
+    (ProcessId::Subtask, single_step::SUBTASK),
+    (ProcessId::Emove, single_step::EMOVE),
+    (ProcessId::Prim, single_step::PRIM),
+];
+
+impl Rig {
+    /// The header of a process's outputs in the last tick.
+    fn header(&self, process: ProcessId) -> Header {
+        let memory = &self.before;
+        match process {
+            ProcessId::Task => memory.task.header,
+            ProcessId::Subtask => memory.subtask.header,
+            ProcessId::Emove => memory.emove.header,
+            ProcessId::Prim => memory.prim.header,
+            ProcessId::T3i => memory.t3i.header,
+            ProcessId::QuickChange => memory.quick_change.header,
+            ProcessId::Grip => memory.grip.header,
+            ProcessId::VGrip => memory.v_grip.header,
+            ProcessId::ToolGrip => memory.tool_grip.header,
+            ProcessId::Pedestal => memory.pedestal.header,
+            ProcessId::Hand => memory.hand.header,
+            ProcessId::RotaryTable => memory.table.header,
+        }
+    }
+}
+
+#[test]
+fn held_processes_are_not_lost_and_go_on_where_they_were() {
+    let mut rig = Rig::new();
+    rig.command("PAUSE", "");
+    assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
+    rig.command("MOVE", "SAFE");
+    for (process, switch) in HELD {
+        for _ in 0..20 {
+            rig.step(ProcessId::ALL);
+        }
+        rig.external.devices.joystick.hold = switch;
+        for _ in 0..80 {
+            rig.step(ProcessId::ALL);
+            assert!(rig.header(process).republished && rig.header(process).stamp == rig.tick, "{process}");
+            assert_ne!(rig.before.task.status.report, HwsReport::Error, "{process} is held, not lost");
+        }
+        rig.external.devices.joystick.hold = 0;
+    }
+    assert_eq!(rig.finish(ProcessId::ALL, 5000), FINISHED);
+    assert!(rig.at("SAFE"));
+    assert_eq!(rig.warnings, 0, "the controller was asked for a jump");
+}
+
+#[test]
+fn a_held_process_is_stepped_once_a_press() {
+    let mut rig = Rig::new();
+    rig.command("PAUSE", "");
+    assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
+    for (process, switch) in HELD {
+        rig.external.devices.joystick.hold = switch;
+        let mut executed = 0;
+        for tick in 0..40 {
+            // Pressed for three ticks, let go for five; the button of another process counts for nothing.
+            let pressed = tick % 8 < 3;
+            rig.external.devices.joystick.single_step = if pressed { switch } else { !switch & 0x0F };
+            rig.step(ProcessId::ALL);
+            executed += u32::from(!rig.header(process).republished);
+        }
+        assert_eq!(executed, 5, "{process}");
+        rig.external.devices.joystick.single_step = 0;
+        rig.step(ProcessId::ALL);
+    }
+    rig.external.devices.joystick.hold = 0;
+    rig.command("MOVE", "SAFE");
+    assert_eq!(rig.finish(ProcessId::ALL, 5000), FINISHED);
+}
+
+#[test]
+fn only_the_process_of_the_attached_gripper_is_stepped() {
+    const GRIPPERS: [ProcessId; 3] = [ProcessId::Grip, ProcessId::VGrip, ProcessId::ToolGrip];
+    let mut rig = Rig::new();
+    rig.command("PAUSE", "");
+    assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
+    assert!(rig.before.grip.status.initialized, "calibrated when it was booted");
+    for id in [1, 0, 2, 0, 3, 2, 1] {
+        rig.gripper = id;
+        for _ in 0..5 {
+            rig.step(ProcessId::ALL);
+        }
+        for (process, own) in GRIPPERS.into_iter().zip(1..) {
+            assert_eq!(rig.header(process).republished, id != own, "{process} with gripper {id}");
+        }
+        let outputs = rig.before.device_outputs();
+        assert_eq!((outputs.v_grip, outputs.tool_grip), Default::default(), "nobody commanded anything");
+    }
+    for _ in 0..50 {
+        rig.step(ProcessId::ALL);
+    }
+    rig.command("MOVE", "SAFE");
+    assert_eq!(rig.finish(ProcessId::ALL, 5000), FINISHED, "sleeping processes are not missed");
+    assert!(rig.before.grip.status.initialized, "the calibration outlasts the sleep");
+}
+
+/// What the joystick box and the quick change do for some ticks.
+#[derive(Clone, Copy, Debug)]
+struct Interval {
+    hold: u8,
+    single_step: u8,
+    gripper: u8,
+    ticks: u8,
+}
+
+fn interval() -> impl Strategy<Value = Interval> {
+    (0_u8..16, 0_u8..16, prop::sample::select(vec![1_u8, 1, 1, 0, 2, 3]), 1_u8..60)
+        .prop_map(|(hold, single_step, gripper, ticks)| Interval { hold, single_step, gripper, ticks })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+    /// Dormancy, holding and single step are decided before any process is stepped: the order cannot change a bit, the robot is
+    /// never asked to jump, and once everything runs again a PAUSE leads back to work.
+    #[test]
+    fn suspensions_do_not_depend_on_the_order(
+        intervals in prop::collection::vec(interval(), 1..12),
+        order in Just(ProcessId::ALL.to_vec()).prop_shuffle(),
+    ) {
+        let run = |order: &[ProcessId]| {
+            let mut rig = Rig::new();
+            rig.command("PAUSE", "");
+            rig.finish(order, 2000);
+            rig.command("MOVE", "SAFE");
+            for interval in &intervals {
+                rig.external.devices.joystick.hold = interval.hold;
+                rig.gripper = interval.gripper;
+                for tick in 0..interval.ticks {
+                    let pressed = if tick % 3 == 0 { interval.single_step } else { 0 };
+                    rig.external.devices.joystick.single_step = pressed;
+                    rig.step(order);
+                }
+            }
+            rig
+        };
+        let mut rig = run(&order);
+        prop_assert_eq!(rig.digest, run(ProcessId::ALL).digest);
+        rig.external.devices.joystick.hold = 0;
+        rig.external.devices.joystick.single_step = 0;
+        rig.gripper = 1;
+        let (report, _) = rig.finish(&order, 5000);
+        prop_assert!(report != HwsReport::Finished || rig.at("SAFE"));
+        rig.command("PAUSE", "");
+        prop_assert_eq!(rig.finish(&order, 3000), FINISHED);
+        prop_assert_eq!(rig.warnings, 0, "the controller was asked for a jump");
+    }
+}
+
+#[test]
+fn a_state_that_is_restored_goes_on_with_the_same_bits() {
+    let mut rig = Rig::new();
+    rig.command("PAUSE", "");
+    assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
+    rig.command("MOVE", "SAFE");
+    for tick in 0..400 {
+        if tick % 50 == 0 {
+            let state = rig.ladder.state();
+            let mut image = vec![0; LadderState::SIZE];
+            state.encode(&mut Writer::new(&mut image));
+            let back: LadderState = from_bytes(&image).expect("what was encoded is legal");
+            assert_eq!(back, state);
+            for process in ProcessId::ALL {
+                rig.ladder.restart(*process);
+            }
+            rig.ladder.restore(&back);
+            assert_eq!(rig.ladder.state(), state, "every process is restored");
+        }
+        rig.step(ProcessId::ALL);
+    }
+    assert_eq!(rig.finish(ProcessId::ALL, 5000), FINISHED);
+    assert_eq!(rig.warnings, 0);
 }
 
 #[test]

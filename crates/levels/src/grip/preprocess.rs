@@ -209,9 +209,16 @@ fn observe(state: &mut State, arriving: &Arriving<'_>) -> Course {
     if course == Course::Begin {
         state.command = Command::from(command);
     }
-    let late = woken || state.execution.receiver.adopted || gripper == Gripper::Detached;
-    if starting && late && state.phase != Phase::Valid {
-        state.phase = Phase::Deferred;
+    if starting && state.phase != Phase::Valid {
+        let attached = gripper == Gripper::Attached;
+        state.phase = if woken && attached && state.calibrating() {
+            // Put to sleep before E-move knew which gripper is on: begin again.
+            Phase::Missing
+        } else if woken || !attached || state.execution.receiver.adopted {
+            Phase::Deferred
+        } else {
+            state.phase
+        };
     }
     course
 }

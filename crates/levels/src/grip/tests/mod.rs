@@ -174,11 +174,17 @@ fn a_process_that_wakes_uncalibrated_waits_for_up_init() {
 }
 
 #[test]
-fn a_calibration_that_is_slept_through_is_void() {
+fn a_calibration_that_is_slept_through_begins_again_unless_the_gripper_went() {
+    let mut bench = Bench::new(Gripper::new(2.0, 21));
+    bench.sleep(1);
+    assert!(bench.wait(200).status.initialized, "booted before E-move knew which gripper is on");
     let mut bench = Bench::new(Gripper::new(2.0, 21));
     bench.wait(5);
     assert!(bench.process.state.calibrating());
+    bench.attach(false);
+    bench.step();
     bench.sleep(20);
+    bench.attach(true);
     let status = bench.wait(100).status;
     assert_eq!((status.initialized, status.valves), (false, 0));
     assert_eq!(bench.process.state.phase, Phase::Deferred);
