@@ -29,6 +29,10 @@ pub enum Key {
     Hold(bool),
     /// The E-stop of the control panel (III.6).
     Estop,
+    /// Put the RS232 board in, or take it out (A 2.3, D0).
+    Board(bool),
+    /// Repair the transmitter of the RS232 board, or break it (A 2.3, D5).
+    Transmitter(bool),
 }
 
 impl Key {
@@ -50,6 +54,8 @@ impl Key {
             Self::Enter => "enter".into(),
             Self::Hold(to) => format!("hold {}", on(to)),
             Self::Estop => "estop".into(),
+            Self::Board(to) => format!("board {}", if to { "in" } else { "out" }),
+            Self::Transmitter(to) => format!("transmitter {}", if to { "good" } else { "broken" }),
         }
     }
 }
@@ -84,6 +90,8 @@ cycle start                 two short vertical motions, then the DEPC function
 interrupt, cancel, enter    INTERRUPT button; CANCEL and ENTER keys
 hold on|off                 the Hold button
 estop                       E-stop: the robot sinks
+board in|out                put the RS232 board in, take it out: control power off first
+transmitter good|broken     the transmitter of the RS232 board
 status                      everything at a glance
 wait SECONDS                wait before the next line (for scripts)
 help, quit";
@@ -113,6 +121,8 @@ impl FromStr for Line {
             ["enter"] => Key::Enter,
             ["hold", switch] => Key::Hold(on(switch)?),
             ["estop" | "e-stop"] => Key::Estop,
+            ["board", place] => Key::Board(one_of(place, "in", "out")?),
+            ["transmitter", state] => Key::Transmitter(one_of(state, "good", "broken")?),
             ["status"] => return Ok(Self::Status),
             ["help" | "?"] => return Ok(Self::Help),
             ["wait", seconds] => return wait(seconds),
@@ -124,10 +134,17 @@ impl FromStr for Line {
 }
 
 fn on(switch: &str) -> Result<bool, String> {
-    match switch {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err(format!("on or off was expected, found {switch}")),
+    one_of(switch, "on", "off")
+}
+
+/// True for the word `yes`, false for the word `no`.
+fn one_of(word: &str, yes: &str, no: &str) -> Result<bool, String> {
+    if word == yes {
+        Ok(true)
+    } else if word == no {
+        Ok(false)
+    } else {
+        Err(format!("{yes} or {no} was expected, found {word}"))
     }
 }
 
@@ -190,13 +207,22 @@ mod tests {
     fn what_is_meant_is_found_and_what_is_wrong_is_said() {
         assert_eq!("  Control POWER on ".parse(), Ok(Line::Key(Key::ControlPower(true))));
         assert_eq!("align 3".parse(), Ok(Line::Key(Key::Align(Some(3)))));
-        for key in [Key::ControlPower(false), Key::Hydraulics(false), Key::Align(Some(6)), Key::Hold(true)] {
+        for key in [
+            Key::ControlPower(false),
+            Key::Hydraulics(false),
+            Key::Align(Some(6)),
+            Key::Hold(true),
+            Key::Board(false),
+            Key::Transmitter(true),
+        ] {
             assert_eq!(key.text().parse(), Ok(Line::Key(key)));
         }
         assert_eq!("wait 0.25".parse(), Ok(Line::Wait(250)));
         for (wrong, says) in [
             ("align 7", "1 to 6"),
             ("hold maybe", "on or off"),
+            ("board off", "in or out"),
+            ("transmitter", "no command"),
             ("wait nan", "seconds"),
             ("wait -1", "seconds"),
             ("hydraulics on", "enable"),

@@ -9,6 +9,9 @@ pub enum Refusal {
     /// Control power is on already.
     #[error("control power is on already")]
     PowerIsOn,
+    /// A board is changed under power.
+    #[error("boards are changed without power: control power off comes first")]
+    Powered,
     /// FAULT RESET is lit.
     #[error("the FAULT RESET button is lit: fault reset comes first")]
     Fault,

@@ -11,7 +11,8 @@ impl Machine {
     /// # Errors
     /// [`Refusal`]: what must be done first; then nothing has changed.
     pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
-        if self.stage == Stage::Dark && key != Key::ControlPower(true) {
+        let hardware = matches!(key, Key::Board(_) | Key::Transmitter(_));
+        if self.stage == Stage::Dark && key != Key::ControlPower(true) && !hardware {
             return Err(Refusal::NoPower);
         }
         match key {
@@ -32,6 +33,15 @@ impl Machine {
             Key::Estop => {
                 self.cut(Stage::Faulted);
                 self.lamp("FAULT RESET on, HYD ENABLED off");
+                Ok(())
+            }
+            Key::Board(_) if self.stage != Stage::Dark => Err(Refusal::Powered),
+            Key::Board(there) => {
+                self.board = there;
+                Ok(())
+            }
+            Key::Transmitter(good) => {
+                self.transmitter = good;
                 Ok(())
             }
         }

@@ -103,6 +103,10 @@ pub struct Machine {
     set_point: SetPoint,
     /// Keys for the next step of the function.
     keys: ControllerInputs,
+    /// The RS232 board is in its slot.
+    board: bool,
+    /// Its transmitter works.
+    transmitter: bool,
     counts: Counts,
     messages: Vec<Message>,
 }
@@ -126,6 +130,8 @@ impl Machine {
             depc: Controller::new(limits),
             set_point: SetPoint { plate: Plate::default(), joints: HOME_JOINTS },
             keys: ControllerInputs::default(),
+            board: true,
+            transmitter: true,
             counts: Counts::default(),
             messages: Vec::new(),
         }
@@ -279,7 +285,14 @@ impl Machine {
     fn depc_step(&mut self, inputs: &StepInputs, start: bool) -> StepOutputs {
         let (state, warning) = (self.depc.state(), self.depc.warning());
         let answered = self.keys.enter || start;
-        let panel = ControllerInputs { rx: inputs.rx, cts: inputs.cts, board: true, start, ..self.keys };
+        let panel = ControllerInputs {
+            rx: inputs.rx,
+            cts: inputs.cts,
+            board: self.board,
+            transmitter_fault: !self.transmitter,
+            start,
+            ..self.keys
+        };
         let out = self.depc.step(&panel, &mut self.set_point);
         self.keys = ControllerInputs { hold: self.keys.hold, ..ControllerInputs::default() };
         if out.moving {

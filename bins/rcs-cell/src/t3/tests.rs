@@ -84,6 +84,47 @@ fn the_steps_of_the_manual_lead_to_a_report_of_home() {
 }
 
 #[test]
+fn a_missing_board_is_found_when_the_function_begins() {
+    let mut t3 = auto();
+    assert_eq!(t3.press(Key::Board(false)), Err(Refusal::Powered));
+    t3.press(Key::ControlPower(false)).unwrap();
+    t3.press(Key::Board(false)).unwrap();
+    for key in [Key::ControlPower(true), Key::FaultReset, Key::Hydraulics(true), Key::Manual(true)] {
+        t3.press(key).unwrap();
+    }
+    pass(&mut t3, 4.0);
+    t3.press(Key::Align(None)).unwrap();
+    pass(&mut t3, 3.0);
+    t3.press(Key::Auto).unwrap();
+    pass(&mut t3, 3.0);
+    t3.press(Key::CycleStart).unwrap();
+    assert_eq!(pass(&mut t3, 6.0), []);
+    assert_eq!((t3.depc().state(), t3.depc().warning()), (ControllerState::Warning, Warning::BoardMissing));
+    assert!(t3.messages().contains(&Message::Warning(Warning::BoardMissing)));
+    // ENTER looks again.
+    t3.press(Key::Enter).unwrap();
+    assert_eq!(pass(&mut t3, 0.2), []);
+    assert_eq!(t3.depc().warning(), Warning::BoardMissing);
+}
+
+#[test]
+fn a_broken_transmitter_is_noticed_with_the_next_answer_and_repaired() {
+    let mut t3 = running();
+    t3.press(Key::Transmitter(false)).unwrap();
+    assert_eq!(pass(&mut t3, 0.2), []);
+    assert_eq!(t3.depc().warning(), Warning::None, "nothing was to be sent");
+    assert_eq!(step(&mut t3, &[0x05], true), []);
+    assert_eq!(t3.depc().warning(), Warning::Transmitter);
+    t3.press(Key::Enter).unwrap();
+    assert_eq!(pass(&mut t3, 0.2), []);
+    assert_eq!(t3.depc().warning(), Warning::Transmitter);
+    t3.press(Key::Transmitter(true)).unwrap();
+    t3.press(Key::Enter).unwrap();
+    assert_eq!(pass(&mut t3, 0.2).len(), 16);
+    assert_eq!(t3.depc().state(), ControllerState::Running);
+}
+
+#[test]
 fn both_jumps_are_there() {
     let mut t3 = t3();
     for key in [Key::ControlPower(true), Key::FaultReset, Key::Hydraulics(true), Key::Manual(true)] {
