@@ -22,7 +22,10 @@ use taskdata::{
     load::{Source, Store},
 };
 
-use super::doubles::{Grip, Jaws, Mishap, Prim, Ring, Vision, World};
+use super::{
+    doubles::{Grip, Jaws, Mishap, Prim, Ring, Vision, World},
+    together::Real,
+};
 use crate::emove::Emove;
 
 thread_local! {
@@ -81,6 +84,8 @@ pub struct Bench {
     pub v_grip: Jaws,
     pub tool_grip: Jaws,
     pub vision: Vision,
+    /// The real processes, instead of the doubles of Quick Change and the grippers.
+    pub real: Option<Real>,
     pub data: TaskData<'static>,
     /// Processes that have died.
     pub dead: Vec<&'static str>,
@@ -89,6 +94,11 @@ pub struct Bench {
 impl Bench {
     /// A cell whose robot stands at a location with a gripper; the other grippers are in their holsters.
     pub fn new(location: &str, gripper: u8) -> Self {
+        Self::with(location, gripper, None)
+    }
+
+    /// The same with the real processes.
+    pub fn with(location: &str, gripper: u8, real: Option<Real>) -> Self {
         let mut resident = [1, 2, 3];
         let mut holsters = [0b1111; 3];
         if gripper != 0 {
@@ -119,6 +129,7 @@ impl Bench {
             v_grip: Jaws::new((50, 350)),
             tool_grip: Jaws::new((100, 400)),
             vision: Vision::default(),
+            real,
             data: data(),
             dead: Vec::new(),
         };
@@ -148,6 +159,12 @@ impl Bench {
         }
         if alive("Prim") {
             after.prim = self.prim.step(self.tick, &before, &data, &mut self.world);
+        }
+        if let Some(real) = &mut self.real {
+            real.step(self.tick, &before, &mut self.external, &data, &mut self.world, after);
+            self.vision.step(&before, &mut self.external, &mut self.world);
+            self.note_row();
+            return;
         }
         if alive("Quick Change") {
             after.quick_change = self.ring.step(self.tick, &before, &mut self.world);

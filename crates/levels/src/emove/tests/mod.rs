@@ -7,6 +7,7 @@ mod exchange;
 mod motion;
 mod nonsense;
 mod pausing;
+mod together;
 
 use std::collections::BTreeSet;
 
