@@ -59,24 +59,62 @@ fn commands(
         let level = if is.report == HwsReport::Error { Level::Error } else { Level::Info };
         say(level, "task", format!("command {}: {}", is.echo, is.report));
     }
-    let (was, is) = (&before.task.subtask, &after.task.subtask);
-    if was.number != is.number {
-        let words = [is.command.text(), is.object.as_str(), is.location.as_str()];
-        say(Level::Info, "task", down("Subtask", &words));
+    for (was, is) in steps_down(before).into_iter().zip(steps_down(after)) {
+        if was.number != is.number {
+            say(is.level, is.from, down(is.to, &is.words));
+        }
     }
-    let (was, is) = (&before.subtask.emove, &after.subtask.emove);
-    if was.number != is.number {
-        let words = [is.command.text(), is.object.as_str(), is.location.as_str()];
-        say(Level::Info, "subtask", down("E-move", &words));
-    }
-    let (was, is) = (&before.emove.prim, &after.emove.prim);
-    if was.number != is.number {
-        say(Level::Debug, "emove", down("Prim", &[is.command.text()]));
-    }
-    let (was, is) = (&before.emove.grip, &after.emove.grip);
-    if was.number != is.number {
-        say(Level::Debug, "emove", down("Grip", &[is.command.text()]));
-    }
+}
+
+/// The standing command between two processes.
+struct StepDown<'a> {
+    level: Level,
+    /// Field of the commander.
+    from: &'static str,
+    /// Name of the receiver.
+    to: &'static str,
+    number: u32,
+    words: [&'a str; 3],
+}
+
+fn steps_down(memory: &CommonMemory) -> [StepDown<'_>; 10] {
+    let step = |level, from, to, number, words| StepDown { level, from, to, number, words };
+    let word = |command| [command, "", ""];
+    let (task, subtask, emove, pedestal) = (&memory.task, &memory.subtask, &memory.emove, &memory.pedestal);
+    let (down, across) = (&task.subtask, &subtask.pedestal);
+    let (goal, v_grip, tool_grip) = (&subtask.emove, &emove.v_grip, &emove.tool_grip);
+    let subtask_words = [down.command.text(), down.object.as_str(), down.location.as_str()];
+    let emove_words = [goal.command.text(), goal.object.as_str(), goal.location.as_str()];
+    [
+        step(Level::Info, "task", "Subtask", down.number, subtask_words),
+        step(Level::Info, "subtask", "E-move", goal.number, emove_words),
+        step(Level::Info, "subtask", "Active Pedestal", across.number, word(across.command.text())),
+        step(Level::Debug, "emove", "Prim", emove.prim.number, word(emove.prim.command.text())),
+        step(
+            Level::Debug,
+            "emove",
+            "Quick Change",
+            emove.quick_change.number,
+            word(emove.quick_change.command.text()),
+        ),
+        step(Level::Debug, "emove", "Grip", emove.grip.number, word(emove.grip.command.text())),
+        step(Level::Debug, "emove", "V-Grip", v_grip.number, word(v_grip.command.text())),
+        step(Level::Debug, "emove", "Tool-Grip", tool_grip.number, word(tool_grip.command.text())),
+        step(
+            Level::Debug,
+            "pedestal",
+            "Pedestal Hand",
+            pedestal.hand.number,
+            word(pedestal.hand.command.text()),
+        ),
+        step(
+            Level::Debug,
+            "pedestal",
+            "Rotary Table",
+            pedestal.table.number,
+            word(pedestal.table.command.text()),
+        ),
+    ]
 }
 
 /// A command on its way down: `-> E-move: GRASP-OBJ LINKBAR1 PFIXTURE`.
@@ -94,6 +132,11 @@ fn failures(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory
             ("prim", memory.prim.header, memory.prim.status.reason),
             ("quick_change", memory.quick_change.header, memory.quick_change.status.reason),
             ("grip", memory.grip.header, memory.grip.status.reason),
+            ("v_grip", memory.v_grip.header, memory.v_grip.status.reason),
+            ("tool_grip", memory.tool_grip.header, memory.tool_grip.status.reason),
+            ("pedestal", memory.pedestal.header, memory.pedestal.status.reason),
+            ("hand", memory.hand.header, memory.hand.status.reason),
+            ("table", memory.table.header, memory.table.status.reason),
         ]
     };
     for ((_, _, was), (field, header, is)) in reasons(before).into_iter().zip(reasons(after)) {
@@ -167,7 +210,13 @@ pub fn hws_text(command: &HwsCommand) -> String {
 mod tests {
     use super::*;
     use crate::channels::headers;
-    use rcs_core::name::Name16;
+    use rcs_core::{
+        interface::{
+            jaws::JawsVerb,
+            pedestal::{PedestalVerb, TableVerb},
+        },
+        name::Name16,
+    };
 
     #[test]
     fn a_command_is_told_once() {
@@ -183,6 +232,43 @@ mod tests {
         assert_eq!(said.len(), 1, "{said:?}");
         assert_eq!(said[0].text, "command 1: TRANSFER LINKBAR1 from UNIT_2:1 to PFIXTURE");
         assert!(remarks(&headers(), &hws, &after, &after).is_empty());
+    }
+
+    #[test]
+    fn every_step_down_is_told() {
+        let before = CommonMemory::default();
+        let mut after = before;
+        after.emove.v_grip.number = 7;
+        after.emove.v_grip.command = JawsVerb::Grasp;
+        after.subtask.pedestal.number = 3;
+        after.subtask.pedestal.command = PedestalVerb::Flip;
+        after.pedestal.table.number = 5;
+        after.pedestal.table.command = TableVerb::Turn;
+        let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
+        let told: Vec<_> = said.iter().map(|remark| (remark.source.as_str(), remark.text.as_str())).collect();
+        assert_eq!(
+            told,
+            [
+                ("Subtask", "-> Active Pedestal: FLIP"),
+                ("E-move", "-> V-Grip: GRASP"),
+                ("Active Pedestal", "-> Rotary Table: TURN")
+            ]
+        );
+    }
+
+    #[test]
+    fn every_process_with_a_reason_is_heard() {
+        let before = CommonMemory::default();
+        let mut after = before;
+        after.v_grip.status.reason = Reason::JawsStuck;
+        after.tool_grip.status.reason = Reason::WrongGripper;
+        after.pedestal.status.reason = Reason::TableStuck;
+        after.hand.status.reason = Reason::GripTimeout;
+        after.table.status.reason = Reason::TableStuck;
+        let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
+        let sources: Vec<_> = said.iter().map(|remark| remark.source.as_str()).collect();
+        assert_eq!(sources, ["V-Grip", "Tool-Grip", "Active Pedestal", "Pedestal Hand", "Rotary Table"]);
+        assert!(said.iter().all(|remark| remark.level == Level::Error));
     }
 
     #[test]
