@@ -9,7 +9,7 @@ use rcs_core::{
     handshake::successor,
     interface::{
         CommonMemory, ExternalInputs, Reason,
-        device::{LinkBytes, RESOLVER_COUNTS},
+        device::{LinkBytes, RESOLVER_COUNTS, single_step},
         prim::{PrimReport, PrimVerb},
     },
     kinematics::{HOME_JOINTS, T3},
@@ -33,6 +33,8 @@ struct Bench {
     hold: bool,
     /// The line carries nothing.
     cut: bool,
+    /// Prim is held by its switch on the joystick box.
+    held: bool,
     /// Where the robot was after each tick.
     track: Vec<Vector>,
 }
@@ -67,6 +69,7 @@ impl Bench {
             robot: Exact { joints: HOME_JOINTS, at },
             hold: false,
             cut: false,
+            held: false,
             track: Vec::new(),
         };
         bench.external.devices.joystick.velocity = 1000;
@@ -103,7 +106,12 @@ impl Bench {
         let data = TaskData { poses: &poses, traj_paras: &parameters, ..TaskData::default() };
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &data };
         let (mut prim, mut t3i) = (self.memory.prim, self.memory.t3i);
-        self.prim.step(&inputs, &mut prim);
+        let suspended = prim.status.recording && !self.external.devices.joystick.resume;
+        if self.held || suspended {
+            (prim.header.stamp, prim.header.republished) = (self.tick, true);
+        } else {
+            self.prim.step(&inputs, &mut prim);
+        }
         self.t3i.step(&inputs, &mut t3i);
         (self.memory.prim, self.memory.t3i) = (prim, t3i);
         self.memory.emove.header.stamp = self.tick;
@@ -204,4 +212,82 @@ fn a_cut_line_stops_the_robot_until_robot_init() {
     assert_eq!(bench.robot.at, stopped);
     assert_eq!(bench.run(PrimVerb::GotoPt, 2), PrimReport::Done);
     bench.check_track();
+}
+
+impl Bench {
+    fn steps(&mut self, ticks: u32) {
+        (0..ticks).for_each(|_| self.step());
+    }
+
+    fn hold_prim(&mut self, on: bool) {
+        self.held = on;
+        self.external.devices.joystick.hold = if on { single_step::PRIM } else { 0 };
+    }
+
+    /// Inches that the robot moved in each of the last ticks.
+    fn last_ways(&self, ticks: usize) -> Vec<f64> {
+        let ways: Vec<f64> = self.track.windows(2).map(|two| norm(&(two[1] - two[0]))).collect();
+        ways[ways.len() - ticks..].to_vec()
+    }
+}
+
+#[test]
+fn a_held_prim_holds_the_robot_at_once_and_goes_on_from_rest() {
+    let mut bench = Bench::initialized();
+    bench.command(PrimVerb::GotoPt, 1);
+    bench.steps(30);
+    assert!(bench.last_ways(1)[0] > 0.2);
+    bench.hold_prim(true);
+    bench.steps(12);
+    // The point of the tick before is still sent; then the robot stands, and the line is kept up.
+    assert!(bench.last_ways(10).iter().all(|way| *way < 1e-9), "{:?}", bench.last_ways(12));
+    for _ in 0..3 {
+        bench.held = false;
+        bench.step();
+        bench.held = true;
+        bench.steps(4);
+        let ways = bench.last_ways(4);
+        assert!(ways[0] > 0.2 && ways[1..].iter().all(|way| *way < 1e-9), "one knot point: {ways:?}");
+    }
+    bench.hold_prim(false);
+    bench.steps(6);
+    assert!(bench.last_ways(5).iter().all(|way| *way < 0.1), "{:?}", bench.last_ways(6));
+    assert_eq!(bench.until_over(), PrimReport::Done);
+    assert!(bench.off(&goals()[0]) < 0.03);
+    bench.check_track();
+    let counters = bench.memory.t3i.status.counters;
+    assert_eq!((counters.naks, counters.timeouts, counters.restarts), (0, 0, 1));
+}
+
+#[test]
+fn the_joystick_box_moves_the_robot_and_records_where_it_stands() {
+    let mut bench = Bench::initialized();
+    assert_eq!(bench.run(PrimVerb::Pause, 0), PrimReport::Done);
+    for (frame, x, y) in [(1, 1000, 0), (2, 0, -1000), (4, 1000, 0), (8, 0, 1000)] {
+        let joystick = &mut bench.external.devices.joystick;
+        (joystick.frame, joystick.x, joystick.y) = (frame, x, y);
+        bench.steps(40);
+        let joystick = &mut bench.external.devices.joystick;
+        (joystick.x, joystick.y) = (0, 0);
+        bench.steps(40);
+    }
+    assert!(bench.off(&home()) > 5.0);
+    bench.external.devices.joystick.record = true;
+    bench.step();
+    let status = bench.memory.prim.status;
+    let recorded = bench.memory.changing_pose(status.recorded_pose).unwrap().to_frame().unwrap();
+    assert!(status.recording && bench.off(&recorded) < 0.05, "{}", bench.off(&recorded));
+    bench.external.devices.joystick.x = 1000;
+    let at = bench.robot.at;
+    bench.steps(50);
+    assert_eq!(bench.robot.at, at, "suspended");
+    bench.external.devices.joystick.resume = true;
+    bench.steps(20);
+    assert_ne!(bench.robot.at, at);
+    bench.external.devices.joystick.frame = 0;
+    assert_eq!(bench.run(PrimVerb::GotoPt, 3), PrimReport::Done);
+    assert!(bench.off(&goals()[2]) < 0.03);
+    bench.check_track();
+    let counters = bench.memory.t3i.status.counters;
+    assert_eq!((counters.naks, counters.timeouts, counters.restarts), (0, 0, 1));
 }
