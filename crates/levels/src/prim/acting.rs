@@ -31,8 +31,8 @@ use super::{
 use crate::execution::{Course, Outcome};
 
 impl Prim {
-    /// Take notice of a time in which Prim was held or suspended: T3I has stopped the robot dead, so that the motion goes
-    /// on from rest. A Prim that is stepped singly goes on from point to point.
+    /// Take notice of a time in which Prim was held or suspended: T3I has stopped the robot dead, so that
+    /// the motion goes on from rest. A Prim that is stepped singly goes on from point to point.
     pub(super) fn wake(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let held = inputs.external.devices.joystick.hold & single_step::PRIM != 0;
         let stood = inputs.memory.prim.header.republished || self.state.single_step;
@@ -134,7 +134,8 @@ impl Prim {
         }
     }
 
-    /// The condition has come: publish where the resolvers see the robot, or without them where it was sent, and stop it.
+    /// The condition has come: publish where the resolvers see the robot, or without them where it was sent,
+    /// and stop it.
     fn detect(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut PrimOutputs) {
         let t3i = &inputs.memory.t3i.status;
         let seen = t3i.resolver_frame.to_frame().ok().filter(|_| t3i.resolver_valid);

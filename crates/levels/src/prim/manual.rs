@@ -1,12 +1,13 @@
 //! The joystick box moves the robot (III.3.3): a velocity instead of a goal.
 //!
-//! Stick and buttons ask for a velocity in the coordinates of the frame switch. It is kept in world coordinates, and changes by no
-//! more than [`ACCELERATION`] allows; so a stick that is thrown over, a switch that is turned off and a tool frame that turns
-//! below the stick all make ramps. Another frame is taken up only at rest.
+//! Stick and buttons ask for a velocity in the coordinates of the frame switch. It is kept in world
+//! coordinates, and changes by no more than [`ACCELERATION`] allows; so a stick that is thrown over, a
+//! switch that is turned off and a tool frame that turns below the stick all make ramps. Another frame is
+//! taken up only at rest.
 //!
-//! A rotation leaves its centre where it is: the tool point, or the wrist point 30.00 in behind it (VII.2 `wo`). Its velocity is
-//! counted at the lever of [`INCHES_PER_RADIAN`], or at the tool point if that is farther from the centre, so that all
-//! frames have the same limits in inches of path.
+//! A rotation leaves its centre where it is: the tool point, or the wrist point 30.00 in behind it (VII.2
+//! `wo`). Its velocity is counted at the lever of [`INCHES_PER_RADIAN`], or at the tool point if that is
+//! farther from the centre, so that all frames have the same limits in inches of path.
 
 use rcs_core::{
     coded_enum,
@@ -21,7 +22,8 @@ use rcs_core::{
 pub const SPEED: f64 = 5.0;
 /// in/s² of path at most. ASSUMED: that of a free path (VIII.10).
 pub const ACCELERATION: f64 = 10.0;
-/// in/s² that a ramp may have: a tool point that swings about the wrist at [`SPEED`] is accelerated by 5² / 30 in/s² besides.
+/// in/s² that a ramp may have: a tool point that swings about the wrist at [`SPEED`] is accelerated by 5² /
+/// 30 in/s² besides.
 const RAMP: f64 = 9.0;
 /// Deflection of the stick that counts as none, of 1: potentiometers do not come back to 0. ASSUMED.
 const PLAY: f64 = 0.03;

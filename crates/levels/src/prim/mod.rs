@@ -4,8 +4,8 @@
 //! sends T3I a point whenever it wants one. Three things are kept apart:
 //!
 //! * the *command* (its table decides when it is done, and when it failed);
-//! * the *motion* ([`motion`], or [`manual`] while the operator has the robot), which goes on when a GO-THRU is
-//!   done, and ramps down when a command failed;
+//! * the *motion* ([`motion`], or [`manual`] while the operator has the robot), which goes on when a GO-THRU
+//!   is done, and ramps down when a command failed;
 //! * the *path clock* ([`tables::path_clock`]), which stands while T3I has points enough.
 //!
 //! ```text
@@ -21,8 +21,8 @@
 //! queue is not cut short, and the commanded position stays exact. PAUSE goes to T3I only while Prim has no
 //! position.
 //!
-//! A frame switch of the joystick box stops every motion with `joystick-on`; only PAUSE lets the box move the robot.
-//! The sensors of guarded moves are in [`sensors`].
+//! A frame switch of the joystick box stops every motion with `joystick-on`; only PAUSE lets the box move
+//! the robot. The sensors of guarded moves are in [`sensors`].
 //!
 //! T3I queues up to four points. Prim reads in tick k+2 what T3I says to the point of tick k, so that T3I
 //! must say `Executing` while it has room for fewer than two. With that the queue cannot overrun.

@@ -188,8 +188,8 @@ fn orphaned(inputs: &Inputs<'_, TaskData<'_>>) -> Health {
     if inputs.memory.emove.header.stamp == inputs.tick.previous() { Health::Good } else { Health::Orphaned }
 }
 
-/// Watch the resolvers after the last point: does the robot rest at the goal, and does it rest at all? Without
-/// them the word of T3I must do.
+/// Watch the resolvers after the last point: does the robot rest at the goal, and does it rest at all?
+/// Without them the word of T3I must do.
 fn ends(state: &mut State, inputs: &Inputs<'_, TaskData<'_>>, posture: Posture) -> (Arrival, Arrival) {
     let status = &inputs.memory.t3i.status;
     let before = core::mem::replace(&mut state.seen, status.resolver_frame);

@@ -1,12 +1,14 @@
-//! The sensors of guarded moves: device words become "the condition has come", or "the sensor cannot be trusted".
+//! The sensors of guarded moves: device words become "the condition has come", or "the sensor cannot be
+//! trusted".
 //!
-//! Prim is where low-level sensors that affect the motion from cycle to cycle are brought in (V.1.1). A guarded move names one
-//! (SENSOR-PARA); it watches the tool gripper's force sensor (III.3.8), the proximity sensors of a holster (III.3.4) or the
-//! beams between the fingers (III.3.6).
+//! Prim is where low-level sensors that affect the motion from cycle to cycle are brought in (V.1.1). A
+//! guarded move names one (SENSOR-PARA); it watches the tool gripper's force sensor (III.3.8), the proximity
+//! sensors of a holster (III.3.4) or the beams between the fingers (III.3.6).
 //!
-//! A force is the reading less the *bias*, which CAL-SENSOR takes with the robot at rest: strain gages drift, and feel the weight
-//! of what is held. Without a bias a force means nothing, and the guarded move is refused with `sensor-error`; so it is
-//! when a reading stands at an end of its converter, because beyond it every force looks alike.
+//! A force is the reading less the *bias*, which CAL-SENSOR takes with the robot at rest: strain gages
+//! drift, and feel the weight of what is held. Without a bias a force means nothing, and the guarded move is
+//! refused with `sensor-error`; so it is when a reading stands at an end of its converter, because beyond it
+//! every force looks alike.
 
 use rcs_core::{
     interface::device::{
@@ -19,7 +21,7 @@ use taskdata::files::{SensorPara, SensorSource};
 
 use super::tables::{Guard, Samples};
 
-/// Readings that make a bias: 0.4 s, ten periods of a 25 Hz swing of the arm. ASSUMED.
+/// Readings that make a bias: 0.4 s of them. ASSUMED.
 pub const SAMPLES: u32 = 10;
 /// Connected axes: forces along tool X, Y, Z, and the moment about tool Y.
 const AXES: usize = 4;
@@ -68,8 +70,9 @@ impl Reading {
     }
 }
 
-/// Counts off the middle of the converters as tool Fx, Fy, Fz, My: tool X, Y, Z are sensor Z, -Y, X (III.3.8). `None` if the
-/// sensor has no power, or an axis is overloaded: its neighbours cannot be trusted then either.
+/// Counts off the middle of the converters as tool Fx, Fy, Fz, My: tool X, Y, Z are sensor Z, -Y, X
+/// (III.3.8). `None` if the sensor has no power, or an axis is overloaded: its neighbours cannot be trusted
+/// then either.
 fn tool_axes(force: &ForceSensor) -> Option<[f64; AXES]> {
     let sound = |counts: u16| (1..ADC_FULL_SCALE).contains(&counts);
     if !force.valid || ![force.x, force.y, force.z, force.moment].into_iter().all(sound) {

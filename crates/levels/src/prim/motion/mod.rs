@@ -132,8 +132,8 @@ impl Motion {
         }
     }
 
-    /// The robot has stood for a while, wherever the motion had come to: go on from rest at the last point, straight to the
-    /// goal of the last order.
+    /// The robot has stood for a while, wherever the motion had come to: go on from rest at the last point,
+    /// straight to the goal of the last order.
     pub fn stand(&mut self) {
         let order = if self.next.given {
             self.next

@@ -1,8 +1,9 @@
 //! The table of every tick that looks after finished commands.
 //!
-//! An outcome stays until a new command comes, with two exceptions that the joystick box asks for (III.3.3). PAUSE never ends: while
-//! it stands, the operator may take the robot and give it back. And a motion that is done may be one on which the robot
-//! still flies: the operator can stop it, and the commander must learn of it.
+//! An outcome stays until a new command comes, with two exceptions that the joystick box asks for (III.3.3).
+//! PAUSE never ends: while it stands, the operator may take the robot and give it back. And a motion that is
+//! done may be one on which the robot still flies: the operator can stop it, and the commander must learn of
+//! it.
 
 use rcs_core::{coded_enum, decision_table, interface::prim::PrimVerb};
 

@@ -19,7 +19,8 @@ coded_enum! {
 }
 
 decision_table! {
-    /// DELTA-MOVE (V.1.1): move to a place given relative to a pose, by a movetable, and stop. It ends as GOTO-PT does.
+    /// DELTA-MOVE (V.1.1): move to a place given relative to a pose, by a movetable, and stop. It ends as
+    /// GOTO-PT does.
     pub DELTA_MOVE: fn delta_move(step: Step, health: Health, posture: Posture, arrival: Arrival)
         -> (Action, Step)
     {

@@ -35,8 +35,8 @@ coded_enum! {
 }
 
 decision_table! {
-    /// GO-UNTIL (V.1.1): a guarded move. Done when the condition has come and the robot stands; a goal without it is
-    /// `not-detected` until it comes after all, or another command does.
+    /// GO-UNTIL (V.1.1): a guarded move. Done when the condition has come and the robot stands; a goal
+    /// without it is `not-detected` until it comes after all, or another command does.
     pub GO_UNTIL: fn go_until(
         step: Step, health: Health, posture: Posture, guard: Guard, arrival: Arrival, rest: Arrival,
     ) -> (Action, Step) {

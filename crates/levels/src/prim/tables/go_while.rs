@@ -22,8 +22,8 @@ coded_enum! {
 }
 
 decision_table! {
-    /// GO-WHILE (V.1.1): move to a point and stop, while the condition does not come. If it comes, or the sensor
-    /// cannot tell, the robot ramps down and the move has failed.
+    /// GO-WHILE (V.1.1): move to a point and stop, while the condition does not come. If it comes, or the
+    /// sensor cannot tell, the robot ramps down and the move has failed.
     pub GO_WHILE: fn go_while(step: Step, health: Health, posture: Posture, guard: Guard, arrival: Arrival)
         -> (Action, Step)
     {

@@ -1,5 +1,5 @@
-//! Decision tables of Prim: a file a command, and those of every tick: what becomes of finished commands, the path
-//! clock, the record button.
+//! Decision tables of Prim: a file a command, and those of every tick: what becomes of finished commands,
+//! the path clock, the record button.
 
 pub mod attend;
 pub mod cal_sensor;

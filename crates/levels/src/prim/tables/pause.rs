@@ -17,8 +17,8 @@ coded_enum! {
 }
 
 decision_table! {
-    /// PAUSE (V.1.1): do nothing. A motion ramps down within its limits; then the last point is repeated. From there on the
-    /// joystick box moves the robot while one of its frame switches is on.
+    /// PAUSE (V.1.1): do nothing. A motion ramps down within its limits; then the last point is repeated.
+    /// From there on the joystick box moves the robot while one of its frame switches is on.
     pub PAUSE: fn pause(step: Step, posture: Posture, switches: Switches) -> (Action, Step) {
         //    step               posture           switches            action   next
         1: ( _                , Unpositioned    , Off           ) => Finish , Start    ;

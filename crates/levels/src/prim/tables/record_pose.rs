@@ -34,8 +34,8 @@ pub enum Note {
 }
 
 decision_table! {
-    /// RECORD-POSE (III.3.3): record the pose, and suspend Prim and E-move until the operator goes on. A Prim that is
-    /// stepped is not suspended any more.
+    /// RECORD-POSE (III.3.3): record the pose, and suspend Prim and E-move until the operator goes on. A
+    /// Prim that is stepped is not suspended any more.
     pub RECORD_POSE: fn record_pose(button: Button, posture: Posture) -> (Note, Recording) {
         //   button    posture                        note     recording
         1: ( Pressed , Moving | Ending | Standing ) => Record , On  ;

@@ -20,8 +20,8 @@ coded_enum! {
 
 decision_table! {
     /// ROBOT-INIT (V.1.1): RESTART to T3I. It is there to clear errors of the link, so that only those count
-    /// which come after the RESTART. The only way from an error, or from a start, to a commanded position. The
-    /// joystick box does not hinder it: nothing moves.
+    /// which come after the RESTART. The only way from an error, or from a start, to a commanded position.
+    /// The joystick box does not hinder it: nothing moves.
     pub ROBOT_INIT: fn robot_init(step: Step, health: Health, posture: Posture, link: Link)
         -> (Action, Step)
     {

@@ -1,4 +1,5 @@
-//! Prim, T3I and the controller's end of the DEPC line together, tick by tick: what one sends is what the next takes.
+//! Prim, T3I and the controller's end of the DEPC line together, tick by tick: what one sends is what the
+//! next takes.
 
 use depc::{
     Limits, Plate,

@@ -1,4 +1,5 @@
-//! Prim against a model of T3I that stalls, fails and watches the order of points; in [`line`], against T3I itself.
+//! Prim against a model of T3I that stalls, fails and watches the order of points; in [`line`], against T3I
+//! itself.
 
 mod guarded;
 mod joystick;
