@@ -4,6 +4,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use executive::memory::{Attached, Publisher, RunName, SharedMemoryError, buffers::Pulse, list, runs};
+use levels::ladder::PROCESS_COUNT;
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport},
     name::Name16,
@@ -15,17 +16,29 @@ fn name(test: &str) -> RunName {
     RunName::unique(test)
 }
 
+/// The headers of all processes.
+fn headers(memory: &mut CommonMemory) -> [&mut Header; PROCESS_COUNT] {
+    [
+        &mut memory.task.header,
+        &mut memory.subtask.header,
+        &mut memory.emove.header,
+        &mut memory.prim.header,
+        &mut memory.t3i.header,
+        &mut memory.quick_change.header,
+        &mut memory.grip.header,
+        &mut memory.v_grip.header,
+        &mut memory.tool_grip.header,
+        &mut memory.pedestal.header,
+        &mut memory.hand.header,
+        &mut memory.table.header,
+    ]
+}
+
 fn with_stamp(tick: u64) -> (ExternalInputs, CommonMemory, Pulse) {
     let tick = Tick(tick);
     let header = Header { stamp: tick, republished: false, table: 2, row: 7 };
     let mut memory = CommonMemory::default();
-    memory.task.header = header;
-    memory.subtask.header = header;
-    memory.emove.header = header;
-    memory.prim.header = header;
-    memory.t3i.header = header;
-    memory.quick_change.header = header;
-    memory.grip.header = header;
+    headers(&mut memory).into_iter().for_each(|place| *place = header);
     memory.task.status.report = HwsReport::Executing;
     memory.subtask.emove.command = EmoveVerb::MovToObj;
     memory.prim.status.distance = i32::try_from(tick.0).unwrap();
@@ -169,13 +182,7 @@ fn any_common_memory_survives_the_way_through_shared_memory() {
         some_value(&CommonMemory::SCHEMA, &mut numbers, &mut image);
         let mut memory: CommonMemory = from_bytes(&image).expect("legal by construction");
         let (external, stamped, pulse) = with_stamp(tick);
-        memory.task.header = stamped.task.header;
-        memory.subtask.header = stamped.subtask.header;
-        memory.emove.header = stamped.emove.header;
-        memory.prim.header = stamped.prim.header;
-        memory.t3i.header = stamped.t3i.header;
-        memory.quick_change.header = stamped.quick_change.header;
-        memory.grip.header = stamped.grip.header;
+        headers(&mut memory).into_iter().for_each(|place| *place = stamped.task.header);
         publisher.publish(&external, &memory, pulse);
         assert_eq!(reader.memory(), Ok(memory));
     }
