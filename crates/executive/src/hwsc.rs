@@ -353,7 +353,7 @@ mod tests {
     };
     use taskdata::{
         files::{Location, Place},
-        load::job::ViseOpening,
+        load::job::{TASK_COMMANDS, ViseOpening},
     };
 
     /// A Task that executes each command for some ticks.
@@ -493,6 +493,15 @@ mod tests {
             "{:?}",
             hwsc.records()
         );
+    }
+
+    #[test]
+    fn every_command_of_task_is_sent_as_the_job_has_it() {
+        let steps: Vec<_> = TASK_COMMANDS.iter().map(|verb| command(verb)).collect();
+        let (mut hwsc, mut task) = (Hwsc::new(steps, 100), Task::default());
+        play(&mut hwsc, &mut task, &mut Vise::default());
+        assert_eq!(*hwsc.progress(), Progress::Over);
+        assert_eq!(task.received[1..], *TASK_COMMANDS);
     }
 
     #[test]

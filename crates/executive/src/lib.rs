@@ -3,13 +3,14 @@
 //! The control processes are pure state machines; this crate gives them time and surroundings. [`runner`]
 //! steps them with tick-parity buffers and sums up what they did, [`clock`] says when, [`realtime`] asks the
 //! system for punctuality, [`serial`] is the line to a real robot, [`alloc`] proves that nothing is allocated
-//! on the way, [`memory`] lets others look on, [`hwsc`] plays the workstation controller, and [`failure`]
-//! finds the process, the table and the row that explain why something went wrong.
+//! on the way, [`memory`] lets others look on, [`hwsc`] plays the workstation controller, [`data_base`] the
+//! Data System, and [`failure`] finds the process, the table and the row that explain why something went wrong.
 
 #![deny(unsafe_code)]
 
 pub mod alloc;
 pub mod clock;
+pub mod data_base;
 pub mod failure;
 pub mod generations;
 pub mod histogram;
