@@ -1,5 +1,5 @@
-//! What the fingers are to do and what they have done: openings and sizes of the object forms (VII.7.1) as orders to the attached
-//! gripper, and its opening as state variables.
+//! What the fingers are to do and what they have done: openings and sizes of the object forms (VII.7.1) as
+//! orders to the attached gripper, and its opening as state variables.
 
 use rcs_core::{handshake::Lower, interface::emove::EmoveCommand, name::Name16, process::Inputs};
 use taskdata::files::{EndEffId, EndEffPara, TaskData};
@@ -12,10 +12,11 @@ use super::{
     tables::{Action, Fingers, Opening, Spread},
 };
 
-/// Grip number of a holster object with the gripper on the robot; its approach size is the opening with which the gripper goes
-/// through the holster.
+/// Grip number of a holster object with the gripper on the robot; its approach size is the opening with which
+/// the gripper goes through the holster.
 const GRIPPER_ON: i32 = 1;
-/// Force with which the joystick box closes the parts gripper, lb: the least of the usual ones (VIII.9.1; ASSUMED).
+/// Force with which the joystick box closes the parts gripper, lb: the least of the usual ones (VIII.9.1;
+/// ASSUMED).
 const HAND_FORCE: i32 = 30;
 
 /// Parameters of a holster object with the gripper on.

@@ -1,8 +1,10 @@
-//! Whichever gripper is attached, in one set of words (V.2: E-move coordinates the robot with "various gripper processes").
+//! Whichever gripper is attached, in one set of words (V.2: E-move coordinates the robot with "various
+//! gripper processes").
 //!
-//! The parts gripper servoes an opening or a force and takes five commands (VI.3.1); v-gripper and tool gripper open or close, no
-//! more, and take four (VI.4.1, VI.5). The tables of E-move see neither: they give an [`Order`], read one [`Lower`] and know one
-//! opening. Which process is meant is what Quick Change reads from the id pins, every tick anew; only that one is stepped.
+//! The parts gripper servoes an opening or a force and takes five commands (VI.3.1); v-gripper and tool
+//! gripper open or close, no more, and take four (VI.4.1, VI.5). The tables of E-move see neither: they give
+//! an [`Order`], read one [`Lower`] and know one opening. Which process is meant is what Quick Change reads
+//! from the id pins, every tick anew; only that one is stepped.
 //!
 //! | order     | Grip                  | V-Grip, Tool-Grip                                          |
 //! |-----------|-----------------------|------------------------------------------------------------|
@@ -12,7 +14,8 @@
 //! | Grasp     | CLOSE-GRIP            | GRASP                                                      |
 //! | Calibrate | UP-INIT               | PAUSE: there is nothing to calibrate                       |
 //!
-//! Fingers that stop at the end that nobody sent them to end in `opened` or `closed` as well (VI.4.2): that is an error here.
+//! Fingers that stop at the end that nobody sent them to end in `opened` or `closed` as well (VI.4.2): that
+//! is an error here.
 
 use rcs_core::{
     coded_enum,
@@ -34,11 +37,13 @@ use crate::jaws::{CylindricalPartGripper, Kind, Parameters, ToolGripper};
 const PARTS_CLOSED: i32 = 10;
 /// An opening of the parts gripper is right within this, 0.01 in (its servo's own band, `levels::grip`).
 const PARTS_BAND: i32 = 2;
-/// Fingers slower than this stand still, 0.01 in/s: above the noise of the potentiometer, below the finest flow of air.
+/// Fingers slower than this stand still, 0.01 in/s: above the noise of the potentiometer, below the finest
+/// flow of air.
 const STILL: i32 = 10;
 /// Fingers of the parts gripper this much wider than at the grasp have let go, 0.01 in.
 const LET_GO: i32 = 25;
-/// v-gripper and tool gripper hold an object if the opening differs from the grasp size by no more than this, 0.01 in (ASSUMED).
+/// v-gripper and tool gripper hold an object if the opening differs from the grasp size by no more than this,
+/// 0.01 in (ASSUMED).
 const JAWS_BAND: i32 = 10;
 /// They are at a stop within this, 0.01 in.
 const STOP_BAND: i32 = 5;
@@ -108,7 +113,8 @@ impl Gripper {
         }
     }
 
-    /// The opening, 0.01 in; `None` while it is not known: not calibrated, not read since the process woke, or no gripper.
+    /// The opening, 0.01 in; `None` while it is not known: not calibrated, not read since the process woke,
+    /// or no gripper.
     #[must_use]
     pub fn opening(self, memory: &CommonMemory) -> Option<i32> {
         match self.jaws(memory) {
@@ -132,10 +138,11 @@ impl Gripper {
         velocity.saturating_abs() < STILL
     }
 
-    /// Would closed fingers with this opening have something between them that is gripped at `grasp_size`? (0.01 in.)
+    /// Would closed fingers with this opening have something between them that is gripped at `grasp_size`?
+    /// (0.01 in.)
     ///
-    /// The parts gripper closes until it feels the object: anything above the grasp size is one (VIII.9.1). Jaws stop at the
-    /// object or at their stop: only the size itself tells.
+    /// The parts gripper closes until it feels the object: anything above the grasp size is one (VIII.9.1).
+    /// Jaws stop at the object or at their stop: only the size itself tells.
     #[must_use]
     pub fn grips(self, opening: i32, grasp_size: i32) -> bool {
         match self.stops() {
@@ -176,7 +183,8 @@ impl Gripper {
         at && self.is_still(memory)
     }
 
-    /// Are the fingers at least as wide open as [`Order::Release`] with `opening` would bring them? True without a gripper.
+    /// Are the fingers at least as wide open as [`Order::Release`] with `opening` would bring them? True
+    /// without a gripper.
     #[must_use]
     pub fn is_open(self, opening: i32, memory: &CommonMemory) -> bool {
         let Some(now) = self.opening(memory) else { return self == Self::None };
@@ -323,7 +331,8 @@ impl Grippers {
         };
         let report = jaws.status.report;
         match commander.read(tick, &jaws.header, jaws.status.echo, report.lower()) {
-            // Fingers that are to be left alone may stand anywhere: on an object of another size, or moved by hand.
+            // Fingers that are to be left alone may stand anywhere: on an object of another size, or moved by
+            // hand.
             Lower::Error if self.order == Order::Pause && report == JawsReport::Stuck => Lower::Done,
             Lower::Done if self.moves_fingers() && report == self.wrong_end() => Lower::Error,
             lower => lower,

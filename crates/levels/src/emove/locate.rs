@@ -1,8 +1,8 @@
 //! From a picture to a part frame (V.2.1 LOCATE-OBJ).
 //!
-//! A view movetable leads from a place to the tool frame from which the camera looks at it. Undone, it leads from the tool frame
-//! at which a picture was taken to the place in the middle of the picture; no other mounting data of the camera is needed.
-//! Vision answers in the axes of that place.
+//! A view movetable leads from a place to the tool frame from which the camera looks at it. Undone, it leads
+//! from the tool frame at which a picture was taken to the place in the middle of the picture; no other
+//! mounting data of the camera is needed. Vision answers in the axes of that place.
 
 use rcs_core::{
     frame::{Frame, Rotation, Vector},

@@ -1,5 +1,5 @@
-//! E-move (V.2): takes elemental moves apart into straight segments for Prim, and coordinates gripper, quick change and vision
-//! with them.
+//! E-move (V.2): takes elemental moves apart into straight segments for Prim, and coordinates gripper, quick
+//! change and vision with them.
 //!
 //! * [`state`]: what E-move remembers: among it *where the robot is* and what it holds;
 //! * [`plan`]: what a command needs, looked up before anything moves;
@@ -110,7 +110,8 @@ impl<'d> Process<TaskData<'d>> for Emove {
 }
 
 impl Emove {
-    /// E-PAUSE goes on after it is done, for as long as it is the command: the joystick box may take the robot (V.1.1 PAUSE).
+    /// E-PAUSE goes on after it is done, for as long as it is the command: the joystick box may take the
+    /// robot (V.1.1 PAUSE).
     fn is_standing(&self, command: &EmoveCommand) -> bool {
         command.command == EmoveVerb::Pause
             && self.state.execution.step == tables::pause::Step::Standing.code()

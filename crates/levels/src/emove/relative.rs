@@ -1,8 +1,9 @@
 //! Relative moves: the short straight motions at holsters and tool drum (V.2.1 QC-DETACH … REMOVE-TOOL).
 //!
-//! The manual keeps them in code; here a command names each, and task data say for the name and the location where it leads, how
-//! fast, and what guards it (file REL-MOVES). Some lead from the pose of the command's location, wherever the robot has come to
-//! stand; others lead from where it stands, because a guarded move before it ended where the sensor said.
+//! The manual keeps them in code; here a command names each, and task data say for the name and the location
+//! where it leads, how fast, and what guards it (file REL-MOVES). Some lead from the pose of the command's
+//! location, wherever the robot has come to stand; others lead from where it stands, because a guarded move
+//! before it ended where the sensor said.
 
 use rcs_core::{
     coded_enum,
@@ -113,7 +114,8 @@ impl Relative {
     /// The move's record for a place.
     ///
     /// # Errors
-    /// [`Reason::NoRelativeMove`] if task data have none, [`Reason::UnknownSensor`] if it is to be guarded and is not.
+    /// [`Reason::NoRelativeMove`] if task data have none, [`Reason::UnknownSensor`] if it is to be guarded
+    /// and is not.
     pub fn record<'d>(self, command: &EmoveCommand, data: &TaskData<'d>) -> Result<&'d RelativeMove, Reason> {
         let place = place_of(command.location_kind, command.location_record, command.location_array);
         let found =

@@ -1,5 +1,5 @@
-//! The way from where the robot is to the goal of a command (V.2.1 MOV-TO-LOC): depart points, intermediate trajectory,
-//! approach points, stop.
+//! The way from where the robot is to the goal of a command (V.2.1 MOV-TO-LOC): depart points, intermediate
+//! trajectory, approach points, stop.
 //!
 //! ```text
 //!   stance --depart--> . --trajectory--> . --approach--> . --stop--> goal
@@ -21,8 +21,8 @@ use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Place, Target, Task
 use super::state::{Sort, Stance};
 use crate::places::place_of;
 
-/// Opening, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU). The parts gripper opens as
-/// wide; the others open to their stop.
+/// Opening, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU).
+/// The parts gripper opens as wide; the others open to their stop.
 pub const FULL_OPENING: i32 = 500;
 /// The robot is at a goal if it is within this many inches …
 pub const THERE_INCHES: f64 = 0.02;
@@ -180,9 +180,9 @@ impl Route {
     /// Plan the way to `goal` from where the robot is.
     ///
     /// # Errors
-    /// [`Reason::UnknownStart`] if it is not known where the robot is, [`Reason::NotPrepared`] if its fingers are around a tool in the
-    /// drum, [`Reason::NoTrajectory`] if no trajectory leads from
-    /// there to the goal's location, [`Reason::NoApproach`] if nothing says how fast the goal is approached.
+    /// [`Reason::UnknownStart`] if it is not known where the robot is, [`Reason::NotPrepared`] if its fingers
+    /// are around a tool in the drum, [`Reason::NoTrajectory`] if no trajectory leads from there to the
+    /// goal's location, [`Reason::NoApproach`] if nothing says how fast the goal is approached.
     pub fn plan(
         command: &EmoveCommand,
         goal: &Goal,
@@ -214,8 +214,8 @@ impl Route {
         Ok(route)
     }
 
-    /// Parameters of the final motion: those of the approach's stop line; where no approach is written, those of the last point
-    /// before the goal (ASSUMED, SPECNOTES).
+    /// Parameters of the final motion: those of the approach's stop line; where no approach is written, those
+    /// of the last point before the goal (ASSUMED, SPECNOTES).
     fn stop_parameters(&self, data: &TaskData<'_>) -> Option<TrajParaId> {
         [self.approach, self.between, self.depart]
             .into_iter()
@@ -243,14 +243,16 @@ impl Route {
         }
     }
 
-    /// True while the next point is a depart point: the fingers must not move yet (DESIGN 16 "Finger opening").
+    /// True while the next point is a depart point: the fingers must not move yet (DESIGN 16 "Finger
+    /// opening").
     #[must_use]
     pub fn departing(&self, data: &TaskData<'_>) -> bool {
         !self.complete
             && matches!(self.points(data).nth(usize::from(self.commanded)), Some((Part::Depart, _)))
     }
 
-    /// The next leg; `departure` is the frame departed from. `None` if a record is missing or the route is complete.
+    /// The next leg; `departure` is the frame departed from. `None` if a record is missing or the route is
+    /// complete.
     #[must_use]
     pub fn leg(&self, departure: &Frame, data: &TaskData<'_>) -> Option<Leg> {
         if self.complete {
@@ -275,7 +277,8 @@ impl Route {
         Some(Leg { at, parameters: point.para })
     }
 
-    /// The frame of the next trajectory point, each relative to the one before it (VII.6), the first to the departure.
+    /// The frame of the next trajectory point, each relative to the one before it (VII.6), the first to the
+    /// departure.
     fn between_frame(&self, departure: &Frame, data: &TaskData<'_>) -> Option<Frame> {
         let points = data.path(self.between);
         let before = data.path(self.depart).len();

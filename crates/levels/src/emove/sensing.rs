@@ -29,7 +29,8 @@ use super::{
 };
 use crate::{execution::Outcome, places::place_of};
 
-/// The robot is no longer where its last move ended if it is more than this many inches … (DESIGN 16 "Where the robot is")
+/// The robot is no longer where its last move ended if it is more than this many inches … (DESIGN 16 "Where
+/// the robot is")
 const LOST_INCHES: f64 = 0.5;
 /// … or radians (2 degrees) off.
 const LOST_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
@@ -39,7 +40,8 @@ const SEARCH_PER_TICK: u32 = 64;
 const VISION_LIMIT: u64 = 100;
 /// Pictures of a kind that are taken in vain before LOCATE-OBJ gives up.
 const MAX_TRIES: u8 = 3;
-/// Ticks for which a GO-UNTIL may stay not-detected (1 s): the robot stands, and what has not come by then does not come.
+/// Ticks for which a GO-UNTIL may stay not-detected (1 s): the robot stands, and what has not come by then
+/// does not come.
 const PATIENCE: u32 = 25;
 /// Bits of the four sensors of a holster (V.1.2).
 const HOLSTER_SENSORS: u8 = 0x0F;
@@ -212,8 +214,8 @@ impl Emove {
         }
     }
 
-    /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is (VI.3.1 UP-INIT); with no
-    /// gripper, or one that has come since, there is nothing to wait for.
+    /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is
+    /// (VI.3.1 UP-INIT); with no gripper, or one that has come since, there is nothing to wait for.
     fn tooling(&self, ring: Ring, gripper: Lower, memory: &CommonMemory) -> Tooling {
         let asked = self.state.grippers.to == Gripper::attached(memory);
         match (ring, gripper) {

@@ -31,7 +31,8 @@ coded_enum! {
 }
 
 record! {
-    /// Where the robot is (DESIGN 16): location, object and grip of the last completed move. It decides how the robot departs.
+    /// Where the robot is (DESIGN 16): location, object and grip of the last completed move. It decides how
+    /// the robot departs.
     pub struct Stance {
         /// The robot is there.
         pub known: bool,

@@ -28,8 +28,9 @@ coded_enum! {
 }
 
 decision_table! {
-    /// ACQUIRE-TOOL (V.2.1): open the tool gripper, move towards the machine tool, calibrate, touch the strike plate, calibrate, slide to
-    /// the left around the tool, grasp it. Done at once if it is held in the drum.
+    /// ACQUIRE-TOOL (V.2.1): open the tool gripper, move towards the machine tool, calibrate, touch the
+    /// strike plate, calibrate, slide to the left around the tool, grasp it. Done at once if it is held in
+    /// the drum.
     pub ACQUIRE_TOOL: fn acquire_tool(step: Step, station: Station, held: Held, fingers: Fingers, gripper: Lower, travel: Travel) -> (Action, Step) {
         //     step                                        station             held      fingers    gripper                   travel                 action                         next
         1:  ( Start                                     , _                 , Other   , _        , _                       , _                 ) => Fail(Reason::AlreadyHolding) , Start             ;

@@ -20,7 +20,8 @@ coded_enum! {
 }
 
 decision_table! {
-    /// INSERT-TOOL (V.2.1): DELTA-MOVE, CAL-SENSOR, and a GO-WHILE that the insertion force ends. Done at once if the tool is in the drum.
+    /// INSERT-TOOL (V.2.1): DELTA-MOVE, CAL-SENSOR, and a GO-WHILE that the insertion force ends. Done at
+    /// once if the tool is in the drum.
     pub INSERT_TOOL: fn insert_tool(step: Step, station: Station, held: Held, prim: Lower) -> (Action, Step) {
         //     step                                   station             held              Prim                       action                      next
         1:  ( Start                                 , _                 , Nothing | Other , _                       ) => Fail(Reason::NothingHeld) , Start       ;

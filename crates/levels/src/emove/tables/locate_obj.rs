@@ -21,7 +21,8 @@ coded_enum! {
 }
 
 decision_table! {
-    /// LOCATE-OBJ (V.2.1): a fast flood picture, centre the camera over it, a second picture with recognition and angle, align.
+    /// LOCATE-OBJ (V.2.1): a fast flood picture, centre the camera over it, a second picture with recognition
+    /// and angle, align.
     pub LOCATE_OBJ: fn locate_obj(step: Step, sight: Sight, tries: Tries, prim: Lower) -> (Action, Step) {
         //     step                    sight                    tries   Prim                       action                        next
         1:  ( Start                 , _                      , _     , _                       ) => Flood                       , Flooding  ;

@@ -5,7 +5,8 @@ use rcs_core::{decision_table, handshake::Lower, interface::Reason, table::Decis
 use super::{Action, Ahead, Choice, Held, Motion, Situation};
 
 decision_table! {
-    /// MOV-OBJ-TO (V.2.1): move the held object to a destination. An object that is lost on the way stops the robot.
+    /// MOV-OBJ-TO (V.2.1): move the held object to a destination. An object that is lost on the way stops the
+    /// robot.
     pub MOV_OBJ_TO: fn mov_obj_to(step: Motion, held: Held, ahead: Ahead, prim: Lower) -> (Action, Motion) {
         //     step                 held              ahead     Prim                       action                      next
         1:  ( Start              , Nothing | Other , _       , _                       ) => Fail(Reason::NothingHeld) , Start    ;

@@ -5,7 +5,8 @@ use rcs_core::{decision_table, handshake::Lower, interface::Reason, table::Decis
 use super::{Action, Ahead, Choice, Load, Motion, Situation};
 
 decision_table! {
-    /// MOV-TO-LOC (V.2.1): a series of GO-THRU and one GOTO-PT; no gripper commands. What the robot carries must not be lost.
+    /// MOV-TO-LOC (V.2.1): a series of GO-THRU and one GOTO-PT; no gripper commands. What the robot carries
+    /// must not be lost.
     pub MOV_TO_LOC: fn mov_to_loc(step: Motion, load: Load, ahead: Ahead, prim: Lower) -> (Action, Motion) {
         //    step               load   ahead     Prim                       action                     next
         1: ( _                , Lost , _       , _                       ) => Fail(Reason::ObjectLost) , Start    ;

@@ -5,8 +5,9 @@ use rcs_core::{decision_table, handshake::Lower, interface::Reason, table::Decis
 use super::{Action, Ahead, Choice, Held, Motion, Opening, Situation};
 
 decision_table! {
-    /// MOV-TO-OBJ, MOV-TO-VU (V.2.1): like MOV-TO-LOC, with the fingers opened for the goal once the last depart point is behind; the
-    /// final motion waits for them. Who holds the object is at it; who holds another must not open the fingers.
+    /// MOV-TO-OBJ, MOV-TO-VU (V.2.1): like MOV-TO-LOC, with the fingers opened for the goal once the last
+    /// depart point is behind; the final motion waits for them. Who holds the object is at it; who holds
+    /// another must not open the fingers.
     pub MOV_TO_OBJ: fn mov_to_obj(step: Motion, held: Held, ahead: Ahead, opening: Opening, prim: Lower) -> (Action, Motion) {
         //     step               held    ahead            opening                         Prim                       action                         next
         1:  ( Start            , Right , _              , _                             , _                       ) => Finish                       , Start    ;

@@ -21,8 +21,9 @@ coded_enum! {
 }
 
 decision_table! {
-    /// E-PAUSE (V.2.1): do nothing. The first one after the start initializes the link (IV.3.3 step 2), waits for the calibration of the
-    /// parts gripper (VI.3.1 UP-INIT), and finds out where the robot is. While it stands, the joystick box has robot and gripper.
+    /// E-PAUSE (V.2.1): do nothing. The first one after the start initializes the link (IV.3.3 step 2), waits
+    /// for the calibration of the parts gripper (VI.3.1 UP-INIT), and finds out where the robot is. While it
+    /// stands, the joystick box has robot and gripper.
     pub E_PAUSE: fn e_pause(step: Step, link: Link, prim: Lower, tooling: Tooling, whereabouts: Whereabouts, button: JoystickGrip) -> (Action, Step) {
         //     step                     link   Prim                               tooling      whereabouts         button    action         next
         1:  ( Start                  , Down , _                                  , _          , _               , _     ) => RobotInit   , Initializing ;

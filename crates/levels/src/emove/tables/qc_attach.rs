@@ -32,8 +32,9 @@ coded_enum! {
 }
 
 decision_table! {
-    /// QC-ATTACH (V.2.1): down fast, down slowly, lock, close the gripper, back, lift, check the id, up, calibrate if required. Done at
-    /// once if the gripper is locked on and clear of its holster. A bare robot whose ring is locked is unlocked first.
+    /// QC-ATTACH (V.2.1): down fast, down slowly, lock, close the gripper, back, lift, check the id, up,
+    /// calibrate if required. Done at once if the gripper is locked on and clear of its holster. A bare robot
+    /// whose ring is locked is unlocked first.
     pub QC_ATTACH: fn qc_attach(step: Step, station: Station, mate: Mate, holster: Holster, ring: Ring, readiness: Readiness, travel: Travel) -> (Action, Step) {
         //     step                                       station              mate    holster           ring                       readiness               travel                        action                         next
         1:  ( Start                                    , _                  , Right , Empty           , Locked                   , _                     , _                        ) => Finish                       , Start       ;

@@ -22,8 +22,8 @@ coded_enum! {
 }
 
 decision_table! {
-    /// QC-DETACH (V.2.1): down until the large sensors of the holster see the ears, unlock, forward until the small ones see them, up,
-    /// and check that the gripper stayed there. Done at once if it is there.
+    /// QC-DETACH (V.2.1): down until the large sensors of the holster see the ears, unlock, forward until the
+    /// small ones see them, up, and check that the gripper stayed there. Done at once if it is there.
     pub QC_DETACH: fn qc_detach(step: Step, station: Station, held: Held, mate: Mate, holster: Holster, ring: Ring, travel: Travel) -> (Action, Step) {
         //     step                                      station              held            mate            holster           ring                     travel                        action                          next
         1:  ( Start                                   , _                  , _             , None          , Full            , _                      , _                        ) => Finish                        , Start     ;

@@ -22,8 +22,9 @@ coded_enum! {
 }
 
 decision_table! {
-    /// RELEASE-TOOL (V.2.1): open the tool gripper, calibrate, slide to the right until the strike plate gives a moment, pull back. Done
-    /// at once by who stands before the drum with open fingers and nothing in them.
+    /// RELEASE-TOOL (V.2.1): open the tool gripper, calibrate, slide to the right until the strike plate
+    /// gives a moment, pull back. Done at once by who stands before the drum with open fingers and nothing in
+    /// them.
     pub RELEASE_TOOL: fn release_tool(step: Step, station: Station, held: Held, spread: Spread, gripper: Lower, travel: Travel) -> (Action, Step) {
         //     step                                  station     held            spread   gripper                   travel                 action                      next
         1:  ( Start                               , InDrum    , _             , _      , _                       , _                 ) => OpenToDepart              , Opening     ;

@@ -18,8 +18,9 @@ coded_enum! {
 }
 
 decision_table! {
-    /// REMOVE-TOOL (V.2.1): CAL-SENSOR and a guarded move that the extraction force ends: a GO-WHILE, though the manual says GO-UNTIL, for
-    /// the force is what must not come (contradiction 18). Done at once if the tool is out.
+    /// REMOVE-TOOL (V.2.1): CAL-SENSOR and a guarded move that the extraction force ends: a GO-WHILE, though
+    /// the manual says GO-UNTIL, for the force is what must not come (contradiction 18). Done at once if the
+    /// tool is out.
     pub REMOVE_TOOL: fn remove_tool(step: Step, station: Station, held: Held, prim: Lower) -> (Action, Step) {
         //     step                     station     held              Prim                       action                      next
         1:  ( Start                  , _         , Nothing | Other , _                       ) => Fail(Reason::NothingHeld) , Start       ;

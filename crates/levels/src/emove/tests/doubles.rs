@@ -1,5 +1,5 @@
-//! Test doubles of E-move's neighbours, each a dozen lines that do what the manual's chapter says of the process, and the little
-//! world that they share.
+//! Test doubles of E-move's neighbours, each a dozen lines that do what the manual's chapter says of the
+//! process, and the little world that they share.
 
 use rcs_core::{
     frame::Frame,

@@ -99,8 +99,8 @@ fn bring(bench: &mut Bench, tick: &Nonsense) {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
-    /// Nothing panics; only the attached gripper is commanded, only its process runs; a process that goes on from a remembered
-    /// state writes the same bits.
+    /// Nothing panics; only the attached gripper is commanded, only its process runs; a process that goes on
+    /// from a remembered state writes the same bits.
     #[test]
     fn nothing_panics(gripper in 0_u8..4, at in 1_usize..6, ticks in prop::collection::vec(nonsense(), 1..150)) {
         let mut bench = Bench::ready(LOCATIONS[at], gripper);

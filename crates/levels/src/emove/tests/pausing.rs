@@ -147,7 +147,8 @@ fn the_operator_moves_the_robot_and_the_fingers() {
         let status = bench.memory.emove.status;
         assert_eq!((status.report, status.reason, status.at.as_str()), (Report::Done, Reason::None, "VISE"));
     }
-    // Without frame switches the buttons work as well, and a robot that is switched over while it pauses is the operator's.
+    // Without frame switches the buttons work as well, and a robot that is switched over while it pauses is
+    // the operator's.
     let mut bench = Bench::ready("HOME", 1);
     bench.world.joystick = true;
     assert_eq!(bench.pause(), (Report::JoystickOn, Reason::JoystickOn));

@@ -1,5 +1,5 @@
-//! E-move with the real Quick Change, Grip, V-Grip and Tool-Grip, their devices simulated: what one sends is what the other takes,
-//! sleeping and waking included. Prim and vision are doubles.
+//! E-move with the real Quick Change, Grip, V-Grip and Tool-Grip, their devices simulated: what one sends is
+//! what the other takes, sleeping and waking included. Prim and vision are doubles.
 
 use rcs_core::{
     interface::{
