@@ -165,7 +165,7 @@ fn what_is_missing_has_a_reason() {
     let lost = Stance { known: false, ..known };
     assert_eq!(planned(EmoveVerb::MovToLoc, "", 0, &vise, &lost), Err(Reason::UnknownStart));
     assert_eq!(
-        planned(EmoveVerb::MovToLoc, "", 0, &location("TABLE", 0, ""), &known),
+        planned(EmoveVerb::MovToLoc, "", 0, &location("UT-1-TEST", 0, ""), &known),
         Err(Reason::NoTrajectory)
     );
     assert_eq!(planned(EmoveVerb::MovToObj, "LINKBAR1_BH", 7, &tray, &known), Err(Reason::UnknownGrip));
