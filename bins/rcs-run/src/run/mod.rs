@@ -24,6 +24,7 @@ use std::{
 use depc::Plate;
 use executive::{
     clock::Clock,
+    data_base::DataSystem,
     failure::{self, Failure},
     hwsc::{self, Hwsc, JobFailure},
     machine::Machine,
@@ -34,7 +35,7 @@ use executive::{
 use levels::ladder::Ladder;
 use plant::CellEvent;
 use rcs_core::{
-    interface::{DataBaseStatus, DeviceInputs, ExternalInputs},
+    interface::{DeviceInputs, ExternalInputs},
     tick::{TICK_S, Tick},
 };
 use record::Level;
@@ -58,6 +59,7 @@ use crate::{
 struct Run {
     runner: Runner<Ladder>,
     hwsc: Hwsc,
+    data_system: DataSystem,
     workstation: SimulatedWorkstation,
     inputs: DeviceInputs,
     robot: Robot,
@@ -93,6 +95,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let mut run = Run {
         runner: Runner::new(Ladder::default(), publisher),
         hwsc: Hwsc::new(job.steps.clone(), hwsc::TIME_LIMIT),
+        data_system: DataSystem::default(),
         inputs: cell.inputs(),
         robot,
         workstation: SimulatedWorkstation::new(cell, description.vise.location),
@@ -187,7 +190,7 @@ impl Run {
             let external = ExternalInputs {
                 hws: *self.hwsc.command(),
                 devices: self.inputs,
-                data_base: DataBaseStatus::default(),
+                data_base: self.data_system.status(),
                 generation: 0,
             };
             let tick = self.runner.tick().next();
@@ -209,6 +212,7 @@ impl Run {
             self.fresh = self.workstation.events();
             self.events.extend(self.fresh.iter().map(|event| format!("tick {tick}: {event}")));
             self.progress.show(&self.hwsc, &external.hws, &memory);
+            self.data_system.step(tick, &memory.task.data_base);
             match self.hwsc.step(tick, &memory.task, &mut self.workstation) {
                 hwsc::Progress::Over => return Ending::Finished,
                 hwsc::Progress::Failed(failure) => {
@@ -274,6 +278,7 @@ impl Run {
             port: self.robot.port().map(PortResult::from),
             digest: self.runner.digest().to_string(),
             parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
+            data_base: self.data_system.items().map(Into::into).collect(),
             log: None,
             failure: match ending {
                 Ending::Failed(failure) => Some(FailureResult::from(failure)),

@@ -7,7 +7,7 @@ use std::{
 };
 
 use depc::fault::{Counts, FaultKind};
-use executive::{failure::Failure, histogram, hwsc::Record, serial::SerialCounts};
+use executive::{data_base::Item, failure::Failure, histogram, hwsc::Record, serial::SerialCounts};
 use plant::PartState;
 use rcs_core::{
     interface::t3i::LinkCounters,
@@ -152,6 +152,41 @@ impl From<PartState> for PartResult {
     }
 }
 
+/// Where the Data System believes that an item is.
+#[derive(Clone, Debug, Serialize)]
+pub struct ItemResult {
+    /// Its name.
+    pub item: String,
+    /// Its serial number; empty if the commands gave none.
+    pub serial: String,
+    /// A location, or `H_ROBOT` while the robot holds it.
+    pub position: String,
+    /// Sector there, 0 for none.
+    pub sector: i32,
+}
+
+impl From<&Item> for ItemResult {
+    fn from(item: &Item) -> Self {
+        Self {
+            item: item.name.to_string(),
+            serial: item.serial.to_string(),
+            position: item.position.to_string(),
+            sector: item.sector,
+        }
+    }
+}
+
+impl fmt::Display for ItemResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.item)?;
+        if !self.serial.is_empty() {
+            write!(f, " {}", self.serial)?;
+        }
+        write!(f, " at {}", self.position)?;
+        if self.sector == 0 { Ok(()) } else { write!(f, " sector {}", self.sector) }
+    }
+}
+
 /// Why a run failed.
 #[derive(Clone, Debug, Serialize)]
 pub struct FailureResult {
@@ -212,6 +247,8 @@ pub struct RunResult {
     pub digest: String,
     /// Where the parts are.
     pub parts: Vec<PartResult>,
+    /// What the Data System was told of items of the MBD.
+    pub data_base: Vec<ItemResult>,
     /// The log that was written.
     pub log: Option<PathBuf>,
     /// Why it failed, if it did.
@@ -257,6 +294,9 @@ impl fmt::Display for Page<'_> {
         writeln!(f)?;
         for part in &result.parts {
             writeln!(f, "part       {}", place(part))?;
+        }
+        for item in &result.data_base {
+            writeln!(f, "data base  {item}")?;
         }
         for event in self.events.iter().take(EVENTS_SHOWN) {
             writeln!(f, "event      {event}")?;
