@@ -109,7 +109,7 @@ record! {
         pub frame_feedback: WireFrame,
         /// `scale-factor-out`: resolver scale, counts per turn.
         pub scale_factor: i32,
-        /// `joint-limit-dummy`: 1 while DEPC reports a joint limit.
+        /// `joint-limit-dummy`: always 0. VI.1.2 has it for joint limits and does not use it; the line does not tell of them (A 2.3).
         pub joint_limit: i32,
         /// Tool frame from the resolvers (extension).
         pub resolver_frame: WireFrame,
