@@ -5,7 +5,6 @@ use rcs_core::{
         Reason, Report, SubtaskOutputs,
         emove::{EmoveCommand, EmoveVerb},
         pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
-        prim::PrimReport,
         subtask::{SubtaskCommand, SubtaskStatus},
     },
     process::Inputs,
@@ -119,11 +118,8 @@ impl Subtask {
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut SubtaskOutputs) {
         let execution = &self.state.execution;
         let below = &inputs.memory.emove.status;
-        // The operator can take the robot at any time (V.4.1 PAUSE). E-move reports it for the command that
-        // it executes; between two commands it is Prim that sees the switch.
-        let idle = below.report != Report::Executing;
-        let taken = idle && inputs.memory.prim.status.report == PrimReport::JoystickOn;
-        let (report, reason) = if taken || below.report == Report::JoystickOn {
+        // The operator can take the robot at any time, also between two commands (V.4.1 PAUSE).
+        let (report, reason) = if below.report == Report::JoystickOn {
             (Report::JoystickOn, Reason::JoystickOn)
         } else if execution.outcome == Outcome::Joystick {
             (Report::Error, Reason::JoystickOn)

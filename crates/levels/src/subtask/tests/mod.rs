@@ -11,8 +11,7 @@ use rcs_core::{
         emove::EmoveVerb,
         pedestal::{PedestalReport, PedestalVerb},
         pose_range,
-        prim::PrimReport,
-        subtask::SubtaskVerb,
+        subtask::{LocationKind, SubtaskVerb},
     },
     name::Name16,
 };
@@ -22,6 +21,7 @@ use self::{
     data::without,
 };
 use super::{Subtask, TABLES};
+use crate::places::place_of;
 
 fn error(reason: Reason) -> (Report, Reason) {
     (Report::Error, reason)
@@ -374,6 +374,16 @@ fn an_object_is_found_by_vision_if_the_data_ask_for_it() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-VU", "LOCATE-OBJ", "MOV-TO-OBJ", "GRASP-OBJ"]);
+    let (told, bar) = (bench.memory.task.subtask, Name16::new("BAR").unwrap());
+    let place = place_of(told.location_kind, told.location_record, told.location_array);
+    for command in &bench.emove.received {
+        assert_eq!(
+            (command.location_kind, command.location_record),
+            (LocationKind::Point, told.location_record)
+        );
+        assert_eq!(command.object_vision, bench.data.view(&bar, &place).unwrap().0.number());
+        assert_eq!(command.object_grips, bench.data.obj_grips_id(&bar).unwrap().number());
+    }
     assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
     assert!(bench.sent().is_empty(), "it is held already");
     let end = bench.run(SubtaskVerb::GetObject, "PART", (1, 1), "PFIXTURE");
@@ -466,9 +476,6 @@ fn the_joystick_is_reported_as_long_as_it_is_on() {
     bench.emove.outputs.status.report = Report::Done;
     bench.step();
     assert_eq!(bench.step().report, Report::Done);
-    // E-move has no command to report it for, Prim sees it nevertheless.
-    bench.memory.prim.status.report = PrimReport::JoystickOn;
-    assert_eq!(bench.step().report, Report::JoystickOn);
 }
 
 #[test]
@@ -486,8 +493,10 @@ fn a_restarted_subtask_executes_nothing_old() {
 #[test]
 fn where_the_robot_is_and_what_it_holds_are_passed_up() {
     let mut bench = Bench::grasped("PART", 1);
+    bench.emove.outputs.status.reference_pose = 0x8300_0007;
     assert_eq!(bench.run(SubtaskVerb::MoveObjToDest, "PART", (1, 1), "SAFE"), DONE);
     let status = bench.memory.subtask.status;
+    assert_eq!(status.reference_pose, 0x8300_0007);
     assert_eq!((status.at.as_str(), status.held_object.as_str()), ("SAFE", "PART"));
     assert_eq!((status.object_held, status.end_effector_id), (true, 1));
 }

@@ -1,0 +1,264 @@
+//! Holds docs/traceability.md against the code: every command, variable and status value of chapters V and VI
+//! that the page names is there and has a test, and everything that the interfaces have is on the page.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+
+use levels::task::plan::TaskVerb;
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs},
+    record::{EnumSchema, Field, RecordSchema, Schema},
+};
+use whole_system_tests::root;
+
+/// A line of one of the three tables: name, whose, section, code, test.
+struct Line {
+    kind: &'static str,
+    name: String,
+    of: String,
+    section: String,
+    /// `Type::Variant` or `Record.field`; none if the name is left out, with the reason in place of the test.
+    code: Option<String>,
+    test: String,
+}
+
+struct Page {
+    lines: Vec<Line>,
+    /// What the interfaces have beyond the manual: code and reason. A star means all of a type.
+    beyond: Vec<(String, String)>,
+    /// The figures at the top: kind, total, in the code, tested.
+    figures: Vec<(String, [usize; 3])>,
+}
+
+/// The cells of a row of a table in Markdown, without the marks of code.
+fn cells(line: &str) -> Option<Vec<String>> {
+    let row = line.strip_prefix("| ")?.strip_suffix(" |")?;
+    Some(row.split(" | ").map(|cell| cell.trim().trim_matches('`').to_owned()).collect())
+}
+
+fn page() -> Page {
+    let text = fs::read_to_string(root().join("docs/traceability.md")).expect("the page is there");
+    let mut page = Page { lines: Vec::new(), beyond: Vec::new(), figures: Vec::new() };
+    let mut heading = "";
+    for line in text.lines() {
+        if let Some(title) = line.strip_prefix("## ") {
+            heading = title;
+        }
+        let Some(cells) = cells(line) else { continue };
+        match (heading, cells.as_slice()) {
+            (_, [first, ..]) if first.is_empty() || first == "name" || first == "code" => {}
+            ("", [kind, numbers @ ..]) => {
+                let numbers: Vec<usize> = numbers.iter().map(|n| n.parse().expect("a figure")).collect();
+                page.figures.push((kind.clone(), numbers.try_into().expect("three figures")));
+            }
+            ("Beyond the manual", [code, why]) => page.beyond.push((code.clone(), why.clone())),
+            (_, [name, of, section, code, test]) => page.lines.push(Line {
+                kind: match heading {
+                    "Commands" => "commands",
+                    "Interface variables" => "variables",
+                    "Status values" => "statuses",
+                    _ => panic!("{line} stands under {heading}"),
+                },
+                name: name.clone(),
+                of: of.clone(),
+                section: section.clone(),
+                code: (code != "—").then(|| code.clone()),
+                test: test.clone(),
+            }),
+            _ => panic!("a line with {} cells: {line}", cells.len()),
+        }
+    }
+    page
+}
+
+/// The enums and records of the interfaces, by name.
+#[derive(Default)]
+struct Interfaces {
+    enums: BTreeMap<&'static str, &'static EnumSchema>,
+    records: BTreeMap<&'static str, &'static RecordSchema>,
+}
+
+impl Interfaces {
+    fn new() -> Self {
+        let mut all = Self::default();
+        for schema in [CommonMemory::SCHEMA, ExternalInputs::SCHEMA, TaskVerb::SCHEMA] {
+            all.add(&schema);
+        }
+        all
+    }
+
+    fn add(&mut self, schema: &Schema) {
+        match schema {
+            Schema::Enum(of) => drop(self.enums.insert(of.name, of)),
+            Schema::Array(of, _) => self.add(of),
+            Schema::Record(of) => {
+                self.records.insert(of.name, of);
+                of.fields.iter().for_each(|field| self.add(&field.schema));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Every file of Rust under a directory.
+fn sources(directory: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(directory).expect("a directory").map(|entry| entry.expect("an entry").path()) {
+        if entry.is_dir() {
+            if entry.file_name().is_some_and(|name| name != "target") {
+                sources(&entry, found);
+            }
+        } else if entry.extension().is_some_and(|extension| extension == "rs") {
+            found.push(entry);
+        }
+    }
+}
+
+fn text_of(directories: &[&str]) -> Vec<String> {
+    let mut files = Vec::new();
+    directories.iter().for_each(|directory| sources(&root().join(directory), &mut files));
+    files.iter().map(|file| fs::read_to_string(file).expect("a source")).collect()
+}
+
+/// Rust name and text of the variants of each `coded_enum!` in the sources.
+fn variants() -> BTreeMap<String, BTreeMap<String, String>> {
+    let mut all: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
+    for source in text_of(&["crates/rcs-core/src", "crates/levels/src/task"]) {
+        let mut current = None;
+        for line in source.lines().map(str::trim) {
+            if let Some(name) = line.strip_prefix("pub enum ").and_then(|rest| rest.strip_suffix(" {")) {
+                current = Some(name.to_owned());
+            } else if line == "}" {
+                current = None;
+            } else if let (Some(name), Some((variant, text))) = (&current, line.split_once(" = \""))
+                && let Some(text) = text.strip_suffix("\",")
+            {
+                all.entry(name.clone()).or_default().insert(variant.to_owned(), text.to_owned());
+            }
+        }
+    }
+    all
+}
+
+/// `Type::Variant` and `Record.field` of everything that the interfaces have.
+fn everything(interfaces: &Interfaces) -> BTreeSet<String> {
+    let variants = variants();
+    let mut all = BTreeSet::new();
+    for (name, schema) in &interfaces.enums {
+        let known = variants.get(*name).unwrap_or_else(|| panic!("the source of {name} is found"));
+        let texts: BTreeSet<&str> = known.values().map(String::as_str).collect();
+        assert_eq!(texts, schema.variants.iter().map(|(_, text)| *text).collect(), "{name}");
+        all.extend(known.keys().map(|variant| format!("{name}::{variant}")));
+    }
+    for (name, schema) in &interfaces.records {
+        all.extend(schema.fields.iter().map(|field| format!("{name}.{}", field.name)));
+    }
+    all
+}
+
+#[test]
+fn everything_that_the_page_names_is_in_the_code() {
+    let all = everything(&Interfaces::new());
+    let page = page();
+    for line in &page.lines {
+        if let Some(code) = &line.code {
+            assert!(all.contains(code), "{} of {}: there is no {code}", line.name, line.of);
+            assert_eq!(code.contains("::"), line.kind != "variables", "{code} among the {}", line.kind);
+        }
+    }
+    for (code, why) in &page.beyond {
+        let known = match code.strip_suffix('*') {
+            Some(start) => all.iter().any(|other| other.starts_with(start)),
+            None => all.contains(code),
+        };
+        assert!(known, "there is no {code}");
+        assert!(!why.is_empty(), "{code} has a reason");
+    }
+}
+
+#[test]
+fn everything_that_the_interfaces_have_is_on_the_page_once() {
+    let page = page();
+    let named: BTreeSet<&str> = page.lines.iter().filter_map(|line| line.code.as_deref()).collect();
+    let beyond = |code: &str| {
+        page.beyond.iter().any(|(other, _)| other == code || other.strip_suffix('*') == Some(start_of(code)))
+    };
+    let all = everything(&Interfaces::new());
+    let wrong: Vec<_> = all.iter().filter(|code| named.contains(code.as_str()) == beyond(code)).collect();
+    assert!(wrong.is_empty(), "not in one of the tables, and in one only: {wrong:#?}");
+    let unique: BTreeSet<_> = page.lines.iter().map(|line| (line.kind, &line.name, &line.of)).collect();
+    assert_eq!(unique.len(), page.lines.len(), "no line stands twice");
+}
+
+/// A code without its last word: `Type::` or `Record.`.
+fn start_of(code: &str) -> &str {
+    let end = code.rfind([':', '.']).map_or(0, |at| at + 1);
+    &code[..end]
+}
+
+#[test]
+fn a_command_or_a_status_is_named_as_the_code_has_it() {
+    let (interfaces, variants, page) = (Interfaces::new(), variants(), page());
+    let matches = |line: &Line, code: &str| {
+        let (kind, variant) = code.split_once("::").expect("a variant");
+        let text = &variants[kind][variant];
+        let number = interfaces.enums[kind].variants.iter().find(|(_, other)| other == text);
+        // V-Grip and Tool-Grip share their words, without the prefix (VI.5).
+        let bare = ["VGRIP-", "TGRIP-", "VG-", "TG-", "vgrip-", "tgrip-"]
+            .iter()
+            .find_map(|prefix| line.name.strip_prefix(prefix))
+            .filter(|_| kind.starts_with("Jaws"))
+            .unwrap_or(&line.name);
+        bare.eq_ignore_ascii_case(text) || number.is_some_and(|(code, _)| line.name == code.to_string())
+    };
+    for line in page.lines.iter().filter(|line| line.kind != "variables") {
+        let code = line.code.as_deref().expect("no command and no status is left out");
+        let spelled = page
+            .lines
+            .iter()
+            .filter(|other| other.of == line.of && other.code.as_deref() == Some(code))
+            .any(|other| matches(other, code));
+        assert!(spelled, "{} of {} is not what {code} says", line.name, line.of);
+    }
+}
+
+#[test]
+fn every_test_that_the_page_names_is_there() {
+    let sources = text_of(&["crates", "bins", "tests"]);
+    let is_test = |name: &str| {
+        sources.iter().any(|source| {
+            source.match_indices(&format!("fn {name}(")).any(|(at, _)| {
+                // The attribute, or the macro of a property test, stands close before it.
+                let before = &source[..at];
+                before.lines().rev().take(6).any(|line| matches!(line.trim(), "#[test]" | "proptest! {"))
+                    || before.rfind("proptest! {") > before.rfind("\n}\n")
+            })
+        })
+    };
+    for line in page().lines {
+        match line.code {
+            Some(_) => assert!(is_test(&line.test), "{} of {}: no test {}", line.name, line.of, line.test),
+            None => assert!(line.test.contains(' '), "{} of {} is left out for a reason", line.name, line.of),
+        }
+    }
+}
+
+#[test]
+fn the_figures_are_right_and_the_sections_are_those_of_the_interfaces() {
+    let page = page();
+    let figures: Vec<_> = ["commands", "variables", "statuses"]
+        .iter()
+        .map(|kind| {
+            let lines = || page.lines.iter().filter(|line| line.kind == *kind);
+            let done = lines().filter(|line| line.code.is_some()).count();
+            ((*kind).to_owned(), [lines().count(), done, done])
+        })
+        .collect();
+    assert_eq!(page.figures, figures, "total, in the code, tested");
+    for line in &page.lines {
+        let chapters = ["V.", "VI.", "IX.2"];
+        assert!(chapters.iter().any(|c| line.section.starts_with(c)), "{}: {}", line.name, line.section);
+    }
+}
