@@ -13,16 +13,31 @@ use taskdata::load::{Diagnostic, Job, Report, Severity, Store};
 use crate::{
     cli::CheckArguments,
     error::{Error, UNUSABLE},
+    explain,
     run::setup::{CELL, EXTENSION, JOBS},
 };
 
-/// One finding, for scripts.
+/// One finding, for editors and scripts.
 #[derive(Serialize)]
 struct Finding {
     severity: &'static str,
     code: String,
+    /// The file, relative to the data directory; as given for files that could not be read.
+    file: String,
+    /// `OFFSET` and `BLOCK#`, if it stands in a block.
+    offset: Option<u32>,
+    block: Option<u32>,
+    /// Line of the block from 0, as the manual counts, or of the file from 1 where there is no block.
+    line: Option<u32>,
+    /// Column from 1, and the number of characters from there on.
+    column: Option<u32>,
+    length: Option<u32>,
     place: String,
     message: String,
+    /// What was expected there.
+    expected: Option<String>,
+    /// The nearest known name.
+    nearest: Option<String>,
     help: Option<String>,
 }
 
@@ -43,6 +58,9 @@ struct Outcome {
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     if !arguments.data.is_dir() {
         return Err(Error::NoData(arguments.data.clone()));
+    }
+    if let Some(command) = &arguments.explain {
+        return explain::explain(arguments, command);
     }
     let (store, data) = match Store::load(&arguments.data) {
         Ok((store, report)) => (Some(store), report),
@@ -78,8 +96,16 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
         outcome.findings.push(Finding {
             severity: "error",
             code: "cell".to_owned(),
+            file: CELL.to_owned(),
+            offset: None,
+            block: None,
+            line: None,
+            column: None,
+            length: None,
             place: cell.display().to_string(),
             message: error.to_string(),
+            expected: None,
+            nearest: None,
             help: None,
         });
     }
@@ -120,8 +146,16 @@ fn finding(diagnostic: &Diagnostic) -> Finding {
             Severity::Warning => "warning",
         },
         code: diagnostic.code().to_owned(),
+        file: diagnostic.file().to_owned(),
+        offset: diagnostic.block().map(|block| block.offset),
+        block: diagnostic.block().map(|block| block.number),
+        line: diagnostic.line(),
+        column: diagnostic.column(),
+        length: diagnostic.length(),
         place: diagnostic.place(),
         message: diagnostic.message().to_owned(),
+        expected: diagnostic.expected().map(str::to_owned),
+        nearest: diagnostic.nearest().map(str::to_owned),
         help: diagnostic.help().map(str::to_owned),
     }
 }

@@ -23,6 +23,8 @@ Examples:
   rcs-run --robot serial:/dev/ttyUSB0 --clock real
                                        command the robot there; gripper, tray, vise and camera are simulated
   rcs-run check                        look at the task data without running anything
+  rcs-run check --explain 'MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0'
+                                       the whole way of a command, and how long it takes
   rcs-run tables > tables.md           all decision tables
 
 Exit status: 0 finished; 1 the job failed; 2 usage, configuration or data error;
@@ -132,6 +134,12 @@ pub struct CheckArguments {
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
     pub json: bool,
+    /// Print the whole way of a command: the fields after == in a job
+    #[arg(long, value_name = "COMMAND")]
+    pub explain: Option<String>,
+    /// Location at which the robot is taken to stand before the command
+    #[arg(long, value_name = "NAME", default_value = "HOME", requires = "explain")]
+    pub from: String,
 }
 
 /// When ticks are run.

@@ -29,6 +29,9 @@ pub enum Error {
         /// All that was found.
         report: Box<Report>,
     },
+    /// A command cannot be explained.
+    #[error("nothing can be explained: {0}")]
+    Explain(String),
     /// There is no such job.
     #[error("there is no job {job}: {}", known_jobs(.known))]
     NoJob {

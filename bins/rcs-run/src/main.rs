@@ -8,6 +8,7 @@ mod check;
 mod clean;
 mod cli;
 mod error;
+mod explain;
 mod latency;
 mod link_test;
 mod run;

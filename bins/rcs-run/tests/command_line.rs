@@ -100,7 +100,7 @@ fn usage_errors_have_status_2_and_a_sentence() {
         (&["--boards", "split"], "cannot be split yet"),
         (&["--clock", "slow"], "fast, real"),
         (&["--data", "/nowhere"], "there is no task data directory /nowhere"),
-        (&["no-such-job"], "there is no job no-such-job: the data directory has linkbar"),
+        (&["no-such-job"], "there is no job no-such-job: the data directory has "),
     ] {
         let output = rcs_run(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -140,6 +140,42 @@ fn a_data_error_is_shown_with_its_place_and_nothing_runs() {
         assert!(all.contains("PFIX-P") && all.contains("locations.blk"), "{all}");
         assert!(last_line(&output).contains("cannot be used: "), "{}", last_line(&output));
     }
+}
+
+#[test]
+fn a_finding_can_be_shown_in_an_editor() {
+    let place = Place::new("finding");
+    let data = place.data();
+    let poses = data.join("poses.blk");
+    let text = fs::read_to_string(&poses).unwrap().replace("PFIX-P", "PFIX-Q");
+    fs::write(&poses, text).unwrap();
+    let output = rcs_run(&["check", "--json", &data.display().to_string()]);
+    let findings = json(&output)["findings"].as_array().unwrap().clone();
+    let finding = findings.iter().find(|f| f["code"] == "name.unknown").unwrap();
+    assert_eq!(
+        (&finding["file"], &finding["severity"], &finding["nearest"], &finding["expected"]),
+        (&"locations.blk".into(), &"error".into(), &"PFIX-Q".into(), &"the name of a pose".into()),
+        "{finding}"
+    );
+    for field in ["offset", "block", "line", "column"] {
+        assert!(finding[field].is_u64(), "{field}: {finding}");
+    }
+    assert_eq!(finding["length"], 6, "{finding}");
+}
+
+#[test]
+fn a_command_is_explained_without_running() {
+    let command = "MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0";
+    let output = rcs_run(&["check", "--json", "--explain", command]);
+    let found = json(&output);
+    assert_eq!((output.status.code(), &found["from"]), (Some(0), &"HOME".into()), "{found}");
+    let phases = found["phases"].as_array().unwrap();
+    assert!(phases.iter().any(|phase| phase["what"].as_str().unwrap().starts_with("MOV-TO-VU")), "{found}");
+    assert!(found["motion_s"].as_f64().is_some_and(|s| s > 5.0), "{found}");
+    let refused = rcs_run(&["check", "--explain", command, "--from", "NOWHERE"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(last_line(&refused).contains("--from NOWHERE: no location point"), "{}", last_line(&refused));
+    assert_eq!(rcs_run(&["check", "--from", "SAFE"]).status.code(), Some(2), "--from needs --explain");
 }
 
 #[test]

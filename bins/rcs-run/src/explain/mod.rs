@@ -1,0 +1,205 @@
+//! `rcs-run check --explain COMMAND`: the whole way of a command, as the levels would find it in the task data.
+//!
+//! Places, grips, approaches and trajectories are looked up by [`levels::emove::route`] itself, so that what is printed is what
+//! would be flown; times come from Prim's own motion with the knob at full speed. What the fingers, the camera and the pedestal
+//! take is not counted, nor is the lag of line and arm.
+
+mod steps;
+mod walk;
+
+use std::{fmt, io, process::ExitCode};
+
+use rcs_core::{interface::HwsCommand, name::Name16};
+use serde::Serialize;
+use taskdata::load::{Job, Report, Source, Step, Store};
+
+use crate::{
+    cli::CheckArguments,
+    error::{Error, UNUSABLE},
+};
+
+/// Where something was entered.
+#[derive(Clone, Debug, Serialize)]
+struct Entry {
+    /// What it is.
+    what: &'static str,
+    /// File, block and line.
+    at: String,
+}
+
+/// One point on the way.
+#[derive(Clone, Debug, Serialize)]
+struct Leg {
+    /// depart, trajectory, approach or goal.
+    part: &'static str,
+    /// Name of the point.
+    point: String,
+    /// Tool point in the world, inches.
+    position_in: [f64; 3],
+    /// Direction of the gripper axis in the world.
+    axis: [f64; 3],
+    acc_fac: i32,
+    vel_max: i32,
+    smooth: i32,
+    brk_dst: i32,
+    /// Ticks from the point before to this one.
+    ticks: u32,
+    /// The joint that is nearest to a limit there; `None` if the arm cannot take the pose.
+    joint: Option<&'static str>,
+    /// How near, degrees; negative beyond the limit.
+    margin_deg: Option<f64>,
+    /// Where it was entered.
+    entry: Option<String>,
+}
+
+/// One command of E-move, or of a neighbour.
+#[derive(Clone, Debug, Default, Serialize)]
+struct Phase {
+    what: String,
+    /// Opening that is commanded on the way, inches.
+    opening_in: Option<f64>,
+    /// The entries that it was made of.
+    entries: Vec<Entry>,
+    legs: Vec<Leg>,
+    /// Why it cannot be done.
+    missing: Option<String>,
+}
+
+impl Phase {
+    fn ticks(&self) -> u32 {
+        self.legs.iter().map(|leg| leg.ticks).sum()
+    }
+}
+
+/// A command, explained.
+#[derive(Clone, Debug, Serialize)]
+struct Explanation {
+    command: String,
+    from: String,
+    /// `endeff-id#` of the object, 0 if any gripper will do.
+    gripper: i32,
+    phases: Vec<Phase>,
+    /// Motion alone, seconds.
+    motion_s: f64,
+}
+
+/// Explain a command of [`CheckArguments`]. Exit status 2 if a way is missing.
+///
+/// # Errors
+/// A command, a start or task data that cannot be read.
+pub fn explain(arguments: &CheckArguments, text: &str) -> Result<ExitCode, Error> {
+    let unusable = |what: String| move |report: Box<Report>| Error::Data { what, report };
+    let (store, _) = Store::load(&arguments.data)
+        .map_err(unusable(format!("the task data under {}", arguments.data.display())))?;
+    let command = command_of(text, &store).map_err(unusable(format!("the command {text}")))?;
+    let explanation = explained(&store, &command, text, &arguments.from)?;
+    let complete = explanation.phases.iter().all(|phase| phase.missing.is_none());
+    if arguments.json {
+        serde_json::to_writer_pretty(io::stdout().lock(), &explanation).map_err(io::Error::from)?;
+        println!();
+    } else {
+        print!("{explanation}");
+    }
+    if !complete {
+        eprintln!("rcs-run: a way is missing: see the lines with MISSING");
+    }
+    Ok(ExitCode::from(if complete { 0 } else { UNUSABLE }))
+}
+
+/// Read the nine fields, with or without `==`, as a job line.
+fn command_of(text: &str, store: &Store) -> Result<HwsCommand, Box<Report>> {
+    let fields = text.trim_start().trim_start_matches("==");
+    let source = Source { name: "command".to_owned(), text: format!("== {fields}\n").into() };
+    let (job, report) = Job::from_source(source, store)?;
+    job.steps
+        .iter()
+        .find_map(|line| match line.step {
+            Step::Command(command) => Some(command),
+            Step::Workstation(_) | Step::After { .. } => None,
+        })
+        .ok_or_else(|| Box::new(report))
+}
+
+fn explained(store: &Store, command: &HwsCommand, text: &str, from: &str) -> Result<Explanation, Error> {
+    let data = store.view();
+    let start = data
+        .resolve_location::<16, 16>(&Name16::clipped(from), 0, None)
+        .map_err(|error| Error::Explain(format!("--from {from}: {error}")))?;
+    let steps = steps::steps(command, &data).map_err(|error| Error::Explain(error.to_string()))?;
+    let mut walk = walk::Walk::new(store, &start);
+    let phases: Vec<Phase> = steps.iter().map(|step| walk.step(step)).collect();
+    let ticks = phases.iter().map(Phase::ticks).sum();
+    Ok(Explanation {
+        command: text.to_owned(),
+        from: from.to_owned(),
+        gripper: data.obj_grips(&command.object).map_or(0, |grips| grips.endeff_id),
+        phases,
+        motion_s: walk::seconds(ticks),
+    })
+}
+
+impl fmt::Display for Explanation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}\nfrom {}", self.command, self.from)?;
+        match self.gripper {
+            0 => writeln!(f)?,
+            id => writeln!(f, ", gripper {id} attached")?,
+        }
+        for (i, phase) in self.phases.iter().enumerate() {
+            writeln!(f, "\n{}. {}", i + 1, phase.what)?;
+            phase.lines(f)?;
+        }
+        let counted =
+            "motion alone, full speed; without fingers, camera, pedestal and the lag of line and arm";
+        writeln!(f, "\n{:.1} s ({counted})", self.motion_s)
+    }
+}
+
+impl Phase {
+    fn lines(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for entry in &self.entries {
+            writeln!(f, "     {:<11}{}", entry.what, entry.at)?;
+        }
+        if let Some(opening) = self.opening_in {
+            writeln!(f, "     fingers    {opening:.2} in open after the last depart point")?;
+        }
+        for leg in &self.legs {
+            leg.line(f)?;
+        }
+        if let Some(missing) = &self.missing {
+            writeln!(f, "     MISSING    {missing}")?;
+        }
+        if !self.legs.is_empty() {
+            writeln!(f, "     {:.2} s", walk::seconds(self.ticks()))?;
+        }
+        Ok(())
+    }
+}
+
+impl Leg {
+    fn line(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.position_in;
+        write!(
+            f,
+            "     {:<11}{:<10} ({x:7.2},{y:7.2},{z:7.2})  acc {:<3} vel {:<3} smooth {:<3} brk {}  {:5.2} s",
+            self.part,
+            self.point,
+            self.acc_fac,
+            self.vel_max,
+            self.smooth,
+            walk::inches(self.brk_dst),
+            walk::seconds(self.ticks),
+        )?;
+        match (self.joint, self.margin_deg) {
+            (Some(joint), Some(margin)) => write!(f, "  {joint} {margin:.1} deg from its limit")?,
+            _ => write!(f, "  out of reach")?,
+        }
+        match &self.entry {
+            Some(entry) => writeln!(f, "  {entry}"),
+            None => writeln!(f),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

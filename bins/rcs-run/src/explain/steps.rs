@@ -1,0 +1,197 @@
+//! What Task and Subtask make of a command: the commands of E-move, one after the other (V.3.1, V.4.1).
+//!
+//! It is the way without accidents: the right gripper is attached, nothing is held before that the command does not expect,
+//! vision finds the object where it is meant to be.
+
+use rcs_core::{
+    interface::{HwsCommand, emove::EmoveVerb},
+    name::Name16,
+};
+use taskdata::files::{Location, LookupError, RefType, TaskData};
+
+/// Where the Active Pedestal holds an object (V.3.1 FIX-GRIP).
+const PEDESTAL: &str = "PEDESTAL";
+/// Where the robot waits while the pedestal turns.
+const PEDESTAL_SAFE: &str = "PED-SAFE";
+/// Where tools are passed to the drum.
+const TOOL_TRANSFER: &str = "TOOL-TRNS";
+
+/// One command of E-move, or of a neighbour while the robot stands.
+#[derive(Clone, Copy, Debug)]
+pub enum Step {
+    /// The robot goes somewhere.
+    Go {
+        /// The command.
+        verb: EmoveVerb,
+        /// The object that decides grip, approach and depart; empty for a location as such.
+        object: Name16,
+        /// Its grip.
+        grip: i32,
+        /// Where.
+        location: Location,
+    },
+    /// A relative move by its name, at a location.
+    Relative {
+        /// The name.
+        name: &'static str,
+        /// Where.
+        location: Location,
+    },
+    /// The fingers close on an object, or let it go.
+    Fingers {
+        /// GRASP-OBJ or RELEASE.
+        verb: EmoveVerb,
+        /// The object.
+        object: Name16,
+        /// Its grip.
+        grip: i32,
+    },
+    /// Somebody else acts.
+    Other(&'static str),
+}
+
+/// The steps of a command.
+///
+/// # Errors
+/// The location that is not known, with what is known instead.
+pub fn steps(command: &HwsCommand, data: &TaskData<'_>) -> Result<Vec<Step>, LookupError> {
+    let maker = Maker { command, data };
+    let object = !command.object.is_empty();
+    let mut steps = Vec::new();
+    match command.command.as_str() {
+        "TRANSFER" => {
+            maker.get(&mut steps)?;
+            maker.regrip(&mut steps)?;
+            maker.place(&mut steps)?;
+            steps.push(maker.fingers(EmoveVerb::Release, command.destination_grip));
+            maker.end_at(&mut steps)?;
+        }
+        "MOVE" if object => {
+            maker.get(&mut steps)?;
+            maker.regrip(&mut steps)?;
+            maker.place(&mut steps)?;
+        }
+        "REFIXTURE" => {
+            maker.get(&mut steps)?;
+            maker.regrip(&mut steps)?;
+            maker.place(&mut steps)?;
+        }
+        "MOVE" => steps.push(maker.to_location(&command.destination, command.destination_sector)?),
+        "ACQUIRE" => maker.get(&mut steps)?,
+        "POSITION" => {
+            steps.push(Step::Other("RELEASE, if an object is held"));
+            maker.position(&mut steps)?;
+        }
+        "INSERT-TOOL" => maker.relative(&mut steps, &["INS-NEAR", "INS-IN"])?,
+        "RELEASE-TOOL" => {
+            steps.push(Step::Other("tool gripper OPEN"));
+            maker.relative(&mut steps, &["REL-SLIDE", "REL-BACK"])?;
+            maker.end_at(&mut steps)?;
+        }
+        "ACQUIRE-TOOL" => {
+            steps.push(maker.to_location(&command.destination, command.destination_sector)?);
+            maker.relative(&mut steps, &["ACQ-NEAR", "ACQ-STRIKE", "ACQ-SLIDE"])?;
+            steps.push(Step::Other("tool gripper GRASP"));
+        }
+        "REMOVE-TOOL" => {
+            maker.relative(&mut steps, &["REM-OUT"])?;
+            maker.end_at(&mut steps)?;
+        }
+        _ => steps.push(Step::Other("the robot does not move")),
+    }
+    Ok(steps)
+}
+
+struct Maker<'a> {
+    command: &'a HwsCommand,
+    data: &'a TaskData<'a>,
+}
+
+impl Maker<'_> {
+    fn location(&self, name: &Name16, sector: i32) -> Result<Location, LookupError> {
+        let object = (!self.command.object.is_empty()).then_some(&self.command.object);
+        self.data.resolve_location(name, sector, object)
+    }
+
+    const fn go(&self, verb: EmoveVerb, grip: i32, location: Location) -> Step {
+        Step::Go { verb, object: self.command.object, grip, location }
+    }
+
+    const fn fingers(&self, verb: EmoveVerb, grip: i32) -> Step {
+        Step::Fingers { verb, object: self.command.object, grip }
+    }
+
+    fn to_location(&self, name: &Name16, sector: i32) -> Result<Step, LookupError> {
+        let location = self.location(name, sector)?;
+        Ok(Step::Go { verb: EmoveVerb::MovToLoc, object: Name16::EMPTY, grip: 0, location })
+    }
+
+    /// GET-OBJECT: look for it if vision is used there, go to it, grasp it.
+    fn get(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
+        let (command, grip) = (self.command, self.command.source_grip);
+        let location = self.location(&command.source, command.source_sector)?;
+        let view = self.data.view(&command.object, &location.place).filter(|(_, view)| view.enabled);
+        if let Some((_, view)) = view.filter(|(_, view)| view.offset_from != RefType::Object) {
+            steps.push(self.go(EmoveVerb::MovToVu, view.grip, location));
+            steps.push(Step::Other("LOCATE-OBJ: taken to be found in the middle of its place"));
+        }
+        steps.push(self.go(EmoveVerb::MovToObj, grip, location));
+        steps.push(self.fingers(EmoveVerb::GraspObj, grip));
+        Ok(())
+    }
+
+    /// FIX-GRIP, if the grips differ.
+    fn regrip(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
+        let (from, to) = (self.command.source_grip, self.command.destination_grip);
+        if from == to {
+            return Ok(());
+        }
+        let pedestal = self.location(&Name16::clipped(PEDESTAL), 0)?;
+        steps.push(Step::Other("pedestal PRE-GRIP"));
+        steps.push(self.go(EmoveVerb::MovObjTo, from, pedestal));
+        steps.push(Step::Other("pedestal GRIP"));
+        steps.push(self.fingers(EmoveVerb::Release, from));
+        steps.push(self.to_location(&Name16::clipped(PEDESTAL_SAFE), 0)?);
+        steps.push(Step::Other("pedestal FLIP"));
+        steps.push(self.go(EmoveVerb::MovToObj, to, pedestal));
+        steps.push(self.fingers(EmoveVerb::GraspObj, to));
+        steps.push(Step::Other("pedestal RELEASE"));
+        Ok(())
+    }
+
+    fn place(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
+        let command = self.command;
+        let location = self.location(&command.destination, command.destination_sector)?;
+        steps.push(self.go(EmoveVerb::MovObjTo, command.destination_grip, location));
+        Ok(())
+    }
+
+    fn end_at(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
+        if !self.command.end_at.is_empty() {
+            steps.push(self.to_location(&self.command.end_at, self.command.end_at_sector)?);
+        }
+        Ok(())
+    }
+
+    /// POSITION goes to the source, or to the destination if the source is null (contradiction 24).
+    fn position(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
+        let c = self.command;
+        let (name, sector, grip) = if c.source.is_empty() {
+            (&c.destination, c.destination_sector, c.destination_grip)
+        } else {
+            (&c.source, c.source_sector, c.source_grip)
+        };
+        if c.object.is_empty() {
+            steps.push(self.to_location(name, sector)?);
+        } else {
+            steps.push(self.go(EmoveVerb::MovToObj, grip, self.location(name, sector)?));
+        }
+        Ok(())
+    }
+
+    fn relative(&self, steps: &mut Vec<Step>, names: &[&'static str]) -> Result<(), LookupError> {
+        let location = self.data.resolve_location::<16, 16>(&Name16::clipped(TOOL_TRANSFER), 0, None)?;
+        steps.extend(names.iter().map(|&name| Step::Relative { name, location }));
+        Ok(())
+    }
+}

@@ -1,0 +1,343 @@
+//! The way of the robot through the steps of a command: each goal and each point on the way to it, planned by E-move's own
+//! route, timed by Prim's own motion.
+
+use levels::{
+    emove::{
+        route::{Goal, LegGoal, Route},
+        state::{Sort, Stance},
+    },
+    prim::motion::{Motion, limits::Limits},
+};
+use rcs_core::{
+    frame::Frame,
+    interface::{
+        Reason,
+        device::KNOB_FULL,
+        emove::{EmoveCommand, EmoveVerb},
+    },
+    kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
+    name::Name16,
+    pose::Pose,
+    tick::TICK_S,
+};
+use taskdata::{
+    files::{Location, MovtabId, PathId, PathPoint, PoseId, Target, TaskData, TrajParaId},
+    load::{
+        Store,
+        guarded::{Beginning, relative_move_named},
+        source::At,
+    },
+};
+
+use super::{Entry, Leg, Phase, steps::Step};
+
+/// Stand for the changing records of E-move in a route: where it departs from, and its goal.
+const DEPARTURE: u32 = u32::MAX - 1;
+const GOAL: u32 = u32::MAX;
+/// From the tick in which a through point is passed to the one in which Prim has the next goal (DESIGN 16).
+const FLIES_ON: u32 = 2;
+/// Ticks for which Prim wants to see the robot at rest (DESIGN 16 "Done").
+const SETTLES: u32 = 3;
+/// A motion that takes longer is given up, ticks: ten minutes.
+const LONGEST: u32 = 15_000;
+
+/// The robot on its way.
+pub struct Walk<'a> {
+    store: &'a Store,
+    data: TaskData<'a>,
+    stance: Stance,
+}
+
+impl<'a> Walk<'a> {
+    /// Begin at a location as such.
+    pub fn new(store: &'a Store, start: &Location) -> Self {
+        let mut walk = Self { store, data: store.view(), stance: Stance::default() };
+        walk.arrive(Sort::Location, start, Name16::EMPTY, 0, &start.frame);
+        walk
+    }
+
+    fn arrive(&mut self, sort: Sort, at: &Location, object: Name16, grip: i32, frame: &Frame) {
+        self.stance = Stance {
+            known: true,
+            sort,
+            location: at.name,
+            kind: at.place.kind,
+            record: at.place.locpt.number(),
+            array: at.place.array.number(),
+            object,
+            grip,
+            pose: Pose::from_frame(frame),
+        };
+    }
+
+    /// Make a step; what it consists of, or why it cannot be made. A step that cannot be made ends at its location all the
+    /// same, so that what follows can be explained.
+    pub fn step(&mut self, step: &Step) -> Phase {
+        match *step {
+            Step::Go { verb, object, grip, location } => self.go(verb, object, grip, &location),
+            Step::Relative { name, location } => self.relative(name, &location),
+            Step::Fingers { verb, object, grip } => self.fingers(verb, object, grip),
+            Step::Other(what) => Phase { what: what.to_owned(), ..Phase::default() },
+        }
+    }
+
+    fn fingers(&self, verb: EmoveVerb, object: Name16, grip: i32) -> Phase {
+        let mut phase = Phase { what: verb.text().to_owned(), ..Phase::default() };
+        if let Some((id, para)) = self.data.object(&object, grip) {
+            phase.what = match verb {
+                EmoveVerb::GraspObj => format!(
+                    "GRASP-OBJ {object} with grip {grip:+}: to {} in with {} lb",
+                    inches(para.grasp_size),
+                    para.grasp_force
+                ),
+                _ => format!("RELEASE {object}: to {} in", inches(para.depart_size)),
+            };
+            self.entry(&mut phase, "grasp", &self.store.origins().end_effs, id.index());
+        }
+        phase
+    }
+
+    fn go(&mut self, verb: EmoveVerb, object: Name16, grip: i32, location: &Location) -> Phase {
+        let command = self.command(verb, object, grip, location);
+        let mut phase = Phase { what: described(&command, location), ..Phase::default() };
+        self.location_entries(&mut phase, location);
+        let (sort, frame) = match self.goal_and_route(&command, location) {
+            Ok((goal, route)) => {
+                self.route(&mut phase, &command, &goal, route);
+                (goal.sort, goal.frame)
+            }
+            Err(reason) => {
+                let from = if self.stance.location.is_empty() { "?" } else { self.stance.location.as_str() };
+                phase.missing = Some(format!("from {from}: {}", reason.text()));
+                let sort = if object.is_empty() { Sort::Location } else { Sort::Object };
+                let grips = self.data.grip_movetable(&object, grip, &location.place);
+                (sort, grips.map_or(location.frame, |by| self.data.moved(&location.frame, by)))
+            }
+        };
+        self.arrive(sort, location, object, grip, &frame);
+        phase
+    }
+
+    fn command(&self, verb: EmoveVerb, object: Name16, grip: i32, at: &Location) -> EmoveCommand {
+        EmoveCommand {
+            command: verb,
+            object,
+            grip,
+            object_parameters: self.data.object(&object, grip).map_or(0, |(id, _)| id.number()),
+            object_vision: self.data.view(&object, &at.place).map_or(0, |(id, _)| id.number()),
+            location: at.name,
+            location_kind: at.place.kind,
+            location_record: at.place.locpt.number(),
+            location_array: at.place.array.number(),
+            ..EmoveCommand::default()
+        }
+    }
+
+    fn goal_and_route(&self, command: &EmoveCommand, at: &Location) -> Result<(Goal, Route), Reason> {
+        let goal = Goal::new(command, &at.frame, &self.data)?;
+        let mut route = Route::plan(command, &goal, &self.stance, &self.data)?;
+        (route.departure, route.goal) = (DEPARTURE, GOAL);
+        Ok((goal, route))
+    }
+
+    /// The legs of a route with their times, and the entries that it was made of.
+    fn route(&self, phase: &mut Phase, command: &EmoveCommand, goal: &Goal, mut route: Route) {
+        let departure = self.stance.pose.to_frame().unwrap_or_else(|_| Frame::identity());
+        let (depart, between, approach) = (route.depart, route.between, route.approach);
+        self.path_entries(phase, command, depart, between, approach);
+        let mut names = self.names(depart, between, approach).into_iter();
+        let mut legs = Vec::new();
+        while let Some(leg) = route.leg(&departure, &self.data) {
+            let frame = match leg.at {
+                LegGoal::Record { pose, movetable } => {
+                    let base = match pose {
+                        DEPARTURE => Some(departure),
+                        GOAL => Some(goal.frame),
+                        number => self.data.pose(PoseId::new(number)).map(|record| record.frame),
+                    };
+                    base.map(|base| self.data.moved(&base, MovtabId::new(movetable)))
+                }
+                LegGoal::Computed(frame) => Some(frame),
+            };
+            let (part, point, at) = names.next().unwrap_or(("goal", "goal".to_owned(), None));
+            let Some(frame) = frame else { break };
+            legs.push((frame, self.leg(part, point, at, &frame, leg.parameters)));
+            route.advance(&self.data);
+        }
+        phase.legs = timed(&departure, legs);
+        if goal.opening >= 0 {
+            phase.opening_in = Some(f64::from(goal.opening) / 100.0);
+        }
+    }
+
+    /// Part, name and entry of each point of a route but the goal.
+    fn names(
+        &self,
+        depart: PathId,
+        between: PathId,
+        approach: PathId,
+    ) -> Vec<(&'static str, String, Option<At>)> {
+        let mut names = Vec::new();
+        for (part, path) in [("depart", depart), ("trajectory", between), ("approach", approach)] {
+            let first = path.of(self.data.paths).and_then(|p| usize::try_from(p.first).ok()).unwrap_or(0);
+            for (i, point) in self.data.path(path).iter().enumerate() {
+                if point.target != Target::Stop {
+                    let at = self.store.origins().path_points.get(first + i).copied();
+                    names.push((part, self.point_name(point), at));
+                }
+            }
+        }
+        let stop = self.data.path(approach).last().filter(|point| point.target == Target::Stop);
+        let at = stop.and_then(|_| {
+            let path = approach.of(self.data.paths)?;
+            let last = path.first.checked_add(path.count)?.checked_sub(1)?;
+            self.store.origins().path_points.get(usize::try_from(last).ok()?).copied()
+        });
+        names.push(("goal", if stop.is_some() { "stop" } else { "goal" }.to_owned(), at));
+        names
+    }
+
+    fn point_name(&self, point: &PathPoint) -> String {
+        let data = &self.data;
+        match point.target {
+            Target::Movetable(id) => id.of(data.movetables).map_or("...".to_owned(), |m| m.name.to_string()),
+            Target::Pose(id) => data.pose(id).map_or(String::new(), |p| p.name.to_string()),
+            Target::LocationPoint(id) => data.locpt(id).map_or(String::new(), |l| l.name.to_string()),
+            Target::Stop => "stop".to_owned(),
+        }
+    }
+
+    fn leg(&self, part: &'static str, point: String, at: Option<At>, frame: &Frame, para: TrajParaId) -> Leg {
+        let para = self.data.traj_para(para).copied().unwrap_or_default();
+        let joints = T3.inverse(frame, &HOME_JOINTS).map(|joints| T3.margin(&T3.within_limits(&joints)));
+        let p = frame.position;
+        Leg {
+            part,
+            point,
+            position_in: [p.x, p.y, p.z],
+            axis: [frame.x().x, frame.x().y, frame.x().z],
+            acc_fac: para.acc_fac,
+            vel_max: para.vel_max,
+            smooth: para.smooth,
+            brk_dst: para.brk_dst,
+            ticks: 0,
+            joint: joints.ok().and_then(|m| JOINT_NAMES.get(m.joint).copied()),
+            margin_deg: joints.ok().map(|m| m.radians.to_degrees()),
+            entry: at.map(|at| self.store.place(at)),
+        }
+    }
+
+    fn relative(&mut self, name: &'static str, location: &Location) -> Phase {
+        let mut phase = Phase { what: format!("{name} at {}", location.name), ..Phase::default() };
+        let Some(record) = self.data.relative_move(&Name16::clipped(name), &location.place) else {
+            phase.missing = Some(format!("no relative move {name} at {}", location.name));
+            return phase;
+        };
+        let position = self.data.relative_moves.iter().position(|other| std::ptr::eq(other, record));
+        let at = position.and_then(|i| self.store.origins().relative_moves.get(i)).copied();
+        let here = self.stance.pose.to_frame().unwrap_or(location.frame);
+        let base = match relative_move_named(name).map(|known| known.from) {
+            Some(Beginning::After(_)) => here,
+            _ => location.frame,
+        };
+        let frame = self.data.moved(&base, record.movetable);
+        let what = if record.sensor.is_empty() { "move" } else { "until" };
+        let point =
+            record.movetable.of(self.data.movetables).map_or("...".to_owned(), |m| m.name.to_string());
+        phase.legs = timed(&here, vec![(frame, self.leg(what, point, at, &frame, record.para))]);
+        if !record.sensor.is_empty() {
+            phase.what = format!("{} guarded by {}", phase.what, record.sensor);
+        }
+        self.arrive(Sort::Location, location, Name16::EMPTY, 0, &frame);
+        phase
+    }
+
+    fn entry(&self, phase: &mut Phase, what: &'static str, origins: &[At], position: Option<usize>) {
+        if let Some(at) = position.and_then(|i| origins.get(i)) {
+            phase.entries.push(Entry { what, at: self.store.place(*at) });
+        }
+    }
+
+    fn location_entries(&self, phase: &mut Phase, location: &Location) {
+        let origins = self.store.origins();
+        let place = location.place;
+        self.entry(phase, "location", &origins.locpts, place.locpt.index());
+        self.entry(phase, "array", &origins.arrays, place.array.index());
+        let pose = self.data.locpt(place.locpt).and_then(|point| point.pose.index());
+        self.entry(phase, "pose", &origins.poses, pose);
+    }
+
+    /// The entries of grip, view, depart, trajectory and approach.
+    fn path_entries(
+        &self,
+        phase: &mut Phase,
+        command: &EmoveCommand,
+        depart: PathId,
+        between: PathId,
+        approach: PathId,
+    ) {
+        let (data, origins) = (&self.data, self.store.origins());
+        let place =
+            levels::places::place_of(command.location_kind, command.location_record, command.location_array);
+        match command.command {
+            EmoveVerb::MovToVu => {
+                let view = data.view(&command.object, &place).and_then(|(id, _)| id.index());
+                self.entry(phase, "view", &origins.visions, view);
+            }
+            EmoveVerb::MovToLoc => {}
+            _ => {
+                let grip = data.grip_loc(&command.object, command.grip, &place);
+                self.entry(phase, "grip", &origins.grip_locs, grip.and_then(|id| id.index()));
+                let sizes = data.object(&command.object, command.grip).and_then(|(id, _)| id.index());
+                self.entry(phase, "sizes", &origins.end_effs, sizes);
+            }
+        }
+        let directed = |path: PathId| data.appr_depts.iter().position(|r| !path.is_null() && r.path == path);
+        self.entry(phase, "depart", &origins.appr_depts, directed(depart));
+        let flown = data.trajectories.iter().position(|r| !between.is_null() && r.path == between);
+        self.entry(phase, "trajectory", &origins.trajectories, flown);
+        self.entry(phase, "approach", &origins.appr_depts, directed(approach));
+    }
+}
+
+/// A command in words.
+fn described(command: &EmoveCommand, location: &Location) -> String {
+    let sector = if location.sector == 0 { String::new() } else { format!(" sector {}", location.sector) };
+    let verb = command.command.text();
+    if command.object.is_empty() {
+        format!("{verb} {}{sector}", location.name)
+    } else {
+        format!("{verb} {} with grip {:+} at {}{sector}", command.object, command.grip, location.name)
+    }
+}
+
+/// Hundredths of an inch as inches.
+pub fn inches(hundredths: i32) -> String {
+    format!("{:.2}", f64::from(hundredths) / 100.0)
+}
+
+/// Fly the legs with Prim's motion at full speed and note the ticks that each takes.
+fn timed(start: &Frame, legs: Vec<(Frame, Leg)>) -> Vec<Leg> {
+    let mut motion = Motion::at_rest(start);
+    let count = legs.len();
+    let mut out = Vec::new();
+    for (i, (goal, mut leg)) in legs.into_iter().enumerate() {
+        let through = (i + 1 < count).then(|| f64::from(leg.brk_dst) / 100.0);
+        let Some(limits) = Limits::from_counts(leg.acc_fac, leg.vel_max, leg.smooth) else { break };
+        motion.go(&goal, &limits, through);
+        let mut passed = 0;
+        while leg.ticks < LONGEST && passed < if through.is_some() { FLIES_ON } else { SETTLES } {
+            motion.step(KNOB_FULL);
+            leg.ticks += 1;
+            let there = if through.is_some() { motion.is_passing() } else { motion.is_at_rest() };
+            passed += u32::from(there);
+        }
+        out.push(leg);
+    }
+    out
+}
+
+/// Seconds of so many ticks.
+pub fn seconds(ticks: u32) -> f64 {
+    f64::from(ticks) * TICK_S
+}
