@@ -106,6 +106,10 @@ fn replace<T, K: Eq + Hash>(entries: &mut Vec<T>, newer: Vec<T>, key: impl Fn(&T
     if newer.is_empty() {
         return;
     }
+    if entries.is_empty() {
+        *entries = newer;
+        return;
+    }
     let mut known: HashMap<K, usize> = entries.iter().enumerate().map(|(i, e)| (key(e), i)).collect();
     for entry in newer {
         match known.remove(&key(&entry)).and_then(|i| entries.get_mut(i)) {

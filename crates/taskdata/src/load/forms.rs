@@ -80,7 +80,7 @@ fn pose_entry(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let from = p.peek().map_or_else(|| p.last_at(), |w| w.at);
     for (point, name) in points.iter_mut().zip(["wrist", "tool", "finger"]) {
         for (value, axis) in point.iter_mut().zip(["x", "y", "z"]) {
-            *value = p.integer(&format!("{axis} of the {name} point"), COORDINATE)?;
+            *value = p.integer(format_args!("{axis} of the {name} point"), COORDINATE)?;
         }
     }
     let at = from.to(p.last_at());
@@ -153,7 +153,7 @@ fn movetable_line(p: &mut Parser<'_, '_>) -> Result<Line, Skip> {
     // The columns that a rotation does not use hold zeros.
     for _ in names.len()..values.len() {
         if p.peek().is_some_and(|w| is_integer(w.text)) {
-            p.integer(&format!("unused column of {system}"), 0..=0)?;
+            p.integer(format_args!("unused column of {system}"), 0..=0)?;
         }
     }
     Ok(Line { system, values })
@@ -162,7 +162,7 @@ fn movetable_line(p: &mut Parser<'_, '_>) -> Result<Line, Skip> {
 /// `-pt-` and `-ar-`: name, pose, movetable (VII.3, VII.4).
 pub fn point_at(p: &mut Parser<'_, '_>, what: &str) -> Result<PointAt, Skip> {
     Ok(PointAt {
-        name: p.name(&format!("name of the {what}"))?,
+        name: p.name(format_args!("name of the {what}"))?,
         pose: p.name("pose")?,
         movetable: p.name("movetable")?,
     })

@@ -19,7 +19,7 @@ use super::{
     entries::{Entry, RelativeEntry, SensorEntry},
     forms::{PLACES, parameters},
     names::nearest,
-    parse::{BEGINNINGS, COMPILING_WORDS, Parser, Skip, is_integer},
+    parse::{BEGINNINGS, Parser, Skip, is_compiling_word, is_integer},
 };
 
 /// From where a relative move leads.
@@ -127,7 +127,7 @@ fn sensor_follows(p: &Parser<'_, '_>) -> bool {
         let text = word.text;
         !is_integer(text)
             && !text.starts_with('"')
-            && !COMPILING_WORDS.contains(&text)
+            && !is_compiling_word(text)
             && !(text.starts_with('-') && nearest(text, BEGINNINGS.iter().copied()).is_some())
     })
 }

@@ -4,7 +4,7 @@
 //! (`-pt-`, `-obj-` …), or the numbers before it (`-pose-`, `-mtb-`). After an error the rest of the entry is skipped up to the
 //! next compiling word or the next line that begins with a number, so that one mistake gives one message.
 
-use std::ops::RangeInclusive;
+use std::{fmt::Display, ops::RangeInclusive};
 
 use rcs_core::name::{Name, NameError};
 
@@ -123,6 +123,13 @@ pub fn parse(words: &[Word<'_>], block: BlockNumber, header: At, problems: &mut 
     parsed
 }
 
+/// True if a word is one of [`COMPILING_WORDS`].
+#[must_use]
+pub fn is_compiling_word(text: &str) -> bool {
+    // Most names differ from all of them in the first character.
+    text.starts_with(['-', ':', '>', '<', '=', 'F', 'E', 'l', 'L', 'O']) && COMPILING_WORDS.contains(&text)
+}
+
 /// True if a word is a whole number, with or without a sign.
 #[must_use]
 pub fn is_integer(text: &str) -> bool {
@@ -176,9 +183,9 @@ impl<'a> Parser<'a, '_> {
     }
 
     /// A whole number in a range. One that is out of range is noted, and the entry is read on.
-    pub fn integer(&mut self, what: &str, range: RangeInclusive<i32>) -> Result<i32, Skip> {
+    pub fn integer(&mut self, what: impl Display, range: RangeInclusive<i32>) -> Result<i32, Skip> {
         let Some(word) = self.peek().filter(|w| is_integer(w.text)) else {
-            return Err(self.expected(what));
+            return Err(self.expected(&what.to_string()));
         };
         self.next += 1;
         match word.text.parse::<i32>() {
@@ -194,10 +201,9 @@ impl<'a> Parser<'a, '_> {
     }
 
     /// A name. One that is too long is noted, and the entry is read on.
-    pub fn name<const N: usize>(&mut self, what: &str) -> Result<Named<N>, Skip> {
-        let Some(word) = self.peek().filter(|w| !COMPILING_WORDS.contains(&w.text) && !is_integer(w.text))
-        else {
-            return Err(self.expected(what));
+    pub fn name<const N: usize>(&mut self, what: impl Display) -> Result<Named<N>, Skip> {
+        let Some(word) = self.peek().filter(|w| !is_compiling_word(w.text) && !is_integer(w.text)) else {
+            return Err(self.expected(&what.to_string()));
         };
         self.next += 1;
         if let Err(error) = Name::<N>::new(word.text) {
@@ -213,7 +219,7 @@ impl<'a> Parser<'a, '_> {
     }
 
     /// One of the type words `allowed`.
-    pub fn kind(&mut self, what: &str, allowed: &[RefType]) -> Result<(RefType, At), Skip> {
+    pub fn kind(&mut self, what: impl Display, allowed: &[RefType]) -> Result<(RefType, At), Skip> {
         let found = self.peek().and_then(|w| {
             // The manual calls the type both `own` and `owner` (V.2.2).
             let text = if w.text == "owner" { "own" } else { w.text };
@@ -229,7 +235,7 @@ impl<'a> Parser<'a, '_> {
 
     /// A type and a name; the name is missing after `$$$`.
     pub fn typed(&mut self, what: &str, allowed: &[RefType]) -> Result<Typed, Skip> {
-        let (kind, at) = self.kind(&format!("type of {what}"), allowed)?;
+        let (kind, at) = self.kind(format_args!("type of {what}"), allowed)?;
         if kind == RefType::Any {
             return Ok(Typed { kind, name: Named { name: Name::clipped(kind.text()), at } });
         }
@@ -371,5 +377,19 @@ impl<'a> Parser<'a, '_> {
             }
             self.next += 1;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_compiling_word_is_one() {
+        assert!(COMPILING_WORDS.iter().all(|word| is_compiling_word(word)));
+        assert!(BEGINNINGS.iter().all(|word| is_compiling_word(word)));
+        assert!(
+            !is_compiling_word("HOME") && !is_compiling_word("-1050ty") && !is_compiling_word("FIX-1-SAFE")
+        );
     }
 }
