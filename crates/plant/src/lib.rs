@@ -27,6 +27,10 @@
 //! * what is between two pads is held by springs with limits ([`hold`]): below friction nothing creeps, beyond it the part
 //!   slides ([`friction`]), under no force it falls;
 //! * a clamped part is led by the vise ([`vise`]), and forced out of it by a crash;
+//! * a gripper is led by the robot or by its holster ([`holster`]); the locking ring decides which, or lets it fall
+//!   ([`quick_change`]);
+//! * the force sensor reads what the springs of fingers and hold carry ([`force`]); the tool drum pushes back along its axis
+//!   and holds a tool as the vise does a part ([`drum`]);
 //! * parts on trays, ledge and floor are rapier's, with contacts made stiff enough for gaps of a millimetre.
 //!
 //! What cut hydraulics do to the arm (droop, jump, shot pin) belongs between [`arm::Arm`]'s command and its joints.

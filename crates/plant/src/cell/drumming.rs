@@ -49,9 +49,7 @@ impl Cell {
             let frame = self.parts[pocketed.part].frame(&self.world);
             return self.drum.entering(&frame).map(|entering| (pocketed, entering));
         }
-        let near = |at: Vector| {
-            (at - to_pose(&self.drum.seat()).translation).length() < metres(NEAR)
-        };
+        let near = |at: Vector| (at - to_pose(&self.drum.seat()).translation).length() < metres(NEAR);
         let (part, entering) = self.parts.iter().enumerate().find_map(|(index, part)| {
             let comes = part.kind.tool && near(part.pose(&self.world).translation);
             comes.then(|| self.drum.entering(&part.frame(&self.world)))?.map(|entering| (index, entering))

@@ -178,12 +178,16 @@ impl Cell {
 
     /// True if something else than `hand` has part `index`.
     fn is_held_elsewhere(&self, hand: Hand, index: usize) -> bool {
-        self.is_clamped(index) || self.is_in_drum(index) || hand.others().any(|other| self.is_held_by(other, index))
+        self.is_clamped(index)
+            || self.is_in_drum(index)
+            || hand.others().any(|other| self.is_held_by(other, index))
     }
 
     /// True if a hand or the vise has part `index`.
     pub(super) fn is_had(&self, index: usize) -> bool {
-        self.is_clamped(index) || self.is_in_drum(index) || HANDS.iter().any(|hand| self.is_held_by(*hand, index))
+        self.is_clamped(index)
+            || self.is_in_drum(index)
+            || HANDS.iter().any(|hand| self.is_held_by(*hand, index))
     }
 
     /// What has a part knows it by its place in the list: give it the place that it has now.
