@@ -92,7 +92,9 @@ impl Interfaces {
 
     fn add(&mut self, schema: &Schema) {
         match schema {
-            Schema::Enum(of) => drop(self.enums.insert(of.name, of)),
+            Schema::Enum(of) => {
+                self.enums.insert(of.name, of);
+            }
             Schema::Array(of, _) => self.add(of),
             Schema::Record(of) => {
                 self.records.insert(of.name, of);
