@@ -442,7 +442,8 @@ mod tests {
 
     #[test]
     fn a_part_has_its_sizes_along_the_vise() {
-        let kind = PartType { name: "P".into(), size: [1.0, 2.0, 3.0], weight: 1.0, vision_id: 0, tool: false };
+        let kind =
+            PartType { name: "P".into(), size: [1.0, 2.0, 3.0], weight: 1.0, vision_id: 0, tool: false };
         // Part X down, Y along vise X, a little askew.
         let upright =
             rcs_core::frame::rotation_from_x_y(&Inches::new(0.02, 0.01, -1.0), &Inches::x()).unwrap();
