@@ -162,7 +162,7 @@ pub fn description() -> String {
     .concat()
 }
 
-/// Version of the layout: FNV-1a of [`description`], so that it changes when and only when an image means
+/// Version of the layout: a digest of [`description`], so that it changes when and only when an image means
 /// something else.
 #[must_use]
 pub fn version() -> String {
