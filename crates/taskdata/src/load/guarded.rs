@@ -125,9 +125,7 @@ pub(super) fn relative_move(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
 fn sensor_follows(p: &Parser<'_, '_>) -> bool {
     p.peek().is_some_and(|word| {
         let text = word.text;
-        !is_integer(text)
-            && !text.starts_with('"')
-            && !is_compiling_word(text)
-            && !(text.starts_with('-') && nearest(text, BEGINNINGS.iter().copied()).is_some())
+        let misspelt = text.starts_with('-') && nearest(text, BEGINNINGS.iter().copied()).is_some();
+        !(misspelt || is_integer(text) || text.starts_with('"') || is_compiling_word(text))
     })
 }
