@@ -101,6 +101,9 @@ pub struct CellDescription {
     /// Boxes that stand still.
     #[serde(default)]
     pub fixture: Vec<Fixture>,
+    /// Places where parts stay because of their shape.
+    #[serde(default)]
+    pub nest: Vec<Nest>,
     /// Parts that can be in the cell.
     pub part: Vec<PartType>,
 }
@@ -173,6 +176,8 @@ pub struct Gripper {
     pub initial_opening: f64,
     /// Coefficient of friction of the pads.
     pub friction: f64,
+    /// V-grooves along tool Z in the pads: their axis along tool X, in.
+    pub groove: Option<f64>,
     /// Force that a blocked finger gains for each inch that the air would have moved it, lb/in.
     pub compressibility: f64,
     /// Force of a finger at full pressure, lb.
@@ -281,26 +286,65 @@ pub struct Vise {
     pub position: [f64; 3],
     /// Depth, thickness and height of a jaw, in.
     pub jaw: [f64; 3],
-    /// How far the clamping face stands back from the inner face, in.
-    pub notch_depth: f64,
-    /// Back of the notch, from the front plane, in.
-    pub notch_back: f64,
     /// Extent of the body in X, in.
     pub body_x: [f64; 2],
     /// Extent of the body in Y, in.
     pub body_y: [f64; 2],
     /// Height of the body under the ledge, in.
     pub body_height: f64,
-    /// Distance of the clamping faces when open, in.
-    pub opening_open: f64,
-    /// Distance of the clamping faces when partially closed, in.
-    pub opening_partial: f64,
     /// Speed of the jaw, in/s.
     pub speed: f64,
     /// Closing force, lb.
     pub force: f64,
     /// Coefficient of friction of the jaws.
     pub friction: f64,
+    /// Its programs; the first one is on at the start.
+    pub program: Vec<ViseProgram>,
+}
+
+/// A program of the vise: the step in the jaws that clamps a family of parts, and its openings.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct ViseProgram {
+    /// Its name.
+    pub name: String,
+    /// Back of the step, from the front plane of the jaws, in.
+    pub back: f64,
+    /// How far its clamping faces stand back from the inner faces of the jaws, in.
+    pub depth: f64,
+    /// Floor of the step, from the top of the jaws, in; negative.
+    pub ledge: f64,
+    /// Distance of its clamping faces when open, in.
+    pub opening_open: f64,
+    /// Distance of its clamping faces when partially closed, in.
+    pub opening_partial: f64,
+}
+
+/// A place where parts stay because of its shape: a cradle, a pot, a pocket. What it is made of are fixtures.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Nest {
+    /// Name of the location.
+    pub location: String,
+    /// Sector of the location; 0 if it has none.
+    #[serde(default)]
+    pub sector: u16,
+    /// The parts that it is made for.
+    pub parts: Vec<String>,
+    /// The frame of a part that lies there.
+    pub seat: Points,
+    /// Parts can be machined there, if they are near enough to the seat.
+    pub machining: Option<Tolerance>,
+}
+
+/// How far a part may be from its seat.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Tolerance {
+    /// Of its middle, in.
+    pub inches: f64,
+    /// Of its axes, degrees.
+    pub degrees: f64,
 }
 
 /// A tray at an MBD unit.
@@ -349,14 +393,33 @@ pub struct Fixture {
     /// Lean of the top along the turned +X, degrees.
     #[serde(default)]
     pub tilt: f64,
+    /// Parts that are carried may touch it: it is there to hold them.
+    #[serde(default)]
+    pub work_surface: bool,
 }
 
-/// A kind of part: a box.
+/// The body of a part.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Shape {
+    /// A box.
+    #[default]
+    Box,
+    /// A cylinder along X: size Y and Z are its diameter.
+    CylinderX,
+    /// A cylinder along Z: size X and Y are its diameter.
+    CylinderZ,
+}
+
+/// A kind of part.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct PartType {
     /// Object name of the task data.
     pub name: String,
+    /// Box or cylinder.
+    #[serde(default)]
+    pub shape: Shape,
     /// Size in the part frame (X down as presented, Z along the part), in.
     pub size: [f64; 3],
     /// Weight, lb.
@@ -374,6 +437,20 @@ impl Gripper {
     #[must_use]
     pub fn plate(&self) -> f64 {
         self.body[0] + self.fingers[0]
+    }
+}
+
+impl Nest {
+    /// The frame of a part in it, in.
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        self.seat.frame().unwrap_or_else(Frame::identity)
+    }
+
+    /// True if it is made for a kind of part.
+    #[must_use]
+    pub fn takes(&self, kind: &PartType) -> bool {
+        self.parts.contains(&kind.name)
     }
 }
 

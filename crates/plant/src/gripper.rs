@@ -16,7 +16,7 @@ use crate::{
     hold::{Hold, Stiffness},
     jaws::Supply,
     noise::Noise,
-    scene::groups,
+    scene::{PALM, groups},
     squeeze::Pads,
 };
 
@@ -176,7 +176,7 @@ impl Gripper {
         let hand = world.insert_body(RigidBodyBuilder::kinematic_position_based().pose(*tool));
         let body = ColliderBuilder::cuboid(body_x / 2.0, body_y / 2.0, body_z / 2.0)
             .translation(Vector::new(-finger_x - body_x / 2.0, 0.0, 0.0))
-            .collision_groups(groups(group, Group::ALL & !group));
+            .collision_groups(groups(PALM, Group::ALL & !group));
         world.insert_collider(body, Some(hand));
         let air = Air::new(description);
         let mount = Mount { hand, tool, stiffness, group };
@@ -213,7 +213,8 @@ impl Gripper {
     #[must_use]
     pub fn pads(&self) -> Pads {
         let [length, _, width] = self.description.fingers.map(metres);
-        Pads { x: [-length, 0.0], z: [-width / 2.0, width / 2.0] }
+        let groove = self.description.groove.map(metres);
+        Pads { x: [-length, 0.0], z: [-width / 2.0, width / 2.0], groove }
     }
 
     /// Let the springs of the fingers rest where the air wants the fingers.

@@ -57,6 +57,7 @@ pub mod part;
 pub mod pedestal;
 pub mod quick_change;
 pub mod scene;
+pub mod solid;
 pub mod squeeze;
 pub mod t3;
 pub mod vise;

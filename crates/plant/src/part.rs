@@ -1,17 +1,20 @@
-//! Parts: boxes that move, and what is said of them.
+//! Parts: boxes and cylinders that move, and what is said of them.
 
 use rapier3d_f64::prelude::*;
 use rcs_core::frame::{Frame, Vector as Inches};
 
 use crate::{
-    convert::{KILOGRAMS_PER_POUND, metres, to_frame, to_pose},
+    convert::{KILOGRAMS_PER_POUND, to_frame, to_pose},
     description::PartType,
     hold::Load,
     scene::{PART, groups},
+    solid::Solid,
 };
 
 /// Coefficient of friction of a part's surface.
 const FRICTION: Real = 0.30;
+/// Angular damping of a part that can roll, 1/s: what a floor and a tray that are not quite hard and even do to it.
+const ROLLING: Real = 2.0;
 
 /// A part in the cell.
 #[derive(Debug)]
@@ -31,7 +34,10 @@ pub struct Part {
 impl Part {
     /// Put a part into the world.
     pub fn new(world: &mut PhysicsWorld, id: u32, kind: &PartType, frame: &Frame) -> Self {
-        let body = world.insert_body(RigidBodyBuilder::dynamic().pose(to_pose(frame)));
+        let rolls = Solid::of(kind).cylinder().is_some();
+        let damping = if rolls { ROLLING } else { 0.0 };
+        let builder = RigidBodyBuilder::dynamic().pose(to_pose(frame)).angular_damping(damping);
+        let body = world.insert_body(builder);
         let collider = world.insert_collider(collider(kind), Some(body));
         Self { kind: kind.clone(), id, body, collider, fallen: false }
     }
@@ -45,10 +51,16 @@ impl Part {
         self.kind = kind.clone();
     }
 
+    /// Its body.
+    #[must_use]
+    pub fn solid(&self) -> Solid {
+        Solid::of(&self.kind)
+    }
+
     /// Half its size, metres.
     #[must_use]
     pub fn half(&self) -> Vector {
-        half(&self.kind)
+        self.solid().half()
     }
 
     /// Where it is, metres.
@@ -67,9 +79,7 @@ impl Part {
     #[must_use]
     pub fn load(&self) -> Load {
         let mass = mass(&self.kind);
-        let squares = self.half() * self.half();
-        let inertia = mass / 3.0 * (squares.element_sum() - squares.min_element());
-        Load { mass, inertia }
+        Load { mass, inertia: mass * self.solid().inertia() }
     }
 
     /// What holds it does not also collide with it: the collision groups of its holders.
@@ -89,20 +99,12 @@ impl Part {
     }
 }
 
-fn half(kind: &PartType) -> Vector {
-    Vector::from_array(kind.size.map(|size| metres(size / 2.0)))
-}
-
 fn mass(kind: &PartType) -> Real {
     kind.weight * KILOGRAMS_PER_POUND
 }
 
 fn collider(kind: &PartType) -> ColliderBuilder {
-    let half = half(kind);
-    ColliderBuilder::cuboid(half.x, half.y, half.z)
-        .mass(mass(kind))
-        .friction(FRICTION)
-        .collision_groups(groups(PART, Group::ALL))
+    Solid::of(kind).collider().mass(mass(kind)).friction(FRICTION).collision_groups(groups(PART, Group::ALL))
 }
 
 /// What is reported of a part.
@@ -126,7 +128,7 @@ pub struct PartState {
     pub error: Option<f64>,
 }
 
-/// True if the segment from `from` to `to` meets a box at `pose`, metres.
+/// True if the segment from `from` to `to` meets the box around a part at `pose`, metres.
 #[must_use]
 pub fn segment_meets_box(from: Vector, to: Vector, pose: &Pose, half: Vector) -> bool {
     let start = pose.inverse_transform_point(from).to_array();

@@ -98,9 +98,11 @@ impl Table {
         } else {
             self.position += self.speed * dt;
         }
-        let (minus, plus) = (self.at_minus(), self.at_plus());
-        if (plus && self.goal > self.position) || (minus && self.goal < self.position) {
-            self.position = libm::round(self.position);
+        let [minus, plus] = self.description.limits.map(|limit| libm::round(limit * STEPS_PER_DEGREE));
+        let blocked =
+            (self.position >= plus && self.goal > plus) || (self.position <= minus && self.goal < minus);
+        if blocked {
+            self.position = self.position.clamp(minus, plus);
             self.goal = self.position;
             self.speed = 0.0;
         }
@@ -167,6 +169,12 @@ impl Pedestal {
     #[must_use]
     pub fn frame(&self) -> Frame {
         hand_frame(&self.description, self.table.angle())
+    }
+
+    /// Where the hand is while its fingers move across the radial line.
+    #[must_use]
+    pub fn square_frame(&self) -> Frame {
+        hand_frame(&self.description, self.description.table.square)
     }
 
     /// Let the table turn for `dt` seconds, and the hand with it.
@@ -263,8 +271,7 @@ mod tests {
         order(&mut table, MotorOrder::Turn, 1_000_000);
         run(&mut table);
         assert!(table.at_plus() && !table.at_minus());
-        let overrun = table.motor_angle() + 20.0;
-        assert!((0.0..0.1).contains(&overrun), "a step or so beyond the switch: {overrun}");
+        assert_eq!(table.motor_angle(), -20.0, "it stops on the step of the switch");
         order(&mut table, MotorOrder::SetCounter, -2_000);
         assert_eq!(table.counter(), -2_000);
         order(&mut table, MotorOrder::Turn, 500);

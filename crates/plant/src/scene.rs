@@ -24,6 +24,12 @@ pub const FINGER: Group = Group::GROUP_2;
 pub const HAND: Group = Group::GROUP_5;
 /// Collision group of parts.
 pub const PART: Group = Group::GROUP_3;
+/// Collision group of the palms of hands: what the fingers hold still rests on the palm.
+pub const PALM: Group = Group::GROUP_6;
+
+/// The backs of the movable jaw stand this far behind those of the fixed one, in: where a part comes to lie is the fixed
+/// jaw's affair, and the other must not drag it along when it closes.
+const RELIEF: f64 = 0.02;
 
 /// Coefficient of friction of steel on trays, vise and floor.
 const FRICTION: Real = 0.30;
@@ -105,7 +111,7 @@ fn fixture(fixture: &Fixture) -> Block {
         name: fixture.name.clone(),
         frame: Frame { position: Inches::from(fixture.centre), rotation },
         size: Inches::from(fixture.size),
-        work_surface: false,
+        work_surface: fixture.work_surface,
         jaw: false,
         strike: None,
     }
@@ -137,47 +143,62 @@ pub fn vise_frame(vise: &Vise) -> Frame {
     Frame { position: Inches::from(vise.position), rotation: Rotation::identity() }
 }
 
-/// Body and fixed jaw, in the frame of the vise. The jaw has a notch that is open to the front and to the top.
+/// Body and fixed jaw, in the frame of the vise.
 fn vise_blocks(vise: &Vise) -> Vec<Block> {
-    let [depth, thickness, height] = vise.jaw;
-    let [body_back, body_front] = [vise.body_x[1], vise.body_x[0]];
-    vec![
-        Block::between(
-            "vise_body",
-            Inches::new(body_front, vise.body_y[0], -height - vise.body_height),
-            Inches::new(body_back, vise.body_y[1], -height),
-            true,
-        ),
-        Block::jaw(
-            "fixed_jaw_notch",
-            Inches::new(0.0, -thickness, -height),
-            Inches::new(vise.notch_back, -vise.notch_depth, 0.0),
-        ),
-        Block::jaw(
-            "fixed_jaw",
-            Inches::new(vise.notch_back, -thickness, -height),
-            Inches::new(depth, 0.0, 0.0),
-        ),
-    ]
+    let height = vise.jaw[2];
+    let [front, back] = vise.body_x;
+    let mut blocks = vec![Block::between(
+        "vise_body",
+        Inches::new(front, vise.body_y[0], -height - vise.body_height),
+        Inches::new(back, vise.body_y[1], -height),
+        true,
+    )];
+    blocks.extend(jaw_pieces(vise).into_iter().map(|[[x0, x1], [d0, d1], [z0, z1]]| {
+        Block::jaw("fixed_jaw", Inches::new(x0, -d1, z0), Inches::new(x1, -d0, z1))
+    }));
+    blocks
 }
 
-/// The movable jaw in its own frame, whose Y is that of its clamping face.
+/// The movable jaw in its own frame, whose Y is that of its inner face: the mirror image of the fixed one, its backs relieved.
 #[must_use]
 pub fn jaw_blocks(vise: &Vise) -> Vec<Block> {
-    let [depth, thickness, height] = vise.jaw;
-    let outer = thickness - vise.notch_depth;
-    vec![
-        Block::jaw(
-            "movable_jaw_notch",
-            Inches::new(0.0, 0.0, -height),
-            Inches::new(vise.notch_back, outer, 0.0),
-        ),
-        Block::jaw(
-            "movable_jaw",
-            Inches::new(vise.notch_back, -vise.notch_depth, -height),
-            Inches::new(depth, outer, 0.0),
-        ),
-    ]
+    let pieces = jaw_pieces(vise).into_iter().map(|[[x0, x1], [d0, d1], [z0, z1]]| {
+        let back = if x0 > 0.0 { x0 + RELIEF } else { x0 };
+        Block::jaw("movable_jaw", Inches::new(back, d0, z0), Inches::new(x1, d1, z1))
+    });
+    pieces.collect()
+}
+
+/// What the steps of all programs leave of a jaw: boxes from and to in depth into the vise, in depth behind the inner face,
+/// and in height. A step is cut from the front to its back, down to its ledge, and as deep as its clamping face.
+fn jaw_pieces(vise: &Vise) -> Vec<[[f64; 2]; 3]> {
+    let [into, thickness, height] = vise.jaw;
+    let mut depths: Vec<f64> = vise.program.iter().map(|program| program.depth).collect();
+    depths.extend([0.0, thickness]);
+    let mut levels: Vec<f64> = vise.program.iter().map(|program| program.ledge).collect();
+    levels.extend([-height, 0.0]);
+    for borders in [&mut depths, &mut levels] {
+        borders.sort_by(f64::total_cmp);
+        borders.dedup();
+    }
+    let mut pieces: Vec<[[f64; 2]; 3]> = Vec::new();
+    for depth in depths.windows(2) {
+        for level in levels.windows(2) {
+            let cuts = vise.program.iter().filter(|cut| cut.depth >= depth[1] && cut.ledge <= level[0]);
+            let from = cuts.map(|cut| cut.back).fold(0.0, f64::max);
+            match pieces.last_mut() {
+                // One box where the step above goes as far into the vise.
+                Some([x, d, z]) if x[0] == from && *d == [depth[0], depth[1]] && z[1] == level[0] => {
+                    z[1] = level[1];
+                }
+                _ if from < into => {
+                    pieces.push([[from, into], [depth[0], depth[1]], [level[0], level[1]]]);
+                }
+                _ => {}
+            }
+        }
+    }
+    pieces
 }
 
 /// A box with its place and its surrounding axis-parallel box, for the clearance check, metres.
@@ -215,4 +236,25 @@ impl From<&Block> for Obstacle {
 #[must_use]
 pub fn along_x() -> Rotation {
     Rotation::from_axis_angle(&Inches::y_axis(), FRAC_PI_2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_steps_of_the_programs_are_cut_out_of_the_jaws() {
+        let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
+        let mut pieces = jaw_pieces(&cell.vise);
+        pieces.sort_by(|a, b| b[1][0].total_cmp(&a[1][0]).then(a[2][0].total_cmp(&b[2][0])));
+        assert_eq!(
+            pieces,
+            [
+                [[0.0, 6.0], [0.1625, 3.0], [-3.25, 0.0]],
+                [[0.41, 6.0], [0.10, 0.1625], [-3.25, 0.0]],
+                [[0.41, 6.0], [0.0, 0.10], [-3.25, -1.0]],
+                [[1.60, 6.0], [0.0, 0.10], [-1.0, 0.0]],
+            ]
+        );
+    }
 }

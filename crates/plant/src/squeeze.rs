@@ -1,13 +1,26 @@
-//! What two parallel faces hold when they close on a box: fingers on a part, vise jaws on a part.
+//! What two parallel faces hold when they close on a part: fingers, vise jaws.
 //!
 //! Both grips are the same geometry: two rectangular pads face each other along Y. The box turns the face that is most
 //! nearly parallel to the pads towards them; that face, clipped to the pad, gives the width at which the pads are stopped,
 //! the point and area where friction acts, and the position in which the box lies flush.
+//!
+//! A cylinder that lies between the pads touches each with a line, which counts as a narrow strip. Pads with V-grooves
+//! (the v-gripper) touch it with two, and lay its axis into that of the grooves. A cylinder that stands between the pads is
+//! taken as the box around it.
 
 use rapier3d_f64::math::{Pose, Real, Rotation, Vector};
 
+use crate::solid::Solid;
+
 /// Faces within this angle of the pads are drawn flush when the pads close (10 degrees, its cosine).
 const FLUSH_COSINE: Real = 0.984_807_753;
+/// The same for an axis that is to lie along the pads (its sine to them).
+const FLUSH_SINE: Real = 0.173_648_178;
+/// Half the width of the strip that a cylinder touches, in radii: on a flat pad, and between the lines of two grooves.
+const STRIP: Real = 0.1;
+const GROOVE_STRIP: Real = 0.7;
+/// A groove catches a cylinder whose axis is nearer to its own than this, in radii.
+const CAUGHT: Real = 0.5;
 /// Contact below this area does not stop a pad (0.01 square inch), m².
 const LEAST_AREA: Real = 6.45e-6;
 
@@ -18,14 +31,16 @@ pub struct Pads {
     pub x: [Real; 2],
     /// Extent along Z.
     pub z: [Real; 2],
+    /// Where V-grooves along Z have their common axis, along X; `None` on flat pads.
+    pub groove: Option<Real>,
 }
 
-/// A box between two pads, in the axes of the grip, metres.
+/// A part between two pads, in the axes of the grip, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Squeeze {
     /// Distance of the pads when both touch.
     pub width: Real,
-    /// Where the box has its centre along Y.
+    /// Where the part has its centre along Y.
     pub centre: Real,
     /// Centre of the touched area.
     pub point: Vector,
@@ -33,7 +48,7 @@ pub struct Squeeze {
     pub area: Real,
     /// Extent of the touched area along X and Z.
     pub span: [Real; 2],
-    /// The box turned so that its face lies on the pads.
+    /// The part turned so that its face lies on the pads, and moved into the grooves.
     pub flush: Pose,
 }
 
@@ -45,9 +60,54 @@ impl Squeeze {
     }
 }
 
-/// What the pads hold of a box at `pose` (in the axes of the grip) with the given half sizes; `None` if nothing.
+/// What the pads hold of a part at `pose` (in the axes of the grip); `None` if nothing.
 #[must_use]
-pub fn squeeze(pose: &Pose, half: Vector, pads: &Pads) -> Option<Squeeze> {
+pub fn squeeze(pose: &Pose, solid: &Solid, pads: &Pads) -> Option<Squeeze> {
+    match solid.cylinder() {
+        Some((axis, radius, half_length)) if (pose.rotation * axis).y.abs() <= FLUSH_SINE => {
+            squeeze_cylinder(pose, axis, [radius, half_length], pads)
+        }
+        _ => squeeze_box(pose, solid.half(), pads),
+    }
+}
+
+/// A cylinder whose axis lies along the pads.
+fn squeeze_cylinder(
+    pose: &Pose,
+    axis: Vector,
+    [radius, half_length]: [Real; 2],
+    pads: &Pads,
+) -> Option<Squeeze> {
+    let direction = pose.rotation * axis;
+    let caught = pads.groove.filter(|groove| {
+        direction.z.abs() >= FLUSH_COSINE && (pose.translation.x - groove).abs() <= CAUGHT * radius
+    });
+    let (level, strip) = match caught {
+        Some(_) => (Vector::Z * direction.z.signum(), GROOVE_STRIP * radius),
+        None => (Vector::new(direction.x, 0.0, direction.z).normalize(), STRIP * radius),
+    };
+    let mut flush = turn_about(pose, &Rotation::from_rotation_arc(direction, level));
+    flush.translation.x = caught.unwrap_or(flush.translation.x);
+    let [x, z] = [flush.translation.x, flush.translation.z];
+    let corner = |along: Real, across: Real| {
+        [
+            x + level.x * along * half_length + level.z * across * strip,
+            z + level.z * along * half_length - level.x * across * strip,
+        ]
+    };
+    let touched = clip(&[corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0), corner(-1.0, 1.0)], pads);
+    let (area, centroid) = area_and_centroid(&touched)?;
+    (area >= LEAST_AREA).then(|| Squeeze {
+        width: 2.0 * radius,
+        centre: pose.translation.y,
+        point: Vector::new(centroid[0], pose.translation.y, centroid[1]),
+        area,
+        span: spans(&touched),
+        flush,
+    })
+}
+
+fn squeeze_box(pose: &Pose, half: Vector, pads: &Pads) -> Option<Squeeze> {
     let half = half.to_array();
     let axes = [Vector::X, Vector::Y, Vector::Z].map(|axis| pose.rotation * axis);
     let across = (0..3).max_by(|a, b| axes[*a].y.abs().total_cmp(&axes[*b].y.abs()))?;
@@ -75,17 +135,21 @@ pub fn squeeze(pose: &Pose, half: Vector, pads: &Pads) -> Option<Squeeze> {
     } else {
         *pose
     };
-    let extent = |axis: usize| {
-        let values = touched.iter().map(|p| p[axis]);
-        values.clone().fold(Real::NEG_INFINITY, Real::max) - values.fold(Real::INFINITY, Real::min)
-    };
     Some(Squeeze {
         width,
         centre: pose.translation.y,
         point: Vector::new(centroid[0], pose.translation.y, centroid[1]),
         area,
-        span: [extent(0), extent(1)],
+        span: spans(&touched),
         flush: turned,
+    })
+}
+
+/// Extent of a polygon along its two axes.
+fn spans(polygon: &[[Real; 2]]) -> [Real; 2] {
+    [0, 1].map(|axis| {
+        let values = polygon.iter().map(|p| p[axis]);
+        values.clone().fold(Real::NEG_INFINITY, Real::max) - values.fold(Real::INFINITY, Real::min)
     })
 }
 
@@ -138,17 +202,49 @@ mod tests {
     use super::*;
     use crate::convert::{inches, metres};
 
-    const FINGERS: Pads = Pads { x: [-0.1397, 0.0], z: [-0.01905, 0.01905] };
+    const FINGERS: Pads = Pads { x: [-0.1397, 0.0], z: [-0.01905, 0.01905], groove: None };
 
-    fn bar() -> Vector {
-        Vector::new(metres(0.3125), metres(0.3125), metres(2.0))
+    fn bar() -> Solid {
+        Solid::cuboid(Vector::new(metres(0.3125), metres(0.3125), metres(2.0)))
+    }
+
+    fn shaft() -> Solid {
+        Solid::cylinder_z(metres(0.75), metres(2.0))
+    }
+
+    #[test]
+    fn a_cylinder_is_as_wide_as_thick_and_is_laid_level() {
+        let askew = Pose::new(Vector::new(metres(-1.0), 0.001, 0.0), Vector::new(0.1, 0.0, 0.0));
+        let held = squeeze(&askew, &shaft(), &FINGERS).unwrap();
+        assert!((inches(held.width) - 1.5).abs() < 1e-9 && held.centre == 0.001);
+        assert!((held.flush.rotation * Vector::Z).y.abs() < 1e-12);
+        assert!((inches(held.span[1]) - 1.5).abs() < 1e-9, "as long as the pads are wide");
+        assert!((inches(held.span[0]) - 0.15).abs() < 1e-9, "a strip");
+    }
+
+    #[test]
+    fn a_groove_centres_a_cylinder_that_it_catches() {
+        let grooved = Pads { groove: Some(metres(-0.60)), ..FINGERS };
+        let at = |x: Real| Pose::new(Vector::new(metres(x), 0.0, 0.0), Vector::new(0.05, 0.05, 0.0));
+        let held = squeeze(&at(-0.4), &shaft(), &grooved).unwrap();
+        assert!((inches(held.flush.translation.x) + 0.60).abs() < 1e-12, "{:?}", held.flush);
+        assert!((held.flush.rotation * Vector::Z - Vector::Z).length() < 1e-12);
+        let beside = squeeze(&at(-1.4), &shaft(), &grooved).unwrap();
+        assert!((inches(beside.flush.translation.x) + 1.4).abs() < 1e-12, "on the flat of the pads");
+    }
+
+    #[test]
+    fn a_cylinder_that_stands_across_is_a_box() {
+        let across = Pose::new(Vector::ZERO, Vector::new(core::f64::consts::FRAC_PI_2, 0.0, 0.0));
+        let held = squeeze(&across, &shaft(), &FINGERS).unwrap();
+        assert!((inches(held.width) - 4.0).abs() < 1e-9);
     }
 
     #[test]
     fn fingers_cover_what_the_manual_lets_stand_out() {
         // Picked as LK-GRP-1 has it: finger centre 2.10 in from the centroid, tips 0.20 above the tray (VIII.9.5).
         let part = Pose::from_translation(Vector::new(metres(0.20 - 0.3125), metres(0.1), metres(-2.10)));
-        let held = squeeze(&part, bar(), &FINGERS).unwrap();
+        let held = squeeze(&part, &bar(), &FINGERS).unwrap();
         assert!((inches(held.width) - 0.625).abs() < 1e-9);
         assert!((inches(held.span[1]) - 0.65).abs() < 1e-9, "0.65 of the length");
         assert!((inches(held.span[0]) - 0.425).abs() < 1e-9, "0.42 of the height");
@@ -159,7 +255,7 @@ mod tests {
     #[test]
     fn a_face_that_is_nearly_parallel_is_drawn_flush() {
         let turned = Pose::new(Vector::ZERO, Vector::new(0.05, 0.0, 0.0));
-        let held = squeeze(&turned, bar(), &FINGERS).unwrap();
+        let held = squeeze(&turned, &bar(), &FINGERS).unwrap();
         assert!((inches(held.width) - 0.625).abs() < 1e-9);
         assert!((held.flush.rotation * Vector::Y - Vector::Y).length() < 1e-12);
     }
@@ -167,7 +263,7 @@ mod tests {
     #[test]
     fn a_box_on_its_edges_is_wider_and_is_not_turned() {
         let turned = Pose::new(Vector::ZERO, Vector::new(0.0, 0.0, core::f64::consts::FRAC_PI_4));
-        let held = squeeze(&turned, bar(), &FINGERS).unwrap();
+        let held = squeeze(&turned, &bar(), &FINGERS).unwrap();
         assert!((inches(held.width) - 0.625 * libm::sqrt(2.0)).abs() < 1e-9);
         assert_eq!(held.flush, turned);
     }
@@ -175,6 +271,6 @@ mod tests {
     #[test]
     fn beside_the_pads_there_is_nothing() {
         let part = Pose::from_translation(Vector::new(metres(0.32), 0.0, 0.0));
-        assert_eq!(squeeze(&part, bar(), &FINGERS), None);
+        assert_eq!(squeeze(&part, &bar(), &FINGERS), None);
     }
 }

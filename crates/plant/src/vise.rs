@@ -1,5 +1,9 @@
 //! The programmable vise: a fixed jaw, a movable jaw, and what is clamped between them.
 //!
+//! Both jaws have steps, one for each family of parts. A program of the vise is such a step with its openings. Openings are
+//! counted between the clamping faces of the step of the program that is on, as its user counts them; what the jaw moves by
+//! is the distance of the inner faces. A part stops the jaw in whatever step it stands.
+//!
 //! The jaw moves at its speed to an opening. When it reaches a part on its way it takes the part along, flush with its
 //! face, and is stopped when the part lies against the fixed face; from then on the closing force and friction hold it. The
 //! gripper does not resist that: 500 lb against at most twice the finger force. A part that is still between the fingers is
@@ -9,8 +13,8 @@ use rapier3d_f64::prelude::*;
 use rcs_core::frame::{Frame, Vector as Inches};
 
 use crate::{
-    convert::{metres, newtons, to_pose},
-    description::Vise as Description,
+    convert::{inches, metres, newtons, to_pose},
+    description::{Vise as Description, ViseProgram},
     scene::{jaw_blocks, vise_frame},
     squeeze::Pads,
 };
@@ -31,7 +35,10 @@ pub enum Jaws {
 pub struct Vise {
     description: Description,
     frame: Frame,
-    opening: f64,
+    /// Which program is on.
+    program: usize,
+    /// Distance of the inner faces of the jaws, in.
+    gap: f64,
     target: f64,
     jaw: RigidBodyHandle,
     stopped: bool,
@@ -44,29 +51,34 @@ pub struct Vise {
 pub struct Clamped {
     /// Index of the part.
     pub part: usize,
+    /// Which program's step has it.
+    pub step: usize,
     /// Where it is in the frame of the vise, m.
     pub rest: Pose,
 }
 
 impl Vise {
-    /// Build the movable jaw, open; `base` is the body that the rest of the vise belongs to.
+    /// Build the movable jaw, open by the first program.
     pub fn new(world: &mut PhysicsWorld, description: &Description) -> Self {
         let frame = vise_frame(description);
-        let opening = description.opening_open;
-        let pose = to_pose(&jaw_frame(description, &frame, opening));
-        let jaw = world.insert_body(RigidBodyBuilder::kinematic_position_based().pose(pose));
+        let jaw = world.insert_body(RigidBodyBuilder::kinematic_position_based());
         for block in jaw_blocks(description) {
             world.insert_collider(block.collider().friction(description.friction), Some(jaw));
         }
-        Self {
+        let mut vise = Self {
             description: description.clone(),
             frame,
-            opening,
-            target: opening,
+            program: 0,
+            gap: 0.0,
+            target: 0.0,
             jaw,
             stopped: false,
             clamped: None,
-        }
+        };
+        vise.command(Jaws::Open);
+        vise.gap = vise.target;
+        world.bodies[jaw].set_position(vise.jaw_pose(), false);
+        vise
     }
 
     /// The frame of the vise, in.
@@ -81,10 +93,44 @@ impl Vise {
         self.jaw
     }
 
-    /// Distance of the clamping faces, in.
+    fn step(&self, step: usize) -> &ViseProgram {
+        &self.description.program[step]
+    }
+
+    /// Steps of all programs.
+    #[must_use]
+    pub fn steps(&self) -> core::ops::Range<usize> {
+        0..self.description.program.len()
+    }
+
+    /// Go on by the program of a name; false if there is none.
+    pub fn select(&mut self, name: &str) -> bool {
+        let program = self.description.program.iter().position(|program| program.name == name);
+        self.program = program.unwrap_or(self.program);
+        program.is_some()
+    }
+
+    /// Names of all programs.
+    pub fn programs(&self) -> impl Iterator<Item = &str> {
+        self.description.program.iter().map(|program| program.name.as_str())
+    }
+
+    /// Distance of the clamping faces of the program that is on, in.
     #[must_use]
     pub fn opening(&self) -> f64 {
-        self.opening
+        self.gap + 2.0 * self.step(self.program).depth
+    }
+
+    /// Distance of the inner faces of the jaws, in.
+    #[must_use]
+    pub fn gap(&self) -> f64 {
+        self.gap
+    }
+
+    /// Distance of the inner faces at which a part of a width (m) stops them in a step, in.
+    #[must_use]
+    pub fn stop(&self, step: usize, width: Real) -> f64 {
+        inches(width) - 2.0 * self.step(step).depth
     }
 
     /// Name of its location.
@@ -96,7 +142,7 @@ impl Vise {
     /// True while the jaw is on its way.
     #[must_use]
     pub fn moving(&self) -> bool {
-        !self.stopped && (self.opening - self.target).abs() > 1e-9
+        !self.stopped && (self.gap - self.target).abs() > 1e-9
     }
 
     /// True if a part stops the jaw.
@@ -108,58 +154,71 @@ impl Vise {
     /// True while the jaw is on its way to the fixed jaw.
     #[must_use]
     pub fn closing(&self) -> bool {
-        self.moving() && self.target < self.opening
+        self.moving() && self.target < self.gap
     }
 
-    /// Command an opening. Who commands one that is wider must first let go of what is clamped.
+    /// Command an opening of the program that is on. Who commands one that is wider must first let go of what is clamped.
     pub fn command(&mut self, jaws: Jaws) {
+        let program = self.step(self.program);
         self.target = match jaws {
-            Jaws::Open => self.description.opening_open,
-            Jaws::Partial => self.description.opening_partial,
+            Jaws::Open => program.opening_open - 2.0 * program.depth,
+            Jaws::Partial => program.opening_partial - 2.0 * program.depth,
             // The inner faces of the jaws meet.
-            Jaws::Closed => 2.0 * self.description.notch_depth,
+            Jaws::Closed => 0.0,
         };
-        self.stopped &= self.target < self.opening;
+        self.stopped &= self.target < self.gap;
     }
 
     /// True if the jaw would move away from the fixed jaw.
     #[must_use]
     pub fn opening_commanded(&self) -> bool {
-        self.target > self.opening
+        self.target > self.gap
     }
 
-    /// Move the jaw for `dt` seconds; `stop` is the opening at which a part between the faces stops it.
+    /// Move the jaw for `dt` seconds; `stop` is the distance of the inner faces at which a part stops it, in.
     pub fn advance(&mut self, world: &mut PhysicsWorld, dt: f64, stop: Option<f64>) {
         let way = self.description.speed * dt;
-        let wanted = self.opening + (self.target - self.opening).clamp(-way, way);
-        self.opening = match stop {
+        let wanted = self.gap + (self.target - self.gap).clamp(-way, way);
+        self.gap = match stop {
             Some(stop) if wanted <= stop && self.target < stop => {
                 self.stopped = true;
-                stop.min(self.opening)
+                stop.min(self.gap)
             }
             _ => wanted,
         };
-        let pose = to_pose(&jaw_frame(&self.description, &self.frame, self.opening));
-        world.bodies[self.jaw].set_next_kinematic_position(pose);
+        world.bodies[self.jaw].set_next_kinematic_position(self.jaw_pose());
     }
 
     /// Close the jaw at once by what machining has taken off a clamped part.
-    pub fn follow(&mut self, world: &mut PhysicsWorld, opening: f64) {
-        self.opening = opening.min(self.opening);
-        let pose = to_pose(&jaw_frame(&self.description, &self.frame, self.opening));
-        world.bodies[self.jaw].set_position(pose, true);
+    pub fn follow(&mut self, world: &mut PhysicsWorld, gap: f64) {
+        self.gap = gap.min(self.gap);
+        world.bodies[self.jaw].set_position(self.jaw_pose(), true);
     }
 
-    /// The clamping faces as pads; see [`Vise::fixed_face`] for where the fixed one is.
-    #[must_use]
-    pub fn pads(&self) -> Pads {
-        Pads { x: [0.0, metres(self.description.notch_back)], z: [-metres(self.description.jaw[2]), 0.0] }
+    fn jaw_pose(&self) -> Pose {
+        to_pose(&self.frame.shifted(Inches::new(0.0, self.gap, 0.0)))
     }
 
-    /// Y of the fixed clamping face in the frame of the vise, m.
+    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for where the fixed one is. What a deeper step has cut
+    /// out of them before its own back is missing.
     #[must_use]
-    pub fn fixed_face(&self) -> Real {
-        -metres(self.description.notch_depth)
+    pub fn pads(&self, step: usize) -> Pads {
+        let step = self.step(step);
+        let deeper = self.description.program.iter().filter(|cut| cut.depth > step.depth);
+        let front = deeper.map(|cut| cut.back).fold(0.0, f64::max).min(step.back);
+        Pads { x: [metres(front), metres(step.back)], z: [metres(step.ledge), 0.0], groove: None }
+    }
+
+    /// Y of the fixed clamping face of a step in the frame of the vise, m.
+    #[must_use]
+    pub fn fixed_face(&self, step: usize) -> Real {
+        -metres(self.step(step).depth)
+    }
+
+    /// Y of the movable clamping face of a step in the frame of the vise, m.
+    #[must_use]
+    pub fn movable_face(&self, step: usize) -> Real {
+        metres(self.gap + self.step(step).depth)
     }
 
     /// The force along the faces that draws a part out of the closed jaws, N.
@@ -168,27 +227,27 @@ impl Vise {
         2.0 * newtons(self.description.force) * self.description.friction
     }
 
-    /// Where the middle of a part of the given size (in, part frame axes parallel to the vise: X in, Y left, Z up) is when
-    /// it is seated: on the ledge, at the back of the notch, against the fixed face. Vise frame, in.
+    /// Where the middle of a part of the given size (in, along the axes of the vise: X in, Y left, Z up) is when it is
+    /// seated in a step: on the ledge, at the back, against the fixed face. Vise frame, in.
     #[must_use]
-    pub fn seat(&self, size: &Inches) -> Inches {
-        Inches::new(
-            self.description.notch_back - size.x / 2.0,
-            -self.description.notch_depth + size.y / 2.0,
-            -self.description.jaw[2] + size.z / 2.0,
-        )
+    pub fn seat(&self, step: usize, size: &Inches) -> Inches {
+        let step = self.step(step);
+        Inches::new(step.back - size.x / 2.0, -step.depth + size.y / 2.0, step.ledge + size.z / 2.0)
+    }
+
+    /// The step that a part stands in if nothing clamps it: that of the program that is on.
+    #[must_use]
+    pub fn present_step(&self) -> usize {
+        self.clamped.map_or(self.program, |clamped| clamped.step)
     }
 
     /// True if a point (vise frame, in) is where a part in the vise has its middle.
     #[must_use]
     pub fn contains(&self, point: &Inches) -> bool {
-        let [depth, _, height] = self.description.jaw;
-        (-1.0..depth).contains(&point.x)
-            && (-self.description.notch_depth..self.opening).contains(&point.y)
+        let [into, _, height] = self.description.jaw;
+        let deepest = self.description.program.iter().map(|program| program.depth).fold(0.0, f64::max);
+        (-1.0..into).contains(&point.x)
+            && (-deepest..self.gap + deepest).contains(&point.y)
             && (-height..height).contains(&point.z)
     }
-}
-
-fn jaw_frame(description: &Description, frame: &Frame, opening: f64) -> Frame {
-    frame.shifted(Inches::new(0.0, opening - description.notch_depth, 0.0))
 }

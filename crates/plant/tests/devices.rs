@@ -225,7 +225,8 @@ fn a_part_is_put_where_there_is_room() {
     let occupied = rig.cell.workstation(&place("LINKBAR1_BH", "UNIT_1", 4)).unwrap_err();
     assert_eq!(occupied.to_string(), "LINKBAR1_BH cannot be put there: LINKBAR1_BH is in the way");
     let unknown = rig.cell.workstation(&place("LINKBAR9", "UNIT_1", 3)).unwrap_err();
-    assert_eq!(unknown.to_string(), "no part named LINKBAR9; the cell description has LINKBAR1_BH, LINKBAR1");
+    let known = "no part named LINKBAR9; the cell description has LINKBAR1_BH, LINKBAR1, ";
+    assert!(unknown.to_string().starts_with(known), "{unknown}");
     let unit = rig.cell.workstation(&place("LINKBAR1", "UNIT_3", 3)).unwrap_err();
     assert_eq!(unit.to_string(), "no unit named UNIT_3; the cell description has UNIT_2, UNIT_1");
     let sector = rig.cell.workstation(&place("LINKBAR1", "UNIT_1", 5)).unwrap_err();

@@ -6,7 +6,11 @@ use plant::WorkstationAction::{self, ViseClose, ViseOpen, VisePartial};
 use rig::{FX2, HOLD, Rig, SEAT, description};
 
 fn machine() -> WorkstationAction {
-    WorkstationAction::Machine { from: "LINKBAR1_BH".into(), to: "LINKBAR1".into() }
+    WorkstationAction::Machine {
+        from: "LINKBAR1_BH".into(),
+        to: "LINKBAR1".into(),
+        location: "PFIXTURE".into(),
+    }
 }
 
 #[test]

@@ -21,7 +21,11 @@ fn put(rig: &mut Rig, frame: Frame) {
 }
 
 fn machine(rig: &mut Rig) -> Result<(), WorkstationError> {
-    rig.cell.workstation(&WorkstationAction::Machine { from: "LINKBAR1_BH".into(), to: "LINKBAR1".into() })
+    rig.cell.workstation(&WorkstationAction::Machine {
+        from: "LINKBAR1_BH".into(),
+        to: "LINKBAR1".into(),
+        location: "PFIXTURE".into(),
+    })
 }
 
 #[test]
@@ -71,7 +75,11 @@ fn only_what_is_clamped_and_seated_is_machined() {
 
     put(&mut rig, upright(Vector::new(0.096, 0.152, -1.249), 0.0));
     rig.vise(WorkstationAction::ViseClose);
-    let wrong = WorkstationAction::Machine { from: "LINKBAR1".into(), to: "LINKBAR1_BH".into() };
+    let wrong = WorkstationAction::Machine {
+        from: "LINKBAR1".into(),
+        to: "LINKBAR1_BH".into(),
+        location: "PFIXTURE".into(),
+    };
     assert!(matches!(rig.cell.workstation(&wrong), Err(WorkstationError::WrongPart { .. })));
     machine(&mut rig).unwrap();
     assert_eq!(rig.part().name, "LINKBAR1");

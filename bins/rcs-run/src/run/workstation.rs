@@ -4,7 +4,7 @@ use executive::hwsc::Workstation;
 use plant::{BoxAction, BoxButton, Cell, CellEvent, Placement, WorkstationAction};
 use rcs_core::interface::device::{joystick_frame, single_step};
 use taskdata::load::job::{
-    Joystick, JoystickButton, JoystickFrame, Offset, Stepped, ViseOpening, Workstation as Action,
+    Drum, Joystick, JoystickButton, JoystickFrame, Offset, Stepped, ViseOpening, Workstation as Action,
 };
 
 /// The cell, with what went wrong in it.
@@ -40,8 +40,9 @@ impl SimulatedWorkstation {
         }
     }
 
-    fn translate(&self, action: &Action) -> Result<WorkstationAction, String> {
-        Ok(match action {
+    /// What the cell has to do for an action, in this order.
+    fn translate(&self, action: &Action) -> Result<Vec<WorkstationAction>, String> {
+        Ok(vec![match action {
             Action::Tray { location, object, offset } => WorkstationAction::Place {
                 part: object.to_string(),
                 unit: location.name.to_string(),
@@ -49,21 +50,28 @@ impl SimulatedWorkstation {
                     .map_err(|_| format!("{} is no sector", location.sector))?,
                 placement: offset.as_ref().map_or(Placement::Random, placement),
             },
-            Action::Vise { opening, location, program: _ } => {
+            Action::Vise { opening, location, program } => {
                 self.at_vise(location.name.as_str())?;
-                match opening {
+                let opening = match opening {
                     ViseOpening::Partial => WorkstationAction::VisePartial,
                     ViseOpening::Close => WorkstationAction::ViseClose,
                     ViseOpening::Open => WorkstationAction::ViseOpen,
-                }
+                };
+                let program = program.map(|name| WorkstationAction::ViseProgram { name: name.to_string() });
+                return Ok(program.into_iter().chain([opening]).collect());
             }
-            Action::Machine { blank, part, location } => {
-                self.at_vise(location.name.as_str())?;
-                WorkstationAction::Machine { from: blank.to_string(), to: part.to_string() }
-            }
+            Action::Machine { blank, part, location } => WorkstationAction::Machine {
+                from: blank.to_string(),
+                to: part.to_string(),
+                location: location.name.to_string(),
+            },
+            Action::Drum(Drum::Grip) => WorkstationAction::DrumGrip,
+            Action::Drum(Drum::Release) => WorkstationAction::DrumRelease,
+            Action::Drum(Drum::Tool(tool)) => WorkstationAction::DrumTool { part: tool.to_string() },
             Action::Joystick(action) => WorkstationAction::Joystick(at_the_box(*action)),
-            Action::Drum(_) | Action::Wait { .. } => return Err("the cell has no such device".to_owned()),
-        })
+            // The emulator of the workstation controller counts the ticks itself.
+            Action::Wait { .. } => return Ok(Vec::new()),
+        }])
     }
 }
 
@@ -115,8 +123,10 @@ fn placement(offset: &Offset) -> Placement {
 
 impl Workstation for SimulatedWorkstation {
     fn begin(&mut self, action: &Action) -> Result<(), String> {
-        let action = self.translate(action)?;
-        self.cell.workstation(&action).map_err(|error| error.to_string())
+        for action in self.translate(action)? {
+            self.cell.workstation(&action).map_err(|error| error.to_string())?;
+        }
+        Ok(())
     }
 
     fn busy(&self) -> bool {

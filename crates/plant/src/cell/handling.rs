@@ -29,6 +29,8 @@ const LEAST_FORCE: f64 = 0.25;
 const SLIP: f64 = 0.02;
 /// How far pads may be from a face that they count as touching, m.
 const TOUCHING: Real = 1e-4;
+/// A part may stand this far in a clamping face and is still between the jaws, m.
+const OUTSIDE: Real = 2e-3;
 /// Fingers and part: stiff enough that a bar sags by 0.01 mm, soft enough that friction is not a jolt.
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
 
@@ -135,7 +137,7 @@ impl Cell {
         let part = self.parts.get(index)?;
         let gripper = self.hand(hand);
         let tool = self.world.bodies[gripper.hand()].position();
-        squeeze(&tool.inv_mul(&part.pose(&self.world)), part.half(), &gripper.pads())
+        squeeze(&tool.inv_mul(&part.pose(&self.world)), &part.solid(), &gripper.pads())
     }
 
     /// The widest part that stands free between the fingers of a hand.
@@ -285,44 +287,39 @@ impl Cell {
             return;
         }
         let between = if self.vise.closing() { self.between_jaws() } else { None };
-        self.vise.advance(&mut self.world, dt, between.as_ref().map(|(_, squeeze)| inches(squeeze.width)));
-        let Some((index, squeeze)) = between else { return };
-        let face = self.vise.fixed_face() + metres(self.vise.opening());
-        let middle = face - squeeze.width / 2.0;
+        let stop = between.as_ref().map(|(_, step, squeeze)| self.vise.stop(*step, squeeze.width));
+        self.vise.advance(&mut self.world, dt, stop);
+        let Some((index, step, squeeze)) = between else { return };
+        let middle = self.vise.movable_face(step) - squeeze.width / 2.0;
         let reached = middle <= squeeze.centre || self.vise.stopped();
         if reached || self.vise.clamped.is_some() {
-            self.clamp(index, &squeeze, middle);
+            self.clamp(index, step, &squeeze, middle);
         }
     }
 
-    /// The widest part between the clamping faces.
-    fn between_jaws(&self) -> Option<(usize, Squeeze)> {
-        let base = to_pose(self.vise.frame());
-        let pads = self.vise.pads();
-        let face = self.vise.fixed_face();
-        let far = face + metres(self.vise.opening());
-        let inside = |squeeze: &Squeeze| {
-            squeeze.centre - squeeze.width / 2.0 > face - 0.002
-                && squeeze.centre + squeeze.width / 2.0 < far + 0.002
-        };
-        self.parts
-            .iter()
-            .enumerate()
-            .filter_map(|(index, part)| {
-                let pose = base.inv_mul(&part.pose(&self.world));
-                Some((index, squeeze(&pose, part.half(), &pads)?))
-            })
-            .filter(|(_, squeeze)| inside(squeeze))
-            .max_by(|(_, a), (_, b)| a.width.total_cmp(&b.width))
+    /// The part between the clamping faces that stops the jaw first, and the step that it stands in: the one whose faces it
+    /// covers most. A bar that is pressed into the back of its step is not in the next one.
+    fn between_jaws(&self) -> Option<(usize, usize, Squeeze)> {
+        let standing = (0..self.parts.len()).filter_map(|index| {
+            let offers =
+                self.vise.steps().filter_map(|step| Some((step, self.between_jaws_of(index, step)?)));
+            let (step, squeeze) = offers.max_by(|(_, a), (_, b)| a.area.total_cmp(&b.area))?;
+            let (face, far) = (self.vise.fixed_face(step), self.vise.movable_face(step));
+            let inside = squeeze.centre - squeeze.width / 2.0 > face - OUTSIDE
+                && squeeze.centre + squeeze.width / 2.0 < far + OUTSIDE;
+            inside.then_some((index, step, squeeze))
+        });
+        let stop = |(_, step, squeeze): &(usize, usize, Squeeze)| self.vise.stop(*step, squeeze.width);
+        standing.max_by(|a, b| stop(a).total_cmp(&stop(b)))
     }
 
     /// Take a part between the jaws, or lead it on: flush with the faces, its middle at `middle` (m) across them.
-    pub(super) fn clamp(&mut self, index: usize, squeeze: &Squeeze, middle: Real) {
+    pub(super) fn clamp(&mut self, index: usize, step: usize, squeeze: &Squeeze, middle: Real) {
         let mut rest = squeeze.flush;
         rest.translation.y = middle;
         let body = self.parts[index].body;
         let taken = self.vise.clamped.is_none();
-        self.vise.clamped = Some(Clamped { part: index, rest });
+        self.vise.clamped = Some(Clamped { part: index, step, rest });
         if taken {
             self.note_holders(index);
             self.world.bodies[body].set_body_type(RigidBodyType::KinematicPositionBased, true);
@@ -364,11 +361,11 @@ impl Cell {
         }
     }
 
-    /// What part `index` offers to the jaws.
-    pub(super) fn between_jaws_of(&self, index: usize) -> Option<Squeeze> {
+    /// What part `index` offers to the jaws in a step.
+    pub(super) fn between_jaws_of(&self, index: usize, step: usize) -> Option<Squeeze> {
         let part = self.parts.get(index)?;
         let base = to_pose(self.vise.frame());
-        squeeze(&base.inv_mul(&part.pose(&self.world)), part.half(), &self.vise.pads())
+        squeeze(&base.inv_mul(&part.pose(&self.world)), &part.solid(), &self.vise.pads(step))
     }
 
     /// Before a step: friction on what slides in a hand.

@@ -3,8 +3,10 @@
 mod changing;
 mod drumming;
 mod handling;
+mod machining;
 mod outline;
 mod picture;
+mod placing;
 mod workstation;
 
 use std::fmt;
@@ -296,6 +298,7 @@ impl Cell {
         let movers = self.movers();
         let mut jaw = self.jaw_obstacles();
         jaw.extend(self.gripper_obstacles());
+        jaw.extend(self.pedestal_obstacles());
         let begun = self.clearance.check(&movers, self.obstacles.iter().chain(&jaw));
         self.events.extend(begun.into_iter().map(CellEvent::Contact));
         if !self.world.quarantine().is_empty() {

@@ -175,6 +175,63 @@ impl Cell {
         }
     }
 
+    /// Palm and fingers of the pedestal's hand: the robot's fingers come near them, and what it carries is put between them.
+    pub(super) fn pedestal_obstacles(&self) -> Vec<Obstacle> {
+        let (hand, description) = (&self.pedestal.hand, &self.description.pedestal.hand);
+        let at = self.pedestal.frame();
+        let (palm, size) = palm(description);
+        let palm = (at.compose(&palm), size);
+        let fingers = hand
+            .finger_rests()
+            .map(|rest| (at.compose(&crate::convert::to_frame(&rest)), Inches::from(description.fingers)));
+        let named = ["pedestal_hand", "pedestal_left_finger", "pedestal_right_finger"];
+        let boxes = named.into_iter().zip([palm].into_iter().chain(fingers));
+        let blocks = boxes.map(|(name, (frame, size))| Block {
+            name: name.into(),
+            frame,
+            size,
+            work_surface: true,
+            jaw: false,
+            strike: None,
+        });
+        blocks.map(|block| Obstacle::from(&block)).collect()
+    }
+
+    /// Names and poses of the pedestal's hand and its fingers.
+    pub(super) fn pedestal_links(&self) -> Vec<Link> {
+        let hand = &self.pedestal.hand;
+        let at = *self.world.bodies[hand.hand()].position();
+        let mut links = vec![link(Hand::Pedestal.link(), "world", &at)];
+        for ([name, _], body) in finger_names(Hand::Pedestal).into_iter().zip(hand.finger_bodies()) {
+            links.push(link(name, Hand::Pedestal.link(), &at.inv_mul(self.world.bodies[body].position())));
+        }
+        links
+    }
+
+    /// Names and values of the joints of the pedestal: the table in radians from where its fingers move across the radial
+    /// line, the fingers in metres.
+    pub(super) fn pedestal_states(&self) -> Vec<(&'static str, f64)> {
+        let table = self.pedestal.table.angle() - self.description.pedestal.table.square;
+        let half = metres(body_opening(&self.world, &self.pedestal.hand) / 2.0);
+        let fingers = finger_names(Hand::Pedestal).map(|[_, slide]| (slide, half));
+        [("pedestal_table_turn", table.to_radians())].into_iter().chain(fingers).collect()
+    }
+
+    /// The pedestal's hand on its table.
+    pub(super) fn urdf_pedestal(&self, urdf: &mut Urdf) {
+        let pedestal = &self.description.pedestal;
+        let name = Hand::Pedestal.link();
+        let (palm, size) = palm(&pedestal.hand);
+        urdf.begin_link(name);
+        urdf.shape(&palm, &Outline::Box(size), DARK);
+        urdf.end_link();
+        let (square, limits) = (pedestal.table.square, pedestal.table.limits);
+        let range = ((limits[0] - square).to_radians(), (limits[1] - square).to_radians());
+        let turn = Some(([1.0, 0.0, 0.0], range));
+        urdf.joint("pedestal_table_turn", "revolute", "world", name, &self.pedestal.square_frame(), turn);
+        urdf_fingers(urdf, &pedestal.hand, Hand::Pedestal);
+    }
+
     fn urdf_gripper(&self, urdf: &mut Urdf, hand: Hand) {
         let (gripper, change) = (self.gripper_description(hand), &self.description.quick_change);
         let name = hand.link();
@@ -187,16 +244,28 @@ impl Cell {
         }
         urdf.end_link();
         urdf.joint(&format!("{name}_free"), "floating", "world", name, &Frame::identity(), None);
-        let [length, thickness, width] = gripper.fingers;
-        for ([finger, slide], side) in finger_names(hand).into_iter().zip([1.0, -1.0]) {
-            urdf.begin_link(finger);
-            urdf.shape(&Frame::identity(), &Outline::Box(Inches::new(length, thickness, width)), STEEL);
-            urdf.end_link();
-            let start = at(-length / 2.0, side * thickness / 2.0);
-            let range = (0.0, metres(gripper.opening[1] / 2.0));
-            urdf.joint(slide, "prismatic", name, finger, &start, Some(([0.0, side, 0.0], range)));
-        }
+        urdf_fingers(urdf, gripper, hand);
     }
+}
+
+/// The fingers of a hand, each on its slide.
+fn urdf_fingers(urdf: &mut Urdf, gripper: &Gripper, hand: Hand) {
+    let [length, thickness, width] = gripper.fingers;
+    for ([finger, slide], side) in finger_names(hand).into_iter().zip([1.0, -1.0]) {
+        urdf.begin_link(finger);
+        urdf.shape(&Frame::identity(), &Outline::Box(Inches::new(length, thickness, width)), STEEL);
+        urdf.end_link();
+        let middle = Inches::new(-length / 2.0, side * thickness / 2.0, 0.0);
+        let start = Frame { position: middle, rotation: Rotation::identity() };
+        let range = (0.0, metres(gripper.opening[1] / 2.0));
+        urdf.joint(slide, "prismatic", hand.link(), finger, &start, Some(([0.0, side, 0.0], range)));
+    }
+}
+
+/// The body of a hand under its fingers, in its tool frame, and its size.
+fn palm(gripper: &Gripper) -> (Frame, Inches) {
+    let middle = Inches::new(-gripper.fingers[0] - gripper.body[0] / 2.0, 0.0, 0.0);
+    (Frame { position: middle, rotation: Rotation::identity() }, Inches::from(gripper.body))
 }
 
 /// The tool frame on the end plate's link.

@@ -16,6 +16,7 @@ use crate::{
     clearance::Mover,
     convert::{metres, to_frame, to_metres, to_pose},
     scene::{Block, Obstacle, along_x, jaw_blocks},
+    solid::along,
 };
 
 /// A moving body, metres, in the coordinates of its parent.
@@ -45,7 +46,7 @@ const ARM: [(&str, &str, [f64; 3]); 6] = [
 const STARTS: [f64; 6] = [0.0, 0.0, T3.upper_arm, T3.forearm, T3.pitch_to_yaw, 0.0];
 
 /// Blocks of the furniture that belong to the link of the vise.
-const VISE_BLOCKS: [&str; 3] = ["vise_body", "fixed_jaw_notch", "fixed_jaw"];
+const VISE_BLOCKS: [&str; 2] = ["vise_body", "fixed_jaw"];
 
 /// A shape of a link for the picture, in the link's frame.
 pub(super) enum Outline {
@@ -90,11 +91,11 @@ impl Cell {
         let held = self.changer.carried().and_then(|hand| self.hand(hand).hold.as_ref());
         if let Some((index, _)) = held {
             let part = &self.parts[*index];
-            let half = part.half();
+            let (shape, turn) = part.solid().shape();
             movers.push(Mover {
                 name: part.kind.name.clone(),
-                pose: part.pose(&self.world),
-                shape: SharedShape::cuboid(half.x, half.y, half.z),
+                pose: part.pose(&self.world) * turn,
+                shape,
                 carried: true,
                 finger: false,
             });
@@ -118,6 +119,7 @@ impl Cell {
             links.push(link(name, parent, &pose));
         }
         links.extend(self.gripper_links());
+        links.extend(self.pedestal_links());
         let vise = to_pose(self.vise.frame());
         let jaw = vise.inv_mul(self.world.bodies[self.vise.jaw()].position());
         links.push(link("vise", "world", &vise));
@@ -140,7 +142,8 @@ impl Cell {
     pub fn joint_states(&self) -> Vec<(&'static str, f64)> {
         let mut states: Vec<_> = JOINT_NAMES.into_iter().zip(self.joints()).collect();
         states.extend(self.finger_states());
-        states.push(("jaw_slide", metres(self.vise.opening())));
+        states.extend(self.pedestal_states());
+        states.push(("jaw_slide", metres(self.vise.gap())));
         states
     }
 
@@ -157,6 +160,7 @@ impl Cell {
         let mut urdf = Urdf::new(&self.description.name);
         self.urdf_arm(&mut urdf);
         self.urdf_grippers(&mut urdf);
+        self.urdf_pedestal(&mut urdf);
         for block in &self.furniture {
             if !VISE_BLOCKS.contains(&block.name.as_str()) {
                 urdf.begin_link(&block.name);
@@ -173,12 +177,17 @@ impl Cell {
             }
         }
         self.urdf_vise(&mut urdf);
-        let present = self.parts.iter().map(|part| (part.id, part.kind.size));
-        let coming = coming.iter().filter_map(|name| self.description.part(name)).map(|kind| kind.size);
-        for (id, size) in present.chain((self.next_part..).zip(coming)) {
+        let present = self.parts.iter().map(|part| (part.id, &part.kind));
+        let coming = coming.iter().filter_map(|name| self.description.part(name));
+        for (id, kind) in present.chain((self.next_part..).zip(coming)) {
             let name = part_link(id);
             urdf.begin_link(&name);
-            urdf.shape(&Frame::identity(), &Outline::Box(Inches::from(size)), PART);
+            match along(kind) {
+                Some((axis, radius, length)) => {
+                    urdf.shape(&axis, &Outline::Cylinder(radius, length), PART);
+                }
+                None => urdf.shape(&Frame::identity(), &Outline::Box(Inches::from(kind.size)), PART),
+            }
             urdf.end_link();
             urdf.joint(&format!("{name}_free"), "floating", "world", &name, &Frame::identity(), None);
         }
@@ -226,9 +235,8 @@ impl Cell {
             urdf.block(&block, STEEL);
         }
         urdf.end_link();
-        let start =
-            Frame { position: Inches::new(0.0, -vise.notch_depth, 0.0), rotation: Rotation::identity() };
-        let range = (0.0, metres(vise.opening_open));
+        let widest = vise.program.iter().map(|program| program.opening_open).fold(0.0, f64::max);
+        let (start, range) = (Frame::identity(), (0.0, metres(widest)));
         urdf.joint("jaw_slide", "prismatic", "vise", "movable_jaw", &start, Some(([0.0, 1.0, 0.0], range)));
     }
 }

@@ -1,27 +1,13 @@
 //! What the workstation does beside the robot: parts are put down and taken away, the vise is worked, parts are machined.
 
-use rapier3d_f64::{parry::query, prelude::*};
-use rcs_core::frame::{Frame, Vector as Inches, rotation_by, rotation_vector};
+use rcs_core::frame::Frame;
 
-use super::{Cell, Hand};
+use super::Cell;
 use crate::{
-    convert::{inches, to_pose},
-    description::PartType,
+    description::{PartType, Tolerance},
     joystick::BoxAction,
-    part::{Part, PartState},
     vise::Jaws,
 };
-
-/// How far a part may be from its seat in the vise to be machined, in (ASSUMED).
-const SEATED: f64 = 0.03;
-/// How far a part may be turned from its seat to be machined, radians (1 degree, ASSUMED).
-const SQUARE: f64 = 0.0175;
-/// Overlap that counts as one, when a part is put down, m.
-const OVERLAP: Real = 1e-4;
-/// What stands or is stacked this high above a tray's floor is in the tray, in (ASSUMED: tall tools).
-const IN_TRAY: f64 = 10.0;
-/// A part is put down this far above what it comes to rest on, in.
-const DROP: f64 = 0.002;
 
 /// Where in a sector a part is put down.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,12 +57,19 @@ pub enum WorkstationAction {
     VisePartial,
     /// Close the vise.
     ViseClose,
-    /// Machine the part that is clamped in the vise.
+    /// Go on with another program of the vise; the jaw stays until an opening is commanded.
+    ViseProgram {
+        /// Its name.
+        name: String,
+    },
+    /// Machine the part that is clamped in the vise, or stands in a nest.
     Machine {
         /// What it must be.
         from: String,
         /// What it becomes.
         to: String,
+        /// Name of the location of the vise or the nest.
+        location: String,
     },
     /// Close the fingers of the tool drum.
     DrumGrip,
@@ -120,6 +113,34 @@ pub enum WorkstationError {
         /// How many there are.
         sectors: usize,
     },
+    /// The part is made for a nest, and there is none.
+    #[error("no place for {part} in sector {sector} of {unit}; there is one in {known}")]
+    NoNest {
+        /// The part.
+        part: String,
+        /// The unit.
+        unit: String,
+        /// The sector asked for.
+        sector: u16,
+        /// All places.
+        known: String,
+    },
+    /// The vise has no such program.
+    #[error("the vise has no program {name}; it has {known}")]
+    UnknownProgram {
+        /// The name.
+        name: String,
+        /// All names.
+        known: String,
+    },
+    /// Nothing can be machined there.
+    #[error("nothing can be machined at {location}; there are {known}")]
+    NoMachine {
+        /// The location asked for.
+        location: String,
+        /// All locations where something can.
+        known: String,
+    },
     /// Something is there already.
     #[error("{part} cannot be put there: {by} is in the way")]
     Occupied {
@@ -140,6 +161,12 @@ pub enum WorkstationError {
         /// The part.
         part: String,
     },
+    /// A part that the robot still has cannot be machined in a nest.
+    #[error("{part} is to be machined, but the robot still has it")]
+    InHand {
+        /// The part.
+        part: String,
+    },
     /// The vise is moving.
     #[error("the vise is still moving")]
     Busy,
@@ -149,8 +176,16 @@ pub enum WorkstationError {
         /// What was expected.
         expected: String,
     },
-    /// Something else is clamped.
-    #[error("{expected} is to be machined, but {found} is clamped in the vise")]
+    /// The nest is empty.
+    #[error("{expected} is to be machined, but nothing is at {location}")]
+    NothingThere {
+        /// What was expected.
+        expected: String,
+        /// Where.
+        location: String,
+    },
+    /// Something else is there.
+    #[error("{expected} is to be machined, but {found} is there")]
     WrongPart {
         /// What was expected.
         expected: String,
@@ -167,9 +202,10 @@ pub enum WorkstationError {
         /// How far its axis is turned, degrees.
         degrees: f64,
     },
-    /// The part is clamped, but not where it belongs.
+    /// The part is there, but not where it belongs.
     #[error(
-        "{part} is clamped {distance:.3} in and {degrees:.2} degrees from its seat; {SEATED} in and 1 degree are allowed"
+        "{part} is {distance:.3} in and {degrees:.2} degrees from its seat; {} in and {} degrees are allowed",
+        .allowed.inches, .allowed.degrees
     )]
     NotSeated {
         /// The part.
@@ -178,6 +214,8 @@ pub enum WorkstationError {
         distance: f64,
         /// How far it is turned, degrees.
         degrees: f64,
+        /// What is allowed.
+        allowed: Tolerance,
     },
     /// The next part does not fit into the blank.
     #[error("{to} does not fit into {from}")]
@@ -209,7 +247,8 @@ impl Cell {
             WorkstationAction::ViseOpen => self.work_vise(Jaws::Open),
             WorkstationAction::VisePartial => self.work_vise(Jaws::Partial),
             WorkstationAction::ViseClose => self.work_vise(Jaws::Closed),
-            WorkstationAction::Machine { from, to } => self.machine(from, to),
+            WorkstationAction::ViseProgram { name } => self.select_program(name),
+            WorkstationAction::Machine { from, to, location } => self.machine(from, to, location),
             WorkstationAction::DrumGrip => self.set_drum_fingers(true),
             WorkstationAction::DrumRelease => self.set_drum_fingers(false),
             WorkstationAction::DrumTool { part } => {
@@ -229,66 +268,11 @@ impl Cell {
         self.vise.moving() || self.joystick.busy()
     }
 
-    fn kind(&self, name: &str) -> Result<PartType, WorkstationError> {
+    pub(super) fn kind(&self, name: &str) -> Result<PartType, WorkstationError> {
         self.description.part(name).cloned().ok_or_else(|| WorkstationError::UnknownPart {
             name: name.into(),
             known: list(self.description.part.iter().map(|kind| kind.name.as_str())),
         })
-    }
-
-    fn place_frame(
-        &mut self,
-        kind: &PartType,
-        unit: &str,
-        sector: u16,
-        placement: &Placement,
-    ) -> Result<Frame, WorkstationError> {
-        let tray = self.description.tray(unit).ok_or_else(|| WorkstationError::UnknownUnit {
-            name: unit.into(),
-            known: list(self.description.tray.iter().map(|tray| tray.unit.as_str())),
-        })?;
-        let place = tray.sector(sector).ok_or(WorkstationError::UnknownSector {
-            unit: unit.into(),
-            sector,
-            sectors: tray.sectors.len(),
-        })?;
-        let (x, y, angle) = match *placement {
-            Placement::At { x, y, angle } => (x, y, angle),
-            Placement::Random => {
-                let greatest = self.description.tray_shape.random_offset;
-                let noise = &mut self.placement_noise;
-                (noise.within(greatest), noise.within(greatest), noise.within(180.0))
-            }
-        };
-        let turned = place.turned(&rotation_by(&Inches::new(angle.to_radians(), 0.0, 0.0)));
-        let up = kind.size[0] / 2.0 + DROP;
-        Ok(Frame { position: turned.position + Inches::new(x, y, up), ..turned })
-    }
-
-    pub(super) fn put(&mut self, kind: &PartType, frame: &Frame) -> Result<(), WorkstationError> {
-        if let Some(by) = self.in_the_way(kind, frame) {
-            return Err(WorkstationError::Occupied { part: kind.name.clone(), by });
-        }
-        let part = Part::new(&mut self.world, self.next_part, kind, frame);
-        self.next_part += 1;
-        self.parts.push(part);
-        Ok(())
-    }
-
-    /// What a part at `frame` would overlap.
-    fn in_the_way(&self, kind: &PartType, frame: &Frame) -> Option<String> {
-        let pose = to_pose(frame);
-        let shape = Cuboid::new(crate::convert::to_metres(&Inches::from(kind.size)) / 2.0);
-        let overlaps = |other: &Pose, other_shape: &Cuboid| {
-            let contact = query::contact(&pose, &shape, other, other_shape, 0.0);
-            matches!(contact, Ok(Some(contact)) if contact.dist < -OVERLAP)
-        };
-        let jaw = self.jaw_obstacles();
-        let furniture =
-            self.obstacles.iter().chain(&jaw).find(|obstacle| overlaps(&obstacle.pose, &obstacle.shape));
-        let parts =
-            self.parts.iter().find(|part| overlaps(&part.pose(&self.world), &Cuboid::new(part.half())));
-        furniture.map(|obstacle| obstacle.name.clone()).or_else(|| parts.map(|part| part.kind.name.clone()))
     }
 
     fn remove(&mut self, id: u32) -> Result<(), WorkstationError> {
@@ -304,6 +288,16 @@ impl Cell {
         Ok(())
     }
 
+    fn select_program(&mut self, name: &str) -> Result<(), WorkstationError> {
+        if self.vise.moving() {
+            return Err(WorkstationError::Busy);
+        }
+        if self.vise.select(name) {
+            return Ok(());
+        }
+        Err(WorkstationError::UnknownProgram { name: name.into(), known: list(self.vise.programs()) })
+    }
+
     fn work_vise(&mut self, jaws: Jaws) -> Result<(), WorkstationError> {
         if self.vise.moving() {
             return Err(WorkstationError::Busy);
@@ -317,137 +311,9 @@ impl Cell {
         }
         Ok(())
     }
-
-    fn machine(&mut self, from: &str, to: &str) -> Result<(), WorkstationError> {
-        let next = self.kind(to)?;
-        let not_clamped = || WorkstationError::NotClamped { expected: from.into() };
-        let index = self.vise.clamped.map(|clamped| clamped.part).ok_or_else(not_clamped)?;
-        let part = &self.parts[index];
-        if part.kind.name != from {
-            return Err(WorkstationError::WrongPart { expected: from.into(), found: part.kind.name.clone() });
-        }
-        let (distance, angle) = self.seat_error(part);
-        if distance > SEATED || angle > SQUARE {
-            return Err(WorkstationError::NotSeated {
-                part: from.into(),
-                distance,
-                degrees: angle.to_degrees(),
-            });
-        }
-        if next.size.iter().zip(part.kind.size).any(|(new, old)| *new > old + 1e-9) {
-            return Err(WorkstationError::TooLarge { from: from.into(), to: to.into() });
-        }
-        let here = self.vise.frame().inverse().compose(&part.frame(&self.world));
-        let along = |kind: &PartType| sizes_along(&here, kind);
-        let shift = self.vise.seat(&along(&next)) - self.vise.seat(&along(&part.kind));
-        let shift = here.rotation.inverse() * shift;
-        self.unclamp();
-        self.parts[index].become_kind(&mut self.world, &next, shift);
-        if let Some(squeeze) = self.between_jaws_of(index) {
-            self.vise.follow(&mut self.world, inches(squeeze.width));
-            let middle = self.vise.fixed_face() + squeeze.width / 2.0;
-            self.clamp(index, &squeeze, middle);
-        }
-        Ok(())
-    }
-
-    /// How far a part in the vise is from its seat: inches of its middle, radians of its nearest axes.
-    fn seat_error(&self, part: &Part) -> (f64, f64) {
-        let here = self.vise.frame().inverse().compose(&part.frame(&self.world));
-        let seat = self.vise.seat(&sizes_along(&here, &part.kind));
-        let square = nearest_square(&here);
-        ((here.position - seat).norm(), rotation_vector(&(here.rotation * square.rotation.inverse())).norm())
-    }
-
-    /// The report of a part.
-    pub(super) fn part_state(&self, index: usize) -> PartState {
-        let part = &self.parts[index];
-        let frame = part.frame(&self.world);
-        let (location, sector, error) = self.locate(index, part, &frame);
-        PartState {
-            id: part.id,
-            name: part.kind.name.clone(),
-            location,
-            sector,
-            held: self.is_held(index),
-            clamped: self.is_clamped(index),
-            position: frame.position.into(),
-            error,
-        }
-    }
-
-    fn locate(&self, index: usize, part: &Part, frame: &Frame) -> (String, u16, Option<f64>) {
-        let at = frame.position;
-        if self.is_in_drum(index) {
-            return (self.drum_location().into(), 0, self.drum_error(index));
-        }
-        if self.is_held(index) && !self.is_clamped(index) {
-            return ("gripper".into(), 0, None);
-        }
-        if self.is_held_by(Hand::Pedestal, index) {
-            return (self.description.pedestal.location.clone(), 0, None);
-        }
-        for tray in &self.description.tray {
-            let shape = &self.description.tray_shape;
-            let [x, y] = tray.centre;
-            let inside = (at.x - x).abs() < shape.inside / 2.0 && (at.y - y).abs() < shape.inside / 2.0;
-            if inside && (tray.floor..tray.floor + IN_TRAY).contains(&at.z) {
-                let away = |centre: &[f64; 2]| libm::hypot(at.x - centre[0], at.y - centre[1]);
-                let nearest = (1_u16..).zip(&tray.sectors).min_by(|a, b| away(a.1).total_cmp(&away(b.1)));
-                return match nearest {
-                    Some((sector, centre)) => (tray.unit.clone(), sector, Some(away(centre))),
-                    None => (tray.unit.clone(), 0, None),
-                };
-            }
-        }
-        if self.vise.contains(&self.vise.frame().inverse().compose(frame).position) {
-            return (self.vise.location().into(), 0, Some(self.seat_error(part).0));
-        }
-        let lowest = self
-            .furniture
-            .iter()
-            .map(|block| block.frame.position.z + block.size.z / 2.0)
-            .fold(0.0, f64::min);
-        let on_floor = at.z < lowest + inches(part.radius()) + 0.1;
-        (if on_floor { "floor" } else { "elsewhere" }.into(), 0, None)
-    }
 }
 
-fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
+/// Names in a row.
+pub(super) fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
     names.collect::<Vec<_>>().join(", ")
-}
-
-/// Sizes of a part along the axes of the frame that `here` is given in.
-fn sizes_along(here: &Frame, kind: &PartType) -> Inches {
-    let square = nearest_square(here);
-    let sizes = square.rotation * Inches::from(kind.size);
-    sizes.map(f64::abs)
-}
-
-/// The frame with its axes turned onto the nearest axes of the frame it is given in.
-fn nearest_square(here: &Frame) -> Frame {
-    let snapped = |v: Inches| {
-        let longest = (0..3).max_by(|a, b| v[*a].abs().total_cmp(&v[*b].abs())).unwrap_or(0);
-        let mut axis = Inches::zeros();
-        axis[longest] = v[longest].signum();
-        axis
-    };
-    rcs_core::frame::rotation_from_x_y(&snapped(here.x()), &snapped(here.y()))
-        .map_or(*here, |rotation| Frame { position: here.position, rotation })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_part_has_its_sizes_along_the_vise() {
-        let kind =
-            PartType { name: "P".into(), size: [1.0, 2.0, 3.0], weight: 1.0, vision_id: 0, tool: false };
-        // Part X down, Y along vise X, a little askew.
-        let upright =
-            rcs_core::frame::rotation_from_x_y(&Inches::new(0.02, 0.01, -1.0), &Inches::x()).unwrap();
-        let here = Frame { position: Inches::zeros(), rotation: upright };
-        assert!((sizes_along(&here, &kind) - Inches::new(2.0, 3.0, 1.0)).norm() < 1e-12);
-    }
 }

@@ -7,7 +7,7 @@ use rcs_core::{
     name::Name16,
 };
 
-use super::{CellDescription, DescriptionError, Fault, Faults, Gripper, Points};
+use super::{CellDescription, DescriptionError, Fault, Faults, Gripper, Points, Shape};
 
 impl CellDescription {
     /// Check all numbers.
@@ -161,11 +161,16 @@ impl CellDescription {
             "vise: speed, force, friction, body_height",
             &[vise.speed, vise.force, vise.friction, vise.body_height],
         );
-        check.within("vise.notch_back", vise.notch_back, 0.0, vise.jaw[0]);
-        check.within("vise.notch_depth", vise.notch_depth, 0.0, vise.jaw[1]);
-        let closed = 2.0 * vise.notch_depth;
-        check.within("vise.opening_partial", vise.opening_partial, closed, vise.opening_open);
-        check.within("vise.opening_open", vise.opening_open, closed, 20.0);
+        check.that(!vise.program.is_empty(), "vise.program", "at least one", "none");
+        for program in &vise.program {
+            let entry = |what: &str| format!("vise.program {}: {what}", program.name);
+            check.within(&entry("back"), program.back, 0.0, vise.jaw[0]);
+            check.within(&entry("depth"), program.depth, 0.0, vise.jaw[1]);
+            check.within(&entry("ledge"), program.ledge, -vise.jaw[2], 0.0);
+            let closed = 2.0 * program.depth;
+            check.within(&entry("opening_partial"), program.opening_partial, closed, program.opening_open);
+            check.within(&entry("opening_open"), program.opening_open, closed, 20.0);
+        }
         check.that(vise.body_x[0] < vise.body_x[1], "vise.body_x", "ascending", format!("{:?}", vise.body_x));
         check.that(vise.body_y[0] < vise.body_y[1], "vise.body_y", "ascending", format!("{:?}", vise.body_y));
         let shape = &self.tray_shape;
@@ -192,7 +197,9 @@ impl CellDescription {
         let parts = self.part.iter().map(|p| ("part", &p.name));
         let trays = self.tray.iter().map(|t| ("tray", &t.unit));
         let fixtures = self.fixture.iter().map(|f| ("fixture", &f.name));
-        for (kind, name) in parts.chain(trays).chain(fixtures).chain([("vise", &self.vise.location)]) {
+        let programs = self.vise.program.iter().map(|p| ("vise.program", &p.name));
+        let vise = [("vise", &self.vise.location)];
+        for (kind, name) in parts.chain(trays).chain(fixtures).chain(programs).chain(vise) {
             check.that(!name.is_empty(), kind, "a name", "an empty one");
             check.that(names.insert((kind, name)), &format!("{kind} {name}"), "one entry for a name", "two");
             if kind == "part" || kind == "tray" {
@@ -209,6 +216,26 @@ impl CellDescription {
         for part in &self.part {
             check.positive(&format!("part {}: size", part.name), &part.size);
             check.positive(&format!("part {}: weight", part.name), &[part.weight]);
+            let [x, y, z] = part.size;
+            let round = match part.shape {
+                Shape::Box => true,
+                Shape::CylinderX => y == z,
+                Shape::CylinderZ => x == y,
+            };
+            let entry = format!("part {}: size", part.name);
+            check.that(round, &entry, "one diameter across a cylinder", format!("{:?}", part.size));
+        }
+        for nest in &self.nest {
+            let entry = format!("nest {} {}", nest.location, nest.sector);
+            check.frame(&format!("{entry}: seat"), &nest.seat);
+            for part in &nest.parts {
+                let known = self.part(part).is_some();
+                check.that(known, &format!("{entry}: parts"), "parts of this description", part);
+            }
+            if let Some(tolerance) = nest.machining {
+                let tolerance = [tolerance.inches, tolerance.degrees];
+                check.positive(&format!("{entry}: machining"), &tolerance);
+            }
         }
         for fixture in &self.fixture {
             check.positive(&format!("fixture {}: size", fixture.name), &fixture.size);

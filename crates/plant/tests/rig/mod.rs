@@ -4,7 +4,7 @@
 use plant::{Cell, CellDescription, CellEvent, PartState, Placement, WorkstationAction};
 use rcs_core::{
     frame::{Frame, INCHES_PER_RADIAN, Vector, rotation_by, rotation_vector},
-    interface::device::{DeviceInputs, DeviceOutputs, valve},
+    interface::device::{DeviceInputs, DeviceOutputs, MotorCommand, MotorOrder, valve},
     kinematics::T3,
     movetable::{Line, Movetable, System},
     pose::Pose,
@@ -17,6 +17,8 @@ pub const UT_1: Pose =
     Pose { wrist: [-6650, -550, 1600], tool: [-6650, -550, -1400], finger: [-6650, -3550, -1400] };
 pub const PFIX: Pose =
     Pose { wrist: [3800, -4400, -400], tool: [6800, -4400, -400], finger: [6800, -1400, -400] };
+pub const PED: Pose =
+    Pose { wrist: [1972, -3708, -1000], tool: [3380, -6357, -1000], finger: [6029, -4949, -1000] };
 pub const UNIT_V1: Pose =
     Pose { wrist: [-4040, -1471, 3398], tool: [-5450, -1984, 800], finger: [-4424, -4803, 800] };
 pub const HOM_SAF_3: Pose =
@@ -126,6 +128,56 @@ impl Rig {
             }
         }
         panic!("the fingers do not open: {:?}", self.cell.fingers());
+    }
+
+    /// Close the pedestal's hand until the force of its fingers is at least `force` lb; then trap the air.
+    pub fn pedestal_close(&mut self, force: f64) {
+        self.outputs.pedestal_hand.bits = valve::SUPPLY | valve::CLOSE_MEDIUM;
+        for _ in 0..1000 {
+            self.tick();
+            if self.cell.pedestal_fingers().1 >= force {
+                self.outputs.pedestal_hand.bits = valve::SUPPLY;
+                self.tick();
+                return;
+            }
+        }
+        panic!("the pedestal's hand finds nothing to press on: {:?}", self.cell.pedestal_fingers());
+    }
+
+    /// Open the pedestal's hand to at least `opening` in.
+    pub fn pedestal_open(&mut self, opening: f64) {
+        self.outputs.pedestal_hand.bits = valve::SUPPLY | valve::OPEN_MEDIUM;
+        for _ in 0..1000 {
+            self.tick();
+            if self.cell.pedestal_fingers().0 >= opening {
+                self.outputs.pedestal_hand.bits = valve::SUPPLY;
+                self.tick();
+                return;
+            }
+        }
+        panic!("the pedestal's hand does not open: {:?}", self.cell.pedestal_fingers());
+    }
+
+    /// Give the rotary table an order and wait until its motor stands.
+    pub fn table(&mut self, order: MotorOrder, steps: i32) {
+        let number = self.outputs.pedestal_table.number + 1;
+        self.outputs.pedestal_table = MotorCommand { number, order, steps };
+        for _ in 0..1000 {
+            self.tick();
+            if !self.inputs.pedestal.motor_moving {
+                assert_eq!(self.inputs.pedestal.motor_echo, number);
+                return;
+            }
+        }
+        panic!("the table turns on: {:?}", self.inputs.pedestal);
+    }
+
+    /// As the pedestal's controller does: find the + limit, set the counter, turn to where the fingers move across the
+    /// radial line.
+    pub fn table_square(&mut self) {
+        self.table(MotorOrder::Turn, 100_000);
+        self.table(MotorOrder::SetCounter, -2_000);
+        self.table(MotorOrder::Turn, -19_350);
     }
 
     pub fn vise(&mut self, action: WorkstationAction) {

@@ -1,0 +1,180 @@
+//! Machining: a part that is where it belongs, clamped in the vise or standing in a nest, becomes the next one.
+
+use rcs_core::frame::{Frame, Vector as Inches, rotation_vector};
+
+use super::{Cell, WorkstationError, workstation::list};
+use crate::{
+    description::{PartType, Shape, Tolerance},
+    part::Part,
+};
+
+/// How far a part may be from its seat in the vise (ASSUMED).
+const SEATED: Tolerance = Tolerance { inches: 0.03, degrees: 1.0 };
+/// A part farther than this from the seat of a nest is not in it, in.
+const IN_NEST: f64 = 1.0;
+
+impl Cell {
+    /// Machine what is at `location`.
+    ///
+    /// # Errors
+    /// [`WorkstationError`] if it is not what it should be, or not where it should be.
+    pub(super) fn machine(&mut self, from: &str, to: &str, location: &str) -> Result<(), WorkstationError> {
+        let next = self.kind(to)?;
+        if location == self.vise.location() {
+            return self.machine_in_vise(from, &next);
+        }
+        let nests = || self.description.nest.iter().filter(|nest| nest.machining.is_some());
+        let nest = nests().find(|nest| nest.location == location).ok_or_else(|| {
+            let known = [self.vise.location()].into_iter().chain(nests().map(|nest| nest.location.as_str()));
+            WorkstationError::NoMachine { location: location.into(), known: list(known) }
+        })?;
+        let (seat, allowed) = (nest.frame(), nest.machining.unwrap_or(SEATED));
+        self.machine_in_nest(from, &next, &seat, allowed, location)
+    }
+
+    fn machine_in_vise(&mut self, from: &str, next: &PartType) -> Result<(), WorkstationError> {
+        let not_clamped = || WorkstationError::NotClamped { expected: from.into() };
+        let clamped = self.vise.clamped.ok_or_else(not_clamped)?;
+        let (index, step) = (clamped.part, clamped.step);
+        let part = &self.parts[index];
+        check_part(from, part, next)?;
+        check_seat(part, self.vise_error(part), SEATED)?;
+        let here = self.vise.frame().inverse().compose(&part.frame(&self.world));
+        let along = |kind: &PartType| sizes_along(&here, kind);
+        let shift = self.vise.seat(step, &along(next)) - self.vise.seat(step, &along(&part.kind));
+        let shift = here.rotation.inverse() * shift;
+        self.unclamp();
+        self.parts[index].become_kind(&mut self.world, next, shift);
+        if let Some(squeeze) = self.between_jaws_of(index, step) {
+            let gap = self.vise.stop(step, squeeze.width);
+            self.vise.follow(&mut self.world, gap);
+            let middle = self.vise.fixed_face(step) + squeeze.width / 2.0;
+            self.clamp(index, step, &squeeze, middle);
+        }
+        Ok(())
+    }
+
+    /// In a nest the machine holds the part by itself, and lets it stand again afterwards.
+    fn machine_in_nest(
+        &mut self,
+        from: &str,
+        next: &PartType,
+        seat: &Frame,
+        allowed: Tolerance,
+        location: &str,
+    ) -> Result<(), WorkstationError> {
+        let away = |part: &Part| (part.frame(&self.world).position - seat.position).norm();
+        let nearest = (0..self.parts.len())
+            .filter(|index| away(&self.parts[*index]) < IN_NEST)
+            .min_by(|a, b| away(&self.parts[*a]).total_cmp(&away(&self.parts[*b])));
+        let nothing = || WorkstationError::NothingThere { expected: from.into(), location: location.into() };
+        let index = nearest.ok_or_else(nothing)?;
+        let part = &self.parts[index];
+        check_part(from, part, next)?;
+        if self.is_had(index) {
+            return Err(WorkstationError::InHand { part: from.into() });
+        }
+        let here = seat.inverse().compose(&part.frame(&self.world));
+        check_seat(part, (here.position.norm(), askew(&here, part.kind.shape)), allowed)?;
+        self.parts[index].become_kind(&mut self.world, next, Inches::zeros());
+        Ok(())
+    }
+
+    /// How far a part in the vise is from its seat: inches of its middle, radians of its nearest axes.
+    pub(super) fn vise_error(&self, part: &Part) -> (f64, f64) {
+        let here = self.vise.frame().inverse().compose(&part.frame(&self.world));
+        let seat = self.vise.seat(self.vise.present_step(), &sizes_along(&here, &part.kind));
+        ((here.position - seat).norm(), askew(&here, Shape::Box))
+    }
+}
+
+/// A part is what it must be, and the next one fits into it.
+fn check_part(from: &str, part: &Part, next: &PartType) -> Result<(), WorkstationError> {
+    if part.kind.name != from {
+        return Err(WorkstationError::WrongPart { expected: from.into(), found: part.kind.name.clone() });
+    }
+    let larger = next.size.iter().zip(part.kind.size).any(|(new, old)| *new > old + 1e-9);
+    if larger || next.shape != part.kind.shape {
+        return Err(WorkstationError::TooLarge { from: from.into(), to: next.name.clone() });
+    }
+    Ok(())
+}
+
+/// Inches and radians from the seat are within the tolerance.
+fn check_seat(
+    part: &Part,
+    (distance, angle): (f64, f64),
+    allowed: Tolerance,
+) -> Result<(), WorkstationError> {
+    let degrees = angle.to_degrees();
+    if distance <= allowed.inches && degrees <= allowed.degrees {
+        return Ok(());
+    }
+    Err(WorkstationError::NotSeated { part: part.kind.name.clone(), distance, degrees, allowed })
+}
+
+/// By how much a part is turned from the nearest of the attitudes that are as good as its seat's, radians: a box has its
+/// faces, a cylinder its axis.
+fn askew(here: &Frame, shape: Shape) -> f64 {
+    let off = |axis: Inches, own: Inches| libm::acos(axis.dot(&own).abs().min(1.0));
+    match shape {
+        Shape::Box => {
+            let square = nearest_square(here);
+            rotation_vector(&(here.rotation * square.rotation.inverse())).norm()
+        }
+        Shape::CylinderX => off(here.x(), Inches::x()),
+        Shape::CylinderZ => off(here.z(), Inches::z()),
+    }
+}
+
+/// Sizes of a part along the axes of the frame that `here` is given in.
+fn sizes_along(here: &Frame, kind: &PartType) -> Inches {
+    let square = nearest_square(here);
+    let sizes = square.rotation * Inches::from(kind.size);
+    sizes.map(f64::abs)
+}
+
+/// The frame with its axes turned onto the nearest axes of the frame it is given in.
+fn nearest_square(here: &Frame) -> Frame {
+    let snapped = |v: Inches| {
+        let longest = (0..3).max_by(|a, b| v[*a].abs().total_cmp(&v[*b].abs())).unwrap_or(0);
+        let mut axis = Inches::zeros();
+        axis[longest] = v[longest].signum();
+        axis
+    };
+    rcs_core::frame::rotation_from_x_y(&snapped(here.x()), &snapped(here.y()))
+        .map_or(*here, |rotation| Frame { position: here.position, rotation })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_has_its_sizes_along_the_vise() {
+        let kind = PartType {
+            name: "P".into(),
+            size: [1.0, 2.0, 3.0],
+            weight: 1.0,
+            shape: Shape::Box,
+            vision_id: 0,
+            tool: false,
+        };
+        // Part X down, Y along vise X, a little askew.
+        let upright =
+            rcs_core::frame::rotation_from_x_y(&Inches::new(0.02, 0.01, -1.0), &Inches::x()).unwrap();
+        let here = Frame { position: Inches::zeros(), rotation: upright };
+        assert!((sizes_along(&here, &kind) - Inches::new(2.0, 3.0, 1.0)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_cylinder_may_be_turned_about_its_axis_and_upside_down() {
+        use rcs_core::frame::rotation_by;
+        let at = |turn: Inches| Frame { position: Inches::zeros(), rotation: rotation_by(&turn) };
+        assert!(askew(&at(Inches::new(0.0, 0.0, 1.0)), Shape::CylinderZ) < 1e-7);
+        assert!(askew(&at(Inches::new(core::f64::consts::PI, 0.0, 0.0)), Shape::CylinderZ) < 1e-7);
+        assert!((askew(&at(Inches::new(0.1, 0.0, 0.0)), Shape::CylinderZ) - 0.1).abs() < 1e-9);
+        assert!((askew(&at(Inches::new(0.0, 0.0, 0.1)), Shape::CylinderX) - 0.1).abs() < 1e-9);
+        assert!((askew(&at(Inches::new(0.0, 0.0, 1.7)), Shape::Box) - (1.7 - 1.570_796_326_8)).abs() < 1e-9);
+    }
+}

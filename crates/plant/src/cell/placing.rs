@@ -1,0 +1,179 @@
+//! Where parts are: where they are put down, and what is said of where they lie.
+
+use rapier3d_f64::{parry::query, prelude::*};
+use rcs_core::frame::{Frame, Vector as Inches, rotation_by};
+
+use super::{Cell, Hand, Placement, WorkstationError, workstation::list};
+use crate::{
+    convert::{inches, to_pose},
+    description::PartType,
+    part::{Part, PartState},
+    solid::Solid,
+};
+
+/// Overlap that counts as one, when a part is put down, m.
+const OVERLAP: Real = 1e-4;
+/// Bodies whose middles are nearer than this to each other overlap, m.
+const SAME_PLACE: Real = 1e-3;
+/// What stands or is stacked this high above a tray's floor is in the tray, in (ASSUMED: tall tools).
+const IN_TRAY: f64 = 10.0;
+/// A part whose middle is nearer than this to that of the seat of a nest is in the nest, in.
+const IN_NEST: f64 = 1.0;
+/// A part is put down this far above what it comes to rest on, in.
+const DROP: f64 = 0.002;
+
+impl Cell {
+    pub(super) fn place_frame(
+        &mut self,
+        kind: &PartType,
+        unit: &str,
+        sector: u16,
+        placement: &Placement,
+    ) -> Result<Frame, WorkstationError> {
+        if self.description.nest.iter().any(|nest| nest.takes(kind)) {
+            return self.nest_frame(kind, unit, sector, placement);
+        }
+        let tray = self.description.tray(unit).ok_or_else(|| WorkstationError::UnknownUnit {
+            name: unit.into(),
+            known: list(self.description.tray.iter().map(|tray| tray.unit.as_str())),
+        })?;
+        let place = tray.sector(sector).ok_or(WorkstationError::UnknownSector {
+            unit: unit.into(),
+            sector,
+            sectors: tray.sectors.len(),
+        })?;
+        let (x, y, angle) = match *placement {
+            Placement::At { x, y, angle } => (x, y, angle),
+            Placement::Random => {
+                let greatest = self.description.tray_shape.random_offset;
+                let noise = &mut self.placement_noise;
+                (noise.within(greatest), noise.within(greatest), noise.within(180.0))
+            }
+        };
+        let turned = place.turned(&rotation_by(&Inches::new(angle.to_radians(), 0.0, 0.0)));
+        let up = kind.size[0] / 2.0 + DROP;
+        Ok(Frame { position: turned.position + Inches::new(x, y, up), ..turned })
+    }
+
+    /// In a nest a part lies where the nest has it, unless it is said how far from there.
+    fn nest_frame(
+        &self,
+        kind: &PartType,
+        unit: &str,
+        sector: u16,
+        placement: &Placement,
+    ) -> Result<Frame, WorkstationError> {
+        let nests = || self.description.nest.iter().filter(|nest| nest.takes(kind));
+        let nest = nests().find(|nest| nest.location == unit && nest.sector == sector).ok_or_else(|| {
+            let known: Vec<String> = nests()
+                .map(|nest| match nest.sector {
+                    0 => nest.location.clone(),
+                    sector => format!("{} {sector}", nest.location),
+                })
+                .collect();
+            WorkstationError::NoNest {
+                part: kind.name.clone(),
+                unit: unit.into(),
+                sector,
+                known: known.join(", "),
+            }
+        })?;
+        let (x, y, angle) = match *placement {
+            Placement::At { x, y, angle } => (x, y, angle),
+            Placement::Random => (0.0, 0.0, 0.0),
+        };
+        let seat = nest.frame();
+        let turned = seat.turned(&rotation_by(&Inches::new(angle.to_radians(), 0.0, 0.0)));
+        Ok(Frame { position: seat.position + Inches::new(x, y, DROP), ..turned })
+    }
+
+    pub(super) fn put(&mut self, kind: &PartType, frame: &Frame) -> Result<(), WorkstationError> {
+        if let Some(by) = self.in_the_way(kind, frame) {
+            return Err(WorkstationError::Occupied { part: kind.name.clone(), by });
+        }
+        let part = Part::new(&mut self.world, self.next_part, kind, frame);
+        self.next_part += 1;
+        self.parts.push(part);
+        Ok(())
+    }
+
+    /// What a part at `frame` would overlap.
+    fn in_the_way(&self, kind: &PartType, frame: &Frame) -> Option<String> {
+        let pose = to_pose(frame);
+        let (shape, turn) = Solid::of(kind).shape();
+        let pose = pose * turn;
+        let overlaps = |other: &Pose, other_shape: &dyn rapier3d_f64::parry::shape::Shape| {
+            // Round shapes that lie in each other have no direction in which they are apart, and no depth.
+            let same = (pose.translation - other.translation).length() < SAME_PLACE;
+            let contact = query::contact(&pose, &*shape, other, other_shape, 0.0);
+            same || matches!(contact, Ok(Some(contact)) if contact.dist < -OVERLAP)
+        };
+        let jaw = self.jaw_obstacles();
+        let furniture =
+            self.obstacles.iter().chain(&jaw).find(|obstacle| overlaps(&obstacle.pose, &obstacle.shape));
+        let parts = self.parts.iter().find(|part| {
+            let (shape, turn) = part.solid().shape();
+            overlaps(&(part.pose(&self.world) * turn), &*shape)
+        });
+        furniture.map(|obstacle| obstacle.name.clone()).or_else(|| parts.map(|part| part.kind.name.clone()))
+    }
+
+    /// The report of a part.
+    pub(super) fn part_state(&self, index: usize) -> PartState {
+        let part = &self.parts[index];
+        let frame = part.frame(&self.world);
+        let (location, sector, error) = self.locate(index, part, &frame);
+        PartState {
+            id: part.id,
+            name: part.kind.name.clone(),
+            location,
+            sector,
+            held: self.is_held(index),
+            clamped: self.is_clamped(index),
+            position: frame.position.into(),
+            error,
+        }
+    }
+
+    fn locate(&self, index: usize, part: &Part, frame: &Frame) -> (String, u16, Option<f64>) {
+        let at = frame.position;
+        if self.is_in_drum(index) {
+            return (self.drum_location().into(), 0, self.drum_error(index));
+        }
+        if self.is_held(index) && !self.is_clamped(index) {
+            return ("gripper".into(), 0, None);
+        }
+        if self.is_held_by(Hand::Pedestal, index) {
+            return (self.description.pedestal.location.clone(), 0, None);
+        }
+        for nest in self.description.nest.iter().filter(|nest| nest.takes(&part.kind)) {
+            let away = (at - nest.frame().position).norm();
+            if away < IN_NEST {
+                return (nest.location.clone(), nest.sector, Some(away));
+            }
+        }
+        for tray in &self.description.tray {
+            let shape = &self.description.tray_shape;
+            let [x, y] = tray.centre;
+            let inside = (at.x - x).abs() < shape.inside / 2.0 && (at.y - y).abs() < shape.inside / 2.0;
+            if inside && (tray.floor..tray.floor + IN_TRAY).contains(&at.z) {
+                let away = |centre: &[f64; 2]| libm::hypot(at.x - centre[0], at.y - centre[1]);
+                let nearest = (1_u16..).zip(&tray.sectors).min_by(|a, b| away(a.1).total_cmp(&away(b.1)));
+                return match nearest {
+                    Some((sector, centre)) => (tray.unit.clone(), sector, Some(away(centre))),
+                    None => (tray.unit.clone(), 0, None),
+                };
+            }
+        }
+        if self.vise.contains(&self.vise.frame().inverse().compose(frame).position) {
+            return (self.vise.location().into(), 0, Some(self.vise_error(part).0));
+        }
+        let lowest = self
+            .furniture
+            .iter()
+            .map(|block| block.frame.position.z + block.size.z / 2.0)
+            .fold(0.0, f64::min);
+        let on_floor = at.z < lowest + inches(part.radius()) + 0.1;
+        (if on_floor { "floor" } else { "elsewhere" }.into(), 0, None)
+    }
+}
