@@ -1,0 +1,239 @@
+//! Parts on their way: what the grips of clevis, turned part and tools do to a part from place to place, and that the places are
+//! those of the cell.
+
+use std::path::Path;
+
+use rcs_core::{
+    frame::{Frame, Vector, rotation_by},
+    name::Name16,
+    pose::Pose,
+};
+use taskdata::{
+    files::{Location, SensorSource, TaskData},
+    load::{Report, Store},
+};
+
+fn data_directory() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))
+}
+
+fn load() -> Store {
+    let loaded: Result<(Store, Report), _> = Store::load(data_directory());
+    loaded.unwrap_or_else(|report| panic!("{report}")).0
+}
+
+fn cell() -> toml::Table {
+    std::fs::read_to_string(data_directory().join("cell.toml")).unwrap().parse().unwrap()
+}
+
+fn name(text: &str) -> Name16 {
+    Name16::new(text).unwrap()
+}
+
+fn at(data: &TaskData<'_>, location: &str, sector: i32, object: &str) -> Location {
+    data.resolve_location(&name(location), sector, Some(&name(object)))
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The tool frame of a grip at a location.
+fn grip(data: &TaskData<'_>, object: &str, grip: i32, location: &str, sector: i32) -> Frame {
+    data.grip_frame(&name(object), grip, &at(data, location, sector, object))
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The frame `inner` in the axes of `outer`.
+fn seen_from(outer: &Frame, inner: &Frame) -> Frame {
+    outer.inverse().compose(inner)
+}
+
+/// Where a part is when it is taken with the tool at `from` and let go with the tool at `to`.
+fn carried(part: &Frame, from: &Frame, to: &Frame) -> Frame {
+    to.compose(&seen_from(from, part))
+}
+
+fn assert_at(found: &Frame, position: [f64; 3], square: bool) {
+    for (value, expected) in found.position.iter().zip(position) {
+        assert!((value - expected).abs() < 1e-9, "{:?} for {position:?}", found.position);
+    }
+    assert!(!square || found.distance(&Frame::identity()).radians < 1e-9, "{:?}", found.rotation);
+}
+
+/// Three numbers of a table of the cell description.
+fn numbers<const N: usize>(value: &toml::Value) -> [f64; N] {
+    let all: Vec<f64> = value.as_array().unwrap().iter().map(|v| v.as_float().unwrap()).collect();
+    all.try_into().unwrap()
+}
+
+/// A taught pose of the cell description, 0.01 in.
+fn taught(value: &toml::Value) -> Frame {
+    let point = |key: &str| {
+        let all: Vec<i32> = value[key]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|v| i32::try_from(v.as_integer().unwrap()).unwrap())
+            .collect();
+        all.try_into().unwrap()
+    };
+    Pose { wrist: point("wrist"), tool: point("tool"), finger: point("finger") }.to_frame().unwrap()
+}
+
+/// Middle of a part whose frame in the tray is on the floor, X down.
+fn lying(floor: &Frame, height: f64) -> Frame {
+    floor.shifted(Vector::new(-height / 2.0, 0.0, 0.0))
+}
+
+/// Heights of the clevis as it lies: blank, half-done, finished; its width and its length.
+const CLEVIS: [f64; 3] = [1.73, 1.68, 1.63];
+const CLEVIS_WIDTH: f64 = 2.56;
+const CLEVIS_LENGTH: f64 = 4.00;
+
+/// Where a clevis of the given height is seated, in the frame of the vise.
+fn clevis_seat(height: f64) -> [f64; 3] {
+    let vise = &cell()["vise"];
+    let programs = vise["program"].as_array().unwrap();
+    let program = programs.iter().find(|p| p["name"].as_str() == Some("CLEVIS")).unwrap();
+    let value = |key: &str| program[key].as_float().unwrap();
+    [value("back") - height / 2.0, CLEVIS_WIDTH / 2.0 - value("depth"), value("ledge") + CLEVIS_LENGTH / 2.0]
+}
+
+#[test]
+fn the_clevis_blank_is_let_go_before_its_seat() {
+    let store = load();
+    let data = store.view();
+    let tray = at(&data, "UNIT_1", 3, "LCLEVIS_BH").frame;
+    let blank = lying(&tray, CLEVIS[0]);
+    let pick = grip(&data, "LCLEVIS_BH", 2, "UNIT_1", 3);
+    let place = grip(&data, "LCLEVIS_BH", 2, "PFIXTURE", 0);
+    let vise = at(&data, "PFIXTURE", 0, "LCLEVIS_BH").frame;
+    let [x, y, z] = clevis_seat(CLEVIS[0]);
+    // 0.04 before the back, 0.05 above the ledge, in the middle of the partly closed jaws.
+    assert_at(&seen_from(&vise, &carried(&blank, &pick, &place)), [x - 0.04, y + 0.04, z + 0.05], true);
+    // The seat pushes 0.01 farther than the front face of a seated blank.
+    let seat = seen_from(&vise, &grip(&data, "S-LCLEVIS_BH", 1, "PFIXTURE", 0));
+    assert!((seat.position.x - (x - CLEVIS[0] / 2.0) - 0.01).abs() < 1e-9, "{seat:?}");
+}
+
+#[test]
+fn the_half_done_clevis_comes_back_the_other_way_round() {
+    let store = load();
+    let data = store.view();
+    let vise = at(&data, "PFIXTURE", 0, "LCLEVIS_IH").frame;
+    let pedestal = at(&data, "PEDESTAL", 0, "LCLEVIS_IH").frame;
+    let [x, y, z] = clevis_seat(CLEVIS[1]);
+    let seated = vise.shifted(Vector::new(x, y, z));
+
+    let brought = carried(
+        &seated,
+        &grip(&data, "LCLEVIS_IH", 1, "PFIXTURE", 0),
+        &grip(&data, "LCLEVIS_IH", 1, "PEDESTAL", 0),
+    );
+    // Its middle is on the axis of the table; the hand of the pedestal has its lowest inch.
+    assert_at(&seen_from(&pedestal, &brought), [0.0, 0.0, 1.0], true);
+    let half_turn = Frame {
+        position: Vector::zeros(),
+        rotation: rotation_by(&Vector::new(0.0, 0.0, core::f64::consts::PI)),
+    };
+    let flipped = pedestal.compose(&half_turn.compose(&seen_from(&pedestal, &brought)));
+    let back = carried(
+        &flipped,
+        &grip(&data, "LCLEVIS_IH", -1, "PEDESTAL", 0),
+        &grip(&data, "LCLEVIS_IH", -1, "PFIXTURE", 0),
+    );
+    let there = seen_from(&vise, &back);
+    assert_at(&there, [x - 0.04, y + 0.04, z + 0.05], false);
+    assert!((there.x() + Vector::x()).norm() < 1e-9, "what was at the back is in front");
+    let seat = seen_from(&vise, &grip(&data, "S-LCLEVIS_IH", 1, "PFIXTURE", 0));
+    assert!((seat.position.x - (x - CLEVIS[1] / 2.0) - 0.01).abs() < 1e-9, "{seat:?}");
+}
+
+#[test]
+fn the_finished_clevis_is_let_go_just_above_the_tray() {
+    let store = load();
+    let data = store.view();
+    let vise = at(&data, "PFIXTURE", 0, "LCLEVIS").frame;
+    let [x, y, z] = clevis_seat(CLEVIS[2]);
+    let seated = vise.shifted(Vector::new(x, y, z));
+    let tray = at(&data, "UNIT_1", 2, "LCLEVIS").frame;
+    let laid =
+        carried(&seated, &grip(&data, "LCLEVIS", 1, "PFIXTURE", 0), &grip(&data, "LCLEVIS", 1, "UNIT_1", 2));
+    assert_at(&seen_from(&tray, &laid), [-CLEVIS[2] / 2.0 - 0.04, 0.0, 0.0], true);
+}
+
+#[test]
+fn the_turned_part_stands_in_its_nest_and_lies_in_its_cradle() {
+    let store = load();
+    let data = store.view();
+    for sector in [7, 8] {
+        let cradle = at(&data, "UNIT_2", sector, "SHAFT_BH").frame;
+        // 1.17 in below the rim (Figure VIII.11), along world Y.
+        assert!((cradle.position.z - -15.17).abs() < 1e-9 && (cradle.z() + Vector::y()).norm() < 1e-9);
+        let nest = at(&data, "V-VFIXTURE", 0, "SHAFT_BH").frame;
+        let brought = carried(
+            &cradle,
+            &grip(&data, "SHAFT_BH", 1, "UNIT_2", sector),
+            &grip(&data, "SHAFT_BH", 1, "V-VFIXTURE", 0),
+        );
+        let seat = nest.shifted(Vector::new(1.50, 0.0, 1.50));
+        assert_at(&seen_from(&nest, &brought), [1.50, 0.0, 1.55], true);
+        let back = carried(
+            &seat,
+            &grip(&data, "SHAFT", -1, "V-VFIXTURE", 0),
+            &grip(&data, "SHAFT", -1, "UNIT_2", sector),
+        );
+        assert_at(&seen_from(&cradle, &back), [0.0, 0.0, 0.0], true);
+    }
+}
+
+#[test]
+fn holsters_drum_and_pedestal_are_where_the_cell_has_them() {
+    let store = load();
+    let data = store.view();
+    let cell = cell();
+    for (location, side) in [("HOLSTER-R", "right"), ("HOLSTER-L", "left"), ("HOLSTER-C", "centre")] {
+        let apart = at(&data, location, 0, "GRIPPER-1").frame.distance(&taught(&cell["holsters"][side]));
+        assert!(apart.inches < 1e-9 && apart.radians < 1e-9, "{location}: {apart:?}");
+    }
+    let drum = at(&data, cell["drum"]["location"].as_str().unwrap(), 0, "ENDMILL-1").frame;
+    let apart = drum.distance(&taught(&cell["drum"]["pose"]));
+    assert!(apart.inches < 0.01 && apart.radians < 1e-3, "{apart:?}");
+    let pedestal = at(&data, cell["pedestal"]["location"].as_str().unwrap(), 0, "LCLEVIS_IH").frame;
+    let [x, y, z] = numbers(&cell["pedestal"]["position"]);
+    assert!((pedestal.position - Vector::new(x, y, z)).norm() < 1e-9);
+    let azimuth = cell["pedestal"]["azimuth"].as_float().unwrap();
+    assert!((pedestal.x().y.atan2(pedestal.x().x).to_degrees() - azimuth).abs() < 0.02);
+}
+
+#[test]
+fn every_gripper_has_its_holster() {
+    let store = load();
+    let data = store.view();
+    for (number, holster) in [(1, "HOLSTER-R"), (2, "HOLSTER-L"), (3, "HOLSTER-C")] {
+        let gripper = format!("GRIPPER-{number}");
+        assert_eq!(data.obj_grips(&name(&gripper)).unwrap().endeff_id, number);
+        let rest = at(&data, holster, 0, &gripper).frame;
+        // 3 in above the holster with the gripper on; bare, above the seat.
+        assert_at(&seen_from(&rest, &grip(&data, &gripper, 1, holster, 0)), [-3.0, 0.0, 0.0], true);
+        assert_at(&seen_from(&rest, &grip(&data, &gripper, 2, holster, 0)), [-3.0, 0.0, 1.5], true);
+    }
+}
+
+#[test]
+fn forces_of_guarded_moves_have_the_sign_of_what_pushes_back() {
+    let store = load();
+    let data = store.view();
+    for (sensor, source, threshold) in [
+        // Into the drum: the tool is pushed back, along -X.
+        ("INS-FX", SensorSource::Fx, -60),
+        // Against the strike plate.
+        ("ACQ-FX", SensorSource::Fx, -25),
+        // Out of the drum: the tool is held back, along +X.
+        ("REM-FX", SensorSource::Fx, 60),
+        // To the right, along -Z: the shoulder pushes along +Z in front of the sensor, a moment about -Y.
+        ("REL-MY", SensorSource::My, -150),
+        ("ACQ-MY", SensorSource::My, 150),
+    ] {
+        let record = data.sensor(&name(sensor)).unwrap();
+        assert_eq!((record.source, record.threshold), (source, threshold), "{sensor}");
+    }
+}
