@@ -68,6 +68,44 @@ impl Scratch {
     }
 }
 
+impl Scratch {
+    /// Write a job of the data directory with `from` in it replaced by `to`.
+    ///
+    /// # Panics
+    /// If the job does not hold `from`: then the test is about nothing.
+    pub fn job_with(&self, job: &str, from: &str, to: &str) {
+        let text = fs::read_to_string(root().join("data/jobs").join(job)).expect("the job is there");
+        assert!(text.contains(from), "{job} has no {from:?}");
+        fs::write(self.file(job), text.replacen(from, to, 1)).expect("the job can be written");
+    }
+
+    /// Copy the task data, and replace `from` by `to` in one of their files.
+    ///
+    /// # Panics
+    /// If the file does not hold `from`.
+    pub fn data_with(&self, file: &str, from: &str, to: &str) {
+        let own = self.file("data");
+        copy(&root().join("data"), &own);
+        let path = own.join(file);
+        let text = fs::read_to_string(&path).expect("the file is there");
+        assert!(text.contains(from), "{file} has no {from:?}");
+        fs::write(path, text.replacen(from, to, 1)).expect("the file can be written");
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).expect("a directory can be made");
+    for entry in fs::read_dir(from).expect("a directory can be read") {
+        let entry = entry.expect("an entry can be read");
+        let (path, target) = (entry.path(), to.join(entry.file_name()));
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            fs::copy(&path, &target).expect("a file can be copied");
+        }
+    }
+}
+
 impl Drop for Scratch {
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.0);
@@ -108,14 +146,17 @@ impl Outcome {
     }
 }
 
-/// The command that runs a job in a directory: equal arguments, so that equal runs write equal logs.
+/// The command that runs a job in a directory: equal arguments, so that equal runs write equal logs. Task data of the
+/// directory's own come before those of the repository.
 fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
+    let own = directory.file("data");
+    let data = if own.is_dir() { own } else { root().join("data") };
     let mut command = Command::new(rcs_run());
     command
         .args(["run", job, "--json", "--log", "run.mcap", "--shared-memory", "off", "--seed"])
         .arg(seed.to_string())
         .arg("--data")
-        .arg(root().join("data"))
+        .arg(data)
         .current_dir(&directory.0);
     command
 }

@@ -1,0 +1,119 @@
+//! The jobs of the data directory: each ends with every part where it put it; and what is said when something goes wrong in
+//! the middle of one.
+
+use rcs_core::interface::Reason;
+use record::replay;
+use whole_system_tests::{Outcome, Scratch, run};
+
+/// A part at the end of a job: name, location, sector, and how far from its place it may lie, inches.
+type Placed = (&'static str, &'static str, u32, f64);
+
+const LINKBAR: &[Placed] = &[("LINKBAR1", "UNIT_1", 1, 0.2)];
+const CLEVIS: &[Placed] = &[("LCLEVIS", "UNIT_1", 2, 0.1)];
+const TURNED_PART: &[Placed] = &[("SHAFT", "UNIT_2", 8, 0.2)];
+const TOOL_CHANGE: &[Placed] = &[("DRILL-2", "UNIT_2", 3, 0.2), ("ENDMILL-1", "TOOL-TRNS", 0, 0.1)];
+
+fn assert_ends_well(job: &str, seed: u64, placed: &[&[Placed]]) {
+    let outcome = run(job, seed, &format!("{job}-{seed}"), |_| {});
+    assert_eq!(outcome.status, Some(0), "{job}, seed {seed}: {}", outcome.last_words);
+    let commands = outcome.result["commands"].as_array().expect("a result has commands");
+    assert!(commands.iter().all(|command| command["status"] == "finished"), "{commands:?}");
+    for (name, location, sector, within) in placed.iter().copied().flatten() {
+        let part = outcome.part(name);
+        assert_eq!((&part["location"], &part["sector"]), (&(*location).into(), &(*sector).into()), "{part}");
+        assert_eq!(part["held"], false, "{part}");
+        assert!(part["error_in"].as_f64().is_some_and(|error| error < *within), "{part}");
+    }
+    assert_eq!(outcome.result["allocations_after_start"], 0);
+    assert_eq!(outcome.result["link"]["naks"], 0);
+    assert_replays(&outcome);
+}
+
+fn assert_replays(outcome: &Outcome) {
+    let report = replay(&outcome.log).expect("the log can be replayed");
+    if let Some(difference) = &report.first_difference {
+        panic!("{difference}");
+    }
+    assert!(report.is_same() && report.complete);
+    assert_eq!(report.digest.to_string(), outcome.digest());
+}
+
+#[test]
+fn the_clevis_is_machined_on_both_sides() {
+    for seed in [1, 7] {
+        assert_ends_well("clevis", seed, &[CLEVIS]);
+    }
+}
+
+#[test]
+fn the_turned_part_is_machined() {
+    assert_ends_well("turned-part", 1, &[TURNED_PART]);
+}
+
+#[test]
+fn the_tools_are_exchanged() {
+    assert_ends_well("tool-change", 1, &[TOOL_CHANGE]);
+}
+
+#[test]
+fn a_shift_is_all_of_them_in_a_row() {
+    assert_ends_well("shift", 1, &[LINKBAR, CLEVIS, TURNED_PART, TOOL_CHANGE]);
+}
+
+/// Run a job in which `prepare` has put something wrong: it fails, says why, and its log replays.
+fn assert_fails_for(job: &str, name: &str, reason: Reason, prepare: impl FnOnce(&Scratch)) {
+    let outcome = run(job, 1, name, prepare);
+    let said = &outcome.last_words;
+    assert_eq!(outcome.status, Some(1), "{said}");
+    assert!(said.contains(reason.text()), "{said} does not say: {}", reason.text());
+    let failure = &outcome.result["failure"];
+    assert!(failure["table"].is_string() && failure["row"].as_u64().is_some(), "{failure}");
+    assert_eq!(outcome.result["allocations_after_start"], 0, "also on the way of the error");
+    assert_replays(&outcome);
+}
+
+#[test]
+fn a_missing_part_is_reported() {
+    assert_fails_for("clevis.job", "no-part", Reason::NothingSeen, |scratch| {
+        scratch.job_with("clevis.job", "** tray UNIT_1 3 LCLEVIS_BH", "%");
+    });
+}
+
+#[test]
+fn another_part_is_not_recognised() {
+    assert_fails_for("clevis.job", "other-part", Reason::NotRecognised, |scratch| {
+        scratch.job_with("clevis.job", "** tray UNIT_1 3 LCLEVIS_BH", "** tray UNIT_1 3 LINKBAR1_BH");
+    });
+}
+
+#[test]
+fn a_part_that_slips_out_of_the_fingers_is_lost() {
+    assert_fails_for("clevis", "slips", Reason::ObjectLost, |scratch| {
+        scratch.data_with("cell.toml", "friction = 0.30                  # pads on steel", "friction = 0.02");
+    });
+}
+
+#[test]
+fn a_pedestal_that_cannot_turn_so_far_is_reported() {
+    assert_fails_for("clevis", "pedestal", Reason::TableLimit, |scratch| {
+        scratch.data_with(
+            "objects/clevis.blk",
+            "ped-table-pos        <= -2135",
+            "ped-table-pos        <= 100",
+        );
+    });
+}
+
+#[test]
+fn a_tool_that_the_drum_does_not_let_go_is_not_torn_out() {
+    assert_fails_for("tool-change.job", "held-tool", Reason::Detected, |scratch| {
+        scratch.job_with("tool-change.job", "** drum release", "%");
+    });
+}
+
+#[test]
+fn a_tool_is_not_forced_into_closed_drum_fingers() {
+    assert_fails_for("tool-change.job", "closed-drum", Reason::Detected, |scratch| {
+        scratch.job_with("tool-change.job", "== INSERT-TOOL", "** drum grip\n== INSERT-TOOL");
+    });
+}
