@@ -137,3 +137,132 @@ impl Workstation for SimulatedWorkstation {
         self.fault.clone()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plant::CellDescription;
+    use rcs_core::interface::device::{DeviceInputs, DeviceOutputs, JoystickBox, KNOB_FULL};
+    use std::path::Path;
+    use taskdata::load::{Job, Source, Step, Store};
+
+    /// A workstation of the shipped cell, and the task data that its jobs are read with.
+    struct Bench {
+        workstation: SimulatedWorkstation,
+        store: Store,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"));
+            let description = CellDescription::load(&data.join("cell.toml")).unwrap();
+            let cell = Cell::new(&description, 1).unwrap();
+            let Ok((store, _)) = Store::load(data) else { panic!("the shipped data do not load") };
+            Self { workstation: SimulatedWorkstation::new(cell, description.vise.location), store }
+        }
+
+        /// Begin what a line says, and let the cell go on until it is over.
+        fn play(&mut self, line: &str) -> Result<Vec<DeviceInputs>, String> {
+            let source = Source { name: "try.job".into(), text: line.into() };
+            let (job, _) = Job::from_source(source, &self.store).map_err(|report| report.to_string())?;
+            let [line] = &job.steps[..] else { panic!("{line} is one line") };
+            let Step::Workstation(action) = line.step else { panic!("{line:?}") };
+            self.workstation.begin(&action)?;
+            let mut seen = Vec::new();
+            loop {
+                seen.push(self.workstation.cell.step(&DeviceOutputs::default()));
+                if !self.workstation.busy() {
+                    return Ok(seen);
+                }
+            }
+        }
+
+        fn at_box(&mut self, line: &str) -> Vec<JoystickBox> {
+            let inputs = self.play(&format!("** joystick {line}")).unwrap();
+            inputs.into_iter().map(|inputs| inputs.joystick).collect()
+        }
+    }
+
+    #[test]
+    fn tray_vise_and_machine_do_what_their_lines_say() {
+        let mut bench = Bench::new();
+        bench.play("** tray UNIT_1 4 LINKBAR1_BH 50 -20 1500").unwrap();
+        bench.play("** tray UNIT_2 7 SHAFT_BH").unwrap();
+        bench.play("** tray UNIT_2 2 DRILL-2").unwrap();
+        let parts = bench.workstation.cell.parts();
+        let places: Vec<_> = parts.iter().map(|part| (part.location.as_str(), part.sector)).collect();
+        assert_eq!(places, [("UNIT_1", 4), ("UNIT_2", 7), ("UNIT_2", 2)]);
+        bench.play("** vise partial PFIXTURE CLEVIS").unwrap();
+        assert!((bench.workstation.cell.vise_opening() - 2.64).abs() < 1e-6);
+        bench.play("** vise open PFIXTURE").unwrap();
+        assert!((bench.workstation.cell.vise_opening() - 2.76).abs() < 1e-6, "the program stays on");
+        bench.play("** vise close PFIXTURE LINKBAR").unwrap();
+        let refused = bench.play("** machine LINKBAR1_BH LINKBAR1 PFIXTURE").unwrap_err();
+        assert_eq!(refused, "LINKBAR1_BH is to be machined, but nothing is clamped in the vise");
+        let refused = bench.play("** machine SHAFT_BH SHAFT V-VFIXTURE").unwrap_err();
+        assert_eq!(refused, "SHAFT_BH is to be machined, but nothing is at V-VFIXTURE");
+        let refused = bench.play("** vise open TABLE").unwrap_err();
+        assert_eq!(refused, "there is no vise at TABLE; the cell has one at PFIXTURE");
+        let refused = bench.play("** vise open PFIXTURE CLEVISS").unwrap_err();
+        assert_eq!(refused, "the vise has no program CLEVISS; it has LINKBAR, CLEVIS");
+    }
+
+    #[test]
+    fn the_drum_gets_its_tool_and_works_its_fingers() {
+        let mut bench = Bench::new();
+        bench.play("** drum tool ENDMILL-1").unwrap();
+        assert!(bench.workstation.cell.drum_closed());
+        assert_eq!(bench.workstation.cell.parts().len(), 1);
+        bench.play("** drum release").unwrap();
+        assert!(!bench.workstation.cell.drum_closed());
+        bench.play("** drum grip").unwrap();
+        assert!(bench.workstation.cell.drum_closed());
+    }
+
+    #[test]
+    fn hands_at_the_joystick_box_are_seen_in_its_words() {
+        let mut bench = Bench::new();
+        let frames = [
+            ("WORLD", joystick_frame::WORLD),
+            ("TOOL", joystick_frame::TOOL),
+            ("TOOL-ORIGIN", joystick_frame::TOOL_ORIGIN),
+            ("WRIST-ORIGIN", joystick_frame::WRIST_ORIGIN),
+            ("OFF", 0),
+        ];
+        for (word, bits) in frames {
+            assert_eq!(bench.at_box(&format!("frame {word}"))[0].frame, bits, "{word}");
+        }
+        assert_eq!(bench.at_box("stick 700 -30 3").iter().filter(|s| (s.x, s.y) == (700, -30)).count(), 3);
+        type Line = fn(&JoystickBox) -> bool;
+        let buttons: [(&str, Line); 8] = [
+            ("up 2", |s| s.up),
+            ("down 2", |s| s.down),
+            ("roll+ 2", |s| s.roll_plus),
+            ("roll- 2", |s| s.roll_minus),
+            ("open 2", |s| s.open),
+            ("close 2", |s| s.close),
+            ("record", |s| s.record),
+            ("resume", |s| s.resume),
+        ];
+        for (line, button) in buttons {
+            let seen = bench.at_box(line);
+            assert_eq!(seen.iter().map(button).collect::<Vec<_>>(), [true, true], "{line}");
+        }
+        let processes = [
+            ("TASK", single_step::TASK),
+            ("SUBTASK", single_step::SUBTASK),
+            ("EMOVE", single_step::EMOVE),
+            ("PRIM", single_step::PRIM),
+        ];
+        for (word, bit) in processes {
+            assert_eq!(bench.at_box(&format!("hold {word}"))[0].hold, bit);
+            let stepped = bench.at_box(&format!("step {word} 3"));
+            let rises = stepped.iter().zip(stepped.iter().skip(1));
+            let presses = rises.filter(|(a, b)| a.single_step == 0 && b.single_step == bit).count();
+            assert_eq!((stepped[0].single_step, presses), (bit, 2), "three presses of {word}");
+            assert_eq!(bench.at_box(&format!("free {word}"))[0].hold, 0);
+        }
+        assert_eq!(bench.at_box("velocity 250")[0].velocity, 250);
+        assert_eq!(bench.at_box("velocity 1000")[0].velocity, KNOB_FULL);
+    }
+}

@@ -175,6 +175,9 @@ mod tests {
         assert!(askew(&at(Inches::new(core::f64::consts::PI, 0.0, 0.0)), Shape::CylinderZ) < 1e-7);
         assert!((askew(&at(Inches::new(0.1, 0.0, 0.0)), Shape::CylinderZ) - 0.1).abs() < 1e-9);
         assert!((askew(&at(Inches::new(0.0, 0.0, 0.1)), Shape::CylinderX) - 0.1).abs() < 1e-9);
-        assert!((askew(&at(Inches::new(0.0, 0.0, 1.7)), Shape::Box) - (1.7 - 1.570_796_326_8)).abs() < 1e-9);
+        assert!(
+            (askew(&at(Inches::new(0.0, 0.0, 1.7)), Shape::Box) - (1.7 - core::f64::consts::FRAC_PI_2)).abs()
+                < 1e-9
+        );
     }
 }

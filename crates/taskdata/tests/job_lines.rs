@@ -1,0 +1,224 @@
+//! The lines of a job that begin with `**`: what each is read as, and what is said of each mistake.
+
+use std::path::Path;
+
+use rcs_core::name::Name16;
+use taskdata::load::{
+    Job, Source, Step, Store, ViseOpening, Workstation,
+    job::{Drum, Joystick, JoystickButton, JoystickFrame, Offset, Stepped},
+    source::read_blocks_under,
+};
+
+fn store() -> Store {
+    let sound = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/sound"));
+    match Store::from_sources(read_blocks_under(sound).unwrap()) {
+        Ok((store, _)) => store,
+        Err(report) => panic!("{report}"),
+    }
+}
+
+fn load(text: &str) -> Result<Vec<Step>, String> {
+    let source = Source { name: "try.job".into(), text: text.into() };
+    match Job::from_source(source, &store()) {
+        Ok((job, _)) => Ok(job.steps.into_iter().map(|line| line.step).collect()),
+        Err(report) => Err(report.to_string()),
+    }
+}
+
+fn action(line: &str) -> Workstation {
+    match load(line).unwrap_or_else(|report| panic!("{report}"))[..] {
+        [Step::Workstation(action)] => action,
+        ref other => panic!("{line}: {other:?}"),
+    }
+}
+
+fn name(text: &str) -> Name16 {
+    Name16::new(text).unwrap()
+}
+
+#[test]
+fn tray_vise_and_machine() {
+    let Workstation::Tray { location, object, offset } = action("** tray UNIT_1 4 LINKBAR1_BH 50 -20 1500")
+    else {
+        panic!()
+    };
+    assert_eq!((location.name.as_str(), location.sector, object), ("UNIT_1", 4, name("LINKBAR1_BH")));
+    assert_eq!(offset, Some(Offset { x: 50, y: -20, angle: 1500 }));
+    let random = action("** tray UNIT_1 4 LINKBAR1_BH");
+    assert!(matches!(random, Workstation::Tray { offset: None, .. }));
+    for (word, opening) in
+        [("partial", ViseOpening::Partial), ("close", ViseOpening::Close), ("open", ViseOpening::Open)]
+    {
+        let plain = action(&format!("** vise {word} PFIXTURE"));
+        assert!(matches!(plain, Workstation::Vise { opening: o, program: None, .. } if o == opening));
+        let named = action(&format!("** vise {word} PFIXTURE CLEVIS"));
+        assert!(
+            matches!(named, Workstation::Vise { opening: o, program: Some(p), .. } if o == opening && p == name("CLEVIS"))
+        );
+    }
+    let machine = action("** machine LINKBAR1_BH LINKBAR1 PFIXTURE");
+    let Workstation::Machine { blank, part, location } = machine else { panic!() };
+    assert_eq!((blank, part, location.name.as_str()), (name("LINKBAR1_BH"), name("LINKBAR1"), "PFIXTURE"));
+}
+
+#[test]
+fn drum_and_wait() {
+    assert_eq!(action("** drum grip"), Workstation::Drum(Drum::Grip));
+    assert_eq!(action("** drum release"), Workstation::Drum(Drum::Release));
+    assert_eq!(action("** drum tool LINKBAR1"), Workstation::Drum(Drum::Tool(name("LINKBAR1"))));
+    assert_eq!(action("** wait 50"), Workstation::Wait { ticks: 50 });
+}
+
+#[test]
+fn the_joystick_box() {
+    let frames = [
+        ("WORLD", JoystickFrame::World),
+        ("TOOL", JoystickFrame::Tool),
+        ("TOOL-ORIGIN", JoystickFrame::ToolOrigin),
+        ("WRIST-ORIGIN", JoystickFrame::WristOrigin),
+        ("OFF", JoystickFrame::Off),
+    ];
+    let buttons = [
+        ("up", JoystickButton::Up),
+        ("down", JoystickButton::Down),
+        ("roll+", JoystickButton::RollPlus),
+        ("roll-", JoystickButton::RollMinus),
+        ("open", JoystickButton::Open),
+        ("close", JoystickButton::Close),
+    ];
+    let processes = [
+        ("TASK", Stepped::Task),
+        ("SUBTASK", Stepped::Subtask),
+        ("EMOVE", Stepped::Emove),
+        ("PRIM", Stepped::Prim),
+    ];
+    let mut expected: Vec<(String, Joystick)> = vec![
+        ("stick 1000 -500 25".into(), Joystick::Stick { x: 1000, y: -500, ticks: 25 }),
+        ("velocity 500".into(), Joystick::Velocity(500)),
+        ("record".into(), Joystick::Record),
+        ("resume".into(), Joystick::Resume),
+    ];
+    expected.extend(frames.map(|(word, frame)| (format!("frame {word}"), Joystick::Frame(frame))));
+    expected
+        .extend(buttons.map(|(word, button)| (format!("{word} 7"), Joystick::Press { button, ticks: 7 })));
+    for (word, process) in processes {
+        expected.push((format!("hold {word}"), Joystick::Hold(process)));
+        expected.push((format!("free {word}"), Joystick::Free(process)));
+        expected.push((format!("step {word}"), Joystick::Step { process, count: 1 }));
+        expected.push((format!("step {word} 3"), Joystick::Step { process, count: 3 }));
+    }
+    for (line, joystick) in expected {
+        assert_eq!(action(&format!("** joystick {line}")), Workstation::Joystick(joystick), "{line}");
+    }
+}
+
+#[test]
+fn what_happens_during_a_command_stands_before_it() {
+    let steps = load("** after 50 joystick hold PRIM\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0").unwrap();
+    let held = Workstation::Joystick(Joystick::Hold(Stepped::Prim));
+    assert_eq!(steps[0], Step::After { ticks: 50, action: held });
+    assert!(matches!(steps[1], Step::Command(_)));
+}
+
+#[test]
+fn every_mistake_has_its_message() {
+    for (line, message, help) in [
+        (
+            "** vice open PFIXTURE",
+            "column 4: no step of the workstation is named vice",
+            "the nearest is vise",
+        ),
+        ("**", "column 1: tray, vise, machine, drum, joystick, wait, after was expected, the line ends", ""),
+        (
+            "** vise shut PFIXTURE",
+            "column 9: no opening of a vise is named shut",
+            "there are partial, close, open",
+        ),
+        ("** vise open", "column 9: a vise was expected, the line ends", ""),
+        (
+            "** vise open PFIXTUR",
+            "column 14: no location point, owner or array is named PFIXTUR",
+            "the nearest known name is PFIXTURE",
+        ),
+        ("** vise open PFIXTURE CLEVIS 3", "column 30: the line should end before 3", ""),
+        (
+            "** tray UNIT_1 four LINKBAR1_BH",
+            "column 16: a sector, a whole number, was expected; four found",
+            "** tray UNIT SECTOR OBJECT, or with X Y ANGLE behind it",
+        ),
+        (
+            "** machine LINKBAR1_B LINKBAR1 PFIXTURE",
+            "column 12: no object is named LINKBAR1_B",
+            "the nearest known name is LINKBAR1_BH",
+        ),
+        ("** drum clamp", "column 9: no step of the drum is named clamp", "there are grip, release, tool"),
+        ("** drum tool", "column 9: a tool was expected, the line ends", ""),
+        (
+            "** drum tool LINKBAR",
+            "column 14: no object is named LINKBAR",
+            "the nearest known name is LINKBAR1",
+        ),
+        (
+            "** joystick stik 1 2 3",
+            "column 13: no part of the joystick box is named stik",
+            "the nearest is stick",
+        ),
+        (
+            "** joystick frame WORD",
+            "column 19: no frame of the joystick box is named WORD",
+            "the nearest is WORLD",
+        ),
+        (
+            "** joystick stick 2000 0 5",
+            "column 19: x of the stick is -1000 to 1000, 2000 found",
+            "** joystick stick X Y TICKS, X and Y from -1000 to 1000",
+        ),
+        (
+            "** joystick stick 0 -1001 5",
+            "column 21: y of the stick is -1000 to 1000, -1001 found",
+            "** joystick stick X Y TICKS",
+        ),
+        ("** joystick stick 0 0", "column 21: a number of ticks was expected, the line ends", ""),
+        (
+            "** joystick up 0",
+            "column 16: a number of ticks is 1 to 36000, 0 found",
+            "** joystick up|down|roll+|roll-|open|close TICKS",
+        ),
+        (
+            "** joystick velocity -1",
+            "column 22: the velocity is 0 to 1000, -1 found",
+            "** joystick velocity N, from 0 to 1000",
+        ),
+        (
+            "** joystick hold E-MOVE",
+            "column 18: no process that the joystick box can hold is named E-MOVE",
+            "the nearest is EMOVE",
+        ),
+        (
+            "** joystick step PRIM many",
+            "column 23: a count, a whole number, was expected; many found",
+            "** joystick step PROCESS, or with a COUNT behind it",
+        ),
+        ("** wait", "column 4: a number of ticks was expected, the line ends", ""),
+        (
+            "** wait 50000",
+            "column 9: a number of ticks, a whole number, was expected; 50000 found",
+            "** wait TICKS; a tick is 40 ms",
+        ),
+        (
+            "** after 5 wait 3",
+            "column 12: this takes time by itself and cannot come behind after",
+            "** after TICKS, then another line's words behind its **",
+        ),
+        (
+            "** after 5 drum grip",
+            "column 4: no command follows this line",
+            "after counts its ticks from the next line with ==; ** wait waits by itself",
+        ),
+    ] {
+        let said = load(line).expect_err(line);
+        assert!(said.contains(message), "{line}\nsaid {said}\nexpected {message}");
+        assert!(said.contains(help), "{line}\nsaid {said}\nexpected {help}");
+        assert_eq!(said.matches("error: ").count(), 1, "one mistake, one message: {said}");
+    }
+}
