@@ -1,8 +1,13 @@
 //! The jobs of the data directory: each ends with every part where it put it; and what is said when something goes wrong in
 //! the middle of one.
 
-use rcs_core::interface::Reason;
-use record::replay;
+use std::fs;
+
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs, Reason, hws::HwsReport},
+    record::from_bytes,
+};
+use record::{Log, replay};
 use whole_system_tests::{Outcome, Scratch, run};
 
 /// A part at the end of a job: name, location, sector, and how far from its place it may lie, inches.
@@ -116,4 +121,45 @@ fn a_tool_is_not_forced_into_closed_drum_fingers() {
     assert_fails_for("tool-change.job", "closed-drum", Reason::Detected, |scratch| {
         scratch.job_with("tool-change.job", "== INSERT-TOOL", "** drum grip\n== INSERT-TOOL");
     });
+}
+
+/// A location above HOME, and the ways to it and back, taught while the robot runs.
+const HIGH: &str = "BLOCK# 990 OFFSET 21000
+   0 -5022 1136    0 -7145 -983
+   3000 -7145 -983  -pose- ... HIGH-POS
+  -pt-  HIGH  HIGH-POS  ...
+BLOCK# 991 OFFSET 21000
+-traj  HOME-HIGH  lpt HOME  lpt HIGH
+  -ppt  4 100 8 0  pos HIGH-POS
+-traj  HIGH-HOME  lpt HIGH  lpt HOME
+  -ppt  4 100 8 0  pos HOME-POS
+";
+
+#[test]
+fn blocks_that_are_loaded_in_the_middle_count_from_the_next_command_on() {
+    let job = "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n\
+               ** after 50 load high.blk\n\
+               == MOVE -- +0 -- 0 +0 HOME 0 -- 0\n\
+               == MOVE -- +0 -- 0 +0 HIGH 0 -- 0\n\
+               == MOVE -- +0 -- 0 +0 HOME 0 -- 0\n";
+    let outcome = run("taught.job", 1, "taught", |scratch| {
+        fs::write(scratch.file("taught.job"), job).expect("the job can be written");
+        fs::write(scratch.file("high.blk"), HIGH).expect("the blocks can be written");
+    });
+    assert_eq!(outcome.status, Some(0), "{}", outcome.last_words);
+    assert_replays(&outcome);
+
+    // The generation changes once, and not while Task executes the command during which the blocks were loaded.
+    let log = Log::open(&outcome.log).expect("the log can be read");
+    let ticks = log.ticks().map(|tick| tick.expect("a sound tick"));
+    let generations: Vec<(u32, CommonMemory)> = ticks
+        .map(|tick| {
+            let external: ExternalInputs = from_bytes(&tick.external).expect("sound inputs");
+            (external.generation, from_bytes(&tick.memory).expect("sound buffers"))
+        })
+        .collect();
+    let changes: Vec<_> = generations.windows(2).filter(|pair| pair[0].0 != pair[1].0).collect();
+    let [change] = changes.as_slice() else { panic!("{} changes", changes.len()) };
+    assert_eq!((change[0].0, change[1].0), (0, 1));
+    assert_eq!(change[0].1.task.status.report, HwsReport::Finished);
 }

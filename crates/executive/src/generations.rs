@@ -5,6 +5,8 @@
 //! the same from one generation to the next, so that what the processes remember between commands (where the robot is, what
 //! it holds) stays true.
 
+use std::collections::VecDeque;
+
 use rcs_core::interface::{CommonMemory, Report, hws::HwsReport};
 use taskdata::load::Store;
 
@@ -12,14 +14,14 @@ use taskdata::load::Store;
 pub struct Generations {
     current: Store,
     number: u32,
-    next: Option<Store>,
+    waiting: VecDeque<Store>,
 }
 
 impl Generations {
     /// Generation 0: what was loaded before the first tick.
     #[must_use]
     pub const fn new(store: Store) -> Self {
-        Self { current: store, number: 0, next: None }
+        Self { current: store, number: 0, waiting: VecDeque::new() }
     }
 
     /// The task data of the next tick.
@@ -34,24 +36,16 @@ impl Generations {
         self.number
     }
 
-    /// What the next reload builds on: the generation that waits, or the one in use.
-    #[must_use]
-    pub const fn newest(&self) -> &Store {
-        match &self.next {
-            Some(store) => store,
-            None => &self.current,
-        }
-    }
-
-    /// Let task data wait for the end of the command in progress. Two that wait become visible as one.
+    /// Let task data wait for the end of the command in progress. Several that wait become visible one after the other, a
+    /// tick each.
     pub fn propose(&mut self, store: Store) {
-        self.next = Some(store);
+        self.waiting.push_back(store);
     }
 
     /// True while task data wait.
     #[must_use]
-    pub const fn waiting(&self) -> bool {
-        self.next.is_some()
+    pub fn waiting(&self) -> bool {
+        !self.waiting.is_empty()
     }
 
     /// Between two ticks: use what waits, if `memory` says that no command is being executed. True if the generation is a new
@@ -60,7 +54,7 @@ impl Generations {
         if is_busy(memory) {
             return false;
         }
-        let Some(store) = self.next.take() else { return false };
+        let Some(store) = self.waiting.pop_front() else { return false };
         self.current = store;
         self.number = self.number.saturating_add(1);
         true

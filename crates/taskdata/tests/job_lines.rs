@@ -128,7 +128,11 @@ fn every_mistake_has_its_message() {
             "column 4: no step of the workstation is named vice",
             "the nearest is vise",
         ),
-        ("**", "column 1: tray, vise, machine, drum, joystick, wait, after was expected, the line ends", ""),
+        (
+            "**",
+            "column 1: tray, vise, machine, drum, joystick, wait, load, after was expected, the line ends",
+            "",
+        ),
         (
             "** vise shut PFIXTURE",
             "column 9: no opening of a vise is named shut",
@@ -200,6 +204,8 @@ fn every_mistake_has_its_message() {
             "** joystick step PROCESS, or with a COUNT behind it",
         ),
         ("** wait", "column 4: a number of ticks was expected, the line ends", ""),
+        ("** load", "column 4: a file of blocks was expected, the line ends", ""),
+        ("** load no-such.blk", "column 9: no-such.blk cannot be read", ""),
         (
             "** wait 50000",
             "column 9: a number of ticks, a whole number, was expected; 50000 found",

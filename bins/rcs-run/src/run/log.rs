@@ -14,7 +14,10 @@ use record::{
     Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Pace, RecordError, Recorder, Summary,
     Transform,
 };
-use taskdata::load::job::{Drum, Job, Step, Workstation};
+use taskdata::load::{
+    Source,
+    job::{Drum, Job, Step, Workstation},
+};
 
 use super::setup::Setup;
 use crate::cli::{ClockKind, RunArguments};
@@ -77,6 +80,15 @@ impl Log {
     /// Something worth a line; before [`Log::tick`] of the same tick.
     pub fn note(&mut self, tick: Tick, level: Level, source: &str, text: &str) {
         self.recorder.note(tick, level, source, text);
+    }
+
+    /// From `tick` on the task data are of another generation, with the blocks of `source`; before [`Log::tick`] of that tick.
+    pub fn reload(&mut self, tick: Tick, generation: u32, source: &Source) {
+        for file in Attachment::reload(generation, std::slice::from_ref(source)) {
+            self.recorder.attach(tick, file);
+        }
+        let text = format!("task data, generation {generation}: {} is loaded", source.name);
+        self.recorder.note(tick, Level::Info, "executive", &text);
     }
 
     /// Hand over a tick. This belongs to the tick itself: what it allocates is counted.

@@ -26,6 +26,7 @@ use executive::{
     clock::Clock,
     data_base::DataSystem,
     failure::{self, Failure},
+    generations::Generations,
     hwsc::{self, Hwsc, JobFailure},
     machine::Machine,
     memory::{Publisher, RunName},
@@ -40,7 +41,7 @@ use rcs_core::{
 };
 use record::Level;
 use signal_hook::consts::{SIGINT, SIGTERM};
-use taskdata::load::{Job, Store};
+use taskdata::load::{Job, job::Reload};
 
 use self::{
     log::Log,
@@ -109,7 +110,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         run.ask_for_real_time();
     }
     let started = Instant::now();
-    let ending = run.play(&store, arguments.ticks, &interrupted);
+    let ending = run.play(Generations::new(store), &job.reloads, arguments.ticks, &interrupted);
     let wall_s = started.elapsed().as_secs_f64();
     run.progress.end();
     let mut result = run.result(&job, &ending, wall_s);
@@ -182,16 +183,22 @@ impl Run {
         self.clock = Clock::real();
     }
 
-    fn play(&mut self, store: &Store, ticks: Option<u64>, interrupted: &AtomicBool) -> Ending {
-        let data = store.view();
+    fn play(
+        &mut self,
+        mut generations: Generations,
+        reloads: &[Reload],
+        ticks: Option<u64>,
+        interrupted: &AtomicBool,
+    ) -> Ending {
         loop {
             self.clock.wait();
             self.robot.receive(&mut self.inputs);
+            self.reload(&mut generations, reloads);
             let external = ExternalInputs {
                 hws: *self.hwsc.command(),
                 devices: self.inputs,
                 data_base: self.data_system.status(),
-                generation: 0,
+                generation: generations.number(),
             };
             let tick = self.runner.tick().next();
             if let Some(log) = &mut self.log {
@@ -200,7 +207,7 @@ impl Run {
                 }
                 log.cell(tick, &self.workstation.cell);
             }
-            let memory = *self.runner.step(&external, &data, self.clock.skipped());
+            let memory = *self.runner.step(&external, &generations.current().view(), self.clock.skipped());
             let outputs = memory.device_outputs();
             self.robot.send(&outputs);
             if let Some(log) = &mut self.log {
@@ -227,6 +234,23 @@ impl Run {
             if ticks.is_some_and(|ticks| tick.0 >= ticks) {
                 return Ending::Stopped;
             }
+        }
+    }
+
+    /// Take up the reloads that the job has asked for, and let the next tick see them if no command is in progress.
+    fn reload(&mut self, generations: &mut Generations, reloads: &[Reload]) {
+        let reload =
+            |number: u32| usize::try_from(number).ok()?.checked_sub(1).and_then(|at| reloads.get(at));
+        for reload in self.workstation.loads().into_iter().filter_map(reload) {
+            generations.propose(reload.store.clone());
+        }
+        if !generations.advance(self.runner.memory()) {
+            return;
+        }
+        // Reloads are proposed in their order, so that a generation has the number of its reload.
+        let (tick, number) = (self.runner.tick().next(), generations.number());
+        if let (Some(log), Some(reload)) = (&mut self.log, reload(number)) {
+            log.reload(tick, number, &reload.source);
         }
     }
 

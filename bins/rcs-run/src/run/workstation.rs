@@ -13,12 +13,14 @@ pub struct SimulatedWorkstation {
     pub cell: Cell,
     vise: String,
     fault: Option<String>,
+    /// Numbers of the reloads that were asked for since the last look.
+    loads: Vec<u32>,
 }
 
 impl SimulatedWorkstation {
     /// A workstation around a cell whose vise stands at `vise`.
     pub const fn new(cell: Cell, vise: String) -> Self {
-        Self { cell, vise, fault: None }
+        Self { cell, vise, fault: None, loads: Vec::new() }
     }
 
     /// What happened in the cell since the last call. A simulation that has failed is a fault of the
@@ -29,6 +31,11 @@ impl SimulatedWorkstation {
             self.fault = Some(event.to_string());
         }
         events
+    }
+
+    /// Numbers of the reloads of task data that the job has asked for since the last call.
+    pub fn loads(&mut self) -> Vec<u32> {
+        std::mem::take(&mut self.loads)
     }
 
     /// The cell has one vise.
@@ -70,7 +77,7 @@ impl SimulatedWorkstation {
             Action::Drum(Drum::Tool(tool)) => WorkstationAction::DrumTool { part: tool.to_string() },
             Action::Joystick(action) => WorkstationAction::Joystick(at_the_box(*action)),
             // The emulator of the workstation controller counts the ticks itself.
-            Action::Wait { .. } => return Ok(Vec::new()),
+            Action::Wait { .. } | Action::Load { .. } => return Ok(Vec::new()),
         }])
     }
 }
@@ -123,6 +130,10 @@ fn placement(offset: &Offset) -> Placement {
 
 impl Workstation for SimulatedWorkstation {
     fn begin(&mut self, action: &Action) -> Result<(), String> {
+        if let Action::Load { number } = action {
+            self.loads.push(*number);
+            return Ok(());
+        }
         for action in self.translate(action)? {
             self.cell.workstation(&action).map_err(|error| error.to_string())?;
         }

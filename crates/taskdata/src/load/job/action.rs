@@ -156,6 +156,11 @@ pub enum Workstation {
     Drum(Drum),
     /// The joystick box.
     Joystick(Joystick),
+    /// Blocks are loaded into the running system.
+    Load {
+        /// Which of the job's reloads, from 1.
+        number: u32,
+    },
     /// Nothing for a while.
     Wait {
         /// How long.

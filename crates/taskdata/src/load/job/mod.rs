@@ -20,6 +20,7 @@
 //! ** joystick hold|free EMOVE              a process is suspended, or runs on
 //! ** joystick step EMOVE [3]               a suspended process runs once, or so often
 //! ** wait 50                               so many ticks
+//! ** load more.blk                         blocks are loaded, which count from the next command on
 //! ** after 50 joystick hold PRIM           any of these, so many ticks after the next command was sent
 //! ```
 //!
@@ -28,12 +29,15 @@
 
 mod action;
 mod read;
+mod reload;
 mod walk;
 mod workstation;
 
 use std::path::Path;
 
 use rcs_core::interface::hws::HwsCommand;
+
+pub use reload::Reload;
 
 pub use action::{Drum, Joystick, JoystickButton, JoystickFrame, Offset, Stepped, ViseOpening, Workstation};
 
@@ -93,6 +97,8 @@ pub struct Job {
     pub name: String,
     /// Its steps in order.
     pub steps: Vec<JobLine>,
+    /// What the lines `** load` load, in their order.
+    pub reloads: Vec<Reload>,
     source: Source,
 }
 
@@ -118,7 +124,9 @@ impl Job {
     /// The report, if it holds an error.
     pub fn from_source(source: Source, store: &Store) -> Result<(Self, Report), Box<Report>> {
         let mut problems = Problems::default();
-        let mut reader = read::Reader::new(store.view(), &mut problems);
+        let reloads = reload::reloads(&source, store, &mut problems);
+        let views = reloads.iter().map(|reload| reload.store.view()).collect();
+        let mut reader = read::Reader::new(store.view(), views, &mut problems);
         let steps = source_lines(&source).filter_map(|line| reader.line(&line)).collect();
         reader.end();
         let failed = problems.has_errors();
@@ -127,7 +135,7 @@ impl Job {
             return Err(Box::new(report));
         }
         let file = Path::new(&source.name).file_stem().map(|s| s.to_string_lossy().into_owned());
-        Ok((Self { name: file.unwrap_or_default(), steps, source }, report))
+        Ok((Self { name: file.unwrap_or_default(), steps, reloads, source }, report))
     }
 
     /// The text that the job was read from.

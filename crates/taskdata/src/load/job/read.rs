@@ -63,6 +63,9 @@ impl Field {
 /// Reads the lines of a job in their order.
 pub(super) struct Reader<'s, 'p> {
     data: TaskData<'s>,
+    /// What the lines that load something change `data` to, in their order.
+    reloads: std::vec::IntoIter<TaskData<'s>>,
+    loaded: u32,
     pub(super) problems: &'p mut Problems,
     walk: Walk,
     /// The last line with `after` that no command has followed yet.
@@ -70,8 +73,16 @@ pub(super) struct Reader<'s, 'p> {
 }
 
 impl<'s, 'p> Reader<'s, 'p> {
-    pub(super) fn new(data: TaskData<'s>, problems: &'p mut Problems) -> Self {
-        Self { data, problems, walk: Walk::default(), after: None }
+    pub(super) fn new(data: TaskData<'s>, reloads: Vec<TaskData<'s>>, problems: &'p mut Problems) -> Self {
+        Self { data, reloads: reloads.into_iter(), loaded: 0, problems, walk: Walk::default(), after: None }
+    }
+
+    /// A line loads something: from here on names are looked up in what it loads. The number of the reload, from 1; `None` if it
+    /// could not be loaded, which was noted.
+    pub(super) fn reload(&mut self) -> Option<u32> {
+        self.data = self.reloads.next()?;
+        self.loaded += 1;
+        Some(self.loaded)
     }
 }
 

@@ -15,6 +15,7 @@ enum Verb {
     Drum,
     Joystick,
     Wait,
+    Load,
     After,
 }
 
@@ -25,6 +26,7 @@ const VERBS: &[(&str, Verb)] = &[
     ("drum", Verb::Drum),
     ("joystick", Verb::Joystick),
     ("wait", Verb::Wait),
+    ("load", Verb::Load),
     ("after", Verb::After),
 ];
 
@@ -126,6 +128,14 @@ impl Reader<'_, '_> {
             Verb::Machine => self.machine(fields),
             Verb::Drum => self.drum(fields).map(Workstation::Drum),
             Verb::Joystick => self.joystick(fields).map(Workstation::Joystick),
+            Verb::Load => {
+                let at = fields.at();
+                if fields.take().is_none() {
+                    self.missing("a file of blocks", at);
+                    return None;
+                }
+                self.reload().map(|number| Workstation::Load { number })
+            }
             Verb::Wait | Verb::After => {
                 self.ticks(fields, WAIT_FORM).map(|ticks| Workstation::Wait { ticks })
             }

@@ -1,0 +1,67 @@
+//! Lines `** load FILE`: blocks that are loaded while the robot runs, so that the lines after them speak of other task data.
+//!
+//! They are built and checked before the first tick, as everything of a job is: a block with a mistake in it refuses the job.
+
+use std::path::Path;
+
+use super::{
+    super::{
+        Store,
+        lex::words_of_line,
+        report::Problems,
+        source::{Source, read},
+    },
+    source_lines,
+};
+
+/// A reload: what was read, and the task data with it.
+#[derive(Clone, Debug)]
+pub struct Reload {
+    /// The blocks.
+    pub source: Source,
+    /// The task data from then on.
+    pub store: Store,
+}
+
+/// The reloads of a job in the order of their lines, each upon the one before. File names are relative to the job's directory.
+/// A file that cannot be loaded is noted at its line, and changes nothing.
+pub(super) fn reloads(job: &Source, store: &Store, problems: &mut Problems) -> Vec<Reload> {
+    let directory = Path::new(&job.name).parent().unwrap_or(Path::new(""));
+    let mut loaded: Vec<Reload> = Vec::new();
+    for line in source_lines(job) {
+        let words = words_of_line(&line);
+        let texts: Vec<&str> = words.iter().map(|word| word.text).collect();
+        let Some(file) = file_of(&texts).and_then(|at| words.get(at)) else { continue };
+        let path = directory.join(file.text);
+        let source = match read(&path, file.text) {
+            Ok(source) => source,
+            Err(error) => {
+                problems.error("job.load", file.at, format!("{} cannot be read: {error}", path.display()));
+                continue;
+            }
+        };
+        let newest = loaded.last().map_or(store, |reload| &reload.store);
+        match newest.with_blocks(vec![source.clone()]) {
+            Ok((store, _)) => loaded.push(Reload { source, store }),
+            Err(report) => {
+                let first = report.errors().next().map_or("", |error| error.message());
+                problems.error_help(
+                    "job.load",
+                    file.at,
+                    format!("{} has {} errors, the first: {first}", path.display(), report.errors().count()),
+                    "load the file with the other task data (rcs-run check) to see all of them",
+                );
+            }
+        }
+    }
+    loaded
+}
+
+/// Where the file stands among the words of a line that loads one.
+fn file_of(words: &[&str]) -> Option<usize> {
+    match words {
+        ["**", "load", ..] => Some(2),
+        ["**", "after", _, "load", ..] => Some(4),
+        _ => None,
+    }
+}
