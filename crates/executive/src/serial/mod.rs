@@ -113,7 +113,15 @@ impl SerialLine {
             .name("serial-port".into())
             .spawn(move || keep_open(&settings, &to_close, &hand_over))
             .map_err(unusable)?;
-        Ok(Self { path, port: Some(port), cut: false, unsent: false, counts: SerialCounts::default(), dead, opened })
+        Ok(Self {
+            path,
+            port: Some(port),
+            cut: false,
+            unsent: false,
+            counts: SerialCounts::default(),
+            dead,
+            opened,
+        })
     }
 
     /// Append what has arrived to `rx`, as far as there is room; the rest stays in the port. True if the line
