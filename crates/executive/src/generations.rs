@@ -42,12 +42,6 @@ impl Generations {
         self.waiting.push_back(store);
     }
 
-    /// True while task data wait.
-    #[must_use]
-    pub fn waiting(&self) -> bool {
-        !self.waiting.is_empty()
-    }
-
     /// Between two ticks: use what waits, if `memory` says that no command is being executed. True if the generation is a new
     /// one.
     pub fn advance(&mut self, memory: &CommonMemory) -> bool {
@@ -79,7 +73,7 @@ mod tests {
 
         memory.task.status.report = HwsReport::Executing;
         generations.propose(Store::default());
-        assert!(!generations.advance(&memory) && generations.waiting());
+        assert!(!generations.advance(&memory), "Task executes a command");
         memory.task.status.report = HwsReport::Finished;
         memory.emove.status.report = Report::Executing;
         assert!(!generations.advance(&memory), "the robot still moves");
@@ -87,6 +81,6 @@ mod tests {
         memory.emove.status.report = Report::Done;
         assert!(generations.advance(&memory));
         assert_eq!(generations.number(), 1);
-        assert!(!generations.advance(&memory) && !generations.waiting());
+        assert!(!generations.advance(&memory), "nothing waits any more");
     }
 }

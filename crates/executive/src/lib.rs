@@ -4,7 +4,8 @@
 //! steps them with tick-parity buffers and sums up what they did, [`clock`] says when, [`realtime`] asks the
 //! system for punctuality, [`serial`] is the line to a real robot, [`alloc`] proves that nothing is allocated
 //! on the way, [`memory`] lets others look on, [`hwsc`] plays the workstation controller, [`data_base`] the
-//! Data System, and [`failure`] finds the process, the table and the row that explain why something went wrong.
+//! Data System, [`generations`] lets task data be loaded between commands, and [`failure`] finds the process, the
+//! table and the row that explain why something went wrong.
 
 #![deny(unsafe_code)]
 

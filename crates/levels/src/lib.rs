@@ -5,19 +5,21 @@
 //! output buffers. Processes read what was written in the tick before, so their order within a tick does not matter.
 //!
 //! ```text
-//!            HWSC
-//!             | TRANSFER, MOVE, POSITION, ACQUIRE, PAUSE
-//!           Task                  (V.4)
-//!             | GET-OBJECT, PLACE-OBJ ...
-//!          Subtask                (V.3)
-//!             | MOV-TO-OBJ, GRASP-OBJ ...
-//!          E-move ----- vision    (V.2)
-//!          /  |  \
-//!  Quick Change | Grip            (VI.2, VI.3)
-//!            Prim                 (V.1)
-//!             | POINT
-//!        T3 Interface             (VI.1)
-//!             | DEPC
+//!        HWSC                    Data System
+//!         | TRANSFER, REFIXTURE ...  | UPDATE
+//!        Task -----------------------+            (V.4)
+//!         | GET-OBJECT, FIX-GRIP ...
+//!      Subtask ----- Active Pedestal              (V.3, VI.7)
+//!         |            |-> hand, rotary table
+//!         | MOV-TO-OBJ, QC-ATTACH ...
+//!       E-move ----- vision                       (V.2)
+//!         |   |-> Quick Change                    (VI.2)
+//!         |   |-> Grip, V-Grip, Tool-Grip         (VI.3 to VI.5)
+//!         | GO-THRU, GO-UNTIL ...
+//!        Prim ------ joystick box, force sensor   (V.1)
+//!         | POINT
+//!    T3 Interface                                 (VI.1)
+//!         | DEPC
 //! ```
 
 #![cfg_attr(not(test), no_std)]

@@ -1,11 +1,13 @@
 //! Variables of the interfaces (chapters V and VI) that are carried along: no scenario depends on them, people and programs
 //! that look on do.
 
+mod fingers;
+
+use fingers::Fingers;
 use levels::{emove::Emove, grip::Grip, t3i::T3i};
 use rcs_core::{
     interface::{
         CommonMemory, EmoveOutputs, ExternalInputs, GripOutputs, T3iOutputs,
-        device::valve,
         emove::{EmoveCommand, EmoveVerb},
         grip::{GripCommand, GripReport, GripVerb},
         prim::PrimVerb,
@@ -51,35 +53,6 @@ fn e_move_passes_the_feedback_pose_up_and_the_gripper_down() {
     assert_eq!((outputs.prim.command, outputs.prim.end_effector_id), (PrimVerb::RobotInit, 2));
 }
 
-/// The fingers of a parts gripper without a part: opening, in, and the force with which they press on each other, lb.
-struct Fingers {
-    opening: f64,
-    force: f64,
-}
-
-impl Fingers {
-    /// A tick with the valves as commanded.
-    fn advance(&mut self, bits: u8) {
-        if bits & valve::VENT != 0 {
-            self.force = 0.0;
-        }
-        if bits & valve::SUPPLY == 0 || bits & valve::VENT != 0 {
-            return;
-        }
-        let flows = [
-            (valve::OPEN_FINE, 0.25),
-            (valve::OPEN_MEDIUM, 1.0),
-            (valve::OPEN_COARSE, 4.0),
-            (valve::CLOSE_FINE, -0.25),
-            (valve::CLOSE_MEDIUM, -1.0),
-            (valve::CLOSE_COARSE, -4.0),
-        ];
-        let speed: f64 = flows.iter().filter(|(bit, _)| bits & bit != 0).map(|(_, flow)| flow).sum();
-        self.opening = (self.opening + speed * 0.04).clamp(0.1, 5.0);
-        self.force = if self.opening > 0.1 { 0.0 } else { (self.force - speed * 20.0).clamp(0.0, 80.0) };
-    }
-}
-
 #[test]
 fn grip_reports_how_fast_the_fingers_move() {
     let (mut process, mut memory, mut outputs) =
@@ -100,10 +73,7 @@ fn grip_reports_how_fast_the_fingers_move() {
                 ..GripCommand::default()
             };
         }
-        let grip = &mut external.devices.grip;
-        grip.potentiometer = (200.0 + 700.0 * fingers.opening) as u16;
-        let strain = (100.0 + 40.0 * fingers.force) as u16;
-        (grip.strain_left, grip.strain_right) = (strain, strain);
+        fingers.show(&mut external.devices.grip);
         let inputs = Inputs { tick: Tick(tick), memory: &memory, external: &external, data: &() };
         process.step(&inputs, &mut outputs);
         fingers.advance(outputs.valves.bits);

@@ -3,9 +3,12 @@
 //!
 //! The arm here takes every set point at once; masses, lag and contacts belong to the cell's tests.
 
+mod fingers;
+
 use std::{path::Path, sync::OnceLock};
 
 use depc::{Limits, Plate, controller};
+use fingers::Fingers;
 use levels::ladder::{Ladder, LadderState, ProcessId};
 use proptest::prelude::*;
 use rcs_core::{
@@ -13,7 +16,7 @@ use rcs_core::{
     frame::Frame,
     interface::{
         CommonMemory, ExternalInputs, Header, HwsCommand, Reason,
-        device::{LinkBytes, RESOLVER_COUNTS, single_step, valve},
+        device::{LinkBytes, RESOLVER_COUNTS, single_step},
         hws::HwsReport,
     },
     kinematics::{HOME_JOINTS, Joints, T3},
@@ -57,8 +60,7 @@ struct Rig {
     tick: Tick,
     controller: controller::Controller,
     arm: PlainArm,
-    opening: f64,
-    force: f64,
+    fingers: Fingers,
     /// Gripper on the quick change.
     gripper: u8,
     digest: Digest,
@@ -76,8 +78,7 @@ impl Rig {
             tick: Tick::BEFORE_START,
             controller: controller::Controller::new(Limits::NBS),
             arm: PlainArm { joints: HOME_JOINTS, plate },
-            opening: 2.0,
-            force: 0.0,
+            fingers: Fingers { opening: 2.0, force: 0.0 },
             gripper: 1,
             digest: Digest::new(),
             warnings: 0,
@@ -101,9 +102,7 @@ impl Rig {
         devices.quick_change.locked = true;
         devices.quick_change.end_effector_id = self.gripper;
         devices.joystick.velocity = 1000;
-        devices.grip.potentiometer = (200.0 + 700.0 * self.opening) as u16;
-        let strain = (100.0 + 40.0 * self.force) as u16;
-        (devices.grip.strain_left, devices.grip.strain_right) = (strain, strain);
+        self.fingers.show(&mut devices.grip);
     }
 
     /// One tick with the given processes in the given order.
@@ -117,7 +116,7 @@ impl Rig {
         self.before = after;
 
         let outputs = after.device_outputs();
-        self.move_fingers(outputs.grip.bits);
+        self.fingers.advance(outputs.grip.bits);
         let inputs = controller::ControllerInputs {
             rx: outputs.link_tx,
             cts: true,
@@ -130,27 +129,6 @@ impl Rig {
         self.warnings += u32::from(inputs.enter);
         let answer = self.controller.step(&inputs, &mut self.arm);
         self.sense(answer.tx);
-    }
-
-    fn move_fingers(&mut self, bits: u8) {
-        if bits & valve::VENT != 0 {
-            self.force = 0.0;
-        }
-        if bits & valve::SUPPLY == 0 || bits & valve::VENT != 0 {
-            return;
-        }
-        let flows = [
-            (valve::OPEN_FINE, 0.25),
-            (valve::OPEN_MEDIUM, 1.0),
-            (valve::OPEN_COARSE, 4.0),
-            (valve::CLOSE_FINE, -0.25),
-            (valve::CLOSE_MEDIUM, -1.0),
-            (valve::CLOSE_COARSE, -4.0),
-        ];
-        let speed: f64 = flows.iter().filter(|(bit, _)| bits & bit != 0).map(|(_, flow)| flow).sum();
-        self.opening = (self.opening + speed * 0.04).clamp(0.1, 5.0);
-        // Against the closed end the fingers press on each other.
-        self.force = if self.opening > 0.1 { 0.0 } else { (self.force - speed * 20.0).clamp(0.0, 80.0) };
     }
 
     fn command(&mut self, verb: &str, destination: &str) {

@@ -210,3 +210,27 @@ pub(super) fn commanded_pose(inputs: &Inputs<'_, TaskData<'_>>) -> Option<Pose> 
     let commanded = inputs.memory.changing_pose(inputs.memory.prim.status.present_pose).copied();
     commanded.or_else(|| present_frame(inputs.memory).map(|frame| Pose::from_frame(&frame)))
 }
+
+#[cfg(test)]
+mod tests {
+    use taskdata::load::guarded::{Beginning, RELATIVE_MOVES};
+
+    use super::{Reference, Relative};
+
+    /// The checker of task data has its own list: it must ask for what E-move looks for, and no more. A move that E-move makes
+    /// from where the robot stands may begin anywhere for the checker, one from the location only there.
+    #[test]
+    fn the_checker_of_task_data_knows_the_same_moves() {
+        let mut ours: Vec<&str> = Relative::ALL.iter().map(|relative| relative.text()).collect();
+        let mut known: Vec<&str> = RELATIVE_MOVES.iter().map(|known| known.name).collect();
+        ours.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(ours, known);
+        for relative in Relative::ALL {
+            let known = RELATIVE_MOVES.iter().find(|known| known.name == relative.text()).unwrap();
+            assert_eq!(known.guarded, relative.is_guarded(), "{relative}");
+            let at_location = relative.reference() == Reference::Location;
+            assert!(!at_location || known.from == Beginning::Location, "{relative}");
+        }
+    }
+}

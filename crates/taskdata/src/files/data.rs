@@ -17,7 +17,8 @@ use super::{
 
 /// The task data of a run: a view of the files and their indexes, as cheap to copy as a few pointers.
 ///
-/// It is built once before the first tick (by `load::Store`); nothing in it changes while the robot runs (DESIGN 6).
+/// It is built outside the tick (by `load::Store`), and nothing in it changes: blocks that are loaded while the robot runs make
+/// a new generation (DESIGN 6, 16).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TaskData<'a> {
     /// POSE.
