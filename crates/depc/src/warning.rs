@@ -9,6 +9,7 @@ use crate::{Plate, limit::Exceeded};
 
 /// Why the joints cannot take a position that the limits allow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize, serde::Serialize))]
 pub enum JointProblem {
     /// The shoulder would go beyond its upper limit.
     ShoulderUp,

@@ -9,11 +9,12 @@ use rcs_core::{
     frame::Frame,
     kinematics::{Joints, T3},
 };
+use serde::{Deserialize, Serialize};
 
 use crate::description::Robot;
 
 /// Joint angles and servos of the arm.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Arm {
     joints: Joints,
     from: Joints,

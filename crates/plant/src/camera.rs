@@ -10,6 +10,7 @@ use rcs_core::{
     interface::device::{Picture, VisionRequest, VisionResponse, VisionStatus},
     units::{hundredths, hundredths_of_degree},
 };
+use serde::{Deserialize, Serialize};
 
 use crate::{
     convert::{METRES_PER_INCH, inches},
@@ -55,12 +56,22 @@ impl Subject {
     }
 }
 
+/// An answer that is being worked out.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+struct Pending {
+    #[serde(with = "crate::image::record")]
+    answer: VisionResponse,
+    /// Until it is there.
+    ticks: u32,
+}
+
 /// The camera and the analysis.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Camera {
     description: Description,
     noise: Noise,
-    pending: Option<(VisionResponse, u32)>,
+    pending: Option<Pending>,
+    #[serde(with = "crate::image::record")]
     response: VisionResponse,
     last: u32,
 }
@@ -99,7 +110,7 @@ impl Camera {
             Picture::Precise => self.description.precise_ticks,
             Picture::FastFlood | Picture::None => self.description.flood_ticks,
         };
-        self.pending = Some((answer, ticks));
+        self.pending = Some(Pending { answer, ticks });
         self.response =
             VisionResponse { echo: request.number, status: VisionStatus::Busy, ..VisionResponse::default() };
     }
@@ -107,11 +118,11 @@ impl Camera {
     /// The answer as it stands at the end of a tick.
     pub fn answer(&mut self) -> VisionResponse {
         match &mut self.pending {
-            Some((answer, ticks)) if *ticks <= 1 => {
+            Some(Pending { answer, ticks }) if *ticks <= 1 => {
                 self.response = *answer;
                 self.pending = None;
             }
-            Some((_, ticks)) => *ticks -= 1,
+            Some(Pending { ticks, .. }) => *ticks -= 1,
             None => {}
         }
         self.response

@@ -7,6 +7,7 @@
 use std::collections::BTreeSet;
 
 use rapier3d_f64::{parry::query, prelude::*};
+use serde::{Deserialize, Serialize};
 
 use crate::{convert::inches, scene::Obstacle};
 
@@ -31,7 +32,7 @@ pub struct Mover {
 }
 
 /// A contact that has begun.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Contact {
     /// What moves.
     pub mover: String,
@@ -42,7 +43,7 @@ pub struct Contact {
 }
 
 /// Remembers which pairs are in contact.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Deserialize, Serialize)]
 pub struct Clearance {
     touching: BTreeSet<(String, String)>,
 }

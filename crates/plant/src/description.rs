@@ -14,7 +14,7 @@ use rcs_core::{
     kinematics::Joints,
     movetable::straight_down,
 };
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChange};
 
@@ -71,7 +71,7 @@ impl fmt::Display for Faults {
 }
 
 /// The whole cell.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CellDescription {
     /// A name for people.
@@ -109,7 +109,7 @@ pub struct CellDescription {
 }
 
 /// Steps and stiffness of the simulation.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Physics {
     /// Steps in a tick of 40 ms.
@@ -123,7 +123,7 @@ pub struct Physics {
 }
 
 /// The arm's servos and outline; its lengths are [`rcs_core::kinematics::T3`].
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
     /// First-order lag of the joint servos, s.
@@ -143,7 +143,7 @@ pub struct Robot {
 }
 
 /// The robot's grippers.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grippers {
     /// Weight of each, lb.
@@ -161,7 +161,7 @@ pub struct Grippers {
 }
 
 /// A gripper of two fingers that air moves: the robot's, and the hand of the Active Pedestal (III.9.2).
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Gripper {
     /// Size of the body along tool X, Y, Z, in.
@@ -189,7 +189,7 @@ pub struct Gripper {
 }
 
 /// Offsets and scales of the gripper's sensors, in counts of 12-bit converters; UP-INIT has to find them.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct GripperSensors {
     /// Counts of the potentiometer at opening 0.
@@ -207,7 +207,7 @@ pub struct GripperSensors {
 }
 
 /// The Active Pedestal.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pedestal {
     /// Name of the location.
@@ -225,7 +225,7 @@ pub struct Pedestal {
 }
 
 /// The rotary table of the pedestal; angles in degrees, positive to the left seen from above.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct RotaryTable {
     /// Motor angles of the - and the + limit switch.
@@ -249,7 +249,7 @@ pub struct RotaryTable {
 }
 
 /// The camera on the wrist.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
     /// Centre of the image plane in the tool frame, in.
@@ -277,7 +277,7 @@ pub struct Camera {
 }
 
 /// The programmable vise; its frame has X into the vise, Y to the left, Z up, parallel to the world's axes.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Vise {
     /// Name of the location.
@@ -303,7 +303,7 @@ pub struct Vise {
 }
 
 /// A program of the vise: the step in the jaws that clamps a family of parts, and its openings.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ViseProgram {
     /// Its name.
@@ -321,7 +321,7 @@ pub struct ViseProgram {
 }
 
 /// A place where parts stay because of its shape: a cradle, a pot, a pocket. What it is made of are fixtures.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Nest {
     /// Name of the location.
@@ -338,7 +338,7 @@ pub struct Nest {
 }
 
 /// How far a part may be from its seat.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tolerance {
     /// Of its middle, in.
@@ -348,7 +348,7 @@ pub struct Tolerance {
 }
 
 /// A tray at an MBD unit.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tray {
     /// Name of the location.
@@ -362,7 +362,7 @@ pub struct Tray {
 }
 
 /// What all trays have in common.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrayShape {
     /// Inner side of the square, in.
@@ -378,7 +378,7 @@ pub struct TrayShape {
 }
 
 /// A box that stands still.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fixture {
     /// Its name, also that of its link in the picture.
@@ -399,7 +399,7 @@ pub struct Fixture {
 }
 
 /// The body of a part.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shape {
     /// A box.
@@ -412,7 +412,7 @@ pub enum Shape {
 }
 
 /// A kind of part.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartType {
     /// Object name of the task data.

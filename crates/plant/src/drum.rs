@@ -14,6 +14,7 @@
 
 use rapier3d_f64::math::Real;
 use rcs_core::frame::{Frame, Rotation, Vector};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     convert::{metres, newtons},
@@ -40,7 +41,7 @@ pub struct Entering {
 }
 
 /// The tool that the drum has to do with.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Pocketed {
     /// Index of the part.
     pub part: usize,
@@ -53,8 +54,9 @@ pub struct Pocketed {
 }
 
 /// The drum.
-#[derive(Debug)]
+#[derive(Debug, Deserialize, Serialize)]
 pub struct Drum {
+    #[serde(with = "crate::image::frame")]
     frame: Frame,
     description: Description,
     closed: bool,

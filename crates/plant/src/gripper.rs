@@ -19,6 +19,7 @@ use crate::{
     scene::{PALM, groups},
     squeeze::Pads,
 };
+use serde::{Deserialize, Serialize};
 
 /// Fingers farther than this from what would block them are free, in.
 const FREE_GAP: f64 = 0.001;
@@ -28,7 +29,7 @@ const BREAKAWAY_TIME: f64 = 0.25;
 const EXPANSION_SPEED: f64 = 4.0;
 
 /// Opening, force and air of the fingers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Air {
     opening: f64,
     force: f64,
@@ -136,7 +137,7 @@ impl Air {
 }
 
 /// The gripper's bodies, air and hold.
-#[derive(Debug)]
+#[derive(Debug, Deserialize, Serialize)]
 pub struct Gripper {
     description: Description,
     /// Opening and force.
@@ -150,7 +151,7 @@ pub struct Gripper {
     shown: (f64, f64),
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 struct Finger {
     /// +1 left (tool +Y), -1 right.
     side: Real,

@@ -14,6 +14,7 @@
 
 use rapier3d_f64::math::Vector;
 use rapier3d_f64::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::{
     convert::on_the_side_of,
@@ -26,7 +27,7 @@ const AXES: [JointAxis; 6] =
     [JointAxis::LinX, JointAxis::LinY, JointAxis::LinZ, JointAxis::AngX, JointAxis::AngY, JointAxis::AngZ];
 
 /// How stiff a hold is below its limits.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Stiffness {
     /// N/m.
     pub linear: Real,
@@ -35,7 +36,7 @@ pub struct Stiffness {
 }
 
 /// Force and friction of the pads.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Clamp {
     /// Force of each pad, N.
     pub force: Real,
@@ -44,7 +45,7 @@ pub struct Clamp {
 }
 
 /// What is held: it sets the damping of the springs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Load {
     /// kg.
     pub mass: Real,
@@ -53,7 +54,7 @@ pub struct Load {
 }
 
 /// What the pads can bear where they touch, and where that is.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 struct Limits {
     /// Along the pads, N.
     friction: Real,
@@ -66,7 +67,7 @@ struct Limits {
 }
 
 /// A part between two pads.
-#[derive(Debug)]
+#[derive(Debug, Deserialize, Serialize)]
 pub struct Hold {
     joint: ImpulseJointHandle,
     pads: RigidBodyHandle,
@@ -90,7 +91,7 @@ pub struct Hold {
 
 /// Whether friction holds the part along the pads: it slides when more is asked for than friction bears, and sticks again
 /// when friction stops it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 enum Grip {
     /// The springs hold.
     Sticks,

@@ -9,6 +9,7 @@
 //! controller's affair.
 
 use rcs_core::frame::{Frame, Rotation, Vector, rotation_vector};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     description::{CellDescription, Gripper, Holsters, Points},
@@ -35,9 +36,10 @@ const NEAR: f64 = 6.0;
 const LIP_PLAY: f64 = 0.15;
 
 /// A holster.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Holster {
-    name: &'static str,
+    name: String,
+    #[serde(with = "crate::image::frame")]
     frame: Frame,
     description: Holsters,
 }
@@ -56,7 +58,7 @@ pub struct Offset {
 }
 
 /// A gripper on its holster, or dropping onto it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Perch {
     /// Above the rest, in.
     pub up: f64,
@@ -86,8 +88,8 @@ impl Perch {
 impl Holster {
     /// A holster at the tool frame of a gripper that rests on it.
     #[must_use]
-    pub fn new(name: &'static str, frame: Frame, description: &Holsters) -> Self {
-        Self { name, frame, description: description.clone() }
+    pub fn new(name: &str, frame: Frame, description: &Holsters) -> Self {
+        Self { name: name.into(), frame, description: description.clone() }
     }
 
     /// A gripper there may have to do with this holster.

@@ -4,6 +4,7 @@
 //! as it was told. One hand: what is told while it still holds something begins at once and is held beside it.
 
 use rcs_core::interface::device::{JoystickBox, KNOB_FULL};
+use serde::{Deserialize, Serialize};
 
 /// Ticks that a short press takes: long enough to be seen, whatever runs when.
 const PRESS: u32 = 2;
@@ -11,7 +12,7 @@ const PRESS: u32 = 2;
 const PAUSE: u32 = 2;
 
 /// A push-button that is held down.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum BoxButton {
     /// D: along +Z.
     Up,
@@ -58,7 +59,7 @@ pub enum BoxAction {
 }
 
 /// What is held down, and for how many more ticks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 enum Held {
     Stick([i16; 2]),
     Button(BoxButton),
@@ -68,7 +69,7 @@ enum Held {
 }
 
 /// The box.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub struct Joystick {
     velocity: u16,
     frame: u8,

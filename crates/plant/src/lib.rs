@@ -50,6 +50,7 @@ pub mod friction;
 pub mod gripper;
 pub mod hold;
 pub mod holster;
+pub mod image;
 pub mod jaws;
 pub mod joystick;
 pub mod noise;

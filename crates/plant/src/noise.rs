@@ -3,6 +3,7 @@
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rcs_core::interface::device::ADC_FULL_SCALE;
+use serde::{Deserialize, Serialize};
 
 /// Which device draws from the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +21,7 @@ pub enum Stream {
 }
 
 /// A stream of uniform noise.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Noise(ChaCha8Rng);
 
 impl Noise {

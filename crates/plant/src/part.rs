@@ -2,6 +2,7 @@
 
 use rapier3d_f64::prelude::*;
 use rcs_core::frame::{Frame, Vector as Inches};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     convert::{KILOGRAMS_PER_POUND, to_frame, to_pose},
@@ -17,7 +18,7 @@ const FRICTION: Real = 0.30;
 const ROLLING: Real = 2.0;
 
 /// A part in the cell.
-#[derive(Debug)]
+#[derive(Debug, Deserialize, Serialize)]
 pub struct Part {
     /// What it is at present.
     pub kind: PartType,

@@ -14,6 +14,7 @@ use rcs_core::{
     frame::{Frame, Vector as Inches, rotation_from_x_y},
     interface::device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH},
 };
+use serde::{Deserialize, Serialize};
 
 use crate::{
     convert::{on_the_side_of, to_pose},
@@ -29,7 +30,7 @@ const STEPS_PER_DEGREE: f64 = TABLE_STEPS_PER_TENTH as f64 * 10.0;
 const ON_STEP: f64 = 1e-6;
 
 /// The rotary table: motor, controller, switches, potentiometer.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Table {
     description: RotaryTable,
     /// Motor angle, steps.
@@ -147,7 +148,7 @@ impl Table {
 }
 
 /// Hand and table.
-#[derive(Debug)]
+#[derive(Debug, Deserialize, Serialize)]
 pub struct Pedestal {
     /// The hand; its tool frame has X up, Y across the fingers.
     pub hand: Gripper,

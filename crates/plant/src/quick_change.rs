@@ -11,6 +11,7 @@ use rcs_core::{
     frame::{Frame, rotation_vector},
     interface::device::QuickChangeValves,
 };
+use serde::{Deserialize, Serialize};
 
 use crate::description::QuickChange as Description;
 
@@ -22,7 +23,7 @@ const PRESSED: f64 = 0.30;
 const PINS_ANGLE: f64 = 0.052_36;
 
 /// The locking ring.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Ring {
     /// 0 unlocked, 1 locked.
     place: f64,

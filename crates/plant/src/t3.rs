@@ -13,6 +13,7 @@ use rcs_core::{
     interface::device::LinkBytes,
     kinematics::{Joints, T3},
 };
+use serde::{Deserialize, Serialize};
 
 /// Pushbuttons and switches of the controller's panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,10 +31,12 @@ pub enum Button {
 }
 
 /// The T3 controller.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct T3Controller {
+    #[serde(with = "crate::image::record")]
     depc: Controller,
     servos: Servos,
+    #[serde(with = "crate::image::record")]
     panel: ControllerInputs,
 }
 
@@ -61,8 +64,9 @@ pub enum DriveError {
     Joints(JointProblem),
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Deserialize, Serialize)]
 struct Servos {
+    #[serde(with = "crate::image::record")]
     plate: Plate,
     joints: Joints,
 }

@@ -11,6 +11,7 @@
 
 use rapier3d_f64::prelude::*;
 use rcs_core::frame::{Frame, Vector as Inches};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     convert::{inches, metres, newtons, to_pose},
@@ -31,9 +32,10 @@ pub enum Jaws {
 }
 
 /// The vise.
-#[derive(Debug)]
+#[derive(Debug, Deserialize, Serialize)]
 pub struct Vise {
     description: Description,
+    #[serde(with = "crate::image::frame")]
     frame: Frame,
     /// Which program is on.
     program: usize,
@@ -47,7 +49,7 @@ pub struct Vise {
 }
 
 /// A part between the jaws: nothing in the cell but a crash is stronger than the vise, so it is led and does not give way.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Clamped {
     /// Index of the part.
     pub part: usize,

@@ -184,7 +184,7 @@ fn a_gripper_that_is_unlocked_in_the_air_falls_to_the_floor() {
         let mut rig = over_right(up);
         air(&mut rig, UNLOCK);
         rig.ticks(50);
-        assert_eq!(rig.log[0], CellEvent::GripperFell { gripper: "parts_gripper" }, "{up}");
+        assert_eq!(rig.log[0], CellEvent::GripperFell { gripper: "parts_gripper".into() }, "{up}");
         assert_eq!(rig.inputs.quick_change.end_effector_id, 0);
         let fallen = rig.cell.links().into_iter().find(|link| link.name == "parts_gripper").unwrap();
         let height = fallen.position[2] / 0.0254;
@@ -199,7 +199,7 @@ fn a_gripper_that_is_let_go_over_a_full_holster_falls() {
     rig.go_and_stop(over(&HOL_L, 5.0, 0.0), 10.0);
     rig.go_and_stop(over(&HOL_L, 0.4, 0.0), 10.0);
     air(&mut rig, UNLOCK);
-    assert!(rig.log.contains(&CellEvent::GripperFell { gripper: "parts_gripper" }), "{:?}", rig.log);
+    assert!(rig.log.contains(&CellEvent::GripperFell { gripper: "parts_gripper".into() }), "{:?}", rig.log);
     assert!(
         rig.log
             .iter()
@@ -217,7 +217,7 @@ fn lifting_out_of_the_seat_tears_the_gripper_off() {
     air(&mut rig, LOCK);
     assert_eq!(rig.cell.gripper(), 2);
     rig.go_and_stop(over(&HOL_L, 2.0, 1.5), 1.0);
-    assert!(rig.log.contains(&CellEvent::GripperTorn { gripper: "v_gripper" }), "{:?}", rig.log);
+    assert!(rig.log.contains(&CellEvent::GripperTorn { gripper: "v_gripper".into() }), "{:?}", rig.log);
     assert_eq!((rig.cell.gripper(), rig.inputs.quick_change.end_effector_id), (0, 0));
     assert_eq!(rig.inputs.holsters.left, FULL, "the holster keeps it");
 }

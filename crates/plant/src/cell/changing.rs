@@ -9,6 +9,7 @@ use rcs_core::{
     frame::Frame,
     interface::device::{HolsterSensors, QuickChangeSensors, QuickChangeValves},
 };
+use serde::{Deserialize, Serialize};
 
 use super::{Cell, CellEvent, handling::Hand};
 use crate::{
@@ -22,7 +23,7 @@ use crate::{
 pub(super) const ROBOT_HANDS: [Hand; 3] = [Hand::Parts, Hand::V, Hand::Tool];
 
 /// Where a gripper is.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub(super) enum Place {
     /// The ring of the quick change has it.
     Robot,
@@ -33,6 +34,7 @@ pub(super) enum Place {
 }
 
 /// Quick change, holsters, and the places of the grippers.
+#[derive(Deserialize, Serialize)]
 pub(super) struct Changer {
     description: QuickChange,
     ring: Ring,
@@ -217,12 +219,12 @@ impl Cell {
                 let weight = self.description.gripper.weight;
                 let (gripper, world) = self.hand_at_work(hand);
                 gripper.fall(world, weight);
-                self.events.push(CellEvent::GripperFell { gripper: hand.link() });
+                self.events.push(CellEvent::GripperFell { gripper: hand.link().into() });
             }
             return Some(place);
         }
         let place = self.changer.torn(robot)?;
-        self.events.push(CellEvent::GripperTorn { gripper: hand.link() });
+        self.events.push(CellEvent::GripperTorn { gripper: hand.link().into() });
         Some(place)
     }
 

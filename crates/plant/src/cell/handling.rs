@@ -10,6 +10,7 @@
 //!   pedestal has too draws it out of the weaker of the two.
 
 use rapier3d_f64::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::{Cell, CellEvent, changing::ROBOT_HANDS};
 use crate::{
@@ -35,7 +36,7 @@ const OUTSIDE: Real = 2e-3;
 const FINGER_STIFFNESS: Stiffness = Stiffness { linear: 2.0e5, angular: 500.0 };
 
 /// What has fingers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub(super) enum Hand {
     /// The parts gripper, end effector 1.
     Parts,
@@ -269,7 +270,7 @@ impl Cell {
         }
         if lost {
             let part = self.parts[index].kind.name.clone();
-            self.events.push(CellEvent::Dropped { part, hand: hand.name() });
+            self.events.push(CellEvent::Dropped { part, hand: hand.name().into() });
         }
     }
 
@@ -401,7 +402,7 @@ impl Cell {
             gripper.slip_reported = true;
             let index = *index;
             let part = self.parts[index].kind.name.clone();
-            self.events.push(CellEvent::Slipped { part, hand: hand.name(), distance });
+            self.events.push(CellEvent::Slipped { part, hand: hand.name().into(), distance });
         }
     }
 

@@ -24,6 +24,7 @@ use rcs_core::{
     kinematics::Joints,
     tick::TICK_S,
 };
+use serde::{Deserialize, Serialize};
 
 use changing::Changer;
 use handling::Hand;
@@ -61,7 +62,7 @@ pub enum CellError {
 }
 
 /// Something that should not happen, or that a person wants to know.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum CellEvent {
     /// The robot, or what it carries, has run into something.
     Contact(Contact),
@@ -70,7 +71,7 @@ pub enum CellEvent {
         /// The part.
         part: String,
         /// Which hand.
-        hand: &'static str,
+        hand: String,
         /// How far it has slid since it was gripped, in.
         distance: f64,
     },
@@ -79,7 +80,7 @@ pub enum CellEvent {
         /// The part.
         part: String,
         /// Which hand.
-        hand: &'static str,
+        hand: String,
     },
     /// The gripper has forced a part out of the closed vise.
     ForcedOut {
@@ -89,12 +90,12 @@ pub enum CellEvent {
     /// The quick change has let go of a gripper that was not over an empty holster.
     GripperFell {
         /// Its link.
-        gripper: &'static str,
+        gripper: String,
     },
     /// The robot has lifted a gripper out of the seat of its holster, whose lips have torn it off the quick change.
     GripperTorn {
         /// Its link.
-        gripper: &'static str,
+        gripper: String,
     },
     /// A part lies on the floor.
     Fell {
@@ -102,7 +103,7 @@ pub enum CellEvent {
         part: String,
     },
     /// The T3 controller shows a warning.
-    Warning(&'static str),
+    Warning(String),
     /// The simulated arm cannot take a position that the robot it follows has taken, and stays behind.
     CannotFollow(JointProblem),
     /// A body has left the realm of numbers and was taken out of the simulation.
@@ -135,6 +136,7 @@ impl fmt::Display for CellEvent {
 }
 
 /// The simulated cell: everything outside the controller.
+#[derive(Deserialize, Serialize)]
 pub struct Cell {
     description: CellDescription,
     world: PhysicsWorld,
@@ -150,7 +152,10 @@ pub struct Cell {
     joystick: Joystick,
     parts: Vec<Part>,
     next_part: u32,
+    /// What stands still: built anew from the description when a cell is restored, as are the obstacles.
+    #[serde(skip)]
     furniture: Vec<Block>,
+    #[serde(skip)]
     obstacles: Vec<Obstacle>,
     clearance: Clearance,
     gripper_noise: Noise,
@@ -160,6 +165,7 @@ pub struct Cell {
     events: Vec<CellEvent>,
     /// The arm cannot follow the robot; said once.
     stays_behind: bool,
+    #[serde(with = "crate::image::record")]
     inputs: DeviceInputs,
 }
 
@@ -226,7 +232,7 @@ impl Cell {
     pub fn step(&mut self, outputs: &DeviceOutputs) -> DeviceInputs {
         let tick = self.t3.step(&outputs.link_tx);
         if let Some(warning) = tick.warning {
-            self.events.push(CellEvent::Warning(warning.text()));
+            self.events.push(CellEvent::Warning(warning.text().into()));
         }
         self.advance(tick.command, outputs);
         self.inputs = self.sense(tick.tx, tick.dtr);

@@ -1,10 +1,10 @@
 //! What the robot changes and where it keeps it: quick change, holsters, tool drum.
 
 use rcs_core::{frame::Frame, pose::Pose};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A place as a pose form gives it: three points, 0.01 in (VII.1).
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Points {
     /// A point on the axis of the end effector.
@@ -24,7 +24,7 @@ impl Points {
 }
 
 /// Which gripper is on the robot.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Mounted {
     /// None.
@@ -38,7 +38,7 @@ pub enum Mounted {
 }
 
 /// The quick change.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuickChange {
     /// Length of both plates together, from the end plate, in.
@@ -61,7 +61,7 @@ pub struct QuickChange {
 
 /// The holsters: tool frames of a gripper whose ears rest on the holster before it slides to the seat, and what all have in
 /// common.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Holsters {
     /// Of the parts gripper, at the right of the robot's base.
@@ -87,7 +87,7 @@ pub struct Holsters {
 }
 
 /// The tool drum at the transfer position, in the tool frame of that location: X into the drum.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drum {
     /// Name of the location.
@@ -117,7 +117,7 @@ pub struct Drum {
 }
 
 /// A box of the strike plate.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plate {
     /// Its name, also that of its link in the picture.
@@ -129,7 +129,7 @@ pub struct Plate {
 }
 
 /// The force sensor of the tool gripper (III.3.8).
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ForceGages {
     /// Its middle, behind the tool point, in.

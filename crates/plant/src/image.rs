@@ -1,0 +1,53 @@
+//! How what the cell borrows from other crates stands in its saved state: fields of types that do not know serde.
+//!
+//! Use with `#[serde(with = "crate::image::record")]` and `#[serde(with = "crate::image::frame")]`. Both keep every bit.
+
+/// Records and coded enums of the controller, as their byte image.
+pub mod record {
+    use rcs_core::record::{Field, Writer, from_bytes};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+    /// Write the byte image.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    pub fn serialize<T: Field, S: Serializer>(record: &T, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut image = vec![0_u8; T::SIZE];
+        record.encode(&mut Writer::new(&mut image));
+        image.serialize(serializer)
+    }
+
+    /// Read the byte image.
+    ///
+    /// # Errors
+    /// Those of the deserializer, and if the bytes are not the image of a legal value.
+    pub fn deserialize<'de, T: Field, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+        from_bytes(&Vec::<u8>::deserialize(deserializer)?).map_err(D::Error::custom)
+    }
+}
+
+/// Frames, as position and the columns of the rotation.
+pub mod frame {
+    use rcs_core::frame::{Frame, Rotation, Vector};
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    /// Write position and columns.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    pub fn serialize<S: Serializer>(frame: &Frame, serializer: S) -> Result<S::Ok, S::Error> {
+        let axes: [[f64; 3]; 4] =
+            [frame.position.into(), frame.x().into(), frame.y().into(), frame.z().into()];
+        axes.serialize(serializer)
+    }
+
+    /// Read position and columns.
+    ///
+    /// # Errors
+    /// Those of the deserializer.
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Frame, D::Error> {
+        let [position, x, y, z] = <[[f64; 3]; 4]>::deserialize(deserializer)?.map(Vector::from);
+        let rotation = Rotation::from_basis_unchecked(&[x, y, z]);
+        Ok(Frame { position, rotation })
+    }
+}
