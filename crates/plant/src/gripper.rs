@@ -8,6 +8,7 @@
 
 use rapier3d_f64::{math::Rotation, prelude::*};
 use rcs_core::{frame::Vector as Inches, interface::device::GripSensors};
+use serde::{Deserialize, Serialize};
 
 use crate::{
     convert::{KILOGRAMS_PER_POUND, inches, metres, newtons, on_the_side_of, to_inches},
@@ -19,7 +20,6 @@ use crate::{
     scene::{PALM, groups},
     squeeze::Pads,
 };
-use serde::{Deserialize, Serialize};
 
 /// Fingers farther than this from what would block them are free, in.
 const FREE_GAP: f64 = 0.001;

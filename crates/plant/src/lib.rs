@@ -63,7 +63,10 @@ pub mod squeeze;
 pub mod t3;
 pub mod vise;
 
-pub use cell::{Cell, CellError, CellEvent, Link, Placement, WorkstationAction, WorkstationError, part_link};
+pub use cell::{
+    Cell, CellError, CellEvent, Link, Placement, RestoreError, SaveError, WorkstationAction,
+    WorkstationError, part_link,
+};
 pub use description::CellDescription;
 pub use joystick::{BoxAction, BoxButton};
 pub use part::PartState;

@@ -7,6 +7,7 @@ mod machining;
 mod outline;
 mod picture;
 mod placing;
+mod saving;
 mod workstation;
 
 use std::fmt;
@@ -29,6 +30,7 @@ use serde::{Deserialize, Serialize};
 use changing::Changer;
 use handling::Hand;
 pub use picture::{Link, part_link};
+pub use saving::{RestoreError, SaveError};
 pub use workstation::{Placement, WorkstationAction, WorkstationError};
 
 use crate::{

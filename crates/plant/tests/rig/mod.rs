@@ -1,6 +1,9 @@
 //! A rig that leads the arm by hand: straight lines of the tool frame, and the gripper's valves, without a controller.
 #![allow(dead_code)]
 
+pub mod scenes;
+pub mod tape;
+
 use plant::{Cell, CellDescription, CellEvent, PartState, Placement, WorkstationAction};
 use rcs_core::{
     frame::{Frame, INCHES_PER_RADIAN, Vector, rotation_by, rotation_vector},
@@ -9,6 +12,7 @@ use rcs_core::{
     movetable::{Line, Movetable, System},
     pose::Pose,
 };
+use tape::{Beat, Tape};
 
 pub const CELL: &str = include_str!("../../../../data/cell.toml");
 
@@ -34,6 +38,11 @@ pub struct Rig {
     pub inputs: DeviceInputs,
     pub log: Vec<CellEvent>,
     pub count: u64,
+    pub description: CellDescription,
+    /// What the cell is given, if the rig keeps that.
+    pub tape: Option<Tape>,
+    /// For the tick to come.
+    beat: Beat,
     at: Frame,
 }
 
@@ -50,17 +59,33 @@ impl Rig {
     pub fn new(description: &CellDescription, seed: u64) -> Self {
         let cell = Cell::new(description, seed).unwrap();
         let (inputs, at) = (cell.inputs(), T3.forward(&cell.joints()));
-        Self { cell, outputs: DeviceOutputs::default(), inputs, log: Vec::new(), count: 0, at }
+        let (outputs, beat, description) = (DeviceOutputs::default(), Beat::default(), description.clone());
+        Self { cell, outputs, inputs, log: Vec::new(), count: 0, description, tape: None, beat, at }
+    }
+
+    /// A rig that keeps what it gives to the cell.
+    pub fn taped(description: &CellDescription, seed: u64) -> Self {
+        Self { tape: Some(Tape::default()), ..Self::new(description, seed) }
+    }
+
+    /// Do something beside the robot, on tape.
+    pub fn work(&mut self, action: WorkstationAction) {
+        self.cell.workstation(&action).unwrap();
+        self.beat.actions.push(action);
     }
 
     pub fn place(&mut self, part: &str, sector: u16, x: f64, y: f64, angle: f64) {
         let placement = Placement::At { x, y, angle };
         let action = WorkstationAction::Place { part: part.into(), unit: "UNIT_1".into(), sector, placement };
-        self.cell.workstation(&action).unwrap();
+        self.work(action);
     }
 
     pub fn tick(&mut self) {
         self.inputs = self.cell.step(&self.outputs);
+        let beat = Beat { outputs: self.outputs, ..std::mem::take(&mut self.beat) };
+        if let Some(tape) = &mut self.tape {
+            tape.note(beat, &self.cell);
+        }
         self.log.extend(self.cell.events());
         self.count += 1;
     }
@@ -94,6 +119,7 @@ impl Rig {
         if let Err(error) = self.cell.drive(&plate) {
             panic!("{error} at {tool:?}");
         }
+        self.beat.plate = Some(plate);
     }
 
     /// Lead the tool and wait until the servos have caught up.
@@ -181,7 +207,7 @@ impl Rig {
     }
 
     pub fn vise(&mut self, action: WorkstationAction) {
-        self.cell.workstation(&action).unwrap();
+        self.work(action);
         while self.cell.workstation_busy() {
             self.tick();
         }

@@ -1,0 +1,162 @@
+//! A cell as bytes, and its fingerprint.
+//!
+//! What is saved is everything that the next tick depends on: all bodies, joints and contacts with what the solver
+//! remembers of them, all devices, the noise of the sensors, and the events that nobody has asked for. A cell that was
+//! restored goes on bit for bit as the one that was saved would have. What stands still is built anew from the
+//! description, which must be the same.
+//!
+//! ```text
+//! RCSCELL\0   version u32   length u64   digest u64   the state, in postcard
+//! ```
+//! All numbers little-endian; length and digest are those of the state.
+
+use rcs_core::digest::Digest;
+
+use super::Cell;
+use crate::{
+    description::CellDescription,
+    scene::{Obstacle, furniture},
+};
+
+/// What every saved cell begins with.
+const MAGIC: [u8; 8] = *b"RCSCELL\0";
+/// Version of the saved state: to be raised with every change of what a cell consists of.
+const VERSION: u32 = 1;
+/// Bytes before the state.
+const HEADER: usize = 28;
+
+/// Why a cell cannot be saved.
+#[derive(Debug, thiserror::Error)]
+#[error("the state of the cell cannot be written: {0}")]
+pub struct SaveError(#[from] postcard::Error);
+
+/// Why bytes are not a cell that can go on.
+#[derive(Debug, PartialEq, thiserror::Error)]
+pub enum RestoreError {
+    /// They begin with something else.
+    #[error("this is not a saved cell: it does not begin with RCSCELL")]
+    Foreign,
+    /// They were written by another version of the program.
+    #[error("this cell was saved in version {found} of the format, expected version {VERSION}")]
+    Version {
+        /// The version in the header.
+        found: u32,
+    },
+    /// There are fewer or more than the header says.
+    #[error("a saved cell of {expected} bytes was expected, found {found}")]
+    Length {
+        /// Bytes that the header asks for; those of the header itself if not even that is there.
+        expected: u64,
+        /// Bytes that are there.
+        found: u64,
+    },
+    /// Some of them have changed.
+    #[error("the saved cell is damaged: its digest is {found:016x}, expected {expected:016x}")]
+    Damaged {
+        /// The digest in the header.
+        expected: u64,
+        /// That of the bytes.
+        found: u64,
+    },
+    /// They are undamaged and still no state of a cell: written by a program that should have raised the version.
+    #[error("the saved cell cannot be read: {0}")]
+    Unreadable(#[from] postcard::Error),
+    /// The cell that was saved was built from another description.
+    #[error("the cell was saved from another description than the one given")]
+    OtherDescription,
+}
+
+impl Cell {
+    /// The whole state as bytes, for [`Cell::restore`].
+    ///
+    /// # Errors
+    /// [`SaveError`] if the state is beyond what the format can hold.
+    pub fn save(&self) -> Result<Vec<u8>, SaveError> {
+        let mut bytes = Vec::with_capacity(256 * 1024);
+        bytes.extend([0; HEADER]);
+        let mut bytes = postcard::to_extend(self, bytes)?;
+        let (header, state) = bytes.split_at_mut(HEADER);
+        let length = state.len() as u64;
+        let fields: [&[u8]; 4] =
+            [&MAGIC, &VERSION.to_le_bytes(), &length.to_le_bytes(), &digest_of(state).to_le_bytes()];
+        header.copy_from_slice(&fields.concat());
+        Ok(bytes)
+    }
+
+    /// The cell that was saved, built from `description` as the saved one was.
+    ///
+    /// # Errors
+    /// [`RestoreError`] if the bytes are not such a cell, whole and undamaged.
+    pub fn restore(description: &CellDescription, bytes: &[u8]) -> Result<Self, RestoreError> {
+        let mut cell: Self = postcard::from_bytes(state_in(bytes)?)?;
+        if cell.description != *description {
+            return Err(RestoreError::OtherDescription);
+        }
+        cell.furniture = furniture(description);
+        cell.obstacles = cell.furniture.iter().map(Obstacle::from).collect();
+        Ok(cell)
+    }
+
+    /// Fingerprint of where everything in the cell is, how it moves, and what all devices are at: the same in two runs as
+    /// long as they are the same.
+    ///
+    /// # Panics
+    /// If a device held a sequence that does not know its length, which is a fault of this crate.
+    #[must_use]
+    pub fn digest(&self) -> u64 {
+        let mut bytes = Vec::with_capacity(16 * 1024);
+        for (_, body) in self.world.bodies.iter() {
+            let (at, turn) = (body.translation().to_array(), body.rotation().to_array());
+            let (speed, spin) = (body.linvel().to_array(), body.angvel().to_array());
+            let numbers = at.iter().chain(&turn).chain(&speed).chain(&spin);
+            bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
+        }
+        let robot = (&self.arm, &self.t3, &self.changer, &self.grippers, &self.camera, &self.joystick);
+        let beside = (&self.drum, &self.pedestal, &self.vise, &self.parts, self.next_part, &self.clearance);
+        let noise = (&self.gripper_noise, &self.pedestal_noise, &self.force_noise, &self.placement_noise);
+        let bytes = postcard::to_extend(&(robot, beside, noise, &self.events), bytes)
+            .expect("postcard writes all values but sequences of unknown length");
+        digest_of(&bytes)
+    }
+}
+
+/// The state behind a header that fits it.
+fn state_in(bytes: &[u8]) -> Result<&[u8], RestoreError> {
+    let known = MAGIC.len().min(bytes.len());
+    if bytes[..known] != MAGIC[..known] {
+        return Err(RestoreError::Foreign);
+    }
+    let found = bytes.len() as u64;
+    let mut rest = bytes.get(MAGIC.len()..).unwrap_or_default();
+    let too_short = RestoreError::Length { expected: HEADER as u64, found };
+    let (Some(version), Some(length), Some(expected)) = (take(&mut rest), take(&mut rest), take(&mut rest))
+    else {
+        return Err(too_short);
+    };
+    let version = u32::from_le_bytes(version);
+    if version != VERSION {
+        return Err(RestoreError::Version { found: version });
+    }
+    let length = u64::from_le_bytes(length);
+    if rest.len() as u64 != length {
+        return Err(RestoreError::Length { expected: length.saturating_add(HEADER as u64), found });
+    }
+    let (expected, found) = (u64::from_le_bytes(expected), digest_of(rest));
+    if expected != found {
+        return Err(RestoreError::Damaged { expected, found });
+    }
+    Ok(rest)
+}
+
+/// The next `N` bytes.
+fn take<const N: usize>(rest: &mut &[u8]) -> Option<[u8; N]> {
+    let (here, after) = rest.split_first_chunk::<N>()?;
+    *rest = after;
+    Some(*here)
+}
+
+fn digest_of(bytes: &[u8]) -> u64 {
+    let mut digest = Digest::new();
+    digest.add(bytes);
+    digest.value()
+}

@@ -1,0 +1,77 @@
+//! Scenes full of contacts, on tape: what determinism is tested and speed is measured with.
+
+use plant::{
+    CellDescription, Placement,
+    WorkstationAction::{self, DrumGrip, DrumRelease, DrumTool, ViseClose, ViseOpen, VisePartial},
+};
+use rcs_core::{frame::Vector, interface::device::JawValves, pose::Pose};
+
+use super::{CELL, FIX_V1, FX1, HOLD, Rig, SEAT, description};
+
+/// Poses of the cell proposal, §4.
+const TOOL_V1: Pose =
+    Pose { wrist: [2757, -2683, 2321], tool: [5597, -3497, 1800], finger: [5987, -1052, 105] };
+const TOOL_SAFE: Pose =
+    Pose { wrist: [5298, -2322, 1559], tool: [8296, -2431, 1585], finger: [8357, -1417, -1238] };
+
+/// The cell with the tool gripper on the robot.
+pub fn with_tool_gripper() -> CellDescription {
+    CellDescription::from_toml(&CELL.replace("mounted = \"parts\"", "mounted = \"tool\"")).unwrap()
+}
+
+/// Four blanks in a tray, three of them where the seed has them; the fourth is picked, carried to the vise, dropped onto its
+/// ledge, gripped there while the vise closes, held, and pushed to the back.
+pub fn clamping(seed: u64) -> Rig {
+    let mut rig = Rig::taped(&description(), seed);
+    for sector in 1..=3 {
+        let (part, unit, placement) = ("LINKBAR1_BH".into(), "UNIT_1".into(), Placement::Random);
+        rig.work(WorkstationAction::Place { part, unit, sector, placement });
+    }
+    rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 20.0);
+    rig.vise(VisePartial);
+    rig.pick(0.0, 0.0, 20.0, 30.0);
+    rig.carry();
+    rig.insert();
+    rig.open(0.9);
+    rig.ticks(10);
+    rig.close(30.0);
+    rig.vise(ViseClose);
+    rig.open(3.5);
+    rig.go(Rig::fixture(&FX1, 8.0, 0.0), 4.0);
+    rig.go(Rig::fixture(&HOLD, 5.0, 0.0), 4.0);
+    rig.close(40.0);
+    rig.go_and_stop(Rig::fixture(&HOLD, 0.0, 0.0), 0.5);
+    rig.vise(ViseOpen);
+    rig.go_and_stop(Rig::fixture(&SEAT, 0.0, 0.0), 0.5);
+    rig.ticks(25);
+    rig
+}
+
+/// A tool is gripped in the drum, drawn half out against the detents, pushed back, and left to the fingers of the drum.
+pub fn drumming(seed: u64) -> Rig {
+    let mut rig = Rig::taped(&with_tool_gripper(), seed);
+    let drum = rig.description.drum.pose.frame().unwrap();
+    let at = |x: f64| drum.shifted(Vector::new(x, 0.0, 0.0));
+    rig.work(DrumTool { part: "ENDMILL-1".into() });
+    for via in [FIX_V1, TOOL_V1, TOOL_SAFE] {
+        rig.go(via.to_frame().unwrap(), 10.0);
+    }
+    jaws(&mut rig, true);
+    rig.go(at(-3.0), 4.0);
+    rig.go_and_stop(at(0.0), 1.0);
+    jaws(&mut rig, false);
+    rig.work(DrumRelease);
+    rig.go_and_stop(at(-0.2), 0.1);
+    rig.go_and_stop(at(0.0), 0.1);
+    rig.work(DrumGrip);
+    jaws(&mut rig, true);
+    rig.go_and_stop(at(-3.0), 2.0);
+    rig
+}
+
+fn jaws(rig: &mut Rig, open: bool) {
+    rig.outputs.tool_grip = JawValves { open, close: !open };
+    rig.ticks(60);
+    rig.outputs.tool_grip = JawValves::default();
+    rig.ticks(5);
+}

@@ -1,0 +1,49 @@
+//! What a cell was given in each tick and what became of it, so that a cell that was restored can be given the same.
+
+use plant::{Cell, WorkstationAction};
+use rcs_core::{frame::Frame, interface::device::DeviceOutputs};
+
+/// What the cell was given for a tick.
+#[derive(Clone, Debug, Default)]
+pub struct Beat {
+    pub actions: Vec<WorkstationAction>,
+    /// The end-plate frame to which the arm was led.
+    pub plate: Option<Frame>,
+    pub outputs: DeviceOutputs,
+}
+
+impl Beat {
+    /// Give it to another cell.
+    pub fn play(&self, cell: &mut Cell) {
+        if let Some(plate) = &self.plate {
+            cell.drive(plate).unwrap();
+        }
+        for action in &self.actions {
+            cell.workstation(action).unwrap();
+        }
+        cell.step(&self.outputs);
+        cell.events();
+    }
+}
+
+/// All ticks of a run.
+#[derive(Debug, Default)]
+pub struct Tape {
+    pub beats: Vec<Beat>,
+    /// Digest of the cell after each tick.
+    pub digests: Vec<u64>,
+}
+
+impl Tape {
+    pub fn note(&mut self, beat: Beat, cell: &Cell) {
+        self.beats.push(beat);
+        self.digests.push(cell.digest());
+    }
+
+    /// One number for all ticks.
+    pub fn chain(&self) -> u64 {
+        let mut chain = rcs_core::digest::Digest::new();
+        self.digests.iter().for_each(|digest| chain.add(&digest.to_le_bytes()));
+        chain.value()
+    }
+}
