@@ -45,6 +45,7 @@ pub mod clearance;
 pub mod convert;
 pub mod description;
 pub mod drum;
+pub mod fingerprint;
 pub mod force;
 pub mod friction;
 pub mod gripper;

@@ -15,6 +15,7 @@ use rcs_core::digest::Digest;
 use super::Cell;
 use crate::{
     description::CellDescription,
+    fingerprint,
     scene::{Obstacle, furniture},
 };
 
@@ -101,21 +102,22 @@ impl Cell {
     /// long as they are the same.
     ///
     /// # Panics
-    /// If a device held a sequence that does not know its length, which is a fault of this crate.
+    /// If a device refuses to be serialised, which is a fault of this crate.
     #[must_use]
     pub fn digest(&self) -> u64 {
-        let mut bytes = Vec::with_capacity(16 * 1024);
+        let mut bytes = Vec::with_capacity(8 * 1024);
         for (_, body) in self.world.bodies.iter() {
             let (at, turn) = (body.translation().to_array(), body.rotation().to_array());
             let (speed, spin) = (body.linvel().to_array(), body.angvel().to_array());
-            let numbers = at.iter().chain(&turn).chain(&speed).chain(&spin);
-            bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
+            for number in at.iter().chain(&turn).chain(&speed).chain(&spin) {
+                bytes.extend_from_slice(&number.to_le_bytes());
+            }
         }
         let robot = (&self.arm, &self.t3, &self.changer, &self.grippers, &self.camera, &self.joystick);
         let beside = (&self.drum, &self.pedestal, &self.vise, &self.parts, self.next_part, &self.clearance);
         let noise = (&self.gripper_noise, &self.pedestal_noise, &self.force_noise, &self.placement_noise);
-        let bytes = postcard::to_extend(&(robot, beside, noise, &self.events), bytes)
-            .expect("postcard writes all values but sequences of unknown length");
+        fingerprint::append(&(robot, beside, noise, &self.events), &mut bytes)
+            .expect("devices are plain values, which can be written down");
         digest_of(&bytes)
     }
 }

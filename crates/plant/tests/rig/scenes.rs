@@ -4,7 +4,11 @@ use plant::{
     CellDescription, Placement,
     WorkstationAction::{self, DrumGrip, DrumRelease, DrumTool, ViseClose, ViseOpen, VisePartial},
 };
-use rcs_core::{frame::Vector, interface::device::JawValves, pose::Pose};
+use rcs_core::{
+    frame::{Frame, Vector},
+    interface::device::JawValves,
+    pose::Pose,
+};
 
 use super::{CELL, FIX_V1, FX1, HOLD, Rig, SEAT, description};
 
@@ -47,25 +51,41 @@ pub fn clamping(seed: u64) -> Rig {
     rig
 }
 
-/// A tool is gripped in the drum, drawn half out against the detents, pushed back, and left to the fingers of the drum.
-pub fn drumming(seed: u64) -> Rig {
+/// Tool point on the axis of the drum, in from its place.
+fn at_drum(rig: &Rig, x: f64) -> Frame {
+    rig.description.drum.pose.frame().unwrap().shifted(Vector::new(x, 0.0, 0.0))
+}
+
+/// A tool in the drum that the robot has gripped; the drum has let go of it.
+fn gripped_in_drum(seed: u64) -> Rig {
     let mut rig = Rig::taped(&with_tool_gripper(), seed);
-    let drum = rig.description.drum.pose.frame().unwrap();
-    let at = |x: f64| drum.shifted(Vector::new(x, 0.0, 0.0));
     rig.work(DrumTool { part: "ENDMILL-1".into() });
     for via in [FIX_V1, TOOL_V1, TOOL_SAFE] {
         rig.go(via.to_frame().unwrap(), 10.0);
     }
     jaws(&mut rig, true);
-    rig.go(at(-3.0), 4.0);
-    rig.go_and_stop(at(0.0), 1.0);
+    rig.go(at_drum(&rig, -3.0), 4.0);
+    rig.go_and_stop(at_drum(&rig, 0.0), 1.0);
     jaws(&mut rig, false);
     rig.work(DrumRelease);
-    rig.go_and_stop(at(-0.2), 0.1);
-    rig.go_and_stop(at(0.0), 0.1);
+    rig
+}
+
+/// A tool is gripped in the drum, drawn half out against the detents, pushed back, and left to the fingers of the drum.
+pub fn drumming(seed: u64) -> Rig {
+    let mut rig = gripped_in_drum(seed);
+    rig.go_and_stop(at_drum(&rig, -0.2), 0.1);
+    rig.go_and_stop(at_drum(&rig, 0.0), 0.1);
     rig.work(DrumGrip);
     jaws(&mut rig, true);
-    rig.go_and_stop(at(-3.0), 2.0);
+    rig.go_and_stop(at_drum(&rig, -3.0), 2.0);
+    rig
+}
+
+/// A tool out of the drum, in the tool gripper.
+pub fn with_tool_in_hand(seed: u64) -> Rig {
+    let mut rig = gripped_in_drum(seed);
+    rig.go_and_stop(at_drum(&rig, -6.0), 0.5);
     rig
 }
 

@@ -1,0 +1,29 @@
+//! Digests of all ticks of two scenes full of contacts, one line each: `cargo run --release --example world_hash [SEED]`.
+//!
+//! The lines are the same in every run, in every process, and with and without `--release` (which takes minutes: physics
+//! without optimisation is 200 times slower). `--ticks` prints the digest of every tick, so that two outputs can be compared
+//! line by line where they should ever differ.
+
+#[path = "../tests/rig/mod.rs"]
+mod rig;
+
+use rig::{Rig, scenes};
+
+/// A scene by its seed.
+type Scene = fn(u64) -> Rig;
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let seed = words.iter().find_map(|word| word.parse().ok()).unwrap_or(1);
+    let each = words.iter().any(|word| word == "--ticks");
+    let scenes: [(&str, Scene); 2] = [("clamping", scenes::clamping), ("drumming", scenes::drumming)];
+    for (name, scene) in scenes {
+        let Some(tape) = scene(seed).tape else { continue };
+        if each {
+            for (tick, digest) in (1..).zip(&tape.digests) {
+                println!("{name} {tick} {digest:016x}");
+            }
+        }
+        println!("{name}, seed {seed}: {} ticks, {:016x}", tape.digests.len(), tape.chain());
+    }
+}
