@@ -141,22 +141,28 @@ fn grip_block(weight: f64, force: f64) -> (Rig, Frame) {
 }
 
 /// Between pads with the force F each and friction mu a part hangs as long as it weighs less than 2 F mu, and slips out
-/// beyond: the pull is its weight, lifted so slowly that acceleration adds less than a hundredth.
+/// beyond: the pull is its weight; the rounded words by which it is lifted add up to 2 % in jolts. The air adds force in ticks, so
+/// F is what the fingers have then, and weights are tried across the limit.
 #[test]
 fn a_gripped_part_slips_at_twice_force_times_friction() {
     let friction = description().gripper.parts.friction;
     for force in [20.0, 45.0, 70.0] {
-        // The air adds force in steps of a quarter of a pound: what counts is what the fingers have.
-        let limit = 2.0 * grip_block(1.0, force).0.cell.fingers().1 * friction;
-        for (share, holds) in [(0.96, true), (1.04, false)] {
-            let (mut rig, grip) = grip_block(share * limit, force);
-            let share = share * limit / (2.0 * rig.cell.fingers().1 * friction);
-            assert!((0.94..0.985).contains(&share) || (1.015..1.06).contains(&share), "{share}");
+        let (mut held, mut lost) = (0, 0);
+        for step in 0..9 {
+            let weight = 2.0 * force * friction * (0.88 + 0.04 * f64::from(step));
+            let (mut rig, grip) = grip_block(weight, force);
+            let share = weight / (2.0 * rig.cell.fingers().1 * friction);
+            if (share - 1.0).abs() < 0.03 {
+                continue;
+            }
             rig.go_and_stop(grip.shifted(Vector::new(-1.0, 0.0, 0.0)), 0.2);
             let slipped = rig.log.iter().any(|event| matches!(event, CellEvent::Slipped { .. }));
-            assert_eq!(!slipped, holds, "{limit} lb, {share} of it: {:?}", rig.log);
-            assert_eq!(rig.part().position[2] > -15.0, holds, "{:?}", rig.part());
+            assert_eq!(slipped, share > 1.0, "{force} lb, {share} of the limit: {:?}", rig.log);
+            let risen = rig.part().position[2] > -15.0;
+            assert_eq!(risen, share < 1.0, "{force} lb, {share} of the limit: {:?}", rig.part());
+            (held, lost) = if slipped { (held, lost + 1) } else { (held + 1, lost) };
         }
+        assert!(held >= 2 && lost >= 2, "{force} lb: {held} weights held, {lost} lost");
     }
 }
 
