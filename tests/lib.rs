@@ -79,6 +79,24 @@ impl Scratch {
         fs::write(self.file(job), text.replacen(from, to, 1)).expect("the job can be written");
     }
 
+    /// Let the run have the faults of a text.
+    ///
+    /// # Panics
+    /// If they cannot be written.
+    pub fn faults(&self, text: &str) {
+        fs::write(self.file(FAULTS), text).expect("the faults can be written");
+    }
+
+    /// Let the run have the faults of a file of the data directory.
+    ///
+    /// # Panics
+    /// If there is no such file.
+    pub fn faults_of(&self, name: &str) {
+        let path = root().join("data/faults").join(name).with_extension("toml");
+        let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        self.faults(&text);
+    }
+
     /// Copy the task data, and replace `from` by `to` in one of their files.
     ///
     /// # Panics
@@ -146,6 +164,9 @@ impl Outcome {
     }
 }
 
+/// Faults of a run, if its directory has such a file.
+const FAULTS: &str = "faults.toml";
+
 /// The command that runs a job in a directory: equal arguments, so that equal runs write equal logs. Task data of the
 /// directory's own come before those of the repository.
 fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
@@ -158,6 +179,9 @@ fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
         .arg("--data")
         .arg(data)
         .current_dir(&directory.0);
+    if directory.file(FAULTS).is_file() {
+        command.args(["--faults", FAULTS]);
+    }
     command
 }
 

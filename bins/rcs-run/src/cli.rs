@@ -17,7 +17,8 @@ Examples:
   rcs-run                              run the linkbar as fast as the cell can be simulated
   rcs-run linkbar --clock real         the same, one tick every 40 ms
   rcs-run my.job --seed 7 --json       a job file, other noise, the result as JSON
-  rcs-run --faults bad-line.toml       the same line, with the faults of a plan
+  rcs-run --faults data/faults/air-lost.toml
+                                       the air fails in the middle of the job
   rcs-run link-test --robot serial:/dev/ttyUSB0
                                        try the line to a robot; nothing moves
   rcs-run --robot serial:/dev/ttyUSB0 --clock real
@@ -74,7 +75,7 @@ pub struct RunArguments {
     /// for cables of three wires). A robot at a port needs --clock real.
     #[arg(long, value_name = "ROBOT", default_value = "sim", value_parser = robot)]
     pub robot: Robot,
-    /// Faults to inject into the line to the simulated robot: a plan in TOML
+    /// Faults of the cell and of the line to the simulated robot, on schedule or by chance (TOML; data/README.md)
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
     /// How processes are spread over boards: one, all in one thread

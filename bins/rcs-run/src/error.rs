@@ -2,9 +2,8 @@
 
 use std::{io, path::PathBuf};
 
-use depc::fault::text::PlanFileError;
 use executive::{memory::SharedMemoryError, serial::OpenError};
-use plant::{CellError, description::DescriptionError};
+use plant::{CellError, description::DescriptionError, fault::text::FaultFileError};
 use record::RecordError;
 use taskdata::load::Report;
 
@@ -63,11 +62,11 @@ pub enum Error {
     #[error("a robot at a serial port lives in real time: add --clock real")]
     NotInRealTime,
     /// Faults for a line that has its own.
-    #[error("--faults is for the line to the simulated robot; a serial port has faults of its own")]
+    #[error("the file has faults of the line to the simulated robot; a serial port has faults of its own")]
     FaultsAtPort,
-    /// The fault plan cannot be used.
+    /// The file of faults cannot be used.
     #[error("the faults cannot be injected: {0}")]
-    Faults(#[from] PlanFileError),
+    Faults(#[from] FaultFileError),
     /// The port cannot be opened.
     #[error("the robot cannot be reached: {0}")]
     Port(#[from] OpenError),

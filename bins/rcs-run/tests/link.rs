@@ -294,7 +294,10 @@ fn a_pulled_cable_ends_the_run_with_its_reason() {
 fn what_does_not_go_together_is_refused_at_once() {
     for (arguments, says) in [
         (&["--robot", "serial:/dev/none", "--clock", "real"][..], "no serial port /dev/none"),
-        (&["--robot", "serial:/dev/none", "--clock", "real", "--faults", "x.toml"], "--faults"),
+        (
+            &["--robot", "serial:/dev/none", "--clock", "real", "--faults", "data/faults/noisy-line.toml"],
+            "a serial port has faults of its own",
+        ),
         (&["--faults", "/none.toml"], "/none.toml"),
         (&["link-test", "--robot", "sim"], "serial:PATH"),
     ] {

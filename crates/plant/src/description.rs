@@ -5,6 +5,7 @@
 //! fulfil, and reports all faults at once, each with the name of the entry, what was expected and what was found.
 
 mod check;
+mod sensing;
 mod tooling;
 
 use std::{fmt, path::Path};
@@ -16,6 +17,7 @@ use rcs_core::{
 };
 use serde::{Deserialize, Serialize};
 
+pub use sensing::SensorModels;
 pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChange};
 
 /// Why a cell description cannot be used.
@@ -90,6 +92,8 @@ pub struct CellDescription {
     pub drum: Drum,
     /// The Active Pedestal.
     pub pedestal: Pedestal,
+    /// What kinds of sensors have in common.
+    pub sensors: SensorModels,
     /// The camera on the wrist.
     pub camera: Camera,
     /// The programmable vise.
@@ -216,6 +220,8 @@ pub struct Pedestal {
     pub position: [f64; 3],
     /// Direction of the radial line from the robot, about +Z from +X, degrees.
     pub azimuth: f64,
+    /// Name of the fixture that is its stand: not bolted to the floor, and so in danger of being moved (II.1.2.3).
+    pub stand: String,
     /// Stiffness of stand, hand and fingers together at the fingertips, lb/in.
     pub stiffness: f64,
     /// The hand.
@@ -270,6 +276,16 @@ pub struct Camera {
     pub shape_noise: f64,
     /// How much a measured length may differ from that of the part asked for, in.
     pub shape_tolerance: f64,
+    /// Share of a face that must be seen for the part to be noticed.
+    pub least_share: f64,
+    /// Parts with no more than this between them are one blob in the picture, in.
+    pub resolution: f64,
+    /// Exposures in the order of the variations: least and greatest reflectance that each shows as it should.
+    pub exposures: Vec<[f64; 2]>,
+    /// What brighter parts look longer by, in.
+    pub bloom: f64,
+    /// Chance that a part is not recognised though all is well.
+    pub failure: f64,
     /// Ticks until the answer to a fast flood.
     pub flood_ticks: u32,
     /// Ticks until the answer to a second picture.
@@ -427,9 +443,16 @@ pub struct PartType {
     /// Vision id (VII.7.6); 0 for none.
     #[serde(default)]
     pub vision_id: u16,
+    /// Share of the light that it throws back.
+    #[serde(default = "half")]
+    pub reflectance: f64,
     /// It is a tool of the machine: it fits into the drum, its X along the drum's.
     #[serde(default)]
     pub tool: bool,
+}
+
+const fn half() -> f64 {
+    0.5
 }
 
 impl Gripper {

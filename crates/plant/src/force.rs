@@ -6,12 +6,10 @@
 
 use rcs_core::{
     frame::Vector,
-    interface::device::{
-        ADC_FULL_SCALE, FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, MOMENT_COUNTS_PER_IN_LB,
-    },
+    interface::device::{FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, MOMENT_COUNTS_PER_IN_LB},
 };
 
-use crate::{description::ForceGages, noise::Noise};
+use crate::{description::ForceGages, noise::Noise, sensor::Analog};
 
 /// A force and a moment about the tool point, in the axes of the tool: lb and in·lb.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,9 +46,8 @@ pub fn read(gages: &ForceGages, load: &Wrench, down: &Vector, noise: &mut Noise)
     let weight = down * gages.weight;
     let all = load.and(&Wrench::at(&Vector::new(-gages.weight_at, 0.0, 0.0), weight, Vector::zeros()));
     let mut counts = |value: f64, per_unit: i32, offset: f64| {
-        let reading =
-            f64::from(FORCE_ZERO) + value * f64::from(per_unit) + offset + noise.within(gages.noise);
-        libm::round(reading).clamp(0.0, f64::from(ADC_FULL_SCALE)) as u16
+        let offset = f64::from(FORCE_ZERO) + offset;
+        Analog { offset, scale: f64::from(per_unit), noise: gages.noise }.counts(value, noise)
     };
     // Tool X, Y, Z are sensor Z, -Y, X.
     let [x, y, z, moment] = gages.offsets;

@@ -18,6 +18,7 @@ use crate::{
     jaws::Supply,
     noise::Noise,
     scene::{PALM, groups},
+    sensor::Analog,
     squeeze::Pads,
 };
 
@@ -293,9 +294,9 @@ impl Gripper {
     /// Read the sensors; `beams` are the broken light beams.
     pub fn sensors(&self, noise: &mut Noise, beams: u8) -> GripSensors {
         let sensors = &self.description.sensors;
-        let mut counts = |value: f64| Noise::counts(value + noise.within(sensors.noise));
-        let potentiometer =
-            counts(sensors.potentiometer_offset + sensors.potentiometer_scale * self.air.opening());
+        let analog = |offset, scale| Analog { offset, scale, noise: sensors.noise };
+        let potentiometer = analog(sensors.potentiometer_offset, sensors.potentiometer_scale)
+            .counts(self.air.opening(), noise);
         if sensors.strain_scales == [0.0; 2] {
             return GripSensors { potentiometer, ..GripSensors::default() };
         }
@@ -303,8 +304,8 @@ impl Gripper {
         let [left_scale, right_scale] = sensors.strain_scales;
         GripSensors {
             potentiometer,
-            strain_left: counts(left_offset + left_scale * self.air.force()),
-            strain_right: counts(right_offset + right_scale * self.air.force()),
+            strain_left: analog(left_offset, left_scale).counts(self.air.force(), noise),
+            strain_right: analog(right_offset, right_scale).counts(self.air.force(), noise),
             beams,
         }
     }

@@ -159,22 +159,22 @@ impl Holster {
         self.under_lips(offset) && offset.up > LIP_PLAY
     }
 
-    /// Bits of [`rcs_core::interface::device::HolsterSensors`] for one gripper, wherever it is.
+    /// How far the ears of a gripper, wherever it is, are beyond the range of the four sensors in the order of the bits of
+    /// [`rcs_core::interface::device::HolsterSensors`], in; negative inside of it.
     #[must_use]
-    pub fn sensors(&self, gripper: &Frame, ears: &[Frame; 2]) -> u8 {
+    pub fn beyond(&self, gripper: &Frame, ears: &[Frame; 2]) -> [f64; 4] {
         let Holsters { large_range, small_range, seat, .. } = self.description;
         let here = self.frame.inverse();
-        ears.iter().enumerate().fold(0, |bits, (side, ear)| {
+        let [left, right] = ears.map(|ear| {
             let rest = Vector::new(ear.position.x, ear.position.y, 0.0);
-            let away = here.compose(&gripper.compose(ear)).position - rest;
-            let large = (-large_range..=large_range).contains(&-away.x)
-                && away.y.abs() <= large_range
-                && (-large_range..=seat + large_range).contains(&away.z);
-            let small = away.x.abs() <= small_range
-                && away.y.abs() <= 2.0 * small_range
-                && (away.z - seat).abs() <= small_range;
-            bits | (u8::from(large) << side) | (u8::from(small) << (side + 2))
-        })
+            let away = here.compose(&gripper.compose(&ear)).position - rest;
+            let most = |axes: [f64; 3]| axes.into_iter().fold(f64::NEG_INFINITY, f64::max);
+            let along = (-away.z).max(away.z - seat);
+            let large = most([away.x.abs(), away.y.abs(), along]) - large_range;
+            let small = most([away.x.abs(), away.y.abs() / 2.0, (away.z - seat).abs()]) - small_range;
+            [large, small]
+        });
+        [left[0], right[0], left[1], right[1]]
     }
 
     /// Cheeks, lips and foot, world.
@@ -262,7 +262,8 @@ mod tests {
         let cell = cell();
         let holster = holster();
         let gripper = holster.gripper(&Perch { up, speed: 0.0, forward });
-        holster.sensors(&gripper, &ears(&cell.holsters, &cell.gripper.parts))
+        let beyond = holster.beyond(&gripper, &ears(&cell.holsters, &cell.gripper.parts));
+        beyond.iter().enumerate().fold(0, |bits, (bit, beyond)| bits | u8::from(*beyond <= 0.0) << bit)
     }
 
     #[test]

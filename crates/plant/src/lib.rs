@@ -33,6 +33,8 @@
 //!   and holds a tool as the vise does a part ([`drum`]);
 //! * parts on trays, ledge and floor are rapier's, with contacts made stiff enough for gaps of a millimetre.
 //!
+//! What can go wrong beside is in [`fault`]: it changes what passes between the cell and the controller.
+//!
 //! What cut hydraulics do to the arm (droop, jump, shot pin) belongs between [`arm::Arm`]'s command and its joints.
 
 #![forbid(unsafe_code)]
@@ -45,6 +47,7 @@ pub mod clearance;
 pub mod convert;
 pub mod description;
 pub mod drum;
+pub mod fault;
 pub mod fingerprint;
 pub mod force;
 pub mod friction;
@@ -59,6 +62,7 @@ pub mod part;
 pub mod pedestal;
 pub mod quick_change;
 pub mod scene;
+pub mod sensor;
 pub mod solid;
 pub mod squeeze;
 pub mod t3;

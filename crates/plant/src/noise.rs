@@ -2,7 +2,6 @@
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rcs_core::interface::device::ADC_FULL_SCALE;
 use serde::{Deserialize, Serialize};
 
 /// Which device draws from the stream.
@@ -18,6 +17,8 @@ pub enum Stream {
     Force = 5,
     /// Sensors of the Active Pedestal.
     Pedestal = 4,
+    /// The joint resolvers.
+    Resolvers = 6,
 }
 
 /// A stream of uniform noise.
@@ -28,8 +29,14 @@ impl Noise {
     /// The stream of a device for the seed of a run.
     #[must_use]
     pub fn new(seed: u64, stream: Stream) -> Self {
+        Self::numbered(seed, stream as u64)
+    }
+
+    /// The stream of a number, beyond those of the devices, for a seed.
+    #[must_use]
+    pub fn numbered(seed: u64, stream: u64) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
-        generator.set_stream(stream as u64);
+        generator.set_stream(stream);
         Self(generator)
     }
 
@@ -38,12 +45,6 @@ impl Noise {
         // 53 random bits make the fraction of an f64 in 0..1.
         let fraction = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         greatest * (2.0 * fraction - 1.0)
-    }
-
-    /// What a 12-bit converter makes of a value.
-    #[must_use]
-    pub fn counts(value: f64) -> u16 {
-        libm::round(value).clamp(0.0, f64::from(ADC_FULL_SCALE)) as u16
     }
 }
 

@@ -22,6 +22,7 @@ use crate::{
     gripper::Gripper,
     noise::Noise,
     scene::HAND,
+    sensor::Analog,
 };
 
 /// Steps of the motor for a degree.
@@ -142,8 +143,8 @@ impl Table {
 
     fn potentiometer(&self, noise: &mut Noise) -> u16 {
         let table = &self.description;
-        let counts = table.potentiometer_offset + table.potentiometer_scale * self.angle();
-        Noise::counts(counts + noise.within(table.noise))
+        let (offset, scale) = (table.potentiometer_offset, table.potentiometer_scale);
+        Analog { offset, scale, noise: table.noise }.counts(self.angle(), noise)
     }
 }
 

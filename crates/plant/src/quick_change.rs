@@ -48,13 +48,20 @@ impl Ring {
         self.place = (self.place + towards).clamp(0.0, 1.0);
     }
 
-    /// The sensor of the locked position sees the ring.
+    /// How far the ring is beyond the range of the sensors of the locked and the unlocked position, as a share of its way;
+    /// negative inside of it.
+    #[must_use]
+    pub fn beyond(&self) -> [f64; 2] {
+        [1.0 - SEEN - self.place, self.place - SEEN]
+    }
+
+    /// It is in its locked position.
     #[must_use]
     pub fn locked(&self) -> bool {
         self.place >= 1.0 - SEEN
     }
 
-    /// The sensor of the unlocked position sees the ring.
+    /// It is in its unlocked position.
     #[must_use]
     pub fn unlocked(&self) -> bool {
         self.place <= SEEN

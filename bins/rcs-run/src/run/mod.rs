@@ -299,6 +299,7 @@ impl Run {
             tick_us: self.runner.times().summary().into(),
             link: (&self.runner.memory().t3i.status.counters).into(),
             faults: self.robot.faults().map(FaultsResult::from),
+            cell_faults: self.workstation.cell.faults().into_iter().map(Into::into).collect(),
             port: self.robot.port().map(PortResult::from),
             digest: self.runner.digest().to_string(),
             parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),

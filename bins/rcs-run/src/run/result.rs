@@ -8,7 +8,7 @@ use std::{
 
 use depc::fault::{Counts, FaultKind};
 use executive::{data_base::Item, failure::Failure, histogram, hwsc::Record, serial::SerialCounts};
-use plant::PartState;
+use plant::{PartState, fault::Struck};
 use rcs_core::{
     interface::t3i::LinkCounters,
     tick::{TICK_MS, TICK_S},
@@ -97,6 +97,38 @@ impl fmt::Display for FaultsResult {
             separator = ", ";
         }
         Ok(())
+    }
+}
+
+/// A fault of the cell that happened.
+#[derive(Clone, Debug, Serialize)]
+pub struct CellFaultResult {
+    /// Which one of its file, from 1.
+    pub number: usize,
+    /// In words.
+    pub text: String,
+    /// How often it began.
+    pub times: u64,
+    /// The tick in which it began first.
+    pub first: u64,
+    /// The last tick in which it was there.
+    pub last: u64,
+}
+
+impl From<Struck> for CellFaultResult {
+    fn from(Struck { number, text, times, first, last }: Struck) -> Self {
+        Self { number, text, times, first, last }
+    }
+}
+
+impl fmt::Display for CellFaultResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}, ", self.number, self.text)?;
+        match self.times {
+            1 if self.first == self.last => write!(f, "in tick {}", self.first),
+            1 => write!(f, "ticks {} to {}", self.first, self.last),
+            times => write!(f, "{times} times, ticks {} to {}", self.first, self.last),
+        }
     }
 }
 
@@ -237,9 +269,12 @@ pub struct RunResult {
     pub tick_us: TickTimes,
     /// The link.
     pub link: LinkResult,
-    /// Faults of `--faults`.
+    /// Faults of the line of `--faults`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub faults: Option<FaultsResult>,
+    /// Faults of the cell that happened, in the order of the file; none without `--faults`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub cell_faults: Vec<CellFaultResult>,
     /// The serial port.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub port: Option<PortResult>,
@@ -312,6 +347,9 @@ impl fmt::Display for Page<'_> {
         )?;
         if let Some(faults) = &result.faults {
             writeln!(f, "faults     {faults}")?;
+        }
+        for fault in &result.cell_faults {
+            writeln!(f, "fault      {fault}")?;
         }
         if let Some(port) = &result.port {
             let TickTimes { p50, p99, max } = port.deviation_us;

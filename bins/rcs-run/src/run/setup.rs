@@ -5,9 +5,12 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use depc::fault::{Injector, Plan, text};
+use depc::fault::Injector;
 use executive::serial::SerialLine;
-use plant::{Cell, CellDescription};
+use plant::{
+    Cell, CellDescription,
+    fault::text::{self, FaultFile},
+};
 use taskdata::load::{Job, Report, Store};
 
 use super::robot::{Port, Robot};
@@ -36,7 +39,7 @@ pub struct Setup {
     pub description: CellDescription,
     /// The cell.
     pub cell: Cell,
-    /// The fault plan as written; empty without one.
+    /// The file of faults as written; empty without one.
     pub faults_text: String,
     /// The other end of the line.
     pub robot: Robot,
@@ -50,7 +53,9 @@ impl Setup {
     /// # Errors
     /// [`Error`], with all errors of the data.
     pub fn load(arguments: &RunArguments) -> Result<Self, Error> {
-        let (plan, faults_text) = plan(arguments)?;
+        if arguments.robot != cli::Robot::Sim && arguments.clock != ClockKind::Real {
+            return Err(Error::NotInRealTime);
+        }
         let data = &arguments.data;
         if !data.is_dir() {
             return Err(Error::NoData(data.clone()));
@@ -68,7 +73,8 @@ impl Setup {
             fs::read_to_string(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
         let description = CellDescription::from_toml(&description_text)
             .map_err(|source| Error::Description { path, source: Box::new(source) })?;
-        let cell = Cell::new(&description, arguments.seed)?;
+        let (faults, faults_text) = faults(arguments, &description)?;
+        let cell = Cell::with_faults(&description, arguments.seed, &faults.cell)?;
         let log = match &arguments.log {
             Some(LogTarget::None) => None,
             Some(LogTarget::File(path)) => Some(path.clone()),
@@ -76,27 +82,22 @@ impl Setup {
         };
         // The last of all: a robot hears nothing of a run that cannot begin.
         let robot = match &arguments.robot {
-            cli::Robot::Sim => Robot::Simulated(plan.map(|plan| Box::new(Injector::new(&plan)))),
+            cli::Robot::Sim => Robot::Simulated(faults.line.map(|plan| Box::new(Injector::new(&plan)))),
             cli::Robot::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
         };
         Ok(Self { store, job, description_text, description, cell, faults_text, robot, log })
     }
 }
 
-/// The fault plan, if there is one, with its text, and whether the arguments go together.
-fn plan(arguments: &RunArguments) -> Result<(Option<Plan>, String), Error> {
-    if arguments.robot != cli::Robot::Sim {
-        if arguments.clock != ClockKind::Real {
-            return Err(Error::NotInRealTime);
-        }
-        if arguments.faults.is_some() {
-            return Err(Error::FaultsAtPort);
-        }
-    }
-    let Some(path) = &arguments.faults else { return Ok((None, String::new())) };
+/// The faults of `--faults`, none without it, with their text.
+fn faults(arguments: &RunArguments, cell: &CellDescription) -> Result<(FaultFile, String), Error> {
+    let Some(path) = &arguments.faults else { return Ok(Default::default()) };
     let text = fs::read_to_string(path).map_err(|source| Error::Read { path: path.clone(), source })?;
-    let plan = text::parse(&path.display().to_string(), &text)?;
-    Ok((Some(plan), text))
+    let faults = text::parse(&path.display().to_string(), &text, cell)?;
+    if arguments.robot != cli::Robot::Sim && faults.line.is_some() {
+        return Err(Error::FaultsAtPort);
+    }
+    Ok((faults, text))
 }
 
 /// Warnings do not keep a run from beginning; one line says that there are some.

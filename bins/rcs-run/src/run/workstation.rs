@@ -24,10 +24,11 @@ impl SimulatedWorkstation {
     }
 
     /// What happened in the cell since the last call. A simulation that has failed is a fault of the
-    /// workstation.
+    /// workstation, and so is a vise that has.
     pub fn events(&mut self) -> Vec<CellEvent> {
         let events = self.cell.events();
-        if let Some(event) = events.iter().find(|event| **event == CellEvent::Quarantined) {
+        let fatal = |event: &&CellEvent| matches!(event, CellEvent::Quarantined | CellEvent::ViseStuck);
+        if let Some(event) = events.iter().find(fatal) {
             self.fault = Some(event.to_string());
         }
         events

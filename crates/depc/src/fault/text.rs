@@ -23,6 +23,10 @@
 //! ```
 //!
 //! A fault needs a rate, a tick or a range of ticks. Without a rate it strikes every byte or tick of its range.
+//!
+//! The line is not all that can fail: the same file may hold faults of other kinds, of sensors, valves and parts. Who knows
+//! them reads the file as a [`Sheet`], takes the entries that are not the line's ([`Entry::is_of_line`]) for himself and
+//! leaves the others to [`Sheet::plan`]. A file for the line alone is read by [`load`].
 
 use std::{
     fs, io,
@@ -31,8 +35,11 @@ use std::{
     vec::Vec,
 };
 
-use serde::Deserialize;
-use toml::Spanned;
+use serde::{Deserialize, de::DeserializeOwned};
+use toml::{
+    Spanned,
+    de::{DeTable, DeValue},
+};
 
 use super::{ALWAYS, Direction, FaultKind, MOST_TICKS, Plan, Refusal, Rule};
 
@@ -78,12 +85,21 @@ pub enum PlanFileError {
 /// What is wrong with a fault.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Problem {
-    /// No such kind.
-    #[error("expected a kind of {}, found {found:?}", kinds())]
+    /// No such kind on a line.
+    #[error(
+        "expected a kind of {}, found {found:?}; faults of sensors, valves and parts are for rcs-run",
+        kinds()
+    )]
     Kind {
         /// What stands there.
         found: String,
     },
+    /// A fault is no table.
+    #[error("expected a table [[fault]]")]
+    NoTable,
+    /// No kind.
+    #[error("expected a kind, a text in quotes: what shall fail")]
+    NoKind,
     /// No such direction.
     #[error("expected a direction of to-host, to-controller or both, found {found:?}")]
     Direction {
@@ -120,23 +136,23 @@ fn kinds() -> String {
     FaultKind::ALL.iter().map(|kind| kind.text()).collect::<Vec<_>>().join(", ")
 }
 
+/// What stands before the faults.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct Head {
     #[serde(default = "first_seed")]
     seed: u64,
     most_per_tick: Option<core::num::NonZeroU8>,
-    #[serde(default, rename = "fault")]
-    faults: Vec<Spanned<Entry>>,
 }
 
 const fn first_seed() -> u64 {
     1
 }
 
+/// A fault of the line.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Entry {
+struct LineFault {
     kind: Spanned<String>,
     direction: Option<Spanned<String>>,
     rate: Option<Spanned<f64>>,
@@ -147,7 +163,151 @@ struct Entry {
     byte: Option<Spanned<i64>>,
 }
 
-/// Read a plan from a file.
+/// A file of faults, read so far that it is TOML with a seed and a list of tables that have a kind.
+#[derive(Debug)]
+pub struct Sheet<'t> {
+    file: String,
+    text: &'t str,
+    seed: u64,
+    most_per_tick: Option<core::num::NonZeroU8>,
+    entries: Vec<Entry<'t>>,
+}
+
+/// A `[[fault]]`.
+#[derive(Clone, Debug)]
+pub struct Entry<'t> {
+    /// Which one, from 1.
+    pub number: usize,
+    /// Its kind, and where that stands in the text.
+    pub kind: Spanned<String>,
+    table: Spanned<DeTable<'t>>,
+}
+
+impl Entry<'_> {
+    /// True if a fault plan of the line has this kind.
+    #[must_use]
+    pub fn is_of_line(&self) -> bool {
+        FaultKind::ALL.iter().any(|kind| kind.text() == self.kind.get_ref())
+    }
+
+    /// Where it begins in the text.
+    #[must_use]
+    pub fn place(&self) -> usize {
+        self.table.span().start
+    }
+
+    /// The keys that stand in it, and where.
+    pub fn keys(&self) -> impl Iterator<Item = (&str, usize)> {
+        self.table.get_ref().keys().map(|key| (key.get_ref().as_ref(), key.span().start))
+    }
+
+    /// Read it as a structure; `kind` is one of its fields.
+    ///
+    /// # Errors
+    /// What the structure does not have, does not find, or finds of another type.
+    pub fn read<T: DeserializeOwned>(&self) -> Result<T, toml::de::Error> {
+        T::deserialize(toml::de::Deserializer::from(self.table.clone()))
+    }
+}
+
+impl<'t> Sheet<'t> {
+    /// Read `text`; `file` names it in errors.
+    ///
+    /// # Errors
+    /// [`PlanFileError`] if it is not TOML, has other entries than a fault file, or no fault.
+    pub fn read(file: &str, text: &'t str) -> Result<Self, PlanFileError> {
+        let toml = |mut source: toml::de::Error| {
+            source.set_input(Some(text));
+            PlanFileError::Toml { file: file.to_string(), source }
+        };
+        let mut root = DeTable::parse(text).map_err(toml)?;
+        let faults = root.get_mut().remove("fault");
+        let head = Head::deserialize(toml::de::Deserializer::from(root)).map_err(toml)?;
+        let empty = || PlanFileError::Empty { file: file.to_string() };
+        let faults = faults.ok_or_else(empty)?;
+        let place = faults.span().start;
+        let DeValue::Array(tables) = faults.into_inner() else { return Err(empty()) };
+        let entries = (1..).zip(tables).map(|(number, table)| {
+            entry(number, table).map_err(|(problem, at)| PlanFileError::Fault {
+                file: file.to_string(),
+                line: line(text, at.unwrap_or(place)),
+                number,
+                problem,
+            })
+        });
+        let entries = entries.collect::<Result<Vec<_>, _>>()?;
+        if entries.is_empty() {
+            return Err(empty());
+        }
+        Ok(Self { file: file.to_string(), text, seed: head.seed, most_per_tick: head.most_per_tick, entries })
+    }
+
+    /// What the numbers of all faults in the file depend on.
+    #[must_use]
+    pub const fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// All faults in their order.
+    #[must_use]
+    pub fn entries(&self) -> &[Entry<'t>] {
+        &self.entries
+    }
+
+    /// Line of a place in the text, from 1.
+    #[must_use]
+    pub fn line(&self, place: usize) -> usize {
+        line(self.text, place)
+    }
+
+    /// The plan of the faults for which `of_line` holds.
+    ///
+    /// # Errors
+    /// [`PlanFileError`] with the file, the line, what was expected and what was found.
+    pub fn plan(&self, of_line: impl Fn(&Entry<'_>) -> bool) -> Result<Plan, PlanFileError> {
+        let mut plan = Plan::new(self.seed);
+        if let Some(most) = self.most_per_tick {
+            plan = plan.most_per_tick(most.get());
+        }
+        for entry in self.entries.iter().filter(|entry| of_line(entry)) {
+            let number = entry.number;
+            let fault = |problem, place: Option<usize>| PlanFileError::Fault {
+                file: self.file.clone(),
+                line: self.line(place.unwrap_or_else(|| entry.place())),
+                number,
+                problem,
+            };
+            if !entry.is_of_line() {
+                let found = entry.kind.get_ref().clone();
+                return Err(fault(Problem::Kind { found }, Some(entry.kind.span().start)));
+            }
+            let read: LineFault = entry.read().map_err(|mut source| {
+                source.set_input(Some(self.text));
+                PlanFileError::Toml { file: self.file.clone(), source }
+            })?;
+            rule(&read)
+                .and_then(|rule| plan.add(rule).map_err(|refusal| (Problem::from(refusal), None)))
+                .map_err(|(problem, place)| fault(problem, place))?;
+        }
+        Ok(plan)
+    }
+}
+
+/// A table that has a kind; or what is wrong, and where.
+fn entry(number: usize, found: Spanned<DeValue<'_>>) -> Result<Entry<'_>, (Problem, Option<usize>)> {
+    let span = found.span();
+    let DeValue::Table(table) = found.into_inner() else {
+        return Err((Problem::NoTable, Some(span.start)));
+    };
+    let kind = match table.get("kind").map(|kind| (kind.span(), kind.get_ref())) {
+        Some((place, DeValue::String(kind))) => Spanned::new(place, kind.to_string()),
+        Some((place, _)) => return Err((Problem::NoKind, Some(place.start))),
+        None => return Err((Problem::NoKind, Some(span.start))),
+    };
+    Ok(Entry { number, kind, table: Spanned::new(span, table) })
+}
+
+/// Read a plan from a file that has faults of the line only.
 ///
 /// # Errors
 /// [`PlanFileError`] with the file, the line, what was expected and what was found.
@@ -159,31 +319,12 @@ pub fn load(path: &Path) -> Result<Plan, PlanFileError> {
     }
 }
 
-/// The plan in `text`; `file` names it in errors.
+/// The plan in `text`, which has faults of the line only; `file` names it in errors.
 ///
 /// # Errors
 /// [`PlanFileError`] with the file, the line, what was expected and what was found.
 pub fn parse(file: &str, text: &str) -> Result<Plan, PlanFileError> {
-    let read: File =
-        toml::from_str(text).map_err(|source| PlanFileError::Toml { file: file.to_string(), source })?;
-    if read.faults.is_empty() {
-        return Err(PlanFileError::Empty { file: file.to_string() });
-    }
-    let mut plan = Plan::new(read.seed);
-    if let Some(most) = read.most_per_tick {
-        plan = plan.most_per_tick(most.get());
-    }
-    for (number, entry) in (1..).zip(&read.faults) {
-        rule(entry.get_ref())
-            .and_then(|rule| plan.add(rule).map_err(|refusal| (Problem::from(refusal), None)))
-            .map_err(|(problem, place)| PlanFileError::Fault {
-                file: file.to_string(),
-                line: line(text, place.unwrap_or_else(|| entry.span().start)),
-                number,
-                problem,
-            })?;
-    }
-    Ok(plan)
+    Sheet::read(file, text)?.plan(|_| true)
 }
 
 /// Line of a place in the text, from 1.
@@ -193,7 +334,7 @@ fn line(text: &str, place: usize) -> usize {
 }
 
 /// The rule of an entry; or what is wrong, and where if that is not the whole of it.
-fn rule(entry: &Entry) -> Result<Rule, (Problem, Option<usize>)> {
+fn rule(entry: &LineFault) -> Result<Rule, (Problem, Option<usize>)> {
     let kind = FaultKind::ALL.iter().copied().find(|kind| kind.text() == entry.kind.get_ref());
     let kind = kind.ok_or_else(|| {
         (Problem::Kind { found: entry.kind.get_ref().clone() }, Some(entry.kind.span().start))
@@ -288,7 +429,7 @@ mod tests {
             (
                 "kind = \"burn\"\nat = 1",
                 "plan.toml, line 5, fault 2: expected a kind of drop, flip, duplicate, delay, insert, truncate, \
-                 stall, cts-low, found \"burn\"",
+                 stall, cts-low, found \"burn\"; faults of sensors, valves and parts are for rcs-run",
             ),
             (
                 "kind = \"flip\"\ndirection = \"up\"",
@@ -334,11 +475,14 @@ mod tests {
         for (text, words) in [
             ("seed = \n", "line 1"),
             ("[[fault]]\nkind = \"drop\"\nat = 1\ncolour = 3\n", "unknown field `colour`"),
-            ("[[fault]]\nat = 1\n", "missing field `kind`"),
+            ("[[fault]]\nat = 1\n", "line 1, fault 1: expected a kind, a text in quotes: what shall fail"),
+            ("fault = [3]\n", "expected a table [[fault]]"),
+            ("fault = 3\n", "expected at least one [[fault]]"),
+            ("colour = 3\n[[fault]]\nkind = \"drop\"\nat = 1\n", "unknown field `colour`"),
             ("most_per_tick = 0\n", "nonzero"),
         ] {
             let found = complaint(text);
-            assert!(found.starts_with("plan.toml: ") && found.contains(words), "{found}");
+            assert!(found.starts_with("plan.toml") && found.contains(words), "{found}");
         }
         let found = load(Path::new("no/such/plan.toml")).unwrap_err().to_string();
         assert!(found.starts_with("no/such/plan.toml: cannot be read: "), "{found}");

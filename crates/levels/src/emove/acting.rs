@@ -75,6 +75,10 @@ impl Emove {
             Action::Located => self.arrive(command, outputs),
             Action::Finish => self.finish(),
             Action::Fail(reason) => self.fail(reason, inputs, outputs),
+            Action::FailLost => {
+                let reason = if self.state.gripper_gone { Reason::GripperGone } else { Reason::ObjectLost };
+                self.fail(reason, inputs, outputs);
+            }
             Action::FailGrip => {
                 let reason = self.state.grippers.fault(inputs.tick, inputs.memory);
                 self.fail(reason, inputs, outputs);

@@ -15,6 +15,9 @@ use super::{
 /// Grip number of a holster object with the gripper on the robot; its approach size is the opening with which
 /// the gripper goes through the holster.
 const GRIPPER_ON: i32 = 1;
+/// Ticks in which neither finger may feel what is held (0.2 s): longer than it takes to push a part from one finger to the
+/// other.
+const UNFELT_TICKS: u8 = 5;
 /// Force with which the joystick box closes the parts gripper, lb: the least of the usual ones (VIII.9.1;
 /// ASSUMED).
 const HAND_FORCE: i32 = 30;
@@ -28,18 +31,24 @@ impl Emove {
     /// Preprocess: is what was held still there?
     pub(super) fn sense_held(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
-        let held = &self.state.held;
+        let letting_go = self.state.grippers.order == Order::Release;
+        let held = &mut self.state.held;
         if held.object.is_empty() {
             return;
         }
+        // A part that was held with little force leaves the fingers where they are when it falls: only the force tells.
+        let felt = letting_go || !held.gripper.feels_nothing(memory);
+        held.unfelt = if felt { 0 } else { held.unfelt.saturating_add(1) };
         // A gripper that was restarted knows no opening: what was held is not lost for that.
         let slipped = held
             .gripper
             .opening(memory)
             .is_some_and(|opening| !held.gripper.still_grips(opening, held.grasp_size, held.opening));
         let gone = Gripper::attached(memory) != held.gripper;
-        if slipped || gone || self.state.grippers.has_let_go(inputs.tick, memory) {
+        let unfelt = held.unfelt > UNFELT_TICKS;
+        if slipped || unfelt || gone || self.state.grippers.has_let_go(inputs.tick, memory) {
             self.state.held = Held::default();
+            self.state.gripper_gone = gone;
         }
     }
 

@@ -42,6 +42,9 @@ const PARTS_BAND: i32 = 2;
 const STILL: i32 = 10;
 /// Fingers of the parts gripper this much wider than at the grasp have let go, 0.01 in.
 const LET_GO: i32 = 25;
+/// A finger that feels less than this touches nothing, lb; reported forces are rounded to a pound, and no grasp is weaker
+/// than three (`levels::grip`).
+const FELT: i32 = 1;
 /// v-gripper and tool gripper hold an object if the opening differs from the grasp size by no more than this,
 /// 0.01 in (ASSUMED).
 const JAWS_BAND: i32 = 10;
@@ -158,6 +161,13 @@ impl Gripper {
     #[must_use]
     pub fn still_grips(self, opening: i32, grasp_size: i32, grasped: i32) -> bool {
         self.grips(opening, grasp_size) && opening <= grasped.saturating_add(LET_GO)
+    }
+
+    /// Do the fingers feel nothing between them? Only the parts gripper can say so, once it is calibrated.
+    #[must_use]
+    pub fn feels_nothing(self, memory: &CommonMemory) -> bool {
+        let grip = &memory.grip.status;
+        self == Self::Parts && grip.initialized && grip.left_force < FELT && grip.right_force < FELT
     }
 
     /// Does bringing jaws to an opening mean to close them?

@@ -78,6 +78,7 @@ impl Emove {
             gripper,
             grasp_size: inputs.data.end_eff(parameters).map_or(0, |p| p.grasp_size),
             opening: gripper.opening(inputs.memory).unwrap_or_default(),
+            unfelt: 0,
         };
         self.state.located = Located::default();
         self.finish();

@@ -76,6 +76,8 @@ record! {
         pub grasp_size: i32,
         /// Opening when it was grasped, 0.01 in.
         pub opening: i32,
+        /// Ticks in which neither finger has felt it.
+        pub unfelt: u8,
     }
 }
 
@@ -120,6 +122,8 @@ record! {
         pub located: Located,
         /// Something was held when the current command came.
         pub carrying: bool,
+        /// What was held last went away with its gripper.
+        pub gripper_gone: bool,
         /// Ticks for which Prim has reported not-detected.
         pub undetected: u32,
         /// Gripper button of the joystick box in the tick before: pressing counts, not holding down.

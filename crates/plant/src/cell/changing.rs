@@ -17,6 +17,7 @@ use crate::{
     description::{CellDescription, Mounted, QuickChange},
     holster::{Holster, Perch, ears, holsters},
     quick_change::{Gap, Ring},
+    sensor::Switch,
 };
 
 /// The hands that the robot can wear, in the order of their end effector ids.
@@ -45,6 +46,10 @@ pub(super) struct Changer {
     mated: Option<Hand>,
     /// The holster whose lips are over the ears of the gripper that the ring has.
     under_lips: Option<usize>,
+    /// The four sensors of each holster.
+    eyes: [[Switch; 4]; 3],
+    /// The two sensors of the ring: locked, unlocked.
+    reflectance: [Switch; 2],
 }
 
 impl Changer {
@@ -62,7 +67,16 @@ impl Changer {
             places[slot] = Place::Robot;
         }
         let ring = Ring::new(&cell.quick_change, mated.is_some());
-        Self { description: cell.quick_change.clone(), ring, holsters, places, mated, under_lips: None }
+        Self {
+            description: cell.quick_change.clone(),
+            ring,
+            holsters,
+            places,
+            mated,
+            under_lips: None,
+            eyes: Default::default(),
+            reflectance: Default::default(),
+        }
     }
 
     /// The gripper whose pins touch: it has air, and its sensors are connected.
@@ -158,10 +172,11 @@ impl Changer {
     }
 
     /// Ring and pins.
-    pub(super) fn sensors(&self) -> QuickChangeSensors {
+    pub(super) fn sensors(&mut self, hysteresis: f64) -> QuickChangeSensors {
+        let [locked, unlocked] = self.ring.beyond();
         QuickChangeSensors {
-            locked: self.ring.locked(),
-            unlocked: self.ring.unlocked(),
+            locked: self.reflectance[0].see(locked, hysteresis),
+            unlocked: self.reflectance[1].see(unlocked, hysteresis),
             end_effector_id: self.mated.map_or(0, Hand::end_effector_id),
         }
     }
@@ -260,19 +275,26 @@ impl Cell {
     }
 
     /// What the proximity sensors of the holsters see.
-    pub(super) fn holster_sensors(&self) -> HolsterSensors {
-        let seen = |holster: &Holster| {
-            ROBOT_HANDS.into_iter().enumerate().fold(0, |bits, (slot, hand)| {
+    pub(super) fn holster_sensors(&mut self) -> HolsterSensors {
+        let nearest = |holster: &Holster| {
+            ROBOT_HANDS.into_iter().enumerate().fold([f64::INFINITY; 4], |nearest, (slot, hand)| {
                 let gripper = to_frame(self.world.bodies[self.grippers[slot].hand()].position());
                 if !holster.is_near(&gripper) {
-                    return bits;
+                    return nearest;
                 }
                 let ears = ears(&self.description.holsters, self.gripper_description(hand));
-                bits | holster.sensors(&gripper, &ears)
+                let beyond = holster.beyond(&gripper, &ears);
+                [0, 1, 2, 3].map(|eye| f64::min(nearest[eye], beyond[eye]))
             })
         };
-        let [right, left, centre] = &self.changer.holsters;
-        HolsterSensors { right: seen(right), left: seen(left), centre: seen(centre) }
+        let beyond = [0, 1, 2].map(|which| nearest(&self.changer.holsters[which]));
+        let hysteresis = self.description.sensors.proximity_hysteresis;
+        let [right, left, centre] = [0, 1, 2].map(|which: usize| {
+            let eyes = self.changer.eyes[which].iter_mut().zip(beyond[which]);
+            eyes.enumerate()
+                .fold(0, |bits, (bit, (eye, beyond))| bits | (u8::from(eye.see(beyond, hysteresis)) << bit))
+        });
+        HolsterSensors { right, left, centre }
     }
 
     /// What a gripper of the robot is like.

@@ -30,6 +30,8 @@ const LEAST_FORCE: f64 = 0.25;
 const SLIP: f64 = 0.02;
 /// How far pads may be from a face that they count as touching, m.
 const TOUCHING: Real = 1e-4;
+/// Ticks after which the controller of the vise gives up a jaw that does not get on (2 s).
+const JAW_PATIENCE: u32 = 50;
 /// A part may stand this far in a clamping face and is still between the jaws, m.
 const OUTSIDE: Real = 2e-3;
 /// Fingers and part: stiff enough that a bar sags by 0.01 mm, soft enough that friction is not a jolt.
@@ -287,6 +289,9 @@ impl Cell {
         if !self.vise.moving() {
             return;
         }
+        if self.faults.jaw_stuck() {
+            return;
+        }
         let between = if self.vise.closing() { self.between_jaws() } else { None };
         let stop = between.as_ref().map(|(_, step, squeeze)| self.vise.stop(*step, squeeze.width));
         self.vise.advance(&mut self.world, dt, stop);
@@ -420,6 +425,15 @@ impl Cell {
             .beams()
             .map(|(from, to)| near.iter().any(|(pose, half)| segment_meets_box(from, to, pose, *half)));
         broken.enumerate().fold(0, |bits, (beam, is_broken)| bits | (u8::from(is_broken) << beam))
+    }
+
+    /// Report a jaw that does not get on.
+    pub(super) fn note_jaw(&mut self) {
+        let stands = self.vise.moving() && self.faults.jaw_stuck();
+        self.jaw_waits = if stands { self.jaw_waits + 1 } else { 0 };
+        if self.jaw_waits == JAW_PATIENCE {
+            self.events.push(CellEvent::ViseStuck);
+        }
     }
 
     /// Report parts that have come to lie on the floor.

@@ -158,6 +158,7 @@ mod tests {
             weight: 1.0,
             shape: Shape::Box,
             vision_id: 0,
+            reflectance: 0.5,
             tool: false,
         };
         // Part X down, Y along vise X, a little askew.

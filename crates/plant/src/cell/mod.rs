@@ -19,9 +19,7 @@ use depc::{
 use rapier3d_f64::prelude::*;
 use rcs_core::{
     frame::{Frame, Vector as Inches},
-    interface::device::{
-        DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, LinkBytes, RESOLVER_COUNTS, Resolvers,
-    },
+    interface::device::{DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, LinkBytes, Resolvers},
     kinematics::Joints,
     tick::TICK_S,
 };
@@ -35,11 +33,12 @@ pub use workstation::{Placement, WorkstationAction, WorkstationError};
 
 use crate::{
     arm::Arm,
-    camera::{Camera, Subject},
+    camera::{Camera, Face, Subject},
     clearance::{Clearance, Contact},
-    convert::{GRAVITY, to_frame, to_pose},
+    convert::{GRAVITY, to_frame, to_metres, to_pose},
     description::{CellDescription, DescriptionError, Points},
     drum::Drum,
+    fault::{Change, FaultPlan, Injector, Struck},
     force,
     gripper::Gripper,
     jaws::Supply,
@@ -48,9 +47,13 @@ use crate::{
     part::{Part, PartState},
     pedestal::Pedestal,
     scene::{Block, FINGER, Obstacle, furniture},
+    sensor::{DeadTimes, resolver},
     t3::{Button, DriveError, T3Controller},
     vise::Vise,
 };
+
+/// What of the arm can come between the camera on its wrist and a part.
+const ARM_IN_VIEW: [&str; 2] = ["upper_arm", "forearm"];
 
 /// Why a cell cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -110,6 +113,22 @@ pub enum CellEvent {
     CannotFollow(JointProblem),
     /// A body has left the realm of numbers and was taken out of the simulation.
     Quarantined,
+    /// The jaw of the vise does not get on.
+    ViseStuck,
+    /// A fault of the plan begins.
+    FaultBegins {
+        /// Which one of its file, from 1.
+        number: usize,
+        /// In words.
+        text: String,
+    },
+    /// A fault of the plan is over.
+    FaultEnds {
+        /// Which one of its file, from 1.
+        number: usize,
+        /// In words.
+        text: String,
+    },
 }
 
 impl fmt::Display for CellEvent {
@@ -133,6 +152,9 @@ impl fmt::Display for CellEvent {
                 write!(f, "the simulated arm cannot follow the robot: {problem:?}")
             }
             Self::Quarantined => f.write_str("a body is no longer anywhere: the simulation has failed"),
+            Self::ViseStuck => f.write_str("the jaw of the vise does not move"),
+            Self::FaultBegins { number, text } => write!(f, "fault {number} begins: {text}"),
+            Self::FaultEnds { number, text } => write!(f, "fault {number} is over: {text}"),
         }
     }
 }
@@ -164,6 +186,11 @@ pub struct Cell {
     pedestal_noise: Noise,
     force_noise: Noise,
     placement_noise: Noise,
+    resolver_noise: Noise,
+    dead_times: DeadTimes,
+    faults: Injector,
+    /// Ticks in which the jaw of the vise should have moved and has not.
+    jaw_waits: u32,
     events: Vec<CellEvent>,
     /// The arm cannot follow the robot; said once.
     stays_behind: bool,
@@ -177,7 +204,20 @@ impl Cell {
     /// # Errors
     /// [`CellError`] if the description cannot be used.
     pub fn new(description: &CellDescription, seed: u64) -> Result<Self, CellError> {
+        Self::with_faults(description, seed, &FaultPlan::default())
+    }
+
+    /// Like [`Cell::new`], with faults that will begin when their plan says.
+    ///
+    /// # Errors
+    /// [`CellError`] if the description cannot be used.
+    pub fn with_faults(
+        description: &CellDescription,
+        seed: u64,
+        faults: &FaultPlan,
+    ) -> Result<Self, CellError> {
         description.validate()?;
+        let description = &faults.displaced(description);
         let mut world = physics(description);
         let furniture = furniture(description);
         let ground = world.insert_body(RigidBodyBuilder::fixed());
@@ -215,11 +255,17 @@ impl Cell {
             pedestal_noise: Noise::new(seed, Stream::Pedestal),
             force_noise: Noise::new(seed, Stream::Force),
             placement_noise: Noise::new(seed, Stream::Placement),
+            resolver_noise: Noise::new(seed, Stream::Resolvers),
+            dead_times: DeadTimes::new(&description.sensors),
+            faults: Injector::new(faults, seed),
+            jaw_waits: 0,
             events: Vec::new(),
             stays_behind: false,
             inputs: DeviceInputs::default(),
         };
         cell.hang_grippers();
+        let begin = cell.faults.turn();
+        cell.tell(begin);
         cell.inputs = cell.sense(LinkBytes::default(), false);
         Ok(cell)
     }
@@ -232,6 +278,7 @@ impl Cell {
 
     /// Advance the cell by exactly one tick of 40 ms with what the controller wrote in the last one.
     pub fn step(&mut self, outputs: &DeviceOutputs) -> DeviceInputs {
+        let outputs = &self.begin_tick(outputs);
         let tick = self.t3.step(&outputs.link_tx);
         if let Some(warning) = tick.warning {
             self.events.push(CellEvent::Warning(warning.text().into()));
@@ -249,6 +296,7 @@ impl Cell {
     /// The arm comes from where it is as fast as its servos can, so a first position far away is a motion, not a jump. A
     /// position that it cannot take leaves it where it is and is a [`CellEvent::CannotFollow`].
     pub fn step_following(&mut self, position: Option<&Plate>, outputs: &DeviceOutputs) -> DeviceInputs {
+        let outputs = &self.begin_tick(outputs);
         let followed = position.map_or(Ok(*self.arm.command()), |plate| self.t3.follow(plate));
         let command = followed.unwrap_or(*self.arm.command());
         if let Err(problem) = followed
@@ -260,6 +308,30 @@ impl Cell {
         self.advance(command, outputs);
         self.inputs = self.sense(LinkBytes::default(), false);
         self.inputs
+    }
+
+    /// A tick begins, and with it the faults that do: what the controller's commands have become by the time they arrive.
+    fn begin_tick(&mut self, outputs: &DeviceOutputs) -> DeviceOutputs {
+        let changes = self.faults.next();
+        self.tell(changes);
+        self.faults.outputs(outputs)
+    }
+
+    /// Say which faults begin and end.
+    pub(super) fn tell(&mut self, changes: Vec<Change>) {
+        self.events.extend(changes.into_iter().map(|Change { number, text, begins }| {
+            if begins {
+                CellEvent::FaultBegins { number, text }
+            } else {
+                CellEvent::FaultEnds { number, text }
+            }
+        }));
+    }
+
+    /// Faults of the plan that have happened so far.
+    #[must_use]
+    pub fn faults(&self) -> Vec<Struck> {
+        self.faults.struck()
     }
 
     /// One tick of all that moves, with a command for the arm's servos.
@@ -313,6 +385,7 @@ impl Cell {
             self.events.push(CellEvent::Quarantined);
         }
         self.note_falls();
+        self.note_jaw();
     }
 
     /// Take a picture if one is asked for.
@@ -321,42 +394,57 @@ impl Cell {
             return;
         }
         let frame = self.camera.frame(&self.tool());
-        let lens = to_pose(&frame).translation;
-        let seen: Vec<Subject> = self
-            .parts
-            .iter()
-            .filter_map(|part| {
-                let subject = Subject {
-                    frame: frame.inverse().compose(&part.frame(&self.world)),
-                    size: Inches::from(part.kind.size),
-                };
-                let surface = to_pose(&frame).transform_point(crate::convert::to_metres(&subject.surface()));
-                let ray = Ray::new(lens, surface - lens);
-                let hit = self.world.cast_ray(&ray, 1.01, true, QueryFilter::default());
-                hit.is_some_and(|(collider, _)| collider == part.collider).then_some(subject)
-            })
-            .collect();
+        let seen = if self.faults.camera_blind() { Vec::new() } else { self.subjects(&frame) };
         let id = outputs.vision.object_id;
         let expected = self.description.part.iter().find(|kind| kind.vision_id == id && id != 0);
         self.camera.expose(&outputs.vision, &seen, expected);
     }
 
+    /// What a camera at a frame (world, in) has before it: of each part what is in the field of view, and what nothing
+    /// hides.
+    fn subjects(&self, camera: &Frame) -> Vec<Subject> {
+        let lens = to_pose(camera).translation;
+        let arm: Vec<_> =
+            self.movers().into_iter().filter(|mover| ARM_IN_VIEW.contains(&&*mover.name)).collect();
+        let sees = |part: &Part, point: Inches| {
+            if !self.camera.has_in_view(&point) {
+                return false;
+            }
+            let ray = Ray::new(lens, to_pose(camera).transform_point(to_metres(&point)) - lens);
+            let nearest = self.world.cast_ray(&ray, 1.01, true, QueryFilter::default());
+            nearest.is_some_and(|(collider, _)| collider == part.collider)
+                && !arm.iter().any(|link| link.shape.intersects_ray(&link.pose, &ray, 1.0))
+        };
+        let near = self.parts.iter().map(|part| {
+            let here = camera.inverse().compose(&part.frame(&self.world));
+            let face = Face::of(&here, &Inches::from(part.kind.size));
+            Subject::new(face, part.kind.reflectance, |point| sees(part, point))
+        });
+        near.collect()
+    }
+
     /// Read all sensors.
     fn sense(&mut self, link_rx: LinkBytes, link_ready: bool) -> DeviceInputs {
         let (grip, force) = self.sense_gripper();
-        DeviceInputs {
+        let resolver_noise = self.description.sensors.resolver_noise;
+        let counts =
+            self.arm.joints().map(|angle| resolver::counts(angle, resolver_noise, &mut self.resolver_noise));
+        let mut inputs = DeviceInputs {
             link_rx,
             link_ready,
-            resolvers: Resolvers { counts: self.arm.joints().map(resolver), valid: true },
+            resolvers: Resolvers { counts, valid: true },
             grip,
             force,
-            quick_change: self.changer.sensors(),
+            quick_change: self.changer.sensors(self.description.sensors.ring_hysteresis),
             holsters: self.holster_sensors(),
             joystick: self.joystick.read(),
             vision: self.camera.answer(),
             pedestal: self.pedestal.sensors(&mut self.pedestal_noise),
             ..DeviceInputs::default()
-        }
+        };
+        self.dead_times.hold_back(&mut inputs);
+        self.faults.inputs(&mut inputs);
+        inputs
     }
 
     /// Sensors of the gripper that is mated. All three have their potentiometer on the same connections; beam breaks and
@@ -466,13 +554,6 @@ fn place(points: &Points) -> Frame {
     points.frame().unwrap_or_else(Frame::identity)
 }
 
-/// Counts of a resolver at an angle in radians: 17 bits a turn, 0 at 0.
-fn resolver(angle: f64) -> u32 {
-    let turns = angle / (2.0 * core::f64::consts::PI);
-    let counts = libm::round((turns - libm::floor(turns)) * f64::from(RESOLVER_COUNTS));
-    counts as u32 % RESOLVER_COUNTS
-}
-
 /// An empty world with the steps and stiffness of the description.
 fn physics(description: &CellDescription) -> PhysicsWorld {
     let physics = &description.physics;
@@ -491,17 +572,4 @@ fn physics(description: &CellDescription) -> PhysicsWorld {
     parameters.contact_recycling = false;
     parameters.warmstart_joints = true;
     world
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_resolver_counts_up_from_zero_and_around() {
-        assert_eq!(resolver(0.0), 0);
-        assert_eq!(resolver(core::f64::consts::PI), 65_536);
-        assert_eq!(resolver(-core::f64::consts::FRAC_PI_2), 98_304);
-        assert_eq!(resolver(-1e-9), 0, "rounded up to a whole turn");
-    }
 }

@@ -87,6 +87,27 @@ impl Cell {
         Ok(Frame { position: seat.position + Inches::new(x, y, DROP), ..turned })
     }
 
+    /// Put a part into a sector, unless a fault of the plan has it otherwise.
+    pub(super) fn deliver(
+        &mut self,
+        part: &str,
+        unit: &str,
+        sector: u16,
+        placement: &Placement,
+    ) -> Result<(), WorkstationError> {
+        let meant = self.kind(part)?;
+        let (delivery, changes) = self.faults.delivery(part);
+        self.tell(changes);
+        let kind = delivery.instead.as_deref().map_or(Ok(meant), |other| self.kind(other))?;
+        let place = self.place_frame(&kind, unit, sector, placement)?;
+        if delivery.missing {
+            return Ok(());
+        }
+        let [x, y] = delivery.aside;
+        let turned = place.turned(&rotation_by(&Inches::new(delivery.angle.to_radians(), 0.0, 0.0)));
+        self.put(&kind, &Frame { position: turned.position + Inches::new(x, y, 0.0), ..turned })
+    }
+
     pub(super) fn put(&mut self, kind: &PartType, frame: &Frame) -> Result<(), WorkstationError> {
         if let Some(by) = self.in_the_way(kind, frame) {
             return Err(WorkstationError::Occupied { part: kind.name.clone(), by });

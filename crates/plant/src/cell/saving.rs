@@ -22,7 +22,7 @@ use crate::{
 /// What every saved cell begins with.
 const MAGIC: [u8; 8] = *b"RCSCELL\0";
 /// Version of the saved state: to be raised with every change of what a cell consists of.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Bytes before the state.
 const HEADER: usize = 28;
 
@@ -90,10 +90,12 @@ impl Cell {
     /// [`RestoreError`] if the bytes are not such a cell, whole and undamaged.
     pub fn restore(description: &CellDescription, bytes: &[u8]) -> Result<Self, RestoreError> {
         let mut cell: Self = postcard::from_bytes(state_in(bytes)?)?;
-        if cell.description != *description {
+        // A pedestal that was moved from its mark stands where its fault has put it.
+        let description = cell.faults.displaced(description);
+        if cell.description != description {
             return Err(RestoreError::OtherDescription);
         }
-        cell.furniture = furniture(description);
+        cell.furniture = furniture(&description);
         cell.obstacles = cell.furniture.iter().map(Obstacle::from).collect();
         Ok(cell)
     }
@@ -116,7 +118,8 @@ impl Cell {
         let robot = (&self.arm, &self.t3, &self.changer, &self.grippers, &self.camera, &self.joystick);
         let beside = (&self.drum, &self.pedestal, &self.vise, &self.parts, self.next_part, &self.clearance);
         let noise = (&self.gripper_noise, &self.pedestal_noise, &self.force_noise, &self.placement_noise);
-        fingerprint::append(&(robot, beside, noise, &self.events), &mut bytes)
+        let sensors = (&self.resolver_noise, &self.dead_times, &self.faults, self.jaw_waits);
+        fingerprint::append(&(robot, beside, noise, sensors, &self.events), &mut bytes)
             .expect("devices are plain values, which can be written down");
         digest_of(&bytes)
     }

@@ -235,9 +235,7 @@ impl Cell {
     pub fn workstation(&mut self, action: &WorkstationAction) -> Result<(), WorkstationError> {
         match action {
             WorkstationAction::Place { part, unit, sector, placement } => {
-                let kind = self.kind(part)?;
-                let frame = self.place_frame(&kind, unit, *sector, placement)?;
-                self.put(&kind, &frame)
+                self.deliver(part, unit, *sector, placement)
             }
             WorkstationAction::Put { part, frame } => {
                 let kind = self.kind(part)?;

@@ -60,6 +60,18 @@ impl CellDescription {
             );
             check_gripper(&format!("gripper.{name}"), gripper, check);
         }
+        let sensors = &self.sensors;
+        check.within("sensors.resolver_noise", sensors.resolver_noise, 0.0, 1000.0);
+        check.within("sensors.proximity_hysteresis", sensors.proximity_hysteresis, 0.0, 0.5);
+        check.within("sensors.ring_hysteresis", sensors.ring_hysteresis, 0.0, 0.5);
+        for (name, delay) in [
+            ("resolver", sensors.resolver_delay),
+            ("converter", sensors.converter_delay),
+            ("force", sensors.force_delay),
+            ("switch", sensors.switch_delay),
+        ] {
+            check.within(&format!("sensors.{name}_delay"), f64::from(delay), 0.0, 1000.0);
+        }
         let camera = &self.camera;
         check.positive("camera: view, reference_range_mm", &[camera.view, camera.reference_range_mm]);
         let noises = [
@@ -73,6 +85,15 @@ impl CellDescription {
             check.within("camera.*_noise, shape_tolerance", noise, 0.0, 10.0);
         }
         check.within("camera.tilt", camera.tilt, -90.0, 90.0);
+        check.within("camera.least_share", camera.least_share, 0.01, 1.0);
+        check.within("camera.resolution", camera.resolution, 0.0, 10.0);
+        check.within("camera.bloom", camera.bloom, 0.0, 10.0);
+        check.within("camera.failure", camera.failure, 0.0, 1.0);
+        check.that(!camera.exposures.is_empty(), "camera.exposures", "at least one", "none");
+        for [darkest, brightest] in &camera.exposures {
+            check.within("camera.exposures: the greatest reflectance", *brightest, 0.0, 1.0);
+            check.within("camera.exposures: the least reflectance", *darkest, 0.0, *brightest);
+        }
     }
 
     fn check_changing(&self, check: &mut Check) {
@@ -139,6 +160,8 @@ impl CellDescription {
     fn check_pedestal(&self, check: &mut Check) {
         let pedestal = &self.pedestal;
         check.positive("pedestal.stiffness", &[pedestal.stiffness]);
+        let stand = self.fixture.iter().any(|fixture| fixture.name == pedestal.stand);
+        check.that(stand, "pedestal.stand", "the name of a fixture", &pedestal.stand);
         check_gripper("pedestal.hand", &pedestal.hand, check);
         let table = &pedestal.table;
         let [minus, plus] = table.limits;
@@ -216,6 +239,7 @@ impl CellDescription {
         for part in &self.part {
             check.positive(&format!("part {}: size", part.name), &part.size);
             check.positive(&format!("part {}: weight", part.name), &[part.weight]);
+            check.within(&format!("part {}: reflectance", part.name), part.reflectance, 0.0, 1.0);
             let [x, y, z] = part.size;
             let round = match part.shape {
                 Shape::Box => true,

@@ -4,7 +4,7 @@
 pub mod scenes;
 pub mod tape;
 
-use plant::{Cell, CellDescription, CellEvent, PartState, Placement, WorkstationAction};
+use plant::{Cell, CellDescription, CellEvent, PartState, Placement, WorkstationAction, fault::FaultPlan};
 use rcs_core::{
     frame::{Frame, INCHES_PER_RADIAN, Vector, rotation_by, rotation_vector},
     interface::device::{DeviceInputs, DeviceOutputs, MotorCommand, MotorOrder, valve},
@@ -57,7 +57,11 @@ pub fn table(lines: &[(System, [i32; 3])]) -> Movetable {
 
 impl Rig {
     pub fn new(description: &CellDescription, seed: u64) -> Self {
-        let cell = Cell::new(description, seed).unwrap();
+        Self::with_faults(description, seed, &FaultPlan::default())
+    }
+
+    pub fn with_faults(description: &CellDescription, seed: u64, faults: &FaultPlan) -> Self {
+        let cell = Cell::with_faults(description, seed, faults).unwrap();
         let (inputs, at) = (cell.inputs(), T3.forward(&cell.joints()));
         let (outputs, beat, description) = (DeviceOutputs::default(), Beat::default(), description.clone());
         Self { cell, outputs, inputs, log: Vec::new(), count: 0, description, tape: None, beat, at }

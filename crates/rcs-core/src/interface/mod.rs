@@ -195,6 +195,8 @@ coded_enum! {
         TableStuck = "the rotary table of the pedestal does not reach its angle",
         /// The angle is beyond a limit of the table.
         TableLimit = "the angle is beyond a limit of the rotary table",
+        /// The gripper that held the object is no longer seen on the robot.
+        GripperGone = "the gripper with the object is off the robot, or its id pins or the sensors of the ring say so",
     }
 }
 

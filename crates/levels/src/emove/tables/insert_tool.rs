@@ -27,7 +27,7 @@ decision_table! {
         1:  ( Start                                 , _                 , Nothing | Other , _                       ) => Fail(Reason::NothingHeld) , Start       ;
         2:  ( Start                                 , InDrum            , Right           , _                       ) => Finish                    , Start       ;
         3:  ( Start                                 , Elsewhere | There , Right           , _                       ) => DeltaMove(InsNear)        , Approaching ;
-        4:  ( Approaching | Calibrating | Inserting , _                 , Nothing | Other , _                       ) => Fail(Reason::ObjectLost)  , Start       ;
+        4:  ( Approaching | Calibrating | Inserting , _                 , Nothing | Other , _                       ) => FailLost                  , Start       ;
         5:  ( Approaching | Calibrating | Inserting , _                 , Right           , Error | Joystick | Lost ) => PassUp                    , Start       ;
         6:  ( Approaching                           , _                 , Right           , Pending | Executing     ) => Wait                      , Approaching ;
         7:  ( Approaching                           , _                 , Right           , Done                    ) => CalSensor                 , Calibrating ;

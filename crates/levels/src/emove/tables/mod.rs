@@ -96,6 +96,8 @@ pub enum Action {
     Finish,
     /// Stop the robot and report an error.
     Fail(Reason),
+    /// Stop the robot and report how the object was lost: from the fingers, or with the gripper.
+    FailLost,
     /// Stop the robot and report what the gripper reports.
     FailGrip,
     /// Stop the robot and report what Quick Change reports.

@@ -10,7 +10,7 @@ decision_table! {
     pub MOV_OBJ_TO: fn mov_obj_to(step: Motion, held: Held, ahead: Ahead, prim: Lower) -> (Action, Motion) {
         //     step                 held              ahead     Prim                       action                      next
         1:  ( Start              , Nothing | Other , _       , _                       ) => Fail(Reason::NothingHeld) , Start    ;
-        2:  ( Moving | Stopping  , Nothing | Other , _       , _                       ) => Fail(Reason::ObjectLost)  , Start    ;
+        2:  ( Moving | Stopping  , Nothing | Other , _       , _                       ) => FailLost                  , Start    ;
         3:  ( _                  , Right           , _       , Error | Joystick | Lost ) => PassUp                    , Start    ;
         4:  ( Start | Moving     , Right           , _       , Pending | Executing     ) => Wait                      , Moving   ;
         5:  ( Start | Moving     , Right           , Through , Done                    ) => GoThru                    , Moving   ;

@@ -1,6 +1,6 @@
 //! MOV-TO-LOC (V.2.1).
 
-use rcs_core::{decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{decision_table, handshake::Lower, table::Decision};
 
 use super::{Action, Ahead, Choice, Load, Motion, Situation};
 
@@ -9,7 +9,7 @@ decision_table! {
     /// must not be lost.
     pub MOV_TO_LOC: fn mov_to_loc(step: Motion, load: Load, ahead: Ahead, prim: Lower) -> (Action, Motion) {
         //    step               load   ahead     Prim                       action                     next
-        1: ( _                , Lost , _       , _                       ) => Fail(Reason::ObjectLost) , Start    ;
+        1: ( _                , Lost , _       , _                       ) => FailLost                 , Start    ;
         2: ( _                , Kept , _       , Error | Joystick | Lost ) => PassUp                   , Start    ;
         3: ( Start | Moving   , Kept , _       , Pending | Executing     ) => Wait                     , Moving   ;
         4: ( Start | Moving   , Kept , Through , Done                    ) => GoThru                   , Moving   ;

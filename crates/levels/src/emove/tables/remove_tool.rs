@@ -27,7 +27,7 @@ decision_table! {
         2:  ( Start                  , There     , Right           , _                       ) => Finish                    , Start       ;
         3:  ( Start                  , Elsewhere , Right           , _                       ) => Fail(Reason::NotPrepared) , Start       ;
         4:  ( Start                  , InDrum    , Right           , _                       ) => CalSensor                 , Calibrating ;
-        5:  ( Calibrating | Removing , _         , Nothing | Other , _                       ) => Fail(Reason::ObjectLost)  , Start       ;
+        5:  ( Calibrating | Removing , _         , Nothing | Other , _                       ) => FailLost                  , Start       ;
         6:  ( Calibrating | Removing , _         , Right           , Error | Joystick | Lost ) => PassUp                    , Start       ;
         7:  ( Calibrating            , _         , Right           , Pending | Executing     ) => Wait                      , Calibrating ;
         8:  ( Calibrating            , _         , Right           , Done                    ) => GoWhile(RemOut)           , Removing    ;

@@ -1,6 +1,6 @@
 //! WITHDRAW (V.2.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{coded_enum, decision_table, handshake::Lower, table::Decision};
 
 use super::{Action, Choice, Load, Situation};
 use crate::emove::relative::Relative::Withdraw;
@@ -20,7 +20,7 @@ decision_table! {
     pub WITHDRAW: fn withdraw(step: Step, load: Load, prim: Lower) -> (Action, Step) {
         //    step     load   Prim                       action                     next
         1: ( Start  , _    , _                       ) => DeltaMove(Withdraw)      , Moving ;
-        2: ( Moving , Lost , _                       ) => Fail(Reason::ObjectLost) , Start  ;
+        2: ( Moving , Lost , _                       ) => FailLost                 , Start  ;
         3: ( Moving , Kept , Pending | Executing     ) => Wait                     , Moving ;
         4: ( Moving , Kept , Done                    ) => Stand                    , Start  ;
         5: ( Moving , Kept , Error | Joystick | Lost ) => PassUp                   , Start  ;

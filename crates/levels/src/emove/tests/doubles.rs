@@ -275,6 +275,8 @@ pub struct Grip {
     reason: Reason,
     pub initialized: bool,
     pub opening: i32,
+    /// What both fingers feel, lb.
+    pub force: i32,
 }
 
 impl Default for Grip {
@@ -285,6 +287,7 @@ impl Default for Grip {
             reason: Reason::None,
             initialized: true,
             opening: 200,
+            force: 30,
         }
     }
 }
@@ -318,6 +321,7 @@ impl Grip {
         outputs.status.echo = self.receiving.receiver.echo;
         (outputs.status.report, outputs.status.reason) = (self.report, self.reason);
         (outputs.status.initialized, outputs.status.position) = (self.initialized, self.opening);
+        (outputs.status.left_force, outputs.status.right_force) = (self.force, self.force);
         outputs
     }
 }

@@ -1,9 +1,17 @@
 //! The camera on the wrist and its picture analysis (V.2.1 LOCATE-OBJ, VII.7.6).
 //!
 //! The picture is taken in the tick of the request (a line-flash and a flood-flash box); the analysis answers some ticks
-//! later. A part is seen if the middle of the face that looks at the camera lies in the field of view and nothing stands
-//! before it. Positions are what a pinhole camera makes of them: a part that is nearer than the expected range looks
-//! larger and farther from the axis. The second picture also measures the outline, and by that recognises the part.
+//! later. What it works on is what is seen of each part ([`subject`]): the raster points of its upper face that lie in the
+//! field of view and before which nothing stands. From these it takes centroid and lengths, so that a part which is cut by
+//! the edge of the picture, or half hidden, is found beside its middle and is not recognised; parts that touch in the
+//! picture are one blob.
+//!
+//! Positions are what a pinhole camera makes of them: a part that is nearer than the expected range looks larger and farther
+//! from the axis. The second picture also measures the outline, and by that recognises the part. `variation` chooses the
+//! exposure: a part that throws back too little light for it is not in the picture at all, one that throws back too much
+//! blooms, and its outline grows. LOCATE-OBJ tries one after the other.
+
+mod subject;
 
 use rcs_core::{
     frame::{Frame, Rotation, Vector},
@@ -12,49 +20,13 @@ use rcs_core::{
 };
 use serde::{Deserialize, Serialize};
 
+pub use subject::{Face, Subject};
+
 use crate::{
     convert::{METRES_PER_INCH, inches},
     description::{Camera as Description, PartType},
     noise::Noise,
 };
-
-/// A part before the camera, in camera axes: X along the optical axis, Y the tool's Y; inches.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Subject {
-    /// The part's frame.
-    pub frame: Frame,
-    /// The part's size.
-    pub size: Vector,
-}
-
-/// The face of a part that looks at the camera.
-struct Face {
-    centre: Vector,
-    /// Directions and lengths of its two edges.
-    edges: [(Vector, f64); 2],
-    height: f64,
-}
-
-impl Subject {
-    fn face(&self) -> Face {
-        let axes = [self.frame.x(), self.frame.y(), self.frame.z()];
-        let sizes: [f64; 3] = self.size.into();
-        let along = (0..3).max_by(|a, b| axes[*a].x.abs().total_cmp(&axes[*b].x.abs())).unwrap_or(0);
-        let towards = -axes[along] * axes[along].x.signum();
-        let (a, b) = ((along + 1) % 3, (along + 2) % 3);
-        Face {
-            centre: self.frame.position + towards * (sizes[along] / 2.0),
-            edges: [(axes[a], sizes[a]), (axes[b], sizes[b])],
-            height: sizes[along],
-        }
-    }
-
-    /// The middle of the face that looks at the camera, camera axes, in.
-    #[must_use]
-    pub fn surface(&self) -> Vector {
-        self.face().centre
-    }
-}
 
 /// An answer that is being worked out.
 #[derive(Clone, Debug, Deserialize, Serialize)]
@@ -135,45 +107,84 @@ impl Camera {
         expected: Option<&PartType>,
     ) -> VisionResponse {
         let mut answer = VisionResponse { echo: request.number, ..VisionResponse::default() };
-        let Some(face) = self.nearest(subjects) else {
+        let exposure = self.exposure(request.variation);
+        let [darkest, _] = exposure;
+        let least = self.description.least_share;
+        let lit = |subject: &&Subject| subject.reflectance() >= darkest && subject.share() >= least;
+        let bright: Vec<&Subject> = subjects.iter().filter(lit).collect();
+        let Some(blob) = self.nearest(&bright) else {
             answer.status = VisionStatus::NothingSeen;
             return answer;
         };
+        let centre = blob.iter().map(|subject| subject.centroid()).sum::<Vector>() / blob.len() as f64;
         let expected_range = f64::from(request.range_mm) / 1000.0 / METRES_PER_INCH;
-        let scale = if expected_range > 0.0 { expected_range / face.centre.x } else { 1.0 };
+        let scale = if expected_range > 0.0 { expected_range / centre.x } else { 1.0 };
         let precise = request.picture == Picture::Precise;
         let error = if precise { self.description.precise_noise } else { self.description.flood_noise };
-        answer.y = hundredths(face.centre.y * scale + self.noise.within(error));
-        answer.z = hundredths(face.centre.z * scale + self.noise.within(error));
+        answer.y = hundredths(centre.y * scale + self.noise.within(error));
+        answer.z = hundredths(centre.z * scale + self.noise.within(error));
         answer.status = VisionStatus::Done;
         if precise {
-            let measured = face
-                .edges
-                .map(|(_, length)| length * scale + self.noise.within(self.description.shape_noise));
-            let turn = self.noise.within(self.description.angle_noise.to_radians());
-            answer.angle = grip_angle(&face.edges, request.grip, turn);
-            match expected {
-                Some(part) if looks_like(part, measured, self.description.shape_tolerance) => {
-                    answer.recognised = part.vision_id;
-                }
-                _ => answer.status = VisionStatus::NotRecognised,
-            }
+            self.recognise(&blob, exposure, scale, request.grip, expected, &mut answer);
         }
         answer
     }
 
-    /// The face in the field of view that is nearest to the optical axis.
-    fn nearest(&self, subjects: &[Subject]) -> Option<Face> {
-        let widest = self.description.view / (inches(self.description.reference_range_mm / 1000.0));
-        let faces = subjects.iter().map(Subject::face).filter(|face| {
-            let limit = widest * face.centre.x;
-            face.centre.x > 0.0
-                && face.centre.y.abs() <= limit
-                && face.centre.z.abs() <= limit
-                && face.height > 0.0
-        });
-        let away = |face: &Face| libm::hypot(face.centre.y, face.centre.z);
-        faces.min_by(|a, b| away(a).total_cmp(&away(b)))
+    /// What a second picture says beyond the centroid: angle, and whether it is the part.
+    fn recognise(
+        &mut self,
+        blob: &[&Subject],
+        [_, brightest]: [f64; 2],
+        scale: f64,
+        grip: i16,
+        expected: Option<&PartType>,
+        answer: &mut VisionResponse,
+    ) {
+        let Some(subject) = blob.first() else { return };
+        let bloom = if subject.reflectance() > brightest { self.description.bloom } else { 0.0 };
+        let noise = self.description.shape_noise;
+        let measured = subject.lengths().map(|length| length * scale + bloom + self.noise.within(noise));
+        let turn = self.noise.within(self.description.angle_noise.to_radians());
+        answer.angle = grip_angle(&subject.face().edges, grip, turn);
+        let missed = self.fails();
+        let known = expected.filter(|part| looks_like(part, measured, self.description.shape_tolerance));
+        match known {
+            Some(part) if blob.len() == 1 && !missed => answer.recognised = part.vision_id,
+            _ => answer.status = VisionStatus::NotRecognised,
+        }
+    }
+
+    /// The analysis fails although all is well; a number is drawn only where that can be.
+    fn fails(&mut self) -> bool {
+        let chance = self.description.failure;
+        chance > 0.0 && (self.noise.within(1.0) + 1.0) / 2.0 < chance
+    }
+
+    /// Least and greatest reflectance that a variation shows as it should; after the last one it begins again.
+    fn exposure(&self, variation: u8) -> [f64; 2] {
+        let exposures = &self.description.exposures;
+        exposures.get(usize::from(variation) % exposures.len().max(1)).copied().unwrap_or([0.0, 1.0])
+    }
+
+    /// What is seen nearest to the optical axis, and what it is one blob with.
+    fn nearest<'s>(&self, subjects: &[&'s Subject]) -> Option<Vec<&'s Subject>> {
+        let away = |subject: &Subject| {
+            let centre = subject.centroid();
+            libm::hypot(centre.y, centre.z)
+        };
+        let first = subjects.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
+        let gap = self.description.resolution;
+        let others =
+            subjects.iter().filter(|other| !std::ptr::eq(**other, *first) && first.touches(other, gap));
+        Some([first].into_iter().chain(others).copied().collect())
+    }
+
+    /// True if a point (camera axes, in) is in the field of view.
+    #[must_use]
+    pub fn has_in_view(&self, point: &Vector) -> bool {
+        let widest = self.description.view / inches(self.description.reference_range_mm / 1000.0);
+        let limit = widest * point.x;
+        point.x > 0.0 && point.y.abs() <= limit && point.z.abs() <= limit
     }
 }
 
@@ -209,7 +220,7 @@ mod tests {
     };
 
     fn cell() -> CellDescription {
-        CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap()
+        CellDescription::from_toml(include_str!("../../../../data/cell.toml")).unwrap()
     }
 
     fn camera() -> Camera {
@@ -229,12 +240,22 @@ mod tests {
         let part =
             place.shifted(Vector::new(-0.3125, y, z)).turned(&rotation_by(&Vector::new(roll, 0.0, 0.0)));
         let view = camera().frame(&gr_pic().apply(&place));
-        Subject { frame: view.inverse().compose(&part), size: Vector::new(0.625, 0.625, 4.0) }
+        seen(&view.inverse().compose(&part), Vector::new(0.625, 0.625, 4.0), 0.5)
+    }
+
+    /// A part in camera axes of which everything in the field of view is seen.
+    fn seen(frame: &Frame, size: Vector, reflectance: f64) -> Subject {
+        let camera = camera();
+        Subject::new(Face::of(frame, &size), reflectance, |point| camera.has_in_view(&point))
     }
 
     fn ask(picture: Picture, grip: i16, subjects: &[Subject]) -> VisionResponse {
+        vary(picture, grip, subjects, 0)
+    }
+
+    fn vary(picture: Picture, grip: i16, subjects: &[Subject], variation: u8) -> VisionResponse {
         let mut camera = camera();
-        let request = VisionRequest { number: 3, picture, object_id: 17, grip, range_mm: 590, variation: 0 };
+        let request = VisionRequest { number: 3, picture, object_id: 17, grip, range_mm: 590, variation };
         assert!(camera.wants_picture(&request));
         camera.expose(&request, subjects, cell().part("LINKBAR1_BH"));
         assert!(!camera.wants_picture(&request));
@@ -275,7 +296,7 @@ mod tests {
     fn nothing_and_strangers_are_told_apart() {
         assert_eq!(ask(Picture::FastFlood, 2, &[]).status, VisionStatus::NothingSeen);
         assert_eq!(ask(Picture::FastFlood, 2, &[bar(7.0, 0.0, 0.0)]).status, VisionStatus::NothingSeen);
-        let stranger = Subject { size: Vector::new(0.625, 2.0, 2.0), ..bar(0.0, 0.0, 0.0) };
+        let stranger = seen(&before(), Vector::new(0.625, 2.0, 2.0), 0.5);
         assert_eq!(ask(Picture::Precise, 2, &[stranger]).status, VisionStatus::NotRecognised);
     }
 
@@ -283,5 +304,64 @@ mod tests {
     fn the_part_nearest_to_the_axis_is_meant() {
         let near = ask(Picture::FastFlood, 2, &[bar(3.0, 0.0, 0.0), bar(-1.0, 0.0, 0.0)]);
         assert!((near.y + 100).abs() <= 6, "{near:?}");
+    }
+
+    /// A frame 590 mm before the camera, turned as parts lie there.
+    fn before() -> Frame {
+        Frame { position: Vector::new(23.54, 0.0, 0.0), ..Frame::identity() }
+    }
+
+    #[test]
+    fn a_bar_that_is_cut_by_the_edge_is_found_beside_its_middle_and_not_recognised() {
+        // Its far third is out of the picture.
+        let cut = bar(0.0, 4.6, 0.0);
+        let flood = ask(Picture::FastFlood, 2, &[bar(0.0, 4.6, 0.0)]);
+        assert_eq!(flood.status, VisionStatus::Done);
+        assert!((350..=430).contains(&flood.z), "{flood:?}");
+        assert_eq!(ask(Picture::Precise, 2, &[cut]).status, VisionStatus::NotRecognised);
+        assert_eq!(ask(Picture::FastFlood, 2, &[bar(0.0, 6.9, 0.0)]).status, VisionStatus::NothingSeen);
+    }
+
+    #[test]
+    fn parts_that_touch_are_one_blob_and_apart_they_are_two() {
+        let pair = |gap: f64| {
+            let half = (0.625 + gap) / 2.0;
+            [bar(half, 0.0, 0.0), bar(-half, 0.0, 0.0)]
+        };
+        let together = ask(Picture::Precise, 2, &pair(0.02));
+        assert_eq!(together.status, VisionStatus::NotRecognised);
+        assert!(together.y.abs() <= 1, "in the middle of both: {together:?}");
+        assert_eq!(ask(Picture::Precise, 2, &pair(0.5)).recognised, 17);
+    }
+
+    #[test]
+    fn each_variation_shows_its_own_range_of_light() {
+        let bar = |reflectance| seen(&before(), Vector::new(0.625, 0.625, 4.0), reflectance);
+        let ask = |picture, reflectance, variation| vary(picture, 2, &[bar(reflectance)], variation).status;
+        let (flood, precise) = (Picture::FastFlood, Picture::Precise);
+        use VisionStatus::{Done, NotRecognised, NothingSeen};
+        assert_eq!([0, 1, 2].map(|v| ask(flood, 0.08, v)), [NothingSeen, Done, NothingSeen], "dark");
+        assert_eq!([0, 1, 2].map(|v| ask(precise, 0.08, v)), [NothingSeen, Done, NothingSeen]);
+        assert_eq!([0, 1, 2].map(|v| ask(flood, 0.95, v)), [Done; 3], "shiny");
+        assert_eq!([0, 1, 2].map(|v| ask(precise, 0.95, v)), [NotRecognised, NotRecognised, Done]);
+        assert_eq!([0, 3].map(|v| ask(precise, 0.5, v)), [Done; 2]);
+        assert_eq!(ask(precise, 0.01, 1), NothingSeen, "too dark for all");
+    }
+
+    #[test]
+    fn recognition_fails_as_often_as_its_chance_says() {
+        let mut description = cell().camera;
+        description.failure = 0.25;
+        let mut camera = Camera::new(&description, Noise::new(1, Stream::Camera));
+        let bar = [seen(&before(), Vector::new(0.625, 0.625, 4.0), 0.5)];
+        let (cell, mut failed) = (cell(), 0);
+        for number in 1..=400 {
+            let picture = Picture::Precise;
+            let request =
+                VisionRequest { number, picture, object_id: 17, grip: 2, range_mm: 598, variation: 0 };
+            let answer = camera.analyse(&request, &bar, cell.part("LINKBAR1_BH"));
+            failed += u32::from(answer.status == VisionStatus::NotRecognised);
+        }
+        assert!((70..130).contains(&failed), "{failed} of 400");
     }
 }

@@ -1,0 +1,161 @@
+//! What stands before the camera: of each part the face that looks at it, as a raster of points that are seen or not.
+
+use rcs_core::frame::{Frame, Vector};
+
+/// Points of the raster along an edge of a face: odd, so that one is in the middle.
+pub const RASTER: usize = 9;
+
+/// A part before the camera, in camera axes: X along the optical axis, Y the tool's Y; inches.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subject {
+    face: Face,
+    /// Share of the light that it throws back.
+    reflectance: f64,
+    /// Which points of the raster are seen, row by row.
+    seen: Vec<bool>,
+}
+
+/// The face of a part that looks at the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Face {
+    /// Its middle.
+    pub centre: Vector,
+    /// Directions and lengths of its two edges.
+    pub edges: [(Vector, f64); 2],
+}
+
+impl Face {
+    /// Of a part with a frame (camera axes) and a size.
+    #[must_use]
+    pub fn of(frame: &Frame, size: &Vector) -> Self {
+        let axes = [frame.x(), frame.y(), frame.z()];
+        let sizes: [f64; 3] = (*size).into();
+        let along = (0..3).max_by(|a, b| axes[*a].x.abs().total_cmp(&axes[*b].x.abs())).unwrap_or(0);
+        let towards = -axes[along] * axes[along].x.signum();
+        let (a, b) = ((along + 1) % 3, (along + 2) % 3);
+        Self {
+            centre: frame.position + towards * (sizes[along] / 2.0),
+            edges: [(axes[a], sizes[a]), (axes[b], sizes[b])],
+        }
+    }
+
+    /// The points of the raster, row by row: the middles of equal fields.
+    pub fn points(&self) -> impl Iterator<Item = Vector> + use<> {
+        let Self { centre, edges: [(a, long), (b, wide)] } = *self;
+        let step = |index: usize| (2 * index + 1) as f64 / (2 * RASTER) as f64 - 0.5;
+        (0..RASTER).flat_map(move |row| {
+            (0..RASTER).map(move |column| centre + a * (long * step(row)) + b * (wide * step(column)))
+        })
+    }
+}
+
+impl Subject {
+    /// A face of which only those points are seen for which `sees` holds.
+    pub fn new(face: Face, reflectance: f64, sees: impl FnMut(Vector) -> bool) -> Self {
+        Self { face, reflectance, seen: face.points().map(sees).collect() }
+    }
+
+    /// The face.
+    #[must_use]
+    pub const fn face(&self) -> &Face {
+        &self.face
+    }
+
+    /// Share of the light that it throws back.
+    #[must_use]
+    pub const fn reflectance(&self) -> f64 {
+        self.reflectance
+    }
+
+    /// Share of the face that is seen.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        self.seen.iter().filter(|seen| **seen).count() as f64 / self.seen.len() as f64
+    }
+
+    /// The points that are seen.
+    fn seen_points(&self) -> impl Iterator<Item = Vector> {
+        self.face.points().zip(&self.seen).filter(|(_, seen)| **seen).map(|(point, _)| point)
+    }
+
+    /// The corners of the fields whose middles are seen.
+    fn seen_corners(&self) -> impl Iterator<Item = Vector> {
+        let [a, b] = self.face.edges.map(|(edge, length)| edge * (length / (2 * RASTER) as f64));
+        self.seen_points().flat_map(move |point| [a + b, a - b, b - a, -a - b].map(|corner| point + corner))
+    }
+
+    /// The middle of what is seen: that of the face if all of it is.
+    #[must_use]
+    pub fn centroid(&self) -> Vector {
+        let count = self.seen.iter().filter(|seen| **seen).count();
+        if count == self.seen.len() || count == 0 {
+            return self.face.centre;
+        }
+        self.seen_points().sum::<Vector>() / count as f64
+    }
+
+    /// Lengths of what is seen along the two edges.
+    #[must_use]
+    pub fn lengths(&self) -> [f64; 2] {
+        let along = |index: fn(usize) -> usize| {
+            let seen = || self.seen.iter().enumerate().filter(|(_, seen)| **seen).map(|(at, _)| index(at));
+            match (seen().min(), seen().max()) {
+                (Some(first), Some(last)) => (last - first + 1) as f64 / RASTER as f64,
+                _ => 0.0,
+            }
+        };
+        let [(_, long), (_, wide)] = self.face.edges;
+        [long * along(|at| at / RASTER), wide * along(|at| at % RASTER)]
+    }
+
+    /// True if a point lies on this face, or beside it by no more than `gap`, as the camera sees it: along the rays.
+    fn covers(&self, point: &Vector, gap: f64) -> bool {
+        let on_face = *point * (self.face.centre.x / point.x) - self.face.centre;
+        self.face.edges.iter().all(|(edge, length)| on_face.dot(edge).abs() <= length / 2.0 + gap)
+    }
+
+    /// True if this and another are one blob in the picture: nothing but `gap` is between what is seen of both.
+    #[must_use]
+    pub fn touches(&self, other: &Self, gap: f64) -> bool {
+        self.seen_corners().any(|point| other.covers(&point, gap))
+            || other.seen_corners().any(|point| self.covers(&point, gap))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plate of 4 by 2 in, 20 in before the camera, of which only some points are seen.
+    fn plate(y: f64, z: f64, sees: impl FnMut(Vector) -> bool) -> Subject {
+        let frame = Frame { position: Vector::new(20.5, y, z), ..Frame::identity() };
+        Subject::new(Face::of(&frame, &Vector::new(1.0, 4.0, 2.0)), 0.5, sees)
+    }
+
+    #[test]
+    fn a_face_that_is_all_seen_has_its_middle_and_its_lengths() {
+        let subject = plate(1.0, -2.0, |_| true);
+        assert_eq!((subject.share(), subject.lengths()), (1.0, [4.0, 2.0]));
+        assert_eq!(subject.centroid(), Vector::new(20.0, 1.0, -2.0));
+    }
+
+    #[test]
+    fn what_hides_an_end_shifts_the_middle_and_shortens_the_face() {
+        let subject = plate(0.0, 0.0, |point| point.y < 0.7);
+        let [long, wide] = subject.lengths();
+        assert!((long - 4.0 * 6.0 / 9.0).abs() < 1e-12 && wide == 2.0, "{long} {wide}");
+        let centroid = subject.centroid();
+        assert!((centroid.y + 4.0 / 6.0).abs() < 1e-12 && centroid.z.abs() < 1e-12, "{centroid:?}");
+        assert!((subject.share() - 6.0 / 9.0).abs() < 1e-12);
+        let hidden = plate(0.0, 0.0, |_| false);
+        assert_eq!((hidden.share(), hidden.lengths()), (0.0, [0.0, 0.0]));
+    }
+
+    #[test]
+    fn neighbours_are_one_blob_if_no_gap_is_seen_between_them() {
+        let subject = plate(0.0, 0.0, |_| true);
+        assert!(subject.touches(&plate(3.9, 0.0, |_| true), 0.05));
+        assert!(!subject.touches(&plate(4.4, 0.0, |_| true), 0.05));
+        assert!(!subject.touches(&plate(3.9, 0.0, |_| false), 0.0), "what is not seen touches nothing");
+    }
+}

@@ -1,0 +1,383 @@
+//! The injector: begins and ends the faults of a plan, and changes what passes between cell and controller.
+//!
+//! Each fault has its own stream of numbers, so that what happens to one device does not depend on the others. All of it is
+//! plain data: a saved cell goes on with its faults where they were.
+
+use rcs_core::{
+    interface::device::{DeviceInputs, DeviceOutputs},
+    tick::TICK_S,
+};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Disorder, Fault, FaultPlan, Mishap, What,
+    valve::{cut_air, hold_ring},
+};
+use crate::{
+    description::CellDescription,
+    noise::Noise,
+    sensor::{Line, Sensor},
+};
+
+/// Streams of numbers of faults begin here; those of devices are below ([`crate::noise::Stream`]).
+const STREAMS: u64 = 1000;
+/// Mixes the seed of the plan with that of the run: 2^64 divided by the golden ratio.
+const MIX: u64 = 0x9E37_79B9_7F4A_7C15;
+
+/// Applies a plan.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct Injector {
+    tick: u64,
+    faults: Vec<Running>,
+}
+
+/// A fault, and how far it has come.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+struct Running {
+    fault: Fault,
+    noise: Noise,
+    active: bool,
+    /// The tick in which it began.
+    began: u64,
+    /// The tick behind its end, if it has a rate.
+    until: u64,
+    /// The word at which a stuck sensor was caught.
+    caught: Option<i64>,
+    /// Words on their way through a slow sensor.
+    late: Line,
+    times: u64,
+    first: u64,
+    last: u64,
+}
+
+/// A fault that has happened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Struck {
+    /// Which one of its file, from 1.
+    pub number: usize,
+    /// In words.
+    pub text: String,
+    /// How often it has begun.
+    pub times: u64,
+    /// The tick in which it began first.
+    pub first: u64,
+    /// The last tick in which it was there.
+    pub last: u64,
+}
+
+/// What becomes of a delivery.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Delivery {
+    /// Nothing comes.
+    pub missing: bool,
+    /// The part that comes instead.
+    pub instead: Option<String>,
+    /// Beside its place along world X and Y, in.
+    pub aside: [f64; 2],
+    /// Turned about the tool's X, degrees.
+    pub angle: f64,
+}
+
+/// The beginning or the end of a fault.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Change {
+    pub number: usize,
+    pub text: String,
+    pub begins: bool,
+}
+
+impl Injector {
+    /// The faults of a plan in a run with a seed, before the first tick.
+    #[must_use]
+    pub fn new(plan: &FaultPlan, seed: u64) -> Self {
+        let seed = seed ^ plan.seed.wrapping_mul(MIX);
+        let faults = (STREAMS..).zip(&plan.faults).map(|(stream, fault)| Running {
+            fault: fault.clone(),
+            noise: Noise::numbered(seed, stream),
+            active: false,
+            began: 0,
+            until: 0,
+            caught: None,
+            late: Line::default(),
+            times: 0,
+            first: 0,
+            last: 0,
+        });
+        Self { tick: 0, faults: faults.collect() }
+    }
+
+    /// Begin and end what begins and ends with the present tick.
+    pub(crate) fn turn(&mut self) -> Vec<Change> {
+        let tick = self.tick;
+        self.faults.iter_mut().filter_map(|running| running.turn(tick)).collect()
+    }
+
+    /// The next tick.
+    pub(crate) fn next(&mut self) -> Vec<Change> {
+        self.tick += 1;
+        self.turn()
+    }
+
+    fn active(&self) -> impl Iterator<Item = &What> {
+        self.faults.iter().filter(|running| running.active).map(|running| &running.fault.what)
+    }
+
+    /// What arrives of what the controller commands.
+    #[must_use]
+    pub fn outputs(&self, outputs: &DeviceOutputs) -> DeviceOutputs {
+        let mut arrives = *outputs;
+        for what in self.active() {
+            match what {
+                What::Valve(valve, open) => valve.stick(&mut arrives, *open),
+                What::RingStuck => hold_ring(&mut arrives),
+                _ => {}
+            }
+        }
+        // A valve that stands open lets nothing through either when there is no air.
+        if self.active().any(|what| *what == What::AirLost) {
+            cut_air(&mut arrives);
+        }
+        arrives
+    }
+
+    /// Change what the sensors show.
+    pub fn inputs(&mut self, inputs: &mut DeviceInputs) {
+        let tick = self.tick;
+        for running in self.faults.iter_mut().filter(|running| running.active) {
+            if let What::Sensor(sensor, disorder) = running.fault.what {
+                running.disturb(sensor, disorder, tick, inputs);
+            }
+        }
+    }
+
+    /// The jaw of the vise does not move.
+    #[must_use]
+    pub fn jaw_stuck(&self) -> bool {
+        self.active().any(|what| *what == What::JawStuck)
+    }
+
+    /// The camera sees nothing.
+    #[must_use]
+    pub fn camera_blind(&self) -> bool {
+        self.active().any(|what| *what == What::CameraBlind)
+    }
+
+    /// What becomes of the delivery of a part, and which faults that is.
+    pub(crate) fn delivery(&mut self, part: &str) -> (Delivery, Vec<Change>) {
+        let tick = self.tick;
+        let mut delivery = Delivery::default();
+        let mut changes = Vec::new();
+        for running in &mut self.faults {
+            let What::Delivery(object, mishap) = &running.fault.what else { continue };
+            let meant = object.as_deref().is_none_or(|object| object == part);
+            if !meant
+                || !running.fault.when.covers(tick)
+                || !happens(running.fault.when.rate, &mut running.noise)
+            {
+                continue;
+            }
+            match mishap {
+                Mishap::Missing => delivery.missing = true,
+                Mishap::Misplaced { x, y } => {
+                    delivery.aside = [delivery.aside[0] + x, delivery.aside[1] + y];
+                }
+                Mishap::Turned(angle) => delivery.angle += angle,
+                Mishap::WrongPart(other) => delivery.instead = Some(other.clone()),
+            }
+            changes.push(running.note(tick, true));
+            running.last = tick;
+        }
+        (delivery, changes)
+    }
+
+    /// A description with what faults have moved from the beginning.
+    #[must_use]
+    pub fn displaced(&self, description: &CellDescription) -> CellDescription {
+        super::displaced(self.faults.iter().map(|running| &running.fault), description)
+    }
+
+    /// The faults that have happened so far, in the order of the file.
+    #[must_use]
+    pub fn struck(&self) -> Vec<Struck> {
+        let struck = self.faults.iter().filter(|running| running.times > 0);
+        let told = struck.map(|running| Struck {
+            number: running.fault.number,
+            text: running.fault.what.to_string(),
+            times: running.times,
+            first: running.first,
+            last: running.last,
+        });
+        told.collect()
+    }
+}
+
+/// Whether something with a chance happens; a number is drawn only if there is one.
+fn happens(rate: Option<f64>, noise: &mut Noise) -> bool {
+    rate.is_none_or(|rate| (noise.within(1.0) + 1.0) / 2.0 < rate)
+}
+
+impl Running {
+    /// Begin or end in a tick.
+    fn turn(&mut self, tick: u64) -> Option<Change> {
+        if self.fault.what.is_delivery() {
+            return None;
+        }
+        let when = self.fault.when;
+        let inside = when.covers(tick);
+        let active = match when.rate {
+            None => inside,
+            Some(_) if self.active && tick < self.until => true,
+            Some(_) => inside && happens(when.rate, &mut self.noise),
+        };
+        let begins = active && !self.active;
+        let again = active && self.active && when.rate.is_some() && tick >= self.until;
+        if begins || again {
+            self.until = tick.saturating_add(when.ticks);
+        }
+        if active {
+            self.last = tick;
+        }
+        if active == self.active {
+            return None;
+        }
+        self.active = active;
+        (self.caught, self.began) = (None, tick);
+        self.late.clear();
+        Some(self.note(tick, begins))
+    }
+
+    fn note(&mut self, tick: u64, begins: bool) -> Change {
+        if begins {
+            self.first = if self.times == 0 { tick } else { self.first };
+            self.times += 1;
+        }
+        Change { number: self.fault.number, text: self.fault.what.to_string(), begins }
+    }
+
+    /// Let a sensor show something else.
+    fn disturb(&mut self, sensor: Sensor, disorder: Disorder, tick: u64, inputs: &mut DeviceInputs) {
+        let shown = sensor.read(inputs);
+        let counts = |by: f64| libm::round(by) as i64;
+        let value = match disorder {
+            Disorder::Off => 0,
+            Disorder::Stuck(Some(value)) => value,
+            Disorder::Stuck(None) => *self.caught.get_or_insert(shown),
+            Disorder::Noisy(by) => shown + counts(self.noise.within(by)),
+            Disorder::Slow(ticks) => self.late.pass(shown, ticks),
+            Disorder::Offset(by) => shown + counts(by),
+            Disorder::Drift(by) => shown + counts(by * (tick - self.began) as f64 * TICK_S),
+        };
+        sensor.write(inputs, value);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fault::{Valve, When};
+
+    fn injector(whats: Vec<(What, When)>) -> Injector {
+        let faults = whats.into_iter().enumerate();
+        let faults = faults.map(|(index, (what, when))| Fault { number: index + 1, what, when }).collect();
+        Injector::new(&FaultPlan { seed: 1, faults }, 1)
+    }
+
+    fn sensor(name: &str, disorder: Disorder) -> What {
+        What::Sensor(Sensor::named(name).unwrap(), disorder)
+    }
+
+    /// What a word that counts up by 10 every tick shows, from tick 1.
+    fn shown(disorder: Disorder, when: When, ticks: u16) -> Vec<i64> {
+        let what = sensor("grip.potentiometer", disorder);
+        let mut injector = injector(vec![(what, when)]);
+        let word = Sensor::named("grip.potentiometer").unwrap();
+        (1..=ticks)
+            .map(|tick| {
+                injector.next();
+                let mut inputs = DeviceInputs::default();
+                inputs.grip.potentiometer = 1000 + 10 * tick;
+                injector.inputs(&mut inputs);
+                word.read(&inputs)
+            })
+            .collect()
+    }
+
+    const FROM_3_TO_6: When = When { from: 3, until: 6, rate: None, ticks: 1 };
+
+    #[test]
+    fn each_disorder_shows_what_it_says_and_only_in_its_window() {
+        for (disorder, expected) in [
+            (Disorder::Off, [1010, 1020, 0, 0, 0, 1060]),
+            (Disorder::Stuck(None), [1010, 1020, 1030, 1030, 1030, 1060]),
+            (Disorder::Stuck(Some(7)), [1010, 1020, 7, 7, 7, 1060]),
+            (Disorder::Slow(1), [1010, 1020, 1030, 1030, 1040, 1060]),
+            (Disorder::Offset(-30.0), [1010, 1020, 1000, 1010, 1020, 1060]),
+            (Disorder::Drift(100.0), [1010, 1020, 1030, 1044, 1058, 1060]),
+            (Disorder::Offset(9999.0), [1010, 1020, 4095, 4095, 4095, 1060]),
+        ] {
+            assert_eq!(shown(disorder, FROM_3_TO_6, 6), expected, "{disorder}");
+        }
+        let noisy = shown(Disorder::Noisy(5.0), When::ALWAYS, 500);
+        let away: Vec<i64> = noisy.iter().zip(1..).map(|(shown, tick)| shown - 1000 - 10 * tick).collect();
+        assert!(away.iter().all(|away| away.abs() <= 5) && away.iter().any(|away| away.abs() >= 4));
+    }
+
+    #[test]
+    fn a_rate_begins_it_now_and_then_for_its_ticks() {
+        let when = When { from: 0, until: u64::MAX, rate: Some(0.05), ticks: 4 };
+        let mut injector = injector(vec![(sensor("beam.1", Disorder::Off), when)]);
+        let (mut begun, mut active) = (0, 0);
+        for _ in 0..10_000 {
+            begun += injector.next().iter().filter(|change| change.begins).count();
+            active += u32::from(injector.faults[0].active);
+        }
+        // A chance of 1 in 20 a tick, and 4 ticks each: a sixth of the time.
+        assert!((1500..1850).contains(&active), "{active} of 10,000 ticks");
+        assert!((300..450).contains(&begun), "{begun} times");
+        let [struck] = &injector.struck()[..] else { panic!("one fault") };
+        assert_eq!((struck.number, struck.times, struck.text.as_str()), (1, begun as u64, "beam.1 is off"));
+    }
+
+    #[test]
+    fn the_same_seeds_give_the_same_faults() {
+        let run = |seed, plan_seed| {
+            let when = When { rate: Some(0.1), ..When::ALWAYS };
+            let fault = Fault { number: 1, what: sensor("beam.1", Disorder::Off), when };
+            let mut injector = Injector::new(&FaultPlan { seed: plan_seed, faults: vec![fault] }, seed);
+            (0..200).map(|_| injector.next().len()).collect::<Vec<_>>()
+        };
+        assert_eq!(run(1, 1), run(1, 1));
+        assert_ne!(run(1, 1), run(2, 1));
+        assert_ne!(run(1, 1), run(1, 2));
+    }
+
+    #[test]
+    fn valves_stick_and_no_air_passes_them() {
+        let open = What::Valve(Valve::named("grip.open-fine").unwrap(), true);
+        let late = When { from: 2, ..When::ALWAYS };
+        let mut injector = injector(vec![(open, When::ALWAYS), (What::AirLost, late)]);
+        injector.next();
+        assert_eq!(injector.outputs(&DeviceOutputs::default()).grip.bits, 1);
+        injector.next();
+        assert_eq!(injector.outputs(&DeviceOutputs::default()).grip.bits, 0);
+    }
+
+    #[test]
+    fn a_delivery_meets_what_is_meant_for_it() {
+        let bar = || Some("BAR".to_owned());
+        let late = When { from: 10, ..When::ALWAYS };
+        let mut injector = injector(vec![
+            (What::Delivery(bar(), Mishap::Misplaced { x: 0.5, y: -1.0 }), When::ALWAYS),
+            (What::Delivery(None, Mishap::Turned(30.0)), When::ALWAYS),
+            (What::Delivery(None, Mishap::Missing), late),
+        ]);
+        let (delivery, changes) = injector.delivery("BAR");
+        let expected = Delivery { missing: false, instead: None, aside: [0.5, -1.0], angle: 30.0 };
+        assert_eq!((delivery, changes.len()), (expected, 2));
+        let (other, _) = injector.delivery("OTHER");
+        assert_eq!(other, Delivery { angle: 30.0, ..Delivery::default() });
+        (0..10).for_each(|_| drop(injector.next()));
+        assert!(injector.delivery("OTHER").0.missing);
+        assert_eq!(injector.struck().iter().map(|struck| struck.times).collect::<Vec<_>>(), [1, 3, 1]);
+    }
+}

@@ -1,0 +1,206 @@
+//! What can go wrong in the cell, by file: sensors, valves, air, parts that are not what or where they should be.
+//!
+//! A [`FaultPlan`] is a seed and some [`Fault`]s; an [`Injector`] applies it tick by tick. A fault changes what passes
+//! between the cell and the controller (a sensor's word, a valve's command), or what the workstation delivers; nothing in the
+//! cell is told of it. So the cell behaves as it would, and the controller has to find out.
+//!
+//! Which kinds there are and how they are written is in [`text`]; faults of the line to the robot controller, which may
+//! stand in the same file, are [`depc::fault`]'s.
+
+mod inject;
+mod problem;
+pub mod text;
+mod valve;
+
+use std::fmt;
+
+use rcs_core::tick::TICK_S;
+use serde::{Deserialize, Serialize};
+
+pub(crate) use inject::Change;
+pub use inject::{Delivery, Injector, Struck};
+pub use valve::Valve;
+
+use crate::{description::CellDescription, sensor::Sensor};
+
+/// Faults, and what their numbers depend on.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct FaultPlan {
+    /// What the numbers depend on, beside the seed of the run.
+    pub seed: u64,
+    /// The faults.
+    pub faults: Vec<Fault>,
+}
+
+/// A fault: what, and when.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Fault {
+    /// Which one of its file, from 1.
+    pub number: usize,
+    /// What happens.
+    pub what: What,
+    /// When.
+    pub when: When,
+}
+
+/// The ticks in which a fault is there.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub struct When {
+    /// First tick of the window; 0 is before the first tick of the run.
+    pub from: u64,
+    /// The tick behind the window.
+    pub until: u64,
+    /// Chance of beginning in each tick of the window, or in each delivery; `None`: always.
+    pub rate: Option<f64>,
+    /// Ticks that it then lasts, if it has a rate.
+    pub ticks: u64,
+}
+
+impl When {
+    /// In all ticks of a run.
+    pub const ALWAYS: Self = Self { from: 0, until: u64::MAX, rate: None, ticks: 1 };
+
+    /// True if the window has the tick.
+    #[must_use]
+    pub const fn covers(&self, tick: u64) -> bool {
+        self.from <= tick && tick < self.until
+    }
+}
+
+/// What can happen.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub enum What {
+    /// A sensor does not show what it should.
+    Sensor(Sensor, Disorder),
+    /// A valve stands open (true) or closed, whatever it is told.
+    Valve(Valve, bool),
+    /// The supply of air is gone.
+    AirLost,
+    /// The locking ring of the quick change does not move.
+    RingStuck,
+    /// The jaw of the vise does not move.
+    JawStuck,
+    /// The camera sees nothing.
+    CameraBlind,
+    /// What the workstation delivers to a tray; of all parts, or of one.
+    Delivery(Option<String>, Mishap),
+    /// The stand of the pedestal is not where it is marked on the floor (II.1.2.3): inches in x and y, degrees.
+    PedestalMoved {
+        /// Along world X, in.
+        x: f64,
+        /// Along world Y, in.
+        y: f64,
+        /// About its own axis, degrees, positive to the left.
+        angle: f64,
+    },
+}
+
+/// What a sensor shows instead of what it should; all in counts of its word.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+pub enum Disorder {
+    /// Nothing: 0, not seen, no power.
+    Off,
+    /// The same all the time: a value, or the one at which it was caught.
+    Stuck(Option<i64>),
+    /// Up to so many counts more or less.
+    Noisy(f64),
+    /// What it should have shown so many ticks ago.
+    Slow(u16),
+    /// So many counts more.
+    Offset(f64),
+    /// So many counts more every second.
+    Drift(f64),
+}
+
+/// What can be wrong with a delivery.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub enum Mishap {
+    /// Nothing comes.
+    Missing,
+    /// It lies beside its place: world X and Y, in.
+    Misplaced {
+        /// Along X.
+        x: f64,
+        /// Along Y.
+        y: f64,
+    },
+    /// It is turned: right-hand roll about the tool's X (down), degrees.
+    Turned(f64),
+    /// Another part comes.
+    WrongPart(String),
+}
+
+impl What {
+    /// It happens to deliveries, and not for a time.
+    #[must_use]
+    pub const fn is_delivery(&self) -> bool {
+        matches!(self, Self::Delivery(..))
+    }
+}
+
+impl FaultPlan {
+    /// The cell as it stands from the beginning: with a pedestal that is not on its mark.
+    #[must_use]
+    pub fn displaced(&self, description: &CellDescription) -> CellDescription {
+        displaced(self.faults.iter(), description)
+    }
+}
+
+/// The cell as it stands with some faults from the beginning.
+fn displaced<'f>(faults: impl Iterator<Item = &'f Fault>, description: &CellDescription) -> CellDescription {
+    let mut cell = description.clone();
+    for fault in faults {
+        if let What::PedestalMoved { x, y, angle } = fault.what {
+            let stand = cell.pedestal.stand.clone();
+            cell.pedestal.position[0] += x;
+            cell.pedestal.position[1] += y;
+            cell.pedestal.azimuth += angle;
+            if let Some(stand) = cell.fixture.iter_mut().find(|fixture| fixture.name == stand) {
+                stand.centre[0] += x;
+                stand.centre[1] += y;
+                stand.azimuth += angle;
+            }
+        }
+    }
+    cell
+}
+
+impl fmt::Display for Disorder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Off => f.write_str("is off"),
+            Self::Stuck(None) => f.write_str("is stuck"),
+            Self::Stuck(Some(value)) => write!(f, "is stuck at {value}"),
+            Self::Noisy(by) => write!(f, "is noisy by {by} counts"),
+            Self::Slow(ticks) => write!(f, "is {:.2} s late", f64::from(*ticks) * TICK_S),
+            Self::Offset(by) => write!(f, "is off by {by:+} counts"),
+            Self::Drift(by) => write!(f, "drifts by {by:+} counts a second"),
+        }
+    }
+}
+
+impl fmt::Display for What {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sensor(sensor, disorder) => write!(f, "{} {disorder}", sensor.name()),
+            Self::Valve(valve, true) => write!(f, "valve {} is stuck open", valve.name()),
+            Self::Valve(valve, false) => write!(f, "valve {} is stuck closed", valve.name()),
+            Self::AirLost => f.write_str("the air is lost"),
+            Self::RingStuck => f.write_str("the locking ring is stuck"),
+            Self::JawStuck => f.write_str("the jaw of the vise is stuck"),
+            Self::CameraBlind => f.write_str("the camera is blind"),
+            Self::Delivery(object, mishap) => {
+                let object = object.as_deref().unwrap_or("what is delivered");
+                match mishap {
+                    Mishap::Missing => write!(f, "{object} does not come"),
+                    Mishap::Misplaced { x, y } => write!(f, "{object} lies {x} in, {y} in beside its place"),
+                    Mishap::Turned(angle) => write!(f, "{object} is turned by {angle} degrees"),
+                    Mishap::WrongPart(part) => write!(f, "{part} comes instead of {object}"),
+                }
+            }
+            Self::PedestalMoved { x, y, angle } => {
+                write!(f, "the pedestal stands {x} in, {y} in, {angle} degrees beside its mark")
+            }
+        }
+    }
+}

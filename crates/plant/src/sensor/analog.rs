@@ -1,0 +1,48 @@
+//! A sensor with a voltage on a 12-bit converter: offset, scale, noise, and the steps and ends of the converter.
+
+use rcs_core::interface::device::ADC_FULL_SCALE;
+
+use crate::noise::Noise;
+
+/// An analog sensor and its converter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Analog {
+    /// Counts at a value of 0.
+    pub offset: f64,
+    /// Counts for a unit of the value.
+    pub scale: f64,
+    /// Greatest noise, counts.
+    pub noise: f64,
+}
+
+impl Analog {
+    /// Counts at a value: beyond its range the converter shows its ends.
+    pub fn counts(&self, value: f64, noise: &mut Noise) -> u16 {
+        let volts = self.offset + self.scale * value + noise.within(self.noise);
+        libm::round(volts).clamp(0.0, f64::from(ADC_FULL_SCALE)) as u16
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::Stream;
+
+    #[test]
+    fn it_is_linear_between_the_ends_of_its_converter() {
+        let analog = Analog { offset: 205.0, scale: 700.0, noise: 0.0 };
+        let mut noise = Noise::new(1, Stream::Gripper);
+        let counts = [-1.0, 0.0, 0.5, 1.0007, 5.0, 6.0].map(|value| analog.counts(value, &mut noise));
+        assert_eq!(counts, [0, 205, 555, 905, 3705, ADC_FULL_SCALE]);
+    }
+
+    #[test]
+    fn its_noise_has_no_bias_and_an_end() {
+        let analog = Analog { offset: 1000.0, scale: 1.0, noise: 3.0 };
+        let mut noise = Noise::new(1, Stream::Gripper);
+        let read: Vec<f64> = (0..4000).map(|_| f64::from(analog.counts(0.0, &mut noise)) - 1000.0).collect();
+        assert!(read.iter().all(|away| away.abs() <= 3.0));
+        let mean = read.iter().sum::<f64>() / 4000.0;
+        assert!(mean.abs() < 0.1, "{mean}");
+    }
+}

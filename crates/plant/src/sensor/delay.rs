@@ -1,0 +1,84 @@
+//! Dead time: words that arrive some ticks after they were true.
+
+use std::collections::VecDeque;
+
+use rcs_core::interface::device::DeviceInputs;
+use serde::{Deserialize, Serialize};
+
+use super::{Group, Sensor};
+use crate::description::SensorModels;
+
+/// Words on their way.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
+pub struct Line(VecDeque<i64>);
+
+impl Line {
+    /// Put a word in, and take the one out that went in `ticks` ago; the oldest while the line fills.
+    pub fn pass(&mut self, word: i64, ticks: u16) -> i64 {
+        self.0.push_back(word);
+        if self.0.len() > usize::from(ticks) + 1 {
+            self.0.pop_front();
+        }
+        self.0.front().copied().unwrap_or(word)
+    }
+
+    /// Forget what is on its way.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+}
+
+/// The dead times of a cell's sensors; those without any are not in it.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub struct DeadTimes(Vec<(Sensor, u16, Line)>);
+
+impl DeadTimes {
+    /// As a description has them.
+    #[must_use]
+    pub fn new(models: &SensorModels) -> Self {
+        let ticks = |sensor: Sensor| match sensor.group() {
+            Group::Resolver => models.resolver_delay,
+            Group::Converter => models.converter_delay,
+            Group::Force => models.force_delay,
+            Group::Switch => models.switch_delay,
+            Group::Other => 0,
+        };
+        let late = Sensor::all().map(|sensor| (sensor, ticks(sensor), Line::default()));
+        Self(late.filter(|(_, ticks, _)| *ticks > 0).collect())
+    }
+
+    /// Once a tick: hold back what the sensors show.
+    pub fn hold_back(&mut self, inputs: &mut DeviceInputs) {
+        for (sensor, ticks, line) in &mut self.0 {
+            let word = line.pass(sensor.read(inputs), *ticks);
+            sensor.write(inputs, word);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_come_out_as_they_went_in_but_later() {
+        let mut line = Line::default();
+        assert_eq!([1, 2, 3, 4, 5].map(|word| line.pass(word, 2)), [1, 1, 1, 2, 3]);
+        let mut none = Line::default();
+        assert_eq!([1, 2, 3].map(|word| none.pass(word, 0)), [1, 2, 3]);
+    }
+
+    #[test]
+    fn only_the_sensors_of_a_group_are_late() {
+        let models = SensorModels { force_delay: 1, ..SensorModels::default() };
+        let mut delays = DeadTimes::new(&models);
+        assert_eq!(delays.0.len(), 4, "the four axes");
+        let shown = [100, 200].map(|x| {
+            let mut inputs = DeviceInputs::default();
+            (inputs.force.x, inputs.grip.potentiometer) = (x, x);
+            delays.hold_back(&mut inputs);
+            (inputs.force.x, inputs.grip.potentiometer)
+        });
+        assert_eq!(shown, [(100, 100), (100, 200)]);
+    }
+}

@@ -1,0 +1,28 @@
+//! A sensor that sees something or not: it begins to see at one distance and ends at a greater one.
+
+use serde::{Deserialize, Serialize};
+
+/// A switching sensor, and what it sees at present.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+pub struct Switch(bool);
+
+impl Switch {
+    /// What it shows of something that is `beyond` its range by so much, negative inside of it; `hysteresis` is how much
+    /// farther it must go before it is no longer seen.
+    pub fn see(&mut self, beyond: f64, hysteresis: f64) -> bool {
+        self.0 = beyond <= if self.0 { hysteresis } else { 0.0 };
+        self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_lets_go_later_than_it_has_taken_notice() {
+        let mut switch = Switch::default();
+        let seen = [0.02, 0.0, 0.02, 0.03, 0.04, 0.02, -0.1].map(|beyond| switch.see(beyond, 0.03));
+        assert_eq!(seen, [false, true, true, true, false, false, true]);
+    }
+}

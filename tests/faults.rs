@@ -1,0 +1,269 @@
+//! Faults in the cell: how each run ends. It may finish, or fail with a reason that a person understands; what it may not do
+//! is crash, hang, or say that it has finished when it has not.
+//!
+//! `RCS_FAULT_RUNS` is the number of random schedules that are tried, a handful if it is not set; `RCS_FAULT_SEED` the first
+//! of their seeds.
+
+use std::{env, fmt::Write as _};
+
+use record::replay;
+use serde_json::Value;
+use whole_system_tests::{Outcome, run};
+
+/// How a run ends.
+enum Ends {
+    /// Finished, the part where it belongs.
+    Well,
+    /// Exit status, process, and words of the reason.
+    Failing(i32, &'static str, &'static str),
+}
+use Ends::{Failing, Well};
+
+/// Run a job with a file of faults from the data directory.
+fn with(job: &str, faults: &str) -> Outcome {
+    run(job, 1, &format!("{job}-{faults}"), |scratch| scratch.faults_of(faults))
+}
+
+/// True if all parts that a finished job leaves in the cell are where it should have put them.
+fn in_place(job: &str, result: &Value) -> bool {
+    let expected: &[(&str, &str, u64, f64)] = match job {
+        "linkbar" => &[("LINKBAR1", "UNIT_1", 1, 0.25)],
+        "clevis" => &[("LCLEVIS", "UNIT_1", 2, 0.25)],
+        "turned-part" => &[("SHAFT", "UNIT_2", 8, 0.25)],
+        "tool-change" => &[("DRILL-2", "UNIT_2", 3, 0.25), ("ENDMILL-1", "TOOL-TRNS", 0, 0.15)],
+        other => panic!("nothing is known of {other}"),
+    };
+    expected.iter().all(|(name, location, sector, within)| {
+        let parts = result["parts"].as_array().map_or(&[][..], Vec::as_slice);
+        parts.iter().any(|part| {
+            part["name"] == *name
+                && part["location"] == *location
+                && part["sector"] == *sector
+                && part["held"] == false
+                && part["error_in"].as_f64().is_some_and(|error| error < *within)
+        })
+    })
+}
+
+/// What holds for every run, whatever its faults.
+fn assert_sound(what: &str, outcome: &Outcome) {
+    let said = &outcome.last_words;
+    assert!(matches!(outcome.status, Some(0 | 1 | 3)), "{what}: {:?} {said}", outcome.status);
+    assert_eq!(outcome.result["allocations_after_start"], 0, "{what}");
+    assert!(
+        !outcome.result["cell_faults"].as_array().is_none_or(Vec::is_empty),
+        "{what}: no fault has struck"
+    );
+    let report = replay(&outcome.log).expect("the log can be replayed");
+    if let Some(difference) = &report.first_difference {
+        panic!("{what}: {difference}");
+    }
+    assert!(report.is_same() && report.complete, "{what}");
+    assert_eq!(report.digest.to_string(), outcome.digest(), "{what}");
+}
+
+fn assert_ends(job: &str, faults: &str, ends: &Ends) {
+    let outcome = with(job, faults);
+    let what = format!("{job} with {faults}");
+    assert_sound(&what, &outcome);
+    let failure = &outcome.result["failure"];
+    match ends {
+        Well => {
+            assert_eq!(outcome.status, Some(0), "{what}: {}", outcome.last_words);
+            assert!(in_place(job, &outcome.result), "{what}: {}", outcome.result["parts"]);
+        }
+        Failing(status, process, reason) => {
+            assert_eq!(outcome.status, Some(*status), "{what}: {}", outcome.last_words);
+            assert_eq!(failure["process"], *process, "{what}: {failure}");
+            let text = failure["text"].as_str().unwrap_or_default();
+            assert!(text.contains(reason), "{what}: {text}");
+            assert!(outcome.last_words.contains(reason), "{what}: {}", outcome.last_words);
+        }
+    }
+}
+
+macro_rules! endings {
+    ($($name:ident: $job:literal, $faults:literal => $ends:expr;)*) => {$(
+        #[test]
+        fn $name() {
+            assert_ends($job, $faults, &$ends);
+        }
+    )*};
+}
+
+endings! {
+    a_blind_camera: "linkbar", "camera-blind" => Failing(1, "E-move", "vision sees no object");
+    a_silent_camera: "linkbar", "camera-silent" => Failing(1, "E-move", "vision does not answer");
+    no_blank: "linkbar", "blank-missing" => Failing(1, "E-move", "vision sees no object");
+    another_blank: "linkbar", "wrong-blank" => Failing(1, "E-move", "vision does not recognise the object");
+    a_blank_askew: "linkbar", "blank-askew" => Well;
+    no_air: "linkbar", "air-lost" => Failing(1, "Grip", "the gripper does not finish");
+    a_stuck_potentiometer: "linkbar", "potentiometer-stuck" => Failing(1, "Grip", "the gripper does not finish");
+    a_gage_that_is_off: "linkbar", "gage-off" => Failing(1, "Grip", "the gripper is not calibrated");
+    bad_id_pins: "linkbar", "id-pins-bad" => Failing(1, "E-move", "the attached gripper is not the one for the object");
+    a_stuck_ring: "tool-change", "lock-ring-stuck" => Failing(1, "Quick Change", "the locking ring of the quick change is stuck");
+    a_blind_holster: "tool-change", "holster-eye-off" => Failing(1, "E-move", "the sensor condition did not come");
+    a_stuck_resolver: "linkbar", "resolver-stuck" => Failing(1, "Prim", "the robot did not come to rest at the goal");
+    a_valve_that_stays_open: "linkbar", "valve-stuck-open" => Failing(1, "Grip", "the gripper does not finish");
+    a_stuck_vise: "linkbar", "vise-stuck" => Failing(1, "HWSC", "the jaw of the vise does not move");
+    a_pedestal_beside_its_mark: "clevis", "pedestal-moved" => Failing(1, "HWSC", "nothing is clamped in the vise");
+    a_drifting_force_sensor: "tool-change", "force-drift" => Well;
+    a_noisy_cell: "linkbar", "noisy-cell" => Well;
+}
+
+/// A linkbar job whose blank throws back so much light.
+fn with_reflectance(reflectance: f64) -> Outcome {
+    run("linkbar", 1, &format!("reflectance-{reflectance}"), |scratch| {
+        scratch.data_with(
+            "cell.toml",
+            "vision_id = 17\n",
+            &format!("vision_id = 17\nreflectance = {reflectance}\n"),
+        );
+    })
+}
+
+#[test]
+fn a_dark_blank_and_a_shiny_one_are_found_with_another_exposure() {
+    for reflectance in [0.08, 0.95] {
+        let outcome = with_reflectance(reflectance);
+        assert_eq!(outcome.status, Some(0), "{reflectance}: {}", outcome.last_words);
+        assert!(in_place("linkbar", &outcome.result), "{reflectance}: {}", outcome.result["parts"]);
+    }
+    let black = with_reflectance(0.01);
+    assert_eq!(black.status, Some(1));
+    assert!(black.last_words.contains("vision sees no object"), "{}", black.last_words);
+}
+
+/// Numbers for schedules.
+struct Numbers(u64);
+
+impl Numbers {
+    /// From 0 to `end` - 1.
+    fn below(&mut self, end: u64) -> u64 {
+        // splitmix64
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (z ^ (z >> 31)) % end
+    }
+
+    fn one_of<'w>(&mut self, words: &[&'w str]) -> &'w str {
+        words[self.below(words.len() as u64) as usize]
+    }
+}
+
+const SENSORS: [&str; 24] = [
+    "resolvers",
+    "resolver.base",
+    "resolver.shoulder",
+    "resolver.pitch",
+    "resolver.roll",
+    "grip.potentiometer",
+    "grip.strain-left",
+    "grip.strain-right",
+    "beam.2",
+    "quick-change.locked",
+    "quick-change.unlocked",
+    "quick-change.id",
+    "holster.right.large-1",
+    "holster.right.small-2",
+    "holster.centre",
+    "force",
+    "force.x",
+    "force.z",
+    "force.moment",
+    "pedestal.potentiometer",
+    "pedestal.strain-right",
+    "table.potentiometer",
+    "table.limit-plus",
+    "table.limit-minus",
+];
+const VALVES: [&str; 12] = [
+    "grip.open-fine",
+    "grip.open-coarse",
+    "grip.close-fine",
+    "grip.close-medium",
+    "grip.vent",
+    "grip.supply",
+    "v.close",
+    "tool.open",
+    "quick-change.unlock",
+    "quick-change.port",
+    "pedestal.close-medium",
+    "pedestal.vent",
+];
+
+/// One to three faults at random.
+fn schedule(numbers: &mut Numbers) -> String {
+    let mut text = format!("seed = {}\n", numbers.below(1000));
+    for _ in 0..=numbers.below(3) {
+        text += "\n[[fault]]\n";
+        let (sensor, by) = (numbers.one_of(&SENSORS), 1 + numbers.below(300));
+        let rate = numbers.below(4) == 0;
+        // Writing to a String cannot fail.
+        let _ = match numbers.below(12) {
+            0 | 1 => writeln!(text, "kind = \"off\"\nsensor = \"{sensor}\""),
+            2 | 3 => writeln!(text, "kind = \"stuck\"\nsensor = \"{sensor}\""),
+            4 => writeln!(text, "kind = \"noisy\"\nsensor = \"{sensor}\"\nby = {by}"),
+            5 => writeln!(text, "kind = \"slow\"\nsensor = \"{sensor}\"\nby = {}", 1 + by / 10),
+            6 => writeln!(text, "kind = \"offset\"\nsensor = \"{sensor}\"\nby = {by}"),
+            7 => writeln!(text, "kind = \"drift\"\nsensor = \"{sensor}\"\nby = {by}"),
+            8 | 9 => {
+                let (valve, value) = (numbers.one_of(&VALVES), numbers.one_of(&["open", "closed"]));
+                writeln!(text, "kind = \"stuck\"\nvalve = \"{valve}\"\nvalue = \"{value}\"")
+            }
+            10 => writeln!(text, "kind = \"air-lost\""),
+            _ => writeln!(
+                text,
+                "kind = \"stuck\"\ndevice = \"{}\"",
+                numbers.one_of(&["lock-ring", "vise-jaw"])
+            ),
+        };
+        let from = numbers.below(2500);
+        let _ = if rate {
+            writeln!(text, "from = {from}\nrate = 0.01\nticks = {}", 1 + numbers.below(50))
+        } else if numbers.below(2) == 0 {
+            writeln!(text, "from = {from}")
+        } else {
+            writeln!(text, "at = {from}\nticks = {}", 1 + numbers.below(400))
+        };
+    }
+    text
+}
+
+/// A number from the environment.
+fn number(name: &str, otherwise: u64) -> u64 {
+    env::var(name).ok().map_or(otherwise, |text| {
+        text.parse().unwrap_or_else(|_| panic!("{name}: a number was expected, found {text:?}"))
+    })
+}
+
+#[test]
+fn whatever_fails_no_run_crashes_hangs_or_lies() {
+    let first = number("RCS_FAULT_SEED", 1);
+    let mut ends = [0, 0, 0];
+    for seed in first..first + number("RCS_FAULT_RUNS", 6) {
+        let mut numbers = Numbers(seed);
+        let job = numbers.one_of(&["linkbar", "clevis", "tool-change", "turned-part"]);
+        let text = schedule(&mut numbers);
+        let what = format!("{job}, seed {seed}, with\n{text}\n");
+        let outcome = run(job, seed, &format!("campaign-{seed}"), |scratch| scratch.faults(&text));
+        if outcome.result["cell_faults"].is_array() {
+            assert_sound(&what, &outcome);
+        }
+        match outcome.status {
+            Some(0) => {
+                assert!(in_place(job, &outcome.result), "{what}finished, but {}", outcome.result["parts"]);
+                ends[0] += 1;
+            }
+            _ => {
+                let failure = &outcome.result["failure"];
+                assert!(failure["process"].is_string() && failure["text"].is_string(), "{what}{failure}");
+                ends[usize::from(outcome.status == Some(3)) + 1] += 1;
+            }
+        }
+        println!("seed {seed}: {job} {:?} {}", outcome.status, outcome.last_words);
+    }
+    println!("{} finished, {} failed, {} stopped", ends[0], ends[1], ends[2]);
+}
