@@ -108,10 +108,15 @@ impl Subject {
         [long * along(|at| at / RASTER), wide * along(|at| at % RASTER)]
     }
 
-    /// True if a point lies on this face, or beside it by no more than `gap`, as the camera sees it: along the rays.
+    /// True if a point lies on what is seen of this face, or beside it by no more than `gap`, as the camera sees it: along
+    /// the rays.
     fn covers(&self, point: &Vector, gap: f64) -> bool {
-        let on_face = *point * (self.face.centre.x / point.x) - self.face.centre;
-        self.face.edges.iter().all(|(edge, length)| on_face.dot(edge).abs() <= length / 2.0 + gap)
+        let on_face = *point * (self.face.centre.x / point.x);
+        self.seen_points().any(|field| {
+            let reach = |length: f64| length / (2 * RASTER) as f64 + gap;
+            let mut edges = self.face.edges.iter();
+            edges.all(|(edge, length)| (on_face - field).dot(edge).abs() <= reach(*length))
+        })
     }
 
     /// True if this and another are one blob in the picture: nothing but `gap` is between what is seen of both.
