@@ -7,7 +7,7 @@ use super::{
         ArrayId, EndEffId, LocptId, MovtabId, ObjGripsId, ObjectId, OwnerId, PathId, PedParaId, PoseId,
         SensorId, TrajId, TrajParaId,
     },
-    index::{Index, grip_key, name_key, object_key},
+    index::{Index, grip_key, name_key},
     records::{
         ApprDept, Array, EndEffPara, FoundEndEff, FoundPedPara, GripLoc, Locpt, Member, MovtabRecord,
         ObjGrips, ObjLoc, Object, Owner, Path, PathPoint, PedPara, PoseRecord, RelativeMove, SensorPara,
@@ -65,7 +65,7 @@ pub struct TaskData<'a> {
     pub indexes: Indexes<'a>,
 }
 
-/// The index of each file, and what its key is.
+/// The index of each file: what its key is, and its answer where it has one.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Indexes<'a> {
     /// POSE by name.
@@ -82,23 +82,23 @@ pub struct Indexes<'a> {
     pub members: Index<'a>,
     /// TRAJ by name.
     pub trajectory_names: Index<'a>,
-    /// TRAJ by start and end.
+    /// TRAJ by start and end; the answer is the path.
     pub trajectories: Index<'a>,
     /// OBJ-ASCII-NAMES by name.
     pub objects: Index<'a>,
-    /// END-EFF-PARA by object and grip.
+    /// END-EFF-PARA by name of the object and grip.
     pub end_effs: Index<'a>,
-    /// OBJ-GRIPS by object.
+    /// OBJ-GRIPS by name of the object.
     pub obj_grips: Index<'a>,
-    /// Object locations by object.
+    /// Object locations by the record number of the object.
     pub obj_locs: Index<'a>,
-    /// PED-PARA by object.
+    /// PED-PARA by name of the object.
     pub ped_paras: Index<'a>,
-    /// GRIP-LOC by object, grip and location.
+    /// GRIP-LOC by name of the object, grip and location; the answer is the movetable.
     pub grip_locs: Index<'a>,
-    /// VISION-PARA by object and location.
+    /// VISION-PARA by name of the object and location.
     pub visions: Index<'a>,
-    /// Approaches and departs by direction, subject, grip and location.
+    /// Approaches and departs by direction, name of the object, grip and location; the answer is the path.
     pub appr_depts: Index<'a>,
     /// SENSOR-PARA by name.
     pub sensors: Index<'a>,
@@ -221,8 +221,7 @@ impl<'a> TaskData<'a> {
     /// Grasp parameters of a grip of an object (VII.7.1), with their record number for `obj-para-^` (V.2.2).
     #[must_use]
     pub fn object<const N: usize>(&self, object: &Name<N>, grip: i32) -> FoundEndEff<'a> {
-        let object = self.object_named(object)?;
-        let id = EndEffId::new(self.indexes.end_effs.find(grip_key(object, grip))?);
+        let id = EndEffId::new(self.indexes.end_effs.find(grip_key(object, grip)?)?);
         Some((id, id.of(self.end_effs)?))
     }
 
@@ -241,15 +240,13 @@ impl<'a> TaskData<'a> {
     /// The record number in OBJ-GRIPS for `obj-grip-loc-^` (V.2.2).
     #[must_use]
     pub fn obj_grips_id<const N: usize>(&self, object: &Name<N>) -> Option<ObjGripsId> {
-        let object = self.object_named(object)?;
-        self.indexes.obj_grips.find(object_key(object)).map(ObjGripsId::new)
+        self.indexes.obj_grips.find(name_key(object)).map(ObjGripsId::new)
     }
 
     /// How the Active Pedestal takes an object (VII.7.4).
     #[must_use]
     pub fn ped_para<const N: usize>(&self, object: &Name<N>) -> FoundPedPara<'a> {
-        let object = self.object_named(object)?;
-        let id = PedParaId::new(self.indexes.ped_paras.find(object_key(object))?);
+        let id = PedParaId::new(self.indexes.ped_paras.find(name_key(object))?);
         Some((id, id.of(self.ped_paras)?))
     }
 

@@ -11,8 +11,8 @@ use rcs_core::{
 
 use super::{
     data::TaskData,
-    ids::{ApprDeptId, GripLocId, MovtabId, ObjectId, PathId, RelativeMoveId, TrajId, VisionId},
-    index::{approach_key, grip_at_key, object_at_key, pair_key, relative_key},
+    ids::{GripLocId, MovtabId, ObjectId, PathId, RelativeMoveId, TrajId, VisionId},
+    index::{Key, approach_key, grip_at_key, name_at_key, pair_key, plain_key},
     locations::{Location, LookupError, Place},
     records::{Direction, PathPoint, RefType, Reference, RelativeMove, Target, VisionPara},
 };
@@ -31,15 +31,15 @@ impl<'a> TaskData<'a> {
         grip: i32,
         place: &Place,
     ) -> Option<MovtabId> {
-        self.grip_loc(object, grip, place)?.of(self.grip_locs).map(|record| record.movetable)
+        self.at_place(place, |at| self.indexes.grip_locs.answer(grip_at_key(object, grip, at)?))
+            .map(MovtabId::new)
     }
 
     /// The record number in GRIP-LOC for a grip of an object at a place (VII.7.5).
     #[must_use]
     pub fn grip_loc<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<GripLocId> {
-        let object = self.object_named(object)?;
-        let number = self.at_place(place, |at| self.indexes.grip_locs.find(grip_at_key(object, grip, at)))?;
-        Some(GripLocId::new(number))
+        self.at_place(place, |at| self.indexes.grip_locs.find(grip_at_key(object, grip, at)?))
+            .map(GripLocId::new)
     }
 
     /// Where the tool frame is when an object at a location is held with a grip.
@@ -65,9 +65,8 @@ impl<'a> TaskData<'a> {
         object: &Name<N>,
         place: &Place,
     ) -> Option<(VisionId, &'a VisionPara)> {
-        let object = self.object_named(object)?;
         let id =
-            VisionId::new(self.at_place(place, |at| self.indexes.visions.find(object_at_key(object, at)))?);
+            VisionId::new(self.at_place(place, |at| self.indexes.visions.find(name_at_key(object, at)))?);
         Some((id, id.of(self.visions)?))
     }
 
@@ -80,15 +79,13 @@ impl<'a> TaskData<'a> {
     /// The approach to an object with a grip at a place (VII.7.7). Its last point is [`Target::Stop`].
     #[must_use]
     pub fn approach<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<PathId> {
-        let subject = Reference::object(self.object_named(object)?);
-        self.appr_dept(Direction::Approach, subject, grip, place)
+        self.appr_dept(Direction::Approach, RefType::Object, object, grip, place)
     }
 
     /// The depart from an object with a grip at a place (VII.7.7).
     #[must_use]
     pub fn depart<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<PathId> {
-        let subject = Reference::object(self.object_named(object)?);
-        self.appr_dept(Direction::Depart, subject, grip, place)
+        self.appr_dept(Direction::Depart, RefType::Object, object, grip, place)
     }
 
     /// The approach to the place where the camera looks for an object (VII.7.7, type `vu`).
@@ -99,15 +96,13 @@ impl<'a> TaskData<'a> {
         grip: i32,
         place: &Place,
     ) -> Option<PathId> {
-        let subject = Reference::view(self.object_named(object)?);
-        self.appr_dept(Direction::Approach, subject, grip, place)
+        self.appr_dept(Direction::Approach, RefType::View, object, grip, place)
     }
 
     /// The depart from the place where the camera looks for an object (VII.7.7, type `vu`).
     #[must_use]
     pub fn view_depart<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<PathId> {
-        let subject = Reference::view(self.object_named(object)?);
-        self.appr_dept(Direction::Depart, subject, grip, place)
+        self.appr_dept(Direction::Depart, RefType::View, object, grip, place)
     }
 
     /// The approach to a location as such (VII.7.7, types `lpt`, `arr`, `own`).
@@ -122,34 +117,27 @@ impl<'a> TaskData<'a> {
         self.plain(Direction::Depart, place)
     }
 
-    fn appr_dept(
+    fn appr_dept<const N: usize>(
         &self,
         direction: Direction,
-        subject: Reference,
+        kind: RefType,
+        object: &Name<N>,
         grip: i32,
         place: &Place,
     ) -> Option<PathId> {
-        self.appr_dept_path(
-            self.at_place(place, |at| {
-                self.indexes.appr_depts.find(approach_key(direction, subject, grip, at))
-            })?,
-        )
+        let paths = self.indexes.appr_depts;
+        self.at_place(place, |at| paths.answer(approach_key(direction, kind, object, grip, at)?))
+            .map(PathId::new)
     }
 
     fn plain(&self, direction: Direction, place: &Place) -> Option<PathId> {
-        self.appr_dept_path(
-            self.at_place(place, |at| self.indexes.appr_depts.find(approach_key(direction, at, 0, at)))?,
-        )
-    }
-
-    fn appr_dept_path(&self, number: u32) -> Option<PathId> {
-        ApprDeptId::new(number).of(self.appr_depts).map(|record| record.path)
+        self.at_place(place, |at| self.indexes.appr_depts.answer(plain_key(direction, at))).map(PathId::new)
     }
 
     /// The relative move that a command looks for at a place (extension).
     #[must_use]
     pub fn relative_move<const N: usize>(&self, name: &Name<N>, place: &Place) -> Option<&'a RelativeMove> {
-        let number = self.at_place(place, |at| self.indexes.relative_moves.find(relative_key(name, at)?))?;
+        let number = self.at_place(place, |at| self.indexes.relative_moves.find(name_at_key(name, at)))?;
         RelativeMoveId::new(number).of(self.relative_moves)
     }
 
@@ -157,17 +145,19 @@ impl<'a> TaskData<'a> {
     /// end, of the start, of both.
     #[must_use]
     pub fn trajectory(&self, from: &Place, to: &Place) -> Option<PathId> {
-        self.trajectory_id(from, to)?.of(self.trajectories).map(|record| record.path)
+        self.between(from, to, |key| self.indexes.trajectories.answer(key)).map(PathId::new)
     }
 
     /// The record number of that trajectory.
     #[must_use]
     pub fn trajectory_id(&self, from: &Place, to: &Place) -> Option<TrajId> {
+        self.between(from, to, |key| self.indexes.trajectories.find(key)).map(TrajId::new)
+    }
+
+    /// The first pair of aliases of two places for which `find` has an answer.
+    fn between(&self, from: &Place, to: &Place, find: impl Fn(Key) -> Option<u32>) -> Option<u32> {
         let ends = self.aliases(to);
-        let number = self.aliases(from).find_map(|start| {
-            ends.clone().find_map(|end| self.indexes.trajectories.find(pair_key(start, end)))
-        })?;
-        Some(TrajId::new(number))
+        self.aliases(from).find_map(|start| ends.clone().find_map(|end| find(pair_key(start, end))))
     }
 
     /// Where a point of a path is, with the frame that its movetables refer to: the goal of an approach, the start of a

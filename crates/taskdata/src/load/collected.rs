@@ -37,31 +37,27 @@ pub(super) struct Collected {
 }
 
 impl Collected {
-    /// Entries of all forms, each put with its like.
-    pub fn new(entries: Vec<Entry>) -> Self {
-        let mut all = Self::default();
-        for entry in entries {
-            match entry {
-                Entry::File(e) => all.files.push(e),
-                Entry::Pose(e) => all.poses.push(e),
-                Entry::Movetable(e) => all.movetables.push(e),
-                Entry::Locpt(e) => all.locpts.push(e),
-                Entry::Array(e) => all.arrays.push(e),
-                Entry::ArrayAt(e) => all.arrays_at.push(e),
-                Entry::Owner(e) => all.owners.push(e),
-                Entry::Traj(e) => all.trajectories.push(e),
-                Entry::Object(e) => all.objects.push(e),
-                Entry::ObjGrips(e) => all.obj_grips.push(e),
-                Entry::ObjLoc(e) => all.obj_locs.push(e),
-                Entry::PedPara(e) => all.ped_paras.push(e),
-                Entry::Grip(e) => all.grips.push(e),
-                Entry::View(e) => all.views.push(e),
-                Entry::ApprDept(e) => all.appr_depts.push(e),
-                Entry::Sensor(e) => all.sensors.push(e),
-                Entry::Relative(e) => all.relative_moves.push(e),
-            }
+    /// Put an entry with its like.
+    pub fn add(&mut self, entry: Entry) {
+        match entry {
+            Entry::File(e) => self.files.push(e),
+            Entry::Pose(e) => self.poses.push(e),
+            Entry::Movetable(e) => self.movetables.push(e),
+            Entry::Locpt(e) => self.locpts.push(e),
+            Entry::Array(e) => self.arrays.push(e),
+            Entry::ArrayAt(e) => self.arrays_at.push(e),
+            Entry::Owner(e) => self.owners.push(e),
+            Entry::Traj(e) => self.trajectories.push(e),
+            Entry::Object(e) => self.objects.push(e),
+            Entry::ObjGrips(e) => self.obj_grips.push(e),
+            Entry::ObjLoc(e) => self.obj_locs.push(e),
+            Entry::PedPara(e) => self.ped_paras.push(e),
+            Entry::Grip(e) => self.grips.push(e),
+            Entry::View(e) => self.views.push(e),
+            Entry::ApprDept(e) => self.appr_depts.push(e),
+            Entry::Sensor(e) => self.sensors.push(e),
+            Entry::Relative(e) => self.relative_moves.push(e),
         }
-        all
     }
 
     /// These entries with `newer` ones in the places of those with the same key, and the rest of the newer ones behind

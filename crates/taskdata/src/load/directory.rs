@@ -7,9 +7,10 @@
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use super::{
-    entries::{Entry, LoadLine},
-    lex,
-    parse::parse,
+    collected::Collected,
+    entries::LoadLine,
+    lex, parallel,
+    parse::{Parsed, parse},
     report::Problems,
     source::{At, BLOCK_COLUMNS, BLOCK_LINES, Block, BlockFault, BlockNumber, LAST_BLOCK, Source, blocks},
 };
@@ -21,11 +22,14 @@ const ROOTS: [BlockNumber; 3] = [
     BlockNumber { offset: 20_000, number: 0 },
 ];
 
+/// Blocks that one processor reads at a time.
+const BLOCKS_AT_A_TIME: usize = 256;
+
 /// What the loaded blocks hold.
 #[derive(Debug, Default)]
-pub struct Read {
+pub(super) struct Read {
     /// Entries in the order in which they were loaded.
-    pub entries: Vec<Entry>,
+    pub(super) entries: Collected,
     /// Names in entries that could not be read.
     pub broken: HashSet<String>,
     /// Blocks that were loaded.
@@ -33,29 +37,30 @@ pub struct Read {
 }
 
 /// Read the blocks that are to be loaded of all sources from position `first` on; `known` are those that were loaded before.
-pub fn read(
+pub(super) fn read(
     sources: &[Source],
     first: usize,
     known: &BTreeSet<BlockNumber>,
     problems: &mut Problems,
 ) -> Read {
-    let mut all: BTreeMap<BlockNumber, Block<'_>> = BTreeMap::new();
+    let new = sources.get(first..).unwrap_or_default();
+    let found = parallel::map(new.len(), |i| new.get(i).map(|source| blocks(first + i, source)));
+    let mut all: BTreeMap<BlockNumber, Content> = BTreeMap::new();
     let mut order = Vec::new();
-    for (index, source) in sources.iter().enumerate().skip(first) {
-        let (found, faults) = blocks(index, source);
+    for (found, faults) in found.into_iter().flatten() {
         for (at, fault) in faults {
             note(fault, at, problems);
         }
-        for block in found {
+        for (block, content) in found.iter().zip(contents(&found)) {
             if let std::collections::btree_map::Entry::Vacant(e) = all.entry(block.number) {
                 order.push(block.number);
-                e.insert(block);
+                e.insert(content);
             } else {
                 note(BlockFault::Duplicate, block.header, problems);
             }
         }
     }
-    let mut loader = Loader { all: &all, known, read: Read::default(), problems };
+    let mut loader = Loader { all, known, read: Read::default(), problems };
     loader.load_roots(&order);
     loader.unloaded();
     loader.read
@@ -101,14 +106,36 @@ fn note(fault: BlockFault, at: At, problems: &mut Problems) {
     }
 }
 
-struct Loader<'s, 'b, 'p> {
-    all: &'b BTreeMap<BlockNumber, Block<'s>>,
+/// What a block holds, whether it is loaded or not, and what is wrong with it.
+struct Content {
+    header: At,
+    parsed: Parsed,
+    problems: Problems,
+}
+
+/// Read the words of all blocks.
+fn contents(blocks: &[Block<'_>]) -> impl Iterator<Item = Content> + use<> {
+    let read = |block: &Block<'_>| {
+        let mut problems = Problems::default();
+        let words = lex::words(block, &mut problems);
+        let parsed = parse(&words, block.number, block.header, &mut problems);
+        Content { header: block.header, parsed, problems }
+    };
+    let pieces = parallel::map_pieces(blocks.len(), BLOCKS_AT_A_TIME, |range| -> Vec<Content> {
+        blocks.get(range).unwrap_or_default().iter().map(read).collect()
+    });
+    pieces.into_iter().flatten()
+}
+
+struct Loader<'b, 'p> {
+    /// The blocks; those that were loaded are empty.
+    all: BTreeMap<BlockNumber, Content>,
     known: &'b BTreeSet<BlockNumber>,
     read: Read,
     problems: &'p mut Problems,
 }
 
-impl Loader<'_, '_, '_> {
+impl Loader<'_, '_> {
     fn load_roots(&mut self, order: &[BlockNumber]) {
         let roots: Vec<BlockNumber> = ROOTS.into_iter().filter(|root| self.all.contains_key(root)).collect();
         let directed: BTreeSet<u32> = roots.iter().map(|root| root.offset).collect();
@@ -126,7 +153,7 @@ impl Loader<'_, '_, '_> {
 
     /// Load a block, unless it was; gives the blocks that it names.
     fn load(&mut self, number: BlockNumber, named: Option<At>) -> Vec<LoadLine> {
-        let Some(block) = self.all.get(&number) else {
+        let Some(block) = self.all.get_mut(&number) else {
             if let Some(at) = named.filter(|_| !self.known.contains(&number)) {
                 self.problems.error("block.missing", at, format!("there is no {number}"));
             }
@@ -138,9 +165,9 @@ impl Loader<'_, '_, '_> {
             }
             return Vec::new();
         }
-        let words = lex::words(block, self.problems);
-        let parsed = parse(&words, number, block.header, self.problems);
-        self.read.entries.extend(parsed.entries);
+        let parsed = std::mem::take(&mut block.parsed);
+        self.problems.append(&mut block.problems);
+        parsed.entries.into_iter().for_each(|entry| self.read.entries.add(entry));
         self.read.broken.extend(parsed.broken);
         parsed.loads
     }

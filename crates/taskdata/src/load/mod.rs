@@ -23,6 +23,7 @@ pub mod lex;
 mod link;
 pub mod names;
 pub mod origins;
+mod parallel;
 pub mod parse;
 pub mod print;
 pub mod report;
@@ -37,7 +38,6 @@ pub use report::{Diagnostic, Loaded, Report, Severity};
 pub use source::{BlockNumber, Source};
 pub use store::Store;
 
-use collected::Collected;
 use report::Problems;
 
 impl Store {
@@ -100,7 +100,7 @@ impl Store {
         let mut sources = self.sources.clone();
         sources.extend(texts);
         let read = directory::read(&sources, first, &self.blocks, &mut problems);
-        let entries = self.entries.with(Collected::new(read.entries));
+        let entries = self.entries.with(read.entries);
         let (files, indexes, origins) = link::link(&entries, read.broken, &sources, &mut problems);
         let count = read.blocks.len();
         let blocks = self.blocks.union(&read.blocks).copied().collect();

@@ -96,6 +96,11 @@ impl Problems {
         });
     }
 
+    /// Move all problems of another list behind these.
+    pub fn append(&mut self, others: &mut Self) {
+        self.list.append(&mut others.list);
+    }
+
     /// Give the last problem a help line.
     pub fn help(&mut self, help: String) {
         if let Some(last) = self.list.last_mut() {

@@ -9,12 +9,7 @@
 //!
 //! The wild card `$$$` is tried at the locations that are assigned to the object (VII.7.3).
 
-use std::{
-    collections::{HashMap, HashSet},
-    num::NonZero,
-    ops::Range,
-    thread,
-};
+use std::collections::{HashMap, HashSet};
 
 use rcs_core::{
     frame::Frame,
@@ -30,6 +25,7 @@ use crate::files::{
 use super::{
     super::{
         guarded::{Beginning, relative_move_named},
+        parallel,
         report::Problems,
         source::At,
     },
@@ -38,8 +34,8 @@ use super::{
 
 /// Nearer to vertical than this is warned of, degrees.
 const VERTICAL: f64 = 2.0;
-/// Entries that are worth a thread of their own.
-const WORTH_A_THREAD: usize = 512;
+/// Entries that one processor tries at a time.
+const ENTRIES_AT_A_TIME: usize = 512;
 
 /// Try all targets; the data must be linked without error.
 pub(crate) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Problems) {
@@ -59,33 +55,15 @@ pub(crate) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Probl
 
 /// Try entries `0..count` on all processors; the findings come in the order of the entries.
 fn spread(count: usize, entry: impl Fn(usize, &mut Findings) + Sync) -> Findings {
-    let processors = thread::available_parallelism().map_or(1, NonZero::get);
-    let threads = processors.min(count.div_ceil(WORTH_A_THREAD)).max(1);
-    let share = count.div_ceil(threads);
-    let part = |range: Range<usize>| {
+    let mut findings = Findings::default();
+    for piece in parallel::map_pieces(count, ENTRIES_AT_A_TIME, |range| {
         let mut findings = Findings::default();
         range.for_each(|i| entry(i, &mut findings));
         findings
-    };
-    if threads == 1 {
-        return part(0..count);
+    }) {
+        findings.merge(piece);
     }
-    thread::scope(|scope| {
-        let part = &part;
-        let begin = |thread: usize| {
-            let range = (thread * share).min(count)..((thread + 1) * share).min(count);
-            scope.spawn(move || part(range))
-        };
-        let running: Vec<_> = (0..threads).map(begin).collect();
-        let mut findings = Findings::default();
-        for thread in running {
-            match thread.join() {
-                Ok(part) => findings.merge(part),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-        findings
-    })
+    findings
 }
 
 /// Degrees of the gripper axis from vertical, up or down.
@@ -125,6 +103,9 @@ fn fault(frame: &Frame) -> Option<Fault> {
     Some(Fault { code: "limit", message, help })
 }
 
+/// The words for a target, put together only if something is wrong with it.
+type What<'a> = &'a dyn Fn() -> String;
+
 struct Reach<'a> {
     data: &'a TaskData<'a>,
     origins: &'a Origins,
@@ -158,21 +139,27 @@ impl<'a> Reach<'a> {
 
     fn location_points(&mut self, findings: &mut Findings) {
         let corners = self.corners();
-        for (i, point) in self.data.locpts.iter().enumerate() {
-            let id = LocptId::at(i);
-            if corners.contains(&id) {
-                continue;
+        let points = self.data.locpts;
+        let tried = parallel::map_pieces(points.len(), ENTRIES_AT_A_TIME, |range| {
+            let (mut findings, mut bad) = (Findings::default(), Vec::new());
+            for i in range.filter(|i| !corners.contains(&LocptId::at(*i))) {
+                let Some(point) = points.get(i) else { continue };
+                let at = origin(&self.origins.locpts, i);
+                let what = || format!("location point {}", point.name);
+                if !self.target(&what, &point.frame, at, point.pose, &mut findings) {
+                    bad.push(LocptId::at(i));
+                }
             }
-            let at = origin(&self.origins.locpts, i);
-            let what = format!("location point {}", point.name);
-            if !self.target(&what, &point.frame, at, point.pose, findings) {
-                self.bad_points.insert(id);
-            }
+            (findings, bad)
+        });
+        for (piece, bad) in tried {
+            findings.merge(piece);
+            self.bad_points.extend(bad);
         }
     }
 
     /// Try a target that is derived from a pose; true if it is reached. One near the vertical is warned of.
-    fn target(&self, what: &str, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
+    fn target(&self, what: What<'_>, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
         let Some(found) = fault(frame) else {
             vertical(what, frame, at, findings);
             return true;
@@ -182,7 +169,7 @@ impl<'a> Reach<'a> {
                 let at = origin(&self.origins.poses, base.index().unwrap_or(0));
                 findings.error_once(cause.code, at, format!("pose {name}: {}", cause.message), cause.help);
             }
-            None => findings.error(found.code, at, format!("{what}: {}", found.message), found.help),
+            None => findings.error(found.code, at, format!("{}: {}", what(), found.message), found.help),
         }
         false
     }
@@ -199,7 +186,7 @@ impl<'a> Reach<'a> {
     /// [`Reach::departures`].
     fn trajectory(&self, i: usize, findings: &mut Findings) {
         let Some(record) = self.data.trajectories.get(i) else { return };
-        let what = format!("trajectory {}", record.name);
+        let what = || format!("trajectory {}", record.name);
         let starts = locations(self.data, record.start);
         let mut points = starts.iter().filter(|start| start.sector == 0);
         match points.next() {
@@ -219,7 +206,7 @@ impl<'a> Reach<'a> {
     }
 
     /// Try the points of a path; `fixed` if all its movetables refer to `reference`, else each to the point before it.
-    fn follow(&self, path: PathId, reference: &Frame, what: &str, fixed: bool, findings: &mut Findings) {
+    fn follow(&self, path: PathId, reference: &Frame, what: What<'_>, fixed: bool, findings: &mut Findings) {
         let data = self.data;
         let first = path.of(data.paths).map_or(0, |p| usize::try_from(p.first).unwrap_or(0));
         let upright = from_vertical(reference) < VERTICAL;
@@ -228,7 +215,7 @@ impl<'a> Reach<'a> {
             let base = if fixed { reference } else { &before };
             let Some(frame) = data.point_frame(point, base) else { continue };
             let at = origin(&self.origins.path_points, first + i);
-            let what = || format!("{what}, {}", self.point_name(point));
+            let what = || format!("{}, {}", what(), self.point_name(point));
             match point.target {
                 // Where the reference is vertical and warned of, its points need no warning of their own.
                 Target::Movetable(_) if upright => {
@@ -237,13 +224,13 @@ impl<'a> Reach<'a> {
                     }
                 }
                 Target::Movetable(_) => {
-                    self.target(&what(), &frame, at, PoseId::NULL, findings);
+                    self.target(&what, &frame, at, PoseId::NULL, findings);
                 }
                 Target::Pose(id) => {
-                    self.target(&what(), &frame, at, id, findings);
+                    self.target(&what, &frame, at, id, findings);
                 }
                 // Its reach was tried with the location points; here it is driven to even if it is a corner.
-                Target::LocationPoint(_) => vertical(&what(), &frame, at, findings),
+                Target::LocationPoint(_) => vertical(&what, &frame, at, findings),
                 Target::Stop => {}
             }
             before = frame;
@@ -276,7 +263,7 @@ impl<'a> Reach<'a> {
             if data.grip_loc(&object, record.grip, &location.place).and_then(|id| id.index()) != Some(i) {
                 continue;
             }
-            let what = format!("grip {} of {object} at {}", record.grip, shown(&location));
+            let what = || format!("grip {} of {object} at {}", record.grip, shown(&location));
             let frame = data.moved(&location.frame, record.movetable);
             if !self.target(&what, &frame, at, self.base_of(&location), findings) {
                 continue;
@@ -285,21 +272,27 @@ impl<'a> Reach<'a> {
                 ("approach of", data.approach(&object, record.grip, &location.place)),
                 ("depart of", data.depart(&object, record.grip, &location.place)),
             ] {
-                self.follow(path.unwrap_or_default(), &frame, &format!("{word} {what}"), true, findings);
+                self.follow(
+                    path.unwrap_or_default(),
+                    &frame,
+                    &|| format!("{word} {}", what()),
+                    true,
+                    findings,
+                );
             }
             self.departures(&location, &frame, &what, findings);
         }
     }
 
     /// Trajectories that begin relative to what is departed from.
-    fn departures(&self, location: &Location, frame: &Frame, what: &str, findings: &mut Findings) {
+    fn departures(&self, location: &Location, frame: &Frame, what: What<'_>, findings: &mut Findings) {
         if self.relative_starts.is_empty() {
             return;
         }
         for alias in self.data.aliases(&location.place) {
             for id in self.relative_starts.get(&(alias.kind.code(), alias.number)).into_iter().flatten() {
                 if let Some(record) = id.of(self.data.trajectories) {
-                    let what = format!("trajectory {} from {what}", record.name);
+                    let what = || format!("trajectory {} from {}", record.name, what());
                     self.follow(record.path, frame, &what, false, findings);
                 }
             }
@@ -318,7 +311,7 @@ impl<'a> Reach<'a> {
             if data.view(&object, &location.place).and_then(|(id, _)| id.index()) != Some(i) {
                 continue;
             }
-            let what = format!("view of {object} at {}", shown(&location));
+            let what = || format!("view of {object} at {}", shown(&location));
             let frame = data.moved(&location.frame, record.movetable);
             if !self.target(&what, &frame, at, self.base_of(&location), findings) {
                 continue;
@@ -327,7 +320,13 @@ impl<'a> Reach<'a> {
                 ("approach of", data.view_approach(&object, record.grip, &location.place)),
                 ("depart of", data.view_depart(&object, record.grip, &location.place)),
             ] {
-                self.follow(path.unwrap_or_default(), &frame, &format!("{word} {what}"), true, findings);
+                self.follow(
+                    path.unwrap_or_default(),
+                    &frame,
+                    &|| format!("{word} {}", what()),
+                    true,
+                    findings,
+                );
             }
         }
     }
@@ -352,7 +351,7 @@ impl<'a> Reach<'a> {
             };
             // A corner that is not driven to has no approach of its own either.
             if path == Some(record.path) && fault(&location.frame).is_none() {
-                let what = format!("{word} of {}", shown(&location));
+                let what = || format!("{word} of {}", shown(&location));
                 self.follow(record.path, &location.frame, &what, true, findings);
             }
         }
@@ -368,7 +367,7 @@ impl<'a> Reach<'a> {
                 continue;
             }
             let frame = data.moved(&self.beginning(record, &location), record.movetable);
-            let what = format!("relative move {} at {}", record.name, shown(&location));
+            let what = || format!("relative move {} at {}", record.name, shown(&location));
             self.target(&what, &frame, at, self.base_of(&location), findings);
         }
     }
@@ -386,11 +385,11 @@ impl<'a> Reach<'a> {
 }
 
 /// Warn of a frame near the vertical.
-fn vertical(what: &str, frame: &Frame, at: At, findings: &mut Findings) {
+fn vertical(what: What<'_>, frame: &Frame, at: At, findings: &mut Findings) {
     let degrees = from_vertical(frame);
     if degrees < VERTICAL {
         let help = "tilt the gripper by 3 degrees or more, as LK-GRP-1 does (VIII.9.5)".to_owned();
-        let message = format!("{what}: the gripper is {degrees:.1} degrees from vertical");
+        let message = format!("{}: the gripper is {degrees:.1} degrees from vertical", what());
         findings.warning("vertical", at, message, help);
     }
 }

@@ -12,17 +12,18 @@ use std::collections::{HashMap, HashSet};
 use rcs_core::frame::Frame;
 
 use crate::files::{
-    ArrayId, LocptId, MovtabId, Object, ObjectId, OwnerId, PoseId, RefType, Reference, TrajParaId,
+    ArrayId, LocptId, Member, MovtabId, Object, ObjectId, OwnerId, PoseId, RefType, Reference, TrajParaId,
     data::NULL_NAME,
-    index::{name_key, pair_key, reference_key},
+    index::{Key, grip_key, name_key, pair_key, reference_key},
 };
 
 use super::{
     collected::Collected,
     entries::{Named, Typed},
-    index::OwnedIndex,
+    index::{OwnedIndex, Pair},
     names::nearest,
     origins::Origins,
+    parallel,
     report::Problems,
     source::{At, Source, place},
     store::{FILE_NAMES, FILE_RECORDS, Files, OwnedIndexes},
@@ -71,9 +72,36 @@ pub(super) fn link(
     (linker.files, linker.indexes, linker.origins)
 }
 
-/// Keys with the record numbers of their records, which count from 1 in their order.
-fn numbered(keys: impl Iterator<Item = u128>) -> Vec<(u128, u32)> {
-    keys.zip(1..).collect()
+/// The keys of a file in the order of its records, and where these stand.
+struct Keyed {
+    /// What there must not be two of, with its article.
+    what: &'static str,
+    keys: Vec<Pair>,
+    ats: Vec<At>,
+}
+
+impl Keyed {
+    /// Keys of records that are looked up for themselves.
+    fn new(what: &'static str, records: impl Iterator<Item = (Key, At)>) -> Self {
+        Self::answered(what, records.map(|(key, at)| (key, 0, at)))
+    }
+
+    /// Keys of names.
+    fn names<'n, const N: usize>(what: &'static str, names: impl Iterator<Item = &'n Named<N>>) -> Self {
+        Self::new(what, names.map(|n| (name_key(&n.name), n.at)))
+    }
+
+    /// Keys with what look-ups ask of each record.
+    fn answered(what: &'static str, records: impl Iterator<Item = (Key, u32, At)>) -> Self {
+        let pair = |((key, answer, at), number)| (Pair { key, number, answer }, at);
+        let (keys, ats) = records.zip(1..).map(pair).unzip();
+        Self { what, keys, ats }
+    }
+}
+
+/// The key of a grip, whose number the form has checked.
+fn sure(key: Option<Key>) -> Key {
+    key.unwrap_or_default()
 }
 
 fn number(position: usize) -> u32 {
@@ -81,62 +109,70 @@ fn number(position: usize) -> u32 {
 }
 
 impl Linker<'_> {
-    /// An index of keys in the order of the records; two records with one key are an error.
-    fn unique(&mut self, what: &str, keys: &[(u128, u32)], ats: &[At]) -> OwnedIndex {
-        let index = OwnedIndex::new(keys);
+    /// Indexes of lists, made side by side, with where the records stand. Two records with one key are an error.
+    fn indexed<const N: usize>(&mut self, lists: [Keyed; N]) -> [(OwnedIndex, Vec<At>); N] {
+        let make = |i: usize| lists.get(i).map_or_else(OwnedIndex::default, |l| OwnedIndex::new(&l.keys));
+        let mut made = parallel::map(N, make).into_iter();
+        lists.map(|list| {
+            let index = made.next().unwrap_or_default();
+            self.twice(&list, &index);
+            (index, list.ats)
+        })
+    }
+
+    /// Note each record whose key an earlier one has.
+    fn twice(&mut self, list: &Keyed, index: &OwnedIndex) {
         let at = |n: &u32| {
-            usize::try_from(n.saturating_sub(1)).ok().and_then(|i| ats.get(i)).copied().unwrap_or_default()
+            let position = usize::try_from(n.saturating_sub(1)).ok();
+            position.and_then(|i| list.ats.get(i)).copied().unwrap_or_default()
         };
-        for numbers in index.shared() {
-            for pair in numbers.windows(2) {
-                if let [first, second] = pair {
-                    let help = format!("the first is in {}", place(self.sources, at(first)));
-                    self.problems.error_help("duplicate", at(second), format!("{what} is given twice"), help);
-                }
+        for pair in index.shared().flat_map(|numbers| numbers.windows(2)) {
+            if let [first, second] = pair {
+                let help = format!("the first is in {}", place(self.sources, at(first)));
+                let message = format!("{} is given twice", list.what);
+                self.problems.error_help("duplicate", at(second), message, help);
             }
         }
-        index
     }
 
-    /// An index of names; where they stand is noted with it.
-    fn declare_names<'n, const N: usize>(
-        &mut self,
-        what: &str,
-        names: impl Iterator<Item = &'n Named<N>> + Clone,
-    ) -> (OwnedIndex, Vec<At>) {
-        let ats: Vec<At> = names.clone().map(|n| n.at).collect();
-        let keys = numbered(names.map(|n| name_key(&n.name)));
-        let index = self.unique(&format!("a {what} of this name"), &keys, &ats);
-        (index, ats)
-    }
-
-    /// Declare all names, so that forms can be looked up in any order.
+    /// Declare all names, and what belongs to an object by its name alone, so that forms can be looked up in any order.
     fn declare(&mut self, all: &Collected) {
         for null in all.movetables.iter().filter(|e| e.name.name.as_str() == NULL_NAME) {
             self.problems.error("name.null", null.name.at, "... is the null movetable and cannot be defined");
         }
-        (self.indexes.movetables, self.origins.movetables) =
-            self.declare_names("movetable", all.movetables.iter().map(|e| &e.name));
-        self.indexes.poses = self.declare_names("pose", all.poses.iter().map(|e| &e.name)).0;
-        (self.indexes.locpts, self.origins.locpts) =
-            self.declare_names("location point", all.locpts.iter().map(|e| &e.name));
-        (self.indexes.arrays, self.origins.arrays) =
-            self.declare_names("array", all.arrays.iter().map(|e| &e.name));
-        (self.indexes.owners, self.origins.owners) =
-            self.declare_names("owner", all.owners.iter().map(|e| &e.name));
-        self.indexes.trajectory_names =
-            self.declare_names("trajectory", all.trajectories.iter().map(|e| &e.name)).0;
-        (self.indexes.sensors, self.origins.sensors) =
-            self.declare_names("sensor", all.sensors.iter().map(|e| &e.name));
-
         // An object has one form entry for each grip; its name is declared by the first.
-        let mut seen = HashSet::new();
-        for entry in all.objects.iter().filter(|e| seen.insert(e.name.name)) {
-            self.files.objects.push(Object { name: entry.name.name });
-            self.origins.objects.push(entry.name.at);
-        }
-        self.indexes.objects =
-            OwnedIndex::new(&numbered(self.files.objects.iter().map(|o| name_key(&o.name))));
+        let mut seen = HashSet::with_capacity(all.objects.len());
+        let objects: Vec<Named<16>> =
+            all.objects.iter().map(|e| e.name).filter(|name| seen.insert(name.name)).collect();
+        self.files.objects = objects.iter().map(|o| Object { name: o.name }).collect();
+        let grips = all.objects.iter().map(|e| (sure(grip_key(&e.name.name, e.grip)), e.at));
+        let [movetables, poses, locpts, objects, end_effs] = self.indexed([
+            Keyed::names("a movetable of this name", all.movetables.iter().map(|e| &e.name)),
+            Keyed::names("a pose of this name", all.poses.iter().map(|e| &e.name)),
+            Keyed::names("a location point of this name", all.locpts.iter().map(|e| &e.name)),
+            Keyed::names("an object of this name", objects.iter()),
+            Keyed::new("this grip of this object", grips),
+        ]);
+        let [arrays, owners, trajectories, sensors, obj_grips, ped_paras] = self.indexed([
+            Keyed::names("an array of this name", all.arrays.iter().map(|e| &e.name)),
+            Keyed::names("an owner of this name", all.owners.iter().map(|e| &e.name)),
+            Keyed::names("a trajectory of this name", all.trajectories.iter().map(|e| &e.name)),
+            Keyed::names("a sensor of this name", all.sensors.iter().map(|e| &e.name)),
+            Keyed::names("the gripper of this object", all.obj_grips.iter().map(|e| &e.object)),
+            Keyed::names("the pedestal record of this object", all.ped_paras.iter().map(|e| &e.object)),
+        ]);
+        let (indexes, origins) = (&mut self.indexes, &mut self.origins);
+        (indexes.movetables, origins.movetables) = movetables;
+        indexes.poses = poses.0;
+        (indexes.locpts, origins.locpts) = locpts;
+        (indexes.objects, origins.objects) = objects;
+        (indexes.end_effs, origins.end_effs) = end_effs;
+        (indexes.arrays, origins.arrays) = arrays;
+        (indexes.owners, origins.owners) = owners;
+        indexes.trajectory_names = trajectories.0;
+        (indexes.sensors, origins.sensors) = sensors;
+        (indexes.obj_grips, origins.obj_grips) = obj_grips;
+        (indexes.ped_paras, origins.ped_paras) = ped_paras;
     }
 
     /// The record number of a name, or a note that nothing has it.
@@ -207,14 +243,16 @@ impl Linker<'_> {
 
     /// Indexes by what records refer to.
     fn index_pairs(&mut self) {
-        let members: Vec<(u128, u32)> =
-            self.files.members.iter().map(|m| (reference_key(m.member), m.owner.number())).collect();
+        let by_member =
+            |m: &Member| Pair { key: reference_key(m.member), number: m.owner.number(), answer: 0 };
+        let members: Vec<Pair> = self.files.members.iter().map(by_member).collect();
         self.indexes.members = OwnedIndex::new(&members);
         if self.files.trajectories.iter().all(|t| t.start != Reference::NONE && t.end != Reference::NONE) {
-            let keys = numbered(self.files.trajectories.iter().map(|t| pair_key(t.start, t.end)));
-            let ats = std::mem::take(&mut self.origins.trajectories);
-            self.indexes.trajectories = self.unique("a trajectory between these locations", &keys, &ats);
-            self.origins.trajectories = ats;
+            let ends = self.files.trajectories.iter().zip(&self.origins.trajectories);
+            let records = ends.map(|(t, at)| (pair_key(t.start, t.end), t.path.number(), *at));
+            let keyed = Keyed::answered("a trajectory between these locations", records);
+            let [trajectories] = self.indexed([keyed]);
+            self.indexes.trajectories = trajectories.0;
         }
     }
 
@@ -257,6 +295,6 @@ fn nearest_of(wanted: &str, index: &OwnedIndex) -> Option<String> {
 }
 
 /// The name that a key was made of.
-fn key_text(key: u128) -> String {
-    key.to_be_bytes().iter().take_while(|b| **b != 0).map(|b| char::from(*b)).collect()
+fn key_text(key: Key) -> String {
+    key.main.to_be_bytes().iter().take_while(|b| **b != 0).map(|b| char::from(*b)).collect()
 }

@@ -13,7 +13,7 @@ use super::{
         collected::Collected,
         entries::{Named, OwnerEntry, PointEntry, PoseEntry, Typed},
     },
-    Linker, number,
+    Keyed, Linker, number,
 };
 
 impl Linker<'_> {
@@ -83,7 +83,8 @@ impl Linker<'_> {
 
     /// The dimension form and the location form of each array together (VII.4).
     fn arrays(&mut self, all: &Collected) {
-        let located = self.declare_names("array location", all.arrays_at.iter().map(|e| &e.name)).0;
+        let names = all.arrays_at.iter().map(|e| &e.name);
+        let [(located, _)] = self.indexed([Keyed::names("an array location of this name", names)]);
         for entry in &all.arrays_at {
             self.find("array", entry.name, |i| &i.arrays);
         }

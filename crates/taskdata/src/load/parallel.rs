@@ -1,0 +1,67 @@
+//! Work on all processors whose results come in order, so that a load says the same however many processors there are.
+
+use std::{
+    num::NonZero,
+    sync::atomic::{AtomicUsize, Ordering},
+    thread,
+};
+
+/// The results of `work` on `0..count`, in this order. Each processor takes the next piece when it has done one; work of one
+/// piece is done by the caller alone.
+///
+/// # Panics
+/// If `work` does.
+pub(super) fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let threads = thread::available_parallelism().map_or(1, NonZero::get).min(count);
+    if threads <= 1 {
+        return (0..count).map(work).collect();
+    }
+    let next = AtomicUsize::new(0);
+    let take = || {
+        let mut done = Vec::new();
+        loop {
+            let piece = next.fetch_add(1, Ordering::Relaxed);
+            if piece >= count {
+                return done;
+            }
+            done.push((piece, work(piece)));
+        }
+    };
+    let mut done = thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(take)).collect();
+        let mut done = take();
+        for other in others {
+            match other.join() {
+                Ok(more) => done.extend(more),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        done
+    });
+    done.sort_unstable_by_key(|(piece, _)| *piece);
+    done.into_iter().map(|(_, result)| result).collect()
+}
+
+/// The same for `count` items in pieces of at most `size`: `work` is given the positions of a piece.
+pub(super) fn map_pieces<T: Send>(
+    count: usize,
+    size: usize,
+    work: impl Fn(std::ops::Range<usize>) -> T + Sync,
+) -> Vec<T> {
+    map(count.div_ceil(size), |piece| {
+        let first = piece.saturating_mul(size);
+        work(first..first.saturating_add(size).min(count))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn results_come_in_order() {
+        assert_eq!(map(1000, |i| i * i), (0..1000).map(|i| i * i).collect::<Vec<_>>());
+        assert_eq!(map_pieces(10, 4, |range| range), [0..4, 4..8, 8..10]);
+        assert_eq!(map_pieces(0, 4, |range| range), []);
+    }
+}
