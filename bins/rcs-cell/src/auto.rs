@@ -5,10 +5,9 @@
 //! person touches the console it leaves the robot to that person: an emergency stop must stay one.
 
 use depc::controller::{ControllerState, Warning};
-
-use crate::{
-    console::Key,
-    t3::{Machine, Stage},
+use plant::{
+    Key,
+    t3::{Stage, T3Controller},
 };
 
 /// The operator.
@@ -31,7 +30,7 @@ impl Operator {
 
     /// What the operator does now. `cts` says that a host has the line open.
     #[must_use]
-    pub fn next(&self, t3: &Machine, cts: bool) -> Option<Key> {
+    pub fn next(&self, t3: &T3Controller, cts: bool) -> Option<Key> {
         if !self.on_duty {
             return None;
         }
@@ -57,25 +56,30 @@ impl Operator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::t3::StepInputs;
     use depc::Limits;
+    use plant::{EStop, description::Actuators, t3::StepInputs};
+
+    fn t3() -> T3Controller {
+        T3Controller::dark(Limits::NBS, &Actuators::default(), 5)
+    }
 
     /// Run for `seconds` and press what the operator wants; returns the keys.
-    fn run(t3: &mut Machine, operator: &Operator, seconds: f64, host: bool) -> Vec<Key> {
+    fn run(t3: &mut T3Controller, operator: &Operator, seconds: f64, host: bool) -> Vec<Key> {
         let mut keys = Vec::new();
         for _ in 0..(seconds / 0.04) as u32 {
             if let Some(key) = operator.next(t3, host) {
                 t3.press(key).unwrap();
                 keys.push(key);
             }
-            t3.step(&StepInputs { elapsed: 0.04, cts: host, ..StepInputs::default() });
+            t3.advance(0.04, &[t3.arm().tool_weight()]);
+            t3.step(&StepInputs { cts: host, ..StepInputs::default() });
         }
         keys
     }
 
     #[test]
     fn it_starts_up_once_and_answers_when_a_host_comes() {
-        let (mut t3, operator) = (Machine::new(Limits::NBS, 5), Operator::new(true));
+        let (mut t3, operator) = (t3(), Operator::new(true));
         let keys = run(&mut t3, &operator, 30.0, false);
         let order = [
             Key::ControlPower(true),
@@ -97,10 +101,10 @@ mod tests {
 
     #[test]
     fn it_does_not_undo_what_a_person_does() {
-        let (mut t3, mut operator) = (Machine::new(Limits::NBS, 5), Operator::new(true));
+        let (mut t3, mut operator) = (t3(), Operator::new(true));
         run(&mut t3, &operator, 30.0, true);
         assert!(operator.step_back() && !operator.step_back());
-        t3.press(Key::Estop).unwrap();
+        t3.press(Key::Press(EStop::Pedestal)).unwrap();
         assert_eq!(run(&mut t3, &operator, 5.0, true), []);
     }
 }

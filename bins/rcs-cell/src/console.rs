@@ -2,63 +2,7 @@
 
 use std::str::FromStr;
 
-/// What is done at the controller's console, keyboard and teach pendant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Key {
-    /// Control power (IV.3.3 step 4).
-    ControlPower(bool),
-    /// FAULT RESET (step 5).
-    FaultReset,
-    /// HYDRAULICS keyswitch (step 7).
-    Hydraulics(bool),
-    /// MANUAL ON/OFF (step 8).
-    Manual(bool),
-    /// Teach pendant: move an axis, counted from 1, to its arrow (step 9); without one, all of them.
-    Align(Option<u8>),
-    /// AUTO (step 10).
-    Auto,
-    /// CYCLE START (step 12).
-    CycleStart,
-    /// INTERRUPT (step 12, A 2.3).
-    Interrupt,
-    /// CANCEL on the keyboard (step 12, A 2.4).
-    Cancel,
-    /// ENTER on the keyboard (A 2.4).
-    Enter,
-    /// Hold (A 2.3).
-    Hold(bool),
-    /// The E-stop of the control panel (III.6).
-    Estop,
-    /// Put the RS232 board in, or take it out (A 2.3, D0).
-    Board(bool),
-    /// Repair the transmitter of the RS232 board, or break it (A 2.3, D5).
-    Transmitter(bool),
-}
-
-impl Key {
-    /// The key as a line of the console.
-    #[must_use]
-    pub fn text(self) -> String {
-        let on = |on| if on { "on" } else { "off" };
-        match self {
-            Self::ControlPower(to) => format!("control power {}", on(to)),
-            Self::FaultReset => "fault reset".into(),
-            Self::Hydraulics(to) => format!("hydraulics {}", if to { "enable" } else { "disable" }),
-            Self::Manual(to) => format!("manual {}", on(to)),
-            Self::Align(None) => "align".into(),
-            Self::Align(Some(axis)) => format!("align {axis}"),
-            Self::Auto => "auto".into(),
-            Self::CycleStart => "cycle start".into(),
-            Self::Interrupt => "interrupt".into(),
-            Self::Cancel => "cancel".into(),
-            Self::Enter => "enter".into(),
-            Self::Hold(to) => format!("hold {}", on(to)),
-            Self::Estop => "estop".into(),
-            Self::Board(to) => format!("board {}", if to { "in" } else { "out" }),
-            Self::Transmitter(to) => format!("transmitter {}", if to { "good" } else { "broken" }),
-        }
-    }
-}
+use plant::{EStop, Key};
 
 /// A line of the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,7 +33,9 @@ auto                        the AUTO button: the robot moves to HOME
 cycle start                 two short vertical motions, then the DEPC function
 interrupt, cancel, enter    INTERRUPT button; CANCEL and ENTER keys
 hold on|off                 the Hold button
-estop                       E-stop: the robot sinks
+estop [SITE]                E-stop: the robot sinks; control-panel (if none is named), teach-pendant,
+                            terminals, joystick-box, pedestal
+release [SITE]              pull an E-stop out again, before fault reset
 board in|out                put the RS232 board in, take it out: control power off first
 transmitter good|broken     the transmitter of the RS232 board
 status                      everything at a glance
@@ -120,7 +66,10 @@ impl FromStr for Line {
             ["cancel"] => Key::Cancel,
             ["enter"] => Key::Enter,
             ["hold", switch] => Key::Hold(on(switch)?),
-            ["estop" | "e-stop"] => Key::Estop,
+            ["estop" | "e-stop"] => Key::Press(EStop::ControlPanel),
+            ["estop" | "e-stop", site] => Key::Press(estop(site)?),
+            ["release"] => Key::Release(EStop::ControlPanel),
+            ["release", site] => Key::Release(estop(site)?),
             ["board", place] => Key::Board(one_of(place, "in", "out")?),
             ["transmitter", state] => Key::Transmitter(one_of(state, "good", "broken")?),
             ["status"] => return Ok(Self::Status),
@@ -131,6 +80,13 @@ impl FromStr for Line {
         };
         Ok(Self::Key(key))
     }
+}
+
+fn estop(word: &str) -> Result<EStop, String> {
+    EStop::from_word(word).ok_or_else(|| {
+        let known = EStop::ALL.map(EStop::word).join(", ");
+        format!("one of the E-stops {known} was expected, found {word}")
+    })
 }
 
 fn on(switch: &str) -> Result<bool, String> {
@@ -193,7 +149,7 @@ mod tests {
 
     #[test]
     fn every_command_of_the_help_is_understood() {
-        for line in HELP.lines() {
+        for line in HELP.lines().filter(|line| !line.starts_with(' ')) {
             let synopsis = line.split("  ").next().unwrap_or_default();
             for one in synopsis.split(", ") {
                 let one = one.split(['|', '[']).next().unwrap_or_default();
@@ -212,6 +168,8 @@ mod tests {
             Key::Hydraulics(false),
             Key::Align(Some(6)),
             Key::Hold(true),
+            Key::Press(EStop::JoystickBox),
+            Key::Release(EStop::TeachPendant),
             Key::Board(false),
             Key::Transmitter(true),
         ] {
@@ -227,6 +185,7 @@ mod tests {
             ("wait -1", "seconds"),
             ("hydraulics on", "enable"),
             ("start", "no command"),
+            ("estop door", "pedestal"),
         ] {
             let error = wrong.parse::<Line>().expect_err(wrong);
             assert!(error.contains(says), "{wrong}: {error}");

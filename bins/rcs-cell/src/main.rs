@@ -4,23 +4,20 @@
 //! start-up of the manual's IV.3.3 at the console, the function of appendix A on the line, 9600 baud.
 //!
 //! ```text
-//!   console (standard input) ──► t3: start-up, program, DEPC ──► arm: hydraulics, servos
+//!   console (standard input) ──► plant::t3: start-up, program, DEPC, arm
 //!   auto (the operator of --auto) ──►  │      ▲
 //!                               line: bytes in time ◄──► pty ◄──► host
 //! ```
 //!
-//! [`t3`], [`arm`], [`line`], [`auto`] and [`console`] neither read a clock nor do I/O; [`shell`] and [`pty`] do nothing else.
+//! The controller and its arm are those of the simulated cell, [`plant::t3`]. They, [`line`], [`auto`] and [`console`] neither read
+//! a clock nor do I/O; [`shell`] and [`pty`] do nothing else.
 
-mod arm;
 mod auto;
 mod cli;
 mod console;
 mod line;
-mod message;
 mod pty;
-mod refusal;
 mod shell;
-mod t3;
 
 use std::{
     path::Path,

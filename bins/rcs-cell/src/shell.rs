@@ -14,16 +14,20 @@ use std::{
 };
 
 use depc::fault::{Direction, Injector, Plan};
+use plant::{
+    Key,
+    description::Actuators,
+    t3::{Message, StepInputs, T3Controller},
+};
 use rcs_core::{interface::device::LinkBytes, tick::Tick};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::{
     auto::Operator,
     cli::Cli,
-    console::{self, Key, Lines},
+    console::{self, Lines},
     line::{Cadence, Line},
     pty::{Pty, PtyError},
-    t3::{Machine, StepInputs},
 };
 
 /// Baud of the link (VI.1).
@@ -55,7 +59,7 @@ pub struct Shell {
     /// Steps of the controller: the ticks of the fault plan.
     tick: Tick,
     cadence: Cadence,
-    t3: Machine,
+    t3: T3Controller,
     operator: Operator,
     lines: Lines,
     waiting: VecDeque<String>,
@@ -80,7 +84,7 @@ impl Shell {
             faults: plan.map(Injector::new),
             tick: Tick::BEFORE_START,
             cadence: Cadence::new(cli.period.period_us(), 0),
-            t3: Machine::new(cli.period, cli.seed),
+            t3: T3Controller::dark(cli.period, &Actuators::default(), cli.seed),
             operator: Operator::new(cli.auto),
             lines: Lines::default(),
             waiting: VecDeque::new(),
@@ -227,7 +231,8 @@ impl Shell {
             self.say(&format!("[auto] {}", key.text()))?;
             self.press(key)?;
         }
-        let out = self.t3.step(&StepInputs { elapsed: elapsed.min(LONGEST_STEP_S), rx, cts });
+        self.t3.advance(elapsed.min(LONGEST_STEP_S), &[self.t3.arm().tool_weight()]);
+        let out = self.t3.step(&StepInputs { rx, cts });
         let (tx, _) = self.carry(Direction::ToHost, out.tx, true);
         if self.host {
             self.line.send(now, tx.as_slice());
@@ -258,14 +263,14 @@ impl Shell {
             counts.naks,
             counts.reports,
         );
-        let mut lines = vec![text, crate::message::Message::Aligned(t3.aligned()).to_string()];
+        let mut lines = vec![text, Message::Aligned(t3.aligned()).to_string()];
         if depc.warning() != depc::controller::Warning::None {
-            lines.push(crate::message::Message::Warning(depc.warning()).to_string());
+            lines.push(Message::Warning(depc.warning()).to_string());
         }
         if let Some(injector) = &self.faults {
             lines.push(format!("[status] {} faults on the line", injector.total().faults()));
         }
-        lines.push(crate::message::Message::Position(t3.position()).to_string());
+        lines.push(Message::Position(t3.position()).to_string());
         Ok(self.say(&lines.join("\n"))?)
     }
 

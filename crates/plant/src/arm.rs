@@ -1,70 +1,293 @@
-//! The powered arm: joint servos that follow a command.
+//! The hydraulic arm: servos that follow a command under pressure, joints that sag without.
 //!
-//! A tick brings a command for its end; the servos see it as a ramp over the tick and follow with a first-order lag, no
-//! faster than their greatest speed. The lag is integrated exactly, so that an arm that is left alone comes to rest at its
-//! command to the last bit that a resolver can tell. What the load does to the arm is not here but in the spring between
+//! Under pressure the joints follow a command that runs to its goal at an even rate, with a first-order lag and no faster
+//! than their greatest speed. The lag is integrated exactly, so that an arm that is left alone comes to rest at its command
+//! to the last bit that a resolver can tell. What the load does to the powered arm is not here but in the spring between
 //! hand and fingers ([`crate::gripper`]).
+//!
+//! Without pressure (III.6) each joint is a damper that gives way to the weight of the links, to what hangs on them, and to
+//! what they run into:
+//!
+//! ```text
+//!   damping x rate = torque of the weights + torque of the contacts
+//! ```
+//!
+//! There is no inertia in it: at three degrees a second it is of no account. The equation is solved implicitly in the
+//! stiffness of the contacts, which is large, so that an arm that comes to lie on something lies still. The shot pin stops
+//! the shoulder, the joints' limits stop the others. Meanwhile the servos keep their command, as far as their following error
+//! allows, and jump back to it when the pressure returns.
 
+use nalgebra::{Matrix6, Vector6};
 use rcs_core::{
-    frame::Frame,
-    kinematics::{Joints, T3},
+    frame::{Frame, Vector},
+    kinematics::{HOME_JOINTS, Joints, T3},
 };
 use serde::{Deserialize, Serialize};
 
-use crate::description::Robot;
+use crate::{
+    description::{Actuators, Hydraulics},
+    linkage::{Chain, END_PLATE, FOREARM, Load, UPPER_ARM},
+};
 
-/// Joint angles and servos of the arm.
+/// Shoulder, elbow and pitch among the joints.
+const SHOULDER: usize = 1;
+const ELBOW: usize = 2;
+const PITCH: usize = 3;
+/// The link that yaw turns.
+const WRIST: usize = 4;
+
+/// Centre of mass of the upper arm, in from the shoulder (ASSUMED: in its middle).
+const UPPER_ARM_CENTRE: f64 = 0.5 * T3.upper_arm;
+/// Centre of mass of the forearm, in from the elbow (ASSUMED: the actuators of the wrist sit at the elbow's end).
+const FOREARM_CENTRE: f64 = 0.4 * T3.forearm;
+/// Centre of mass of the wrist, in from the yaw axis (ASSUMED: halfway from the pitch axis to the end plate).
+const WRIST_CENTRE: f64 = 1.5;
+/// Centre of mass of quick change and gripper, in from the yaw axis (ASSUMED: halfway from the end plate to the fingertips).
+pub const TOOL_CENTRE: f64 = T3.yaw_to_plate + T3.plate_to_tool / 2.0;
+
+/// An arm without pressure none of whose joints is faster has come to rest, rad/s: the last degrees of a limb that swings
+/// down against a damper take for ever.
+const AT_REST: f64 = 0.2 * (core::f64::consts::PI / 180.0);
+/// Friction is full at this speed and less below, in/s: what sticks creeps by less than an arm that has come to rest.
+const STICKING: f64 = 0.1;
+/// Longest step of the servo equation, s.
+const STEP_S: f64 = 0.0025;
+/// Joints nearer than this to their command have settled, rad.
+const SETTLED: f64 = 0.005 * (core::f64::consts::PI / 180.0);
+
+/// A command that runs evenly from one set of joint angles to another.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+struct Ramp {
+    from: Joints,
+    goal: Joints,
+    elapsed: f64,
+    duration: f64,
+}
+
+impl Ramp {
+    const fn at(joints: Joints) -> Self {
+        Self { from: joints, goal: joints, elapsed: 0.0, duration: 0.0 }
+    }
+
+    fn is_over(&self) -> bool {
+        self.elapsed >= self.duration
+    }
+
+    fn present(&self) -> Joints {
+        if self.is_over() {
+            return self.goal;
+        }
+        let share = self.elapsed / self.duration;
+        core::array::from_fn(|joint| self.from[joint] + (self.goal[joint] - self.from[joint]) * share)
+    }
+}
+
+/// Joints, servos and pressure. Angles in radians.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Arm {
+    actuators: Actuators,
+    /// Of each joint without pressure, lb·in·s.
+    dampers: [f64; 6],
     joints: Joints,
-    from: Joints,
-    to: Joints,
-    lag: f64,
-    speeds: [f64; 6],
+    command: Ramp,
+    pressure: bool,
+    /// Where the shot pin stops the shoulder; it is out while there is no pressure.
+    pin: f64,
+    /// Rates of the joints in the last step without pressure, rad/s.
+    rates: [f64; 6],
+    /// Time since the pressure went, s.
+    sinking: f64,
 }
 
 impl Arm {
-    /// The arm at rest at the start of the description.
+    /// An arm at rest under pressure.
     #[must_use]
-    pub fn new(robot: &Robot) -> Self {
-        let start = robot.start_joints();
+    pub fn new(actuators: &Actuators, joints: Joints) -> Self {
         Self {
-            joints: start,
-            from: start,
-            to: start,
-            lag: robot.servo_lag_s,
-            speeds: robot.joint_speeds.map(f64::to_radians),
+            dampers: dampers(&actuators.hydraulics),
+            actuators: actuators.clone(),
+            joints,
+            command: Ramp::at(joints),
+            pressure: true,
+            pin: T3.limits[SHOULDER].0,
+            rates: [0.0; 6],
+            sinking: 0.0,
         }
     }
 
-    /// Begin a tick whose command ends at `target`, radians; without one the last command stands.
-    pub fn begin_tick(&mut self, target: Option<Joints>) {
-        self.from = self.to;
-        if let Some(target) = target {
-            self.to = target;
+    /// An arm that was left without pressure at `joints`, with a gripper on, long enough to have come to rest.
+    #[must_use]
+    pub fn sunk_from(actuators: &Actuators, joints: Joints) -> Self {
+        const NIGHT_S: u32 = 600;
+        let mut arm = Self::new(actuators, joints);
+        arm.set_pressure(false);
+        for _ in 0..NIGHT_S * 20 {
+            arm.sag(0.05, &[arm.tool_weight()]);
+        }
+        arm
+    }
+
+    /// The weight of quick change and gripper on this arm, where it is.
+    #[must_use]
+    pub fn tool_weight(&self) -> Load {
+        let chain = Chain::new(&self.joints);
+        Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), self.actuators.hydraulics.tool_weight)
+    }
+
+    /// Turn the pressure on or off. Off ends the motion, the command stays where it has come to, and the shot pin comes out.
+    pub fn set_pressure(&mut self, on: bool) {
+        if self.pressure && !on {
+            self.stop();
+            let below = self.joints[SHOULDER] - self.actuators.hydraulics.shot_pin.to_radians();
+            self.pin = below.max(T3.limits[SHOULDER].0);
+        }
+        self.pressure = on;
+        self.rates = [0.0; 6];
+        self.sinking = 0.0;
+    }
+
+    /// The actuators have pressure.
+    #[must_use]
+    pub const fn has_pressure(&self) -> bool {
+        self.pressure
+    }
+
+    /// Run the command evenly to `goal` within `seconds`.
+    pub fn reach(&mut self, goal: Joints, seconds: f64) {
+        self.command = Ramp { from: self.command.present(), goal, elapsed: 0.0, duration: seconds.max(0.0) };
+    }
+
+    /// End the motion: the command stays where it has come to.
+    pub fn stop(&mut self) {
+        self.command = Ramp::at(self.command.present());
+    }
+
+    /// Let `seconds` pass. While `held` the command stands still. `loads` are the forces on the arm beside the weight of its
+    /// links; they move it only without pressure.
+    pub fn advance(&mut self, seconds: f64, held: bool, loads: &[Load]) {
+        let mut left = seconds;
+        while left > 0.0 {
+            let dt = left.min(STEP_S);
+            left -= dt;
+            if self.pressure {
+                if !held {
+                    self.command.elapsed += dt;
+                }
+                self.follow(dt);
+            } else {
+                self.sag(dt, loads);
+            }
         }
     }
 
-    /// Follow the command for `dt` seconds up to the given fraction of the tick.
-    pub fn advance(&mut self, fraction: f64, dt: f64) {
-        let share = 1.0 - libm::exp(-dt / self.lag);
-        for (joint, angle) in self.joints.iter_mut().enumerate() {
-            let command = self.from[joint] + (self.to[joint] - self.from[joint]) * fraction;
-            let greatest = self.speeds[joint] * dt;
-            *angle += ((command - *angle) * share).clamp(-greatest, greatest);
+    fn follow(&mut self, dt: f64) {
+        let share = 1.0 - libm::exp(-dt / self.actuators.lag_s);
+        let command = self.command.present();
+        for ((joint, command), speed) in self.joints.iter_mut().zip(command).zip(self.actuators.speeds) {
+            let greatest = speed.to_radians() * dt;
+            *joint += ((command - *joint) * share).clamp(-greatest, greatest);
+        }
+    }
+
+    /// A step without pressure.
+    fn sag(&mut self, dt: f64, loads: &[Load]) {
+        let chain = Chain::new(&self.joints);
+        let mut torque = Vector6::zeros();
+        let mut damping = Matrix6::from_diagonal(&Vector6::from(self.dampers));
+        for load in weights(&chain, &self.actuators.hydraulics).iter().chain(loads) {
+            torque += chain.torque(load);
+            let Some(along) = load.force.try_normalize(0.0) else { continue };
+            let lever = |along: &Vector| chain.lever(load.link, &load.at, along);
+            if load.stiffness > 0.0 {
+                damping += square(&lever(&along)) * (load.stiffness * dt);
+            }
+            if load.friction > 0.0 {
+                let levers = [Vector::x(), Vector::y(), Vector::z()]
+                    .map(|axis| lever(&(axis - along * along.dot(&axis))));
+                let rates = Vector6::from(self.rates);
+                let speed = levers.iter().map(|lever| lever.dot(&rates)).fold(0.0, libm::hypot);
+                let drag = load.friction * load.force.norm() / speed.max(STICKING);
+                damping += levers.iter().map(square).sum::<Matrix6<f64>>() * drag;
+            }
+        }
+        self.rates = self.give_way(dt, damping, torque);
+        self.sinking += dt;
+        for (joint, rate) in self.joints.iter_mut().zip(self.rates) {
+            *joint += rate * dt;
+        }
+        let error = self.actuators.hydraulics.following_error.to_radians();
+        let mut command = self.command.present();
+        for (command, joint) in command.iter_mut().zip(self.joints) {
+            *command = command.clamp(joint - error, joint + error);
+        }
+        self.command = Ramp::at(command);
+    }
+
+    /// The rates of the joints: those that would go beyond a stop within the step get as far as to it, and the others
+    /// then move as if they were fixed.
+    fn give_way(&self, dt: f64, mut damping: Matrix6<f64>, mut torque: Vector6<f64>) -> [f64; 6] {
+        let mut stopped = [None; 6];
+        loop {
+            // Dampers are positive, contacts only add: the matrix has an inverse.
+            let solved = damping.cholesky().map_or_else(Vector6::zeros, |cholesky| cholesky.solve(&torque));
+            let mut rates: [f64; 6] = solved.into();
+            let mut beyond = false;
+            for (joint, rate) in rates.iter_mut().enumerate() {
+                if let Some(stopped) = stopped[joint] {
+                    *rate = stopped;
+                    continue;
+                }
+                let (mut low, high) = T3.limits[joint];
+                if joint == SHOULDER {
+                    low = low.max(self.pin);
+                }
+                let next = self.joints[joint] + *rate * dt;
+                // A joint that stands beyond a stop already is not thrown back.
+                let stop = next.clamp(low.min(self.joints[joint]), high.max(self.joints[joint]));
+                if next != stop {
+                    stopped[joint] = Some((stop - self.joints[joint]) / dt);
+                    damping.fill_row(joint, 0.0);
+                    damping.fill_column(joint, 0.0);
+                    damping[(joint, joint)] = 1.0;
+                    torque[joint] = 0.0;
+                    beyond = true;
+                }
+            }
+            if !beyond {
+                return rates;
+            }
         }
     }
 
     /// True joint angles, radians.
     #[must_use]
-    pub fn joints(&self) -> &Joints {
+    pub const fn joints(&self) -> &Joints {
         &self.joints
     }
 
-    /// Joint angles of the command at the end of the tick, radians.
+    /// Where the servos' command is, radians.
     #[must_use]
-    pub fn command(&self) -> &Joints {
-        &self.to
+    pub fn command(&self) -> Joints {
+        self.command.present()
+    }
+
+    /// Under pressure: the command has come to its goal and every joint is within 0.005 degree of it.
+    #[must_use]
+    pub fn settled(&self) -> bool {
+        let near = |(joint, at): (&f64, &f64)| (joint - at).abs() < SETTLED;
+        self.pressure && self.command.is_over() && self.joints.iter().zip(&self.command.goal).all(near)
+    }
+
+    /// Without pressure: the arm has sagged as far as it will. False before the first step without pressure.
+    #[must_use]
+    pub fn has_sagged(&self) -> bool {
+        !self.pressure && self.sinking > 0.0 && self.rates.iter().all(|rate| rate.abs() < AT_REST)
+    }
+
+    /// The shoulder lies on the shot pin.
+    #[must_use]
+    pub fn on_shot_pin(&self) -> bool {
+        !self.pressure && self.joints[SHOULDER] <= self.pin
     }
 
     /// The true tool frame without load, inches.
@@ -72,55 +295,178 @@ impl Arm {
     pub fn tool(&self) -> Frame {
         T3.forward(&self.joints)
     }
+}
 
-    /// The true end-plate frame without load, inches.
-    #[must_use]
-    pub fn plate(&self) -> Frame {
-        T3.forward_plate(&self.joints)
-    }
+/// The matrix of a damper that acts along one direction.
+fn square(lever: &Vector6<f64>) -> Matrix6<f64> {
+    lever * lever.transpose()
+}
+
+/// The weights of the links.
+fn weights(chain: &Chain, hydraulics: &Hydraulics) -> [Load; 3] {
+    let weight = |link, centre, pounds| Load::weight(link, chain.along(link, centre), pounds);
+    [
+        weight(UPPER_ARM, UPPER_ARM_CENTRE, hydraulics.upper_arm_weight),
+        weight(FOREARM, FOREARM_CENTRE, hydraulics.forearm_weight),
+        weight(WRIST, WRIST_CENTRE, hydraulics.wrist_weight),
+    ]
+}
+
+/// Dampers that give way at the droop rate to what the joints carry at HOME; the base, which carries nothing, has that of the
+/// shoulder, yaw and roll have that of the pitch.
+fn dampers(hydraulics: &Hydraulics) -> [f64; 6] {
+    let chain = Chain::new(&HOME_JOINTS);
+    let tool = Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), hydraulics.tool_weight);
+    let weights = weights(&chain, hydraulics);
+    let torque: Vector6<f64> = weights.iter().chain([&tool]).map(|load| chain.torque(load)).sum();
+    let damper = |joint: usize| torque[joint].abs() / hydraulics.droop_rate.to_radians();
+    [SHOULDER, SHOULDER, ELBOW, PITCH, PITCH, PITCH].map(damper)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::description::CellDescription;
 
     fn arm() -> Arm {
-        let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
-        Arm::new(&cell.robot)
+        Arm::new(&Actuators::default(), HOME_JOINTS)
     }
 
-    fn run(arm: &mut Arm, ticks: u32, target: Option<Joints>) {
-        for _ in 0..ticks {
-            arm.begin_tick(target);
-            for step in 1..=16 {
-                arm.advance(f64::from(step) / 16.0, 0.0025);
-            }
+    /// Sag for so many seconds with a gripper on.
+    fn sag(arm: &mut Arm, seconds: f64) {
+        for _ in 0..(seconds / 0.04).round() as u32 {
+            arm.advance(0.04, false, &[arm.tool_weight()]);
         }
     }
 
     #[test]
     fn it_lags_by_the_time_constant_and_comes_to_rest_at_the_command() {
-        let mut arm = arm();
-        let mut target = *arm.joints();
+        let (mut arm, mut target) = (arm(), HOME_JOINTS);
         // A ramp of 5 degrees/s: the lag is speed times time constant.
         for _ in 0..50 {
             target[0] += 0.2_f64.to_radians();
-            run(&mut arm, 1, Some(target));
+            arm.reach(target, 0.04);
+            arm.advance(0.04, false, &[]);
         }
         let behind = (target[0] - arm.joints()[0]).to_degrees();
         assert!((behind - 5.0 * 0.080).abs() < 0.01, "{behind}");
-        run(&mut arm, 60, None);
+        assert!(!arm.settled());
+        arm.advance(2.4, false, &[]);
+        assert!(arm.settled());
         assert!((arm.tool().position - T3.forward(&target).position).norm() < 1e-9);
     }
 
     #[test]
     fn no_joint_is_faster_than_its_servo() {
-        let mut arm = arm();
-        let mut target = *arm.joints();
+        let (mut arm, mut target) = (arm(), HOME_JOINTS);
         target[0] += 1.0;
-        let before = arm.joints()[0];
-        run(&mut arm, 1, Some(target));
-        assert!(arm.joints()[0] - before <= 30.0_f64.to_radians() * 0.04 + 1e-12);
+        arm.reach(target, 0.0);
+        arm.advance(0.04, false, &[]);
+        assert!(arm.joints()[0] - HOME_JOINTS[0] <= 30.0_f64.to_radians() * 0.04 + 1e-12);
+    }
+
+    #[test]
+    fn a_held_command_stands_and_goes_on_to_its_goal() {
+        let mut arm = arm();
+        let mut goal = HOME_JOINTS;
+        goal[0] += 0.1;
+        arm.reach(goal, 1.0);
+        arm.advance(0.5, false, &[]);
+        let halfway = arm.command();
+        assert!((halfway[0] - HOME_JOINTS[0] - 0.05).abs() < 1e-9);
+        arm.advance(5.0, true, &[]);
+        assert_eq!(arm.command(), halfway);
+        arm.advance(2.0, false, &[]);
+        assert_eq!(arm.command(), goal);
+        assert!(arm.settled());
+    }
+
+    #[test]
+    fn the_joints_carry_at_home_what_the_weights_come_to() {
+        let arm = arm();
+        let chain = Chain::new(&HOME_JOINTS);
+        let loads = weights(&chain, &arm.actuators.hydraulics);
+        let torque: Vector6<f64> =
+            loads.iter().chain([&arm.tool_weight()]).map(|load| chain.torque(load)).sum();
+        // Newton metres, as worked out by hand from the masses: 2.7 and 0.85 kN·m.
+        let metric = |joint: usize| torque[joint] * 0.112_985;
+        assert!((metric(SHOULDER) + 2720.0).abs() < 40.0, "{}", metric(SHOULDER));
+        assert!((metric(ELBOW) + 860.0).abs() < 20.0, "{}", metric(ELBOW));
+        assert!(torque[0].abs() < 1e-9 && torque[4].abs() < 1e-9 && torque[5].abs() < 1e-9);
+    }
+
+    #[test]
+    fn without_pressure_every_joint_gives_way_to_its_weight() {
+        let mut arm = arm();
+        arm.set_pressure(false);
+        assert!(!arm.has_sagged());
+        sag(&mut arm, 1.0);
+        let sunk: Vec<f64> =
+            arm.joints().iter().zip(HOME_JOINTS).map(|(now, home)| (home - now).to_degrees()).collect();
+        for joint in [SHOULDER, ELBOW, PITCH] {
+            assert!((sunk[joint] - 3.0).abs() < 0.3, "{sunk:?}");
+        }
+        assert!([0, 4, 5].iter().all(|joint: &usize| sunk[*joint].abs() < 1e-9), "{sunk:?}");
+        assert!(!arm.has_sagged() && !arm.settled());
+    }
+
+    #[test]
+    fn the_shot_pin_stops_the_shoulder_and_the_rest_hangs() {
+        let mut arm = arm();
+        arm.set_pressure(false);
+        sag(&mut arm, 60.0);
+        assert!(arm.has_sagged() && arm.on_shot_pin());
+        assert!((arm.joints()[SHOULDER].to_degrees() - 37.0).abs() < 1e-9);
+        let forearm = (arm.joints()[SHOULDER] + arm.joints()[ELBOW]).to_degrees();
+        assert!((forearm + 90.0).abs() < 5.0, "{forearm}");
+        let hand = forearm + arm.joints()[PITCH].to_degrees();
+        assert!((hand + 90.0).abs() < 5.0, "{hand}");
+    }
+
+    #[test]
+    fn joints_stop_at_their_limits() {
+        let mut joints = HOME_JOINTS;
+        joints[SHOULDER] = 3.0_f64.to_radians();
+        let mut arm = Arm::new(&Actuators::default(), joints);
+        arm.set_pressure(false);
+        sag(&mut arm, 60.0);
+        assert_eq!(arm.joints()[SHOULDER], 0.0);
+    }
+
+    #[test]
+    fn pressure_lifts_the_hand_by_the_ten_inches_of_the_manual() {
+        // After seconds, and after a night: III.6 has about ten inches, IV.3.3 several.
+        for (seconds, inches) in [(2.0, 12.7), (5.0, 12.2), (20.0, 10.8), (300.0, 7.4)] {
+            let mut arm = arm();
+            arm.set_pressure(false);
+            sag(&mut arm, seconds);
+            let before = arm.tool();
+            arm.set_pressure(true);
+            arm.advance(2.0, false, &[]);
+            assert!(arm.settled());
+            let jump = arm.tool().position - before.position;
+            assert!(jump.z > 0.0 && (jump.norm() - inches).abs() < 0.1, "{seconds} s: {}", jump.norm());
+        }
+    }
+
+    #[test]
+    fn an_arm_that_lies_on_something_lies_still() {
+        let mut arm = arm();
+        arm.set_pressure(false);
+        // A floor 2 in below the tool point, 2000 lb/in.
+        let floor = arm.tool().position.z - 2.0;
+        let mut seconds = 0.0;
+        while !arm.has_sagged() {
+            let at = arm.tool().position;
+            let force = Vector::new(0.0, 0.0, 2000.0 * (floor - at.z).max(0.0));
+            let stiffness = if force.z > 0.0 { 2000.0 } else { 0.0 };
+            let contact =
+                Load { link: END_PLATE, at, force, moment: Vector::zeros(), stiffness, friction: 0.3 };
+            let tool = arm.tool_weight();
+            arm.advance(STEP_S, false, &[tool, contact]);
+            seconds += STEP_S;
+            assert!(seconds < 60.0, "{:?}", arm.rates);
+        }
+        let depth = floor - arm.tool().position.z;
+        assert!(depth > 0.0 && depth < 0.5, "{depth}");
     }
 }

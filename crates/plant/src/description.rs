@@ -5,6 +5,7 @@
 //! fulfil, and reports all faults at once, each with the name of the entry, what was expected and what was found.
 
 mod check;
+mod hydraulics;
 mod sensing;
 mod tooling;
 
@@ -17,6 +18,7 @@ use rcs_core::{
 };
 use serde::{Deserialize, Serialize};
 
+pub use hydraulics::{Actuators, Hydraulics};
 pub use sensing::SensorModels;
 pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChange};
 
@@ -144,6 +146,9 @@ pub struct Robot {
     pub forearm_radius: f64,
     /// Radius of the wrist, in.
     pub wrist_radius: f64,
+    /// What happens without pressure.
+    #[serde(default)]
+    pub hydraulics: Hydraulics,
 }
 
 /// The robot's grippers.
@@ -545,6 +550,12 @@ mod tests {
             cell.tray("UNIT_1").unwrap().sector(0).is_none()
                 && cell.tray("UNIT_1").unwrap().sector(5).is_none()
         );
+    }
+
+    #[test]
+    fn the_hydraulics_of_the_project_are_those_of_the_t3() {
+        let cell = CellDescription::from_toml(TEXT).unwrap();
+        assert_eq!(Actuators::from(&cell.robot), Actuators::default());
     }
 
     #[test]

@@ -21,7 +21,11 @@
 //! (Left: measured with rapier 0.36 at 16 sub-steps, a six-joint arm and a gripped part of 8 kg; right: `--example
 //! figures`, 16 sub-steps.) So:
 //!
-//! * joints follow their servos exactly ([`arm`]); inverse kinematics, limits and the link stand before them ([`t3`]);
+//! * joints follow their servos exactly ([`arm`]); the T3 controller stands before them: start-up, emergency stops, inverse
+//!   kinematics, limits and the link ([`t3`]);
+//! * without hydraulic pressure each joint is a damper that gives way to the weights of links, gripper and part
+//!   ([`linkage`]) and to what the arm comes to lie on; the shot pin stops the shoulder, and the arm jumps back when the
+//!   pressure returns. What the sagging arm has run into is said when it lies still ([`cell::Droop`]);
 //! * the hand is a kinematic body at the tool frame, the fingers hang on it by springs that stand for the stiffness of arm,
 //!   wrist and fingers ([`gripper`]): everything that the robot touches meets a finite force;
 //! * what is between two pads is held by springs with limits ([`hold`]): below friction nothing creeps, beyond it the part
@@ -34,8 +38,6 @@
 //! * parts on trays, ledge and floor are rapier's, with contacts made stiff enough for gaps of a millimetre.
 //!
 //! What can go wrong beside is in [`fault`]: it changes what passes between the cell and the controller.
-//!
-//! What cut hydraulics do to the arm (droop, jump, shot pin) belongs between [`arm::Arm`]'s command and its joints.
 
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
@@ -57,6 +59,7 @@ pub mod holster;
 pub mod image;
 pub mod jaws;
 pub mod joystick;
+pub mod linkage;
 pub mod noise;
 pub mod part;
 pub mod pedestal;
@@ -69,10 +72,10 @@ pub mod t3;
 pub mod vise;
 
 pub use cell::{
-    Cell, CellError, CellEvent, Link, Placement, RestoreError, SaveError, WorkstationAction,
+    Cell, CellError, CellEvent, Droop, Link, Placement, RestoreError, SaveError, WorkstationAction,
     WorkstationError, part_link,
 };
 pub use description::CellDescription;
 pub use joystick::{BoxAction, BoxButton};
 pub use part::PartState;
-pub use t3::Button;
+pub use t3::{Cut, EStop, Key};

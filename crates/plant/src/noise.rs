@@ -19,6 +19,8 @@ pub enum Stream {
     Pedestal = 4,
     /// The joint resolvers.
     Resolvers = 6,
+    /// How well a person brings the robot's axes to their arrows.
+    Alignment = 20,
 }
 
 /// A stream of uniform noise.

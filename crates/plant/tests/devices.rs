@@ -6,7 +6,7 @@ use depc::{
     Plate,
     wire::{DataCommand, NO_FUNCTION, Report},
 };
-use plant::{Button, Cell, CellEvent, Placement, WorkstationAction, WorkstationError};
+use plant::{Cell, CellEvent, Key, Placement, WorkstationAction, WorkstationError};
 use rcs_core::{
     frame::Vector,
     interface::device::{
@@ -94,7 +94,7 @@ fn a_leap_is_a_warning_and_the_operator_answers() {
     assert_eq!(cell.events(), [CellEvent::Warning("WD3".into())]);
     outputs = DeviceOutputs::default();
     assert_eq!(cell.step(&outputs).link_rx.length, 0, "silence");
-    cell.press(Button::Enter);
+    cell.press(Key::Enter).unwrap();
     assert!(Report::parse(cell.step(&outputs).link_rx.as_slice()).is_ok());
     assert!((cell.joints()[0] - HOME_JOINTS[0]).abs() < 1e-12, "it has not moved");
 }

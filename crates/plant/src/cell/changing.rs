@@ -193,7 +193,7 @@ struct Step {
 impl Cell {
     /// Let the ring move, and with it what it catches and lets go; then say where every gripper is.
     pub(super) fn change_grippers(&mut self, dt: f64, valves: &QuickChangeValves) {
-        let robot = self.arm.tool();
+        let robot = self.t3.arm().tool();
         let was_locked = self.changer.ring.locked();
         self.changer.ring.advance(dt, valves);
         let step = Step { dt, robot, locks: self.changer.ring.locked() && !was_locked };
@@ -215,7 +215,7 @@ impl Cell {
 
     /// Put the bodies of the grippers where they are at the start.
     pub(super) fn hang_grippers(&mut self) {
-        let robot = self.arm.tool();
+        let robot = self.t3.arm().tool();
         for hand in ROBOT_HANDS {
             let Some(frame) = self.changer.frame(hand, &robot) else { continue };
             let present = self.changer.is_present(hand);

@@ -7,13 +7,14 @@ mod machining;
 mod outline;
 mod picture;
 mod placing;
+mod sagging;
 mod saving;
 mod workstation;
 
 use std::fmt;
 
 use depc::{
-    Plate,
+    Limits, Plate,
     controller::{ControllerState, JointProblem},
 };
 use rapier3d_f64::prelude::*;
@@ -28,15 +29,15 @@ use serde::{Deserialize, Serialize};
 use changing::Changer;
 use handling::Hand;
 pub use picture::{Link, part_link};
+pub use sagging::Droop;
 pub use saving::{RestoreError, SaveError};
 pub use workstation::{Placement, WorkstationAction, WorkstationError};
 
 use crate::{
-    arm::Arm,
     camera::{Camera, Face, Subject},
     clearance::{Clearance, Contact},
     convert::{GRAVITY, to_frame, to_metres, to_pose},
-    description::{CellDescription, DescriptionError, Points},
+    description::{Actuators, CellDescription, DescriptionError, Points},
     drum::Drum,
     fault::{Change, FaultPlan, Injector, Struck},
     force,
@@ -48,7 +49,7 @@ use crate::{
     pedestal::Pedestal,
     scene::{Block, FINGER, Obstacle, furniture},
     sensor::{DeadTimes, resolver},
-    t3::{Button, DriveError, T3Controller},
+    t3::{DriveError, Key, Message, Refusal, StepInputs, StepOutputs, T3Controller},
     vise::Vise,
 };
 
@@ -109,6 +110,10 @@ pub enum CellEvent {
     },
     /// The T3 controller shows a warning.
     Warning(String),
+    /// An arm without pressure has come to rest.
+    Sagged(Droop),
+    /// Something that a person would see of the robot and its controller: pressure, lamps, jumps.
+    T3(String),
     /// The simulated arm cannot take a position that the robot it follows has taken, and stays behind.
     CannotFollow(JointProblem),
     /// A body has left the realm of numbers and was taken out of the simulation.
@@ -147,6 +152,8 @@ impl fmt::Display for CellEvent {
                 write!(f, "{gripper} is torn off the quick change by its holster")
             }
             Self::Fell { part } => write!(f, "{part} lies on the floor"),
+            Self::Sagged(droop) => write!(f, "the arm {}", droop.end()),
+            Self::T3(text) => write!(f, "T3: {text}"),
             Self::Warning(code) => write!(f, "the T3 controller shows {code}"),
             Self::CannotFollow(problem) => {
                 write!(f, "the simulated arm cannot follow the robot: {problem:?}")
@@ -164,8 +171,9 @@ impl fmt::Display for CellEvent {
 pub struct Cell {
     description: CellDescription,
     world: PhysicsWorld,
-    arm: Arm,
     t3: T3Controller,
+    /// The host's DTR.
+    host_ready: bool,
     /// Parts gripper, v-gripper, tool gripper.
     grippers: [Gripper; 3],
     changer: Changer,
@@ -194,6 +202,7 @@ pub struct Cell {
     events: Vec<CellEvent>,
     /// The arm cannot follow the robot; said once.
     stays_behind: bool,
+    droop: Option<Droop>,
     #[serde(with = "crate::image::record")]
     inputs: DeviceInputs,
 }
@@ -224,8 +233,9 @@ impl Cell {
         for block in &furniture {
             world.insert_collider(block.collider(), Some(ground));
         }
-        let arm = Arm::new(&description.robot);
-        let tool = to_pose(&arm.tool());
+        let actuators = Actuators::from(&description.robot);
+        let t3 = T3Controller::started(Limits::NBS, &actuators, &description.robot.start_joints(), seed)?;
+        let tool = to_pose(&t3.arm().tool());
         let stiffness = description.robot.stiffness;
         let changer = Changer::new(description);
         let [parts, v, tools] =
@@ -235,13 +245,13 @@ impl Cell {
         let pedestal = Pedestal::new(&mut world, &description.pedestal);
         let vise = Vise::new(&mut world, &description.vise);
         let mut cell = Self {
-            t3: T3Controller::new(arm.joints())?,
+            t3,
+            host_ready: true,
             camera: Camera::new(&description.camera, Noise::new(seed, Stream::Camera)),
             obstacles: furniture.iter().map(Obstacle::from).collect(),
             joystick: Joystick::default(),
             description: description.clone(),
             world,
-            arm,
             grippers,
             changer,
             drum: Drum::new(place(&description.drum.pose), &description.drum),
@@ -261,6 +271,7 @@ impl Cell {
             jaw_waits: 0,
             events: Vec::new(),
             stays_behind: false,
+            droop: None,
             inputs: DeviceInputs::default(),
         };
         cell.hang_grippers();
@@ -279,12 +290,11 @@ impl Cell {
     /// Advance the cell by exactly one tick of 40 ms with what the controller wrote in the last one.
     pub fn step(&mut self, outputs: &DeviceOutputs) -> DeviceInputs {
         let outputs = &self.begin_tick(outputs);
-        let tick = self.t3.step(&outputs.link_tx);
-        if let Some(warning) = tick.warning {
-            self.events.push(CellEvent::Warning(warning.text().into()));
-        }
-        self.advance(tick.command, outputs);
-        self.inputs = self.sense(tick.tx, tick.dtr);
+        let StepOutputs { tx, dtr, .. } =
+            self.t3.step(&StepInputs { rx: outputs.link_tx, cts: self.host_ready });
+        self.hear_t3();
+        self.advance(outputs);
+        self.inputs = self.sense(tx, dtr);
         self.inputs
     }
 
@@ -297,15 +307,14 @@ impl Cell {
     /// position that it cannot take leaves it where it is and is a [`CellEvent::CannotFollow`].
     pub fn step_following(&mut self, position: Option<&Plate>, outputs: &DeviceOutputs) -> DeviceInputs {
         let outputs = &self.begin_tick(outputs);
-        let followed = position.map_or(Ok(*self.arm.command()), |plate| self.t3.follow(plate));
-        let command = followed.unwrap_or(*self.arm.command());
+        let followed = position.map_or(Ok(()), |plate| self.t3.follow(plate));
         if let Err(problem) = followed
             && !self.stays_behind
         {
             self.events.push(CellEvent::CannotFollow(problem));
         }
         self.stays_behind = followed.is_err();
-        self.advance(command, outputs);
+        self.advance(outputs);
         self.inputs = self.sense(LinkBytes::default(), false);
         self.inputs
     }
@@ -334,22 +343,22 @@ impl Cell {
         self.faults.struck()
     }
 
-    /// One tick of all that moves, with a command for the arm's servos.
-    fn advance(&mut self, command: Joints, outputs: &DeviceOutputs) {
-        self.arm.begin_tick(Some(command));
+    /// One tick of all that moves.
+    fn advance(&mut self, outputs: &DeviceOutputs) {
         self.pedestal.table.order(&outputs.pedestal_table);
-        let steps = self.description.physics.substeps;
-        for step in 1..=steps {
-            self.substep(f64::from(step) / f64::from(steps), outputs);
+        let near = self.near_arm();
+        for _ in 0..self.description.physics.substeps {
+            self.substep(outputs, &near);
         }
         self.after_tick();
+        self.watch_droop();
         self.look(outputs);
     }
 
-    /// One step of the simulation, up to the given fraction of the tick.
-    fn substep(&mut self, fraction: f64, outputs: &DeviceOutputs) {
+    /// One step of the simulation; `near` is what an arm without pressure may come to lie on.
+    fn substep(&mut self, outputs: &DeviceOutputs, near: &[Obstacle]) {
         let dt = self.world.integration_parameters.dt;
-        self.arm.advance(fraction, dt);
+        self.t3.advance(dt, &self.loads(near));
         self.change_grippers(dt, &outputs.quick_change);
         self.pedestal.turn(&mut self.world, dt);
         if let Some(hand) = self.changer.mated() {
@@ -427,8 +436,11 @@ impl Cell {
     fn sense(&mut self, link_rx: LinkBytes, link_ready: bool) -> DeviceInputs {
         let (grip, force) = self.sense_gripper();
         let resolver_noise = self.description.sensors.resolver_noise;
-        let counts =
-            self.arm.joints().map(|angle| resolver::counts(angle, resolver_noise, &mut self.resolver_noise));
+        let counts = self
+            .t3
+            .arm()
+            .joints()
+            .map(|angle| resolver::counts(angle, resolver_noise, &mut self.resolver_noise));
         let mut inputs = DeviceInputs {
             link_rx,
             link_ready,
@@ -468,7 +480,7 @@ impl Cell {
     /// True joint angles, radians: base, shoulder, elbow, pitch, yaw, roll.
     #[must_use]
     pub fn joints(&self) -> Joints {
-        *self.arm.joints()
+        *self.t3.arm().joints()
     }
 
     /// The tool frame as the loaded arm and the fingers have it, inches: the middle between the fingertips; of a bare robot
@@ -477,7 +489,7 @@ impl Cell {
     pub fn tool(&self) -> Frame {
         match self.changer.carried() {
             Some(hand) => to_frame(&self.hand(hand).loaded_tool(&self.world)),
-            None => self.arm.tool(),
+            None => self.t3.arm().tool(),
         }
     }
 
@@ -524,20 +536,43 @@ impl Cell {
         std::mem::take(&mut self.events)
     }
 
-    /// Press a button of the T3 controller's panel.
-    pub fn press(&mut self, button: Button) {
-        self.t3.press(button);
+    /// Do something at the T3 controller's console, its teach pendant, or an emergency stop.
+    ///
+    /// # Errors
+    /// [`Refusal`]: what must be done first; then nothing has changed.
+    pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
+        let done = self.t3.press(key);
+        self.hear_t3();
+        done
+    }
+
+    /// The T3 controller.
+    #[must_use]
+    pub fn t3(&self) -> &T3Controller {
+        &self.t3
+    }
+
+    /// What the controller shows and the robot does becomes an event, unless it belongs to the day's work.
+    fn hear_t3(&mut self) {
+        for message in self.t3.messages() {
+            match message {
+                Message::Warning(warning) => self.events.push(CellEvent::Warning(warning.text().into())),
+                Message::Lamp(text) | Message::Robot(text) => self.events.push(CellEvent::T3(text)),
+                _ => {}
+            }
+        }
+        self.watch_pressure();
     }
 
     /// The controller's DTR line as the T3 controller sees it (A.2); on at the start.
     pub fn set_host_ready(&mut self, ready: bool) {
-        self.t3.set_host_ready(ready);
+        self.host_ready = ready;
     }
 
     /// State of the DEPC function of the T3 controller.
     #[must_use]
     pub fn depc(&self) -> ControllerState {
-        self.t3.state()
+        self.t3.depc().state()
     }
 
     /// Lead the arm to an end-plate frame (inches) by the end of the next tick, as the teach pendant does: past the line.

@@ -53,7 +53,7 @@ fn cuboid(size: Inches) -> SharedShape {
 impl Cell {
     /// The tool frame where the arm is, metres: without what the fingers give way.
     fn robot_tool(&self) -> Pose {
-        to_pose(&self.arm.tool())
+        to_pose(&self.t3.arm().tool())
     }
 
     /// A plate, camera, and the gripper that the robot wears.

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use rapier3d_f64::prelude::*;
 use rcs_core::{
-    frame::{Frame, Rotation, Vector as Inches, rotation_by},
+    frame::{Frame, Rotation, Vector as Inches},
     kinematics::{JOINT_NAMES, T3},
 };
 
@@ -15,6 +15,7 @@ use super::Cell;
 use crate::{
     clearance::Mover,
     convert::{metres, to_frame, to_metres, to_pose},
+    linkage::{AXES, Chain, STARTS},
     scene::{Block, Obstacle, along_x, jaw_blocks},
     solid::along,
 };
@@ -32,18 +33,15 @@ pub struct Link {
     pub rotation: [f64; 4],
 }
 
-/// Links of the arm from the base, their parents and the axes of their joints.
-const ARM: [(&str, &str, [f64; 3]); 6] = [
-    ("turret", "world", [0.0, 0.0, 1.0]),
-    ("upper_arm", "turret", [0.0, -1.0, 0.0]),
-    ("forearm", "upper_arm", [0.0, -1.0, 0.0]),
-    ("wrist_pitch", "forearm", [0.0, -1.0, 0.0]),
-    ("wrist_yaw", "wrist_pitch", [0.0, 0.0, 1.0]),
-    ("end_plate", "wrist_yaw", [1.0, 0.0, 0.0]),
+/// Links of the arm from the base, and their parents.
+const ARM: [(&str, &str); 6] = [
+    ("turret", "world"),
+    ("upper_arm", "turret"),
+    ("forearm", "upper_arm"),
+    ("wrist_pitch", "forearm"),
+    ("wrist_yaw", "wrist_pitch"),
+    ("end_plate", "wrist_yaw"),
 ];
-
-/// Where each arm link begins in its parent, along the parent's X, in.
-const STARTS: [f64; 6] = [0.0, 0.0, T3.upper_arm, T3.forearm, T3.pitch_to_yaw, 0.0];
 
 /// Blocks of the furniture that belong to the link of the vise.
 const VISE_BLOCKS: [&str; 2] = ["vise_body", "fixed_jaw"];
@@ -56,23 +54,9 @@ pub(super) enum Outline {
 }
 
 impl Cell {
-    /// Frames of the arm's links in the world, in.
-    fn arm_frames(&self) -> [Frame; 6] {
-        let mut frame = Frame::identity();
-        let mut frames = [frame; 6];
-        for (joint, angle) in self.joints().into_iter().enumerate() {
-            let (_, _, axis) = ARM[joint];
-            frame = frame
-                .shifted(Inches::new(STARTS[joint], 0.0, 0.0))
-                .turned(&rotation_by(&(Inches::from(axis) * angle)));
-            frames[joint] = frame;
-        }
-        frames
-    }
-
     /// The outline of the robot and what it carries, for the clearance check.
     pub(super) fn movers(&self) -> Vec<Mover> {
-        let [_, upper, fore, _, _, plate] = self.arm_frames().map(|frame| to_pose(&frame));
+        let [_, upper, fore, _, _, plate] = Chain::new(&self.joints()).frames().map(|frame| to_pose(&frame));
         let robot = &self.description.robot;
         let capsule = |name: &str, pose: Pose, from: f64, to: f64, radius: f64| Mover {
             name: name.into(),
@@ -114,8 +98,8 @@ impl Cell {
     pub fn links(&self) -> Vec<Link> {
         let mut links = Vec::with_capacity(11 + self.parts.len());
         for (joint, angle) in self.joints().into_iter().enumerate() {
-            let (name, parent, axis) = ARM[joint];
-            let pose = Pose::new(Vector::X * metres(STARTS[joint]), Vector::from_array(axis) * angle);
+            let (name, parent) = ARM[joint];
+            let pose = Pose::new(Vector::X * metres(STARTS[joint]), Vector::from_array(AXES[joint]) * angle);
             links.push(link(name, parent, &pose));
         }
         links.extend(self.gripper_links());
@@ -205,7 +189,7 @@ impl Cell {
             (robot.wrist_radius, T3.yaw_to_plate, 0.0),
         ];
         for (joint, (radius, length, from)) in outlines.into_iter().enumerate() {
-            let (name, parent, axis) = ARM[joint];
+            let (name, parent) = ARM[joint];
             let middle = Frame {
                 position: Inches::new(from + length / 2.0, 0.0, 0.0),
                 rotation: Rotation::identity(),
@@ -215,7 +199,14 @@ impl Cell {
             urdf.end_link();
             let start =
                 Frame { position: Inches::new(STARTS[joint], 0.0, 0.0), rotation: Rotation::identity() };
-            urdf.joint(JOINT_NAMES[joint], "revolute", parent, name, &start, Some((axis, T3.limits[joint])));
+            urdf.joint(
+                JOINT_NAMES[joint],
+                "revolute",
+                parent,
+                name,
+                &start,
+                Some((AXES[joint], T3.limits[joint])),
+            );
         }
     }
 

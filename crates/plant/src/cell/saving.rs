@@ -115,7 +115,7 @@ impl Cell {
                 bytes.extend_from_slice(&number.to_le_bytes());
             }
         }
-        let robot = (&self.arm, &self.t3, &self.changer, &self.grippers, &self.camera, &self.joystick);
+        let robot = (&self.t3, &self.droop, &self.changer, &self.grippers, &self.camera, &self.joystick);
         let beside = (&self.drum, &self.pedestal, &self.vise, &self.parts, self.next_part, &self.clearance);
         let noise = (&self.gripper_noise, &self.pedestal_noise, &self.force_noise, &self.placement_noise);
         let sensors = (&self.resolver_noise, &self.dead_times, &self.faults, self.jaw_waits);

@@ -6,6 +6,7 @@ use super::Cell;
 use crate::{
     description::{PartType, Tolerance},
     joystick::BoxAction,
+    t3::{Key, Refusal},
     vise::Jaws,
 };
 
@@ -82,6 +83,8 @@ pub enum WorkstationAction {
     },
     /// Do something at the joystick box.
     Joystick(BoxAction),
+    /// Do something at the T3 controller, or an emergency stop.
+    T3(Key),
 }
 
 /// Why the workstation cannot do that.
@@ -217,6 +220,9 @@ pub enum WorkstationError {
         /// What is allowed.
         allowed: Tolerance,
     },
+    /// The T3 controller does not do that now.
+    #[error(transparent)]
+    Refused(#[from] Refusal),
     /// The next part does not fit into the blank.
     #[error("{to} does not fit into {from}")]
     TooLarge {
@@ -257,13 +263,15 @@ impl Cell {
                 self.joystick.act(*action);
                 Ok(())
             }
+            WorkstationAction::T3(key) => Ok(self.press(*key)?),
         }
     }
 
-    /// True while the vise is moving, or something at the joystick box is held down.
+    /// True while the vise is moving, something at the joystick box is held down, or the T3 controller does what a key has
+    /// begun.
     #[must_use]
     pub fn workstation_busy(&self) -> bool {
-        self.vise.moving() || self.joystick.busy()
+        self.vise.moving() || self.joystick.busy() || self.t3.busy()
     }
 
     pub(super) fn kind(&self, name: &str) -> Result<PartType, WorkstationError> {

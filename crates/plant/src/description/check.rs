@@ -41,6 +41,18 @@ impl CellDescription {
         check.positive("robot.joint_speeds", &self.robot.joint_speeds);
         let outline = [self.robot.upper_arm_radius, self.robot.forearm_radius, self.robot.wrist_radius];
         check.positive("robot.*_radius", &outline);
+        let hydraulics = &self.robot.hydraulics;
+        check.within("robot.hydraulics.pump_delay_s", hydraulics.pump_delay_s, 0.0, 60.0);
+        check.within("robot.hydraulics.droop_rate", hydraulics.droop_rate, 0.1, 90.0);
+        check.within("robot.hydraulics.shot_pin", hydraulics.shot_pin, 0.0, 90.0);
+        check.within("robot.hydraulics.following_error", hydraulics.following_error, 0.0, 90.0);
+        let weights = [
+            hydraulics.upper_arm_weight,
+            hydraulics.forearm_weight,
+            hydraulics.wrist_weight,
+            hydraulics.tool_weight,
+        ];
+        check.positive("robot.hydraulics.*_weight", &weights);
         let limits = T3.limits.iter().map(|(low, high)| (low.to_degrees(), high.to_degrees()));
         for ((angle, (low, high)), joint) in self.robot.start.iter().zip(limits).zip(JOINT_NAMES) {
             check.within(&format!("robot.start ({joint})"), *angle, low, high);

@@ -1,5 +1,7 @@
 //! The steps of the start-up.
 
+use serde::{Deserialize, Serialize};
+
 /// How far the start-up has come.
 ///
 /// ```text
@@ -8,7 +10,7 @@
 ///    ▼            fault reset          key at ENABLE            manual on
 ///   Faulted ───────────────────► Ready ─────────────► Enabled ─────────────► Rising
 ///    ▲                                                   ▲                     │ first jump
-///    │ E-stop (any)                                      │ manual off (any)    ▼
+///    │ E-stop, no pressure (any)                                      │ manual off (any)    ▼
 ///    └── ...                                             └── ...             Manual: align 1 to 6
 ///                                                                              │ auto
 ///                 two motions            cycle start            second jump    ▼
@@ -18,7 +20,7 @@
 ///    │ CANCEL, CANCEL            ▼                                               │ auto
 ///    └─────────────────────► PreManual ──────────────────────────────────────────┘
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Stage {
     /// Control power is off.
     Dark,
@@ -38,7 +40,7 @@ pub enum Stage {
     Auto,
     /// The program's two vertical motions.
     Rehearsing,
-    /// The program is in the DEPC function, see [`super::Machine::depc`].
+    /// The program is in the DEPC function, see [`super::T3Controller::depc`].
     Depc,
     /// Pre-manual mode: the program was ended, the axes are still aligned.
     PreManual,

@@ -7,6 +7,7 @@ use std::fmt;
 
 use depc::{Plate, controller::Warning};
 use rcs_core::pose::WireFrame;
+use serde::{Deserialize, Serialize};
 
 /// HOME as the manual prints it (IV.3.3 step 11).
 pub const HOME: WireFrame =
@@ -15,20 +16,20 @@ pub const HOME: WireFrame =
 pub const HOME_TOLERANCE: i32 = 4;
 
 /// One message.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Message {
     /// Screen: which axes are aligned.
     Aligned([bool; 6]),
     /// Screen: a warning or an error.
-    Warning(Warning),
+    Warning(#[serde(with = "crate::image::record")] Warning),
     /// A lamp on the console or on the robot.
-    Lamp(&'static str),
+    Lamp(String),
     /// What the robot does.
     Robot(String),
     /// The position, and how far it may be off HOME.
-    Position(WireFrame),
+    Position(#[serde(with = "crate::image::record")] WireFrame),
     /// The DEPC function has begun and reported the position.
-    Reported(Plate),
+    Reported(#[serde(with = "crate::image::record")] Plate),
     /// The DEPC function has ended without an error.
     Ended,
     /// The controller runs a function on arrival (A 2.3).

@@ -1,5 +1,7 @@
 //! Why a key does nothing.
 
+use super::EStop;
+
 /// A key that was pressed at the wrong moment, and what has to be done first (IV.3.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
@@ -15,6 +17,12 @@ pub enum Refusal {
     /// FAULT RESET is lit.
     #[error("the FAULT RESET button is lit: fault reset comes first")]
     Fault,
+    /// An emergency stop is still in.
+    #[error("{0} is still in: release it first")]
+    Pressed(EStop),
+    /// The E-stop is out already.
+    #[error("{0} is not pressed")]
+    NotPressed(EStop),
     /// FAULT RESET is not lit.
     #[error("the FAULT RESET button is not lit: there is nothing to reset")]
     NoFault,

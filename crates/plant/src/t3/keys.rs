@@ -2,16 +2,15 @@
 
 use depc::controller::ControllerState;
 
-use super::{BY_EYE, Machine, Stage, off_home};
-use crate::{console::Key, refusal::Refusal};
+use super::{BY_EYE, Cut, EStop, Key, Refusal, Stage, T3Controller, off_home};
 
-impl Machine {
+impl T3Controller {
     /// A key is pressed.
     ///
     /// # Errors
     /// [`Refusal`]: what must be done first; then nothing has changed.
     pub fn press(&mut self, key: Key) -> Result<(), Refusal> {
-        let hardware = matches!(key, Key::Board(_) | Key::Transmitter(_));
+        let hardware = matches!(key, Key::Board(_) | Key::Transmitter(_) | Key::Press(_) | Key::Release(_));
         if self.stage == Stage::Dark && key != Key::ControlPower(true) && !hardware {
             return Err(Refusal::NoPower);
         }
@@ -30,11 +29,12 @@ impl Machine {
                 self.keys.hold = on;
                 Ok(())
             }
-            Key::Estop => {
-                self.cut(Stage::Faulted);
-                self.lamp("FAULT RESET on, HYD ENABLED off");
+            Key::Press(site) => {
+                self.estops[site.index()] = true;
+                self.fault(Cut::EStop(site));
                 Ok(())
             }
+            Key::Release(site) => self.release(site),
             Key::Board(_) if self.stage != Stage::Dark => Err(Refusal::Powered),
             Key::Board(there) => {
                 self.board = there;
@@ -47,10 +47,32 @@ impl Machine {
         }
     }
 
-    /// Pressure goes, and with it whatever runs and what is known of the axes.
-    fn cut(&mut self, stage: Stage) {
+    /// The pump, or a line of the hydraulics, fails: the pressure is gone at once, and the controller shows a fault.
+    pub fn lose_pressure(&mut self) {
+        self.pump = false;
         if self.stage.is_live() {
-            self.robot("hydraulics off: the arm sinks to its shot pin");
+            self.fault(Cut::PressureLost);
+        }
+    }
+
+    /// Repair the hydraulics; the start-up of III.6 then brings the pressure back.
+    pub fn repair_hydraulics(&mut self) {
+        self.pump = true;
+    }
+
+    /// The pressure goes, and FAULT RESET lights up; without control power there is nothing to light or to lose.
+    pub(super) fn fault(&mut self, cause: Cut) {
+        if self.stage != Stage::Dark {
+            self.shut_off(Stage::Faulted, cause);
+            self.lamp("FAULT RESET on, HYD ENABLED off");
+        }
+    }
+
+    /// Pressure goes, and with it whatever runs and what is known of the axes.
+    fn shut_off(&mut self, stage: Stage, cause: Cut) {
+        if self.stage.is_live() {
+            self.robot(format!("{cause}: hydraulics off, the arm sinks"));
+            self.cut = Some(cause);
         }
         self.before_jump = None;
         self.arm.set_pressure(false);
@@ -68,7 +90,7 @@ impl Machine {
             }
             (true, _) => Err(Refusal::PowerIsOn),
             (false, _) => {
-                self.cut(Stage::Dark);
+                self.shut_off(Stage::Dark, Cut::ControlPower);
                 self.lamp("control power off");
                 Ok(())
             }
@@ -79,8 +101,18 @@ impl Machine {
         if self.stage != Stage::Faulted {
             return Err(Refusal::NoFault);
         }
+        if let Some(site) = EStop::ALL.into_iter().find(|site| self.is_pressed(*site)) {
+            return Err(Refusal::Pressed(site));
+        }
         self.enter(Stage::Ready);
         self.lamp("FAULT RESET off");
+        Ok(())
+    }
+
+    fn release(&mut self, site: EStop) -> Result<(), Refusal> {
+        if !std::mem::replace(&mut self.estops[site.index()], false) {
+            return Err(Refusal::NotPressed(site));
+        }
         Ok(())
     }
 
@@ -94,7 +126,7 @@ impl Machine {
             }
             (true, _) | (false, Stage::Ready | Stage::Faulted) => Err(Refusal::KeyIsThere),
             (false, _) => {
-                self.cut(Stage::Ready);
+                self.shut_off(Stage::Ready, Cut::KeySwitch);
                 self.lamp("HYD ENABLED off, red warning lights on the robot off");
                 Ok(())
             }
@@ -112,7 +144,7 @@ impl Machine {
             }
             (true, _) => Err(Refusal::PressureIsOn),
             (false, stage) if stage.is_live() => {
-                self.cut(Stage::Enabled);
+                self.shut_off(Stage::Enabled, Cut::ManualOff);
                 Ok(())
             }
             (false, _) => Err(Refusal::NoPressure),
@@ -130,7 +162,7 @@ impl Machine {
             return Err(Refusal::Moving);
         }
         let arrows = off_home(&mut self.noise, BY_EYE);
-        let mut goal = *self.arm.command();
+        let mut goal = self.arm.command();
         for (number, (joint, arrow)) in (1..).zip(goal.iter_mut().zip(arrows)) {
             let chosen = axis.is_none_or(|axis| axis == number);
             if chosen {

@@ -1,0 +1,67 @@
+//! Servos and hydraulics of the arm.
+
+use serde::{Deserialize, Serialize};
+
+use super::Robot;
+
+/// What moves the joints: servos while there is pressure, the arm's own weight without.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Actuators {
+    /// First-order lag of the joint servos, s.
+    pub lag_s: f64,
+    /// Greatest speed of each joint under pressure, degrees/s.
+    pub speeds: [f64; 6],
+    /// The rest.
+    pub hydraulics: Hydraulics,
+}
+
+/// The hydraulics, and the weights that they carry. All of it is ASSUMED; III.6 and IV.3.3 say what it must come to.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Hydraulics {
+    /// From MANUAL ON to the pressure, s: the short delay of IV.3.3 step 8.
+    pub pump_delay_s: f64,
+    /// Speed at which a joint without pressure gives way to the weight that it has at HOME, degrees/s.
+    pub droop_rate: f64,
+    /// The shot pin stops the shoulder so far below where the pressure left it, degrees.
+    pub shot_pin: f64,
+    /// A servo's command is never farther than this from its joint, degrees: a joint that sags takes it along, and
+    /// jumps back by so much at most when the pressure returns.
+    pub following_error: f64,
+    /// Weight of the upper arm, lb.
+    pub upper_arm_weight: f64,
+    /// Weight of the forearm, lb.
+    pub forearm_weight: f64,
+    /// Weight of the wrist, lb.
+    pub wrist_weight: f64,
+    /// Weight of quick change and gripper that the hydraulics are made for, lb.
+    pub tool_weight: f64,
+}
+
+impl Default for Hydraulics {
+    fn default() -> Self {
+        Self {
+            pump_delay_s: 0.5,
+            droop_rate: 3.0,
+            shot_pin: 8.0,
+            following_error: 5.0,
+            upper_arm_weight: 397.0,
+            forearm_weight: 243.0,
+            wrist_weight: 99.0,
+            tool_weight: 44.0,
+        }
+    }
+}
+
+impl Default for Actuators {
+    /// Those of the T3 (ASSUMED).
+    fn default() -> Self {
+        Self { lag_s: 0.080, speeds: [30.0, 30.0, 30.0, 90.0, 90.0, 90.0], hydraulics: Hydraulics::default() }
+    }
+}
+
+impl From<&Robot> for Actuators {
+    fn from(robot: &Robot) -> Self {
+        Self { lag_s: robot.servo_lag_s, speeds: robot.joint_speeds, hydraulics: robot.hydraulics.clone() }
+    }
+}

@@ -1,0 +1,373 @@
+//! The T3 controller with its arm: the start-up of IV.3.3, the emergency stops of III.6 and the DEPC function of appendix A
+//! as one state machine, without I/O and without a clock.
+//!
+//! ```text
+//!   keys (console, pendant, E-stops) ──► stage: start-up, program, DEPC ──► arm: servos, hydraulics
+//!                                          │      ▲
+//!                                        bytes to and from the host, once a period
+//! ```
+//!
+//! [`T3Controller::step`] is a period of the controller, [`T3Controller::advance`] lets time pass for the arm; whoever runs it decides
+//! how finely. `rcs-cell` puts a pseudo-terminal and a console around it, the simulated cell ([`crate::cell`]) everything else.
+//!
+//! The DEPC function is a part of the program, and the program runs only under pressure: with it end the answers and the
+//! controller's DTR (A 2.3; ASSUMED: the manual does not say what the host sees of an emergency stop). It comes back as IV.3.3 has it:
+//! fault reset, hydraulics, manual, align, AUTO, cycle start.
+
+mod key;
+mod keys;
+mod message;
+mod program;
+mod refusal;
+mod stage;
+#[cfg(test)]
+mod tests;
+
+use depc::{
+    Limits, Plate,
+    controller::{Controller, ControllerInputs, JointProblem, Robot, joints_for},
+};
+use rcs_core::{
+    frame::Frame,
+    interface::device::LinkBytes,
+    kinematics::{HOME_JOINTS, Joints, T3},
+    pose::WireFrame,
+};
+use serde::{Deserialize, Serialize};
+
+pub use self::{
+    key::{Cut, EStop, Key},
+    message::{HOME, HOME_TOLERANCE, Message, off_home as off_printed_home},
+    refusal::Refusal,
+    stage::Stage,
+};
+use crate::{
+    arm::Arm,
+    description::Actuators,
+    linkage::Load,
+    noise::{Noise, Stream},
+};
+
+/// Where the last shift has left the arm: greatest distance of each joint from its arrow, degrees (ASSUMED).
+const LEFT_OFF: f64 = 2.0;
+/// How well a person brings a joint to its arrow: greatest error, degrees (ASSUMED).
+const BY_EYE: f64 = 0.5;
+
+/// What comes from the line in a period.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StepInputs {
+    /// Bytes of the host.
+    pub rx: LinkBytes,
+    /// The host's DTR.
+    pub cts: bool,
+}
+
+/// What goes to the line.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StepOutputs {
+    /// Bytes to the host.
+    pub tx: LinkBytes,
+    /// The controller's DTR, the host's CTS (A.2).
+    pub dtr: bool,
+    /// The step began a move or an answer.
+    pub busy: bool,
+}
+
+/// What was counted since the start.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// Data commands executed.
+    pub moves: u64,
+    /// NAKs sent.
+    pub naks: u64,
+    /// Reports sent.
+    pub reports: u64,
+}
+
+/// Why the arm cannot be led to a position by hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DriveError {
+    /// The position does not fit into the words of the controller.
+    #[error("the position is beyond the controller's coordinates of 327.67 in")]
+    OutOfRange,
+    /// The joints cannot take it.
+    #[error("the arm cannot take the position: {0:?}")]
+    Joints(JointProblem),
+    /// The arm has no pressure.
+    #[error("the arm has no hydraulic pressure")]
+    NoPressure,
+}
+
+/// The set point of the servos, in words of the line.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+struct SetPoint {
+    #[serde(with = "crate::image::record")]
+    plate: Plate,
+    joints: Joints,
+}
+
+impl SetPoint {
+    fn at(joints: &Joints) -> Result<Self, DriveError> {
+        let plate = Plate::from_frame(&T3.forward_plate(joints), &Plate::default())
+            .map_err(|_| DriveError::OutOfRange)?;
+        Ok(Self { plate, joints: *joints })
+    }
+}
+
+impl Robot for SetPoint {
+    fn present(&self) -> Plate {
+        self.plate
+    }
+
+    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+        self.joints = joints_for(&T3, goal, &self.joints)?;
+        self.plate = *goal;
+        Ok(())
+    }
+}
+
+/// The controller and its arm.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct T3Controller {
+    stage: Stage,
+    #[serde(with = "crate::image::record")]
+    limits: Limits,
+    arm: Arm,
+    pump_delay: f64,
+    /// How well people align axes.
+    noise: Noise,
+    aligned: [bool; 6],
+    /// Axes on their way to the arrow.
+    aligning: [bool; 6],
+    /// Seconds in this stage.
+    since: f64,
+    /// Where the hand was when the pressure came, in, for the message.
+    before_jump: Option<[f64; 3]>,
+    /// Vertical motions done.
+    motions: u8,
+    #[serde(with = "crate::image::record")]
+    depc: Controller,
+    set_point: SetPoint,
+    /// Keys for the next step of the function.
+    #[serde(with = "crate::image::record")]
+    keys: ControllerInputs,
+    /// The RS232 board is in its slot.
+    board: bool,
+    /// Its transmitter works.
+    transmitter: bool,
+    /// The emergency stops that are in.
+    estops: [bool; 5],
+    /// The pump and its lines are sound.
+    pump: bool,
+    /// Why there is no pressure.
+    cut: Option<Cut>,
+    counts: Counts,
+    messages: Vec<Message>,
+}
+
+impl T3Controller {
+    /// A controller without power whose arm was left near HOME and has sunk. `seed` says how far the joints are off.
+    #[must_use]
+    pub fn dark(limits: Limits, actuators: &Actuators, seed: u64) -> Self {
+        let mut noise = Noise::new(seed, Stream::Alignment);
+        let left = off_home(&mut noise, LEFT_OFF);
+        let set_point = SetPoint { plate: Plate::default(), joints: left };
+        Self::of(limits, actuators, Arm::sunk_from(actuators, left), set_point, noise)
+    }
+
+    /// A controller after its start-up: the axes are aligned, the arm stands at `start` (radians), and with the first step the
+    /// program comes to the DEPC function.
+    ///
+    /// # Errors
+    /// [`DriveError::OutOfRange`] if the end plate is beyond the words of the line.
+    pub fn started(
+        limits: Limits,
+        actuators: &Actuators,
+        start: &Joints,
+        seed: u64,
+    ) -> Result<Self, DriveError> {
+        let noise = Noise::new(seed, Stream::Alignment);
+        let arm = Arm::new(actuators, *start);
+        Ok(Self {
+            stage: Stage::Depc,
+            aligned: [true; 6],
+            keys: ControllerInputs { start: true, ..ControllerInputs::default() },
+            cut: None,
+            ..Self::of(limits, actuators, arm, SetPoint::at(start)?, noise)
+        })
+    }
+
+    fn of(limits: Limits, actuators: &Actuators, arm: Arm, set_point: SetPoint, noise: Noise) -> Self {
+        Self {
+            stage: Stage::Dark,
+            limits,
+            arm,
+            pump_delay: actuators.hydraulics.pump_delay_s,
+            noise,
+            aligned: [false; 6],
+            aligning: [false; 6],
+            since: 0.0,
+            before_jump: None,
+            motions: 0,
+            depc: Controller::new(limits),
+            set_point,
+            keys: ControllerInputs::default(),
+            board: true,
+            transmitter: true,
+            estops: [false; 5],
+            pump: true,
+            cut: Some(Cut::ControlPower),
+            counts: Counts::default(),
+            messages: Vec::new(),
+        }
+    }
+
+    /// How far the start-up has come.
+    #[must_use]
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// The DEPC function; of interest in [`Stage::Depc`].
+    #[must_use]
+    pub fn depc(&self) -> &Controller {
+        &self.depc
+    }
+
+    /// The arm.
+    #[must_use]
+    pub fn arm(&self) -> &Arm {
+        &self.arm
+    }
+
+    /// Axes that have their asterisk.
+    #[must_use]
+    pub fn aligned(&self) -> [bool; 6] {
+        self.aligned
+    }
+
+    /// Hold is on.
+    #[must_use]
+    pub fn hold(&self) -> bool {
+        self.keys.hold
+    }
+
+    /// An emergency stop is in.
+    #[must_use]
+    pub fn is_pressed(&self, site: EStop) -> bool {
+        self.estops[site.index()]
+    }
+
+    /// Why the actuators have no pressure; `None` while they have it.
+    #[must_use]
+    pub fn cut(&self) -> Option<Cut> {
+        self.cut
+    }
+
+    /// The arm stands where it was sent to.
+    #[must_use]
+    pub fn at_rest(&self) -> bool {
+        self.arm.settled()
+    }
+
+    /// The controller does something that a key has begun and that ends by itself: pressure comes, axes are aligned, the
+    /// arm moves to HOME, the program makes its two motions.
+    #[must_use]
+    pub fn busy(&self) -> bool {
+        match self.stage {
+            Stage::Rising | Stage::Homing | Stage::Rehearsing => !self.keys.hold,
+            Stage::Manual => self.aligning != [false; 6],
+            _ => false,
+        }
+    }
+
+    /// What was counted.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// The displayed position (IV.3.3 step 11).
+    #[must_use]
+    pub fn position(&self) -> WireFrame {
+        WireFrame::from_frame(&self.arm.tool())
+    }
+
+    /// Messages since the last call, in order.
+    pub fn messages(&mut self) -> Vec<Message> {
+        std::mem::take(&mut self.messages)
+    }
+
+    /// Let `seconds` pass for the arm. `loads` are the forces on it beside the weight of its links.
+    pub fn advance(&mut self, seconds: f64, loads: &[Load]) {
+        let program = matches!(self.stage, Stage::Homing | Stage::Rehearsing);
+        self.arm.advance(seconds, self.keys.hold && program, loads);
+        self.since += seconds;
+    }
+
+    /// A period of the controller: the start-up goes on, and the DEPC function takes one step if it is reached.
+    pub fn step(&mut self, inputs: &StepInputs) -> StepOutputs {
+        match self.stage {
+            Stage::Rising => self.rise(),
+            Stage::Manual => self.watch_axes(),
+            Stage::Homing if self.arm.settled() => {
+                self.enter(Stage::Auto);
+                self.messages.push(Message::Position(self.position()));
+            }
+            Stage::Rehearsing if self.arm.settled() => return self.rehearse(inputs),
+            Stage::Depc => return self.depc_step(inputs),
+            _ => {}
+        }
+        StepOutputs::default()
+    }
+
+    /// Lead the arm to an end-plate frame (inches, world) within a period as the teach pendant does: past the line and its
+    /// limits of speed.
+    ///
+    /// # Errors
+    /// [`DriveError`]; the command stays as it was.
+    pub fn drive(&mut self, plate: &Frame) -> Result<(), DriveError> {
+        if !self.arm.has_pressure() {
+            return Err(DriveError::NoPressure);
+        }
+        let words = Plate::from_frame(plate, &self.set_point.plate).map_err(|_| DriveError::OutOfRange)?;
+        self.set_point.move_to(&words).map_err(DriveError::Joints)?;
+        self.reach_set_point();
+        Ok(())
+    }
+
+    /// Take over the position of another controller that has the robot, within a period. An arm without pressure stays where
+    /// it is.
+    ///
+    /// # Errors
+    /// [`JointProblem`] if this arm cannot take the position; the command stays as it was.
+    pub fn follow(&mut self, plate: &Plate) -> Result<(), JointProblem> {
+        if self.arm.has_pressure() && *plate != self.set_point.plate {
+            self.set_point.move_to(plate)?;
+            self.reach_set_point();
+        }
+        Ok(())
+    }
+
+    fn reach_set_point(&mut self) {
+        self.arm.reach(self.set_point.joints, f64::from(self.limits.period_us()) / 1e6);
+    }
+
+    fn enter(&mut self, stage: Stage) {
+        self.stage = stage;
+        self.since = 0.0;
+    }
+
+    fn lamp(&mut self, text: impl Into<String>) {
+        self.messages.push(Message::Lamp(text.into()));
+    }
+
+    fn robot(&mut self, text: impl Into<String>) {
+        self.messages.push(Message::Robot(text.into()));
+    }
+}
+
+/// HOME with every joint off by a seeded angle of at most `greatest` degrees.
+fn off_home(noise: &mut Noise, greatest: f64) -> Joints {
+    HOME_JOINTS.map(|joint| joint + noise.within(greatest).to_radians())
+}
