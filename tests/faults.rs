@@ -111,6 +111,13 @@ endings! {
     a_noisy_cell: "linkbar", "noisy-cell" => Well;
 }
 
+#[test]
+fn lost_hydraulics_stop_the_run() {
+    let outcome = with("linkbar", "hydraulics-lost");
+    assert_sound("linkbar with hydraulics-lost", &outcome);
+    assert_eq!(outcome.status, Some(3), "{}", outcome.last_words);
+}
+
 /// A linkbar job whose blank throws back so much light.
 fn with_reflectance(reflectance: f64) -> Outcome {
     run("linkbar", 1, &format!("reflectance-{reflectance}"), |scratch| {

@@ -358,7 +358,7 @@ mod tests {
         for number in 1..=400 {
             let picture = Picture::Precise;
             let request =
-                VisionRequest { number, picture, object_id: 17, grip: 2, range_mm: 598, variation: 0 };
+                VisionRequest { number, picture, object_id: 17, grip: 2, range_mm: 590, variation: 0 };
             let answer = camera.analyse(&request, &bar, cell.part("LINKBAR1_BH"));
             failed += u32::from(answer.status == VisionStatus::NotRecognised);
         }

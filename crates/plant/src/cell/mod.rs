@@ -321,8 +321,14 @@ impl Cell {
 
     /// A tick begins, and with it the faults that do: what the controller's commands have become by the time they arrive.
     fn begin_tick(&mut self, outputs: &DeviceOutputs) -> DeviceOutputs {
+        let before = self.faults.hydraulics_lost();
         let changes = self.faults.next();
         self.tell(changes);
+        match (before, self.faults.hydraulics_lost()) {
+            (false, true) => self.fail_hydraulics(),
+            (true, false) => self.repair_hydraulics(),
+            _ => {}
+        }
         self.faults.outputs(outputs)
     }
 

@@ -150,6 +150,12 @@ impl Injector {
         }
     }
 
+    /// The hydraulics have failed.
+    #[must_use]
+    pub fn hydraulics_lost(&self) -> bool {
+        self.active().any(|what| *what == What::HydraulicsLost)
+    }
+
     /// The jaw of the vise does not move.
     #[must_use]
     pub fn jaw_stuck(&self) -> bool {

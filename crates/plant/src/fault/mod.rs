@@ -76,6 +76,8 @@ pub enum What {
     Valve(Valve, bool),
     /// The supply of air is gone.
     AirLost,
+    /// The hydraulics of the robot have failed, and can be switched on again only when the fault is over (III.6).
+    HydraulicsLost,
     /// The locking ring of the quick change does not move.
     RingStuck,
     /// The jaw of the vise does not move.
@@ -186,6 +188,7 @@ impl fmt::Display for What {
             Self::Valve(valve, true) => write!(f, "valve {} is stuck open", valve.name()),
             Self::Valve(valve, false) => write!(f, "valve {} is stuck closed", valve.name()),
             Self::AirLost => f.write_str("the air is lost"),
+            Self::HydraulicsLost => f.write_str("the hydraulics are lost"),
             Self::RingStuck => f.write_str("the locking ring is stuck"),
             Self::JawStuck => f.write_str("the jaw of the vise is stuck"),
             Self::CameraBlind => f.write_str("the camera is blind"),

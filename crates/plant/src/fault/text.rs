@@ -28,7 +28,7 @@
 //! part = "LCLEVIS_BH"
 //! ```
 //!
-//! Others: `stuck` with `device = "lock-ring"` or `"vise-jaw"`, `air-lost`, `camera-blind`, `pedestal-moved`. A fault that
+//! Others: `stuck` with `device = "lock-ring"` or `"vise-jaw"`, `air-lost`, `hydraulics-lost`, `camera-blind`, `pedestal-moved`. A fault that
 //! does not say when is there all the time.
 
 use std::{fs, path::Path};
@@ -58,7 +58,7 @@ pub struct FaultFile {
 type Kind = (&'static str, &'static [&'static str]);
 
 /// Kinds of faults of the cell.
-const KINDS: [Kind; 14] = [
+const KINDS: [Kind; 15] = [
     ("off", &["sensor"]),
     ("stuck", &["sensor", "valve", "device", "value"]),
     ("noisy", &["sensor", "by"]),
@@ -67,6 +67,7 @@ const KINDS: [Kind; 14] = [
     ("offset", &["sensor", "by"]),
     ("drift", &["sensor", "by"]),
     ("air-lost", &[]),
+    ("hydraulics-lost", &[]),
     ("camera-blind", &[]),
     ("missing", &["object"]),
     ("misplaced", &["object", "x", "y"]),
@@ -195,6 +196,7 @@ fn what(kind: &'static str, form: &Form, cell: &CellDescription) -> Result<What,
         "offset" => Disorder::Offset(by("counts", -MOST_COUNTS..=MOST_COUNTS)?),
         "drift" => Disorder::Drift(by("counts a second", -MOST_COUNTS..=MOST_COUNTS)?),
         "air-lost" => return Ok(What::AirLost),
+        "hydraulics-lost" => return Ok(What::HydraulicsLost),
         "camera-blind" => return Ok(What::CameraBlind),
         "missing" => return Ok(What::Delivery(object()?, Mishap::Missing)),
         "misplaced" => {
@@ -389,6 +391,7 @@ mod tests {
             [[fault]]\nkind = \"stuck\"\ndevice = \"lock-ring\"\n\
             [[fault]]\nkind = \"stuck\"\ndevice = \"vise-jaw\"\n\
             [[fault]]\nkind = \"air-lost\"\nat = 7\n\
+            [[fault]]\nkind = \"hydraulics-lost\"\nfrom = 9\n\
             [[fault]]\nkind = \"camera-blind\"\n\
             [[fault]]\nkind = \"missing\"\n\
             [[fault]]\nkind = \"misplaced\"\nobject = \"LINKBAR1_BH\"\nx = 1.5\n\
@@ -412,6 +415,7 @@ mod tests {
             ("the locking ring is stuck", When::ALWAYS),
             ("the jaw of the vise is stuck", When::ALWAYS),
             ("the air is lost", window(7, 8)),
+            ("the hydraulics are lost", window(9, u64::MAX)),
             ("the camera is blind", When::ALWAYS),
             ("what is delivered does not come", When::ALWAYS),
             ("LINKBAR1_BH lies 1.5 in, 0 in beside its place", When::ALWAYS),
