@@ -14,6 +14,7 @@ use clap::ValueEnum;
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs},
     record::{Field, Writer},
+    tick::Tick,
 };
 use record::layout::{self, Leaf};
 use serde::Serialize;
@@ -94,22 +95,26 @@ pub fn diff(arguments: &Arguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::from(if same { 0 } else { DIFFERENT }))
 }
 
-/// Images of a tick: inputs and output buffers.
+/// What there is of a tick: inputs, output buffers, and the digest of the simulated cell.
 struct Images {
     tick: u64,
+    cell: Option<u64>,
     external: Box<[u8]>,
     memory: Box<[u8]>,
 }
 
 impl Images {
-    fn of(moment: &Moment) -> Self {
+    fn of(moment: &Moment, cells: &Cells) -> Self {
         let mut external = vec![0; ExternalInputs::SIZE].into_boxed_slice();
         moment.external.encode(&mut Writer::new(&mut external));
         let mut memory = vec![0; CommonMemory::SIZE].into_boxed_slice();
         moment.after.encode(&mut Writer::new(&mut memory));
-        Self { tick: moment.tick.0, external, memory }
+        Self { tick: moment.tick.0, cell: cells.get(&moment.tick).copied(), external, memory }
     }
 }
+
+/// Digests of the simulated cell.
+type Cells = HashMap<Tick, u64>;
 
 /// Gives each tick its key.
 struct Keys {
@@ -139,16 +144,18 @@ impl Keys {
 fn compare(a: &Path, b: &Path, align: Align) -> Result<Differences, Error> {
     let (log_a, log_b) = (open(a)?, open(b)?);
     let mut of_b = HashMap::new();
+    let cells: Cells = log_b.cell_digests().collect();
     let mut keys = Keys::new(align);
     walk(&log_b, b, |moment| {
-        of_b.insert(keys.of(moment), Images::of(moment));
+        of_b.insert(keys.of(moment), Images::of(moment, &cells));
         true
     })?;
     let mut found = Comparison::new();
+    let cells: Cells = log_a.cell_digests().collect();
     let mut keys = Keys::new(align);
     walk(&log_a, a, |moment| {
         let other = of_b.remove(&keys.of(moment));
-        found.note(&Images::of(moment), other.as_ref());
+        found.note(&Images::of(moment, &cells), other.as_ref());
         true
     })?;
     Ok(found.differences(of_b.len()))
@@ -189,29 +196,36 @@ impl Comparison {
             (&self.external, "external.", &a.external, &b.external),
             (&self.memory, "", &a.memory, &b.memory),
         ];
-        let mut different = false;
+        let mut different: Vec<(String, [String; 2])> = Vec::new();
         for (leaves, prefix, was, is) in pairs {
             if was == is {
                 continue;
             }
             for leaf in leaves.iter().filter(matters).filter(|leaf| leaf.bytes(was) != leaf.bytes(is)) {
-                different = true;
-                let field = format!("{prefix}{}", leaf.path);
                 let value = |image| layout::value_text(leaf.schema, leaf.bytes(image));
-                self.first.get_or_insert_with(|| First {
-                    tick_a: a.tick,
-                    tick_b: b.tick,
-                    field: field.clone(),
-                    a: value(was),
-                    b: value(is),
-                });
-                self.fields
-                    .entry(field.clone())
-                    .or_insert(FieldStory { field, first_tick: a.tick, ticks: 0 })
-                    .ticks += 1;
+                different.push((format!("{prefix}{}", leaf.path), [value(was), value(is)]));
             }
         }
-        self.different += u64::from(different);
+        // A cell that is elsewhere shows in the inputs sooner or later; the digest says when it began.
+        if let (Some(was), Some(is)) = (a.cell, b.cell)
+            && was != is
+        {
+            different.push(("cell.digest".to_owned(), [was, is].map(|digest| format!("{digest:016x}"))));
+        }
+        self.different += u64::from(!different.is_empty());
+        for (field, [was, is]) in different {
+            self.first.get_or_insert_with(|| First {
+                tick_a: a.tick,
+                tick_b: b.tick,
+                field: field.clone(),
+                a: was,
+                b: is,
+            });
+            self.fields
+                .entry(field.clone())
+                .or_insert(FieldStory { field, first_tick: a.tick, ticks: 0 })
+                .ticks += 1;
+        }
     }
 
     fn differences(self, only_b: usize) -> Differences {

@@ -14,7 +14,7 @@ use rcs_core::{
     record::Field,
     tick::Tick,
 };
-use record::{End, Epoch, Pace, Recorder, Setup};
+use record::{CellFrame, CellModel, End, Epoch, Pace, Recorder, Setup};
 use taskdata::files::TaskData;
 
 const TICKS: u64 = 120;
@@ -33,10 +33,16 @@ impl Scratch {
 
     /// A run without task data, in which TRANSFER fails; `speed` is the velocity knob.
     fn log(&self, name: &str, speed: u16) -> PathBuf {
+        self.log_of_cell(name, speed, |_| 0)
+    }
+
+    /// The same with a cell that has the given digests.
+    fn log_of_cell(&self, name: &str, speed: u16, digest_of_cell: impl Fn(Tick) -> u64) -> PathBuf {
         let path = self.0.join(name);
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
         let run = [text("program", "test"), text("job", "nothing"), text("seed", "7")].into();
-        let setup = Setup { epoch: Epoch::Fixed, run, ..Setup::default() };
+        let cell = Some(CellModel::default());
+        let setup = Setup { epoch: Epoch::Fixed, run, cell, ..Setup::default() };
         let mut recorder = Recorder::start(&path, Pace::Wait, setup).expect("the log begins");
         let (mut ladder, mut memory, mut digest) =
             (Ladder::default(), CommonMemory::default(), Digest::new());
@@ -49,6 +55,7 @@ impl Scratch {
             let before = memory;
             ladder.step(tick, &before, &external, &TaskData::default(), &mut memory);
             digest.add_record(&memory, &mut [0; CommonMemory::SIZE]);
+            recorder.cell(&CellFrame::new(tick).with_digest(digest_of_cell(tick)));
             recorder.tick(tick, &external, &memory, || ladder.state());
         }
         let end = End { digest: Some(digest.value()), result: "failed".into() };
@@ -141,6 +148,19 @@ fn diff_names_the_first_field_and_counts_the_others() {
             "{text}"
         );
     }
+}
+
+#[test]
+fn diff_tells_when_two_cells_begin_to_differ() {
+    let scratch = Scratch::new("cells");
+    let one = scratch.log("one.mcap", 1000);
+    let two = scratch.log_of_cell("two.mcap", 1000, |tick| u64::from(tick.0 >= 60) * 0xAB);
+    let output = rcs_log(&["diff"], &[&one, &two]);
+    let text = stdout(&output);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("120 ticks compared, 61 different"), "{text}");
+    let first = "first      tick 60, cell.digest: 0000000000000000 and 00000000000000ab";
+    assert!(text.contains(first), "{text}");
 }
 
 #[test]

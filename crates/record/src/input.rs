@@ -153,13 +153,22 @@ pub struct CellFrame {
     pub transforms: [Transform; MAX_LINKS],
     /// Positions of the joints, radians or metres, in the order of [`CellModel::joints`].
     pub joints: [f64; MAX_JOINTS],
+    /// Digest of everything in the cell; none if nobody has worked it out.
+    pub digest: Option<u64>,
 }
 
 impl CellFrame {
     /// A frame in which nothing has moved yet.
     #[must_use]
     pub const fn new(tick: Tick) -> Self {
-        Self { tick, transforms: [Transform::IDENTITY; MAX_LINKS], joints: [0.0; MAX_JOINTS] }
+        Self { tick, transforms: [Transform::IDENTITY; MAX_LINKS], joints: [0.0; MAX_JOINTS], digest: None }
+    }
+
+    /// The same frame with the digest of the cell.
+    #[must_use]
+    pub const fn with_digest(mut self, digest: u64) -> Self {
+        self.digest = Some(digest);
+        self
     }
 
     /// A frame from lists; what is beyond the limits is left out.

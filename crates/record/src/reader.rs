@@ -28,6 +28,7 @@ use crate::{
         foxglove::Level,
         wire::{Fields, Value},
     },
+    scene::{CELL_TOPIC, DIGEST},
     writer::{END, LAYOUT, LOG_TOPIC, REPLAY, RUN, replay_field},
 };
 
@@ -174,6 +175,18 @@ impl Log {
                 }
             }
             line
+        })
+    }
+
+    /// The digests of the simulated cell, as the controller met it in each tick; none of a real one.
+    pub fn cell_digests(&self) -> impl Iterator<Item = (Tick, u64)> {
+        self.messages(CELL_TOPIC).filter_map(|(tick, data)| {
+            Fields(&data).find_map(|field| match field {
+                (number, Value::Bytes(digest)) if number == u64::from(DIGEST) => {
+                    Some((tick, u64::from_le_bytes(digest.try_into().ok()?)))
+                }
+                _ => None,
+            })
         })
     }
 

@@ -1,4 +1,4 @@
-//! The moving cell: `/tf`, `/tf_static`, `/joint_states` and `/robot_description`.
+//! The moving cell: `/tf`, `/tf_static`, `/joint_states` and `/robot_description`; and `/cell`, the digest of everything in it.
 //!
 //! Links travel relative to their parents in the URDF, so that a description and its transforms can never
 //! contradict each other in a viewer, and so that a link that only turns repeats its position.
@@ -6,16 +6,23 @@
 use std::io::{Seek, Write};
 
 use mcap::McapResult;
+use prost_types::field_descriptor_proto::Type;
 use rcs_core::tick::Tick;
 
 use crate::{
     channels::Output,
     input::{CellFrame, CellModel},
     proto::{
+        descriptor::{self, encode_set, field, file},
         foxglove::{self, Transform},
-        ros,
+        ros, wire,
     },
 };
+
+/// Topic of the digests of the cell.
+pub const CELL_TOPIC: &str = "/cell";
+/// Field number of the digest in its message.
+pub const DIGEST: u32 = 1;
 
 /// Steps of a metre, and of the unit of a quaternion, in the log: 1 µm and 1 µrad are finer than any picture,
 /// and the zeros behind them compress.
@@ -27,6 +34,7 @@ const ROS2: (&str, &str) = ("ros2msg", "cdr");
 /// The channels of a cell.
 pub struct Scene {
     model: CellModel,
+    digests: u16,
     moving: u16,
     fixed: u16,
     joints: u16,
@@ -39,6 +47,7 @@ pub struct Scene {
 impl Scene {
     /// Open the channels of a cell.
     pub fn open<W: Write + Seek>(output: &mut Output<W>, model: CellModel) -> McapResult<Self> {
+        let digests = output.protobuf(CELL_TOPIC, "rcs.CellTick", &cell_descriptor())?;
         let descriptors = foxglove::frame_transforms_descriptor();
         let moving = output.protobuf("/tf", foxglove::FRAME_TRANSFORMS, &descriptors)?;
         let fixed = output.protobuf("/tf_static", foxglove::FRAME_TRANSFORMS, &descriptors)?;
@@ -48,7 +57,7 @@ impl Scene {
         let description = output.channel("/robot_description", ros::STRING, ROS2.0, definition, ROS2.1)?;
         let last = vec![None; model.links.len()];
         let (described, last_joints) = (false, Vec::new());
-        Ok(Self { model, moving, fixed, joints, description, described, last, last_joints })
+        Ok(Self { model, digests, moving, fixed, joints, description, described, last, last_joints })
     }
 
     /// Write what moved since the frame before, or everything that moves; before the first frame also what
@@ -65,6 +74,11 @@ impl Scene {
         }
         let time = output.epoch.of(frame.tick);
         let mut data = Vec::new();
+        if let Some(digest) = frame.digest {
+            wire::fixed64(DIGEST, digest, &mut data);
+            output.put(self.digests, frame.tick, &data)?;
+            data.clear();
+        }
         for ((link, place), last) in self.model.links.iter().zip(&frame.transforms).zip(&mut self.last) {
             let place = rounded(place);
             if all || *last != Some(place) {
@@ -97,6 +111,12 @@ impl Scene {
         }
         output.put(self.fixed, tick, &data)
     }
+}
+
+fn cell_descriptor() -> Vec<u8> {
+    let number = i32::try_from(DIGEST).unwrap_or(i32::MAX);
+    let message = descriptor::message("CellTick", vec![field("digest", number, Type::Fixed64)]);
+    encode_set(vec![file("rcs_cell.proto", descriptor::PACKAGE, &[], vec![message])])
 }
 
 fn rounded(transform: &Transform) -> Transform {

@@ -6,6 +6,7 @@
 //! | `/external/...`, `/task/...`, `/prim/...` ... | the buffers, by field | on change, and once a second |
 //! | `/task/row`, `/prim/row` ... | `rcs.Row`: the row that fired, as text | on change, and once a second |
 //! | `/tf`, `/joint_states`, `/robot_description` | the moving cell | on change, and once a second |
+//! | `/cell` | `rcs.CellTick`: digest of everything in the simulated cell | every tick |
 //! | `/log` | `foxglove.Log` | when there is something to say |
 //!
 //! `/replay` alone is lossless: message *n* holds the difference of the images to those of message *n*-1, and

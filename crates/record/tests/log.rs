@@ -91,12 +91,18 @@ fn run(ticks: u64, mut each: impl FnMut(Tick, &ExternalInputs, &CommonMemory, La
     digest.value()
 }
 
+/// A digest that has all its bits.
+fn cell_digest(tick: Tick) -> u64 {
+    u64::MAX - tick.0
+}
+
 fn record_run(path: &Path, ticks: u64) -> record::Summary {
     let mut recorder = Recorder::start(path, Pace::Wait, setup()).unwrap();
     let digest = run(ticks, |tick, external, memory, state| {
         let turn = tick.0 as f64 * 1e-3;
         let arm = Transform { position: [0.0, 0.0, 1.0], rotation: [0.0, 0.0, turn.sin(), turn.cos()] };
-        recorder.cell(&CellFrame::of(tick, [Transform::IDENTITY, arm], [2.0 * turn]));
+        let frame = CellFrame::of(tick, [Transform::IDENTITY, arm], [2.0 * turn]);
+        recorder.cell(&frame.with_digest(cell_digest(tick)));
         if tick.0 == 30 {
             recorder.note(tick, Level::Warning, "cell", "the part slips");
         }
@@ -119,6 +125,8 @@ fn a_recorded_run_is_replayed_bit_for_bit() {
     assert_eq!(log.end.as_ref().unwrap()["result"], "finished");
     assert_eq!(log.attachment(Attachment::JOB).unwrap().data, b"TRANSFER");
     assert!(log.lines().any(|line| line.tick == Tick(30) && line.text == "the part slips"));
+    let digests: Vec<(Tick, u64)> = log.cell_digests().collect();
+    assert_eq!(digests, (1..=1000).map(|tick| (Tick(tick), cell_digest(Tick(tick)))).collect::<Vec<_>>());
     for (topic, messages) in
         [("/robot_description", 1), ("/tf_static", 1), ("/tf", 1000), ("/joint_states", 1000)]
     {

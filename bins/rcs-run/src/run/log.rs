@@ -74,7 +74,7 @@ impl Log {
             }
         }
         let joints = cell.joint_states().into_iter().map(|(_, value)| value);
-        self.recorder.cell(&CellFrame::of(tick, places, joints));
+        self.recorder.cell(&CellFrame::of(tick, places, joints).with_digest(cell.digest()));
     }
 
     /// Something worth a line; before [`Log::tick`] of the same tick.

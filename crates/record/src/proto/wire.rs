@@ -66,6 +66,12 @@ pub fn double(field: u32, value: f64, out: &mut Vec<u8>) {
     out.extend_from_slice(&value.to_le_bytes());
 }
 
+/// A `fixed64` field.
+pub fn fixed64(field: u32, value: u64, out: &mut Vec<u8>) {
+    tag(field, FIXED64, out);
+    out.extend_from_slice(&value.to_le_bytes());
+}
+
 /// A `fixed32` field.
 pub fn fixed32(field: u32, value: u32, out: &mut Vec<u8>) {
     tag(field, FIXED32, out);
