@@ -1,7 +1,7 @@
 //! Digests of all ticks of two scenes full of contacts, one line each: `cargo run --release --example world_hash [SEED]`.
 //!
-//! The lines are the same in every run, in every process, and with and without `--release` (which takes minutes: physics
-//! without optimisation is 200 times slower). `--ticks` prints the digest of every tick, so that two outputs can be compared
+//! The lines are the same in every run, in every process, and with and without `--release` (physics without optimisation
+//! is much slower: a minute or two). `--ticks` prints the digest of every tick, so that two outputs can be compared
 //! line by line where they should ever differ.
 
 #[path = "../tests/rig/mod.rs"]
