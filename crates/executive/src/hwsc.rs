@@ -14,6 +14,9 @@
 //!                     +---- error, lost, fault, time limit -------------------------> Failed
 //! ```
 //!
+//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the job itself resets it further down, by a line with
+//! `** panel fault-reset`: then a command that comes to nothing meanwhile is noted as failed, and the job goes on.
+//!
 //! Actions that are to happen while the robot executes a command stand in the job before that command. They
 //! are kept until it is sent, and begun when their time comes, whatever step is going on then. A job is not
 //! over before they are.
@@ -24,7 +27,7 @@ use rcs_core::{
     name::Name16,
     tick::{TICK_MS, Tick},
 };
-use taskdata::load::job::{JobLine, Step, Workstation as Action};
+use taskdata::load::job::{JobLine, Panel, Step, Workstation as Action};
 
 /// What the workstation can do by itself.
 pub trait Workstation {
@@ -39,6 +42,11 @@ pub trait Workstation {
 
     /// What is wrong with the workstation, in a sentence; `None` if nothing is.
     fn fault(&self) -> Option<String>;
+
+    /// The emergency that has stopped the robot, in a sentence; `None` while there is none.
+    fn emergency(&self) -> Option<String> {
+        None
+    }
 }
 
 /// How a step ended.
@@ -95,6 +103,9 @@ pub enum JobFailure {
     /// The workstation cannot do an action, or has a fault.
     #[error("{0}")]
     Workstation(String),
+    /// An emergency has stopped the robot.
+    #[error("{0}")]
+    Emergency(String),
 }
 
 /// Where the job stands.
@@ -197,6 +208,11 @@ impl Hwsc {
             return &self.progress;
         }
         self.commander.start(task.status.echo);
+        let emergency = workstation.emergency();
+        if let Some(emergency) = emergency.clone().filter(|_| !self.resets()) {
+            self.fail(JobFailure::Emergency(emergency));
+            return &self.progress;
+        }
         if let Err(refused) = self.begin_later(tick, workstation) {
             self.fail(JobFailure::Workstation(refused));
             return &self.progress;
@@ -211,16 +227,32 @@ impl Hwsc {
         };
         match ended {
             None => {}
+            Some(Err(JobFailure::Command(_))) if emergency.is_some() => {
+                self.finish(Outcome::Failed);
+                self.next(tick, workstation);
+            }
             Some(Err(failure)) => self.fail(failure),
             Some(Ok(())) => {
                 if self.began.is_some() {
                     self.finish(Outcome::Finished);
-                    self.current += 1;
+                    self.next(tick, workstation);
+                } else {
+                    self.begin(tick, workstation);
                 }
-                self.begin(tick, workstation);
             }
         }
         &self.progress
+    }
+
+    /// The step that is going on, or one behind it, resets a fault of the robot controller.
+    fn resets(&self) -> bool {
+        let reset = Step::Workstation(Action::Panel(Panel::FaultReset));
+        self.steps.iter().skip(self.current.saturating_sub(1)).any(|line| line.step == reset)
+    }
+
+    fn next(&mut self, tick: Tick, workstation: &mut impl Workstation) {
+        self.current += 1;
+        self.begin(tick, workstation);
     }
 
     /// How the step that is going on ended; `None` while it goes on.
@@ -404,10 +436,15 @@ mod tests {
         busy: std::cell::Cell<u32>,
         told: Vec<ViseOpening>,
         fault: Option<&'static str>,
+        emergency: Option<&'static str>,
     }
 
     impl Workstation for Vise {
         fn begin(&mut self, action: &Action) -> Result<(), String> {
+            if *action == RESET {
+                self.emergency = None;
+                return Ok(());
+            }
             let Action::Vise { opening, location, .. } = action else { return Err("this is a vise".into()) };
             if location.name.as_str() != "PFIXTURE" {
                 return Err(format!("there is no vise at {}", location.name));
@@ -425,7 +462,14 @@ mod tests {
         fn fault(&self) -> Option<String> {
             self.fault.map(str::to_owned)
         }
+
+        fn emergency(&self) -> Option<String> {
+            self.emergency.map(str::to_owned)
+        }
     }
+
+    /// What ends the emergency of a [`Vise`].
+    const RESET: Action = Action::Panel(Panel::FaultReset);
 
     fn command(verb: &str) -> JobLine {
         let command = HwsCommand { command: Name16::clipped(verb), ..HwsCommand::default() };
@@ -599,5 +643,30 @@ mod tests {
         let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
         play(&mut hwsc, &mut Task::default(), &mut jaws);
         assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Workstation("no oil pressure".into())));
+    }
+    #[test]
+    fn an_emergency_ends_the_job_at_once_whatever_goes_on() {
+        for steps in [vec![command("MOVE")], vec![vise(ViseOpening::Open)], vec![]] {
+            let mut jaws = Vise { emergency: Some("the hand is caught"), ..Vise::default() };
+            let mut hwsc = Hwsc::new(steps, 100);
+            assert_eq!(play(&mut hwsc, &mut Task::default(), &mut jaws), 1);
+            let stopped = JobFailure::Emergency("the hand is caught".into());
+            assert_eq!(*hwsc.progress(), Progress::Failed(stopped));
+        }
+    }
+
+    #[test]
+    fn a_job_that_resets_an_emergency_goes_on_without_what_failed() {
+        let reset = JobLine { step: Step::Workstation(RESET), text: "** reset".into(), line: 1 };
+        let steps = vec![command("MOVE"), reset, command("ACQUIRE")];
+        let mut jaws = Vise { emergency: Some("the hand is caught"), ..Vise::default() };
+        let mut task = Task { fails_at: Some(2), ..Task::default() };
+        let mut hwsc = Hwsc::new(steps, 100);
+        play(&mut hwsc, &mut task, &mut jaws);
+        assert_eq!(*hwsc.progress(), Progress::Over);
+        assert_eq!(task.received, ["PAUSE", "MOVE", "ACQUIRE"]);
+        let outcomes: Vec<_> = hwsc.records().iter().map(|record| record.outcome).collect();
+        let (finished, failed) = (Outcome::Finished, Outcome::Failed);
+        assert_eq!(outcomes, [finished, failed, finished, finished]);
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use rcs_core::name::Name16;
 use taskdata::load::{
     Job, Source, Step, Store, ViseOpening, Workstation,
-    job::{Drum, Joystick, JoystickButton, JoystickFrame, Offset, Stepped},
+    job::{Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped},
     source::read_blocks_under,
 };
 
@@ -113,6 +113,51 @@ fn the_joystick_box() {
 }
 
 #[test]
+fn emergency_stops_and_the_panel_of_the_robot_controller() {
+    let sites = [
+        ("control-panel", EStop::ControlPanel),
+        ("teach-pendant", EStop::TeachPendant),
+        ("terminals", EStop::Terminals),
+        ("joystick-box", EStop::JoystickBox),
+        ("pedestal", EStop::Pedestal),
+    ];
+    for (word, site) in sites {
+        assert_eq!(action(&format!("** estop {word}")), Workstation::Press(site));
+        assert_eq!(action(&format!("** release {word}")), Workstation::Release(site));
+    }
+    let keys = [
+        ("power on", Panel::Power(true)),
+        ("power off", Panel::Power(false)),
+        ("fault-reset", Panel::FaultReset),
+        ("hydraulics enable", Panel::Hydraulics(true)),
+        ("hydraulics disable", Panel::Hydraulics(false)),
+        ("manual on", Panel::Manual(true)),
+        ("manual off", Panel::Manual(false)),
+        ("align", Panel::Align(None)),
+        ("align 6", Panel::Align(Some(6))),
+        ("auto", Panel::Auto),
+        ("cycle-start", Panel::CycleStart),
+        ("interrupt", Panel::Interrupt),
+        ("cancel", Panel::Cancel),
+        ("enter", Panel::Enter),
+        ("hold on", Panel::Hold(true)),
+        ("hold off", Panel::Hold(false)),
+    ];
+    for (words, key) in keys {
+        assert_eq!(action(&format!("** panel {words}")), Workstation::Panel(key));
+    }
+}
+
+#[test]
+fn after_a_restart_the_robot_may_go_from_home() {
+    let there = "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0";
+    let on = "== MOVE -- +0 -- 0 +0 PFIXTURE 0 -- 0";
+    let said = load(&format!("{there}\n{on}")).expect_err("no trajectory leads from SAFE to PFIXTURE");
+    assert!(said.contains("no trajectory leads from SAFE"), "{said}");
+    assert!(load(&format!("{there}\n** panel auto\n{on}")).is_ok());
+}
+
+#[test]
 fn what_happens_during_a_command_stands_before_it() {
     let steps = load("** after 50 joystick hold PRIM\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0").unwrap();
     let held = Workstation::Joystick(Joystick::Hold(Stepped::Prim));
@@ -130,7 +175,7 @@ fn every_mistake_has_its_message() {
         ),
         (
             "**",
-            "column 1: tray, vise, machine, drum, joystick, wait, load, after was expected, the line ends",
+            "column 1: tray, vise, machine, drum, joystick, estop, release, panel, wait, load, after was expected, the line ends",
             "",
         ),
         (
@@ -203,6 +248,21 @@ fn every_mistake_has_its_message() {
             "column 23: a count, a whole number, was expected; many found",
             "** joystick step PROCESS, or with a COUNT behind it",
         ),
+        (
+            "** estop door",
+            "column 10: no emergency stop is named door",
+            "there are control-panel, teach-pendant, terminals, joystick-box, pedestal",
+        ),
+        ("** release", "column 4: control-panel, teach-pendant", ""),
+        ("** estop pedestal 3", "column 19: the line should end before 3", ""),
+        ("** panel siren", "column 10: no key of the robot controller is named siren", "there are power, "),
+        ("** panel manual", "column 10: on, off was expected, the line ends", ""),
+        (
+            "** panel hydraulics on",
+            "column 21: no position of the keyswitch is named on",
+            "there are enable, disable",
+        ),
+        ("** panel align 7", "column 16: an axis is 1 to 6, 7 found", "** panel align, or with an AXIS"),
         ("** wait", "column 4: a number of ticks was expected, the line ends", ""),
         ("** load", "column 4: a file of blocks was expected, the line ends", ""),
         ("** load no-such.blk", "column 9: no-such.blk cannot be read", ""),

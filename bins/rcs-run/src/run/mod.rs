@@ -46,7 +46,7 @@ use taskdata::load::{Job, job::Reload};
 use self::{
     log::Log,
     progress::Progress,
-    result::{CommandResult, FailureResult, FaultsResult, Page, PortResult, RunResult},
+    result::{CommandResult, EmergencyResult, FailureResult, FaultsResult, Page, PortResult, RunResult},
     robot::{Port, Robot},
     setup::Setup,
     workstation::SimulatedWorkstation,
@@ -93,13 +93,15 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let log = setup.log.as_deref().map(|path| Log::start(path, arguments, &setup)).transpose()?;
     let publisher = publisher(arguments, &setup.job);
     let Setup { store, job, description, cell, robot, log: log_path, .. } = setup;
+    let workstation = SimulatedWorkstation::new(cell, description.vise.location);
+    let workstation = if robot.port().is_some() { workstation.with_robot_elsewhere() } else { workstation };
     let mut run = Run {
         runner: Runner::new(Ladder::default(), publisher),
         hwsc: Hwsc::new(job.steps.clone(), hwsc::TIME_LIMIT),
         data_system: DataSystem::default(),
-        inputs: cell.inputs(),
+        inputs: workstation.cell.inputs(),
         robot,
-        workstation: SimulatedWorkstation::new(cell, description.vise.location),
+        workstation,
         log,
         progress: Progress::new(job.steps.len() + 1),
         clock: Clock::Fast,
@@ -216,12 +218,14 @@ impl Run {
             let ladder = self.runner.levels();
             self.inputs =
                 self.robot.advance(tick, &mut self.workstation.cell, &outputs, || acknowledged(ladder));
-            self.fresh = self.workstation.events();
+            self.fresh = self.workstation.events(tick);
             self.events.extend(self.fresh.iter().map(|event| format!("tick {tick}: {event}")));
             self.progress.show(&self.hwsc, &external.hws, &memory);
             self.data_system.step(tick, &memory.task.data_base);
             match self.hwsc.step(tick, &memory.task, &mut self.workstation) {
                 hwsc::Progress::Over => return Ending::Finished,
+                // Whatever the arm runs into belongs to the run.
+                hwsc::Progress::Failed(_) if self.workstation.is_settling(tick) => {}
                 hwsc::Progress::Failed(failure) => {
                     let failure = failure.clone();
                     return Ending::Failed(self.explain(&failure, &external));
@@ -256,6 +260,10 @@ impl Run {
 
     /// Why the job failed: the explanation of the process that knows, or what the workstation controller saw.
     fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Failure {
+        if let (JobFailure::Emergency(what), Some(emergency)) = (failure, self.workstation.last_emergency()) {
+            let text = format!("{what}; the arm {}", emergency.droop.end());
+            return Failure { stopped: true, ..outside(emergency.tick, "T3", text) };
+        }
         let processes = Ladder::processes();
         let known = match failure {
             JobFailure::Command(_) => self.runner.watch().failure(processes),
@@ -301,6 +309,7 @@ impl Run {
             faults: self.robot.faults().map(FaultsResult::from),
             cell_faults: self.workstation.cell.faults().into_iter().map(Into::into).collect(),
             port: self.robot.port().map(PortResult::from),
+            emergency_stop: self.workstation.last_emergency().map(EmergencyResult::from),
             digest: self.runner.digest().to_string(),
             parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
             data_base: self.data_system.items().map(Into::into).collect(),

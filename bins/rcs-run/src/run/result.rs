@@ -15,7 +15,7 @@ use rcs_core::{
 };
 use serde::Serialize;
 
-use super::robot::Port;
+use super::{robot::Port, workstation::Emergency};
 
 /// A command for Task.
 #[derive(Clone, Debug, Serialize)]
@@ -154,6 +154,52 @@ impl From<&Port> for PortResult {
     }
 }
 
+/// Two things that have run into each other.
+#[derive(Clone, Debug, Serialize)]
+pub struct ContactResult {
+    /// What moved.
+    pub mover: String,
+    /// What it has met.
+    pub obstacle: String,
+    /// How deep at the most, inches.
+    pub depth_in: f64,
+}
+
+/// The last loss of hydraulic pressure in an emergency, and what became of the arm.
+#[derive(Clone, Debug, Serialize)]
+pub struct EmergencyResult {
+    /// Tick in which the pressure went.
+    pub tick: u64,
+    /// Who stopped the robot, or what failed.
+    pub cause: String,
+    /// Where the tool point was, inches.
+    pub position_in: [f64; 3],
+    /// The arm has come to rest.
+    pub at_rest: bool,
+    /// The shot pin has stopped the shoulder.
+    pub on_shot_pin: bool,
+    /// What the sagging arm has run into, the deepest first.
+    pub touched: Vec<ContactResult>,
+}
+
+impl From<&Emergency> for EmergencyResult {
+    fn from(Emergency { tick, droop }: &Emergency) -> Self {
+        let touched = droop.touched.iter().map(|contact| ContactResult {
+            mover: contact.mover.clone(),
+            obstacle: contact.obstacle.clone(),
+            depth_in: contact.depth,
+        });
+        Self {
+            tick: tick.0,
+            cause: droop.cause.to_string(),
+            position_in: droop.position,
+            at_rest: droop.at_rest,
+            on_shot_pin: droop.on_shot_pin,
+            touched: touched.collect(),
+        }
+    }
+}
+
 /// Where a part ended.
 #[derive(Clone, Debug, Serialize)]
 pub struct PartResult {
@@ -278,6 +324,9 @@ pub struct RunResult {
     /// The serial port.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub port: Option<PortResult>,
+    /// The last emergency, if there was one, also if the robot was started again after it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub emergency_stop: Option<EmergencyResult>,
     /// Fingerprint of all output buffers of all ticks.
     pub digest: String,
     /// Where the parts are.
@@ -338,6 +387,13 @@ impl fmt::Display for Page<'_> {
         }
         if self.events.len() > EVENTS_SHOWN {
             writeln!(f, "           and {} more, all in the log", self.events.len() - EVENTS_SHOWN)?;
+        }
+        if let Some(EmergencyResult { tick, cause, touched, .. }) = &result.emergency_stop {
+            let into = match touched.len() {
+                0 => "the sagging arm touched nothing".to_owned(),
+                count => format!("the sagging arm ran into {count} things"),
+            };
+            writeln!(f, "stop       tick {tick}: {cause}; {into}")?;
         }
         let link = &result.link;
         writeln!(

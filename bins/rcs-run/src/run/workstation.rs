@@ -1,11 +1,30 @@
 //! The workstation of the simulated cell, as the workstation controller's emulator sees it.
 
 use executive::hwsc::Workstation;
-use plant::{BoxAction, BoxButton, Cell, CellEvent, Placement, WorkstationAction};
-use rcs_core::interface::device::{joystick_frame, single_step};
-use taskdata::load::job::{
-    Drum, Joystick, JoystickButton, JoystickFrame, Offset, Stepped, ViseOpening, Workstation as Action,
+use plant::{
+    BoxAction, BoxButton, Cell, CellEvent, Droop, EStop, Key, Placement, WorkstationAction, t3::Stage,
 };
+use rcs_core::{
+    interface::device::{joystick_frame, single_step},
+    tick::{TICK_MS, Tick},
+};
+use taskdata::load::job::{
+    Drum, EStop as Site, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, ViseOpening,
+    Workstation as Action,
+};
+
+/// Ticks that an arm without pressure is given to come to rest before the run ends: two minutes. From HOME it takes
+/// 40 s; one that slides off what it has fallen on, twice as long.
+const SETTLING_LIMIT: u64 = 120_000 / TICK_MS;
+
+/// An emergency that has stopped the robot.
+#[derive(Clone, Debug)]
+pub struct Emergency {
+    /// When the pressure went.
+    pub tick: Tick,
+    /// Why, where, and what has become of the arm.
+    pub droop: Droop,
+}
 
 /// The cell, with what went wrong in it.
 pub struct SimulatedWorkstation {
@@ -13,6 +32,11 @@ pub struct SimulatedWorkstation {
     pub cell: Cell,
     vise: String,
     fault: Option<String>,
+    /// The robot is not the simulated one: its panel is out of reach.
+    robot_elsewhere: bool,
+    emergency: Option<Emergency>,
+    /// The arm had no pressure after the last tick.
+    stopped: bool,
     /// Numbers of the reloads that were asked for since the last look.
     loads: Vec<u32>,
 }
@@ -20,18 +44,54 @@ pub struct SimulatedWorkstation {
 impl SimulatedWorkstation {
     /// A workstation around a cell whose vise stands at `vise`.
     pub const fn new(cell: Cell, vise: String) -> Self {
-        Self { cell, vise, fault: None, loads: Vec::new() }
+        Self {
+            cell,
+            vise,
+            fault: None,
+            robot_elsewhere: false,
+            emergency: None,
+            stopped: false,
+            loads: Vec::new(),
+        }
     }
 
-    /// What happened in the cell since the last call. A simulation that has failed is a fault of the
+    /// The cell follows a robot elsewhere, whose controller no line of a job can reach.
+    #[must_use]
+    pub fn with_robot_elsewhere(self) -> Self {
+        Self { robot_elsewhere: true, ..self }
+    }
+
+    /// What happened in the cell in `tick`, which is over. A simulation that has failed is a fault of the
     /// workstation, and so is a vise that has.
-    pub fn events(&mut self) -> Vec<CellEvent> {
+    pub fn events(&mut self, tick: Tick) -> Vec<CellEvent> {
         let events = self.cell.events();
+        if let Some(droop) = self.cell.droop().filter(|droop| droop.cause.is_emergency()) {
+            let began = match &self.emergency {
+                Some(known) if self.stopped => known.tick,
+                _ => tick,
+            };
+            self.emergency = Some(Emergency { tick: began, droop: droop.clone() });
+        }
+        self.stopped = self.cell.droop().is_some();
         let fatal = |event: &&CellEvent| matches!(event, CellEvent::Quarantined | CellEvent::ViseStuck);
         if let Some(event) = events.iter().find(fatal) {
             self.fault = Some(event.to_string());
         }
         events
+    }
+
+    /// The last emergency, also if the robot has been started again since.
+    #[must_use]
+    pub const fn last_emergency(&self) -> Option<&Emergency> {
+        self.emergency.as_ref()
+    }
+
+    /// The arm has lost its pressure in an emergency, has not come to rest, and may yet run into something.
+    #[must_use]
+    pub fn is_settling(&self, tick: Tick) -> bool {
+        let sinks =
+            |emergency: &Emergency| !emergency.droop.at_rest && tick.since(emergency.tick) < SETTLING_LIMIT;
+        self.stopped && self.emergency.as_ref().is_some_and(sinks)
     }
 
     /// Numbers of the reloads of task data that the job has asked for since the last call.
@@ -77,9 +137,41 @@ impl SimulatedWorkstation {
             Action::Drum(Drum::Release) => WorkstationAction::DrumRelease,
             Action::Drum(Drum::Tool(tool)) => WorkstationAction::DrumTool { part: tool.to_string() },
             Action::Joystick(action) => WorkstationAction::Joystick(at_the_box(*action)),
+            Action::Press(_) | Action::Release(_) | Action::Panel(_) if self.robot_elsewhere => {
+                return Err("the robot at the serial port has its own panel and emergency stops".to_owned());
+            }
+            Action::Press(site) => WorkstationAction::T3(Key::Press(estop(*site))),
+            Action::Release(site) => WorkstationAction::T3(Key::Release(estop(*site))),
+            Action::Panel(key) => WorkstationAction::T3(at_the_panel(*key)),
             // The emulator of the workstation controller counts the ticks itself.
             Action::Wait { .. } | Action::Load { .. } => return Ok(Vec::new()),
         }])
+    }
+}
+
+const fn estop(site: Site) -> EStop {
+    match site {
+        Site::ControlPanel => EStop::ControlPanel,
+        Site::TeachPendant => EStop::TeachPendant,
+        Site::Terminals => EStop::Terminals,
+        Site::JoystickBox => EStop::JoystickBox,
+        Site::Pedestal => EStop::Pedestal,
+    }
+}
+
+const fn at_the_panel(key: Panel) -> Key {
+    match key {
+        Panel::Power(on) => Key::ControlPower(on),
+        Panel::FaultReset => Key::FaultReset,
+        Panel::Hydraulics(enable) => Key::Hydraulics(enable),
+        Panel::Manual(on) => Key::Manual(on),
+        Panel::Align(axis) => Key::Align(axis),
+        Panel::Auto => Key::Auto,
+        Panel::CycleStart => Key::CycleStart,
+        Panel::Interrupt => Key::Interrupt,
+        Panel::Cancel => Key::Cancel,
+        Panel::Enter => Key::Enter,
+        Panel::Hold(on) => Key::Hold(on),
     }
 }
 
@@ -147,6 +239,14 @@ impl Workstation for SimulatedWorkstation {
 
     fn fault(&self) -> Option<String> {
         self.fault.clone()
+    }
+
+    /// From the loss of pressure to FAULT RESET.
+    fn emergency(&self) -> Option<String> {
+        let faulted = self.cell.t3().stage() == Stage::Faulted;
+        let droop = self.cell.droop().filter(|droop| faulted && droop.cause.is_emergency())?;
+        let [x, y, z] = droop.position;
+        Some(format!("{}, with the hand at ({x:.1} {y:.1} {z:.1})", droop.cause))
     }
 }
 
@@ -229,6 +329,45 @@ mod tests {
         assert!(!bench.workstation.cell.drum_closed());
         bench.play("** drum grip").unwrap();
         assert!(bench.workstation.cell.drum_closed());
+    }
+
+    /// What the panel has to be told after an emergency stop, and what each key leads to.
+    const RESTART: [(&str, Stage); 6] = [
+        ("fault-reset", Stage::Ready),
+        ("hydraulics enable", Stage::Enabled),
+        ("manual on", Stage::Manual),
+        ("align", Stage::Manual),
+        ("auto", Stage::Auto),
+        ("cycle-start", Stage::Depc),
+    ];
+
+    #[test]
+    fn an_emergency_stop_is_pressed_and_the_robot_started_again() {
+        let mut bench = Bench::new();
+        bench.play("** estop pedestal").unwrap();
+        let said = bench.workstation.emergency().unwrap();
+        assert_eq!(said, "the E-stop near the pedestal was pressed, with the hand at (-0.0 -71.4 -14.8)");
+        let refused = bench.play("** panel fault-reset").unwrap_err();
+        assert_eq!(refused, "the E-stop near the pedestal is still in: release it first");
+        bench.play("** release pedestal").unwrap();
+        assert!(bench.workstation.emergency().is_some(), "nothing comes back by itself");
+        for (line, stage) in RESTART {
+            bench.play(&format!("** panel {line}")).unwrap();
+            assert_eq!(bench.workstation.cell.t3().stage(), stage, "{line}");
+            assert_eq!(bench.workstation.emergency(), None);
+        }
+        let refused = bench.play("** panel cycle-start").unwrap_err();
+        assert_eq!(refused, "the program runs: interrupt it first");
+    }
+
+    #[test]
+    fn a_robot_elsewhere_has_its_own_panel() {
+        let mut bench = Bench::new();
+        bench.workstation.robot_elsewhere = true;
+        for line in ["** estop pedestal", "** release pedestal", "** panel auto"] {
+            let refused = bench.play(line).unwrap_err();
+            assert!(refused.contains("has its own panel"), "{line}: {refused}");
+        }
     }
 
     #[test]

@@ -122,6 +122,48 @@ pub enum Joystick {
     },
 }
 
+/// The emergency stops (III.6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EStop {
+    /// On the front panel of the robot controller.
+    ControlPanel,
+    /// On its teach pendant.
+    TeachPendant,
+    /// Near the terminals.
+    Terminals,
+    /// On the joystick box.
+    JoystickBox,
+    /// Near the Active Pedestal.
+    Pedestal,
+}
+
+/// What a person does at the panel, the keyboard and the pendant of the robot controller (IV.3.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Panel {
+    /// Control power on or off.
+    Power(bool),
+    /// FAULT RESET.
+    FaultReset,
+    /// The HYDRAULICS keyswitch: enable or disable.
+    Hydraulics(bool),
+    /// MANUAL on or off.
+    Manual(bool),
+    /// Lead all axes to their arrows, or one of 1 to 6.
+    Align(Option<u8>),
+    /// AUTO.
+    Auto,
+    /// CYCLE START.
+    CycleStart,
+    /// INTERRUPT.
+    Interrupt,
+    /// The CANCEL key.
+    Cancel,
+    /// The ENTER key.
+    Enter,
+    /// Hold on or off.
+    Hold(bool),
+}
+
 /// What happens beside the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Workstation {
@@ -156,6 +198,12 @@ pub enum Workstation {
     Drum(Drum),
     /// The joystick box.
     Joystick(Joystick),
+    /// An emergency stop is pressed.
+    Press(EStop),
+    /// An emergency stop is pulled out again.
+    Release(EStop),
+    /// The robot controller's panel.
+    Panel(Panel),
     /// Blocks are loaded into the running system.
     Load {
         /// Which of the job's reloads, from 1.

@@ -19,6 +19,12 @@
 //! ** joystick record, ** joystick resume   the record button, and the carriage return after it
 //! ** joystick hold|free EMOVE              a process is suspended, or runs on
 //! ** joystick step EMOVE [3]               a suspended process runs once, or so often
+//! ** estop joystick-box                    an emergency stop is pressed: control-panel, teach-pendant, terminals,
+//!                                          joystick-box, pedestal
+//! ** release joystick-box                  it is pulled out again
+//! ** panel fault-reset                     a key of the robot controller: power on|off, fault-reset, hydraulics
+//!                                          enable|disable, manual on|off, align [AXIS], auto, cycle-start,
+//!                                          interrupt, cancel, enter, hold on|off
 //! ** wait 50                               so many ticks
 //! ** load more.blk                         blocks are loaded, which count from the next command on
 //! ** after 50 joystick hold PRIM           any of these, so many ticks after the next command was sent
@@ -39,7 +45,9 @@ use rcs_core::interface::hws::HwsCommand;
 
 pub use reload::Reload;
 
-pub use action::{Drum, Joystick, JoystickButton, JoystickFrame, Offset, Stepped, ViseOpening, Workstation};
+pub use action::{
+    Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, ViseOpening, Workstation,
+};
 
 use super::{
     Store,

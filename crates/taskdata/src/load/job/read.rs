@@ -67,7 +67,7 @@ pub(super) struct Reader<'s, 'p> {
     reloads: std::vec::IntoIter<TaskData<'s>>,
     loaded: u32,
     pub(super) problems: &'p mut Problems,
-    walk: Walk,
+    pub(super) walk: Walk,
     /// The last line with `after` that no command has followed yet.
     pub(super) after: Option<At>,
 }

@@ -31,6 +31,11 @@ pub(super) struct Walk {
 }
 
 impl Walk {
+    /// Something beside the commands moves the robot.
+    pub(super) fn forget(&mut self) {
+        self.last = None;
+    }
+
     /// Follow a command (V.4.1).
     pub(super) fn command(
         &mut self,

@@ -2,7 +2,10 @@
 
 use super::{
     Step,
-    action::{Drum, Joystick, JoystickButton, JoystickFrame, Offset, Stepped, ViseOpening, Workstation},
+    action::{
+        Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, ViseOpening,
+        Workstation,
+    },
     read::{Fields, MOST, Reader},
 };
 
@@ -14,6 +17,9 @@ enum Verb {
     Machine,
     Drum,
     Joystick,
+    EStop,
+    Release,
+    Panel,
     Wait,
     Load,
     After,
@@ -25,6 +31,9 @@ const VERBS: &[(&str, Verb)] = &[
     ("machine", Verb::Machine),
     ("drum", Verb::Drum),
     ("joystick", Verb::Joystick),
+    ("estop", Verb::EStop),
+    ("release", Verb::Release),
+    ("panel", Verb::Panel),
     ("wait", Verb::Wait),
     ("load", Verb::Load),
     ("after", Verb::After),
@@ -73,6 +82,41 @@ enum DrumVerb {
 const DRUM_VERBS: &[(&str, DrumVerb)] =
     &[("grip", DrumVerb::Grip), ("release", DrumVerb::Release), ("tool", DrumVerb::Tool)];
 
+const ESTOPS: &[(&str, EStop)] = &[
+    ("control-panel", EStop::ControlPanel),
+    ("teach-pendant", EStop::TeachPendant),
+    ("terminals", EStop::Terminals),
+    ("joystick-box", EStop::JoystickBox),
+    ("pedestal", EStop::Pedestal),
+];
+
+#[derive(Clone, Copy)]
+enum PanelVerb {
+    Power,
+    Hydraulics,
+    Manual,
+    Align,
+    Hold,
+    Key(Panel),
+}
+
+const PANEL_VERBS: &[(&str, PanelVerb)] = &[
+    ("power", PanelVerb::Power),
+    ("fault-reset", PanelVerb::Key(Panel::FaultReset)),
+    ("hydraulics", PanelVerb::Hydraulics),
+    ("manual", PanelVerb::Manual),
+    ("align", PanelVerb::Align),
+    ("auto", PanelVerb::Key(Panel::Auto)),
+    ("cycle-start", PanelVerb::Key(Panel::CycleStart)),
+    ("interrupt", PanelVerb::Key(Panel::Interrupt)),
+    ("cancel", PanelVerb::Key(Panel::Cancel)),
+    ("enter", PanelVerb::Key(Panel::Enter)),
+    ("hold", PanelVerb::Hold),
+];
+
+const SWITCH: &[(&str, bool)] = &[("on", true), ("off", false)];
+const KEYSWITCH: &[(&str, bool)] = &[("enable", true), ("disable", false)];
+
 const FRAMES: &[(&str, JoystickFrame)] = &[
     ("WORLD", JoystickFrame::World),
     ("TOOL", JoystickFrame::Tool),
@@ -93,6 +137,7 @@ const STICK_FORM: &str = "** joystick stick X Y TICKS, X and Y from -1000 to 100
 const PRESS_FORM: &str = "** joystick up|down|roll+|roll-|open|close TICKS";
 const VELOCITY_FORM: &str = "** joystick velocity N, from 0 to 1000";
 const STEP_FORM: &str = "** joystick step PROCESS, or with a COUNT behind it";
+const ALIGN_FORM: &str = "** panel align, or with an AXIS from 1 to 6 behind it";
 const WAIT_FORM: &str = "** wait TICKS; a tick is 40 ms";
 const AFTER_FORM: &str = "** after TICKS, then another line's words behind its **";
 
@@ -128,6 +173,9 @@ impl Reader<'_, '_> {
             Verb::Machine => self.machine(fields),
             Verb::Drum => self.drum(fields).map(Workstation::Drum),
             Verb::Joystick => self.joystick(fields).map(Workstation::Joystick),
+            Verb::EStop => self.estop(fields).map(Workstation::Press),
+            Verb::Release => self.estop(fields).map(Workstation::Release),
+            Verb::Panel => self.panel(fields).map(Workstation::Panel),
             Verb::Load => {
                 let at = fields.at();
                 if fields.take().is_none() {
@@ -213,6 +261,34 @@ impl Reader<'_, '_> {
                 let process = self.process(fields)?;
                 let count = if fields.more() { self.count(fields, "a count", STEP_FORM)? } else { 1 };
                 Joystick::Step { process, count }
+            }
+        })
+    }
+
+    fn estop(&mut self, fields: &mut Fields<'_, '_>) -> Option<EStop> {
+        self.walk.forget();
+        self.choice(fields, "emergency stop", ESTOPS)
+    }
+
+    fn panel(&mut self, fields: &mut Fields<'_, '_>) -> Option<Panel> {
+        self.walk.forget();
+        Some(match self.choice(fields, "key of the robot controller", PANEL_VERBS)? {
+            PanelVerb::Key(key) => key,
+            PanelVerb::Power => Panel::Power(self.choice(fields, "position of the power switch", SWITCH)?),
+            PanelVerb::Hydraulics => {
+                Panel::Hydraulics(self.choice(fields, "position of the keyswitch", KEYSWITCH)?)
+            }
+            PanelVerb::Manual => Panel::Manual(self.choice(fields, "state of MANUAL", SWITCH)?),
+            PanelVerb::Hold => Panel::Hold(self.choice(fields, "state of Hold", SWITCH)?),
+            PanelVerb::Align if !fields.more() => Panel::Align(None),
+            PanelVerb::Align => {
+                let axis = self.number(fields, "an axis", ALIGN_FORM)?;
+                if !(1..=6).contains(&axis.value) {
+                    let message = format!("an axis is 1 to 6, {} found", axis.value);
+                    self.problems.error_help("job.range", axis.at, message, ALIGN_FORM);
+                    return None;
+                }
+                Panel::Align(u8::try_from(axis.value).ok())
             }
         })
     }
