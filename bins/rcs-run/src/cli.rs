@@ -3,7 +3,7 @@
 use std::{fmt, path::PathBuf, str::FromStr};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use executive::serial::SerialSettings;
+use executive::{memory::RunName, overrun::Policy, serial::SerialSettings};
 
 /// The RCS-II/T3 controller: runs jobs in the simulated cell, or with a robot at a serial port.
 #[derive(Debug, Parser)]
@@ -26,6 +26,7 @@ Examples:
   rcs-run check                        look at the task data without running anything
   rcs-run check --explain 'MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0'
                                        the whole way of a command, and how long it takes
+  rcs-run status                       what the run in the other terminal is doing
   rcs-run tables > tables.md           all decision tables
 
 Exit status: 0 finished; 1 the job failed; 2 usage, configuration or data error;
@@ -53,6 +54,8 @@ pub enum Command {
     Tables,
     /// Measure how late this machine wakes a thread that sleeps on the 40 ms grid, with a verdict
     Latency(LatencyArguments),
+    /// Print what a run that goes on is doing: each process with its command, its status, and the row that fired
+    Status(StatusArguments),
     /// Remove what killed runs left in shared memory
     Clean,
 }
@@ -69,6 +72,15 @@ pub struct RunArguments {
     /// Run ticks at once, or one every 40 ms
     #[arg(long, value_enum, default_value_t = ClockKind::Fast)]
     pub clock: ClockKind,
+    /// What to do about slots of the 40 ms grid that are skipped: count, hold[:SLOTS] or stop[:SLOTS]
+    ///
+    /// hold: if SLOTS (1) are skipped in a row, the robot ramps down and holds until 25 ticks were punctual;
+    /// stop: it ramps down, and the run ends with exit status 3.
+    #[arg(long, value_name = "POLICY", default_value_t = Policy::Count)]
+    pub overrun: Policy,
+    /// The core to run on with --clock real [default: the highest that is allowed]
+    #[arg(long, value_name = "N")]
+    pub cpu: Option<usize>,
     /// The robot to command: sim, the simulated one, or serial:PATH[,OPTION...], one at a serial port
     ///
     /// Options: baud=N (9600), parity=none|even|odd (none), stop=1|2 (1), cts=watch|ignore (watch; ignore is
@@ -121,6 +133,23 @@ pub struct LatencyArguments {
     /// How long to measure
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=86_400))]
     pub seconds: u32,
+    /// The core to measure [default: the highest that is allowed]
+    #[arg(long, value_name = "N")]
+    pub cpu: Option<usize>,
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `status`.
+#[derive(Clone, Debug, Args)]
+pub struct StatusArguments {
+    /// Name of the run; may be left out if there is only one
+    #[arg(value_name = "RUN")]
+    pub run: Option<RunName>,
+    /// Print the directory in which the tool iox2 of iceoryx2 finds the run, and nothing else
+    #[arg(long, conflicts_with = "json")]
+    pub directory: bool,
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
     pub json: bool,
@@ -261,6 +290,16 @@ mod tests {
         let error = Cli::try_parse_from(["rcs-run", "--boards=split"]).expect_err("it is refused");
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("one board"), "{error}");
+    }
+
+    #[test]
+    fn what_is_done_about_skipped_slots_is_a_word() {
+        let overrun = |text| Cli::try_parse_from(["rcs-run", "--overrun", text]).map(|cli| cli.run.overrun);
+        assert_eq!(Cli::parse_from(["rcs-run"]).run.overrun, Policy::Count);
+        assert_eq!(overrun("hold:3").ok(), Some(Policy::Hold(3)));
+        let error = overrun("wait").expect_err("no such policy");
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("count, hold[:SLOTS] or stop[:SLOTS] was expected"), "{error}");
     }
 
     #[test]

@@ -2,7 +2,10 @@
 
 use std::{io, path::PathBuf};
 
-use executive::{memory::SharedMemoryError, serial::OpenError};
+use executive::{
+    memory::{ReadError, SharedMemoryError},
+    serial::OpenError,
+};
 use plant::{CellError, description::DescriptionError, fault::text::FaultFileError};
 use record::RecordError;
 use taskdata::load::Report;
@@ -82,6 +85,12 @@ pub enum Error {
     /// Shared memory cannot be looked at.
     #[error(transparent)]
     SharedMemory(#[from] SharedMemoryError),
+    /// The buffers of a run cannot be read.
+    #[error("the run cannot be read: {0}")]
+    Unreadable(#[from] ReadError),
+    /// There are several runs.
+    #[error("there are several runs, name one: {}", .0.join(", "))]
+    WhichRun(Vec<String>),
     /// The result cannot be written.
     #[error("the result cannot be written: {0}")]
     Output(#[from] io::Error),

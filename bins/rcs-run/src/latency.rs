@@ -81,6 +81,8 @@ struct Measurement {
     machine: String,
     realtime: String,
     verdict: Fitness,
+    /// The verdict in words.
+    meaning: &'static str,
 }
 
 #[derive(Debug, Serialize)]
@@ -98,11 +100,11 @@ struct Late {
 pub fn latency(arguments: &LatencyArguments) -> Result<ExitCode, Error> {
     let interrupted = interruption()?;
     let machine = Machine::look();
-    let verdict = realtime::acquire();
+    let granted = realtime::acquire(arguments.cpu);
     let slots = u64::from(arguments.seconds) * 1000 / TICK_MS;
     let mut watch = Watch::new();
     watch.run(&mut Monotonic, slots, &interrupted);
-    let measurement = watch.measurement(&machine.to_string(), &verdict.to_string());
+    let measurement = watch.measurement(&machine.to_string(), &granted.verdict.to_string());
     if arguments.json {
         serde_json::to_writer(io::stdout().lock(), &measurement).map_err(io::Error::from)?;
         println!();
@@ -157,6 +159,7 @@ impl Watch {
     fn measurement(&self, machine: &str, realtime: &str) -> Measurement {
         let summary = self.late.summary();
         let p999 = self.late.quantile(999) as f64 / 1000.0;
+        let verdict = Fitness::of(&summary, self.skipped);
         Measurement {
             seconds: (SLOT * u32::try_from(self.slots).unwrap_or(u32::MAX)).as_secs_f64(),
             wakeups: self.late.count(),
@@ -165,7 +168,8 @@ impl Watch {
             histogram: EDGES.into_iter().zip(self.counts).collect(),
             machine: machine.to_owned(),
             realtime: realtime.to_owned(),
-            verdict: Fitness::of(&summary, self.skipped),
+            verdict,
+            meaning: verdict.text(),
         }
     }
 }
@@ -186,7 +190,7 @@ impl fmt::Display for Measurement {
             let bar = "#".repeat(usize::try_from(count * 40 / most).unwrap_or(0));
             writeln!(f, "  <= {edge:>6} us {count:>8} {bar}")?;
         }
-        writeln!(f, "verdict    {}", self.verdict.text())
+        writeln!(f, "verdict    {}", self.meaning)
     }
 }
 

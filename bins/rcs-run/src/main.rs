@@ -12,6 +12,7 @@ mod explain;
 mod latency;
 mod link_test;
 mod run;
+mod status;
 mod tables;
 
 use std::process::ExitCode;
@@ -33,6 +34,7 @@ fn main() -> ExitCode {
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Tables) => tables::tables(),
         Some(Command::Latency(arguments)) => latency::latency(&arguments),
+        Some(Command::Status(arguments)) => status::status(&arguments),
         Some(Command::Clean) => clean::clean(),
     };
     match outcome {

@@ -2,8 +2,9 @@
 //!
 //! The control processes are pure state machines; this crate gives them time and surroundings. [`runner`]
 //! steps them with tick-parity buffers and sums up what they did, [`clock`] says when, [`realtime`] asks the
-//! system for punctuality, [`serial`] is the line to a real robot, [`alloc`] proves that nothing is allocated
-//! on the way, [`memory`] lets others look on, [`hwsc`] plays the workstation controller, [`data_base`] the
+//! system for punctuality, [`laps`] says where the time goes and [`overrun`] what is done if there is too little
+//! of it, [`serial`] is the line to a real robot, [`alloc`] proves that nothing is allocated
+//! on the way, [`memory`] lets others look on, [`status`] sums up what they see, [`hwsc`] plays the workstation controller, [`data_base`] the
 //! Data System, [`generations`] lets task data be loaded between commands, and [`failure`] finds the process, the
 //! table and the row that explain why something went wrong.
 
@@ -16,8 +17,11 @@ pub mod failure;
 pub mod generations;
 pub mod histogram;
 pub mod hwsc;
+pub mod laps;
 pub mod machine;
 pub mod memory;
+pub mod overrun;
 pub mod realtime;
 pub mod runner;
 pub mod serial;
+pub mod status;

@@ -1,13 +1,19 @@
 //! Asks the system for what real time needs, and says plainly what it did not get.
 //!
-//! Three things are asked for: no page of the program is ever fetched from disk (`mlockall`), the thread of
-//! the ticks comes before everything that is not real time (`SCHED_FIFO`), and it stays on one core. None of
-//! them is needed for right results, only for punctual ones, so a refusal is a sentence in the verdict and
-//! not an error.
+//! Asked for are: no page of the program is ever fetched from disk or made in the middle of a tick (`mlockall`,
+//! and a stack that has been touched), the thread of the ticks comes before everything that is not real time
+//! (`SCHED_FIFO`), it stays on one core, and the cores do not fall into a sleep from which they take long to
+//! wake (`/dev/cpu_dma_latency`). None of them is needed for right results, only for punctual ones, so a
+//! refusal is a sentence in the verdict and not an error.
 //!
 //! Threads inherit policy and core: start log and progress threads before [`acquire`] is called.
 
-use std::fmt;
+use std::{
+    fmt,
+    fs::File,
+    hint::black_box,
+    io::{self, Write},
+};
 
 use rustix::{
     mm::{MlockAllFlags, mlockall},
@@ -21,6 +27,11 @@ use thread_priority::{
 
 /// Priority of the tick: above interrupt threads of ordinary devices, below the kernel's own watchdogs.
 pub const PRIORITY: u8 = 80;
+
+/// Stack that is touched beforehand; a tick needs a fraction of it.
+const STACK_BYTES: usize = 512 * 1024;
+/// While a program holds this file open, cores do not sleep deeper than it has written: microseconds.
+const IDLE_STATES: &str = "/dev/cpu_dma_latency";
 
 /// One of the things that were asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,20 +82,52 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Ask for locked memory, SCHED_FIFO and one core, for the calling thread.
+/// What was granted, for as long as this lives: idle states are limited only so long.
+pub struct RealTime {
+    /// What was granted and what was not.
+    pub verdict: Verdict,
+    _idle_states: Option<File>,
+}
+
+/// Ask for everything, for the calling thread. `core` is the one to run on; without it the highest that is
+/// allowed, since interrupts and other programs prefer low ones.
 #[must_use]
-pub fn acquire() -> Verdict {
+pub fn acquire(core: Option<usize>) -> RealTime {
     let mut verdict = Verdict::default();
     lock_memory(&mut verdict);
+    touch_stack();
+    verdict.add("stack touched", Ok(()));
     let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     let outcome =
         ThreadPriority::try_from(PRIORITY).map_err(|error| error.to_string()).and_then(|priority| {
-            set_thread_priority_and_policy(thread_native_id(), priority, policy)
-                .map_err(|error| error.to_string())
+            set_thread_priority_and_policy(thread_native_id(), priority, policy).map_err(in_words)
         });
     verdict.add(format!("SCHED_FIFO {PRIORITY}"), outcome);
-    pin(&mut verdict);
-    verdict
+    pin(&mut verdict, core);
+    let idle_states = limit_idle_states();
+    let outcome = idle_states.as_ref().map(|_| ()).map_err(ToString::to_string);
+    verdict.add("no deep idle states", outcome);
+    RealTime { verdict, _idle_states: idle_states.ok() }
+}
+
+fn in_words(error: thread_priority::Error) -> String {
+    match error {
+        thread_priority::Error::OS(number) => io::Error::from_raw_os_error(number).to_string(),
+        other => other.to_string(),
+    }
+}
+
+/// Has the system lay pages under the stack before the first tick needs them.
+#[inline(never)]
+fn touch_stack() {
+    let mut stack = [0_u8; STACK_BYTES];
+    black_box(&mut stack);
+}
+
+fn limit_idle_states() -> io::Result<File> {
+    let mut file = File::options().write(true).open(IDLE_STATES)?;
+    file.write_all(&0_i32.to_ne_bytes())?;
+    Ok(file)
 }
 
 /// Future memory is locked only where no limit can make a later allocation fail because of it.
@@ -98,11 +141,15 @@ fn lock_memory(verdict: &mut Verdict) {
     verdict.add(what, mlockall(flags).map_err(|error| error.to_string()));
 }
 
-/// The highest core that the thread may use: interrupts and other programs prefer low ones.
-fn pin(verdict: &mut Verdict) {
-    let highest = sched_getaffinity(None)
-        .map(|allowed| (0..CpuSet::MAX_CPU).rev().find(|&core| allowed.is_set(core)).unwrap_or(0));
-    match highest {
+fn pin(verdict: &mut Verdict, core: Option<usize>) {
+    let chosen = match core {
+        Some(core) if core < CpuSet::MAX_CPU => Ok(core),
+        Some(core) => Err(format!("there is no core {core}")),
+        None => sched_getaffinity(None)
+            .map(|allowed| (0..CpuSet::MAX_CPU).rev().find(|&core| allowed.is_set(core)).unwrap_or(0))
+            .map_err(|error| error.to_string()),
+    };
+    match chosen {
         Ok(core) => {
             let mut only = CpuSet::new();
             only.set(core);
@@ -111,7 +158,7 @@ fn pin(verdict: &mut Verdict) {
                 sched_setaffinity(None, &only).map_err(|error| error.to_string()),
             );
         }
-        Err(error) => verdict.add("one core", Err(error.to_string())),
+        Err(error) => verdict.add("one core", Err(error)),
     }
 }
 
@@ -135,8 +182,23 @@ mod tests {
     #[test]
     fn every_request_has_an_outcome_and_a_thread_of_its_own_survives_it() {
         // In a thread of its own: what is granted must not last for the other tests.
-        let verdict = std::thread::spawn(acquire).join().expect("no panic");
-        assert_eq!(verdict.items.len(), 3);
+        let verdict = std::thread::spawn(|| acquire(None).verdict).join().expect("no panic");
+        assert_eq!(verdict.items.len(), 5);
         assert!(verdict.items.iter().all(|item| !item.what.is_empty()));
+    }
+
+    #[test]
+    fn a_core_that_is_not_there_is_refused() {
+        let refused = |core| {
+            let mut verdict = Verdict::default();
+            std::thread::spawn(move || {
+                pin(&mut verdict, Some(core));
+                verdict.items[0].refused.clone()
+            })
+            .join()
+            .expect("no panic")
+        };
+        assert_eq!(refused(100_000), Some("there is no core 100000".to_owned()));
+        assert!(refused(CpuSet::MAX_CPU - 1).is_some(), "no machine has so many");
     }
 }

@@ -243,7 +243,24 @@ impl Ladder {
         data: &TaskData<'_>,
         after: &mut CommonMemory,
     ) {
+        self.step_observed(order, tick, before, external, data, after, &mut |_| {});
+    }
+
+    /// The same, with somebody who is told of every stage as soon as it is over: `None` once the buffers are carried over from
+    /// the tick before, then each process. He can measure times, which the levels cannot.
+    #[expect(clippy::too_many_arguments, reason = "a tick's inputs and outputs, and the observer")]
+    pub fn step_observed(
+        &mut self,
+        order: &[ProcessId],
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &TaskData<'_>,
+        after: &mut CommonMemory,
+        observe: &mut dyn FnMut(Option<ProcessId>),
+    ) {
         *after = *before;
+        observe(None);
         let inputs = Inputs { tick, memory: before, external, data };
         let buttons = external.devices.joystick.single_step;
         let pressed = buttons & !self.buttons;
@@ -267,6 +284,7 @@ impl Ladder {
                 ProcessId::Hand => self.hand.step(&inputs, &mut after.hand),
                 ProcessId::RotaryTable => self.table.step(&inputs, &mut after.table),
             }
+            observe(Some(process));
         }
     }
 

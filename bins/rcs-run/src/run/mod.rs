@@ -2,9 +2,11 @@
 //!
 //! One tick is, in this order: what has come over a serial line, the controller (timed, and its allocations
 //! counted), what goes over the line, the hand-off to the log, the cell, the workstation controller. Physics
-//! allocates and takes its time; it is outside of what is counted as the controller's.
+//! allocates and takes its time; it is outside of what is counted as the controller's. What the log is told of
+//! the next tick, and its rehearsal, come before that tick begins.
 
 mod log;
+mod pace;
 mod progress;
 mod result;
 mod robot;
@@ -23,14 +25,12 @@ use std::{
 
 use depc::Plate;
 use executive::{
-    clock::Clock,
     data_base::DataSystem,
     failure::{self, Failure},
     generations::Generations,
     hwsc::{self, Hwsc, JobFailure},
-    machine::Machine,
-    memory::{Publisher, RunName},
-    realtime,
+    laps::Part,
+    memory::{Mirror, Publisher, RunName},
     runner::Runner,
 };
 use levels::ladder::Ladder;
@@ -45,6 +45,7 @@ use taskdata::load::{Job, job::Reload};
 
 use self::{
     log::Log,
+    pace::Pace,
     progress::Progress,
     result::{CommandResult, EmergencyResult, FailureResult, FaultsResult, Page, PortResult, RunResult},
     robot::{Port, Robot},
@@ -65,7 +66,7 @@ struct Run {
     inputs: DeviceInputs,
     robot: Robot,
     log: Option<Log>,
-    clock: Clock,
+    pace: Pace,
     progress: Progress,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<CellEvent>,
@@ -104,12 +105,14 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         workstation,
         log,
         progress: Progress::new(job.steps.len() + 1),
-        clock: Clock::Fast,
+        pace: Pace::fast(arguments.overrun),
         fresh: Vec::new(),
         events: Vec::new(),
     };
+    // Ends before the run does: it looks on as any reader.
+    let mirror = run.runner.publisher().and_then(mirror);
     if arguments.clock == ClockKind::Real {
-        run.ask_for_real_time();
+        run.ask_for_real_time(arguments.cpu);
     }
     let started = Instant::now();
     let ending = run.play(Generations::new(store), &job.reloads, arguments.ticks, &interrupted);
@@ -122,11 +125,13 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         steps: run.hwsc.records(),
         events: &run.events,
         log: &log_text,
+        slowest: &pace::slowest(run.runner.laps()),
         stopped: matches!(ending, Ending::Stopped),
     };
     print(&page, arguments.json)?;
     let run_line = run.hwsc.records().last().map(|record| record.text.clone());
     // What is shared goes before the last word: whoever reads it may start the next run at once.
+    drop(mirror);
     drop(run);
     Ok(match &ending {
         Ending::Finished | Ending::Stopped => ExitCode::SUCCESS,
@@ -163,6 +168,12 @@ fn publisher(arguments: &RunArguments, job: &Job) -> Option<Publisher> {
     }
 }
 
+/// So is the mirror of the status.
+fn mirror(publisher: &Publisher) -> Option<Mirror> {
+    let mirror = Mirror::start(publisher.name());
+    mirror.inspect_err(|error| eprintln!("rcs-run: the status is not mirrored: {error}")).ok()
+}
+
 fn print(page: &Page<'_>, json: bool) -> Result<(), Error> {
     let text = if json {
         serde_json::to_string(page.result).map_err(io::Error::from)? + "\n"
@@ -174,15 +185,47 @@ fn print(page: &Page<'_>, json: bool) -> Result<(), Error> {
 
 impl Run {
     /// The log's thread runs already: it keeps its ordinary priority.
-    fn ask_for_real_time(&mut self) {
-        let verdict = realtime::acquire();
-        let text = format!("real time: {verdict}; {}", Machine::look());
+    fn ask_for_real_time(&mut self, core: Option<usize>) {
+        let (level, text) = self.pace.ask_for_real_time(core);
         self.progress.say(&text);
         if let Some(log) = &mut self.log {
-            let level = if verdict.complete() { Level::Info } else { Level::Warning };
             log.note(Tick::BEFORE_START.next(), level, "executive", &text);
         }
-        self.clock = Clock::real();
+    }
+
+    /// Wait until the next tick is due, having rehearsed it if there is time.
+    fn wait(&mut self, generations: &Generations) {
+        if self.pace.wake_early() {
+            let external = self.external(generations);
+            self.runner.rehearse(&external, &generations.current().view());
+        }
+        for (level, text) in self.pace.wait(self.runner.laps()) {
+            self.progress.say(&format!("tick {}: {text}", self.runner.tick().next()));
+            if let Some(log) = &mut self.log {
+                log.note(self.runner.tick().next(), level, "executive", &text);
+            }
+        }
+        self.runner.laps_mut().begin();
+    }
+
+    /// What comes from outside for the next tick.
+    fn external(&self, generations: &Generations) -> ExternalInputs {
+        ExternalInputs {
+            hws: *self.hwsc.command(),
+            devices: self.pace.inputs(self.inputs),
+            data_base: self.data_system.status(),
+            generation: generations.number(),
+        }
+    }
+
+    /// Tell the log of the next tick's cell, and of what happened in it.
+    fn show_cell(&mut self) {
+        let tick = self.runner.tick().next();
+        let Some(log) = &mut self.log else { return self.fresh.clear() };
+        for event in self.fresh.drain(..) {
+            log.note(tick, Level::Warning, "cell", &event.to_string());
+        }
+        log.cell(tick, &self.workstation.cell);
     }
 
     fn play(
@@ -192,34 +235,26 @@ impl Run {
         ticks: Option<u64>,
         interrupted: &AtomicBool,
     ) -> Ending {
+        self.show_cell();
         loop {
-            self.clock.wait();
+            self.wait(&generations);
             self.robot.receive(&mut self.inputs);
-            self.reload(&mut generations, reloads);
-            let external = ExternalInputs {
-                hws: *self.hwsc.command(),
-                devices: self.inputs,
-                data_base: self.data_system.status(),
-                generation: generations.number(),
-            };
+            let external = self.external(&generations);
             let tick = self.runner.tick().next();
-            if let Some(log) = &mut self.log {
-                for event in self.fresh.drain(..) {
-                    log.note(tick, Level::Warning, "cell", &event.to_string());
-                }
-                log.cell(tick, &self.workstation.cell);
-            }
-            let memory = *self.runner.step(&external, &generations.current().view(), self.clock.skipped());
+            let memory = *self.runner.step(&external, &generations.current().view(), self.pace.skipped());
             let outputs = memory.device_outputs();
             self.robot.send(&outputs);
+            self.runner.laps_mut().lap(Part::Line);
             if let Some(log) = &mut self.log {
                 log.tick(tick, &external, &memory, self.runner.levels());
             }
+            self.runner.laps_mut().lap(Part::Log);
             let ladder = self.runner.levels();
             self.inputs =
                 self.robot.advance(tick, &mut self.workstation.cell, &outputs, || acknowledged(ladder));
             self.fresh = self.workstation.events(tick);
             self.events.extend(self.fresh.iter().map(|event| format!("tick {tick}: {event}")));
+            self.runner.laps_mut().lap(Part::Cell);
             self.progress.show(&self.hwsc, &external.hws, &memory);
             self.data_system.step(tick, &memory.task.data_base);
             match self.hwsc.step(tick, &memory.task, &mut self.workstation) {
@@ -232,12 +267,22 @@ impl Run {
                 }
                 hwsc::Progress::Running => {}
             }
+            if let Some(overrun) = self.pace.ends(&memory) {
+                let text = format!("{overrun}; --overrun {} ends the run then", self.pace.policy());
+                return Ending::Failed(Failure { stopped: true, ..outside(tick, "executive", text) });
+            }
+            self.runner.laps_mut().lap(Part::Workstation);
             if interrupted.load(Ordering::Relaxed) {
                 return Ending::Failed(outside(tick, "rcs-run", "interrupted".to_owned()));
             }
             if ticks.is_some_and(|ticks| tick.0 >= ticks) {
                 return Ending::Stopped;
             }
+            self.reload(&mut generations, reloads);
+            self.show_cell();
+            let laps = self.runner.laps_mut();
+            laps.lap(Part::Inputs);
+            laps.finish();
         }
     }
 
@@ -302,9 +347,13 @@ impl Run {
             simulated_s,
             wall_s,
             realtime_factor: simulated_s / wall_s,
-            overruns: self.clock.skipped(),
+            overruns: self.pace.skipped(),
+            overruns_by: self.pace.overruns(),
             allocations_after_start: self.runner.allocations(),
             tick_us: self.runner.times().summary().into(),
+            part_us: pace::times(self.runner.laps()),
+            late_us: self.pace.late(),
+            realtime: self.pace.verdict(),
             link: (&self.runner.memory().t3i.status.counters).into(),
             faults: self.robot.faults().map(FaultsResult::from),
             cell_faults: self.workstation.cell.faults().into_iter().map(Into::into).collect(),

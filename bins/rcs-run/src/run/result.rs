@@ -309,10 +309,21 @@ pub struct RunResult {
     pub realtime_factor: f64,
     /// Slots of the 40 ms grid that were skipped.
     pub overruns: u64,
+    /// The same by what is to blame: a part of the tick before, or `waking` if the system woke the thread late.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub overruns_by: BTreeMap<String, u64>,
     /// Heap allocations of the controller after the start.
     pub allocations_after_start: Option<u64>,
     /// Times of the controller.
     pub tick_us: TickTimes,
+    /// Times of all parts of a tick: control processes by their names, and what the executive does.
+    pub part_us: BTreeMap<String, TickTimes>,
+    /// How late ticks began.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub late_us: Option<TickTimes>,
+    /// What the system granted for real time, and what it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub realtime: Option<String>,
     /// The link.
     pub link: LinkResult,
     /// Faults of the line of `--faults`.
@@ -350,6 +361,8 @@ pub struct Page<'a> {
     pub events: &'a [String],
     /// Lines about the log.
     pub log: &'a str,
+    /// The processes that took longest.
+    pub slowest: &'a str,
     /// The run was stopped by `--ticks` before the job was over.
     pub stopped: bool,
 }
@@ -424,6 +437,17 @@ impl fmt::Display for Page<'_> {
              allocations: {allocations}",
             result.ticks, times.p50, times.p99, times.max, result.overruns
         )?;
+        writeln!(f, "slowest    {}", self.slowest)?;
+        if let Some(TickTimes { p50, p99, max }) = &result.late_us {
+            let mut blame = String::new();
+            for (part, slots) in &result.overruns_by {
+                blame += &format!("; {slots} slots skipped for {part}");
+            }
+            writeln!(
+                f,
+                "punctual   ticks begin late by p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us{blame}"
+            )?;
+        }
         writeln!(f, "digest     {}", result.digest)?;
         writeln!(f, "log        {}", self.log)
     }

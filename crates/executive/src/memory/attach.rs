@@ -70,7 +70,7 @@ impl Attached {
         match named.clone().find(|run| run.layout == ours).or_else(|| named.next()) {
             None => {
                 let alive = runs.iter().filter(|run| run.alive).map(|run| run.name.clone()).collect();
-                return Err(SharedMemoryError::NoSuchRun { run: name.to_string(), alive });
+                return Err(SharedMemoryError::NoSuchRun { run: Some(name.to_string()), alive });
             }
             Some(run) if run.layout != ours => {
                 return Err(SharedMemoryError::OtherLayout {

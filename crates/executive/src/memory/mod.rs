@@ -12,13 +12,16 @@
 //! * [`buffers`]: which buffers there are, and how they are written and read;
 //! * [`publish`]: the side of the run;
 //! * [`attach`]: the side of the others;
+//! * [`mirror`]: the status for programs that know nothing of the buffers;
 //! * [`runs`]: names, places, versions, and the removal of what killed runs left.
 
 pub mod attach;
 pub mod buffers;
+pub mod mirror;
 pub mod publish;
 pub mod runs;
 
 pub use attach::{Attached, ReadError};
+pub use mirror::Mirror;
 pub use publish::Publisher;
 pub use runs::{RunName, SharedMemoryError, clean, list};

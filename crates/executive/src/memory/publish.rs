@@ -56,7 +56,15 @@ impl Publisher {
     /// [`SharedMemoryError`] with what iceoryx2 says, if this machine does not give the memory or the name is
     /// taken.
     pub fn create(name: &RunName) -> Result<Self, SharedMemoryError> {
+        // Half a run is none: what was set up before something failed goes again.
+        Self::set_up(name).inspect_err(|_| {
+            let _ = runs::remove_if_deserted(name, &runs::layout());
+        })
+    }
+
+    fn set_up(name: &RunName) -> Result<Self, SharedMemoryError> {
         runs::clean()?;
+        runs::have_room()?;
         let node = runs::node(name, "rcs-run")?;
         let epoch = FIRST_EPOCH;
         let ports = Ports {
@@ -78,6 +86,7 @@ impl Publisher {
             executive: ExecutiveWriter::create(&node, epoch)?,
             _node: node,
         };
+        runs::reserve(name)?;
         Ok(Self { name: name.clone(), ports: Some(ports), pulse: Pulse::default() })
     }
 

@@ -9,6 +9,7 @@ use std::{
     fmt::{self, Debug},
     fs::{self, File},
     io,
+    os::unix::fs::{DirBuilderExt, MetadataExt, PermissionsExt},
     path::PathBuf,
     str::FromStr,
     time::Duration,
@@ -20,7 +21,10 @@ use iceoryx2::{
     prelude::{CallbackProgression, FileName, LogLevel, Path, SemanticString, ipc, set_log_level},
     service::service_name::ServiceName,
 };
-use rustix::process::geteuid;
+use rustix::{
+    fs::{FallocateFlags, fallocate, statvfs},
+    process::geteuid,
+};
 
 use super::buffers::{Epoch, layout_version};
 
@@ -28,6 +32,8 @@ use super::buffers::{Epoch, layout_version};
 pub(super) const MAX_READERS: usize = 16;
 /// Where Linux keeps shared memory objects.
 const SHARED_MEMORY: &str = "/dev/shm";
+/// Bytes of shared memory that must be free before a run makes its objects: more than twice what they take.
+const NEEDED: u64 = 2 * 1024 * 1024;
 /// How long a clean-up waits for another program that is cleaning up the same run.
 const PATIENCE: Duration = Duration::from_secs(2);
 
@@ -42,11 +48,11 @@ pub enum SharedMemoryError {
     /// A path that iceoryx2 does not take.
     #[error("{0:?} cannot be used for shared memory: the path is too long or has unusual characters")]
     BadPath(PathBuf),
-    /// No living run of that name.
-    #[error("there is no run named {run}: {}", alive_in_words(.alive))]
+    /// No living run of that name, or none at all.
+    #[error("there is no run{}: {}", .run.as_ref().map_or_else(String::new, |run| format!(" named {run}")), alive_in_words(.alive))]
     NoSuchRun {
-        /// As asked for.
-        run: String,
+        /// As asked for; `None` if any would do.
+        run: Option<String>,
         /// The runs that live.
         alive: Vec<RunName>,
     },
@@ -77,6 +83,22 @@ pub enum SharedMemoryError {
         service: &'static str,
         /// What iceoryx2 says.
         what: String,
+    },
+    /// The directory of runs belongs to somebody else, or others may write in it.
+    #[error("{path:?} is not this user's alone ({what}): remove it, or set TMPDIR to another directory")]
+    NotOurs {
+        /// The directory.
+        path: PathBuf,
+        /// What it is instead.
+        what: String,
+    },
+    /// There is too little shared memory.
+    #[error("{SHARED_MEMORY} has {free} bytes left, a run needs {needed}")]
+    Full {
+        /// Bytes that are free.
+        free: u64,
+        /// Bytes that a run needs.
+        needed: u64,
     },
     /// A file could not be removed or a directory not be read.
     #[error("{path:?}: {source}")]
@@ -182,6 +204,11 @@ pub fn layout() -> String {
     format!("{:08x}", layout_version())
 }
 
+/// Directory of a run of this layout.
+pub(super) fn directory(name: &RunName) -> PathBuf {
+    place(name, &layout())
+}
+
 fn place(name: &RunName, layout: &str) -> PathBuf {
     root().join(format!("{name}@{layout}"))
 }
@@ -197,14 +224,61 @@ fn lock() -> Result<File, SharedMemoryError> {
     let root = root();
     let path = root.join("lock");
     let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
-    fs::create_dir_all(&root).map_err(failed)?;
+    own_directory(&root)?;
     let file = File::options().create(true).append(true).open(&path).map_err(failed)?;
     file.lock().map_err(failed)?;
     Ok(file)
 }
 
+/// Makes the directory of runs, or sees that it is what an earlier run made. Its place can be guessed and lies
+/// where everybody may write, so somebody else may have been there first.
+fn own_directory(path: &std::path::Path) -> Result<(), SharedMemoryError> {
+    let failed = |source| SharedMemoryError::Io { path: path.to_owned(), source };
+    match fs::DirBuilder::new().mode(0o700).create(path) {
+        Ok(()) => return Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+        Err(source) => return Err(failed(source)),
+    }
+    let found = fs::symlink_metadata(path).map_err(failed)?;
+    let what = if !found.is_dir() {
+        "it is no directory".to_owned()
+    } else if found.uid() != geteuid().as_raw() {
+        format!("it belongs to user {}", found.uid())
+    } else if found.mode() & 0o022 != 0 {
+        format!("others may write in it, mode {:o}", found.mode() & 0o777)
+    } else if found.mode() & 0o077 != 0 {
+        // Made by hand, or by an earlier version.
+        return fs::set_permissions(path, fs::Permissions::from_mode(0o700)).map_err(failed);
+    } else {
+        return Ok(());
+    };
+    Err(SharedMemoryError::NotOurs { path: path.to_owned(), what })
+}
+
+/// See that there is shared memory for a run. A page that the system cannot lay under an object when it is
+/// first touched ends the program with a bus error, so one has to ask beforehand.
+pub(super) fn have_room() -> Result<(), SharedMemoryError> {
+    let Ok(found) = statvfs(SHARED_MEMORY) else { return Ok(()) };
+    let free = found.f_bavail.saturating_mul(found.f_frsize);
+    if free < NEEDED { Err(SharedMemoryError::Full { free, needed: NEEDED }) } else { Ok(()) }
+}
+
+/// Have the system lay pages under all objects of a run, so that none is missing when it is first touched.
+pub(super) fn reserve(name: &RunName) -> Result<(), SharedMemoryError> {
+    let prefix = prefix(name, &layout());
+    for path in objects(&prefix) {
+        let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
+        let file = File::options().read(true).write(true).open(&path).map_err(failed)?;
+        let length = file.metadata().map_err(failed)?.len();
+        if length > 0 {
+            fallocate(&file, FallocateFlags::empty(), 0, length).map_err(|error| failed(error.into()))?;
+        }
+    }
+    Ok(())
+}
+
 /// The configuration under which all of a run's files and objects are its own.
-fn config(name: &RunName, layout: &str) -> Result<Config, SharedMemoryError> {
+pub(super) fn config(name: &RunName, layout: &str) -> Result<Config, SharedMemoryError> {
     let place = place(name, layout);
     let bad = || SharedMemoryError::BadPath(place.clone());
     let mut config = Config::default();
@@ -306,7 +380,9 @@ pub(super) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, S
     }
     remove_objects(&prefix(name, layout))?;
     let place = place(name, layout);
-    match fs::remove_dir_all(&place) {
+    let is_directory = fs::symlink_metadata(&place).is_ok_and(|found| found.is_dir());
+    let removed = if is_directory { fs::remove_dir_all(&place) } else { fs::remove_file(&place) };
+    match removed {
         Err(source) if source.kind() != io::ErrorKind::NotFound => {
             Err(SharedMemoryError::Io { path: place, source })
         }
@@ -314,18 +390,22 @@ pub(super) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, S
     }
 }
 
-/// Removes the objects in shared memory whose names start with a run's prefix. iceoryx2 itself leaves one of
-/// 16 bytes behind even after an orderly end.
+/// The objects in shared memory whose names start with a run's prefix.
+fn objects(prefix: &str) -> impl Iterator<Item = PathBuf> {
+    let entries = fs::read_dir(SHARED_MEMORY).into_iter().flatten().flatten();
+    entries
+        .filter(move |entry| entry.file_name().to_str().is_some_and(|name| name.starts_with(prefix)))
+        .map(|entry| entry.path())
+}
+
+/// Removes the objects of a run. iceoryx2 itself leaves one of 16 bytes behind even after an orderly end.
 fn remove_objects(prefix: &str) -> Result<(), SharedMemoryError> {
-    let Ok(entries) = fs::read_dir(SHARED_MEMORY) else { return Ok(()) };
-    for entry in entries.flatten() {
-        if entry.file_name().to_str().is_some_and(|name| name.starts_with(prefix)) {
-            match fs::remove_file(entry.path()) {
-                Err(source) if source.kind() != io::ErrorKind::NotFound => {
-                    return Err(SharedMemoryError::Io { path: entry.path(), source });
-                }
-                _ => {}
+    for path in objects(prefix) {
+        match fs::remove_file(&path) {
+            Err(source) if source.kind() != io::ErrorKind::NotFound => {
+                return Err(SharedMemoryError::Io { path, source });
             }
+            _ => {}
         }
     }
     Ok(())

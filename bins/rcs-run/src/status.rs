@@ -1,0 +1,44 @@
+//! `rcs-run status`: what a run that goes on is doing, read from its shared memory.
+
+use std::{io, process::ExitCode};
+
+use executive::{
+    memory::{self, Attached, RunName, SharedMemoryError, mirror},
+    status::Status,
+};
+
+use crate::{cli::StatusArguments, error::Error};
+
+/// Look at a run and print.
+///
+/// # Errors
+/// [`Error::SharedMemory`] if there is no such run, or it cannot be read; [`Error::WhichRun`] if there are several
+/// and none was named.
+pub fn status(arguments: &StatusArguments) -> Result<ExitCode, Error> {
+    let name = match &arguments.run {
+        Some(name) => name.clone(),
+        None => only_run()?,
+    };
+    let run = Attached::open(&name)?;
+    if arguments.directory {
+        println!("{}", mirror::directory(&name).display());
+        return Ok(ExitCode::SUCCESS);
+    }
+    let status = Status::of(name.as_str(), &run.external()?, &run.memory()?, &run.pulse()?);
+    if arguments.json {
+        serde_json::to_writer(io::stdout().lock(), &status).map_err(io::Error::from)?;
+        println!();
+    } else {
+        print!("{status}");
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn only_run() -> Result<RunName, Error> {
+    let alive: Vec<_> = memory::list()?.into_iter().filter(|run| run.alive).map(|run| run.name).collect();
+    match &alive[..] {
+        [only] => Ok(only.clone()),
+        [] => Err(SharedMemoryError::NoSuchRun { run: None, alive }.into()),
+        several => Err(Error::WhichRun(several.iter().map(ToString::to_string).collect())),
+    }
+}

@@ -1,0 +1,159 @@
+//! Where the time of a tick goes: each part of it, timed.
+//!
+//! A tick is a chain of parts, one after the other; whoever has finished one calls [`Laps::lap`], which takes
+//! the time since the part before. Nothing is summed up until the tick is over ([`Laps::finish`]), so that
+//! measuring costs a look at the clock a part. If slots of the grid were skipped, [`Laps::worst`] says which
+//! part is to blame.
+
+use std::{fmt, time::Instant};
+
+use levels::ladder::{PROCESS_COUNT, ProcessId};
+
+use crate::histogram::{Histogram, Summary};
+
+/// A part of a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// What came over a serial line, task data that are to be taken up, and what the log is told before the
+    /// controller runs.
+    Inputs,
+    /// A control process.
+    Process(ProcessId),
+    /// Common memory: carried over from the tick before, and published.
+    Buffers,
+    /// Digest, and the watch for failures.
+    Bookkeeping,
+    /// What goes over a serial line.
+    Line,
+    /// Hand-off to the log.
+    Log,
+    /// The simulated cell.
+    Cell,
+    /// Workstation controller, Data System, progress line.
+    Workstation,
+}
+
+/// Parts that are not control processes.
+const OTHERS: [Part; 7] =
+    [Part::Inputs, Part::Buffers, Part::Bookkeeping, Part::Line, Part::Log, Part::Cell, Part::Workstation];
+/// How many parts there are.
+pub const PARTS: usize = PROCESS_COUNT + OTHERS.len();
+
+impl Part {
+    /// All parts: control processes first, in their order.
+    pub fn all() -> impl Iterator<Item = Self> {
+        ProcessId::ALL.iter().map(|&process| Self::Process(process)).chain(OTHERS)
+    }
+
+    const fn index(self) -> usize {
+        match self {
+            Self::Process(process) => process as usize,
+            Self::Inputs => PROCESS_COUNT,
+            Self::Buffers => PROCESS_COUNT + 1,
+            Self::Bookkeeping => PROCESS_COUNT + 2,
+            Self::Line => PROCESS_COUNT + 3,
+            Self::Log => PROCESS_COUNT + 4,
+            Self::Cell => PROCESS_COUNT + 5,
+            Self::Workstation => PROCESS_COUNT + 6,
+        }
+    }
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Process(process) => process.text(),
+            Self::Inputs => "inputs",
+            Self::Buffers => "buffers",
+            Self::Bookkeeping => "bookkeeping",
+            Self::Line => "serial line",
+            Self::Log => "log",
+            Self::Cell => "cell",
+            Self::Workstation => "workstation",
+        })
+    }
+}
+
+/// Stopwatch of the parts of a tick, and a histogram of each.
+pub struct Laps {
+    last: Instant,
+    tick: [u64; PARTS],
+    times: Box<[Histogram]>,
+}
+
+impl Default for Laps {
+    fn default() -> Self {
+        Self { last: Instant::now(), tick: [0; PARTS], times: vec![Histogram::default(); PARTS].into() }
+    }
+}
+
+impl Laps {
+    /// A tick begins.
+    pub fn begin(&mut self) {
+        self.tick = [0; PARTS];
+        self.last = Instant::now();
+    }
+
+    /// A part of the tick is over; it took from the end of the part before until now. Returns how long, in
+    /// nanoseconds. A part may come several times in a tick.
+    pub fn lap(&mut self, part: Part) -> u64 {
+        let now = Instant::now();
+        let taken = u64::try_from(now.duration_since(self.last).as_nanos()).unwrap_or(u64::MAX);
+        self.last = now;
+        self.tick[part.index()] += taken;
+        taken
+    }
+
+    /// The tick is over.
+    pub fn finish(&mut self) {
+        for (time, &taken) in self.times.iter_mut().zip(&self.tick) {
+            time.add(taken);
+        }
+    }
+
+    /// The part that took longest in this tick, with its time and that of the whole tick, nanoseconds.
+    #[must_use]
+    pub fn worst(&self) -> (Part, u64, u64) {
+        let all = Part::all().map(|part| (part, self.tick[part.index()]));
+        let (part, taken) = all.max_by_key(|(_, taken)| *taken).unwrap_or((Part::Inputs, 0));
+        (part, taken, self.tick.iter().sum())
+    }
+
+    /// Times of a part in all ticks.
+    #[must_use]
+    pub fn summary(&self, part: Part) -> Summary {
+        self.times[part.index()].summary()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::{thread, time::Duration};
+
+    #[test]
+    fn every_part_has_a_place_of_its_own() {
+        let places: Vec<_> = Part::all().map(Part::index).collect();
+        assert_eq!(places, (0..PARTS).collect::<Vec<_>>());
+        assert_eq!(Part::Process(ProcessId::QuickChange).to_string(), "Quick Change");
+    }
+
+    #[test]
+    fn the_part_that_takes_longest_is_to_blame() {
+        let mut laps = Laps::default();
+        laps.begin();
+        laps.lap(Part::Process(ProcessId::Task));
+        thread::sleep(Duration::from_millis(3));
+        let before = laps.lap(Part::Process(ProcessId::Prim));
+        thread::sleep(Duration::from_millis(2));
+        let again = laps.lap(Part::Process(ProcessId::Prim));
+        laps.lap(Part::Cell);
+        laps.finish();
+        let (part, taken, all) = laps.worst();
+        assert_eq!((part, taken), (Part::Process(ProcessId::Prim), before + again));
+        assert!(taken >= 5_000_000 && taken <= all);
+        assert!(laps.summary(part).max >= 5_000.0);
+        laps.begin();
+        assert!(laps.worst().2 == 0, "the next tick begins at nothing");
+    }
+}

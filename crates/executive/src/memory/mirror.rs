@@ -1,0 +1,181 @@
+//! The status of a run for programs that know nothing of it: mirrored on publish-subscribe.
+//!
+//! `iox2`, the tool of iceoryx2 (`cargo install iceoryx2-cli`), lists nodes and services of a run, but shows
+//! no values of blackboards. So a thread of its own, far from the tick, attaches to the run as any reader
+//! would, sums it up ten times a second ([`Status`]) and publishes the sum as one JSON object, on the service
+//! [`SERVICE`]. `iox2` finds a run by the configuration file that the mirror writes into the run's directory:
+//!
+//! ```sh
+//! cd "$(rcs-run status --directory)"
+//! iox2 node list
+//! iox2 service hz rcs-ii/status
+//! iox2 service subscribe rcs-ii/status
+//! ```
+//!
+//! The mirror is a convenience inside the program that moves a robot, so it must not be what ends it: its
+//! memory is laid out beforehand and never grows, and it is silent while there is so little shared memory that
+//! a new subscriber could not be given his.
+
+use std::{
+    fs,
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
+    thread::{self, JoinHandle},
+    time::{Duration, Instant},
+};
+
+use iceoryx2::{
+    node::Node,
+    port::publisher::Publisher,
+    prelude::{AllocationStrategy, ipc},
+    service::service_name::ServiceName,
+};
+
+use super::{
+    attach::Attached,
+    runs::{self, RunName, SharedMemoryError},
+};
+use crate::status::Status;
+
+/// The service of the mirror.
+pub const SERVICE: &str = "rcs-ii/status";
+/// Time between two messages.
+const PERIOD: Duration = Duration::from_millis(100);
+/// How often the thread looks whether it is to end.
+const LOOK: Duration = Duration::from_millis(10);
+/// How long the end of a run waits for the thread.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// Bytes that a message may have: about five times what it has.
+const MESSAGE: usize = 16 * 1024;
+/// Monitors at a time.
+const MAX_SUBSCRIBERS: usize = 8;
+
+/// The thread that mirrors. Dropping it ends the thread.
+pub struct Mirror {
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+struct Ports {
+    reader: Attached,
+    publisher: Publisher<ipc::Service, [u8], ()>,
+    // After the publisher: the service is closed before its node.
+    _node: Node<ipc::Service>,
+}
+
+impl Mirror {
+    /// Attach to a run of this program and begin to mirror it. The thread inherits the priority of its maker:
+    /// start it before real time is asked for.
+    ///
+    /// # Errors
+    /// [`SharedMemoryError`] with what iceoryx2 or the system says.
+    pub fn start(name: &RunName) -> Result<Self, SharedMemoryError> {
+        write_configuration(name)?;
+        let stop = Arc::new(AtomicBool::new(false));
+        let (run, seen, (say, opened)) = (name.clone(), Arc::clone(&stop), mpsc::channel());
+        // The ports belong to the thread that opens them.
+        let work = move || match Ports::open(&run) {
+            Ok(ports) => {
+                let _ = say.send(Ok(()));
+                ports.mirror(&seen);
+            }
+            Err(error) => {
+                let _ = say.send(Err(error));
+            }
+        };
+        let failed = |source| SharedMemoryError::Io { path: runs::directory(name), source };
+        let thread = thread::Builder::new().name("mirror".into()).spawn(work).map_err(failed)?;
+        opened.recv().unwrap_or(Ok(()))?;
+        Ok(Self { stop, thread: Some(thread) })
+    }
+}
+
+impl Ports {
+    fn open(name: &RunName) -> Result<Self, SharedMemoryError> {
+        let failed = |error: &dyn std::fmt::Debug| SharedMemoryError::service("status", error);
+        let reader = Attached::open(name)?;
+        let node = runs::node(name, "status")?;
+        let service_name = ServiceName::new(SERVICE).map_err(|error| failed(&error))?;
+        let service = node
+            .service_builder(&service_name)
+            .publish_subscribe::<[u8]>()
+            .max_subscribers(MAX_SUBSCRIBERS)
+            .history_size(1)
+            .enable_safe_overflow(true)
+            .create()
+            .map_err(|error| failed(&error))?;
+        let publisher = service
+            .publisher_builder()
+            .initial_max_slice_len(MESSAGE)
+            .allocation_strategy(AllocationStrategy::Static)
+            .create()
+            .map_err(|error| failed(&error))?;
+        runs::reserve(name)?;
+        Ok(Self { reader, publisher, _node: node })
+    }
+
+    fn mirror(self, stop: &AtomicBool) {
+        let mut due = Instant::now();
+        while !stop.load(Ordering::Relaxed) {
+            if Instant::now() >= due {
+                due += PERIOD;
+                self.publish();
+            }
+            thread::sleep(LOOK);
+        }
+        // The last status, with the end of the run in it if it is over.
+        self.publish();
+    }
+
+    /// What cannot be read or published now is left out: the next message comes soon.
+    fn publish(&self) {
+        if runs::have_room().is_err() {
+            return;
+        }
+        let (Ok(external), Ok(memory), Ok(pulse)) =
+            (self.reader.external(), self.reader.memory(), self.reader.pulse())
+        else {
+            return;
+        };
+        let status = Status::of(self.reader.name().as_str(), &external, &memory, &pulse);
+        let Ok(message) = serde_json::to_vec(&status) else { return };
+        if let Ok(sample) = self.publisher.loan_slice_uninit(message.len()) {
+            let _ = sample.write_from_slice(&message).send();
+        }
+    }
+}
+
+impl Drop for Mirror {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        let Some(thread) = self.thread.take() else { return };
+        let started = Instant::now();
+        // Memory that others can write could keep the thread for ever; the end of a run does not depend on it.
+        while !thread.is_finished() && started.elapsed() < PATIENCE {
+            thread::sleep(Duration::from_millis(1));
+        }
+        if thread.is_finished() {
+            // A panic of the mirror has been reported by the thread itself, and is no matter of the run.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Where `iox2` finds the run: in this directory it looks for `config/iceoryx2.toml`.
+#[must_use]
+pub fn directory(name: &RunName) -> PathBuf {
+    runs::directory(name)
+}
+
+fn write_configuration(name: &RunName) -> Result<(), SharedMemoryError> {
+    let config = runs::config(name, &runs::layout())?;
+    let text = toml::to_string(&config).map_err(|error| SharedMemoryError::service("status", &error))?;
+    let path = runs::directory(name).join("config");
+    let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
+    fs::create_dir_all(&path).map_err(failed)?;
+    fs::write(path.join("iceoryx2.toml"), text).map_err(failed)
+}

@@ -1,0 +1,304 @@
+//! What is done about slots of the 40 ms grid that were skipped.
+//!
+//! A skipped slot is always counted, with the part of the tick before that took too long, or the system that
+//! woke the thread too late. What else happens is for the user to say ([`Policy`]): nothing; the robot holds
+//! until the ticks are punctual again; or it comes to rest and the run ends. Holding is what an operator would
+//! do: the velocity knob goes to zero, Prim ramps down on its path and keeps the position (DESIGN 8), every
+//! grip stays as it is. The knob is an input of the controller like any other, so it is in the log, and a
+//! replay needs to know nothing of clocks.
+
+use std::{fmt, str::FromStr, time::Duration};
+
+use rcs_core::{interface::CommonMemory, pose::WireFrame};
+
+use crate::{
+    clock::SLOT,
+    laps::{Laps, Part},
+};
+
+/// Ticks in a row, one second, that must be punctual before a robot that holds goes on.
+pub const PUNCTUAL: u32 = 25;
+/// The robot is at rest when the commanded frame has not changed for so many ticks.
+const AT_REST: u32 = 5;
+/// It is taken to be at rest after so many ticks, 3 s, whatever is commanded: no ramp takes longer.
+const AT_LAST: u32 = 75;
+
+/// What is done about skipped slots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Policy {
+    /// They are counted.
+    #[default]
+    Count,
+    /// If at least so many are skipped in a row, the robot holds until [`PUNCTUAL`] ticks were punctual.
+    Hold(u64),
+    /// If at least so many are skipped in a row, the robot is brought to rest and the run ends.
+    Stop(u64),
+}
+
+impl FromStr for Policy {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let expected = || "count, hold[:SLOTS] or stop[:SLOTS] was expected, SLOTS from 1".to_owned();
+        let (word, slots) = match text.split_once(':') {
+            None => (text, 1),
+            Some((word, slots)) => (word, slots.parse().ok().filter(|n| *n > 0).ok_or_else(expected)?),
+        };
+        match word {
+            "count" if word == text => Ok(Self::Count),
+            "hold" => Ok(Self::Hold(slots)),
+            "stop" => Ok(Self::Stop(slots)),
+            _ => Err(expected()),
+        }
+    }
+}
+
+impl fmt::Display for Policy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Count => f.write_str("count"),
+            Self::Hold(1) => f.write_str("hold"),
+            Self::Stop(1) => f.write_str("stop"),
+            Self::Hold(slots) => write!(f, "hold:{slots}"),
+            Self::Stop(slots) => write!(f, "stop:{slots}"),
+        }
+    }
+}
+
+/// Slots that were skipped in a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Overrun {
+    /// How many.
+    pub slots: u64,
+    /// The part of the tick before that took longest; `None` if the tick was over in time and the thread was
+    /// woken too late.
+    pub part: Option<Part>,
+    /// How long that part took, or how late the thread was woken.
+    pub taken: Duration,
+}
+
+impl fmt::Display for Overrun {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let slots = if self.slots == 1 { "slot" } else { "slots" };
+        write!(f, "{} {slots} of 40 ms skipped: ", self.slots)?;
+        let ms = self.taken.as_secs_f64() * 1000.0;
+        match self.part {
+            None => write!(f, "woken up {ms:.1} ms late"),
+            Some(part) => write!(f, "{part} took {ms:.1} ms"),
+        }
+    }
+}
+
+/// What the robot is made to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Reaction {
+    None,
+    /// Holds; so many punctual ticks so far.
+    Holding {
+        punctual: u32,
+    },
+    /// Comes to rest.
+    Stopping {
+        because: Overrun,
+        ticks: u32,
+        unchanged: u32,
+    },
+}
+
+/// Counts skipped slots and carries out the policy.
+pub struct Overruns {
+    policy: Policy,
+    waking: u64,
+    parts: Vec<(Part, u64)>,
+    reaction: Reaction,
+    commanded: WireFrame,
+}
+
+impl Overruns {
+    /// Nothing has been skipped yet.
+    #[must_use]
+    pub fn new(policy: Policy) -> Self {
+        Self {
+            policy,
+            waking: 0,
+            parts: Part::all().map(|part| (part, 0)).collect(),
+            reaction: Reaction::None,
+            commanded: WireFrame::default(),
+        }
+    }
+
+    /// A tick begins: `slots` were skipped before it, `laps` are those of the tick before, and the thread was
+    /// there `late` after the beginning of the slot that it waited for. Returns the overrun, if it is one.
+    pub fn observe(&mut self, slots: u64, laps: &Laps, late: Duration) -> Option<Overrun> {
+        if slots == 0 {
+            if let Reaction::Holding { punctual } = &mut self.reaction {
+                *punctual += 1;
+                if *punctual >= PUNCTUAL {
+                    self.reaction = Reaction::None;
+                }
+            }
+            return None;
+        }
+        let (part, taken, tick) = laps.worst();
+        let overrun = if Duration::from_nanos(tick) >= SLOT {
+            if let Some((_, count)) = self.parts.iter_mut().find(|(other, _)| *other == part) {
+                *count += slots;
+            }
+            Overrun { slots, part: Some(part), taken: Duration::from_nanos(taken) }
+        } else {
+            self.waking += slots;
+            Overrun { slots, part: None, taken: late }
+        };
+        self.react(overrun);
+        Some(overrun)
+    }
+
+    fn react(&mut self, because: Overrun) {
+        match (self.policy, self.reaction) {
+            (Policy::Hold(least), _) if because.slots >= least => {
+                self.reaction = Reaction::Holding { punctual: 0 };
+            }
+            // Less than what makes the robot hold is still not punctual.
+            (Policy::Hold(_), Reaction::Holding { .. }) => {
+                self.reaction = Reaction::Holding { punctual: 0 };
+            }
+            (Policy::Stop(least), Reaction::None) if because.slots >= least => {
+                self.reaction = Reaction::Stopping { because, ticks: 0, unchanged: 0 };
+            }
+            _ => {}
+        }
+    }
+
+    /// The velocity knob as the controller is to see it.
+    #[must_use]
+    pub const fn knob(&self, knob: u16) -> u16 {
+        match self.reaction {
+            Reaction::None => knob,
+            Reaction::Holding { .. } | Reaction::Stopping { .. } => 0,
+        }
+    }
+
+    /// The robot holds, or comes to rest, because of an overrun.
+    #[must_use]
+    pub const fn is_holding(&self) -> bool {
+        !matches!(self.reaction, Reaction::None)
+    }
+
+    /// A tick is over: the overrun for which the run ends now, because the robot is at rest.
+    pub fn ends(&mut self, memory: &CommonMemory) -> Option<Overrun> {
+        let commanded = memory.prim.t3i.frame;
+        let same = commanded == self.commanded;
+        self.commanded = commanded;
+        let Reaction::Stopping { because, ticks, unchanged } = &mut self.reaction else { return None };
+        *ticks += 1;
+        *unchanged = if same { *unchanged + 1 } else { 0 };
+        (*unchanged >= AT_REST || *ticks >= AT_LAST).then_some(*because)
+    }
+
+    /// Skipped slots by what is to blame: `None` is the system that woke the thread late. What is not to blame
+    /// for any is left out.
+    pub fn by_part(&self) -> impl Iterator<Item = (Option<Part>, u64)> {
+        let parts = self.parts.iter().map(|(part, count)| (Some(*part), *count));
+        std::iter::once((None, self.waking)).chain(parts).filter(|(_, count)| *count > 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::thread;
+
+    const LATE: Duration = Duration::from_millis(95);
+
+    /// Laps of a tick in which the cell took so long.
+    fn laps(cell: Duration) -> Laps {
+        let mut laps = Laps::default();
+        laps.begin();
+        laps.lap(Part::Inputs);
+        thread::sleep(cell);
+        laps.lap(Part::Cell);
+        laps
+    }
+
+    fn punctual(overruns: &mut Overruns, ticks: u32) {
+        let laps = Laps::default();
+        (0..ticks).for_each(|_| assert_eq!(overruns.observe(0, &laps, Duration::ZERO), None));
+    }
+
+    #[test]
+    fn a_policy_is_a_word_with_a_number() {
+        for (text, policy) in [
+            ("count", Policy::Count),
+            ("hold", Policy::Hold(1)),
+            ("hold:3", Policy::Hold(3)),
+            ("stop", Policy::Stop(1)),
+            ("stop:25", Policy::Stop(25)),
+        ] {
+            assert_eq!((text.parse(), policy.to_string()), (Ok(policy), text.to_owned()));
+        }
+        for wrong in ["", "counts", "count:1", "hold:", "hold:0", "stop:-1", "stop:x"] {
+            let error = wrong.parse::<Policy>().expect_err(wrong);
+            assert!(error.starts_with("count, hold[:SLOTS] or stop[:SLOTS]"), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_part_that_took_longest_or_the_system_is_to_blame() {
+        let mut overruns = Overruns::new(Policy::Count);
+        let (slow, quick) = (laps(Duration::from_millis(41)), laps(Duration::from_millis(1)));
+        let overrun = overruns.observe(2, &slow, LATE).expect("slots were skipped");
+        assert_eq!((overrun.slots, overrun.part), (2, Some(Part::Cell)));
+        assert!(overrun.to_string().starts_with("2 slots of 40 ms skipped: cell took 4"), "{overrun}");
+        let overrun = overruns.observe(1, &quick, LATE).expect("a slot was skipped");
+        assert_eq!(overrun.to_string(), "1 slot of 40 ms skipped: woken up 95.0 ms late");
+        overruns.observe(3, &slow, LATE);
+        assert_eq!(overruns.by_part().collect::<Vec<_>>(), [(None, 1), (Some(Part::Cell), 5)]);
+        assert_eq!((overruns.knob(700), overruns.is_holding()), (700, false));
+    }
+
+    #[test]
+    fn the_robot_holds_until_a_second_was_punctual() {
+        let mut overruns = Overruns::new(Policy::Hold(2));
+        let quick = laps(Duration::ZERO);
+        overruns.observe(1, &quick, LATE);
+        assert_eq!(overruns.knob(700), 700, "one slot is not yet enough");
+        overruns.observe(2, &quick, LATE);
+        assert_eq!(overruns.knob(700), 0);
+        punctual(&mut overruns, PUNCTUAL - 1);
+        assert_eq!(overruns.knob(700), 0);
+        overruns.observe(1, &quick, LATE);
+        punctual(&mut overruns, PUNCTUAL - 1);
+        assert!(overruns.is_holding(), "the second begins again with every skipped slot");
+        punctual(&mut overruns, 1);
+        assert_eq!(overruns.knob(700), 700);
+        assert_eq!(overruns.ends(&CommonMemory::default()), None);
+    }
+
+    #[test]
+    fn a_run_is_stopped_when_the_robot_is_at_rest() {
+        let mut overruns = Overruns::new(Policy::Stop(1));
+        let mut memory = CommonMemory::default();
+        (0..50).for_each(|_| assert_eq!(overruns.ends(&memory), None, "nothing was skipped"));
+        let because = overruns.observe(4, &laps(Duration::ZERO), LATE);
+        assert_eq!(overruns.knob(1000), 0);
+        for moving in 1..30 {
+            memory.prim.t3i.frame.tool[0] = moving;
+            assert_eq!(overruns.ends(&memory), None);
+        }
+        (1..AT_REST).for_each(|_| assert_eq!(overruns.ends(&memory), None));
+        overruns.observe(1, &laps(Duration::ZERO), LATE);
+        assert_eq!(overruns.ends(&memory), because, "the first overrun is the reason");
+    }
+
+    #[test]
+    fn a_robot_that_never_rests_does_not_keep_the_run_from_ending() {
+        let mut overruns = Overruns::new(Policy::Stop(1));
+        overruns.observe(1, &laps(Duration::ZERO), LATE);
+        let ticks = (0..1000).find(|&tick| {
+            let mut memory = CommonMemory::default();
+            memory.prim.t3i.frame.tool[0] = tick % 2 + 1;
+            overruns.ends(&memory).is_some()
+        });
+        assert_eq!(ticks, Some(AT_LAST.cast_signed() - 1));
+    }
+}

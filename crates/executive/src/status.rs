@@ -1,0 +1,160 @@
+//! A run at a glance: for each process its command, its status and the row that fired, and what the executive
+//! counts. What monitors print, and what is mirrored for programs that cannot read the buffers
+//! ([`crate::memory::Mirror`]).
+
+use std::fmt;
+
+use levels::ladder::{Ladder, ProcessId};
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs},
+    tick::TICK_S,
+};
+use serde::Serialize;
+
+use crate::{
+    failure::{command, headers},
+    memory::buffers::Pulse,
+};
+
+/// A process.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct ProcessStatus {
+    /// The manual's name.
+    pub process: &'static str,
+    /// The command that it has; empty for none.
+    pub command: String,
+    /// Its status report.
+    pub status: &'static str,
+    /// Its decision table; `None` before one was used.
+    pub table: Option<&'static str>,
+    /// The row that fired; 0 for none.
+    pub row: u8,
+    /// It was not stepped: dormant or held.
+    pub suspended: bool,
+}
+
+/// A run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Status {
+    /// Name of the run.
+    pub run: String,
+    /// The tick that was run last.
+    pub tick: u64,
+    /// Time that the robot went through, seconds.
+    pub simulated_s: f64,
+    /// Slots of the 40 ms grid that were skipped.
+    pub skipped: u64,
+    /// Heap allocations of the controller since the start.
+    pub allocations: u64,
+    /// Microseconds that the controller took for the tick.
+    pub controller_us: f64,
+    /// The run is over.
+    pub over: bool,
+    /// The processes from Task down.
+    pub processes: Vec<ProcessStatus>,
+}
+
+impl Status {
+    /// Sum up what a tick left.
+    #[must_use]
+    pub fn of(run: &str, external: &ExternalInputs, memory: &CommonMemory, pulse: &Pulse) -> Self {
+        let headers = headers(memory);
+        let processes = ProcessId::ALL.iter().enumerate().map(|(index, &id)| {
+            let header = headers[index];
+            let info = &Ladder::processes()[index];
+            ProcessStatus {
+                process: info.name,
+                command: command(index, &external.hws, memory),
+                status: report(id, memory),
+                table: info.table(header.table).map(|table| table.name),
+                row: header.row,
+                suspended: header.republished,
+            }
+        });
+        Self {
+            run: run.to_owned(),
+            tick: pulse.tick.0,
+            simulated_s: pulse.tick.0 as f64 * TICK_S,
+            skipped: pulse.skipped,
+            allocations: pulse.allocations,
+            controller_us: pulse.controller_ns as f64 / 1000.0,
+            over: pulse.over,
+            processes: processes.collect(),
+        }
+    }
+}
+
+/// The word of a process's status report.
+const fn report(process: ProcessId, memory: &CommonMemory) -> &'static str {
+    match process {
+        ProcessId::Task => memory.task.status.report.text(),
+        ProcessId::Subtask => memory.subtask.status.report.text(),
+        ProcessId::Emove => memory.emove.status.report.text(),
+        ProcessId::Prim => memory.prim.status.report.text(),
+        ProcessId::T3i => memory.t3i.status.report.text(),
+        ProcessId::QuickChange => memory.quick_change.status.report.text(),
+        ProcessId::Grip => memory.grip.status.report.text(),
+        ProcessId::VGrip => memory.v_grip.status.report.text(),
+        ProcessId::ToolGrip => memory.tool_grip.status.report.text(),
+        ProcessId::Pedestal => memory.pedestal.status.report.text(),
+        ProcessId::Hand => memory.hand.status.report.text(),
+        ProcessId::RotaryTable => memory.table.status.report.text(),
+    }
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{}: tick {} ({:.1} s){}, {} slots skipped, {} allocations, controller {:.1} us",
+            self.run,
+            self.tick,
+            self.simulated_s,
+            if self.over { ", over" } else { "" },
+            self.skipped,
+            self.allocations,
+            self.controller_us
+        )?;
+        for process in &self.processes {
+            let row = process.table.map_or_else(String::new, |table| format!("{table} row {}", process.row));
+            let suspended = if process.suspended { " (suspended)" } else { "" };
+            writeln!(
+                f,
+                "  {:<15} {:<14} {:<28} {}{suspended}",
+                process.process, process.status, row, process.command
+            )?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rcs_core::{
+        interface::{emove::EmoveVerb, grip::GripReport},
+        name::Name16,
+        tick::Tick,
+    };
+
+    #[test]
+    fn every_process_is_told_in_its_own_words() {
+        let (mut external, mut memory) = (ExternalInputs::default(), CommonMemory::default());
+        external.hws.command = Name16::clipped("PAUSE");
+        memory.subtask.emove.command = EmoveVerb::Pause;
+        memory.grip.status.report = GripReport::ALL[1];
+        memory.grip.header.republished = true;
+        (memory.task.header.table, memory.task.header.row) = (1, 2);
+        let pulse = Pulse { tick: Tick(50), skipped: 3, controller_ns: 2500, ..Pulse::default() };
+        let status = Status::of("linkbar-1", &external, &memory, &pulse);
+        assert_eq!((status.tick, status.skipped, status.processes.len()), (50, 3, ProcessId::ALL.len()));
+        let [task, _, emove, ..] = &status.processes[..] else { panic!("{status}") };
+        assert_eq!((task.command.as_str(), emove.command.as_str()), ("PAUSE", "E-PAUSE"));
+        assert_eq!((task.table, task.row), (Ladder::processes()[0].table(1).map(|table| table.name), 2));
+        let grip = &status.processes[6];
+        assert_eq!((grip.status, grip.suspended, grip.table), (GripReport::ALL[1].text(), true, None));
+        let text = status.to_string();
+        assert!(text.starts_with("linkbar-1: tick 50 (2.0 s), 3 slots skipped, 0 allocations"), "{text}");
+        assert!(text.lines().any(|line| line.contains("Grip") && line.ends_with("(suspended)")), "{text}");
+    }
+}
