@@ -111,7 +111,11 @@ impl Scratch {
     }
 }
 
-fn copy(from: &Path, to: &Path) {
+/// Copy a directory with everything in it.
+///
+/// # Panics
+/// If it cannot be read or written.
+pub fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).expect("a directory can be made");
     for entry in fs::read_dir(from).expect("a directory can be read") {
         let entry = entry.expect("an entry can be read");

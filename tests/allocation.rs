@@ -1,0 +1,66 @@
+//! Nothing is allocated after the start, in as many ticks as are asked for: whole shifts with other seeds, jobs
+//! that fail, a line with faults.
+//!
+//! `RCS_TICKS` sets how many (30,000 if it is not set; the figure that is promised is 1,000,000).
+
+use std::{fs, process::Command};
+
+use serde_json::Value;
+use whole_system_tests::{Scratch, rcs_run, root};
+
+/// Ticks of an ordinary test run.
+const TICKS: u64 = 30_000;
+
+/// What a run is: a job, the exit status that it has, whether the line has faults.
+struct Kind {
+    job: &'static str,
+    status: i32,
+    faults: bool,
+}
+
+const fn kind(job: &'static str, status: i32, faults: bool) -> Kind {
+    Kind { job, status, faults }
+}
+
+/// In turn, until there are ticks enough.
+const KINDS: [Kind; 4] = [
+    kind("shift", 0, false),
+    kind("no-part.job", 1, false),
+    kind("linkbar", 0, true),
+    kind("held-tool.job", 1, false),
+];
+
+#[test]
+fn nothing_is_allocated_after_the_start() {
+    let wanted =
+        std::env::var("RCS_TICKS").map_or(TICKS, |text| text.parse().expect("RCS_TICKS is a number"));
+    let scratch = Scratch::new("allocation");
+    // Two ways of errors: what is to be found is not there, and a place is unknown to the workstation.
+    scratch.job_with("clevis.job", "** tray UNIT_1 3 LCLEVIS_BH", "%");
+    fs::rename(scratch.file("clevis.job"), scratch.file("no-part.job")).expect("a job");
+    scratch.job_with("tool-change.job", "** drum release", "%");
+    fs::rename(scratch.file("tool-change.job"), scratch.file("held-tool.job")).expect("a job");
+    let (mut ticks, mut seed) = (0, 0);
+    while ticks < wanted {
+        let kind = &KINDS[seed % KINDS.len()];
+        seed += 1;
+        let mut command = Command::new(rcs_run());
+        command
+            .args(["run", kind.job, "--json", "--log", "run.mcap", "--seed", &seed.to_string()])
+            .args(["--ticks", &(wanted - ticks).to_string(), "--data"])
+            .arg(root().join("data"))
+            .current_dir(scratch.file(""));
+        if kind.faults {
+            command.arg("--faults").arg(root().join("data/faults/broken-frames.toml"));
+        }
+        let output = command.output().expect("rcs-run can be started");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let result: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{said}"));
+        let run = result["ticks"].as_u64().expect("ticks");
+        assert_eq!(result["allocations_after_start"], 0, "{}, seed {seed}: {said}", kind.job);
+        let cut = ticks + run >= wanted;
+        assert!(cut || output.status.code() == Some(kind.status), "{}, seed {seed}: {said}", kind.job);
+        ticks += run;
+    }
+    println!("{ticks} ticks in {seed} runs: 0 allocations");
+}

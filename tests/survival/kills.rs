@@ -1,0 +1,76 @@
+//! Runs that are killed: the log can be read and replayed to the last second, the next run works at once, and
+//! nothing is left behind.
+
+use executive::memory::ReadError;
+use record::replay;
+use whole_system_tests::Scratch;
+
+use crate::bench::{Ended, ONE_AT_A_TIME, Running, assert_cleaned, traces};
+
+/// Jobs whose runs are killed, with their lengths in ticks.
+const JOBS: [(&str, u64); 4] =
+    [("linkbar", 5_900), ("clevis", 11_000), ("turned-part", 6_000), ("tool-change", 7_000)];
+/// In fast clock the log may be behind by its ring (256 ticks) and by what it writes at once (25).
+const BEHIND_FAST: u64 = 256 + 25 + 25;
+/// In real clock it writes once a second; one more for a log thread that a busy machine lets wait.
+const BEHIND_REAL: u64 = 2 * 25;
+
+fn kills() -> u64 {
+    std::env::var("RCS_KILLS").map_or(4, |text| text.parse().expect("RCS_KILLS is a number"))
+}
+
+/// Replay what there is of a log, and see that it goes to within `behind` ticks of `tick`.
+fn assert_log_reaches(log: &std::path::Path, tick: u64, behind: u64) {
+    let report = replay(log).expect("the log of a killed run can be read");
+    if let Some(difference) = &report.first_difference {
+        panic!("{difference}");
+    }
+    assert!(!report.complete);
+    assert!(report.ticks + behind >= tick, "{} ticks in the log, killed after {tick}", report.ticks);
+}
+
+#[test]
+fn a_run_may_be_killed_in_any_phase_of_a_job() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("kills");
+    for kill in 0..kills() {
+        // Golden steps through the job: all phases come up, in a different order in every job.
+        let (job, length) = JOBS[usize::try_from(kill % 4).expect("small")];
+        let phase = (kill as f64 * 0.618_033_988_75).fract();
+        let target = 10 + (phase * (length - 1_000) as f64) as u64;
+        let log = scratch.file("killed.mcap");
+        let mut run = Running::start(&scratch.file(""), job, &["--log", "killed.mcap"]);
+        let reader = run.attach();
+        let tick = run.reach(&reader, target);
+        // Half of the runs leave a reader behind, which still reads what was there.
+        let reader = (kill % 2 == 0).then_some(reader);
+        run.kill();
+        assert_log_reaches(&log, tick, BEHIND_FAST);
+        if let Some(reader) = reader {
+            // A writer that was killed at work leaves half a tick, which no reader takes for a whole one.
+            match reader.memory() {
+                Ok(memory) => assert!(memory.task.header.stamp.0 >= tick),
+                Err(error) => assert_eq!(error, ReadError::Busy),
+            }
+        }
+        let next = Ended::run(&scratch.file(""), job, &["--ticks", "30", "--log", "none"]);
+        next.assert_shared();
+        assert_eq!(next.number("ticks"), 30);
+        assert_cleaned(&scratch.file(""), &run.name);
+    }
+}
+
+#[test]
+fn in_real_time_a_kill_costs_a_second_of_the_log() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("real-kill");
+    let more = ["--clock", "real", "--log", "killed.mcap"];
+    let mut run = Running::start(&scratch.file(""), "linkbar", &more);
+    let reader = run.attach();
+    let tick = run.reach(&reader, 110);
+    drop(reader);
+    run.kill();
+    assert!(!traces(&run.name).is_empty(), "a killed run leaves something");
+    assert_log_reaches(&scratch.file("killed.mcap"), tick, BEHIND_REAL);
+    assert_cleaned(&scratch.file(""), &run.name);
+}

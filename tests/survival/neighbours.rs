@@ -1,0 +1,97 @@
+//! Runs beside others: of the same user, and of another.
+
+use std::{fs, os::unix::process::CommandExt, process::Stdio};
+
+use rustix::process::geteuid;
+use whole_system_tests::{Scratch, rcs_run};
+
+use crate::bench::{Ended, ONE_AT_A_TIME, Running, assert_cleaned, rcs, traces, wait_for};
+
+/// A user who owns nothing, on every system.
+const NOBODY: u32 = 65_534;
+
+#[test]
+fn two_runs_side_by_side_do_not_meet() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("beside");
+    let start = |log| Running::start(&scratch.file(""), "linkbar", &["--ticks", "2000", "--log", log]);
+    let (one, other) = (start("one.mcap"), start("other.mcap"));
+    let names = [one.name.clone(), other.name.clone()];
+    let (one, other) = (one.end(), other.end());
+    for ended in [&one, &other] {
+        ended.assert_shared();
+    }
+    assert_eq!(one.digest(), other.digest());
+    let read = |log| fs::read(scratch.file(log)).expect("a log");
+    assert_eq!(read("one.mcap").len(), read("other.mcap").len());
+    names.iter().for_each(|name| assert!(traces(name).is_empty(), "an orderly end leaves nothing"));
+}
+
+/// Needs the right to become another user; without it nothing can be tried.
+#[test]
+fn another_user_runs_beside_and_after_the_first() {
+    if !geteuid().is_root() {
+        eprintln!("not root: no other user to try");
+        return;
+    }
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("users");
+    let mut first = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
+    drop(first.attach());
+    // The program where anybody can start it: the target directory may be the owner's alone.
+    let program = scratch.file("rcs-run");
+    fs::copy(rcs_run(), &program).expect("the program can be copied");
+    let data = scratch.file("data");
+    whole_system_tests::copy(&whole_system_tests::root().join("data"), &data);
+    let as_nobody = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(&program);
+        command.args(arguments).current_dir(scratch.file("")).uid(NOBODY).gid(NOBODY).stdin(Stdio::null());
+        Ended::of(&command.output().expect("nobody can start the program"))
+    };
+    let data = data.display().to_string();
+    let run = ["run", "linkbar", "--ticks", "50", "--json", "--log", "none", "--data", &data];
+    let beside = as_nobody(&run);
+    assert_eq!(
+        (beside.status, beside.said.as_str()),
+        (Some(0), ""),
+        "shared memory can be had beside another"
+    );
+    let cleaned = as_nobody(&["clean"]);
+    assert_eq!(cleaned.status, Some(0), "{}", cleaned.said);
+    assert!(!traces(&first.name).is_empty(), "nobody removes what is not his");
+    let refused = as_nobody(&["status", first.name.as_str()]);
+    assert_eq!(refused.status, Some(2));
+    assert!(refused.last_words().contains("there is no run named"), "{}", refused.said);
+    first.kill();
+    // Also after a run that was killed.
+    as_nobody(&run).assert_shared();
+    assert_cleaned(&scratch.file(""), &first.name);
+}
+
+#[test]
+fn a_run_is_seen_by_its_status() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("status");
+    let mut run = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
+    drop(run.attach());
+    let status = |more: &[&str]| {
+        let all = [&["status", run.name.as_str()], more].concat();
+        Ended::of(&rcs(&scratch.file(""), &all).output().expect("rcs-run can be started"))
+    };
+    let mut seen = serde_json::Value::Null;
+    wait_for("Task has its first command", || {
+        seen = status(&["--json"]).result;
+        seen["processes"][0]["command"] == "PAUSE"
+    });
+    assert_eq!((&seen["run"], &seen["over"]), (&run.name.as_str().into(), &false.into()));
+    assert_eq!(seen["processes"][0]["process"], "Task");
+    let place =
+        rcs(&scratch.file(""), &["status", run.name.as_str(), "--directory"]).output().expect("a place");
+    let place = String::from_utf8(place.stdout).expect("a path");
+    let configuration = std::path::Path::new(place.trim()).join("config/iceoryx2.toml");
+    assert!(fs::read_to_string(configuration).expect("for iox2").contains(run.name.as_str()));
+    run.kill();
+    assert_cleaned(&scratch.file(""), &run.name);
+    let none = rcs(&scratch.file(""), &["status", "no-such-run"]).output().expect("rcs-run can be started");
+    assert_eq!(none.status.code(), Some(2));
+}

@@ -1,0 +1,79 @@
+//! A run in real time is stopped for half a second and more: what was skipped is counted, blamed and treated as
+//! asked for. Stopping is injected with SIGSTOP, so that nothing depends on chance.
+
+use std::{path::Path, thread, time::Duration};
+
+use record::replay;
+use rustix::process::{Signal, WaitOptions, waitpid};
+use whole_system_tests::Scratch;
+
+use crate::bench::{Ended, ONE_AT_A_TIME, Running};
+
+/// Ticks of a run that is stopped.
+const TICKS: &str = "150";
+/// How long it is stopped.
+const STOPPED: Duration = Duration::from_millis(1_000);
+/// Slots that are skipped then, at least: the one that is being waited for may still come in time.
+const SKIPPED: u64 = 24;
+
+/// Start a run in real time, stop it for a second in tick 40, and let it go on to its end.
+fn stopped_for_a_second(directory: &Path, more: &[&str]) -> Ended {
+    let all = [&["--clock", "real", "--ticks", TICKS][..], more].concat();
+    let mut run = Running::start(directory, "linkbar", &all);
+    let reader = run.attach();
+    run.reach(&reader, 40);
+    drop(reader);
+    run.signal(Signal::STOP);
+    let pid = rustix::process::Pid::from_child(&run.child);
+    // From here on it does stand still.
+    waitpid(Some(pid), WaitOptions::UNTRACED).expect("it is stopped");
+    thread::sleep(STOPPED);
+    run.signal(Signal::CONT);
+    run.end()
+}
+
+#[test]
+fn skipped_slots_are_counted_and_change_nothing() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("stopped");
+    let ended = stopped_for_a_second(&scratch.file(""), &["--log", "none"]);
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    let (ticks, skipped) = (ended.number("ticks"), ended.number("overruns"));
+    assert!(skipped >= SKIPPED, "{skipped} slots skipped in a second");
+    // The identity of the grid, as far as it can be seen from outside: the result's time is a little longer.
+    let elapsed = ended.result["wall_s"].as_f64().expect("a time");
+    assert!((ticks + skipped) as f64 * 0.040 <= elapsed + 0.040, "{}", ended.result);
+    let blamed = ended.result["overruns_by"].as_object().expect("somebody is to blame");
+    assert_eq!(blamed.values().filter_map(serde_json::Value::as_u64).sum::<u64>(), skipped, "{blamed:?}");
+    assert!(ended.said.contains("slots of 40 ms skipped: "), "{}", ended.said);
+    let fast = Ended::run(&scratch.file(""), "linkbar", &["--ticks", TICKS, "--log", "none"]);
+    assert_eq!(ended.digest(), fast.digest(), "the clock changes no bit");
+    assert_eq!((fast.number("overruns"), &fast.result["overruns_by"]), (0, &serde_json::Value::Null));
+}
+
+#[test]
+fn the_robot_holds_and_goes_on_and_the_log_replays() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("holds");
+    let ended = stopped_for_a_second(&scratch.file(""), &["--overrun", "hold:5", "--log", "held.mcap"]);
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert!(ended.number("overruns") >= SKIPPED);
+    for words in ["the robot holds until 25 ticks in a row were punctual", "punctual again"] {
+        assert!(ended.said.contains(words), "{words}: {}", ended.said);
+    }
+    let report = replay(&scratch.file("held.mcap")).expect("the log can be read");
+    assert!(report.is_same(), "holding is an input like any other");
+    assert_eq!(report.digest.to_string(), ended.digest());
+}
+
+#[test]
+fn a_run_that_is_to_stop_ends_with_status_3() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("stops");
+    let ended = stopped_for_a_second(&scratch.file(""), &["--overrun", "stop:5", "--log", "none"]);
+    assert_eq!(ended.status, Some(3), "{}", ended.said);
+    assert!(ended.number("ticks") < 150, "{}", ended.result);
+    let words = ended.last_words();
+    assert!(words.contains("slots of 40 ms skipped") && words.contains("--overrun stop:5"), "{words}");
+    assert_eq!(ended.result["failure"]["process"], "executive");
+}

@@ -1,0 +1,121 @@
+//! Memory and disks that are full, taken away, or hold what does not belong there.
+
+use std::{fs, path::Path, process::Command};
+
+use rustix::process::geteuid;
+use whole_system_tests::{Scratch, rcs_run};
+
+use crate::bench::{Ended, ONE_AT_A_TIME, Running, job, rcs};
+
+/// Run in a file system name space of its own, after some commands of the shell; `None` if this user may not
+/// make one.
+fn apart(directory: &Path, shell: &str, more: &[&str]) -> Option<Ended> {
+    let arguments = job("linkbar");
+    let output = Command::new("unshare")
+        .args(["--mount", "sh", "-c", &format!("{shell}; exec \"$@\""), "sh"])
+        .arg(rcs_run())
+        .args(arguments.iter().map(String::as_str).chain(more.iter().copied()))
+        .current_dir(directory)
+        .output();
+    let ended = Ended::of(&output.ok()?);
+    let refused = ["unshare: ", "mount: "].iter().any(|tool| ended.said.contains(tool));
+    (!refused).then_some(ended)
+}
+
+/// A run of 500 ticks ended well and says a sentence.
+fn assert_goes_on(ended: &Ended, sentence: &str) {
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert_eq!(ended.number("ticks"), 500);
+    assert!(ended.said.contains(sentence), "{}", ended.said);
+}
+
+#[test]
+fn without_shared_memory_nobody_looks_on_and_the_run_goes_on() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("no-memory");
+    let full = "mount -t tmpfs -o size=64k tmpfs /dev/shm";
+    let Some(ended) = apart(&scratch.file(""), full, &["--ticks", "500", "--log", "none"]) else {
+        eprintln!("no right to mount: a full /dev/shm cannot be tried");
+        return;
+    };
+    assert_goes_on(&ended, "nobody can look on, shared memory cannot be had: /dev/shm has 65536 bytes left");
+    // Enough to begin with, and then taken by somebody else while the run goes on.
+    let fills = "mount -t tmpfs -o size=8m tmpfs /dev/shm && \
+                 { (until ls /dev/shm/*linkbar*data > /dev/null 2>&1; do sleep 0.1; done; sleep 1; \
+                    head -c 16M /dev/zero > /dev/shm/filler 2> /dev/null) & }";
+    let more = ["--clock", "real", "--ticks", "100", "--log", "none"];
+    let ended = apart(&scratch.file(""), fills, &more).expect("as before");
+    ended.assert_shared();
+    assert_eq!((ended.number("ticks"), ended.number("allocations_after_start")), (100, 0));
+}
+
+#[test]
+fn a_directory_that_is_not_ours_is_not_used() {
+    let scratch = Scratch::new("not-ours");
+    let place = scratch.file(&format!("rcs-ii-{}", geteuid().as_raw()));
+    fs::write(&place, "in the way").expect("a file can be written");
+    let arguments = job("linkbar");
+    let more = ["--ticks", "500", "--log", "none"];
+    let all: Vec<&str> = arguments.iter().map(String::as_str).chain(more).collect();
+    let mut command = rcs(&scratch.file(""), &all);
+    let ended = Ended::of(&command.env("TMPDIR", scratch.file("")).output().expect("it starts"));
+    assert_goes_on(&ended, "is not this user's alone (it is no directory)");
+}
+
+#[test]
+fn stale_and_strange_files_do_not_disturb_and_are_removed() {
+    let scratch = Scratch::new("stale");
+    let (tmp, user) = (scratch.file(""), geteuid().as_raw());
+    let root = scratch.file(&format!("rcs-ii-{user}"));
+    // A killed run of an older version, with a layout that nobody knows any more, and its object.
+    fs::create_dir_all(root.join("old-1@00c0ffee/nodes/x")).expect("a directory");
+    let object = format!("/dev/shm/rcs-{user}-00c0ffee-old-1_x.blackboard");
+    fs::write(&object, "old").expect("an object");
+    // What looks like a run and is none, and what does not even look like one.
+    fs::write(root.join("file-1@00c0ffee"), "a file").expect("a file");
+    std::os::unix::fs::symlink("/nowhere", root.join("link-1@00c0ffee")).expect("a link");
+    fs::create_dir_all(root.join("no run at all")).expect("a directory");
+    let run = |arguments: &[&str]| {
+        Ended::of(&rcs(&tmp, arguments).env("TMPDIR", &tmp).output().expect("rcs-run can be started"))
+    };
+    let arguments = job("linkbar");
+    let more = ["--ticks", "30", "--log", "none"];
+    let all: Vec<&str> = arguments.iter().map(String::as_str).chain(more).collect();
+    run(&all).assert_shared();
+    assert_eq!(run(&["clean"]).status, Some(0));
+    assert!(!Path::new(&object).exists());
+    let left = fs::read_dir(&root).expect("the directory of runs").flatten().map(|entry| entry.file_name());
+    let mut left: Vec<_> = left.map(|name| name.to_string_lossy().into_owned()).collect();
+    left.sort();
+    assert_eq!(left, ["lock", "no run at all"], "what is no run is not ours to remove");
+}
+
+#[test]
+fn a_full_disk_ends_the_log_and_not_the_run() {
+    let scratch = Scratch::new("full-disk");
+    let ended = Ended::run(&scratch.file(""), "linkbar", &["--ticks", "500", "--log", "small/run.mcap"]);
+    assert_eq!(ended.status, Some(0), "the directory of a log is made: {}", ended.said);
+    let mount = "mkdir -p tiny && mount -t tmpfs -o size=256k tmpfs tiny";
+    let more = ["--ticks", "2000", "--log", "tiny/run.mcap"];
+    let Some(ended) = apart(&scratch.file(""), mount, &more) else {
+        eprintln!("no right to mount: a full disk cannot be tried");
+        return;
+    };
+    assert_eq!((ended.status, ended.number("ticks")), (Some(0), 2000), "{}", ended.said);
+    assert!(ended.said.contains("the log ended before the run did"), "{}", ended.said);
+}
+
+#[test]
+fn a_log_that_is_removed_does_not_end_the_run_and_is_missed() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("removed");
+    let more = ["--clock", "real", "--ticks", "100", "--log", "logs/run.mcap"];
+    let mut run = Running::start(&scratch.file(""), "linkbar", &more);
+    let reader = run.attach();
+    run.reach(&reader, 20);
+    fs::remove_dir_all(scratch.file("logs")).expect("it can be removed");
+    drop(reader);
+    let ended = run.end();
+    assert_eq!((ended.status, ended.number("ticks")), (Some(0), 100), "{}", ended.said);
+    assert!(ended.said.contains("the log ended before the run did"), "{}", ended.said);
+}
