@@ -24,10 +24,10 @@ const fn kind(job: &'static str, status: i32, faults: bool) -> Kind {
 
 /// In turn, until there are ticks enough.
 const KINDS: [Kind; 4] = [
-    kind("shift", 0, false),
     kind("no-part.job", 1, false),
     kind("linkbar", 0, true),
     kind("held-tool.job", 1, false),
+    kind("shift", 0, false),
 ];
 
 #[test]

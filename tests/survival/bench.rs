@@ -30,7 +30,7 @@ pub fn rcs(directory: &Path, arguments: &[&str]) -> Command {
 /// The arguments of a run of a job of the data directory.
 pub fn job(name: &str) -> Vec<String> {
     let data = root().join("data").display().to_string();
-    ["run", name, "--json", "--data", &data].map(str::to_owned).to_vec()
+    ["run", name, "--json", "--data", data.as_str()].map(str::to_owned).to_vec()
 }
 
 /// A run that goes on.

@@ -49,7 +49,7 @@ fn another_user_runs_beside_and_after_the_first() {
         Ended::of(&command.output().expect("nobody can start the program"))
     };
     let data = data.display().to_string();
-    let run = ["run", "linkbar", "--ticks", "50", "--json", "--log", "none", "--data", &data];
+    let run = ["run", "linkbar", "--ticks", "50", "--json", "--log", "none", "--data", data.as_str()];
     let beside = as_nobody(&run);
     assert_eq!(
         (beside.status, beside.said.as_str()),
@@ -75,7 +75,7 @@ fn a_run_is_seen_by_its_status() {
     let mut run = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(run.attach());
     let status = |more: &[&str]| {
-        let all = [&["status", run.name.as_str()], more].concat();
+        let all = [&["status", run.name.as_str()][..], more].concat();
         Ended::of(&rcs(&scratch.file(""), &all).output().expect("rcs-run can be started"))
     };
     let mut seen = serde_json::Value::Null;

@@ -18,7 +18,7 @@ use crate::bench::{Ended, ONE_AT_A_TIME, Running, assert_cleaned, traces, wait_f
 /// Says to a child of a test which run it is to disturb.
 const RUN: &str = "RCS_SURVIVAL_RUN";
 /// Ticks of a run that is disturbed.
-const TICKS: &str = "100";
+const TICKS: &str = "200";
 
 /// This program again, as one of the processes below.
 fn process(test: &str, run: &Running) -> Child {
@@ -96,9 +96,9 @@ fn a_reader_that_dies_or_hangs_changes_nothing() {
     let _alone = ONE_AT_A_TIME.lock();
     let scratch = Scratch::new("readers");
     let more = ["--clock", "real", "--ticks", TICKS, "--log", "none"];
-    let run = Running::start(&scratch.file(""), "linkbar", &more);
+    let mut run = Running::start(&scratch.file(""), "linkbar", &more);
     let name = run.name.clone();
-    wait_for("the run lives", || !traces(&name).is_empty());
+    drop(run.attach());
     let mut dies = process("reads_on_and_on", &run);
     at_work(&mut dies);
     let mut hangs = process("reads_on_and_on", &run);

@@ -68,7 +68,7 @@ fn stale_and_strange_files_do_not_disturb_and_are_removed() {
     let (tmp, user) = (scratch.file(""), geteuid().as_raw());
     let root = scratch.file(&format!("rcs-ii-{user}"));
     // A killed run of an older version, with a layout that nobody knows any more, and its object.
-    fs::create_dir_all(root.join("old-1@00c0ffee/nodes/x")).expect("a directory");
+    fs::create_dir_all(root.join("old-1@00c0ffee/nodes")).expect("a directory");
     let object = format!("/dev/shm/rcs-{user}-00c0ffee-old-1_x.blackboard");
     fs::write(&object, "old").expect("an object");
     // What looks like a run and is none, and what does not even look like one.

@@ -325,15 +325,23 @@ pub fn list() -> Result<Vec<Found>, SharedMemoryError> {
             continue;
         };
         let Ok(name) = name.parse::<RunName>() else { continue };
-        let alive = config(&name, layout).is_ok_and(|config| is_alive(&config));
+        let alive = config(&name, layout).is_ok_and(|config| is_alive(&entry.path(), &config));
         found.push(Found { name, layout: layout.to_owned(), alive });
     }
     found.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(found)
 }
 
+/// A place of a run is a directory; what has only the name of one is nobody's.
+fn is_directory(place: &std::path::Path) -> bool {
+    fs::symlink_metadata(place).is_ok_and(|found| found.is_dir())
+}
+
 /// True if a node of a program that is alive, or that may be, is in the run.
-fn is_alive(config: &Config) -> bool {
+fn is_alive(place: &std::path::Path, config: &Config) -> bool {
+    if !is_directory(place) {
+        return false;
+    }
     let mut alive = false;
     let listed = Node::<ipc::Service>::list(config, |node| {
         alive |= !matches!(node, NodeState::Dead(_));
@@ -363,8 +371,9 @@ pub fn clean() -> Result<Cleaned, SharedMemoryError> {
 /// one.
 pub(super) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, SharedMemoryError> {
     let config = config(name, layout)?;
+    let place = place(name, layout);
     let _lock = lock()?;
-    if is_alive(&config) {
+    if is_alive(&place, &config) {
         return Ok(false);
     }
     let mut dead = Vec::new();
@@ -379,9 +388,7 @@ pub(super) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, S
         let _ = view.blocking_remove_stale_resources(PATIENCE);
     }
     remove_objects(&prefix(name, layout))?;
-    let place = place(name, layout);
-    let is_directory = fs::symlink_metadata(&place).is_ok_and(|found| found.is_dir());
-    let removed = if is_directory { fs::remove_dir_all(&place) } else { fs::remove_file(&place) };
+    let removed = if is_directory(&place) { fs::remove_dir_all(&place) } else { fs::remove_file(&place) };
     match removed {
         Err(source) if source.kind() != io::ErrorKind::NotFound => {
             Err(SharedMemoryError::Io { path: place, source })
