@@ -27,20 +27,34 @@ pub fn root() -> &'static Path {
 #[must_use]
 pub fn rcs_run() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    PROGRAM.get_or_init(|| {
+    program("rcs-run", &PROGRAM)
+}
+
+/// The program `rcs-log`, brought up to date.
+///
+/// # Panics
+/// If it does not build.
+#[must_use]
+pub fn rcs_log() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    program("rcs-log", &PROGRAM)
+}
+
+fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
+    built.get_or_init(|| {
         // Tests lie in <target>/release/deps.
         let test = env::current_exe().expect("a test has a path");
         let profile = test.ancestors().nth(2).expect("a test lies two directories deep");
         let target = profile.parent().expect("a profile lies in the target directory");
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let built = Command::new(cargo)
-            .args(["build", "--quiet", "--release", "--package", "rcs-run", "--target-dir"])
+            .args(["build", "--quiet", "--release", "--package", name, "--target-dir"])
             .arg(target)
             .current_dir(root())
             .status()
             .expect("cargo can be started");
-        assert!(built.success(), "rcs-run does not build");
-        target.join("release").join("rcs-run")
+        assert!(built.success(), "{name} does not build");
+        target.join("release").join(name)
     })
 }
 
@@ -195,9 +209,24 @@ fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
 /// If the program cannot be started or says no JSON.
 #[must_use]
 pub fn run(job: &str, seed: u64, name: &str, prepare: impl FnOnce(&Scratch)) -> Outcome {
+    run_with(job, seed, name, &[], prepare)
+}
+
+/// As [`run`], with further arguments.
+///
+/// # Panics
+/// As [`run`].
+#[must_use]
+pub fn run_with(
+    job: &str,
+    seed: u64,
+    name: &str,
+    arguments: &[&str],
+    prepare: impl FnOnce(&Scratch),
+) -> Outcome {
     let scratch = Scratch::new(name);
     prepare(&scratch);
-    let output = command(&scratch, job, seed).output().expect("rcs-run can be started");
+    let output = command(&scratch, job, seed).args(arguments).output().expect("rcs-run can be started");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     let result = serde_json::from_slice(&output.stdout)
         .unwrap_or_else(|error| panic!("{error} in {:?}; {said}", String::from_utf8_lossy(&output.stdout)));

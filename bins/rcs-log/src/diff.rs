@@ -14,7 +14,6 @@ use clap::ValueEnum;
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs},
     record::{Field, Writer},
-    tick::Tick,
 };
 use record::layout::{self, Leaf};
 use serde::Serialize;
@@ -104,17 +103,14 @@ struct Images {
 }
 
 impl Images {
-    fn of(moment: &Moment, cells: &Cells) -> Self {
+    fn of(moment: &Moment) -> Self {
         let mut external = vec![0; ExternalInputs::SIZE].into_boxed_slice();
         moment.external.encode(&mut Writer::new(&mut external));
         let mut memory = vec![0; CommonMemory::SIZE].into_boxed_slice();
         moment.after.encode(&mut Writer::new(&mut memory));
-        Self { tick: moment.tick.0, cell: cells.get(&moment.tick).copied(), external, memory }
+        Self { tick: moment.tick.0, cell: moment.world, external, memory }
     }
 }
-
-/// Digests of the simulated cell.
-type Cells = HashMap<Tick, u64>;
 
 /// Gives each tick its key.
 struct Keys {
@@ -144,18 +140,16 @@ impl Keys {
 fn compare(a: &Path, b: &Path, align: Align) -> Result<Differences, Error> {
     let (log_a, log_b) = (open(a)?, open(b)?);
     let mut of_b = HashMap::new();
-    let cells: Cells = log_b.cell_digests().collect();
     let mut keys = Keys::new(align);
     walk(&log_b, b, |moment| {
-        of_b.insert(keys.of(moment), Images::of(moment, &cells));
+        of_b.insert(keys.of(moment), Images::of(moment));
         true
     })?;
     let mut found = Comparison::new();
-    let cells: Cells = log_a.cell_digests().collect();
     let mut keys = Keys::new(align);
     walk(&log_a, a, |moment| {
         let other = of_b.remove(&keys.of(moment));
-        found.note(&Images::of(moment, &cells), other.as_ref());
+        found.note(&Images::of(moment), other.as_ref());
         true
     })?;
     Ok(found.differences(of_b.len()))

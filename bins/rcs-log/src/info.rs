@@ -34,6 +34,8 @@ struct Info {
     seconds: f64,
     /// Ticks that the log could not keep up with.
     missing_ticks: u64,
+    /// Times of the controller, where the log has them: that of a run in fast clock has not.
+    times: Option<Times>,
     /// The log has its end; a killed run's has not.
     complete: bool,
     result: Option<String>,
@@ -41,10 +43,33 @@ struct Info {
     commands: Vec<CommandStory>,
     link: Link,
     failure: Option<String>,
+    /// What else the run said of its end: parts, faults, verdicts.
+    facts: BTreeMap<String, String>,
     /// Warnings and errors on `/log`.
     warnings: usize,
     errors: usize,
     attachments: Vec<String>,
+}
+
+/// How punctual the run was.
+#[derive(Debug, Serialize)]
+struct Times {
+    /// Slots of the 40 ms grid that were skipped.
+    overruns: u64,
+    /// Controller part of a tick, microseconds: median, 99 of 100, longest.
+    p50_us: f64,
+    p99_us: f64,
+    max_us: f64,
+}
+
+impl Times {
+    /// Of all ticks, nanoseconds each; none if there are none.
+    fn new(mut nanoseconds: Vec<u64>, overruns: u64) -> Option<Self> {
+        nanoseconds.sort_unstable();
+        let last = nanoseconds.len().checked_sub(1)?;
+        let at = |percent: usize| nanoseconds.get(last * percent / 100).map_or(0.0, |ns| *ns as f64 / 1e3);
+        Some(Self { overruns, p50_us: at(50), p99_us: at(99), max_us: at(100) })
+    }
 }
 
 #[derive(Debug, Default, Serialize)]
@@ -82,10 +107,15 @@ pub fn info(arguments: &Arguments) -> Result<ExitCode, Error> {
 fn look(log: &Log, arguments: &Arguments) -> Result<Info, Error> {
     let (mut chronicle, mut link) = (Chronicle::default(), Link::default());
     let (mut ticks, mut missing, mut last) = (0, 0, Tick::BEFORE_START);
+    let (mut times, mut overruns) = (Vec::new(), 0);
     walk(log, &arguments.file, |moment| {
         chronicle.note(moment);
         link = Link::from(&moment.after.t3i.status.counters);
         missing += moment.gap;
+        if let Some(timing) = moment.timing {
+            times.push(timing.controller_ns);
+            overruns = timing.skipped;
+        }
         ticks += 1;
         last = moment.tick;
         true
@@ -102,11 +132,13 @@ fn look(log: &Log, arguments: &Arguments) -> Result<Info, Error> {
         ticks,
         seconds: last.0 as f64 * TICK_S,
         missing_ticks: missing,
+        times: Times::new(times, overruns),
         complete: log.complete,
         result: end("result"),
         digest: end("digest"),
         commands: chronicle.commands,
         link,
+        facts: facts(log),
         failure: chronicle.failure.map(|failure| failure.text),
         warnings: level(Level::Warning),
         errors: level(Level::Error),
@@ -114,19 +146,32 @@ fn look(log: &Log, arguments: &Arguments) -> Result<Info, Error> {
     })
 }
 
+/// Entries of the end that the recorder itself writes.
+const RECORDER: [&str; 8] =
+    ["digest", "result", "ticks", "gaps", "lost_ticks", "lost_frames", "lost_notes", "lost_files"];
+
+/// What the run wrote of its end, without what the recorder did.
+fn facts(log: &Log) -> BTreeMap<String, String> {
+    let end = log.end.iter().flatten();
+    end.filter(|(key, value)| !RECORDER.contains(&key.as_str()) && !value.is_empty())
+        .map(|(key, value)| (key.clone(), value.clone()))
+        .collect()
+}
+
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let of = |key: &str| self.run.get(key).map_or("unknown", String::as_str);
         writeln!(
             f,
-            "run        {} {}, commit {}, job {}, seed {}, clock {}, robot {}",
+            "run        {} {}, commit {}, job {}, seed {}, clock {}, robot {}, real time {}",
             of("program"),
             of("version"),
             of("commit"),
             of("job"),
             of("seed"),
             of("clock"),
-            of("robot")
+            of("robot"),
+            self.run.get("real_time").map_or("not asked for", String::as_str)
         )?;
         writeln!(f, "started    {}", of("command_line"))?;
         let end = match (&self.result, self.complete) {
@@ -144,6 +189,12 @@ impl fmt::Display for Info {
             self.warnings,
             self.errors
         )?;
+        if let Some(Times { overruns, p50_us, p99_us, max_us }) = &self.times {
+            writeln!(
+                f,
+                "controller p50 {p50_us:.1} us, p99 {p99_us:.1} us, max {max_us:.1} us; {overruns} slots skipped"
+            )?;
+        }
         let Link { frames, acknowledged, naks, timeouts, restarts, checksum_errors, limited } = &self.link;
         writeln!(
             f,
@@ -152,6 +203,9 @@ impl fmt::Display for Info {
         )?;
         if let Some(digest) = &self.digest {
             writeln!(f, "digest     {digest}")?;
+        }
+        for (key, value) in &self.facts {
+            writeln!(f, "{:<10} {}", key.replace('_', " "), value.replace("; ", "\n           "))?;
         }
         writeln!(f, "\n  tick       s  for s  status     command")?;
         for command in &self.commands {

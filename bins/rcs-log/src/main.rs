@@ -7,8 +7,10 @@
 //! | [`replay`] | would the program of today do the same on the same inputs? |
 //! | [`diff`] | where do two runs differ? |
 //! | [`report`] | the run on one page |
+//! | [`golden`] | the run as a small file for tests |
 
 mod diff;
+mod golden;
 mod info;
 mod replay;
 mod report;
@@ -36,8 +38,10 @@ Examples:
   rcs-log why runs/linkbar.mcap             why it failed, from Task down to the link
   rcs-log why runs/linkbar.mcap --tick 1200 what each level did in a tick, and by which row
   rcs-log replay runs/*.mcap                compute every tick again and compare every bit
+  rcs-log replay --data data runs/linkbar.mcap  with other task data: what would they have changed?
   rcs-log diff a.mcap b.mcap                where two runs differ
   rcs-log report runs/linkbar.mcap          the run as a page, runs/linkbar.html
+  rcs-log golden runs/*.mcap -o tests/goldens   small files for tests, with their texts
 
 Exit status: 0 done, and the same where something is compared; 1 different; 2 usage, or a file that cannot be used.
 The reason is the last line on standard error."
@@ -60,6 +64,8 @@ enum Command {
     Diff(diff::Arguments),
     /// Write the run as one page of HTML that needs nothing else
     Report(report::Arguments),
+    /// Make the small files that tests replay, and their texts for review
+    Golden(golden::Arguments),
 }
 
 /// Files and the form of the answer: what all subcommands have.
@@ -96,6 +102,36 @@ enum Error {
     /// A log without ticks.
     #[error("{}: the log holds no tick", .0.display())]
     Empty(PathBuf),
+    /// The task data cannot be used.
+    #[error("the task data under {}:\n{report}", path.display())]
+    Data {
+        /// The directory.
+        path: PathBuf,
+        /// All that is wrong with them.
+        report: String,
+    },
+    /// It cannot become a golden.
+    #[error("{}: {source}", path.display())]
+    Golden {
+        /// The log.
+        path: PathBuf,
+        /// Why.
+        source: record::golden::GoldenError,
+    },
+    /// This program does not do what the log says.
+    #[error(
+        "{}: this program does something else than the log from tick {first} to {last}: a golden is made of a run of the program \
+         that is to be tested (rcs-log replay names the field)",
+        path.display()
+    )]
+    NotGolden {
+        /// The log.
+        path: PathBuf,
+        /// First tick of the second.
+        first: u64,
+        /// Last tick of the second.
+        last: u64,
+    },
     /// The page cannot be written.
     #[error("{}: {source}", path.display())]
     Write {
@@ -116,6 +152,7 @@ fn main() -> ExitCode {
         Command::Replay(arguments) => replay::replay(&arguments),
         Command::Diff(arguments) => diff::diff(&arguments),
         Command::Report(arguments) => report::report(&arguments),
+        Command::Golden(arguments) => golden::golden(&arguments),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("rcs-log: {error}");
@@ -127,13 +164,16 @@ fn main() -> ExitCode {
 fn print<T: serde::Serialize + std::fmt::Display>(answer: &T, json: bool) -> Result<(), Error> {
     use io::Write as _;
     let mut out = io::stdout().lock();
-    if json {
-        serde_json::to_writer(&mut out, answer).map_err(io::Error::from)?;
-        writeln!(out)?;
+    let text = if json {
+        serde_json::to_string(answer).map_err(io::Error::from)? + "\n"
     } else {
-        write!(out, "{answer}")?;
+        answer.to_string()
+    };
+    match out.write_all(text.as_bytes()) {
+        // Whoever reads has seen enough: `rcs-log why run.mcap | head`.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        written => Ok(written?),
     }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -13,8 +13,10 @@ use std::{
     thread,
 };
 
-use record::{ReplayError, ReplayReport};
+use rcs_core::tick::Tick;
+use record::{Options, ReplayError, ReplayReport};
 use serde::Serialize;
+use taskdata::load::{Report, Store};
 
 use crate::{Answer, DIFFERENT, Error, UNUSABLE, print};
 
@@ -24,6 +26,15 @@ pub struct Arguments {
     /// The logs
     #[arg(required = true)]
     pub files: Vec<PathBuf>,
+    /// Task data to replay with, instead of those in the log: what would they have changed?
+    #[arg(long, value_name = "DIR")]
+    pub data: Option<PathBuf>,
+    /// Begin at the last recorded states before this tick
+    #[arg(long, value_name = "TICK")]
+    pub from: Option<u64>,
+    /// Last tick that is computed
+    #[arg(long, value_name = "TICK")]
+    pub until: Option<u64>,
     #[command(flatten)]
     answer: Answer,
 }
@@ -83,7 +94,14 @@ impl OneLog {
 
 /// Replay all logs and print what was found.
 pub fn replay(arguments: &Arguments) -> Result<ExitCode, Error> {
-    let outcome = Outcome { logs: replay_all(&arguments.files) };
+    let data = arguments.data.as_deref().map(|data| {
+        let unusable =
+            |report: Box<Report>| Error::Data { path: data.to_owned(), report: report.render(false) };
+        Store::load(data).map(|(store, _)| store).map_err(unusable)
+    });
+    let options =
+        Options { data: data.transpose()?, from: arguments.from.map(Tick), until: arguments.until.map(Tick) };
+    let outcome = Outcome { logs: replay_all(&arguments.files, &options) };
     print(&outcome, arguments.answer.json)?;
     let worst = |log: &OneLog| match (log.same, &log.error) {
         (_, Some(_)) => UNUSABLE,
@@ -99,7 +117,7 @@ pub fn replay(arguments: &Arguments) -> Result<ExitCode, Error> {
 }
 
 /// As many at once as the machine has cores; the answers are in the order of the files.
-fn replay_all(files: &[PathBuf]) -> Vec<OneLog> {
+fn replay_all(files: &[PathBuf], options: &Options) -> Vec<OneLog> {
     let workers = thread::available_parallelism().map_or(1, NonZero::get).min(files.len());
     let next = AtomicUsize::new(0);
     let done = Mutex::new(Vec::with_capacity(files.len()));
@@ -107,7 +125,7 @@ fn replay_all(files: &[PathBuf]) -> Vec<OneLog> {
         for _ in 0..workers {
             scope.spawn(|| {
                 while let Some((at, path)) = take(files, &next) {
-                    let log = OneLog::new(path.display().to_string(), record::replay(path));
+                    let log = OneLog::new(path.display().to_string(), record::replay_with(path, options));
                     done.lock().unwrap_or_else(PoisonError::into_inner).push((at, log));
                 }
             });

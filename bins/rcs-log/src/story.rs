@@ -9,7 +9,7 @@ use rcs_core::{
     record::from_bytes,
     tick::Tick,
 };
-use record::{Log, ReadError, reader::LoggedTick, remarks::hws_text};
+use record::{Log, ReadError, Timing, reader::LoggedTick, remarks::hws_text};
 use serde::Serialize;
 
 use crate::Error;
@@ -26,6 +26,10 @@ pub struct Moment {
     pub before: CommonMemory,
     /// What they wrote.
     pub after: CommonMemory,
+    /// How punctual the tick was, where the log says so.
+    pub timing: Option<Timing>,
+    /// Fingerprint of the simulated cell before the tick, where the log has it.
+    pub world: Option<u64>,
 }
 
 /// Open a log whose layout is ours.
@@ -50,6 +54,17 @@ pub fn walk(log: &Log, path: &Path, mut each: impl FnMut(&Moment) -> bool) -> Re
     Ok(())
 }
 
+/// The ticks of a log up to its end or its damage, with the states where they were recorded.
+pub fn moments(log: &Log) -> impl Iterator<Item = (Moment, Option<Vec<u8>>)> {
+    let mut before = CommonMemory::default();
+    log.ticks().map_while(move |logged| {
+        let logged = logged.ok()?;
+        let moment = decode(&logged, before).ok()?;
+        before = moment.after;
+        Some((moment, logged.state))
+    })
+}
+
 fn decode(logged: &LoggedTick, before: CommonMemory) -> Result<Moment, ReadError> {
     let damaged = |_| ReadError::Damaged { tick: logged.tick.0 };
     Ok(Moment {
@@ -58,6 +73,8 @@ fn decode(logged: &LoggedTick, before: CommonMemory) -> Result<Moment, ReadError
         external: from_bytes(&logged.external).map_err(damaged)?,
         before,
         after: from_bytes(&logged.memory).map_err(damaged)?,
+        timing: logged.timing,
+        world: logged.world,
     })
 }
 

@@ -58,7 +58,7 @@ impl Scratch {
             recorder.cell(&CellFrame::new(tick).with_digest(digest_of_cell(tick)));
             recorder.tick(tick, &external, &memory, || ladder.state());
         }
-        let end = End { digest: Some(digest.value()), result: "failed".into() };
+        let end = End { digest: Some(digest.value()), result: "failed".into(), ..End::default() };
         recorder.finish(end).expect("the log ends");
         path
     }
@@ -102,7 +102,15 @@ fn why_finds_the_tick_of_the_failure_and_names_the_row() {
     let scratch = Scratch::new("why");
     let log = scratch.log("run.mcap", 1000);
     let text = stdout(&rcs_log(&["why"], &[&log]));
-    assert!(text.starts_with("Task: the object is not in the task data"), "{text}");
+    assert!(
+        text.starts_with("Failure at tick 50 (2.00 s). Task: the object is not in the task data"),
+        "{text}"
+    );
+    assert!(
+        text.contains("First cause: Task at tick 50, 0.00 s after its command: the object is not"),
+        "{text}"
+    );
+    assert!(text.contains("  tick     50  HWSC commands Task: TRANSFER NOBODY, number 1\n"), "{text}");
     assert!(text.contains("In tick 50 (2.00 s), from Task down:"), "{text}");
     assert!(text.contains("execute row 3: Refuse"), "{text}");
 

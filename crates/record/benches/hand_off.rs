@@ -1,5 +1,5 @@
-//! What a tick pays for its record: time of [`Recorder::tick`] in the thread of the ticks, at the pace of a
-//! run in real time shortened to 1 ms.
+//! What a tick pays for its record: time of [`Recorder::tick`] in the thread of the ticks, at the pace of a run in real time
+//! shortened to 1 ms, and beside it the time of [`Recorder::cell`], which belongs to the simulated cell.
 
 use std::{
     thread,
@@ -11,7 +11,7 @@ use rcs_core::{
     interface::{CommonMemory, ExternalInputs},
     tick::Tick,
 };
-use record::{End, Pace, Recorder, Setup};
+use record::{CellFrame, End, Pace, Recorder, Setup, Timing, writer::TickRecord};
 use taskdata::files::TaskData;
 
 const TICKS: u64 = 5000;
@@ -24,23 +24,34 @@ fn main() {
     };
     let mut ladder = Ladder::default();
     let mut memory = CommonMemory::default();
-    let mut times = Vec::new();
+    let (mut ticks, mut cells) = (Vec::new(), Vec::new());
     for tick in (1..=TICKS).map(Tick) {
         let (before, mut external) = (memory, ExternalInputs::default());
         external.devices.resolvers.counts = [u32::try_from(tick.0).unwrap_or_default(); 6];
         ladder.step(tick, &before, &external, &TaskData::default(), &mut memory);
+        let frame = CellFrame::new(tick);
         let started = Instant::now();
+        recorder.cell(&frame);
+        cells.push(started.elapsed());
+        let started = Instant::now();
+        recorder.timing(Timing { controller_ns: 2000, skipped: 0 });
         recorder.tick(tick, &external, &memory, || ladder.state());
-        times.push(started.elapsed());
+        ticks.push(started.elapsed());
         thread::sleep(Duration::from_millis(1));
     }
-    times.sort();
-    let at = |percent: usize| times[(times.len() - 1) * percent / 100];
-    println!("hand-off of a tick: p50 {:?}, p99 {:?}, max {:?}", at(50), at(99), at(100));
+    println!("a record is {} bytes, a frame of the cell {}", size_of::<TickRecord>(), size_of::<CellFrame>());
+    tell("hand-off of a tick", ticks);
+    tell("hand-off of a frame", cells);
     match recorder.finish(End::default()) {
         Ok(summary) => println!("{} ticks, {} bytes, lost {:?}", summary.ticks, summary.bytes, summary.lost),
         Err(error) => eprintln!("{error}"),
     }
     // The file was only there to be written.
     let _ = std::fs::remove_file(path);
+}
+
+fn tell(what: &str, mut times: Vec<Duration>) {
+    times.sort();
+    let at = |permille: usize| times[(times.len() - 1) * permille / 1000];
+    println!("{what}: p50 {:?}, p99 {:?}, p99.9 {:?}, max {:?}", at(500), at(990), at(999), at(1000));
 }

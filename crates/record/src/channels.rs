@@ -3,7 +3,7 @@
 //!
 //! The outputs of a process are a header and buffers. Each buffer gets a channel `/process/buffer`, a command
 //! `/process/buffer_command`; the header gets `/process/row`, the row of the decision table that fired as
-//! text. A message is written when its buffer changes, and once a second anyway, so that a viewer that jumps
+//! text. A message is written when its buffer changes, and every ten seconds anyway, so that a viewer that jumps
 //! into the middle finds a value soon.
 
 use std::{
@@ -24,6 +24,7 @@ use rcs_core::{
 
 use crate::{
     input::Epoch,
+    layout,
     proto::{
         descriptor::{self, encode_set, field, file},
         message, wire,
@@ -72,10 +73,21 @@ impl<W: Write + Seek> Output<W> {
     }
 }
 
+/// Fields that count on by themselves while the robot runs: clocks of the T3 interface, frames on the line, and
+/// numbers of changing poses. Their being new is no reason to write a buffer; their values are on `/replay`.
+const CLOCKS: [&str; 7] =
+    ["cycle", "cycle_echo", "frames", "acknowledged", "reference_pose", "present_pose", "sensor_pose"];
+
+/// Buffers that are new in every tick and say nothing that others do not: Prim's changing poses are the frames
+/// of `/t3i/status`. They are written with the repetitions only.
+const SCRATCH: [&str; 1] = ["/prim/poses"];
+
 /// A part of an image with a channel of its own.
 struct Buffer {
     channel: u16,
     bytes: Range<usize>,
+    /// Where the image is looked at for changes: all but the [`CLOCKS`].
+    compared: Vec<Range<usize>>,
     schema: RecordSchema,
 }
 
@@ -125,6 +137,22 @@ fn memory_places() -> Vec<Place> {
     found
 }
 
+/// Stretches of a buffer at `offset` that hold no [`CLOCKS`].
+fn compared(schema: &RecordSchema, offset: usize) -> Vec<Range<usize>> {
+    let mut found: Vec<Range<usize>> = Vec::new();
+    for leaf in layout::leaves_of(schema.fields) {
+        let start = offset + leaf.offset;
+        let range = start..start + leaf.schema.size();
+        let name = leaf.path.rsplit('.').next().unwrap_or_default();
+        match found.last_mut() {
+            _ if CLOCKS.contains(&name) => {}
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => found.push(range),
+        }
+    }
+    found
+}
+
 impl Buffers {
     /// Channels of the buffers of [`ExternalInputs`].
     pub fn external<W: Write + Seek>(output: &mut Output<W>) -> McapResult<Self> {
@@ -140,7 +168,9 @@ impl Buffers {
         let open = |Place { topic, bytes, schema }| {
             let descriptors = descriptor::descriptor_set(&schema);
             let channel = output.protobuf(&topic, &descriptor::message_name(&schema), &descriptors)?;
-            Ok(Buffer { channel, bytes, schema })
+            let scratch = SCRATCH.contains(&topic.as_str());
+            let compared = if scratch { Vec::new() } else { compared(&schema, bytes.start) };
+            Ok(Buffer { channel, bytes, compared, schema })
         };
         places.into_iter().map(open).collect::<McapResult<_>>().map(Self)
     }
@@ -157,7 +187,8 @@ impl Buffers {
         let mut data = Vec::new();
         for buffer in &self.0 {
             let now = image.get(buffer.bytes.clone()).unwrap_or_default();
-            if all || last.get(buffer.bytes.clone()) != Some(now) {
+            let changed = |range: &Range<usize>| last.get(range.clone()) != image.get(range.clone());
+            if all || buffer.compared.iter().any(changed) {
                 data.clear();
                 message::encode(&buffer.schema, now, &mut data);
                 output.put(buffer.channel, tick, &data)?;

@@ -20,7 +20,7 @@ pub enum RecordError {
         path: PathBuf,
     },
     /// Writing failed: the disk is full, or the device is gone.
-    #[error("the log could not be written further: {0}")]
+    #[error("the log could not be written further: {}", deepest(.0))]
     Write(#[from] mcap::McapError),
     /// The cell has more links or joints than a frame of it can carry.
     #[error("a cell of at most {allowed} {what} was expected, this one has {found}")]
@@ -35,6 +35,14 @@ pub enum RecordError {
     /// The writer thread cannot be started, or ended without a result.
     #[error("the thread that writes the log failed")]
     Thread,
+}
+
+/// What lies at the bottom of an error: the file system's word, not that of the layers above it.
+fn deepest(error: &dyn std::error::Error) -> String {
+    match error.source() {
+        Some(source) => deepest(source),
+        None => error.to_string(),
+    }
 }
 
 /// Why a file is not a log.
@@ -98,7 +106,7 @@ pub enum ReplayError {
     #[error(transparent)]
     Read(#[from] ReadError),
     /// The log holds no tick.
-    #[error("the log holds no tick that a replay could start from")]
+    #[error("the log holds no tick there that a replay could start from")]
     Empty,
     /// The recorded inputs of a tick are no legal record.
     #[error("the inputs of tick {tick} cannot be read: {source}")]

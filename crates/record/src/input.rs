@@ -212,6 +212,8 @@ pub struct End {
     pub digest: Option<u64>,
     /// How the job ended, one line.
     pub result: String,
+    /// What else is to be told of the run: real-time verdict, overruns, faults, where the parts are.
+    pub facts: BTreeMap<String, String>,
 }
 
 #[cfg(test)]

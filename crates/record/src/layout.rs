@@ -10,7 +10,7 @@ use levels::ladder::LadderState;
 use rcs_core::{
     digest::Digest,
     interface::{CommonMemory, ExternalInputs},
-    record::{RecordSchema, Schema},
+    record::{FieldSchema, RecordSchema, Schema},
 };
 
 /// A field that is not made of other fields: where it stands in the image and what it holds.
@@ -36,13 +36,19 @@ impl Leaf {
 /// All leaves of a record in the order of the image.
 #[must_use]
 pub fn leaves(record: &'static RecordSchema) -> Vec<Leaf> {
+    leaves_of(record.fields)
+}
+
+/// All leaves of consecutive fields.
+#[must_use]
+pub fn leaves_of(fields: &'static [FieldSchema]) -> Vec<Leaf> {
     let mut found = Vec::new();
-    record_leaves(record, "", 0, &mut found);
+    field_leaves(fields, "", 0, &mut found);
     found
 }
 
-fn record_leaves(record: &'static RecordSchema, prefix: &str, mut offset: usize, found: &mut Vec<Leaf>) {
-    for field in record.fields {
+fn field_leaves(fields: &'static [FieldSchema], prefix: &str, mut offset: usize, found: &mut Vec<Leaf>) {
+    for field in fields {
         let path = if prefix.is_empty() { field.name.to_owned() } else { format!("{prefix}.{}", field.name) };
         schema_leaves(&field.schema, path, offset, found);
         offset += field.schema.size();
@@ -51,7 +57,7 @@ fn record_leaves(record: &'static RecordSchema, prefix: &str, mut offset: usize,
 
 fn schema_leaves(schema: &'static Schema, path: String, offset: usize, found: &mut Vec<Leaf>) {
     match schema {
-        Schema::Record(record) => record_leaves(record, &path, offset, found),
+        Schema::Record(record) => field_leaves(record.fields, &path, offset, found),
         // Bytes are read as one word: a frame on the line, not 64 numbers.
         Schema::Array(of, _) if **of == Schema::U8 => found.push(Leaf { path, offset, schema }),
         Schema::Array(of, count) => {
@@ -151,15 +157,28 @@ fn kind_name(schema: &Schema) -> String {
     }
 }
 
+/// How images are written on `/replay`: see [`crate::delta`]. Logs of another format are refused as those of another layout.
+const FORMAT: &str = "format 2: differences by field\n";
+
 /// The layout of all images of a log: the text that goes into each log, and from which the version is made.
 #[must_use]
 pub fn description() -> String {
     [
+        FORMAT.to_owned(),
         describe("external", ExternalInputs::RECORD),
         describe("memory", CommonMemory::RECORD),
         describe("state", LadderState::RECORD),
     ]
     .concat()
+}
+
+/// Version of what goes in and out of the ladder, without its states.
+#[must_use]
+pub fn interface_version() -> String {
+    let mut digest = Digest::new();
+    digest.add(describe("external", ExternalInputs::RECORD).as_bytes());
+    digest.add(describe("memory", CommonMemory::RECORD).as_bytes());
+    digest.to_string()
 }
 
 /// Version of the layout: a digest of [`description`], so that it changes when and only when an image means

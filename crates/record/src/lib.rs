@@ -27,6 +27,7 @@
 pub mod channels;
 pub mod delta;
 pub mod error;
+pub mod golden;
 pub mod input;
 pub mod layout;
 pub mod proto;
@@ -35,6 +36,7 @@ pub mod recorder;
 pub mod remarks;
 pub mod replay;
 pub mod scene;
+pub mod sink;
 pub mod writer;
 
 pub use error::{ReadError, RecordError, ReplayError};
@@ -42,4 +44,5 @@ pub use input::{Attachment, CellFrame, CellModel, End, Epoch, Link, Setup};
 pub use proto::foxglove::{Level, Transform};
 pub use reader::Log;
 pub use recorder::{Lost, Pace, Recorder, Summary};
-pub use replay::{Difference, ReplayReport, replay};
+pub use replay::{Difference, Options, ReplayReport, replay, replay_with};
+pub use writer::Timing;

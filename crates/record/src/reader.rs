@@ -13,23 +13,19 @@ use mcap::{
     read::{ChunkFlattener, LinearReader, Options},
     records::Record,
 };
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs},
-    record::Field,
-    tick::Tick,
-};
+use rcs_core::tick::Tick;
 
 use crate::{
-    delta,
+    delta::Codec,
     error::ReadError,
-    input::Attachment,
+    input::{Attachment, Link},
     layout,
     proto::{
-        foxglove::Level,
+        foxglove::{self, Level, Transform},
         wire::{Fields, Value},
     },
-    scene::{CELL_TOPIC, DIGEST},
-    writer::{END, LAYOUT, LOG_TOPIC, REPLAY, RUN, replay_field},
+    scene::{TF, TF_STATIC},
+    writer::{Codecs, END, LAYOUT, LOG_TOPIC, REPLAY, RUN, Timing, replay_field},
 };
 
 /// A log that was read.
@@ -59,6 +55,10 @@ pub struct LoggedTick {
     pub memory: Vec<u8>,
     /// Byte image of [`levels::ladder::LadderState`] after the tick, where it was recorded.
     pub state: Option<Vec<u8>>,
+    /// Fingerprint of the simulated cell before the tick, where it was recorded.
+    pub world: Option<u64>,
+    /// How punctual the tick was, where it was recorded.
+    pub timing: Option<Timing>,
 }
 
 /// A line on `/log`.
@@ -149,11 +149,18 @@ impl Log {
 
     /// The recorded ticks, in order, up to the end or the damage.
     pub fn ticks(&self) -> impl Iterator<Item = Result<LoggedTick, ReadError>> {
-        let external = vec![0; ExternalInputs::SIZE];
-        let memory = vec![0; CommonMemory::SIZE];
-        let mut last = LoggedTick { tick: Tick::BEFORE_START, gap: 0, external, memory, state: None };
+        let codecs = Codecs::new();
+        let mut last = LoggedTick {
+            tick: Tick::BEFORE_START,
+            gap: 0,
+            external: vec![0; codecs.external.size()],
+            memory: vec![0; codecs.memory.size()],
+            state: None,
+            world: None,
+            timing: None,
+        };
         self.messages(REPLAY).map(move |(_, data)| {
-            if advance(&mut last, &data) {
+            if advance(&codecs, &mut last, &data) {
                 Ok(last.clone())
             } else {
                 Err(ReadError::Damaged { tick: last.tick.0 })
@@ -180,14 +187,14 @@ impl Log {
 
     /// The digests of the simulated cell, as the controller met it in each tick; none of a real one.
     pub fn cell_digests(&self) -> impl Iterator<Item = (Tick, u64)> {
-        self.messages(CELL_TOPIC).filter_map(|(tick, data)| {
-            Fields(&data).find_map(|field| match field {
-                (number, Value::Bytes(digest)) if number == u64::from(DIGEST) => {
-                    Some((tick, u64::from_le_bytes(digest.try_into().ok()?)))
-                }
-                _ => None,
-            })
-        })
+        self.ticks().map_while(Result::ok).filter_map(|logged| Some((logged.tick, logged.world?)))
+    }
+
+    /// Where links are from a tick on, in the order of the log: what never moves first, then what moved in each
+    /// tick.
+    pub fn places(&self) -> impl Iterator<Item = (Tick, Vec<(Link, Transform)>)> {
+        let fixed = self.messages(TF_STATIC);
+        fixed.chain(self.messages(TF)).map(|(tick, data)| (tick, foxglove::take_transforms(&data)))
     }
 
     /// The messages of a topic with their ticks.
@@ -214,9 +221,9 @@ fn records(bytes: &[u8]) -> Result<ChunkFlattener<'_>, McapError> {
 }
 
 /// Go on from one recorded tick to the next; false if the message does not fit.
-fn advance(last: &mut LoggedTick, data: &[u8]) -> bool {
+fn advance(codecs: &Codecs, last: &mut LoggedTick, data: &[u8]) -> bool {
     let (mut full, mut sound) = (false, true);
-    last.state = None;
+    (last.state, last.world, last.timing) = (None, None, None);
     let number = |field: u32| u64::from(field);
     for (field, value) in Fields(data) {
         match value {
@@ -224,15 +231,24 @@ fn advance(last: &mut LoggedTick, data: &[u8]) -> bool {
             Value::Number(value) if field == number(replay_field::GAP) => last.gap = value,
             Value::Number(value) if field == number(replay_field::FULL) => full = value != 0,
             Value::Bytes(delta) if field == number(replay_field::EXTERNAL) => {
-                sound &= change(&mut last.external, delta, full);
+                sound &= change(&codecs.external, &mut last.external, delta, full);
             }
             Value::Bytes(delta) if field == number(replay_field::MEMORY) => {
-                sound &= change(&mut last.memory, delta, full);
+                sound &= change(&codecs.memory, &mut last.memory, delta, full);
             }
             Value::Bytes(delta) if field == number(replay_field::STATE) => {
-                let mut state = vec![0; levels::ladder::LadderState::SIZE];
-                sound &= delta::apply(delta, &mut state);
+                let mut state = vec![0; codecs.state.size()];
+                sound &= codecs.state.apply(delta, &mut state);
                 last.state = Some(state);
+            }
+            Value::Bytes(world) if field == number(replay_field::WORLD) => {
+                last.world = world.try_into().map(u64::from_le_bytes).ok();
+            }
+            Value::Number(value) if field == number(replay_field::CONTROLLER_NS) => {
+                last.timing.get_or_insert_default().controller_ns = value;
+            }
+            Value::Number(value) if field == number(replay_field::SKIPPED) => {
+                last.timing.get_or_insert_default().skipped = value;
             }
             _ => {}
         }
@@ -240,9 +256,9 @@ fn advance(last: &mut LoggedTick, data: &[u8]) -> bool {
     sound
 }
 
-fn change(image: &mut [u8], delta: &[u8], full: bool) -> bool {
+fn change(codec: &Codec, image: &mut [u8], delta: &[u8], full: bool) -> bool {
     if full {
         image.fill(0);
     }
-    delta::apply(delta, image)
+    codec.apply(delta, image)
 }

@@ -13,7 +13,6 @@
 
 use std::{
     fs::File,
-    io::BufWriter,
     path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
     thread::{self, JoinHandle},
@@ -32,7 +31,8 @@ use crate::{
     input::{Attachment, CellFrame, End, Setup},
     proto::foxglove::Level,
     remarks::Remark,
-    writer::{FULL_SET, LogWriter, TickRecord, Written},
+    sink::Sink,
+    writer::{FULL_SET, LogWriter, TickRecord, Timing, Written},
 };
 
 /// Ticks that the ring holds: ten seconds of real time.
@@ -92,6 +92,7 @@ pub struct Recorder {
     files: Producer<(Tick, Attachment)>,
     pace: Pace,
     last_state: Option<Tick>,
+    timing: Option<Timing>,
     gap: u32,
     lost: Lost,
     path: PathBuf,
@@ -139,10 +140,10 @@ impl Recorder {
             std::fs::create_dir_all(directory).map_err(create)?;
         }
         let file = File::create(path).map_err(create)?;
-        let log = LogWriter::create(BufWriter::new(file), setup)?;
+        let log = LogWriter::create(Sink::new(file, pace == Pace::Drop), setup)?;
         let tick = Tick::BEFORE_START;
         let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
-        let (ticks, tick_consumer) = ring(RING, TickRecord { tick, gap: 0, external, memory });
+        let (ticks, tick_consumer) = ring(RING, TickRecord { tick, gap: 0, external, memory, timing: None });
         let (states, state_consumer) = ring(STATE_RING, (tick, LadderState::default()));
         let (cells, cell_consumer) = ring(RING, CellFrame::new(tick));
         let note = Note { tick, level: Level::Info, source: [0; 16], text: [0; NOTE] };
@@ -163,8 +164,21 @@ impl Recorder {
             .name("log".into())
             .spawn(move || drain.run())
             .map_err(|_| RecordError::Thread)?;
-        let (last_state, gap, lost, path) = (None, 0, Lost::default(), path.to_owned());
-        Ok(Self { ticks, states, cells, notes, files, pace, last_state, gap, lost, path, end, thread })
+        Ok(Self {
+            ticks,
+            states,
+            cells,
+            notes,
+            files,
+            pace,
+            last_state: None,
+            timing: None,
+            gap: 0,
+            lost: Lost::default(),
+            path: path.to_owned(),
+            end,
+            thread,
+        })
     }
 
     /// Where everything in the cell is; before [`Recorder::tick`] of the same tick.
@@ -192,6 +206,12 @@ impl Recorder {
         }
     }
 
+    /// How punctual the tick is; before [`Recorder::tick`] of the same tick. A run that never calls this writes
+    /// the same bytes each time.
+    pub const fn timing(&mut self, timing: Timing) {
+        self.timing = Some(timing);
+    }
+
     /// What the processes read and wrote in a tick. `state` is asked for the states after it with the first
     /// tick, once a second, and after a gap.
     pub fn tick(
@@ -214,7 +234,8 @@ impl Recorder {
         {
             self.last_state = Some(tick);
         }
-        let record = TickRecord { tick, gap: self.gap, external: *external, memory: *memory };
+        let (gap, timing) = (self.gap, self.timing.take());
+        let record = TickRecord { tick, gap, external: *external, memory: *memory, timing };
         if self.ticks.push(record).is_ok() {
             self.gap = 0;
         }
@@ -263,7 +284,7 @@ fn has_room<T>(ring: &Producer<T>, pace: Pace) -> bool {
 
 /// The writer's end of the ring.
 struct Drain {
-    log: LogWriter<BufWriter<File>>,
+    log: LogWriter<Sink>,
     path: PathBuf,
     ticks: Consumer<TickRecord>,
     states: Consumer<(Tick, LadderState)>,

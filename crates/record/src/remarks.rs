@@ -1,12 +1,14 @@
 //! The lines on `/log`: what a person wants to have been told, found by comparing two ticks.
 //!
-//! Commands as they go down the ladder, the status of the job, and each failure as one sentence: which
-//! process, why, and by which row of which decision table.
+//! Commands as they go down the ladder, the status of the job, what the robot met (a condition of a guarded
+//! move, a part, a gripper), what the link suffered, and each failure as one sentence: which process, why, and
+//! by which row of which decision table.
 
 use rcs_core::interface::{
     CommonMemory, Header, Reason,
     hws::{HwsCommand, HwsReport},
-    t3i::LinkFault,
+    prim::{PrimReport, PrimVerb},
+    t3i::{LinkFault, T3iStatus},
 };
 
 use crate::{channels::HeaderPlace, proto::foxglove::Level};
@@ -36,6 +38,8 @@ pub fn remarks(
 ) -> Vec<Remark> {
     let mut said = Vec::new();
     commands(headers, hws, before, after, &mut said);
+    encounters(headers, before, after, &mut said);
+    link(headers, before, after, &mut said);
     failures(headers, before, after, &mut said);
     said
 }
@@ -63,6 +67,71 @@ fn commands(
         if was.number != is.number {
             say(is.level, is.from, down(is.to, &is.words));
         }
+    }
+}
+
+/// What the robot meets: the condition of a guarded move, an object between the fingers, a gripper, the
+/// operator at the joystick box.
+fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, said: &mut Vec<Remark>) {
+    let mut say = |field: &str, text: String| {
+        said.push(Remark { source: name_of(headers, field), text, ..Remark::default() });
+    };
+    let (was, is) = (before.prim.status.report, after.prim.status.report);
+    let guarded = matches!(before.emove.prim.command, PrimVerb::GoUntil | PrimVerb::GoWhile);
+    if was != is && (guarded || is == PrimReport::JoystickOn) {
+        let (command, sensor) = (before.emove.prim.command, &before.emove.prim.sensor);
+        match is {
+            PrimReport::Done | PrimReport::DetectedErr | PrimReport::NotDetected => {
+                say("prim", format!("{command} {sensor}: {is}"));
+            }
+            PrimReport::JoystickOn => say("prim", "the joystick box is on".to_owned()),
+            _ => {}
+        }
+    }
+    let (was, is) = (&before.subtask.status, &after.subtask.status);
+    if was.held_object != is.held_object || was.object_held != is.object_held {
+        match is.object_held {
+            true => say("subtask", format!("holds {}", is.held_object)),
+            false if was.object_held => say("subtask", format!("no longer holds {}", was.held_object)),
+            false => {}
+        }
+    }
+    if was.end_effector_id != is.end_effector_id {
+        match is.end_effector_id {
+            0 => say("subtask", format!("gripper {} is off", was.end_effector_id)),
+            id => say("subtask", format!("gripper {id} is on")),
+        }
+    }
+}
+
+/// What the link to the robot suffers.
+fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, said: &mut Vec<Remark>) {
+    let mut say = |level, text: String| {
+        said.push(Remark { level, source: name_of(headers, "t3i"), text, ..Remark::default() });
+    };
+    let (was, is) = (&before.t3i.status, &after.t3i.status);
+    match (was.link_running, is.link_running) {
+        (false, true) => say(Level::Info, "the link to the robot runs".to_owned()),
+        (true, false) => say(Level::Warning, "the link to the robot is lost".to_owned()),
+        _ => {}
+    }
+    let counts = |status: &T3iStatus| {
+        let counters = &status.counters;
+        [
+            (Level::Warning, "NAK", counters.naks),
+            (Level::Warning, "frame without an answer", counters.timeouts),
+            (Level::Warning, "report with a wrong checksum", counters.checksum_errors),
+            (Level::Info, "re-start", counters.restarts),
+        ]
+    };
+    for ((_, _, was), (level, what, is)) in counts(was).into_iter().zip(counts(is)) {
+        if is > was {
+            say(level, format!("{what}, {is} so far"));
+        }
+    }
+    // Only the first of a row of points: a fast move is limited in every tick.
+    if is.counters.limited > was.counters.limited && before.t3i.header.row != after.t3i.header.row {
+        say(Level::Info, "the velocity limits hold a point back".to_owned());
     }
 }
 
@@ -215,7 +284,7 @@ mod tests {
             jaws::JawsVerb,
             pedestal::{PedestalVerb, TableVerb},
         },
-        name::Name16,
+        name::{Name10, Name16},
     };
 
     #[test]
@@ -269,6 +338,51 @@ mod tests {
         let sources: Vec<_> = said.iter().map(|remark| remark.source.as_str()).collect();
         assert_eq!(sources, ["V-Grip", "Tool-Grip", "Active Pedestal", "Pedestal Hand", "Rotary Table"]);
         assert!(said.iter().all(|remark| remark.level == Level::Error));
+    }
+
+    #[test]
+    fn what_the_robot_meets_is_told() {
+        let mut before = CommonMemory::default();
+        before.emove.prim.command = PrimVerb::GoUntil;
+        before.emove.prim.sensor = Name10::new("TOUCH").unwrap();
+        before.prim.status.report = PrimReport::Executing;
+        let mut after = before;
+        after.prim.status.report = PrimReport::Done;
+        (after.subtask.status.object_held, after.subtask.status.end_effector_id) = (true, 1);
+        after.subtask.status.held_object = Name16::new("LINKBAR1").unwrap();
+        let texts = |before, after| {
+            let said = remarks(&headers(), &HwsCommand::default(), before, after);
+            said.into_iter().map(|remark| remark.text).collect::<Vec<_>>()
+        };
+        assert_eq!(texts(&before, &after), ["GO-UNTIL TOUCH: done", "holds LINKBAR1", "gripper 1 is on"]);
+        let mut later = after;
+        (later.subtask.status.object_held, later.subtask.status.end_effector_id) = (false, 0);
+        later.prim.status.report = PrimReport::JoystickOn;
+        assert_eq!(
+            texts(&after, &later),
+            ["the joystick box is on", "no longer holds LINKBAR1", "gripper 1 is off"]
+        );
+    }
+
+    #[test]
+    fn what_the_link_suffers_is_told() {
+        let mut before = CommonMemory::default();
+        before.t3i.status.link_running = true;
+        before.t3i.status.counters.naks = 2;
+        let mut after = before;
+        after.t3i.status.link_running = false;
+        after.t3i.status.counters.naks = 3;
+        after.t3i.status.counters.restarts = 1;
+        let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
+        let told: Vec<_> = said.iter().map(|remark| (remark.level, remark.text.as_str())).collect();
+        assert_eq!(
+            told,
+            [
+                (Level::Warning, "the link to the robot is lost"),
+                (Level::Warning, "NAK, 3 so far"),
+                (Level::Info, "re-start, 1 so far")
+            ]
+        );
     }
 
     #[test]

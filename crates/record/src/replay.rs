@@ -5,7 +5,8 @@
 //! recorded. The first difference ends the comparison: what comes after it follows from it.
 //!
 //! Where ticks are missing, nothing can be computed; the replay goes on from the states recorded with the
-//! first tick after the gap.
+//! first tick after the gap. In the same way a replay can begin in the middle: states are recorded once a
+//! second. Other task data than those of the log answer the question what they would have changed.
 
 use std::{
     collections::BTreeMap,
@@ -55,6 +56,24 @@ impl std::fmt::Display for Difference {
     }
 }
 
+/// What of a log is replayed, and with which task data.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Task data instead of those in the log. What was loaded during the run is added to them as it was then.
+    pub data: Option<Store>,
+    /// The replay begins at the last recorded states before this tick.
+    pub from: Option<Tick>,
+    /// Last tick that is computed.
+    pub until: Option<Tick>,
+}
+
+impl Options {
+    /// The digest at the end of the run is that of the replay only if the replay has all ticks in it.
+    const fn is_whole(&self) -> bool {
+        self.from.is_none() && self.until.is_none()
+    }
+}
+
 /// What a replay found.
 #[derive(Clone, Debug)]
 pub struct ReplayReport {
@@ -92,28 +111,33 @@ impl ReplayReport {
     }
 }
 
-/// Replay a log.
+/// Replay a whole log with its own task data.
 ///
 /// # Errors
 /// [`ReplayError`] if the log cannot be read, is of another layout, or its task data do not load. A
 /// difference is no error: it is in the report.
 pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
+    replay_with(path, &Options::default())
+}
+
+/// Replay a log, or a part of it.
+///
+/// # Errors
+/// As [`replay`]; [`ReplayError::Empty`] if the part holds no tick.
+pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, ReplayError> {
     let started = Instant::now();
     let log = Log::open(path)?;
     log.check_layout()?;
-    let generations = generations(&log)?;
+    let generations = match &options.data {
+        Some(data) => grown(data.clone(), &log.attachments)?,
+        None => generations(&log)?,
+    };
     let mut replayer = Replayer::new();
-    let mut first_difference = None;
-    for logged in log.ticks() {
-        first_difference = replayer.tick(&logged?, &generations)?;
-        if first_difference.is_some() {
-            break;
-        }
-    }
+    let first_difference = replayer.run(&log, options, &generations)?;
     if replayer.ticks == 0 {
         return Err(ReplayError::Empty);
     }
-    let digest = log.end.as_ref().and_then(|end| end.get("digest"));
+    let digest = log.end.as_ref().filter(|_| options.is_whole()).and_then(|end| end.get("digest"));
     Ok(ReplayReport {
         ticks: replayer.ticks,
         skipped: replayer.skipped,
@@ -131,13 +155,17 @@ pub fn replay(path: &Path) -> Result<ReplayReport, ReplayError> {
 /// # Errors
 /// [`ReplayError::TaskData`] with the report of the loader.
 pub fn task_data(log: &Log) -> Result<Store, ReplayError> {
+    let (store, _) = Store::from_sources(log_sources(&log.attachments))
+        .map_err(|report| ReplayError::TaskData(report.render(false)))?;
+    Ok(store)
+}
+
+/// The task data among the attachments, in the order in which they were loaded.
+pub(crate) fn log_sources(attachments: &[Attachment]) -> Vec<Source> {
     let source = |attachment: &Attachment| {
         Some(attachment.source(attachment.name.strip_prefix(Attachment::TASK_DATA)?))
     };
-    let sources = log.attachments.iter().filter_map(source).collect();
-    let (store, _) =
-        Store::from_sources(sources).map_err(|report| ReplayError::TaskData(report.render(false)))?;
-    Ok(store)
+    attachments.iter().filter_map(source).collect()
 }
 
 /// The task data of a log in all their generations: as loaded, and after each reload.
@@ -145,9 +173,24 @@ pub fn task_data(log: &Log) -> Result<Store, ReplayError> {
 /// # Errors
 /// [`ReplayError::TaskData`] with the report of the loader.
 pub fn generations(log: &Log) -> Result<Vec<Store>, ReplayError> {
-    let mut generations = vec![task_data(log)?];
+    generations_of(log_sources(&log.attachments), &log.attachments)
+}
+
+/// The generations that grow out of task data by the reloads among the attachments.
+pub(crate) fn generations_of(
+    sources: Vec<Source>,
+    attachments: &[Attachment],
+) -> Result<Vec<Store>, ReplayError> {
+    let (first, _) =
+        Store::from_sources(sources).map_err(|report| ReplayError::TaskData(report.render(false)))?;
+    grown(first, attachments)
+}
+
+/// A store, and what it became by each reload among the attachments.
+pub(crate) fn grown(first: Store, attachments: &[Attachment]) -> Result<Vec<Store>, ReplayError> {
+    let mut generations = vec![first];
     let mut reloads: BTreeMap<u32, Vec<Source>> = BTreeMap::new();
-    for (generation, source) in log.attachments.iter().filter_map(Attachment::as_reload) {
+    for (generation, source) in attachments.iter().filter_map(Attachment::as_reload) {
         reloads.entry(generation).or_default().push(source);
     }
     for sources in reloads.into_values() {
@@ -191,6 +234,42 @@ impl Replayer {
             skipped: 0,
             computing: Duration::ZERO,
         }
+    }
+
+    /// Compute the ticks of a log up to the first difference.
+    fn run(
+        &mut self,
+        log: &Log,
+        options: &Options,
+        generations: &[Store],
+    ) -> Result<Option<Difference>, ReplayError> {
+        // Ticks from the last recorded states to where the replay is to begin.
+        let mut run_up: Vec<LoggedTick> = Vec::new();
+        for logged in log.ticks() {
+            let logged = logged?;
+            if options.until.is_some_and(|until| logged.tick > until) {
+                break;
+            }
+            if options.from.is_some_and(|from| logged.tick < from) {
+                if logged.state.is_some() {
+                    run_up.clear();
+                }
+                run_up.push(logged);
+                continue;
+            }
+            for earlier in run_up.drain(..) {
+                if self.ticks == 0 && self.before.is_some() && earlier.state.is_some() {
+                    self.take_over(&earlier)?;
+                    self.last = earlier.tick;
+                } else if let Some(difference) = self.tick(&earlier, generations)? {
+                    return Ok(Some(difference));
+                }
+            }
+            if let Some(difference) = self.tick(&logged, generations)? {
+                return Ok(Some(difference));
+            }
+        }
+        Ok(None)
     }
 
     /// Compute a tick again, or take over what was recorded if there is a gap before it.

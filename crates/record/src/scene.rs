@@ -1,4 +1,4 @@
-//! The moving cell: `/tf`, `/tf_static`, `/joint_states` and `/robot_description`; and `/cell`, the digest of everything in it.
+//! The moving cell: `/tf`, `/tf_static`, `/joint_states` and `/robot_description`.
 //!
 //! Links travel relative to their parents in the URDF, so that a description and its transforms can never
 //! contradict each other in a viewer, and so that a link that only turns repeats its position.
@@ -6,27 +6,25 @@
 use std::io::{Seek, Write};
 
 use mcap::McapResult;
-use prost_types::field_descriptor_proto::Type;
 use rcs_core::tick::Tick;
 
 use crate::{
     channels::Output,
     input::{CellFrame, CellModel},
     proto::{
-        descriptor::{self, encode_set, field, file},
         foxglove::{self, Transform},
-        ros, wire,
+        ros,
     },
 };
 
-/// Topic of the digests of the cell.
-pub const CELL_TOPIC: &str = "/cell";
-/// Field number of the digest in its message.
-pub const DIGEST: u32 = 1;
+/// Steps of a metre, of a radian, and of the unit of a quaternion, in the log: 8 µm and 8 µrad are finer than
+/// any picture, and the zeros behind them compress. What the controller saw is on `/replay`, to the bit.
+const STEP: f64 = 131_072.0;
 
-/// Steps of a metre, and of the unit of a quaternion, in the log: 1 µm and 1 µrad are finer than any picture,
-/// and the zeros behind them compress.
-const STEP: f64 = 1_048_576.0;
+/// Topic of the links that move.
+pub const TF: &str = "/tf";
+/// Topic of the links that do not.
+pub const TF_STATIC: &str = "/tf_static";
 
 /// Encoding of the definitions of ROS 2 messages, and of the messages.
 const ROS2: (&str, &str) = ("ros2msg", "cdr");
@@ -34,7 +32,6 @@ const ROS2: (&str, &str) = ("ros2msg", "cdr");
 /// The channels of a cell.
 pub struct Scene {
     model: CellModel,
-    digests: u16,
     moving: u16,
     fixed: u16,
     joints: u16,
@@ -47,17 +44,16 @@ pub struct Scene {
 impl Scene {
     /// Open the channels of a cell.
     pub fn open<W: Write + Seek>(output: &mut Output<W>, model: CellModel) -> McapResult<Self> {
-        let digests = output.protobuf(CELL_TOPIC, "rcs.CellTick", &cell_descriptor())?;
         let descriptors = foxglove::frame_transforms_descriptor();
-        let moving = output.protobuf("/tf", foxglove::FRAME_TRANSFORMS, &descriptors)?;
-        let fixed = output.protobuf("/tf_static", foxglove::FRAME_TRANSFORMS, &descriptors)?;
+        let moving = output.protobuf(TF, foxglove::FRAME_TRANSFORMS, &descriptors)?;
+        let fixed = output.protobuf(TF_STATIC, foxglove::FRAME_TRANSFORMS, &descriptors)?;
         let definition = ros::JOINT_STATE_DEFINITION.as_bytes();
         let joints = output.channel("/joint_states", ros::JOINT_STATE, ROS2.0, definition, ROS2.1)?;
         let definition = ros::STRING_DEFINITION.as_bytes();
         let description = output.channel("/robot_description", ros::STRING, ROS2.0, definition, ROS2.1)?;
         let last = vec![None; model.links.len()];
         let (described, last_joints) = (false, Vec::new());
-        Ok(Self { model, digests, moving, fixed, joints, description, described, last, last_joints })
+        Ok(Self { model, moving, fixed, joints, description, described, last, last_joints })
     }
 
     /// Write what moved since the frame before, or everything that moves; before the first frame also what
@@ -74,11 +70,6 @@ impl Scene {
         }
         let time = output.epoch.of(frame.tick);
         let mut data = Vec::new();
-        if let Some(digest) = frame.digest {
-            wire::fixed64(DIGEST, digest, &mut data);
-            output.put(self.digests, frame.tick, &data)?;
-            data.clear();
-        }
         for ((link, place), last) in self.model.links.iter().zip(&frame.transforms).zip(&mut self.last) {
             let place = rounded(place);
             if all || *last != Some(place) {
@@ -89,12 +80,13 @@ impl Scene {
         if !data.is_empty() {
             output.put(self.moving, frame.tick, &data)?;
         }
-        let joints = frame.joints.get(..self.model.joints.len()).unwrap_or_default();
+        let joints: Vec<f64> =
+            frame.joints.iter().take(self.model.joints.len()).copied().map(round).collect();
         if all || joints != self.last_joints {
             data.clear();
-            ros::joint_state(time, &self.model.joints, joints, &mut data);
+            ros::joint_state(time, &self.model.joints, &joints, &mut data);
             output.put(self.joints, frame.tick, &data)?;
-            self.last_joints = joints.to_vec();
+            self.last_joints = joints;
         }
         Ok(())
     }
@@ -113,15 +105,12 @@ impl Scene {
     }
 }
 
-fn cell_descriptor() -> Vec<u8> {
-    let number = i32::try_from(DIGEST).unwrap_or(i32::MAX);
-    let message = descriptor::message("CellTick", vec![field("digest", number, Type::Fixed64)]);
-    encode_set(vec![file("rcs_cell.proto", descriptor::PACKAGE, &[], vec![message])])
+/// Adding zero turns -0.0 into 0.0: a sign that flickers around zero is no movement.
+fn round(value: f64) -> f64 {
+    (value * STEP).round() / STEP + 0.0
 }
 
 fn rounded(transform: &Transform) -> Transform {
-    // Adding zero turns -0.0 into 0.0: a sign that flickers around zero is no movement.
-    let round = |value: f64| (value * STEP).round() / STEP + 0.0;
     // Both signs of a quaternion are the same orientation; one of them is written.
     let sign = if transform.rotation[3] < 0.0 { -1.0 } else { 1.0 };
     Transform {

@@ -3,18 +3,19 @@
 //! | channel | message | written |
 //! |---|---|---|
 //! | `/replay` | `rcs.ReplayTick`: byte images of inputs, output buffers and states | every tick |
-//! | `/external/...`, `/task/...`, `/prim/...` ... | the buffers, by field | on change, and once a second |
-//! | `/task/row`, `/prim/row` ... | `rcs.Row`: the row that fired, as text | on change, and once a second |
-//! | `/tf`, `/joint_states`, `/robot_description` | the moving cell | on change, and once a second |
-//! | `/cell` | `rcs.CellTick`: digest of everything in the simulated cell | every tick |
+//! | `/external/...`, `/task/...`, `/prim/...` ... | the buffers, by field | on change, and every ten seconds |
+//! | `/task/row`, `/prim/row` ... | `rcs.Row`: the row that fired, as text | on change, and every ten seconds |
+//! | `/tf`, `/joint_states`, `/robot_description` | the moving cell | on change, and every ten seconds |
 //! | `/log` | `foxglove.Log` | when there is something to say |
 //!
 //! `/replay` alone is lossless: message *n* holds the difference of the images to those of message *n*-1, and
 //! once a second the whole images and the states after that tick, where a replay can start. The other
-//! channels are the same values for people.
+//! channels are the same values for people; there a clock or a number that counts on by itself in every tick
+//! is no change (see [`crate::channels`]).
 //!
-//! Once a second of simulated time the open chunk is written out, and the next one begins with everything:
-//! what a killed run loses, and how far a viewer must look back, is a second.
+//! Once a second of simulated time the open chunk is written out, and the next one begins with the whole
+//! images: a killed run loses a second. Buffers that do not change are repeated less often: each message
+//! costs sixteen bytes of index besides its own, and fifty buffers that stand still would be a fifth of a log.
 
 use std::{
     collections::BTreeMap,
@@ -32,7 +33,7 @@ use rcs_core::{
 
 use crate::{
     channels::{Buffers, HeaderPlace, Output, Rows, headers},
-    delta,
+    delta::Codec,
     input::{Attachment, CellFrame, End, Setup},
     layout,
     proto::{
@@ -45,10 +46,16 @@ use crate::{
     scene::Scene,
 };
 
-/// Ticks from one full set to the next: a second.
+/// Ticks from one set of whole images, and of states, to the next: a second.
 pub const FULL_SET: u64 = 25;
-/// Uncompressed size at which a chunk is closed before its second is over, bytes.
-const CHUNK: u64 = 64 * 1024;
+/// Full sets from one repetition of all buffers for people to the next: ten seconds.
+const REPETITION: u64 = 10;
+/// Uncompressed size at which a chunk is closed before its second is over, bytes: three times what a second
+/// of a moving cell takes.
+const CHUNK: u64 = 256 * 1024;
+/// Level of the compression: a fourteenth less than level 3, at 2 ms a second of a moving cell. Level 19 would
+/// take another sixteenth, and forty times as long.
+const COMPRESSION: u32 = 9;
 /// Name of the metadata written at the start.
 pub const RUN: &str = "rcs-run";
 /// Name of the metadata written at the end.
@@ -72,8 +79,14 @@ pub mod replay_field {
     pub const EXTERNAL: u32 = 4;
     /// Output buffers after the tick.
     pub const MEMORY: u32 = 5;
-    /// States of the processes after the tick; the whole image, not in every message.
+    /// States of the processes after the tick, as a difference from zeros; not in every message.
     pub const STATE: u32 = 6;
+    /// Fingerprint of the simulated cell before the tick.
+    pub const WORLD: u32 = 7;
+    /// Time of the controller, nanoseconds.
+    pub const CONTROLLER_NS: u32 = 8;
+    /// Slots of the 40 ms grid that were skipped so far.
+    pub const SKIPPED: u32 = 9;
 }
 
 /// Everything that the ladder read and wrote in a tick.
@@ -87,6 +100,17 @@ pub struct TickRecord {
     pub external: ExternalInputs,
     /// What they wrote.
     pub memory: CommonMemory,
+    /// How punctual the tick was; none in a run whose log is to be the same bytes each time.
+    pub timing: Option<Timing>,
+}
+
+/// How punctual a tick was. It is no part of the digest, and a replay does not look at it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Timing {
+    /// Time that the controller took, nanoseconds.
+    pub controller_ns: u64,
+    /// Slots of the 40 ms grid that were skipped since the start of the run.
+    pub skipped: u64,
 }
 
 /// A log that is being written.
@@ -99,12 +123,32 @@ pub struct LogWriter<W: Write + Seek> {
     rows: Rows,
     headers: Vec<HeaderPlace>,
     scene: Option<Scene>,
+    codecs: Codecs,
+    zeros: Images,
     last: Images,
     now: Images,
     before: CommonMemory,
     last_full: Option<Tick>,
+    full_sets: u64,
     ticks: u64,
     gaps: u64,
+}
+
+/// What makes the deltas of the images.
+pub(crate) struct Codecs {
+    pub(crate) external: Codec,
+    pub(crate) memory: Codec,
+    pub(crate) state: Codec,
+}
+
+impl Codecs {
+    pub(crate) fn new() -> Self {
+        Self {
+            external: Codec::new(ExternalInputs::RECORD),
+            memory: Codec::new(CommonMemory::RECORD),
+            state: Codec::new(LadderState::RECORD),
+        }
+    }
 }
 
 /// The byte images of a tick.
@@ -129,8 +173,10 @@ impl<W: Write + Seek> LogWriter<W> {
         let options = WriteOptions::new()
             .profile("")
             .library(concat!("rcs-record ", env!("CARGO_PKG_VERSION")))
-            .compression(Some(Compression::Lz4))
-            .compression_level(6)
+            .compression(Some(Compression::Zstd))
+            .compression_level(COMPRESSION)
+            // In this thread: the file must not depend on how many cores there are.
+            .compression_threads(0)
             .chunk_size(Some(CHUNK));
         let mut output = Output { mcap: options.create(sink)?, epoch: setup.epoch };
         write_head(&mut output, &setup)?;
@@ -150,10 +196,13 @@ impl<W: Write + Seek> LogWriter<W> {
             rows,
             headers: headers(),
             scene,
+            codecs: Codecs::new(),
+            zeros: Images::zeros(),
             last: Images::zeros(),
             now: Images::zeros(),
             before: CommonMemory::default(),
             last_full: None,
+            full_sets: 0,
             ticks: 0,
             gaps: 0,
         })
@@ -173,6 +222,8 @@ impl<W: Write + Seek> LogWriter<W> {
         let tick = record.tick;
         let due = self.last_full.is_none_or(|last| tick.since(last) >= FULL_SET);
         let full = due || record.gap > 0;
+        let all = full && (record.gap > 0 || self.full_sets.is_multiple_of(REPETITION));
+        self.full_sets += u64::from(full);
         if full {
             // The second that ends here is safe before the next one begins.
             if self.last_full.is_some() {
@@ -182,7 +233,7 @@ impl<W: Write + Seek> LogWriter<W> {
         }
         record.external.encode(&mut Writer::new(&mut self.now.external));
         record.memory.encode(&mut Writer::new(&mut self.now.memory));
-        self.put_replay(record, state, full)?;
+        self.put_replay(record, state, cell.and_then(|frame| frame.digest), full)?;
         if record.gap > 0 {
             self.gaps += 1;
             let text = format!("{} ticks are missing before this one: the log could not keep up", record.gap);
@@ -191,11 +242,11 @@ impl<W: Write + Seek> LogWriter<W> {
                 &Remark { level: Level::Warning, source: "log".into(), text, ..Remark::default() },
             )?;
         }
-        self.external.write(&mut self.output, tick, &self.last.external, &self.now.external, full)?;
-        self.memory.write(&mut self.output, tick, &self.last.memory, &self.now.memory, full)?;
-        self.rows.write(&mut self.output, tick, &self.now.memory, full)?;
+        self.external.write(&mut self.output, tick, &self.last.external, &self.now.external, all)?;
+        self.memory.write(&mut self.output, tick, &self.last.memory, &self.now.memory, all)?;
+        self.rows.write(&mut self.output, tick, &self.now.memory, all)?;
         if let (Some(scene), Some(frame)) = (&mut self.scene, cell) {
-            scene.write(&mut self.output, frame, full)?;
+            scene.write(&mut self.output, frame, all)?;
         }
         for remark in remarks(&self.headers, &record.external.hws, &self.before, &record.memory) {
             self.remark(tick, &remark)?;
@@ -242,32 +293,45 @@ impl<W: Write + Seek> LogWriter<W> {
             ("lost_notes", lost.notes.to_string()),
             ("lost_files", lost.files.to_string()),
         ];
-        let metadata = entries.map(|(key, value)| (key.to_owned(), value));
-        self.output.mcap.write_metadata(&Metadata { name: END.into(), metadata: metadata.into() })?;
+        let mut metadata = end.facts.clone();
+        metadata.extend(entries.map(|(key, value)| (key.to_owned(), value)));
+        self.output.mcap.write_metadata(&Metadata { name: END.into(), metadata })?;
         self.output.mcap.finish()?;
         let mut sink = self.output.mcap.into_inner();
         sink.flush()?;
         Ok(Written { ticks: self.ticks, bytes: sink.stream_position()? })
     }
 
-    fn put_replay(&mut self, record: &TickRecord, state: Option<&LadderState>, full: bool) -> McapResult<()> {
-        if full {
-            self.last = Images::zeros();
-        }
+    fn put_replay(
+        &mut self,
+        record: &TickRecord,
+        state: Option<&LadderState>,
+        world: Option<u64>,
+        full: bool,
+    ) -> McapResult<()> {
         let mut data = Vec::new();
         wire::unsigned(replay_field::TICK, record.tick.0, &mut data);
         wire::unsigned(replay_field::GAP, record.gap.into(), &mut data);
         wire::unsigned(replay_field::FULL, full.into(), &mut data);
-        let (last, now) = (&self.last, &self.now);
+        let (last, now) = (if full { &self.zeros } else { &self.last }, &self.now);
         wire::nested(replay_field::EXTERNAL, &mut data, |out| {
-            delta::encode(&last.external, &now.external, out)
+            self.codecs.external.encode(&last.external, &now.external, out);
         });
-        wire::nested(replay_field::MEMORY, &mut data, |out| delta::encode(&last.memory, &now.memory, out));
+        wire::nested(replay_field::MEMORY, &mut data, |out| {
+            self.codecs.memory.encode(&last.memory, &now.memory, out);
+        });
         if let Some(state) = state {
             let mut image = vec![0; LadderState::SIZE];
             state.encode(&mut Writer::new(&mut image));
             let zeros = vec![0; LadderState::SIZE];
-            wire::nested(replay_field::STATE, &mut data, |out| delta::encode(&zeros, &image, out));
+            wire::nested(replay_field::STATE, &mut data, |out| self.codecs.state.encode(&zeros, &image, out));
+        }
+        if let Some(world) = world {
+            wire::fixed64(replay_field::WORLD, world, &mut data);
+        }
+        if let Some(Timing { controller_ns, skipped }) = record.timing {
+            wire::unsigned(replay_field::CONTROLLER_NS, controller_ns, &mut data);
+            wire::unsigned(replay_field::SKIPPED, skipped, &mut data);
         }
         self.output.put(self.replay, record.tick, &data)
     }
@@ -312,6 +376,9 @@ fn replay_descriptor() -> Vec<u8> {
         field("external", number(replay_field::EXTERNAL), Type::Bytes),
         field("memory", number(replay_field::MEMORY), Type::Bytes),
         field("state", number(replay_field::STATE), Type::Bytes),
+        field("world", number(replay_field::WORLD), Type::Fixed64),
+        field("controller_ns", number(replay_field::CONTROLLER_NS), Type::Uint64),
+        field("skipped", number(replay_field::SKIPPED), Type::Uint64),
     ];
     let message = descriptor::message("ReplayTick", fields);
     encode_set(vec![file("rcs.proto", descriptor::PACKAGE, &[], vec![message])])

@@ -17,8 +17,8 @@ use rcs_core::{
     tick::Tick,
 };
 use record::{
-    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Log, Lost, Pace, ReadError, RecordError,
-    Recorder, Setup, Transform, replay,
+    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Log, Lost, Options, Pace, ReadError,
+    RecordError, Recorder, ReplayError, Setup, Timing, Transform, golden, replay, replay_with,
     writer::{LogWriter, TickRecord},
 };
 use taskdata::{files::TaskData, load::Source};
@@ -108,7 +108,7 @@ fn record_run(path: &Path, ticks: u64) -> record::Summary {
         }
         recorder.tick(tick, external, memory, || state);
     });
-    recorder.finish(End { digest: Some(digest), result: "finished".into() }).unwrap()
+    recorder.finish(End { digest: Some(digest), result: "finished".into(), ..End::default() }).unwrap()
 }
 
 #[test]
@@ -190,7 +190,7 @@ fn changed(ticks: u64, mut change: impl FnMut(&mut TickRecord) -> bool) -> Vec<u
     let mut log = LogWriter::create(&mut file, setup()).unwrap();
     let mut gap = 0;
     let digest = run(ticks, |tick, external, memory, state| {
-        let mut record = TickRecord { tick, gap, external: *external, memory: *memory };
+        let mut record = TickRecord { tick, gap, external: *external, memory: *memory, timing: None };
         if change(&mut record) {
             let state = (gap > 0 || tick.0 % 25 == 1).then_some(state);
             log.tick(&record, state.as_ref(), None).unwrap();
@@ -199,7 +199,8 @@ fn changed(ticks: u64, mut change: impl FnMut(&mut TickRecord) -> bool) -> Vec<u
             gap += 1;
         }
     });
-    log.finish(&End { digest: Some(digest), result: String::new() }, Lost::default()).unwrap();
+    log.finish(&End { digest: Some(digest), result: String::new(), ..End::default() }, Lost::default())
+        .unwrap();
     file.into_inner()
 }
 
@@ -328,7 +329,7 @@ fn a_disk_that_fills_up_ends_the_log_wherever_it_happens() {
         };
         let mut result = Ok(());
         run(60, |tick, external, memory, state| {
-            let record = TickRecord { tick, gap: 0, external: *external, memory: *memory };
+            let record = TickRecord { tick, gap: 0, external: *external, memory: *memory, timing: None };
             if result.is_ok() {
                 result = log.tick(&record, Some(&state), None);
             }
@@ -357,6 +358,149 @@ fn a_removed_log_ends_the_log_and_not_the_run() {
 }
 
 #[test]
+fn a_directory_that_vanishes_ends_the_log_and_not_the_run() {
+    let scratch = Scratch::new("vanish");
+    let path = scratch.file("deep/down/run.mcap");
+    let mut recorder = Recorder::start(&path, Pace::Wait, setup()).unwrap();
+    let mut ticks = 0;
+    run(1000, |tick, external, memory, state| {
+        if tick.0 == 60 {
+            fs::remove_dir_all(scratch.file("deep")).unwrap();
+        }
+        recorder.tick(tick, external, memory, || state);
+        ticks += 1;
+    });
+    assert_eq!(ticks, 1000);
+    let error = recorder.finish(End::default()).unwrap_err();
+    assert!(error.to_string().contains("run.mcap was removed during the run"), "{error}");
+}
+
+/// `/dev/full` takes nothing: the head of the log already finds no room.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_before_the_run() {
+    let error = Recorder::start(Path::new("/dev/full"), Pace::Drop, setup()).err().unwrap();
+    assert!(matches!(error, RecordError::Write(_)), "{error}");
+    assert!(error.to_string().contains("No space left on device"), "{error}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_directory_in_which_nothing_can_be_made_is_told_before_the_run() {
+    // Even an administrator makes no directory here.
+    let error = Recorder::start(Path::new("/proc/runs/run.mcap"), Pace::Drop, setup()).err().unwrap();
+    assert!(error.to_string().starts_with("the log /proc/runs/run.mcap cannot be created: "), "{error}");
+}
+
+#[test]
+fn times_and_the_fingerprint_of_the_cell_are_kept_beside_the_digest() {
+    let scratch = Scratch::new("timing");
+    let path = scratch.file("run.mcap");
+    let mut recorder = Recorder::start(&path, Pace::Wait, setup()).unwrap();
+    let digest = run(60, |tick, external, memory, state| {
+        if tick.0 % 2 == 0 {
+            recorder.timing(Timing { controller_ns: 1000 + tick.0, skipped: tick.0 / 10 });
+        }
+        if tick.0 % 25 == 1 {
+            recorder.cell(&CellFrame::new(tick).with_digest(u64::MAX - tick.0));
+        }
+        recorder.tick(tick, external, memory, || state);
+    });
+    recorder.finish(End { digest: Some(digest), ..End::default() }).unwrap();
+    for logged in Log::open(&path).unwrap().ticks().map(Result::unwrap) {
+        let tick = logged.tick.0;
+        let timing = (tick % 2 == 0).then_some(Timing { controller_ns: 1000 + tick, skipped: tick / 10 });
+        assert_eq!(logged.timing, timing, "tick {tick}");
+        assert_eq!(logged.world, (tick % 25 == 1).then_some(u64::MAX - tick), "tick {tick}");
+    }
+    assert!(replay(&path).unwrap().is_same());
+}
+
+#[test]
+fn a_replay_can_begin_and_end_in_the_middle() {
+    let scratch = Scratch::new("part");
+    let path = scratch.file("run.mcap");
+    fs::write(&path, changed(200, |_| true)).unwrap();
+    let part = |from: Option<u64>, until: Option<u64>| {
+        let options = Options { from: from.map(Tick), until: until.map(Tick), ..Options::default() };
+        replay_with(&path, &options)
+    };
+    // States are those after ticks 1, 26, 51 ...: the first tick that is computed is the one after them.
+    for (from, until, ticks) in [
+        (None, Some(40), 40),
+        (Some(1), None, 200),
+        (Some(2), None, 199),
+        (Some(100), None, 124),
+        (Some(77), Some(80), 4),
+        (Some(60), Some(60), 9),
+    ] {
+        let report = part(from, until).unwrap();
+        assert!(report.is_same(), "{:?}", report.first_difference);
+        assert_eq!((report.ticks, report.skipped), (ticks, 0), "{from:?} to {until:?}");
+    }
+    assert!(matches!(part(Some(500), None), Err(ReplayError::Empty)));
+    let bytes = changed(200, |record| {
+        record.memory.prim.status.distance += i32::from(record.tick.0 == 42);
+        true
+    });
+    fs::write(&path, bytes).unwrap();
+    assert!(!part(None, Some(42)).unwrap().is_same());
+    assert!(part(None, Some(41)).unwrap().is_same() && part(Some(60), None).unwrap().is_same());
+}
+
+#[test]
+fn a_golden_is_the_run_again() {
+    let scratch = Scratch::new("golden");
+    let (path, file) = (scratch.file("run.mcap"), scratch.file("run.golden"));
+    fs::write(&path, changed(230, |_| true)).unwrap();
+    let log = Log::open(&path).unwrap();
+    golden::write(&golden::from_log(&log).unwrap(), &file).unwrap();
+    assert!(fs::metadata(&file).unwrap().len() < 8000);
+    let read = golden::read(&file).unwrap();
+    run(230, |tick, external, _, _| {
+        let (at, inputs) = read.inputs().nth(usize::try_from(tick.0).unwrap() - 1).unwrap().unwrap();
+        assert_eq!((at, &inputs), (tick, external));
+    });
+    let played = golden::replay(&read).unwrap();
+    assert_eq!((played.ticks, played.difference), (230, None));
+    assert_eq!(played.digest.value(), read.digest());
+    assert!(
+        played.summary.contains(
+            "seed     7
+"
+        ),
+        "{}",
+        played.summary
+    );
+
+    // Something else in tick 110 is noticed in its second.
+    let bytes = changed(230, |record| {
+        record.memory.prim.status.distance += i32::from(record.tick.0 == 110);
+        true
+    });
+    fs::write(&path, bytes).unwrap();
+    let error = golden::from_log(&Log::open(&path).unwrap()).err().unwrap();
+    assert!(error.to_string().contains("its digest is not that of its ticks"), "{error}");
+}
+
+#[test]
+fn a_golden_of_a_part_of_a_run_or_of_another_format_is_refused() {
+    let scratch = Scratch::new("no-golden");
+    let path = scratch.file("run.mcap");
+    fs::write(&path, changed(100, |record| record.tick.0 != 50)).unwrap();
+    let error = golden::from_log(&Log::open(&path).unwrap()).err().unwrap();
+    assert_eq!(error.to_string(), "the log cannot become a golden: ticks are missing");
+    let whole = changed(100, |_| true);
+    fs::write(&path, &whole[..whole.len() * 2 / 3]).unwrap();
+    let error = golden::from_log(&Log::open(&path).unwrap()).err().unwrap();
+    assert_eq!(error.to_string(), "the log cannot become a golden: it has no end");
+    for bytes in [&b"RCSGOLD\x02whatever"[..], b"", b"RCSGOLD\x01and no compressed bytes"] {
+        fs::write(&path, bytes).unwrap();
+        assert!(golden::read(&path).is_err_and(|error| error.to_string().contains("no golden run")));
+    }
+}
+
+#[test]
 fn a_file_that_cannot_be_made_is_told_before_the_run() {
     let scratch = Scratch::new("create");
     let in_the_way = scratch.file("file");
@@ -373,7 +517,8 @@ fn a_run_in_real_time_never_waits_and_counts_what_it_lost() {
     // Far faster than any writer: most ticks find the ring full.
     let digest = run(20_000, |tick, external, memory, state| recorder.tick(tick, external, memory, || state));
     let lost = recorder.lost().ticks;
-    let summary = recorder.finish(End { digest: Some(digest), result: String::new() }).unwrap();
+    let summary =
+        recorder.finish(End { digest: Some(digest), result: String::new(), ..End::default() }).unwrap();
     assert!(lost > 0 && summary.ticks + lost == 20_000, "{lost} lost, {} written", summary.ticks);
     let log = Log::open(&path).unwrap();
     assert_eq!(log.end.as_ref().unwrap()["lost_ticks"], lost.to_string());

@@ -59,7 +59,9 @@ fn record_run(path: &Path, attach: bool) -> Vec<(HwsReport, Reason)> {
         recorder.tick(Tick(tick), &external, &memory, || ladder.state());
         reports.push((memory.task.status.report, memory.task.status.reason));
     }
-    recorder.finish(End { digest: Some(digest.value()), result: "stopped".into() }).unwrap();
+    recorder
+        .finish(End { digest: Some(digest.value()), result: "stopped".into(), ..End::default() })
+        .unwrap();
     reports
 }
 

@@ -5,19 +5,26 @@ use std::path::Path;
 use executive::failure;
 use levels::ladder::Ladder;
 use rcs_core::{
-    interface::CommonMemory,
+    interface::{
+        CommonMemory,
+        device::{FORCE_COUNTS_PER_LB, FORCE_ZERO},
+    },
     pose::WireFrame,
     tick::{TICK_S, Tick},
 };
-use record::{Log, proto::foxglove::Level};
+use record::{Attachment, Log, proto::foxglove::Level};
 
+use super::scene::Scene;
 use crate::{
     Error,
     story::{Chronicle, Moment, walk},
+    why::{History, Told, tell},
 };
 
 /// Levels whose commands have a lane in the timeline: positions in the ladder's list of processes, Task to Prim.
 pub const LANES: usize = 4;
+/// Pictures at most; with more commands, every so many has one.
+const PICTURES: usize = 36;
 
 /// A stretch of ticks in which a level had the same command.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +35,16 @@ pub struct Stretch {
     pub to: u64,
     /// The command, as people write it; empty for none.
     pub text: String,
+}
+
+/// A picture of the cell before a tick.
+pub struct Picture {
+    /// The tick.
+    pub tick: u64,
+    /// What begins or ends there.
+    pub text: String,
+    /// The drawing.
+    pub svg: String,
 }
 
 /// A run as the page shows it. All series have one value a tick.
@@ -47,50 +64,75 @@ pub struct Run {
     pub opening: Vec<f64>,
     /// Greater force of its fingers, lb.
     pub force: Vec<f64>,
+    /// Force on the tool gripper's sensor, without its bias, lb; 0 while it has no power.
+    pub tool_force: Vec<f64>,
     /// NAKs, time-outs, checksum errors and re-starts that the tick added.
     pub link_faults: Vec<u32>,
+    /// Stretches in which the link ran.
+    pub link: Vec<Stretch>,
+    /// Controller part of the tick, microseconds; empty in logs of runs in fast clock.
+    pub controller: Vec<f64>,
+    /// Slots of the grid that were skipped.
+    pub overruns: u64,
     /// Commands and the failure.
     pub chronicle: Chronicle,
+    /// The failure with its causes.
+    pub failure: Option<Told>,
     /// Warnings and errors of the log.
     pub lines: Vec<(Tick, Level, String, String)>,
+    /// Everything that the log says.
+    pub all_lines: usize,
+    /// The cell where commands begin, where the failure began, and at the end.
+    pub pictures: Vec<Picture>,
 }
 
 /// Read a log.
 pub fn gather(log: &Log, path: &Path) -> Result<Run, Error> {
     let names = Ladder::processes().iter().take(LANES).map(|process| (process.name, Vec::new()));
     let mut run = Run { lanes: names.collect(), ..Run::default() };
+    let mut history = History::default();
     walk(log, path, |moment| {
+        history.note(moment);
         run.note(moment);
         true
     })?;
     if run.ticks.is_empty() {
         return Err(Error::Empty(path.to_owned()));
     }
-    let worth = |level| matches!(level, Level::Warning | Level::Error);
-    run.lines = log
-        .lines()
-        .filter(|line| worth(line.level))
-        .map(|line| (line.tick, line.level, line.source, line.text))
-        .collect();
+    run.failure = run.chronicle.failure.as_ref().and_then(|failure| tell(log, &history, failure));
+    for line in log.lines() {
+        run.all_lines += 1;
+        if matches!(line.level, Level::Warning | Level::Error) {
+            run.lines.push((line.tick, line.level, line.source, line.text));
+        }
+    }
+    run.pictures = pictures(log, &run);
     Ok(run)
 }
 
 impl Run {
     fn note(&mut self, moment: &Moment) {
         self.chronicle.note(moment);
-        self.ticks.push(moment.tick.0);
+        let tick = moment.tick.0;
+        self.ticks.push(tick);
         for (index, (_, lane)) in self.lanes.iter_mut().enumerate() {
-            let text = failure::command(index, &moment.external.hws, &moment.after);
-            extend(lane, moment.tick.0, text);
+            extend(lane, tick, failure::command(index, &moment.external.hws, &moment.after));
         }
         let (speed, turning) = motion(&moment.before, &moment.after);
         self.speed.push(speed);
         self.turning.push(turning);
-        let frame = &moment.after.t3i.status.frame_feedback;
-        self.path.push(frame.tool.map(|hundredths| f64::from(hundredths) / 100.0));
+        let status = &moment.after.t3i.status;
+        self.path.push(status.frame_feedback.tool.map(|hundredths| f64::from(hundredths) / 100.0));
+        let running = if status.link_running { "the link runs" } else { "" };
+        extend(&mut self.link, tick, running.to_owned());
         let grip = &moment.after.grip.status;
         self.opening.push(f64::from(grip.position) / 100.0);
         self.force.push(f64::from(grip.left_force.max(grip.right_force)));
+        let sensor = &moment.external.devices.force;
+        let axis = |counts: u16| f64::from(i32::from(counts) - FORCE_ZERO) / f64::from(FORCE_COUNTS_PER_LB);
+        let force =
+            [sensor.x, sensor.y, sensor.z].map(axis).into_iter().fold(0.0, |sum: f64, lb| sum.hypot(lb));
+        self.tool_force.push(if sensor.valid { force } else { 0.0 });
         let counters = |memory: &CommonMemory| {
             let link = &memory.t3i.status.counters;
             link.naks
@@ -99,7 +141,35 @@ impl Run {
                 .saturating_add(link.restarts)
         };
         self.link_faults.push(counters(&moment.after).saturating_sub(counters(&moment.before)));
+        if let Some(timing) = moment.timing {
+            self.controller.push(timing.controller_ns as f64 / 1e3);
+            self.overruns = timing.skipped;
+        }
     }
+}
+
+/// Pictures where commands begin, where the failure began, and after the last tick.
+fn pictures(log: &Log, run: &Run) -> Vec<Picture> {
+    let Some(urdf) = log.attachment(Attachment::URDF) else { return Vec::new() };
+    let commands = &run.chronicle.commands;
+    let step = commands.len().div_ceil(PICTURES).max(1);
+    let mut wanted: Vec<(u64, String)> =
+        commands.iter().step_by(step).map(|command| (command.first_tick, command.text.clone())).collect();
+    if let Some(failure) = &run.failure {
+        wanted.push((failure.story.tick, "the failure".to_owned()));
+    }
+    wanted.push((run.ticks.last().copied().unwrap_or_default(), "the end".to_owned()));
+    wanted.sort_by_key(|(tick, _)| *tick);
+    let mut scene = Scene::new(&String::from_utf8_lossy(&urdf.data));
+    let mut places = log.places().peekable();
+    let mut pictures = Vec::new();
+    for (tick, text) in wanted {
+        while let Some((_, moved)) = places.next_if(|(moved, _)| moved.0 <= tick) {
+            scene.place(moved);
+        }
+        pictures.push(Picture { tick, text, svg: scene.draw() });
+    }
+    pictures
 }
 
 /// Lengthen the last stretch of a lane, or begin a new one.

@@ -1,8 +1,10 @@
-//! `rcs-log report`: a run on one page of HTML that needs nothing else: commands by level over time, speed against the
-//! limits of the link, gripper, link, paths from above and from the side, and what was worth a line in the log.
+//! `rcs-log report`: a run on one page of HTML that needs nothing else: why it failed, commands by level over time, speed
+//! against the limits of the link, forces, link, times of the controller, pictures of the cell where commands begin, paths from
+//! above and from the side, and what was worth a line in the log.
 
 mod gather;
 mod page;
+mod scene;
 mod svg;
 
 use std::{fs, path::PathBuf, process::ExitCode};

@@ -2,6 +2,7 @@
 
 use std::{collections::BTreeMap, path::Path};
 
+use depc::fault::{Counts, FaultKind};
 use executive::alloc::Section;
 use levels::ladder::Ladder;
 use plant::{Cell, part_link};
@@ -11,7 +12,7 @@ use rcs_core::{
     tick::Tick,
 };
 use record::{
-    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Pace, RecordError, Recorder, Summary,
+    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Pace, RecordError, Recorder, Summary, Timing,
     Transform,
 };
 use taskdata::load::{
@@ -30,6 +31,9 @@ pub struct Log {
     recorder: Recorder,
     /// Names of the links that move, in the order in which the log knows them.
     links: Vec<String>,
+    /// Faults on the line so far, and their kinds in the last tick.
+    faults: Counts,
+    kinds: Vec<&'static str>,
 }
 
 impl Log {
@@ -62,7 +66,7 @@ impl Log {
         let run = metadata(arguments, &setup.job, &attachments);
         let recorder =
             Recorder::start(path, pace, record::Setup { epoch, run, attachments, cell: Some(model) })?;
-        Ok(Self { recorder, links })
+        Ok(Self { recorder, links, faults: Counts::default(), kinds: Vec::new() })
     }
 
     /// The cell as the controller will see it in `tick`; before [`Log::tick`].
@@ -82,6 +86,17 @@ impl Log {
         self.recorder.note(tick, level, source, text);
     }
 
+    /// Faults that the plan has put on the line so far: told when others than in the tick before come up; before [`Log::tick`] of
+    /// the same tick.
+    pub fn faults(&mut self, tick: Tick, counts: Counts) {
+        let fresh = FaultKind::ALL.iter().filter(|kind| counts.of(**kind) > self.faults.of(**kind));
+        let kinds: Vec<&'static str> = fresh.map(|kind| kind.text()).collect();
+        if !kinds.is_empty() && kinds != self.kinds {
+            self.recorder.note(tick, Level::Warning, "fault", &format!("on the line: {}", kinds.join(", ")));
+        }
+        (self.faults, self.kinds) = (counts, kinds);
+    }
+
     /// From `tick` on the task data are of another generation, with the blocks of `source`; before [`Log::tick`] of that tick.
     pub fn reload(&mut self, tick: Tick, generation: u32, source: &Source) {
         for file in Attachment::reload(generation, std::slice::from_ref(source)) {
@@ -89,6 +104,12 @@ impl Log {
         }
         let text = format!("task data, generation {generation}: {} is loaded", source.name);
         self.recorder.note(tick, Level::Info, "executive", &text);
+    }
+
+    /// How punctual the tick is; before [`Log::tick`] of the same tick. Not for runs in fast clock: their logs are the same bytes
+    /// whenever they are written.
+    pub const fn timing(&mut self, controller_ns: u64, skipped: u64) {
+        self.recorder.timing(Timing { controller_ns, skipped });
     }
 
     /// Hand over a tick. This belongs to the tick itself: what it allocates is counted.
@@ -101,8 +122,13 @@ impl Log {
     ///
     /// # Errors
     /// [`RecordError`] that ended the log before the run did.
-    pub fn finish(self, digest: Digest, result: String) -> Result<Summary, RecordError> {
-        self.recorder.finish(End { digest: Some(digest.value()), result })
+    pub fn finish(
+        self,
+        digest: Digest,
+        result: String,
+        facts: BTreeMap<String, String>,
+    ) -> Result<Summary, RecordError> {
+        self.recorder.finish(End { digest: Some(digest.value()), result, facts })
     }
 }
 
@@ -142,6 +168,8 @@ fn metadata(arguments: &RunArguments, job: &Job, attachments: &[Attachment]) -> 
         configuration.add(attachment.name.as_bytes());
         configuration.add(&attachment.data);
     }
+    let faults = arguments.faults.as_deref().and_then(Path::file_name);
+    let faults = faults.map(|name| name.to_string_lossy().into_owned());
     let command_line = std::env::args().collect::<Vec<_>>().join(" ");
     let entries = [
         ("program", "rcs-run".to_owned()),
@@ -153,6 +181,7 @@ fn metadata(arguments: &RunArguments, job: &Job, attachments: &[Attachment]) -> 
         ("clock", arguments.clock.text().to_owned()),
         ("robot", arguments.robot.to_string()),
         ("configuration_digest", configuration.to_string()),
+        ("faults", faults.unwrap_or_else(|| "none".to_owned())),
     ];
     entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
 }

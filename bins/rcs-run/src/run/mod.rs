@@ -223,7 +223,12 @@ impl Run {
         let tick = self.runner.tick().next();
         let Some(log) = &mut self.log else { return self.fresh.clear() };
         for event in self.fresh.drain(..) {
-            log.note(tick, Level::Warning, "cell", &event.to_string());
+            let planned = matches!(event, CellEvent::FaultBegins { .. } | CellEvent::FaultEnds { .. });
+            let source = if planned { "fault" } else { "cell" };
+            log.note(tick, Level::Warning, source, &event.to_string());
+        }
+        if let Some(counts) = self.robot.faults() {
+            log.faults(tick, counts);
         }
         log.cell(tick, &self.workstation.cell);
     }
@@ -246,6 +251,9 @@ impl Run {
             self.robot.send(&outputs);
             self.runner.laps_mut().lap(Part::Line);
             if let Some(log) = &mut self.log {
+                if self.pace.is_real() {
+                    log.timing(self.runner.last_ns(), self.pace.skipped());
+                }
                 log.tick(tick, &external, &memory, self.runner.levels());
             }
             self.runner.laps_mut().lap(Part::Log);
@@ -384,7 +392,7 @@ impl Run {
             Ending::Failed(failure) => failure.text.clone(),
         };
         result.log = path;
-        match log.finish(self.runner.digest(), outcome) {
+        match log.finish(self.runner.digest(), outcome, result.facts()) {
             Ok(summary) => {
                 let (file, size) = (summary.path.display(), summary.bytes as f64 / 1e6);
                 let lost = match summary.lost.ticks {

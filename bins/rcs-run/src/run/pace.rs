@@ -110,6 +110,12 @@ impl Pace {
         self.policy
     }
 
+    /// A tick every 40 ms, not one after the other.
+    #[must_use]
+    pub const fn is_real(&self) -> bool {
+        matches!(self.clock, Clock::Real(_))
+    }
+
     /// Slots skipped so far.
     #[must_use]
     pub const fn skipped(&self) -> u64 {

@@ -351,6 +351,32 @@ pub struct RunResult {
     pub failure: Option<FailureResult>,
 }
 
+impl RunResult {
+    /// What the log says of the end of the run. Nothing here differs between two equal runs in fast clock.
+    #[must_use]
+    pub fn facts(&self) -> BTreeMap<String, String> {
+        let list = |items: Vec<String>| items.join("; ");
+        let mut facts = vec![
+            ("overruns", self.overruns.to_string()),
+            ("parts", list(self.parts.iter().map(place).collect())),
+            ("data_base", list(self.data_base.iter().map(ToString::to_string).collect())),
+        ];
+        if let Some(allocations) = self.allocations_after_start {
+            facts.push(("allocations", allocations.to_string()));
+        }
+        if let Some(faults) = &self.faults {
+            facts.push(("faults", faults.to_string()));
+        }
+        if !self.cell_faults.is_empty() {
+            facts.push(("cell_faults", list(self.cell_faults.iter().map(ToString::to_string).collect())));
+        }
+        if let Some(verdict) = &self.realtime {
+            facts.push(("real_time", verdict.clone()));
+        }
+        facts.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+    }
+}
+
 /// The page of text: the result, all steps of the job, and remarks that have no place in JSON.
 pub struct Page<'a> {
     /// The result.

@@ -7,8 +7,9 @@ use prost_types::{DescriptorProto, FileDescriptorProto, field_descriptor_proto::
 
 use super::{
     descriptor::{encode_set, enumeration, field, file, message, repeated, typed_field},
-    wire,
+    wire::{self, Value},
 };
+use crate::input::Link;
 
 /// Full name of the message on `/tf`.
 pub const FRAME_TRANSFORMS: &str = "foxglove.FrameTransforms";
@@ -154,6 +155,43 @@ pub fn put_log(time: u64, level: Level, text: &str, source: &str, file: &str, li
     wire::fixed32(6, line, out);
 }
 
+/// The transforms of a `FrameTransforms` message, without their time stamps; what is not well-formed ends the
+/// list.
+#[must_use]
+pub fn take_transforms(data: &[u8]) -> Vec<(Link, Transform)> {
+    let transforms = wire::Fields(data).filter_map(|field| match field {
+        (1, Value::Bytes(transform)) => Some(transform),
+        _ => None,
+    });
+    transforms.map(take_transform).collect()
+}
+
+fn take_transform(data: &[u8]) -> (Link, Transform) {
+    let mut link = Link { name: String::new(), parent: String::new() };
+    let mut place = Transform::IDENTITY;
+    for field in wire::Fields(data) {
+        match field {
+            (2, Value::Bytes(parent)) => link.parent = String::from_utf8_lossy(parent).into_owned(),
+            (3, Value::Bytes(child)) => link.name = String::from_utf8_lossy(child).into_owned(),
+            (4, Value::Bytes(position)) => take_doubles(position, &mut place.position),
+            (5, Value::Bytes(rotation)) => take_doubles(rotation, &mut place.rotation),
+            _ => {}
+        }
+    }
+    (link, place)
+}
+
+/// Fields 1, 2, ... of a message of doubles.
+fn take_doubles(data: &[u8], out: &mut [f64]) {
+    for field in wire::Fields(data) {
+        let (number, Value::Bytes(bytes)) = field else { continue };
+        let at = usize::try_from(number).ok().and_then(|number| number.checked_sub(1));
+        if let (Some(slot), Ok(bytes)) = (at.and_then(|at| out.get_mut(at)), bytes.try_into()) {
+            *slot = f64::from_le_bytes(bytes);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -175,6 +213,20 @@ mod tests {
         timestamp(566_611_200_040_000_000, &mut out);
         let decoded = Timestamp::decode(&out[2..]).unwrap();
         assert_eq!(decoded, Timestamp { seconds: 566_611_200, nanos: 40_000_000 });
+    }
+
+    #[test]
+    fn transforms_come_back() {
+        let place = Transform { position: [1.0, -2.0, 0.5], rotation: [0.0, 0.6, 0.0, 0.8] };
+        let mut out = Vec::new();
+        put_transform(1_000_000_002, "world", "arm", &place, &mut out);
+        put_transform(1_000_000_002, "arm", "hand", &Transform::IDENTITY, &mut out);
+        let link = |name: &str, parent: &str| Link { name: name.into(), parent: parent.into() };
+        assert_eq!(
+            take_transforms(&out),
+            [(link("arm", "world"), place), (link("hand", "arm"), Transform::IDENTITY)]
+        );
+        assert!(take_transforms(&out[..out.len() - 1]).len() < 2, "half a transform is none");
     }
 
     #[test]

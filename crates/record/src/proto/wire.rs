@@ -45,6 +45,12 @@ pub const fn zigzag(value: i64) -> u64 {
     ((value << 1) ^ (value >> 63)).cast_unsigned()
 }
 
+/// The number that [`zigzag`] made `value` of.
+#[must_use]
+pub const fn unzigzag(value: u64) -> i64 {
+    (value >> 1).cast_signed() ^ -((value & 1).cast_signed())
+}
+
 fn tag(field: u32, wire_type: u64, out: &mut Vec<u8>) {
     put_varint(u64::from(field) << 3 | wire_type, out);
 }
@@ -142,6 +148,7 @@ mod tests {
         assert_eq!(out, b"\x12\x07testing");
         assert_eq!([0, -1, 1, -2].map(zigzag), [0, 1, 2, 3]);
         assert_eq!(zigzag(i64::from(i32::MIN)), u64::from(u32::MAX));
+        assert!([0, 1, -1, 77, i64::MIN, i64::MAX].iter().all(|value| unzigzag(zigzag(*value)) == *value));
     }
 
     #[test]

@@ -1,0 +1,233 @@
+//! The chain of causes behind a failure, walked back over ticks.
+//!
+//! It begins with the process that bears the reason which arrived at Task. In the tick in which that process began to report
+//! it, a row fired; what the row did not see a tick before is what was new. If a process below reports a failure by then, or
+//! reported anything new in the tick before, it is asked the same for the tick in which it began to: so the walk goes down and
+//! back until nobody below has said anything. What is left there is a device, a limit, or data. From there the commands lead up
+//! again: who commanded it, when, by which row.
+
+use executive::failure::cells;
+use rcs_core::{
+    interface::t3i::LinkFault,
+    table::{RowText, Table},
+};
+use serde::Serialize;
+
+use super::history::{Fired, History, T3I, WIRING, process, row_of, row_words};
+
+/// A step of the chain.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Link {
+    /// The tick.
+    pub tick: u64,
+    /// Who.
+    pub process: String,
+    /// What, and why.
+    pub text: String,
+}
+
+/// Where a walk ends: the process and tick of the first cause.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Root {
+    /// Position of the process.
+    pub process: usize,
+    /// The tick.
+    pub tick: u64,
+}
+
+/// Walk from a report down to where nobody below has said anything. The links come in the order of the walk: the last one is
+/// the first cause.
+pub fn down(history: &History, process: usize, tick: u64) -> (Root, Vec<Link>) {
+    let (mut root, mut links) = (Root { process, tick }, Vec::new());
+    // The ladder has four levels above the link: a longer walk would be a circle.
+    for _ in 0..WIRING.len() {
+        links.push(report(history, root));
+        match below(history, root) {
+            Some(next) => root = next,
+            None => break,
+        }
+    }
+    (root, links)
+}
+
+/// Who below gave the row of this tick its news: a neighbour that reports a reason, or that reported anything new in the tick
+/// before.
+fn below(history: &History, at: Root) -> Option<Root> {
+    let seen = at.tick.checked_sub(1)?;
+    let said = |process: usize| Some((process, history.report(process, seen)?));
+    let neighbours = || WIRING[at.process].below.iter().copied().filter_map(said);
+    let failed = neighbours().find(|(process, report)| has_failed(*process, report.reason));
+    let found = failed.or_else(|| neighbours().find(|(_, report)| report.tick == seen && seen > 1));
+    found.map(|(process, report)| Root { process, tick: report.tick })
+}
+
+/// T3I's `no error` is the absence of one.
+pub fn has_failed(process: usize, reason: &str) -> bool {
+    let none = if process == T3I { LinkFault::None.text() } else { "" };
+    reason != none
+}
+
+/// What a process reported in a tick, by which row, and what was new in it.
+fn report(history: &History, at: Root) -> Link {
+    let mut text = match history.report(at.process, at.tick) {
+        Some(report) if has_failed(at.process, report.reason) => {
+            format!("reports {}: {}", report.report, report.reason)
+        }
+        Some(report) => format!("reports {}", report.report),
+        None => "has reported nothing yet".to_owned(),
+    };
+    if let Some(fired) = history.row(at.process, at.tick) {
+        text += &format!(" ({})", row_words(at.process, fired));
+        if let Some(news) = news(history, at, fired) {
+            text += &format!("; new in this tick: {news}");
+        }
+    }
+    Link { tick: at.tick, process: process(at.process).name.to_owned(), text }
+}
+
+/// The conditions of a row that the row before did not ask for: what made it fire. Only if it fired for the first time.
+fn news(history: &History, at: Root, fired: &Fired) -> Option<String> {
+    if fired.tick != at.tick {
+        return None;
+    }
+    let before = history.row(at.process, at.tick.checked_sub(1)?)?;
+    if before.table != fired.table {
+        return None;
+    }
+    let ((table, now), (_, before)) = (row_of(at.process, fired)?, row_of(at.process, before)?);
+    let changed = changed(table, before, now);
+    (!changed.is_empty()).then(|| changed.join(", "))
+}
+
+fn changed(table: &Table, before: &RowText, now: &RowText) -> Vec<String> {
+    let pairs = table.columns.iter().zip(cells(before).into_iter().zip(cells(now)));
+    // The step is the table's own memory, not news.
+    let news = pairs.filter(|(column, (was, is))| **column != "step" && !is.is_empty() && was != is);
+    news.map(|(column, (_, is))| format!("{column} is {is}")).collect()
+}
+
+/// The commands that led to a process, from the workstation controller down: when each was given, and by which row.
+pub fn commands(history: &History, at: Root) -> Vec<Link> {
+    let (mut links, mut next) = (Vec::new(), Some((at.process, at.tick)));
+    while let Some((receiver, tick)) = next {
+        let Some(command) = history.command(receiver, tick) else { break };
+        let commander = WIRING[receiver].commander;
+        let by =
+            commander.and_then(|commander| history.row(commander, command.tick).map(|row| (commander, row)));
+        let name = commander.map_or("HWSC", |commander| process(commander).name);
+        let reason =
+            by.map_or_else(String::new, |(commander, fired)| format!(" ({})", row_words(commander, fired)));
+        let text = format!(
+            "commands {}: {}, number {}{reason}",
+            process(receiver).name,
+            command.text,
+            command.number
+        );
+        links.push(Link { tick: command.tick, process: name.to_owned(), text });
+        next = commander.map(|commander| (commander, command.tick));
+    }
+    links.reverse();
+    links
+}
+
+/// How the failure went up from a process to Task: who said so when.
+pub fn up(history: &History, from: usize, tick: u64) -> Vec<Link> {
+    let (mut links, mut at, mut tick) = (Vec::new(), from, tick);
+    while let Some(commander) = WIRING[at].commander {
+        let Some(report) = (tick + 1..=tick + 3)
+            .filter_map(|later| history.report(commander, later))
+            .find(|report| report.tick > tick && !report.reason.is_empty())
+        else {
+            break;
+        };
+        links.push(self::report(history, Root { process: commander, tick: report.tick }));
+        (at, tick) = (commander, report.tick);
+    }
+    links
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::story::Moment;
+    use rcs_core::{
+        interface::{CommonMemory, ExternalInputs, Header, Reason, Report, prim::PrimReport},
+        tick::Tick,
+    };
+
+    /// Plays ticks, each changed by a closure.
+    fn history(changes: &[fn(&mut ExternalInputs, &mut CommonMemory)]) -> History {
+        let (mut history, mut external, mut memory) =
+            (History::default(), ExternalInputs::default(), CommonMemory::default());
+        for (tick, change) in (1..).zip(changes) {
+            let before = memory;
+            change(&mut external, &mut memory);
+            history.note(&Moment {
+                tick: Tick(tick),
+                gap: 0,
+                external,
+                before,
+                after: memory,
+                timing: None,
+                world: None,
+            });
+        }
+        history
+    }
+
+    fn missed() -> History {
+        history(&[
+            |external, _| external.hws.number = 1,
+            |_, memory| memory.task.subtask.number = 1,
+            |_, memory| memory.subtask.emove.number = 1,
+            |_, memory| memory.emove.prim.number = 7,
+            |_, memory| {
+                memory.prim.status.report = PrimReport::NotDetected;
+                memory.prim.status.reason = Reason::NotDetected;
+                memory.prim.header = Header { stamp: Tick(5), republished: false, table: 1, row: 1 };
+            },
+            |_, memory| {
+                memory.emove.status.report = Report::Error;
+                memory.emove.status.reason = Reason::NotDetached;
+            },
+            |_, memory| memory.subtask.status.reason = Reason::NotDetached,
+            |_, memory| memory.task.status.reason = Reason::NotDetached,
+        ])
+    }
+
+    #[test]
+    fn the_walk_goes_down_to_the_process_that_knows() {
+        let (root, links) = down(&missed(), 2, 6);
+        assert_eq!(root, Root { process: 3, tick: 5 });
+        let said: Vec<_> = links.iter().map(|link| (link.tick, link.process.as_str())).collect();
+        assert_eq!(said, [(6, "E-move"), (5, "Prim")]);
+        assert!(
+            links[1].text.starts_with("reports not-detected: the sensor condition did not come"),
+            "{links:?}"
+        );
+    }
+
+    #[test]
+    fn commands_are_told_from_the_top() {
+        let links = commands(&missed(), Root { process: 3, tick: 5 });
+        let said: Vec<_> = links.iter().map(|link| (link.tick, link.process.as_str())).collect();
+        assert_eq!(said, [(1, "HWSC"), (2, "Task"), (3, "Subtask"), (4, "E-move")]);
+        assert!(links[3].text.starts_with("commands Prim: , number 7"), "{links:?}");
+    }
+
+    #[test]
+    fn the_failure_goes_up_a_tick_a_level() {
+        let said: Vec<_> = up(&missed(), 2, 6).into_iter().map(|link| (link.tick, link.process)).collect();
+        assert_eq!(said, [(7, "Subtask".to_owned()), (8, "Task".to_owned())]);
+    }
+
+    #[test]
+    fn what_a_row_asks_for_and_the_one_before_did_not_is_news() {
+        let row = |number, conditions| RowText { number, conditions, action: "Go", next: "" };
+        let (before, now) = (row(1, "(Wait, No, _)"), row(2, "(Wait, Yes | Maybe, _)"));
+        let table = process(2).tables[0];
+        let found = changed(table, &before, &now);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].ends_with(" is Yes or Maybe"), "{found:?}");
+    }
+}

@@ -1,0 +1,239 @@
+//! What the devices said while a command was carried out: the end of the chain of causes.
+//!
+//! Switches are told with what they were and when they changed, converters with their range; what never changed is told in
+//! one line, and what is not there at all is left out. A guarded move is told by its sensor: what would have ended it, how near
+//! the reading came, and how far the robot went meanwhile.
+
+use levels::{
+    ladder::LadderState,
+    prim::{sensors::Reading, tables},
+};
+use rcs_core::{
+    interface::{ExternalInputs, prim::PrimVerb},
+    pose::WireFrame,
+    record::{Field, Schema, Writer, from_bytes},
+};
+use record::{
+    Log,
+    layout::{self, Leaf},
+    replay::generations,
+};
+use taskdata::files::{SensorPara, SensorSource};
+
+use super::history::{PRIM, WIRING};
+use crate::story::{Moment, moments};
+
+/// Changes of a switch that are told; a switch that chatters is told by its count.
+const CHANGES: usize = 8;
+
+/// What was found between two ticks.
+#[derive(Default)]
+pub struct Evidence {
+    /// About the sensor of a guarded move.
+    pub guard: Option<String>,
+    /// About the devices of the process.
+    pub devices: Vec<String>,
+}
+
+/// What one input did.
+struct Trace {
+    leaf: Leaf,
+    /// Ticks of changes with the value from then on.
+    changes: Vec<(u64, String)>,
+    least: u64,
+    most: u64,
+}
+
+/// Look at the ticks from `from` to `until`, for a process.
+pub fn gather(log: &Log, process: usize, from: u64, until: u64) -> Evidence {
+    let wanted = |leaf: &Leaf| WIRING[process].devices.iter().any(|prefix| leaf.path.starts_with(prefix));
+    let mut traces: Vec<Trace> = layout::leaves(ExternalInputs::RECORD)
+        .into_iter()
+        .filter(wanted)
+        .map(|leaf| Trace { leaf, changes: Vec::new(), least: u64::MAX, most: 0 })
+        .collect();
+    let mut image = vec![0; ExternalInputs::SIZE];
+    let (mut guard, mut frames) = (Guard::new(log, process), Vec::new());
+    for (moment, state) in moments(log) {
+        if let Some(state) = state {
+            guard.learn(&state);
+        }
+        if moment.tick.0 < from {
+            continue;
+        }
+        if moment.tick.0 > until {
+            break;
+        }
+        moment.external.encode(&mut Writer::new(&mut image));
+        traces.iter_mut().for_each(|trace| trace.look(moment.tick.0, &image));
+        guard.look(&moment);
+        frames.push(moment.after.t3i.status.resolver_frame);
+    }
+    Evidence { guard: guard.tell(travel(&frames)), devices: tell(&traces) }
+}
+
+/// A line for each input that changed, and one for all that did not.
+fn tell(traces: &[Trace]) -> Vec<String> {
+    let mut lines: Vec<String> = traces.iter().filter_map(Trace::tell).collect();
+    let steady: Vec<String> = traces.iter().filter_map(Trace::steady).collect();
+    if !steady.is_empty() {
+        lines.push(format!("unchanged: {}", steady.join(", ")));
+    }
+    lines
+}
+
+/// From the first frame to the last, inches.
+fn travel(frames: &[WireFrame]) -> f64 {
+    let known = |frame: &WireFrame| frame.to_frame().ok();
+    match (frames.first().and_then(known), frames.last().and_then(known)) {
+        (Some(first), Some(last)) => first.distance(&last).inches,
+        _ => 0.0,
+    }
+}
+
+impl Trace {
+    const fn is_converter(&self) -> bool {
+        matches!(self.leaf.schema, Schema::U16 | Schema::I16 | Schema::U32 | Schema::I32)
+    }
+
+    fn look(&mut self, tick: u64, image: &[u8]) {
+        let bytes = self.leaf.bytes(image);
+        if self.is_converter() {
+            let value = layout::unsigned(bytes);
+            (self.least, self.most) = (self.least.min(value), self.most.max(value));
+            return;
+        }
+        let value = layout::value_text(self.leaf.schema, bytes);
+        if self.changes.last().is_none_or(|(_, last)| *last != value) {
+            self.changes.push((tick, value));
+        }
+    }
+
+    fn name(&self) -> &str {
+        self.leaf.path.trim_start_matches("devices.")
+    }
+
+    /// Name and value of an input that never changed; none if it was off, or nothing.
+    fn steady(&self) -> Option<String> {
+        let value = match (self.is_converter(), self.changes.as_slice()) {
+            (true, _) if self.least == self.most => self.least.to_string(),
+            (false, [(_, value)]) => value.clone(),
+            _ => return None,
+        };
+        let nothing = value.trim_matches('"').chars().all(|c| c == '0') || value == "false";
+        (!nothing).then(|| format!("{} {value}", self.name()))
+    }
+
+    /// What an input did that changed.
+    fn tell(&self) -> Option<String> {
+        let name = self.name();
+        if self.is_converter() {
+            return (self.least < self.most)
+                .then(|| format!("{name} was between {} and {}", self.least, self.most));
+        }
+        let (_, first) = self.changes.first()?;
+        match self.changes.get(1..)? {
+            [] => None,
+            more if more.len() > CHANGES => Some(format!("{name} changed {} times", more.len())),
+            more => {
+                let told: Vec<String> =
+                    more.iter().map(|(tick, value)| format!("{value} at tick {tick}")).collect();
+                Some(format!("{name} was {first}, then {}", told.join(", then ")))
+            }
+        }
+    }
+}
+
+/// Follows the sensor of a guarded move.
+struct Guard {
+    sensors: Vec<SensorPara>,
+    state: Option<Box<LadderState>>,
+    sensor: Option<SensorPara>,
+    /// Number of the command that names it.
+    number: u32,
+    /// The reading that came nearest to the threshold.
+    nearest: Option<f64>,
+    met: bool,
+    is_prim: bool,
+}
+
+impl Guard {
+    fn new(log: &Log, process: usize) -> Self {
+        // Without task data nothing can be said of thresholds; the failure itself is told all the same.
+        let sensors = generations(log).ok().and_then(|mut all| all.pop());
+        let sensors = sensors.map_or_else(Vec::new, |store| store.view().sensors.to_vec());
+        Self {
+            sensors,
+            state: None,
+            sensor: None,
+            number: 0,
+            nearest: None,
+            met: false,
+            is_prim: process == PRIM,
+        }
+    }
+
+    fn learn(&mut self, state: &[u8]) {
+        self.state = from_bytes(state).ok().map(Box::new);
+    }
+
+    fn look(&mut self, moment: &Moment) {
+        let command = &moment.before.emove.prim;
+        if !self.is_prim || !matches!(command.command, PrimVerb::GoUntil | PrimVerb::GoWhile) {
+            return;
+        }
+        let Some(sensor) = self.sensors.iter().find(|sensor| sensor.name == command.sensor) else { return };
+        if self.number != command.number {
+            (self.number, self.nearest, self.met) = (command.number, None, false);
+        }
+        self.sensor = Some(*sensor);
+        let Some(state) = &self.state else { return };
+        let devices = &moment.external.devices;
+        let Reading { guard, value } = state.prim.calibration.read(sensor, devices, command.end_effector_id);
+        self.met |= guard == tables::Guard::Met;
+        let nearer = |last: f64| if sensor.threshold < 0 { last.min(value) } else { last.max(value) };
+        self.nearest = Some(self.nearest.map_or(value, nearer));
+    }
+
+    fn tell(&self, travelled: f64) -> Option<String> {
+        let sensor = self.sensor.as_ref()?;
+        let name = sensor_name(sensor);
+        let way = format!("in the {travelled:.2} in that the tool went");
+        Some(match (sensor.source.is_force(), self.nearest) {
+            (_, None) => format!("the sensor {name} was not read {way}"),
+            (true, Some(nearest)) => force_words(sensor, nearest, &way),
+            (false, Some(_)) if self.met => format!("{name} came true {way}"),
+            (false, Some(_)) => format!("{name} never came true {way}"),
+        })
+    }
+}
+
+/// How near a force came to its threshold, or by how much it went beyond.
+fn force_words(sensor: &SensorPara, nearest: f64, way: &str) -> String {
+    let (name, threshold) = (sensor_name(sensor), sensor.threshold);
+    let unit = if sensor.source == SensorSource::My { "in lb" } else { "lb" };
+    let (reached, word) = match threshold < 0 {
+        true => (nearest <= f64::from(threshold), "least"),
+        false => (nearest >= f64::from(threshold), "most"),
+    };
+    match reached {
+        true => format!("{name} reached {nearest:.1} {unit} {way}, and its threshold is {threshold} {unit}"),
+        false => format!(
+            "{name} never reached its threshold of {threshold} {unit} {way}: it was {nearest:.1} {unit} at {word}"
+        ),
+    }
+}
+
+/// A sensor as a person says it: `"SEATED-2" (seated in holster 2)`.
+fn sensor_name(sensor: &SensorPara) -> String {
+    let what = match (sensor.source, sensor.which) {
+        (SensorSource::Near | SensorSource::Seated, holster) => {
+            format!("{} in holster {holster}", sensor.source)
+        }
+        (SensorSource::Beam, 0) => "any beam between the fingers".to_owned(),
+        (SensorSource::Beam, beam) => format!("beam {beam} between the fingers"),
+        (SensorSource::My, _) => "moment about the tool's Y".to_owned(),
+        (force, _) => format!("force {force} on the tool"),
+    };
+    format!("\"{}\" ({what})", sensor.name)
+}

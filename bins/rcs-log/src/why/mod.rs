@@ -1,0 +1,297 @@
+//! `rcs-log why`: why something failed, or what each level did in any tick, and by which row.
+//!
+//! A failure is told as a chain of causes across ticks ([`chain`]): the commands that led to the process that failed, each with
+//! the row that gave it; what the devices said while it tried ([`evidence`]); what happened in the cell meanwhile; the first
+//! cause; and how the failure went up to Task. The sources are buffers and rows of the log ([`history`]), nothing is guessed.
+
+mod chain;
+mod evidence;
+mod history;
+
+use std::{fmt, path::PathBuf, process::ExitCode};
+
+use executive::failure::{self, Failure, action};
+use levels::ladder::Ladder;
+use rcs_core::tick::{TICK_S, Tick};
+use record::{Log, proto::foxglove::Level};
+use serde::Serialize;
+
+pub use self::{chain::Link, history::History};
+use self::{
+    chain::Root,
+    history::{conditions, process},
+};
+use crate::{
+    Answer, Error, print,
+    story::{Chronicle, Moment, open, walk},
+};
+
+/// Lines of the log that are shown before a tick.
+const LINES_BEFORE: usize = 12;
+/// Lines about the cell and the link that are told with a failure.
+const LINES_MEANWHILE: usize = 8;
+
+/// Sources of lines about what happened around the robot: the cell, and faults that were injected. They are written with the
+/// tick after the one in which it happened.
+const EVENTS: [&str; 2] = ["cell", FAULT];
+const FAULT: &str = "fault";
+
+/// Arguments of `why`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Arguments {
+    /// The log
+    pub file: PathBuf,
+    /// The tick to explain [default: the one in which the last failure began]
+    #[arg(long, value_name = "N")]
+    pub tick: Option<u64>,
+    #[command(flatten)]
+    answer: Answer,
+}
+
+/// An explanation.
+#[derive(Debug, Serialize)]
+struct Explanation {
+    tick: u64,
+    seconds: f64,
+    /// The failure that began here, if one was asked for.
+    failure: Option<Story>,
+    /// How the run ended, where that is not the failure of a process.
+    ended: Option<String>,
+    /// What led here: lines of the log, oldest first; in a failure, what happened to cell and link meanwhile.
+    before: Vec<LineBefore>,
+    /// Each process, from Task down.
+    levels: Vec<Rung>,
+}
+
+/// A failure with its causes.
+#[derive(Debug, Serialize)]
+pub struct Story {
+    /// Tick in which it began.
+    pub tick: u64,
+    /// In one sentence.
+    pub text: String,
+    /// The commands that led there, from the workstation controller down.
+    pub commands: Vec<Link>,
+    /// From the failure to its first cause.
+    pub causes: Vec<Link>,
+    /// Where nobody below had said anything: process and tick.
+    pub first_cause: String,
+    /// What the devices said while the command was carried out.
+    pub evidence: Vec<String>,
+    /// How the failure went up to Task.
+    pub consequences: Vec<Link>,
+}
+
+/// A failure, and from when on what happened in the cell has to do with it.
+pub struct Told {
+    /// The failure.
+    pub story: Story,
+    /// Tick of the first command that led there.
+    pub begun: u64,
+}
+
+#[derive(Debug, Serialize)]
+struct LineBefore {
+    tick: u64,
+    source: String,
+    text: String,
+}
+
+/// What a process did.
+#[derive(Debug, Serialize)]
+struct Rung {
+    process: String,
+    command: String,
+    /// The process was not stepped: dormant, or held.
+    held: bool,
+    table: Option<String>,
+    row: Option<u8>,
+    /// State variables of the row, and what they were: only those that the row asks for.
+    conditions: Vec<String>,
+    action: Option<String>,
+    next: Option<String>,
+}
+
+/// Explain a tick and print it.
+pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
+    let log = open(&arguments.file)?;
+    let (mut chronicle, mut history) = (Chronicle::default(), History::default());
+    walk(&log, &arguments.file, |moment| {
+        chronicle.note(moment);
+        history.note(moment);
+        true
+    })?;
+    let failure = chronicle.failure.filter(|_| arguments.tick.is_none());
+    let told = failure.and_then(|failure| tell(&log, &history, &failure));
+    let tick = arguments.tick.or(told.as_ref().map(|told| told.story.tick));
+    let moment = find(&log, arguments, tick)?;
+    print(&explain(&log, &moment, told), arguments.answer.json)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A failure that a process began to report in a tick, from its commands to its first cause.
+pub fn tell(log: &Log, history: &History, failure: &Failure) -> Option<Told> {
+    let at = Ladder::processes().iter().position(|process| process.name == failure.process)?;
+    let (tick, text) = (failure.tick.0, failure.text.clone());
+    let (root, causes) = chain::down(history, at, tick);
+    let commands = chain::commands(history, root);
+    let since = history.command(root.process, root.tick).map_or(1, |command| command.tick);
+    let begun = commands.iter().find(|link| link.process != "HWSC").map_or(since, |link| link.tick);
+    let found = evidence::gather(log, root.process, since, root.tick);
+    let mut first_cause = first_cause(history, root, since, &found);
+    let injected = log.lines().filter(|line| line.source == FAULT && line.tick.0 <= root.tick + 1).last();
+    if let Some(line) = injected {
+        first_cause += &format!("; the faults of the run, at tick {}: {}", line.tick, line.text);
+    }
+    let evidence = found.guard.into_iter().chain(found.devices).collect();
+    let consequences = chain::up(history, at, tick);
+    let story = Story { tick, text, commands, causes, first_cause, evidence, consequences };
+    Some(Told { story, begun })
+}
+
+/// Where the walk ended, in a sentence.
+fn first_cause(history: &History, root: Root, since: u64, found: &evidence::Evidence) -> String {
+    let name = process(root.process).name;
+    let seconds = root.tick.saturating_sub(since) as f64 * TICK_S;
+    let trying = format!("{seconds:.2} s after its command");
+    match (&found.guard, history.report(root.process, root.tick)) {
+        (Some(guard), _) => format!("{name} at tick {}, {trying}, because {guard}", root.tick),
+        (None, Some(report)) if chain::has_failed(root.process, report.reason) => {
+            format!("{name} at tick {}, {trying}: {}", root.tick, report.reason)
+        }
+        (None, Some(report)) => {
+            format!("{name} at tick {}, {trying}, which reported {}", root.tick, report.report)
+        }
+        (None, None) => format!("{name} at tick {}, {trying}", root.tick),
+    }
+}
+
+/// The tick that was asked for, or the last one.
+fn find(log: &Log, arguments: &Arguments, tick: Option<u64>) -> Result<Moment, Error> {
+    let (mut first, mut last, mut found) = (None, Tick::BEFORE_START, None);
+    walk(log, &arguments.file, |moment| {
+        first.get_or_insert(moment.tick.0);
+        last = moment.tick;
+        if tick.is_none_or(|tick| tick == moment.tick.0) {
+            found = Some(Moment { ..*moment });
+        }
+        tick.is_none() || found.is_none()
+    })?;
+    let path = || arguments.file.clone();
+    let first = first.ok_or_else(|| Error::Empty(path()))?;
+    found.ok_or_else(|| Error::NoTick { path: path(), tick: tick.unwrap_or_default(), first, last: last.0 })
+}
+
+fn explain(log: &Log, moment: &Moment, told: Option<Told>) -> Explanation {
+    let headers = failure::headers(&moment.after);
+    let levels = Ladder::processes().iter().zip(headers).enumerate().map(|(index, (process, header))| {
+        let command = failure::command(index, &moment.external.hws, &moment.before);
+        let table = process.table(header.table);
+        let row = table.and_then(|table| table.row(header.row).map(|row| (table, row)));
+        let conditions = row.map_or_else(Vec::new, |(table, row)| conditions(table, row));
+        Rung {
+            process: process.name.to_owned(),
+            command,
+            held: header.republished,
+            table: row.map(|(table, _)| table.name.to_owned()),
+            row: row.map(|(_, row)| row.number),
+            conditions,
+            action: row.map(|(_, row)| action(row)),
+            next: row.map(|(_, row)| row.next.to_owned()),
+        }
+    });
+    let (failure, begun) = told.map_or((None, None), |told| (Some(told.story), Some(told.begun)));
+    let mut before: Vec<LineBefore> = log
+        .lines()
+        .filter(|line| line.tick.0 <= moment.tick.0 + u64::from(begun.is_some()))
+        .filter(|line| match begun {
+            // Commands and failures are in the chain.
+            Some(begun) => {
+                line.tick.0 >= begun
+                    && (EVENTS.contains(&line.source.as_str()) || line.level == Level::Warning)
+            }
+            None => line.level != Level::Debug,
+        })
+        .map(|line| LineBefore { tick: line.tick.0, source: line.source, text: line.text })
+        .collect();
+    let ended = log.end.as_ref().and_then(|end| end.get("result")).filter(|_| failure.is_none()).cloned();
+    let most = if failure.is_some() { LINES_MEANWHILE } else { LINES_BEFORE };
+    before.drain(..before.len().saturating_sub(most));
+    Explanation {
+        tick: moment.tick.0,
+        seconds: moment.tick.0 as f64 * TICK_S,
+        failure,
+        ended,
+        before,
+        levels: levels.collect(),
+    }
+}
+
+impl fmt::Display for Explanation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.failure {
+            Some(story) => self.tell(story, f)?,
+            None => {
+                if let Some(ended) = &self.ended {
+                    writeln!(f, "The run ended: {ended}")?;
+                }
+                writeln!(f, "No failure of a control process is explained here.\n\nBefore it:")?;
+                self.lines(f)?;
+            }
+        }
+        writeln!(f, "\nIn tick {} ({:.2} s), from Task down:", self.tick, self.seconds)?;
+        self.levels.iter().try_for_each(|level| write!(f, "{level}"))
+    }
+}
+
+impl Explanation {
+    fn tell(&self, story: &Story, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let links = |title: &str, links: &[Link], f: &mut fmt::Formatter<'_>| {
+            if links.is_empty() {
+                return Ok(());
+            }
+            writeln!(f, "\n{title}")?;
+            links.iter().try_for_each(|Link { tick, process, text }| {
+                writeln!(f, "  tick {tick:>6}  {process} {text}")
+            })
+        };
+        writeln!(f, "Failure at tick {} ({:.2} s). {}.", self.tick, self.seconds, story.text)?;
+        writeln!(f, "First cause: {}.", story.first_cause)?;
+        links("The commands that led there:", &story.commands, f)?;
+        links("From the failure to its cause, each because of the next:", &story.causes, f)?;
+        if !story.evidence.is_empty() {
+            writeln!(f, "\nWhat was sensed while it tried:")?;
+            story.evidence.iter().try_for_each(|line| writeln!(f, "  {line}"))?;
+        }
+        if !self.before.is_empty() {
+            writeln!(f, "\nMeanwhile, in the cell and on the link:")?;
+            self.lines(f)?;
+        }
+        links("What followed:", &story.consequences, f)
+    }
+
+    fn lines(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.before.iter().try_for_each(|LineBefore { tick, source, text }| {
+            writeln!(f, "  tick {tick:>6}  {source:<12} {text}")
+        })
+    }
+}
+
+impl fmt::Display for Rung {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let command = if self.command.is_empty() { "nothing" } else { &self.command };
+        let held = if self.held { " (not stepped: dormant or held)" } else { "" };
+        writeln!(f, "  {:<14} executes {command}{held}", self.process)?;
+        let (Some(table), Some(row), Some(action), Some(next)) =
+            (&self.table, self.row, &self.action, &self.next)
+        else {
+            return Ok(());
+        };
+        let because = if self.conditions.is_empty() {
+            "whatever the state".to_owned()
+        } else {
+            format!("because {}", self.conditions.join(", "))
+        };
+        writeln!(f, "  {:<14} {table} row {row}: {action}, then {next}, {because}", "")
+    }
+}

@@ -1,0 +1,326 @@
+//! A run as a small file to keep beside the source: its inputs, and fingerprints of what came out.
+//!
+//! A log says what every buffer was in every tick; a golden only whether it is still the same. It holds what
+//! the ladder read, column by column (a column is a field: how many ticks until it changes, and by how much),
+//! the task data, and the digest of all output buffers after each second. Replayed, it says in which second
+//! today's program first does something else, and writes a [`Summary`] as text, whose difference to the kept
+//! one is what a person reviews.
+//!
+//! ```text
+//!  run --log--> golden::from_log --> NAME.golden, NAME.txt    once, by a command
+//!  golden::read --> replay --> same digests, same text?       in every test
+//! ```
+
+mod columns;
+mod summary;
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use levels::ladder::Ladder;
+use prost::Message as _;
+use rcs_core::{
+    digest::Digest,
+    interface::{CommonMemory, ExternalInputs},
+    record::{Field as _, from_bytes},
+    tick::{TICK_MS, Tick},
+};
+use taskdata::load::Store;
+
+pub use summary::Summary;
+
+use self::columns::{Columns, Reader};
+use crate::{
+    error::{ReadError, ReplayError},
+    input::Attachment,
+    layout,
+    reader::Log,
+    replay::{generations_of, log_sources},
+};
+
+/// First bytes of the file; the last one is the version of the format.
+const MAGIC: [u8; 8] = *b"RCSGOLD\x01";
+/// Level of the compression: it is written once and read a thousand times.
+const COMPRESSION: i32 = 19;
+/// Most bytes that a golden may become when it is unpacked: a day of running is less.
+const LARGEST: usize = 1 << 30;
+/// Ticks from one digest to the next: a second.
+pub const SECOND: u64 = 25;
+/// Extension of golden files.
+pub const EXTENSION: &str = "golden";
+
+/// What the file holds.
+#[derive(Clone, PartialEq, prost::Message)]
+struct Content {
+    /// Version of the images of inputs and output buffers.
+    #[prost(string, tag = "1")]
+    layout: String,
+    /// What run it was.
+    #[prost(btree_map = "string, string", tag = "2")]
+    run: BTreeMap<String, String>,
+    /// Task data and reloads, under their names in the log.
+    #[prost(message, repeated, tag = "3")]
+    files: Vec<File>,
+    /// Ticks of the run.
+    #[prost(uint64, tag = "4")]
+    ticks: u64,
+    /// The inputs, a column a field.
+    #[prost(bytes = "vec", repeated, tag = "5")]
+    columns: Vec<Vec<u8>>,
+    /// Digest of all ticks so far, after each second and after the last tick.
+    #[prost(fixed64, repeated, tag = "6")]
+    digests: Vec<u64>,
+}
+
+#[derive(Clone, PartialEq, prost::Message)]
+struct File {
+    #[prost(string, tag = "1")]
+    name: String,
+    #[prost(string, tag = "2")]
+    text: String,
+}
+
+/// A run, as small as it can be and still be run again.
+#[derive(Clone, PartialEq)]
+pub struct Golden(Content);
+
+/// Why a golden cannot be made, read or replayed.
+#[derive(Debug, thiserror::Error)]
+pub enum GoldenError {
+    /// The file cannot be read or written.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The bytes are not those of a golden.
+    #[error("{} is no golden run of this format: {what}", path.display())]
+    NotAGolden {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// The buffers were laid out differently when it was made.
+    #[error(
+        "the golden was made with layout {found}, this program has layout {expected}: make it again from a run"
+    )]
+    OtherLayout {
+        /// Layout of this program.
+        expected: String,
+        /// Layout of the golden.
+        found: String,
+    },
+    /// The log does not hold the whole run.
+    #[error("the log cannot become a golden: {0}")]
+    NotWhole(&'static str),
+    /// The inputs of a tick do not fit the layout.
+    #[error("the inputs of tick {tick} are damaged")]
+    Damaged {
+        /// The tick.
+        tick: u64,
+    },
+    /// The log cannot be read.
+    #[error(transparent)]
+    Log(#[from] ReadError),
+    /// Its task data do not load, or some are missing.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+}
+
+/// What the replay of a golden found.
+#[derive(Clone, Debug)]
+pub struct Played {
+    /// Ticks that were computed.
+    pub ticks: u64,
+    /// First and last tick of the first second in which the output buffers were others; none if they never
+    /// were.
+    pub difference: Option<(u64, u64)>,
+    /// Digest of all output buffers of all ticks.
+    pub digest: Digest,
+    /// What happened, as text.
+    pub summary: String,
+    /// Time of the replay.
+    pub elapsed: Duration,
+}
+
+impl Played {
+    /// How many times faster than the run in real time.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        let simulated = Duration::from_millis(self.ticks.saturating_mul(TICK_MS));
+        simulated.as_secs_f64() / self.elapsed.as_secs_f64().max(1e-9)
+    }
+}
+
+/// Read a golden.
+///
+/// # Errors
+/// [`GoldenError`] if the file cannot be read, is no golden, or is of another layout.
+pub fn read(path: &Path) -> Result<Golden, GoldenError> {
+    let bytes = fs::read(path).map_err(|source| GoldenError::File { path: path.to_owned(), source })?;
+    let wrong = |what: String| GoldenError::NotAGolden { path: path.to_owned(), what };
+    let packed = bytes.strip_prefix(&MAGIC).ok_or_else(|| wrong("it does not begin like one".into()))?;
+    let content = zstd::bulk::decompress(packed, LARGEST).map_err(|error| wrong(error.to_string()))?;
+    let content = Content::decode(content.as_slice()).map_err(|error| wrong(error.to_string()))?;
+    let (expected, found) = (layout::interface_version(), content.layout.clone());
+    if expected != found {
+        return Err(GoldenError::OtherLayout { expected, found });
+    }
+    Ok(Golden(content))
+}
+
+/// Write a golden.
+///
+/// # Errors
+/// [`GoldenError::File`].
+pub fn write(golden: &Golden, path: &Path) -> Result<(), GoldenError> {
+    let failed = |source| GoldenError::File { path: path.to_owned(), source };
+    let mut bytes = MAGIC.to_vec();
+    let packed = zstd::bulk::compress(&golden.0.encode_to_vec(), COMPRESSION).map_err(failed)?;
+    bytes.extend_from_slice(&packed);
+    fs::write(path, bytes).map_err(failed)
+}
+
+/// Make a golden of the log of a whole run.
+///
+/// # Errors
+/// [`GoldenError::NotWhole`] if the log has gaps or no end; other errors if it cannot be read.
+pub fn from_log(log: &Log) -> Result<Golden, GoldenError> {
+    log.check_layout()?;
+    if !log.complete {
+        return Err(GoldenError::NotWhole("it has no end"));
+    }
+    let mut columns = Columns::new(ExternalInputs::RECORD);
+    let (mut digest, mut digests, mut ticks) = (Digest::new(), Vec::new(), 0_u64);
+    for logged in log.ticks() {
+        let logged = logged?;
+        ticks += 1;
+        if logged.tick.0 != ticks {
+            return Err(GoldenError::NotWhole("ticks are missing"));
+        }
+        columns.add(&logged.external);
+        digest.add(&logged.memory);
+        if ticks.is_multiple_of(SECOND) {
+            digests.push(digest.value());
+        }
+    }
+    if !ticks.is_multiple_of(SECOND) {
+        digests.push(digest.value());
+    }
+    let recorded = log.end.as_ref().and_then(|end| end.get("digest"));
+    if recorded.is_some_and(|recorded| *recorded != digest.to_string()) {
+        return Err(GoldenError::NotWhole("its digest is not that of its ticks"));
+    }
+    let wanted = |attachment: &&Attachment| {
+        attachment.name.starts_with(Attachment::TASK_DATA) || attachment.name.starts_with(Attachment::RELOAD)
+    };
+    let file = |attachment: &Attachment| File {
+        name: attachment.name.clone(),
+        text: String::from_utf8_lossy(&attachment.data).into_owned(),
+    };
+    Ok(Golden(Content {
+        layout: layout::interface_version(),
+        run: kept(&log.run),
+        files: log.attachments.iter().filter(wanted).map(file).collect(),
+        ticks,
+        columns: columns.finish(),
+        digests,
+    }))
+}
+
+/// What a golden keeps of the metadata: what makes the run, not what only says when and from which directory.
+fn kept(run: &BTreeMap<String, String>) -> BTreeMap<String, String> {
+    let keys = ["job", "seed", "faults"];
+    run.iter()
+        .filter(|(key, _)| keys.contains(&key.as_str()))
+        .map(|(key, value)| (key.clone(), value.clone()))
+        .collect()
+}
+
+impl Golden {
+    /// Ticks of the run.
+    #[must_use]
+    pub const fn ticks(&self) -> u64 {
+        self.0.ticks
+    }
+
+    /// What run it is: job, seed, faults.
+    #[must_use]
+    pub const fn run(&self) -> &BTreeMap<String, String> {
+        &self.0.run
+    }
+
+    /// Digest of all output buffers of all ticks.
+    #[must_use]
+    pub fn digest(&self) -> u64 {
+        self.0.digests.last().copied().unwrap_or_default()
+    }
+
+    /// The task data of the run, in the order in which they were loaded, and after each reload.
+    ///
+    /// # Errors
+    /// [`ReplayError::TaskData`] with the report of the loader.
+    pub fn data(&self) -> Result<Vec<Store>, ReplayError> {
+        let attachment = |file: &File| Attachment::text(&file.name, &file.text);
+        let attachments: Vec<Attachment> = self.0.files.iter().map(attachment).collect();
+        generations_of(log_sources(&attachments), &attachments)
+    }
+
+    /// What the ladder read in each tick, from the first on.
+    pub fn inputs(&self) -> impl Iterator<Item = Result<(Tick, ExternalInputs), GoldenError>> {
+        let mut reader = Reader::new(ExternalInputs::RECORD, &self.0.columns);
+        (1..=self.0.ticks).map(move |tick| {
+            let image = reader.next_image().ok_or(GoldenError::Damaged { tick })?;
+            let external = from_bytes(image).map_err(|_| GoldenError::Damaged { tick })?;
+            Ok((Tick(tick), external))
+        })
+    }
+}
+
+/// Run today's program on the inputs of a golden, with the task data of the golden.
+///
+/// # Errors
+/// [`GoldenError`] if its inputs are damaged or its task data do not load. A difference is no error: it is in
+/// the result.
+pub fn replay(golden: &Golden) -> Result<Played, GoldenError> {
+    replay_with(golden, &golden.data()?)
+}
+
+/// Run today's program on the inputs of a golden, with other task data: one store a generation.
+///
+/// # Errors
+/// As [`replay`].
+pub fn replay_with(golden: &Golden, data: &[Store]) -> Result<Played, GoldenError> {
+    let started = Instant::now();
+    let (mut ladder, mut memory, mut digest) = (Ladder::default(), CommonMemory::default(), Digest::new());
+    let mut scratch = vec![0; CommonMemory::SIZE];
+    let mut summary = Summary::new(golden.run());
+    let mut difference = None;
+    for step in golden.inputs() {
+        let (tick, external) = step?;
+        let missing = ReplayError::Generation { tick: tick.0, generation: external.generation };
+        let store = usize::try_from(external.generation).ok().and_then(|at| data.get(at)).ok_or(missing)?;
+        let before = memory;
+        ladder.step(tick, &before, &external, &store.view(), &mut memory);
+        digest.add_record(&memory, &mut scratch);
+        summary.observe(tick, &external, &before, &memory);
+        let last = tick.0 == golden.ticks();
+        if difference.is_none() && (last || tick.0.is_multiple_of(SECOND)) {
+            let second = tick.0.div_ceil(SECOND);
+            let at = usize::try_from(second - 1).ok();
+            let recorded = at.and_then(|at| golden.0.digests.get(at));
+            if recorded != Some(&digest.value()) {
+                difference = Some(((second - 1) * SECOND + 1, tick.0));
+            }
+        }
+    }
+    let (ticks, elapsed) = (golden.ticks(), started.elapsed());
+    Ok(Played { ticks, difference, digest, summary: summary.text(digest), elapsed })
+}

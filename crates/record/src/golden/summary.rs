@@ -1,0 +1,180 @@
+//! What happened in a run, as text for review: commands with their durations, failures, and how often each row
+//! of each decision table fired.
+//!
+//! A change of behaviour that a digest only notices is legible here: a row that fires less often, a command
+//! that takes longer, a failure that was not there.
+
+use std::{collections::BTreeMap, fmt::Write as _};
+
+use rcs_core::{
+    digest::Digest,
+    interface::{CommonMemory, ExternalInputs, hws::HwsReport},
+    record::{Field as _, Writer},
+    tick::{TICK_S, Tick},
+};
+
+use crate::{
+    channels::{HeaderPlace, headers},
+    proto::foxglove::Level,
+    remarks::{hws_text, remarks},
+};
+
+/// Warnings and errors that are written out; the others are counted.
+const TROUBLES: usize = 30;
+
+/// A command of the workstation controller.
+struct Command {
+    text: String,
+    first: Tick,
+    last: Tick,
+    report: HwsReport,
+}
+
+/// Gathers what happens, tick by tick.
+pub struct Summary {
+    run: BTreeMap<String, String>,
+    headers: Vec<HeaderPlace>,
+    image: Vec<u8>,
+    commands: Vec<Command>,
+    troubles: Vec<String>,
+    /// How often a row fired, by position of the process, number of the table, row.
+    rows: BTreeMap<(usize, u8, u8), u64>,
+    ticks: u64,
+}
+
+impl Summary {
+    /// Nothing has happened yet in a run with these metadata.
+    #[must_use]
+    pub fn new(run: &BTreeMap<String, String>) -> Self {
+        Self {
+            run: run.clone(),
+            headers: headers(),
+            image: vec![0; CommonMemory::SIZE],
+            commands: Vec::new(),
+            troubles: Vec::new(),
+            rows: BTreeMap::new(),
+            ticks: 0,
+        }
+    }
+
+    /// Take a tick in.
+    pub fn observe(
+        &mut self,
+        tick: Tick,
+        external: &ExternalInputs,
+        before: &CommonMemory,
+        after: &CommonMemory,
+    ) {
+        self.ticks += 1;
+        after.encode(&mut Writer::new(&mut self.image));
+        for (at, place) in self.headers.iter().enumerate() {
+            let header = place.read(&self.image);
+            if !header.republished && header.row > 0 {
+                *self.rows.entry((at, header.table, header.row)).or_default() += 1;
+            }
+        }
+        let said = remarks(&self.headers, &external.hws, before, after);
+        for remark in said.into_iter().filter(|remark| remark.level >= Level::Warning) {
+            self.troubles.push(format!("tick {tick}  {}: {}", remark.source, remark.text));
+        }
+        self.command(tick, external, before, after);
+    }
+
+    fn command(
+        &mut self,
+        tick: Tick,
+        external: &ExternalInputs,
+        before: &CommonMemory,
+        after: &CommonMemory,
+    ) {
+        let (was, is) = (&before.task.status, &after.task.status);
+        if was.echo != is.echo {
+            let text = hws_text(&external.hws);
+            self.commands.push(Command { text, first: tick, last: tick, report: is.report });
+        }
+        if let Some(command) = self.commands.last_mut()
+            && (was.echo != is.echo || command.report == HwsReport::Executing)
+        {
+            (command.last, command.report) = (tick, is.report);
+        }
+    }
+
+    /// The summary, with the digest at the end of the run.
+    #[must_use]
+    pub fn text(&self, digest: Digest) -> String {
+        let mut text = String::new();
+        for (key, value) in &self.run {
+            let _ = writeln!(text, "{key:<8} {value}");
+        }
+        let _ = writeln!(text, "{:<8} {} ({:.2} s)", "ticks", self.ticks, self.ticks as f64 * TICK_S);
+        let _ = writeln!(text, "{:<8} {digest}", "digest");
+        let _ = writeln!(text, "\ncommands\n    tick   for s  status     command");
+        for command in &self.commands {
+            let seconds = (command.last.since(command.first) + 1) as f64 * TICK_S;
+            let (tick, report) = (command.first, command.report.text());
+            let _ = writeln!(text, "{:>8} {seconds:>7.2}  {report:<10} {}", tick.0, command.text);
+        }
+        if !self.troubles.is_empty() {
+            let _ = writeln!(text, "\nwarnings and errors");
+            self.troubles.iter().take(TROUBLES).for_each(|trouble| {
+                let _ = writeln!(text, "  {trouble}");
+            });
+        }
+        if let Some(more) = self.troubles.len().checked_sub(TROUBLES).filter(|more| *more > 0) {
+            let _ = writeln!(text, "  and {more} more");
+        }
+        let _ = writeln!(text, "\nrows that fired, and how often");
+        self.rows_text(&mut text);
+        text
+    }
+
+    fn rows_text(&self, text: &mut String) {
+        let mut last = None;
+        for ((at, table, row), count) in &self.rows {
+            if last != Some((at, table)) {
+                let Some(process) = self.headers.get(*at).map(|place| place.process) else { continue };
+                let name = process.table(*table).map_or("no table", |table| table.name);
+                let lead = if last.is_some() { "\n" } else { "" };
+                let _ = write!(text, "{lead}  {} {name}:", process.name);
+                last = Some((at, table));
+            }
+            let _ = write!(text, " {row} x{count}");
+        }
+        text.push('\n');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rcs_core::{interface::Reason, name::Name16};
+
+    #[test]
+    fn a_run_of_one_command_that_fails() {
+        let run = [("job".to_owned(), "try".to_owned())].into();
+        let mut summary = Summary::new(&run);
+        let mut external = ExternalInputs::default();
+        external.hws.command = Name16::new("MOVE").unwrap();
+        let (mut before, mut after) = (CommonMemory::default(), CommonMemory::default());
+        for tick in 1..=40 {
+            if tick == 5 {
+                (after.task.status.echo, after.task.status.report) = (1, HwsReport::Executing);
+                (after.task.header.table, after.task.header.row) = (1, 2);
+            }
+            if tick == 30 {
+                after.task.status.report = HwsReport::Error;
+                after.task.status.reason = Reason::UnknownLocation;
+            }
+            summary.observe(Tick(tick), &external, &before, &after);
+            before = after;
+        }
+        let text = summary.text(Digest::new());
+        assert!(
+            text.starts_with("job      try\nticks    40 (1.60 s)\ndigest   cbf29ce484222325\n"),
+            "{text}"
+        );
+        assert!(text.contains("       5    1.04  error      MOVE\n"), "{text}");
+        assert!(text.contains("  tick 30  Task: the location is not in the task data"), "{text}");
+        assert!(text.contains("  Task ") && text.contains(": 2 x36\n"), "{text}");
+    }
+}

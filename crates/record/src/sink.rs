@@ -1,0 +1,50 @@
+//! The file that a log is written to.
+//!
+//! What has been flushed survives the end of the program, whatever ends it: the system has it. That it also survives the
+//! end of the power, the disk must have it, and to wait for the disk costs milliseconds. So a run in real time
+//! waits for it with every flush, once a second, in the thread of the log; a run in fast clock does not, because
+//! it can be run again.
+
+use std::{
+    fs::File,
+    io::{self, BufWriter, Seek, SeekFrom, Write},
+};
+
+/// Bytes that are collected before they go to the system: most chunks go in one piece.
+const BUFFER: usize = 64 * 1024;
+
+/// A file with a buffer before it.
+pub struct Sink {
+    file: BufWriter<File>,
+    durable: bool,
+}
+
+impl Sink {
+    /// A sink into `file`. If it is durable, what was flushed is on the disk.
+    #[must_use]
+    pub fn new(file: File, durable: bool) -> Self {
+        Self { file: BufWriter::with_capacity(BUFFER, file), durable }
+    }
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()?;
+        if self.durable { self.file.get_ref().sync_data() } else { Ok(()) }
+    }
+}
+
+impl Seek for Sink {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+
+    /// The default would flush: `BufWriter` knows the position without it.
+    fn stream_position(&mut self) -> io::Result<u64> {
+        self.file.stream_position()
+    }
+}
