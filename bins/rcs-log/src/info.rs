@@ -163,15 +163,14 @@ impl fmt::Display for Info {
         let of = |key: &str| self.run.get(key).map_or("unknown", String::as_str);
         writeln!(
             f,
-            "run        {} {}, commit {}, job {}, seed {}, clock {}, robot {}, real time {}",
+            "run        {} {}, commit {}, job {}, seed {}, clock {}, robot {}",
             of("program"),
             of("version"),
             of("commit"),
             of("job"),
             of("seed"),
             of("clock"),
-            of("robot"),
-            self.run.get("real_time").map_or("not asked for", String::as_str)
+            of("robot")
         )?;
         writeln!(f, "started    {}", of("command_line"))?;
         let end = match (&self.result, self.complete) {
