@@ -29,6 +29,7 @@ fn assert_ends_well(job: &str, seed: u64, placed: &[&[Placed]]) {
         assert_eq!(part["held"], false, "{part}");
         assert!(part["error_in"].as_f64().is_some_and(|error| error < *within), "{part}");
     }
+    assert_eq!(outcome.result["contacts"], serde_json::json!([]), "{job}, seed {seed}");
     assert_eq!(outcome.result["allocations_after_start"], 0);
     assert_eq!(outcome.result["link"]["naks"], 0);
     assert_replays(&outcome);

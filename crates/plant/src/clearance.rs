@@ -1,119 +1,272 @@
-//! Collisions of the robot: each tick the outline of arm and gripper, and what the gripper carries, against everything that
-//! stands in the cell.
+//! Collisions of the robot: each tick arm, gripper, and what the gripper carries, against everything else in the cell, and
+//! against the arm itself.
 //!
-//! The arm is led on its path whatever it meets, as a hydraulic arm would be; so a collision must be seen, not felt. A
-//! contact is reported once when it begins, with its depth.
+//! The arm is led on its path whatever it meets, as a hydraulic arm would be; so a collision must be seen, not felt. What may
+//! touch is a list of the cell description ([`crate::description::Permits`]). Of the pairs that are not on it for all times
+//! the check keeps, each tick, those that touch or are nearer than a margin, with their depth and direction: whoever knows the
+//! present command judges them, and whoever moves the arm sees what it is led into.
 
-use std::collections::BTreeSet;
+use std::{borrow::Cow, collections::BTreeSet};
 
 use rapier3d_f64::{parry::query, prelude::*};
+use rcs_core::frame::Vector as Inches;
 use serde::{Deserialize, Serialize};
 
-use crate::{convert::inches, scene::Obstacle};
+use crate::{
+    convert::{inches, metres, to_inches},
+    description::{Kind, Permits},
+};
 
-/// Contacts that are less deep are none: parts rest on things, m.
-const LEAST_DEPTH: Real = 2.5e-5;
+/// Contacts that are less deep are none: parts rest on things, in.
+pub const LEAST_DEPTH: f64 = 0.001;
 
-/// A finger that has been led this deep into what is there to run against presses with hundreds of pounds, m.
-const PRESSED: Real = 2.5e-3;
-
-/// A moving shape, metres.
-pub struct Mover {
+/// Something that can collide, metres.
+#[derive(Clone, Debug)]
+pub struct Body {
     /// Its name.
-    pub name: String,
+    pub name: Cow<'static, str>,
+    /// What it is.
+    pub kind: Kind,
     /// Its place.
     pub pose: Pose,
     /// Its shape.
     pub shape: SharedShape,
-    /// It is a part that is carried: it may touch what is there to work on.
-    pub carried: bool,
-    /// It is a finger: it may press on what is there to run against.
-    pub finger: bool,
+    /// Its surroundings.
+    pub aabb: Aabb,
+    /// Its place in the chain of the arm, from 1 at the base; 0 if it is not of it. Neighbours in the chain do not collide.
+    pub chain: u8,
 }
 
-/// A contact that has begun.
+impl Body {
+    /// A body that is not of the arm.
+    pub fn new(name: impl Into<Cow<'static, str>>, kind: Kind, pose: Pose, shape: SharedShape) -> Self {
+        Self { name: name.into(), kind, aabb: shape.compute_aabb(&pose), pose, shape, chain: 0 }
+    }
+
+    /// The same body at a place in the chain of the arm.
+    #[must_use]
+    pub fn at(self, chain: u8) -> Self {
+        Self { chain, ..self }
+    }
+
+    fn id(&self) -> (&str, Kind) {
+        (&self.name, self.kind)
+    }
+
+    fn is_joined_to(&self, other: &Self) -> bool {
+        self.chain != 0 && other.chain != 0 && self.chain.abs_diff(other.chain) <= 1
+    }
+}
+
+/// Two things that touch or are near each other.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Contact {
-    /// What moves.
+    /// What moves with the arm.
     pub mover: String,
+    /// What kind of thing it is.
+    pub mover_kind: Kind,
     /// What it has met.
     pub obstacle: String,
-    /// How deep, in.
+    /// What kind of thing that is.
+    pub obstacle_kind: Kind,
+    /// How deep, in; negative is a distance.
     pub depth: f64,
+    /// Where, world, in.
+    pub at: [f64; 3],
+    /// Unit vector, world: that way the mover is free, or the mover lies from the obstacle.
+    pub away: [f64; 3],
 }
 
-/// Remembers which pairs are in contact.
-#[derive(Debug, Default, Deserialize, Serialize)]
+impl Contact {
+    /// They touch.
+    #[must_use]
+    pub fn touches(&self) -> bool {
+        self.depth > LEAST_DEPTH
+    }
+
+    /// Name and kind of the mover.
+    #[must_use]
+    pub fn mover(&self) -> (&str, Kind) {
+        (&self.mover, self.mover_kind)
+    }
+
+    /// Name and kind of the obstacle.
+    #[must_use]
+    pub fn obstacle(&self) -> (&str, Kind) {
+        (&self.obstacle, self.obstacle_kind)
+    }
+
+    /// The two, whichever pieces of them it is.
+    #[must_use]
+    pub fn pair(&self) -> (String, String) {
+        (self.mover.clone(), self.obstacle.clone())
+    }
+
+    fn is_of(&self, mover: &Body, obstacle: &Body) -> bool {
+        self.mover() == mover.id() && self.obstacle() == obstacle.id()
+    }
+}
+
+/// The contacts of the present, and which of them have begun before.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Clearance {
+    /// How near is near, m.
+    margin: Real,
+    contacts: Vec<Contact>,
     touching: BTreeSet<(String, String)>,
 }
 
 impl Clearance {
-    /// The contacts that have begun since the last check.
+    /// Look out for what is nearer than `margin` inches; without this only for what touches.
+    pub fn watch(&mut self, margin: f64) {
+        self.margin = metres(margin.max(0.0));
+    }
+
+    /// Everything that touched or was near in the last check, each pair of names once, where it is deepest; without what may
+    /// always touch.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// Look at all pairs. Returns those that touch deeper than they always may, and have just begun to.
     pub fn check<'a>(
         &mut self,
-        movers: &[Mover],
-        obstacles: impl Iterator<Item = &'a Obstacle> + Clone,
+        permits: &Permits,
+        movers: &[Body],
+        obstacles: impl Iterator<Item = &'a Body> + Clone,
     ) -> Vec<Contact> {
-        let mut touching = BTreeSet::new();
-        let mut begun = Vec::new();
+        self.contacts.clear();
         for mover in movers {
-            let aabb = mover.shape.compute_aabb(&mover.pose);
-            for obstacle in obstacles.clone().filter(|obstacle| {
-                !(mover.carried && obstacle.work_surface) && obstacle.aabb.intersects(&aabb)
-            }) {
-                let allowed = if mover.finger && obstacle.strike { PRESSED } else { LEAST_DEPTH };
-                let Some(depth) = depth(mover, obstacle).filter(|depth| *depth > allowed) else { continue };
-                let pair = (mover.name.clone(), obstacle.name.clone());
-                if !self.touching.contains(&pair) && !touching.contains(&pair) {
-                    let (mover, obstacle) = pair.clone();
-                    begun.push(Contact { mover, obstacle, depth: inches(depth) });
+            let around = mover.aabb.loosened(self.margin);
+            let near = obstacles.clone().filter(|obstacle| obstacle.aabb.intersects(&around));
+            for obstacle in near {
+                if !mover.is_joined_to(obstacle) && !permits.ignores(mover.kind, obstacle.kind) {
+                    self.look(mover, obstacle);
                 }
-                touching.insert(pair);
             }
         }
-        self.touching = touching;
+        let always = |contact: &Contact| permits.always(contact.mover(), contact.obstacle());
+        self.contacts.retain(|contact| always(contact) < f64::INFINITY);
+        let deep = self.contacts.iter().filter(|one| one.touches() && one.depth > always(one));
+        let begun = deep.clone().filter(|one| !self.touching.contains(&one.pair())).cloned().collect();
+        self.touching = deep.map(Contact::pair).collect();
         begun
     }
-}
 
-fn depth(mover: &Mover, obstacle: &Obstacle) -> Option<Real> {
-    let contact = query::contact(&obstacle.pose, &obstacle.shape, &mover.pose, &*mover.shape, 0.0).ok()??;
-    Some(-contact.dist)
+    /// Note how a mover and an obstacle stand to each other, if they are near.
+    fn look(&mut self, mover: &Body, obstacle: &Body) {
+        let met = query::contact(&obstacle.pose, &*obstacle.shape, &mover.pose, &*mover.shape, self.margin);
+        let Ok(Some(met)) = met else { return };
+        let depth = inches(-met.dist);
+        if depth <= LEAST_DEPTH && self.margin == 0.0 {
+            return;
+        }
+        let known = self.contacts.iter().position(|one| one.is_of(mover, obstacle));
+        if known.is_some_and(|known| self.contacts[known].depth >= depth) {
+            return;
+        }
+        let at = to_inches(met.point2);
+        let contact = Contact {
+            mover: mover.name.to_string(),
+            mover_kind: mover.kind,
+            obstacle: obstacle.name.to_string(),
+            obstacle_kind: obstacle.kind,
+            depth,
+            at: Inches::into(at),
+            away: met.normal1.to_array(),
+        };
+        match known {
+            Some(known) => self.contacts[known] = contact,
+            None => self.contacts.push(contact),
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::description::{Pattern, Permit};
+
+    fn table() -> Body {
+        Body::new("table", Kind::Fixture, Pose::IDENTITY, SharedShape::cuboid(0.1, 0.1, 0.1))
+    }
+
+    fn hand(z: Real) -> Vec<Body> {
+        let pose = Pose::translation(0.0, 0.0, z);
+        vec![Body::new("hand", Kind::Gripper, pose, SharedShape::ball(0.05))]
+    }
+
+    fn permit(depth: Option<f64>) -> Permits {
+        let pattern = |text: &str| vec![Pattern(text.into())];
+        let during = Vec::new();
+        Permits(vec![Permit {
+            mover: pattern("gripper"),
+            obstacle: pattern("table"),
+            during,
+            depth,
+            why: String::new(),
+        }])
+    }
 
     #[test]
     fn a_contact_is_reported_when_it_begins() {
-        let shape = Cuboid::new(Vector::splat(0.1));
-        let table = Obstacle {
-            name: "table".into(),
-            pose: Pose::IDENTITY,
-            aabb: shape.aabb(&Pose::IDENTITY),
-            shape,
-            work_surface: false,
-            strike: false,
-        };
-        let at = |z: Real| {
-            vec![Mover {
-                name: "hand".into(),
-                pose: Pose::translation(0.0, 0.0, z),
-                shape: SharedShape::ball(0.05),
-                carried: false,
-                finger: false,
-            }]
-        };
-        let mut clearance = Clearance::default();
-        let mut check = |z: Real| clearance.check(&at(z), [&table].into_iter());
+        let (mut clearance, table) = (Clearance::default(), table());
+        let mut check = |z: Real| clearance.check(&Permits::default(), &hand(z), [&table].into_iter());
         assert!(check(0.151).is_empty());
         let begun = check(0.148);
         assert_eq!(begun.len(), 1);
         assert!((begun[0].depth - 0.002 / 0.0254).abs() < 1e-6, "{begun:?}");
+        assert!((begun[0].away[2] - 1.0).abs() < 1e-6, "up it is free: {begun:?}");
         assert!(check(0.147).is_empty(), "it goes on");
         assert!(check(0.2).is_empty());
         assert_eq!(check(0.14).len(), 1, "it begins again");
+    }
+
+    #[test]
+    fn what_is_near_is_listed_with_its_distance() {
+        let (mut clearance, table) = (Clearance::default(), table());
+        let mut near = |clearance: &mut Clearance, z: Real| {
+            assert!(clearance.check(&Permits::default(), &hand(z), [&table].into_iter()).is_empty());
+            clearance.contacts().iter().map(|one| one.depth).collect::<Vec<_>>()
+        };
+        let gap = 0.15 + metres(0.5);
+        assert_eq!(near(&mut clearance, gap), [], "nobody looks out for it");
+        clearance.watch(1.0);
+        let listed = near(&mut clearance, gap);
+        assert!(listed.len() == 1 && (listed[0] + 0.5).abs() < 1e-6, "{listed:?}");
+        clearance.watch(0.4);
+        assert_eq!(near(&mut clearance, gap), []);
+    }
+
+    #[test]
+    fn what_may_touch_is_reported_where_it_is_deeper_than_it_may_be() {
+        let (mut clearance, table) = (Clearance::default(), table());
+        let some = permit(Some(0.1));
+        assert!(clearance.check(&some, &hand(0.15 - metres(0.09)), [&table].into_iter()).is_empty());
+        assert_eq!(clearance.contacts().len(), 1, "but whoever moves the arm may know");
+        assert_eq!(clearance.check(&some, &hand(0.15 - metres(0.11)), [&table].into_iter()).len(), 1);
+        assert!(clearance.check(&permit(None), &hand(0.1), [&table].into_iter()).is_empty());
+        assert!(clearance.contacts().is_empty());
+    }
+
+    #[test]
+    fn of_the_pieces_of_a_thing_the_deepest_counts() {
+        let low = Body { pose: Pose::translation(0.0, 0.0, -0.001), ..table() };
+        let mut clearance = Clearance::default();
+        let begun = clearance.check(&Permits::default(), &hand(0.14), [&low, &table(), &low].into_iter());
+        assert!(begun.len() == 1 && (begun[0].depth - inches(0.01)).abs() < 1e-6, "{begun:?}");
+    }
+
+    #[test]
+    fn neighbours_in_the_arm_do_not_collide() {
+        let link = |chain| Body { chain, kind: Kind::Arm, ..table() };
+        let mut clearance = Clearance::default();
+        let mut met = |mover: u8, obstacle: u8| {
+            let movers = [Body { chain: mover, ..hand(0.1).remove(0) }];
+            clearance.check(&Permits::default(), &movers, [&link(obstacle)].into_iter());
+            clearance.contacts().len()
+        };
+        assert_eq!([met(3, 2), met(3, 3), met(3, 4), met(3, 1), met(0, 3)], [0, 0, 0, 1, 1]);
     }
 }

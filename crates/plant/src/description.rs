@@ -7,6 +7,7 @@
 mod check;
 mod hydraulics;
 mod sensing;
+mod contact;
 mod tooling;
 
 use std::{fmt, path::Path};
@@ -20,6 +21,7 @@ use serde::{Deserialize, Serialize};
 
 pub use hydraulics::{Actuators, Hydraulics};
 pub use sensing::SensorModels;
+pub use contact::{Kind, Pattern, Permit, Permits, commands, known};
 pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChange};
 
 /// Why a cell description cannot be used.
@@ -110,6 +112,9 @@ pub struct CellDescription {
     /// Places where parts stay because of their shape.
     #[serde(default)]
     pub nest: Vec<Nest>,
+    /// What may touch what.
+    #[serde(default)]
+    pub contact: Permits,
     /// Parts that can be in the cell.
     pub part: Vec<PartType>,
 }
@@ -414,9 +419,6 @@ pub struct Fixture {
     /// Lean of the top along the turned +X, degrees.
     #[serde(default)]
     pub tilt: f64,
-    /// Parts that are carried may touch it: it is there to hold them.
-    #[serde(default)]
-    pub work_surface: bool,
 }
 
 /// The body of a part.

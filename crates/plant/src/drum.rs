@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     convert::{metres, newtons},
-    description::Drum as Description,
+    description::{Drum as Description, Kind},
     scene::Block,
 };
 
@@ -188,15 +188,8 @@ impl Drum {
 pub fn strike_plate(frame: &Frame, drum: &Description) -> Vec<Block> {
     let block = |plate: &crate::description::Plate| {
         let (low, high) = (Vector::from(plate.low), Vector::from(plate.high));
-        let middle = Frame { position: (low + high) / 2.0, rotation: Rotation::identity() };
-        Block {
-            name: plate.name.clone(),
-            frame: frame.compose(&middle),
-            size: high - low,
-            work_surface: true,
-            jaw: false,
-            strike: Some(drum.friction),
-        }
+        let block = Block::between(&plate.name, Kind::Drum, low, high).moved(frame);
+        Block { friction: Some(drum.friction), ..block }
     };
     drum.plate.iter().map(block).collect()
 }

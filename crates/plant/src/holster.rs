@@ -12,7 +12,7 @@ use rcs_core::frame::{Frame, Rotation, Vector, rotation_vector};
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    description::{CellDescription, Gripper, Holsters, Points},
+    description::{CellDescription, Gripper, Holsters, Kind, Points},
     scene::Block,
 };
 
@@ -207,15 +207,7 @@ impl Holster {
     }
 
     fn block(&self, name: &str, low: Vector, high: Vector) -> Block {
-        let here = Frame { position: (low + high) / 2.0, rotation: Rotation::identity() };
-        Block {
-            name: name.into(),
-            frame: self.frame.compose(&here),
-            size: (high - low).map(f64::abs),
-            work_surface: false,
-            jaw: false,
-            strike: None,
-        }
+        Block::between(name, Kind::Holster, low, high).moved(&self.frame)
     }
 }
 

@@ -8,8 +8,9 @@ use rapier3d_f64::prelude::*;
 use rcs_core::frame::{Frame, Rotation, Vector as Inches};
 
 use crate::{
+    clearance::Body,
     convert::{to_metres, to_pose},
-    description::{CellDescription, Fixture, Tray, TrayShape, Vise},
+    description::{CellDescription, Fixture, Kind, Tray, TrayShape, Vise},
     drum::strike_plate,
     holster::holsters,
 };
@@ -49,22 +50,24 @@ pub struct Block {
     pub frame: Frame,
     /// Its size along its axes, in.
     pub size: Inches,
-    /// Parts that are carried may touch it: it is there to work on.
-    pub work_surface: bool,
+    /// What kind of thing it is.
+    pub kind: Kind,
     /// It is a jaw of the vise.
     pub jaw: bool,
-    /// It is there for fingers to run against, with this coefficient of friction.
-    pub strike: Option<f64>,
+    /// Its coefficient of friction, if that is not the one of trays, vise and floor.
+    pub friction: Option<f64>,
 }
 
 impl Block {
-    fn between(name: &str, low: Inches, high: Inches, work_surface: bool) -> Self {
+    /// A box from corner to corner, in the frame that they are given in.
+    #[must_use]
+    pub fn between(name: &str, kind: Kind, low: Inches, high: Inches) -> Self {
         let frame = Frame { position: (low + high) / 2.0, rotation: Rotation::identity() };
-        Self { name: name.into(), frame, size: high - low, work_surface, jaw: false, strike: None }
+        Self { name: name.into(), frame, size: (high - low).abs(), kind, jaw: false, friction: None }
     }
 
     fn jaw(name: &str, low: Inches, high: Inches) -> Self {
-        Self { jaw: true, ..Self::between(name, low, high, true) }
+        Self { jaw: true, ..Self::between(name, Kind::Vise, low, high) }
     }
 
     /// Half the size, metres.
@@ -84,7 +87,7 @@ impl Block {
         let half = self.half();
         ColliderBuilder::cuboid(half.x, half.y, half.z)
             .position(to_pose(&self.frame))
-            .friction(self.strike.unwrap_or(FRICTION))
+            .friction(self.friction.unwrap_or(FRICTION))
             .collision_groups(groups(if self.jaw { JAW } else { WORLD }, Group::ALL))
     }
 }
@@ -111,9 +114,9 @@ fn fixture(fixture: &Fixture) -> Block {
         name: fixture.name.clone(),
         frame: Frame { position: Inches::from(fixture.centre), rotation },
         size: Inches::from(fixture.size),
-        work_surface: fixture.work_surface,
+        kind: Kind::Fixture,
         jaw: false,
-        strike: None,
+        friction: None,
     }
 }
 
@@ -125,15 +128,15 @@ fn tray_blocks(tray: &Tray, shape: &TrayShape) -> Vec<Block> {
     let (bottom, floor, rim) = (tray.floor - shape.floor_thickness, tray.floor, tray.floor + shape.rim);
     let name = |what: &str| format!("{}_{what}", tray.unit);
     let centre = Inches::new(x, y, 0.0);
-    let block = |what: &str, low: Inches, high: Inches, work| {
-        Block::between(&name(what), centre + low, centre + high, work)
+    let block = |what: &str, low: Inches, high: Inches| {
+        Block::between(&name(what), Kind::Tray, centre + low, centre + high)
     };
     vec![
-        block("floor", Inches::new(-outer, -outer, bottom), Inches::new(outer, outer, floor), true),
-        block("far_wall", Inches::new(-outer, -outer, floor), Inches::new(-inner, outer, rim), false),
-        block("near_wall", Inches::new(inner, -outer, floor), Inches::new(outer, outer, rim), false),
-        block("left_wall", Inches::new(-inner, -outer, floor), Inches::new(inner, -inner, rim), false),
-        block("right_wall", Inches::new(-inner, inner, floor), Inches::new(inner, outer, rim), false),
+        block("floor", Inches::new(-outer, -outer, bottom), Inches::new(outer, outer, floor)),
+        block("far_wall", Inches::new(-outer, -outer, floor), Inches::new(-inner, outer, rim)),
+        block("near_wall", Inches::new(inner, -outer, floor), Inches::new(outer, outer, rim)),
+        block("left_wall", Inches::new(-inner, -outer, floor), Inches::new(inner, -inner, rim)),
+        block("right_wall", Inches::new(-inner, inner, floor), Inches::new(inner, outer, rim)),
     ]
 }
 
@@ -149,9 +152,9 @@ fn vise_blocks(vise: &Vise) -> Vec<Block> {
     let [front, back] = vise.body_x;
     let mut blocks = vec![Block::between(
         "vise_body",
+        Kind::Vise,
         Inches::new(front, vise.body_y[0], -height - vise.body_height),
         Inches::new(back, vise.body_y[1], -height),
-        true,
     )];
     blocks.extend(jaw_pieces(vise).into_iter().map(|[[x0, x1], [d0, d1], [z0, z1]]| {
         Block::jaw("fixed_jaw", Inches::new(x0, -d1, z0), Inches::new(x1, -d0, z1))
@@ -201,34 +204,11 @@ fn jaw_pieces(vise: &Vise) -> Vec<[[f64; 2]; 3]> {
     pieces
 }
 
-/// A box with its place and its surrounding axis-parallel box, for the clearance check, metres.
-#[derive(Clone, Debug)]
-pub struct Obstacle {
-    /// What it belongs to.
-    pub name: String,
-    /// Its place.
-    pub pose: Pose,
-    /// Its shape.
-    pub shape: Cuboid,
-    /// Its surroundings.
-    pub aabb: Aabb,
-    /// Parts that are carried may touch it.
-    pub work_surface: bool,
-    /// Fingers may press on it.
-    pub strike: bool,
-}
-
-impl From<&Block> for Obstacle {
+impl From<&Block> for Body {
     fn from(block: &Block) -> Self {
-        let (pose, shape) = (to_pose(&block.frame), Cuboid::new(block.half()));
-        Self {
-            name: block.name.clone(),
-            pose,
-            aabb: shape.aabb(&pose),
-            shape,
-            work_surface: block.work_surface,
-            strike: block.strike.is_some(),
-        }
+        let half = block.half();
+        let shape = SharedShape::cuboid(half.x, half.y, half.z);
+        Self::new(block.name.clone(), block.kind, to_pose(&block.frame), shape)
     }
 }
 

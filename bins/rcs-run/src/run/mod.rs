@@ -5,6 +5,7 @@
 //! allocates and takes its time; it is outside of what is counted as the controller's. What the log is told of
 //! the next tick, and its rehearsal, come before that tick begins.
 
+mod contacts;
 mod log;
 mod pace;
 mod progress;
@@ -44,6 +45,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use taskdata::load::{Job, job::Reload};
 
 use self::{
+    contacts::{Commands, Judge},
     log::Log,
     pace::Pace,
     progress::Progress,
@@ -68,8 +70,10 @@ struct Run {
     log: Option<Log>,
     pace: Pace,
     progress: Progress,
+    /// What the robot touches.
+    judge: Judge,
     /// Events of the cell since the last tick, for the log of the next one.
-    fresh: Vec<CellEvent>,
+    fresh: Vec<(Level, &'static str, String)>,
     /// All events, with their ticks.
     events: Vec<String>,
 }
@@ -82,6 +86,21 @@ enum Ending {
     Stopped,
     /// Something went wrong.
     Failed(Failure),
+}
+
+impl Ending {
+    /// A job in which the robot ran into something has not finished; one that failed may have failed because of it.
+    fn judged(self, judge: &Judge) -> Self {
+        let Some(verdict) = judge.verdict() else { return self };
+        match self {
+            Self::Finished | Self::Stopped => Self::Failed(verdict),
+            Self::Failed(failure) if failure.text == verdict.text => Self::Failed(failure),
+            Self::Failed(failure) => {
+                let text = format!("{}; before, {}", failure.text, verdict.text);
+                Self::Failed(Failure { text, ..failure })
+            }
+        }
+    }
 }
 
 /// Run a job and print its result.
@@ -106,6 +125,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         log,
         progress: Progress::new(job.steps.len() + 1),
         pace: Pace::fast(arguments.overrun),
+        judge: Judge::new(description.contact),
         fresh: Vec::new(),
         events: Vec::new(),
     };
@@ -117,6 +137,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let started = Instant::now();
     let ending = run.play(Generations::new(store), &job.reloads, arguments.ticks, &interrupted);
     let wall_s = started.elapsed().as_secs_f64();
+    let ending = ending.judged(&run.judge);
     run.progress.end();
     let mut result = run.result(&job, &ending, wall_s);
     let log_text = run.finish_log(&ending, &mut result, log_path);
@@ -222,10 +243,8 @@ impl Run {
     fn show_cell(&mut self) {
         let tick = self.runner.tick().next();
         let Some(log) = &mut self.log else { return self.fresh.clear() };
-        for event in self.fresh.drain(..) {
-            let planned = matches!(event, CellEvent::FaultBegins { .. } | CellEvent::FaultEnds { .. });
-            let source = if planned { "fault" } else { "cell" };
-            log.note(tick, Level::Warning, source, &event.to_string());
+        for (level, source, event) in self.fresh.drain(..) {
+            log.note(tick, level, source, &event);
         }
         if let Some(counts) = self.robot.faults() {
             log.faults(tick, counts);
@@ -260,8 +279,7 @@ impl Run {
             let ladder = self.runner.levels();
             self.inputs =
                 self.robot.advance(tick, &mut self.workstation.cell, &outputs, || acknowledged(ladder));
-            self.fresh = self.workstation.events(tick);
-            self.events.extend(self.fresh.iter().map(|event| format!("tick {tick}: {event}")));
+            self.observe(tick, Commands::from(&memory));
             self.runner.laps_mut().lap(Part::Cell);
             self.progress.show(&self.hwsc, &external.hws, &memory);
             self.data_system.step(tick, &memory.task.data_base);
@@ -274,6 +292,11 @@ impl Run {
                     return Ending::Failed(self.explain(&failure, &external));
                 }
                 hwsc::Progress::Running => {}
+            }
+            // An arm that sinks without pressure is stopped by what it meets, and the emergency is the verdict.
+            let stuck = self.judge.is_stuck() && !self.workstation.is_settling(tick);
+            if let Some(failure) = self.judge.verdict().filter(|_| stuck) {
+                return Ending::Failed(failure);
             }
             if let Some(overrun) = self.pace.ends(&memory) {
                 let text = format!("{overrun}; --overrun {} ends the run then", self.pace.policy());
@@ -292,6 +315,18 @@ impl Run {
             laps.lap(Part::Inputs);
             laps.finish();
         }
+    }
+
+    /// What has happened in the cell in a tick, for the log, for the page and for the verdict.
+    fn observe(&mut self, tick: Tick, commands: Commands) {
+        // Whether a contact is worth a word is the judge's affair.
+        let events = self.workstation.events(tick).into_iter();
+        let events = events.filter(|event| !matches!(event, CellEvent::Contact(_)));
+        self.fresh = events.map(|event| (Level::Warning, source(&event), event.to_string())).collect();
+        let lines = self.judge.look(tick, self.workstation.cell.contacts(), commands);
+        self.fresh.extend(lines.into_iter().map(|line| (Level::Error, "cell", line)));
+        self.workstation.cell.watch_clearance(self.judge.margin());
+        self.events.extend(self.fresh.iter().map(|(_, _, event)| format!("tick {tick}: {event}")));
     }
 
     /// Take up the reloads that the job has asked for, and let the next tick see them if no command is in progress.
@@ -370,6 +405,8 @@ impl Run {
             digest: self.runner.digest().to_string(),
             parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
             data_base: self.data_system.items().map(Into::into).collect(),
+            contacts: self.judge.collisions().to_vec(),
+            clearance: self.judge.nearest().cloned(),
             log: None,
             failure: match ending {
                 Ending::Failed(failure) => Some(FailureResult::from(failure)),
@@ -413,6 +450,14 @@ impl Run {
 fn acknowledged(ladder: &Ladder) -> Option<Plate> {
     let host = ladder.state().t3i.host;
     host.is_running().then(|| host.position())
+}
+
+/// Who a line of the log about an event comes from: what was planned is told apart from what came of it.
+const fn source(event: &CellEvent) -> &'static str {
+    match event {
+        CellEvent::FaultBegins { .. } | CellEvent::FaultEnds { .. } => "fault",
+        _ => "cell",
+    }
 }
 
 /// A failure that no control process reports.

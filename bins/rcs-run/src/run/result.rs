@@ -15,7 +15,11 @@ use rcs_core::{
 };
 use serde::Serialize;
 
-use super::{robot::Port, workstation::Emergency};
+use super::{
+    contacts::{Collision, NearMiss},
+    robot::Port,
+    workstation::Emergency,
+};
 
 /// A command for Task.
 #[derive(Clone, Debug, Serialize)]
@@ -344,6 +348,11 @@ pub struct RunResult {
     pub parts: Vec<PartResult>,
     /// What the Data System was told of items of the MBD.
     pub data_base: Vec<ItemResult>,
+    /// What was touched that may not be touched.
+    pub contacts: Vec<Collision>,
+    /// The nearest miss, if something was passed nearer than 2 in.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<NearMiss>,
     /// The log that was written.
     pub log: Option<PathBuf>,
     /// Why it failed, if it did.
@@ -420,6 +429,9 @@ impl fmt::Display for Page<'_> {
         }
         for item in &result.data_base {
             writeln!(f, "data base  {item}")?;
+        }
+        if let Some(nearest) = &result.clearance {
+            writeln!(f, "clearance  {nearest}")?;
         }
         for event in self.events.iter().take(EVENTS_SHOWN) {
             writeln!(f, "event      {event}")?;

@@ -1,6 +1,7 @@
 //! The cell as a whole: one tick of it is one call.
 
 mod changing;
+mod clearing;
 mod drumming;
 mod handling;
 mod machining;
@@ -35,7 +36,7 @@ pub use workstation::{Placement, WorkstationAction, WorkstationError};
 
 use crate::{
     camera::{Camera, Face, Subject},
-    clearance::{Clearance, Contact},
+    clearance::{Body, Clearance, Contact},
     convert::{GRAVITY, to_frame, to_metres, to_pose},
     description::{Actuators, CellDescription, DescriptionError, Points},
     drum::Drum,
@@ -47,7 +48,7 @@ use crate::{
     noise::{Noise, Stream},
     part::{Part, PartState},
     pedestal::Pedestal,
-    scene::{Block, FINGER, Obstacle, furniture},
+    scene::{Block, FINGER, furniture},
     sensor::{DeadTimes, resolver},
     t3::{DriveError, Key, Message, Refusal, StepInputs, StepOutputs, T3Controller},
     vise::Vise,
@@ -188,7 +189,7 @@ pub struct Cell {
     #[serde(skip)]
     furniture: Vec<Block>,
     #[serde(skip)]
-    obstacles: Vec<Obstacle>,
+    obstacles: Vec<Body>,
     clearance: Clearance,
     gripper_noise: Noise,
     pedestal_noise: Noise,
@@ -248,7 +249,7 @@ impl Cell {
             t3,
             host_ready: true,
             camera: Camera::new(&description.camera, Noise::new(seed, Stream::Camera)),
-            obstacles: furniture.iter().map(Obstacle::from).collect(),
+            obstacles: clearing::standing(description, &furniture),
             joystick: Joystick::default(),
             description: description.clone(),
             world,
@@ -390,12 +391,7 @@ impl Cell {
 
     /// Once a tick: what has been run into, what has fallen.
     fn after_tick(&mut self) {
-        let movers = self.movers();
-        let mut jaw = self.jaw_obstacles();
-        jaw.extend(self.gripper_obstacles());
-        jaw.extend(self.pedestal_obstacles());
-        let begun = self.clearance.check(&movers, self.obstacles.iter().chain(&jaw));
-        self.events.extend(begun.into_iter().map(CellEvent::Contact));
+        self.check_clearance();
         if !self.world.quarantine().is_empty() {
             self.events.push(CellEvent::Quarantined);
         }

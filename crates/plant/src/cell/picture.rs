@@ -1,4 +1,4 @@
-//! The cell as viewers and the clearance check see it: links with poses, and a URDF made of boxes and cylinders.
+//! The cell as viewers see it: links with poses, and a URDF made of boxes and cylinders.
 //!
 //! Every link hangs in the URDF by the same parent that its pose is given in, so that a stream of transforms, a stream of
 //! joint angles and the URDF agree.
@@ -13,10 +13,9 @@ use rcs_core::{
 
 use super::Cell;
 use crate::{
-    clearance::Mover,
-    convert::{metres, to_frame, to_metres, to_pose},
-    linkage::{AXES, Chain, STARTS},
-    scene::{Block, Obstacle, along_x, jaw_blocks},
+    convert::{metres, to_metres, to_pose},
+    linkage::{AXES, STARTS},
+    scene::{Block, along_x, jaw_blocks},
     solid::along,
 };
 
@@ -54,45 +53,6 @@ pub(super) enum Outline {
 }
 
 impl Cell {
-    /// The outline of the robot and what it carries, for the clearance check.
-    pub(super) fn movers(&self) -> Vec<Mover> {
-        let [_, upper, fore, _, _, plate] = Chain::new(&self.joints()).frames().map(|frame| to_pose(&frame));
-        let robot = &self.description.robot;
-        let capsule = |name: &str, pose: Pose, from: f64, to: f64, radius: f64| Mover {
-            name: name.into(),
-            pose,
-            shape: SharedShape::capsule(Vector::X * metres(from), Vector::X * metres(to), metres(radius)),
-            carried: false,
-            finger: false,
-        };
-        let mut movers = vec![
-            capsule("upper_arm", upper, T3.upper_arm / 4.0, T3.upper_arm, robot.upper_arm_radius),
-            capsule("forearm", fore, 0.0, T3.forearm, robot.forearm_radius),
-            // Its round end is behind the end plate, before which the quick change sits.
-            capsule("wrist", plate, 0.0, T3.yaw_to_plate - robot.wrist_radius, robot.wrist_radius),
-        ];
-        movers.extend(self.worn());
-        let held = self.changer.carried().and_then(|hand| self.hand(hand).hold.as_ref());
-        if let Some((index, _)) = held {
-            let part = &self.parts[*index];
-            let (shape, turn) = part.solid().shape();
-            movers.push(Mover {
-                name: part.kind.name.clone(),
-                pose: part.pose(&self.world) * turn,
-                shape,
-                carried: true,
-                finger: false,
-            });
-        }
-        movers
-    }
-
-    /// The movable jaw where it is now.
-    pub(super) fn jaw_obstacles(&self) -> Vec<Obstacle> {
-        let jaw = to_frame(self.world.bodies[self.vise.jaw()].position());
-        jaw_blocks(&self.description.vise).iter().map(|block| Obstacle::from(&block.moved(&jaw))).collect()
-    }
-
     /// Names and poses of all moving bodies and of what they hang on; a parent stands before its children.
     #[must_use]
     pub fn links(&self) -> Vec<Link> {

@@ -129,14 +129,16 @@ impl Cell {
             let contact = query::contact(&pose, &*shape, other, other_shape, 0.0);
             same || matches!(contact, Ok(Some(contact)) if contact.dist < -OVERLAP)
         };
-        let jaw = self.jaw_obstacles();
+        let jaw = self.jaw_bodies();
         let furniture =
-            self.obstacles.iter().chain(&jaw).find(|obstacle| overlaps(&obstacle.pose, &obstacle.shape));
+            self.obstacles.iter().chain(&jaw).find(|obstacle| overlaps(&obstacle.pose, &*obstacle.shape));
         let parts = self.parts.iter().find(|part| {
             let (shape, turn) = part.solid().shape();
             overlaps(&(part.pose(&self.world) * turn), &*shape)
         });
-        furniture.map(|obstacle| obstacle.name.clone()).or_else(|| parts.map(|part| part.kind.name.clone()))
+        furniture
+            .map(|obstacle| obstacle.name.to_string())
+            .or_else(|| parts.map(|part| part.kind.name.clone()))
     }
 
     /// The report of a part.

@@ -7,7 +7,9 @@ use rcs_core::{
     name::Name16,
 };
 
-use super::{CellDescription, DescriptionError, Fault, Faults, Gripper, Points, Shape};
+use super::{
+    CellDescription, DescriptionError, Fault, Faults, Gripper, Kind, Pattern, Points, Shape, commands, known,
+};
 
 impl CellDescription {
     /// Check all numbers.
@@ -23,6 +25,7 @@ impl CellDescription {
         self.check_pedestal(&mut check);
         self.check_vise_and_trays(&mut check);
         self.check_names_and_boxes(&mut check);
+        self.check_contacts(&mut check);
         if check.0.is_empty() { Ok(()) } else { Err(DescriptionError::Values(Faults(check.0))) }
     }
 
@@ -275,6 +278,31 @@ impl CellDescription {
         }
         for fixture in &self.fixture {
             check.positive(&format!("fixture {}: size", fixture.name), &fixture.size);
+        }
+    }
+
+    fn check_contacts(&self, check: &mut Check) {
+        let known = known(self);
+        let means = |pattern: &Pattern, side: fn(Kind) -> bool| {
+            known.iter().any(|(name, kind)| side(*kind) && pattern.matches(name, *kind))
+        };
+        for (number, permit) in self.contact.0.iter().enumerate() {
+            let entry = |what: &str| format!("contact {}: {what}", number + 1);
+            let sides: [(&str, &[Pattern], fn(Kind) -> bool); 2] =
+                [("mover", &permit.mover, Kind::is_mover), ("obstacle", &permit.obstacle, Kind::is_obstacle)];
+            for (what, patterns, side) in sides {
+                check.that(!patterns.is_empty(), &entry(what), "at least one", "none");
+                for pattern in patterns {
+                    let expected = format!("a name, a group or a pattern of something that can be a {what}");
+                    check.that(means(pattern, side), &entry(what), expected, pattern);
+                }
+            }
+            for verb in &permit.during {
+                let is_one = commands().any(|command| command == verb);
+                check.that(is_one, &entry("during"), "commands of E-move or Subtask", verb);
+            }
+            check.within(&entry("depth"), permit.depth.unwrap_or(1.0), 0.001, 10.0);
+            check.that(!permit.why.is_empty(), &entry("why"), "a reason", "none");
         }
     }
 }
