@@ -13,11 +13,7 @@
 use rcs_core::digest::Digest;
 
 use super::Cell;
-use crate::{
-    description::CellDescription,
-    fingerprint,
-    scene::{Obstacle, furniture},
-};
+use crate::{description::CellDescription, fingerprint, scene::furniture};
 
 /// What every saved cell begins with.
 const MAGIC: [u8; 8] = *b"RCSCELL\0";
@@ -96,7 +92,7 @@ impl Cell {
             return Err(RestoreError::OtherDescription);
         }
         cell.furniture = furniture(&description);
-        cell.obstacles = cell.furniture.iter().map(Obstacle::from).collect();
+        cell.obstacles = super::clearing::standing(&cell.description, &cell.furniture);
         Ok(cell)
     }
 

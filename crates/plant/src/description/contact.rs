@@ -187,6 +187,12 @@ impl Permits {
         now.filter(|permit| permit.covers(mover, obstacle)).map(Permit::limit).fold(0.0, f64::max)
     }
 
+    /// True if there is something that the robot can do while a mover may touch an obstacle.
+    #[must_use]
+    pub fn sometimes(&self, mover: (&str, Kind), obstacle: (&str, Kind)) -> bool {
+        self.0.iter().any(|permit| permit.covers(mover, obstacle))
+    }
+
     /// True if all of one kind may touch all of another at any time and as deep as it likes: nobody need look at them.
     #[must_use]
     pub fn ignores(&self, mover: Kind, obstacle: Kind) -> bool {
@@ -279,6 +285,7 @@ mod tests {
         assert_eq!(permits.during(finger, part, ["GRASP-OBJ", "FIX-GRIP"]), 0.3, "a command of either");
         assert_eq!(permits.during(("right_finger", Kind::Finger), part, ["GRASP-OBJ", "FIX-GRIP"]), 0.1);
         assert_eq!(permits.always(("BAR", Kind::HeldPart), ("UNIT_1_floor", Kind::Tray)), 0.02);
+        assert!(permits.sometimes(finger, part) && !permits.sometimes(("wrist", Kind::Arm), part));
         assert!(permits.ignores(Kind::Finger, Kind::HeldPart));
         assert!(!permits.ignores(Kind::HeldPart, Kind::Tray), "it has a depth");
         assert!(!permits.ignores(Kind::Finger, Kind::Part), "it has commands");
