@@ -129,7 +129,7 @@ impl Clearance {
         &self.contacts
     }
 
-    /// Look at all pairs. Returns those that touch deeper than they always may, and have just begun to.
+    /// Look at all pairs. Returns those that touch deeper than they may whatever the robot does, and have just begun to.
     pub fn check<'a>(
         &mut self,
         permits: &Permits,
@@ -148,7 +148,8 @@ impl Clearance {
         }
         let always = |contact: &Contact| permits.always(contact.mover(), contact.obstacle());
         self.contacts.retain(|contact| always(contact) < f64::INFINITY);
-        let deep = self.contacts.iter().filter(|one| one.touches() && one.depth > always(one));
+        let most = |contact: &Contact| permits.at_most(contact.mover(), contact.obstacle());
+        let deep = self.contacts.iter().filter(|one| one.touches() && one.depth > most(one));
         let begun = deep.clone().filter(|one| !self.touching.contains(&one.pair())).cloned().collect();
         self.touching = deep.map(Contact::pair).collect();
         begun
@@ -226,7 +227,7 @@ mod tests {
     #[test]
     fn what_is_near_is_listed_with_its_distance() {
         let (mut clearance, table) = (Clearance::default(), table());
-        let mut near = |clearance: &mut Clearance, z: Real| {
+        let near = |clearance: &mut Clearance, z: Real| {
             assert!(clearance.check(&Permits::default(), &hand(z), [&table].into_iter()).is_empty());
             clearance.contacts().iter().map(|one| one.depth).collect::<Vec<_>>()
         };

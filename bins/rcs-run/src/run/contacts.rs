@@ -273,7 +273,7 @@ impl Judge {
             known.free |= distance > FREE;
             return;
         }
-        if distance >= self.least() || self.permits.sometimes(contact.mover(), contact.obstacle()) {
+        if distance >= self.least() || self.permits.at_most(contact.mover(), contact.obstacle()) > 0.0 {
             return;
         }
         self.nearest = Some(NearMiss {

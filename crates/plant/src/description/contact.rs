@@ -187,10 +187,12 @@ impl Permits {
         now.filter(|permit| permit.covers(mover, obstacle)).map(Permit::limit).fold(0.0, f64::max)
     }
 
-    /// True if there is something that the robot can do while a mover may touch an obstacle.
+    /// How deep, in, a mover may be in an obstacle at the most, while the robot does what is best for that; 0 if they may never
+    /// touch.
     #[must_use]
-    pub fn sometimes(&self, mover: (&str, Kind), obstacle: (&str, Kind)) -> bool {
-        self.0.iter().any(|permit| permit.covers(mover, obstacle))
+    pub fn at_most(&self, mover: (&str, Kind), obstacle: (&str, Kind)) -> f64 {
+        let covering = self.0.iter().filter(|permit| permit.covers(mover, obstacle));
+        covering.map(Permit::limit).fold(0.0, f64::max)
     }
 
     /// True if all of one kind may touch all of another at any time and as deep as it likes: nobody need look at them.
@@ -285,7 +287,7 @@ mod tests {
         assert_eq!(permits.during(finger, part, ["GRASP-OBJ", "FIX-GRIP"]), 0.3, "a command of either");
         assert_eq!(permits.during(("right_finger", Kind::Finger), part, ["GRASP-OBJ", "FIX-GRIP"]), 0.1);
         assert_eq!(permits.always(("BAR", Kind::HeldPart), ("UNIT_1_floor", Kind::Tray)), 0.02);
-        assert!(permits.sometimes(finger, part) && !permits.sometimes(("wrist", Kind::Arm), part));
+        assert_eq!((permits.at_most(finger, part), permits.at_most(("wrist", Kind::Arm), part)), (0.3, 0.0));
         assert!(permits.ignores(Kind::Finger, Kind::HeldPart));
         assert!(!permits.ignores(Kind::HeldPart, Kind::Tray), "it has a depth");
         assert!(!permits.ignores(Kind::Finger, Kind::Part), "it has commands");
