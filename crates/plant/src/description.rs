@@ -5,9 +5,13 @@
 //! fulfil, and reports all faults at once, each with the name of the entry, what was expected and what was found.
 
 mod check;
+<<<<<<< HEAD
 mod hydraulics;
 mod sensing;
+=======
+>>>>>>> ed54b66 (Order the uses)
 mod contact;
+mod sensing;
 mod tooling;
 
 use std::{fmt, path::Path};
@@ -19,9 +23,13 @@ use rcs_core::{
 };
 use serde::{Deserialize, Serialize};
 
+<<<<<<< HEAD
 pub use hydraulics::{Actuators, Hydraulics};
 pub use sensing::SensorModels;
+=======
+>>>>>>> ed54b66 (Order the uses)
 pub use contact::{Kind, Pattern, Permit, Permits, commands, known};
+pub use sensing::SensorModels;
 pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChange};
 
 /// Why a cell description cannot be used.
