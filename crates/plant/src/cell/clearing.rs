@@ -89,7 +89,7 @@ impl Cell {
     }
 
     /// Upper arm, forearm and wrist.
-    fn arm_bodies(&self) -> Vec<Body> {
+    pub(super) fn arm_bodies(&self) -> Vec<Body> {
         let [_, upper, fore, _, _, plate] = self.arm_frames().map(|frame| to_pose(&frame));
         let robot = &self.description.robot;
         let capsule = |name: &'static str, pose: Pose, from: f64, to: f64, radius: f64| {

@@ -417,7 +417,7 @@ impl Cell {
     fn subjects(&self, camera: &Frame) -> Vec<Subject> {
         let lens = to_pose(camera).translation;
         let arm: Vec<_> =
-            self.movers().into_iter().filter(|mover| ARM_IN_VIEW.contains(&&*mover.name)).collect();
+            self.arm_bodies().into_iter().filter(|link| ARM_IN_VIEW.contains(&&*link.name)).collect();
         let sees = |part: &Part, point: Inches| {
             if !self.camera.has_in_view(&point) {
                 return false;
