@@ -53,7 +53,9 @@ impl Body {
         (&self.name, self.kind)
     }
 
-    fn is_joined_to(&self, other: &Self) -> bool {
+    /// They are neighbours in the chain of the arm, or the same link.
+    #[must_use]
+    pub fn is_joined_to(&self, other: &Self) -> bool {
         self.chain != 0 && other.chain != 0 && self.chain.abs_diff(other.chain) <= 1
     }
 }

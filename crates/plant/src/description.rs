@@ -5,12 +5,8 @@
 //! fulfil, and reports all faults at once, each with the name of the entry, what was expected and what was found.
 
 mod check;
-<<<<<<< HEAD
-mod hydraulics;
-mod sensing;
-=======
->>>>>>> ed54b66 (Order the uses)
 mod contact;
+mod hydraulics;
 mod sensing;
 mod tooling;
 
@@ -23,12 +19,8 @@ use rcs_core::{
 };
 use serde::{Deserialize, Serialize};
 
-<<<<<<< HEAD
-pub use hydraulics::{Actuators, Hydraulics};
-pub use sensing::SensorModels;
-=======
->>>>>>> ed54b66 (Order the uses)
 pub use contact::{Kind, Pattern, Permit, Permits, commands, known};
+pub use hydraulics::{Actuators, Hydraulics};
 pub use sensing::SensorModels;
 pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChange};
 

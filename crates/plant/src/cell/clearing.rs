@@ -21,6 +21,7 @@ use crate::{
     clearance::{Body, Contact},
     convert::{metres, to_frame, to_metres, to_pose},
     description::{CellDescription, Kind},
+    linkage::Chain,
     scene::{Block, jaw_blocks},
 };
 
@@ -61,18 +62,29 @@ fn along_x(frame: &Frame) -> Pose {
 impl Cell {
     /// Once a tick: see what has been run into.
     pub(super) fn check_clearance(&mut self) {
-        let mut movers = self.arm_bodies();
-        let arm = movers.clone();
-        movers.extend(self.worn_bodies());
-        movers.extend(self.held_body());
-        let mut obstacles = self.jaw_bodies();
-        obstacles.extend(self.stored_gripper_bodies());
-        obstacles.extend(self.pedestal_bodies());
+        let mut obstacles = self.devices();
         obstacles.extend(self.part_bodies());
-        obstacles.extend(arm);
+        obstacles.extend(self.arm_bodies());
         let all = self.obstacles.iter().chain(&obstacles);
+        let movers = self.movers();
         let begun = self.clearance.check(&self.description.contact, &movers, all);
         self.events.extend(begun.into_iter().map(CellEvent::Contact));
+    }
+
+    /// The robot and what it carries.
+    pub(super) fn movers(&self) -> Vec<Body> {
+        let mut movers = self.arm_bodies();
+        movers.extend(self.worn_bodies());
+        movers.extend(self.held_body());
+        movers
+    }
+
+    /// What moves or is moved, but for arm and parts: jaw, grippers in their holsters, the pedestal's hand.
+    pub(super) fn devices(&self) -> Vec<Body> {
+        let mut devices = self.jaw_bodies();
+        devices.extend(self.stored_gripper_bodies());
+        devices.extend(self.pedestal_bodies());
+        devices
     }
 
     /// What of the robot touches what at the end of the last tick, and what is nearer to it than [`Cell::watch_clearance`] asks
@@ -90,7 +102,7 @@ impl Cell {
 
     /// Upper arm, forearm and wrist.
     pub(super) fn arm_bodies(&self) -> Vec<Body> {
-        let [_, upper, fore, _, _, plate] = self.arm_frames().map(|frame| to_pose(&frame));
+        let [_, upper, fore, _, _, plate] = Chain::new(&self.joints()).frames().map(|frame| to_pose(&frame));
         let robot = &self.description.robot;
         let capsule = |name: &'static str, pose: Pose, from: f64, to: f64, radius: f64| {
             let shape =
@@ -107,7 +119,7 @@ impl Cell {
 
     /// A plate, camera, and the gripper that the robot wears.
     fn worn_bodies(&self) -> Vec<Body> {
-        let arm = self.arm.tool();
+        let arm = self.t3.arm().tool();
         let tool = to_pose(&arm);
         let change = &self.description.quick_change;
         let plate = SharedShape::cylinder(metres(change.length / 4.0), metres(change.radius));

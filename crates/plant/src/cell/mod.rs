@@ -364,7 +364,7 @@ impl Cell {
     }
 
     /// One step of the simulation; `near` is what an arm without pressure may come to lie on.
-    fn substep(&mut self, outputs: &DeviceOutputs, near: &[Obstacle]) {
+    fn substep(&mut self, outputs: &DeviceOutputs, near: &[Body]) {
         let dt = self.world.integration_parameters.dt;
         self.t3.advance(dt, &self.loads(near));
         self.change_grippers(dt, &outputs.quick_change);

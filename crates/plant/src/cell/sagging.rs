@@ -12,10 +12,10 @@ use serde::{Deserialize, Serialize};
 use super::{Cell, CellEvent};
 use crate::{
     arm::TOOL_CENTRE,
-    clearance::{Contact, Mover},
+    clearance::{Body, Clearance, Contact},
     convert::{inches, metres, to_inches},
+    description::{Kind, Permits},
     linkage::{Chain, END_PLATE, FOREARM, Load, UPPER_ARM},
-    scene::Obstacle,
     t3::Cut,
 };
 
@@ -52,7 +52,7 @@ impl Droop {
         let touched = self
             .touched
             .iter()
-            .map(|Contact { mover, obstacle, depth }| format!("{mover} {depth:.3} in into {obstacle}"));
+            .map(|Contact { mover, obstacle, depth, .. }| format!("{mover} {depth:.3} in into {obstacle}"));
         match touched.collect::<Vec<_>>() {
             none if none.is_empty() => format!("{rest}{pin}, and has touched nothing"),
             touched => format!("{rest}{pin}, and has run into things: {}", touched.join(", ")),
@@ -125,16 +125,14 @@ impl Cell {
     }
 
     /// Everything that the robot can run into, where it is now.
-    fn all_obstacles(&self) -> Vec<Obstacle> {
+    fn all_obstacles(&self) -> Vec<Body> {
         let mut all = self.obstacles.clone();
-        all.extend(self.jaw_obstacles());
-        all.extend(self.gripper_obstacles());
-        all.extend(self.pedestal_obstacles());
+        all.extend(self.devices());
         all
     }
 
     /// What an arm without pressure may come to lie on in the coming tick; nothing under pressure.
-    pub(super) fn near_arm(&self) -> Vec<Obstacle> {
+    pub(super) fn near_arm(&self) -> Vec<Body> {
         if self.t3.arm().has_pressure() {
             return Vec::new();
         }
@@ -143,14 +141,14 @@ impl Cell {
             .movers()
             .iter()
             .filter(|mover| is_rigid(mover))
-            .map(|mover| mover.shape.compute_aabb(&mover.pose).loosened(metres(NEAR)))
+            .map(|mover| mover.aabb.loosened(metres(NEAR)))
             .collect();
         all.retain(|obstacle| bounds.iter().any(|bound| bound.intersects(&obstacle.aabb)));
         all
     }
 
     /// The forces on an arm without pressure; `near` is what it may lie on.
-    pub(super) fn loads(&self, near: &[Obstacle]) -> Vec<Load> {
+    pub(super) fn loads(&self, near: &[Body]) -> Vec<Load> {
         if self.t3.arm().has_pressure() {
             return Vec::new();
         }
@@ -182,12 +180,12 @@ impl Cell {
     }
 
     /// What an obstacle does to a rigid part of the robot that it meets.
-    fn push(&self, mover: &Mover, obstacle: &Obstacle) -> Option<Load> {
+    fn push(&self, mover: &Body, obstacle: &Body) -> Option<Load> {
         let contact = meet(mover, obstacle)?;
         let stiffness = self.description.robot.stiffness;
         let normal = Inches::new(contact.normal1.x, contact.normal1.y, contact.normal1.z);
         Some(Load {
-            link: match mover.name.as_str() {
+            link: match &*mover.name {
                 "upper_arm" => UPPER_ARM,
                 "forearm" => FOREARM,
                 _ => END_PLATE,
@@ -202,34 +200,22 @@ impl Cell {
 }
 
 /// Part of the robot's own outline: fingers and held parts give way on their springs.
-fn is_rigid(mover: &Mover) -> bool {
-    !mover.finger && !mover.carried
+fn is_rigid(mover: &Body) -> bool {
+    matches!(mover.kind, Kind::Arm | Kind::Gripper)
 }
 
 /// How two things penetrate, if they do.
-fn meet(mover: &Mover, obstacle: &Obstacle) -> Option<query::Contact> {
-    if !obstacle.aabb.intersects(&mover.shape.compute_aabb(&mover.pose)) {
+fn meet(mover: &Body, obstacle: &Body) -> Option<query::Contact> {
+    if mover.is_joined_to(obstacle) || !obstacle.aabb.intersects(&mover.aabb) {
         return None;
     }
-    let contact = query::contact(&obstacle.pose, &obstacle.shape, &mover.pose, &*mover.shape, 0.0).ok()??;
+    let contact =
+        query::contact(&obstacle.pose, &*obstacle.shape, &mover.pose, &*mover.shape, 0.0).ok()??;
     (contact.dist < 0.0).then_some(contact)
 }
 
 /// All pairs that touch, each once, with their depth.
-fn touching(movers: &[Mover], obstacles: &[Obstacle]) -> Vec<Contact> {
-    let mut all: Vec<Contact> = Vec::new();
-    for mover in movers {
-        for obstacle in obstacles {
-            let Some(contact) = meet(mover, obstacle) else { continue };
-            let depth = inches(-contact.dist);
-            let known = all.iter_mut().find(|c| c.mover == mover.name && c.obstacle == obstacle.name);
-            match known {
-                Some(known) => known.depth = known.depth.max(depth),
-                None => {
-                    all.push(Contact { mover: mover.name.clone(), obstacle: obstacle.name.clone(), depth });
-                }
-            }
-        }
-    }
-    all
+fn touching(movers: &[Body], obstacles: &[Body]) -> Vec<Contact> {
+    let mut clearance = Clearance::default();
+    clearance.check(&Permits::default(), movers, obstacles.iter())
 }
