@@ -4,6 +4,8 @@
 //! The tests of this package judge the whole: controller, link, cell, executive and log, built as for a
 //! release.
 
+pub mod golden;
+
 use std::{
     env, fs,
     path::{Path, PathBuf},
@@ -42,9 +44,11 @@ pub fn rcs_log() -> &'static Path {
 
 fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
     built.get_or_init(|| {
-        // Tests lie in <target>/release/deps.
-        let test = env::current_exe().expect("a test has a path");
-        let profile = test.ancestors().nth(2).expect("a test lies two directories deep");
+        // Tests lie in <target>/release/deps, programs in <target>/release.
+        let own = env::current_exe().expect("a program has a path");
+        let directory = own.parent().expect("a program lies in a directory");
+        let profile = if directory.ends_with("deps") { directory.parent() } else { Some(directory) };
+        let profile = profile.expect("a test lies two directories deep");
         let target = profile.parent().expect("a profile lies in the target directory");
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let built = Command::new(cargo)
@@ -116,12 +120,19 @@ impl Scratch {
     /// # Panics
     /// If the file does not hold `from`.
     pub fn data_with(&self, file: &str, from: &str, to: &str) {
-        let own = self.file("data");
-        copy(&root().join("data"), &own);
-        let path = own.join(file);
+        self.copy_data();
+        let path = self.file("data").join(file);
         let text = fs::read_to_string(&path).expect("the file is there");
         assert!(text.contains(from), "{file} has no {from:?}");
         fs::write(path, text.replacen(from, to, 1)).expect("the file can be written");
+    }
+
+    /// Copy the task data.
+    ///
+    /// # Panics
+    /// If they cannot be copied.
+    pub fn copy_data(&self) {
+        copy(&root().join("data"), &self.file("data"));
     }
 }
 

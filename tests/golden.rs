@@ -1,0 +1,239 @@
+//! Golden runs: what the controller did, in small files beside the source, so that whoever changes it sees what else it does.
+//!
+//! `goldens/scenarios.toml` lists the runs: a job, a seed, what goes wrong in it, and how it is to end. The program `goldens` makes
+//! the runs and writes two files for each: `NAME.golden` with the inputs and the digests of the outputs, and `NAME.txt`, which a
+//! person reads: commands with their durations, warnings and errors, which rows of which tables fired. The test `goldens`
+//! replays the inputs through today's controller, which takes no time, and compares both.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+use record::{
+    Log,
+    golden::{self, GoldenError, Played},
+};
+use serde::Deserialize;
+
+use crate::{Scratch, rcs_run, root};
+
+/// The command that makes all goldens again.
+pub const COMMAND: &str = "cargo run --release -p whole-system-tests --bin goldens";
+
+/// A run and how it is to end.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// Name of its files.
+    pub name: String,
+    /// What it shows, in a sentence.
+    pub about: String,
+    /// The job, of the data directory.
+    pub job: String,
+    /// Seed of the run.
+    #[serde(default = "one")]
+    pub seed: u64,
+    /// The fault plan, of the directory `faults` of the data.
+    pub faults: Option<String>,
+    /// Exit status of `rcs-run`.
+    #[serde(default)]
+    pub status: i32,
+    /// What its last words have to say; nothing for a job that finishes.
+    #[serde(default)]
+    pub says: String,
+    /// Changes of files of the data directory, in this order.
+    #[serde(default)]
+    pub change: Vec<Change>,
+    /// Files that are added to the data directory.
+    #[serde(default)]
+    pub file: Vec<NewFile>,
+}
+
+const fn one() -> u64 {
+    1
+}
+
+/// A piece of a file of the data directory, and what stands there instead.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Change {
+    /// The file.
+    pub file: String,
+    /// What it says.
+    pub from: String,
+    /// What it is to say.
+    pub to: String,
+}
+
+/// A file that the data directory does not have.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NewFile {
+    /// Its path from the data directory.
+    pub name: String,
+    /// What it says.
+    pub text: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Scenarios {
+    golden: Vec<Scenario>,
+}
+
+/// Why a golden could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum Failed {
+    /// A file cannot be written.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// There is nothing to change.
+    #[error("{file} does not say {from:?}, which was to be changed")]
+    Change {
+        /// The file.
+        file: String,
+        /// What it should say.
+        from: String,
+    },
+    /// The program cannot be started.
+    #[error("rcs-run cannot be started: {0}")]
+    Start(io::Error),
+    /// The run ended in another way than it should.
+    #[error("exit status {expected} and {says:?} were expected, {} came with {last_words:?}", status(.found))]
+    Ending {
+        /// Exit status of the scenario.
+        expected: i32,
+        /// What was to be said.
+        says: String,
+        /// Exit status of the run.
+        found: Option<i32>,
+        /// The last line on standard error.
+        last_words: String,
+    },
+    /// The log is none that a golden can be made of.
+    #[error(transparent)]
+    Log(#[from] record::ReadError),
+    /// The golden cannot be made or replayed.
+    #[error(transparent)]
+    Golden(#[from] GoldenError),
+    /// The replay does something else than the run.
+    #[error("the replay differs from the run that it was made of, from tick {0} to {1}")]
+    Difference(u64, u64),
+}
+
+fn status(found: &Option<i32>) -> String {
+    found.map_or("a signal".to_owned(), |status| format!("{status}"))
+}
+
+/// The directory of the goldens.
+#[must_use]
+pub fn directory() -> PathBuf {
+    root().join("tests/goldens")
+}
+
+/// All scenarios.
+///
+/// # Panics
+/// If the list cannot be read, or names a golden twice.
+#[must_use]
+pub fn scenarios() -> Vec<Scenario> {
+    let path = directory().join("scenarios.toml");
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let list: Scenarios = toml::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    for (i, scenario) in list.golden.iter().enumerate() {
+        let twice = list.golden.iter().skip(i + 1).any(|other| other.name == scenario.name);
+        assert!(!twice, "{}: two goldens are named {}", path.display(), scenario.name);
+    }
+    list.golden
+}
+
+impl Scenario {
+    /// The golden.
+    #[must_use]
+    pub fn golden(&self) -> PathBuf {
+        directory().join(&self.name).with_added_extension(golden::EXTENSION)
+    }
+
+    /// Its summary for people.
+    #[must_use]
+    pub fn text(&self) -> PathBuf {
+        directory().join(&self.name).with_added_extension("txt")
+    }
+
+    /// Run it and write both files; gives the last words of the run, and the replay.
+    ///
+    /// # Errors
+    /// [`Failed`], among others if the run ends in another way than it should: then the files stay as they are.
+    pub fn make(&self) -> Result<(String, Played), Failed> {
+        let scratch = Scratch::new(&format!("golden-{}", self.name));
+        let last_words = self.run(&scratch)?;
+        let golden = golden::from_log(&Log::open(&scratch.file("run.mcap"))?)?;
+        let played = golden::replay(&golden)?;
+        if let Some((first, last)) = played.difference {
+            return Err(Failed::Difference(first, last));
+        }
+        golden::write(&golden, &self.golden())?;
+        write(&self.text(), &format!("{}{}", self.heading(&last_words), played.summary))?;
+        Ok((last_words, played))
+    }
+
+    fn run(&self, scratch: &Scratch) -> Result<String, Failed> {
+        scratch.copy_data();
+        for Change { file, from, to } in &self.change {
+            let path = scratch.file("data").join(file);
+            let text =
+                fs::read_to_string(&path).map_err(|source| Failed::File { path: path.clone(), source })?;
+            if !text.contains(from) {
+                return Err(Failed::Change { file: file.clone(), from: from.clone() });
+            }
+            write(&path, &text.replacen(from, to, 1))?;
+        }
+        for new in &self.file {
+            write(&scratch.file("data").join(&new.name), &new.text)?;
+        }
+        // Nothing here depends on where the directory lies: equal runs make equal goldens.
+        let mut command = Command::new(rcs_run());
+        command.args([
+            "run",
+            self.job.as_str(),
+            "--json",
+            "--log",
+            "run.mcap",
+            "--shared-memory",
+            "off",
+            "--seed",
+        ]);
+        command.arg(self.seed.to_string()).current_dir(scratch.file(""));
+        if let Some(plan) = &self.faults {
+            command.arg("--faults").arg(Path::new("data/faults").join(plan));
+        }
+        let output = command.output().map_err(Failed::Start)?;
+        let said = String::from_utf8_lossy(&output.stderr);
+        let last_words = said.lines().last().unwrap_or_default().to_owned();
+        if output.status.code() == Some(self.status) && last_words.contains(&self.says) {
+            return Ok(last_words);
+        }
+        let (expected, found) = (self.status, output.status.code());
+        Err(Failed::Ending { expected, says: self.says.clone(), found, last_words })
+    }
+
+    /// What stands above the summary: what the replay cannot know.
+    #[must_use]
+    pub fn heading(&self, last_words: &str) -> String {
+        // The last words of a job that finishes are no more than remarks on the data.
+        let said =
+            if self.status == 0 || last_words.is_empty() { String::new() } else { format!(": {last_words}") };
+        format!("# {}\n# exit status {}{said}\n\n", self.about, self.status)
+    }
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failed> {
+    fs::write(path, text).map_err(|source| Failed::File { path: path.to_owned(), source })
+}
