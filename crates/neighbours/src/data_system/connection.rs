@@ -1,0 +1,352 @@
+//! The Data System as a run has it: mailboxes at one end, a server on a thread of its own at the other.
+//!
+//! A disk takes its time and must not take the tick's. A run in fast clock waits for the server where an answer is due, so
+//! that its ticks are the same in every run; a run on the 40 ms grid takes the answer when it is there.
+
+use std::{
+    sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
+    thread::{self, JoinHandle},
+    time::Duration,
+};
+
+use rcs_core::{
+    handshake::{self, Arrival},
+    interface::{DataBaseCommand, DataBaseStatus, data_base::DataBaseReport},
+    tick::Tick,
+};
+
+use super::{
+    command,
+    server::{Answer, Server},
+    status::{STATUS, Status, Summary},
+    store::{Item, Store},
+};
+use crate::mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxError};
+
+/// Ticks for an answer unless a run asks for others: 1 s.
+pub const ANSWER_TICKS: u64 = 25;
+/// A server that is silent for so long in a run that waits for it is taken for dead.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Whether a run waits for the server.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// Where an answer is due the tick waits for it: for runs in fast clock.
+    Wait,
+    /// The answer counts from the tick in which it is there: for runs on the grid.
+    Poll,
+}
+
+/// What the server's thread is asked for.
+enum Request {
+    Execute(Vec<u8>),
+    Items,
+}
+
+/// What it answers.
+enum Response {
+    Executed(Answer),
+    Items(rusqlite::Result<Vec<Item>>),
+}
+
+/// Mailboxes, and the server behind them.
+#[derive(Debug)]
+pub struct DataSystem {
+    pace: Pace,
+    answer_ticks: u64,
+    receiver: handshake::Receiver,
+    /// When the answer to the command under way may count; `None` if none is under way.
+    due: Option<Tick>,
+    status: DataBaseStatus,
+    command_box: Mailbox,
+    status_box: Mailbox,
+    refusals: Vec<String>,
+    requests: Option<Sender<Request>>,
+    responses: Receiver<Response>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl DataSystem {
+    /// A Data System that answers a command after so many ticks, or later.
+    #[must_use]
+    pub fn new(store: Store, answer_ticks: u64, pace: Pace) -> Self {
+        let (requests, incoming) = channel::<Request>();
+        let (outgoing, responses) = channel();
+        let thread = thread::spawn(move || {
+            let mut server = Server::new(store);
+            for request in incoming {
+                let response = match request {
+                    Request::Execute(bytes) => Response::Executed(server.execute(&bytes)),
+                    Request::Items => Response::Items(server.store().items()),
+                };
+                if outgoing.send(response).is_err() {
+                    return;
+                }
+            }
+        });
+        Self {
+            pace,
+            answer_ticks,
+            receiver: handshake::Receiver::default(),
+            due: None,
+            status: DataBaseStatus::default(),
+            command_box: Mailbox::initialized(DATA_SYSTEM_COMMAND),
+            status_box: Mailbox::initialized(DATA_SYSTEM_STATUS),
+            refusals: Vec::new(),
+            requests: Some(requests),
+            responses,
+            thread: Some(thread),
+        }
+    }
+
+    /// What Task will read in the next tick.
+    #[must_use]
+    pub const fn status(&self) -> DataBaseStatus {
+        self.status
+    }
+
+    /// The mailbox from Task.
+    #[must_use]
+    pub const fn command_box(&self) -> &Mailbox {
+        &self.command_box
+    }
+
+    /// The mailbox to Task.
+    #[must_use]
+    pub const fn status_box(&self) -> &Mailbox {
+        &self.status_box
+    }
+
+    /// Why commands were refused, since the last call.
+    pub fn refusals(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.refusals)
+    }
+
+    /// Once a tick, after the controller: read what Task wrote in `tick`.
+    pub fn step(&mut self, tick: Tick, command: &DataBaseCommand) {
+        if self.receiver.observe(command.number) == Arrival::New {
+            self.send(tick, command);
+        }
+        if self.due.is_some_and(|due| tick >= due) {
+            self.receive();
+        }
+    }
+
+    /// UPDATE-MAILGRAM->DAS-?: write the mailbox and let the network have it.
+    fn send(&mut self, tick: Tick, command: &DataBaseCommand) {
+        self.due = None;
+        self.status = DataBaseStatus { echo: self.receiver.echo, report: DataBaseReport::Executing };
+        let written = command::encode(command).map_err(|error| error.to_string()).and_then(|(bytes, length)| {
+            self.command_box.write(&bytes[..length]).map_err(|error: MailboxError| error.to_string())
+        });
+        if let Err(why) = written {
+            self.refuse(why);
+            return;
+        }
+        let data = self.command_box.data().to_vec();
+        if self.requests.as_ref().is_some_and(|requests| requests.send(Request::Execute(data)).is_ok()) {
+            self.due = Some(Tick(tick.0.saturating_add(self.answer_ticks)));
+        } else {
+            self.refuse("the Data System has ended".to_owned());
+        }
+    }
+
+    /// Take the answer to the command under way, if it is there; one to a command before it comes too late and is nobody's.
+    fn receive(&mut self) {
+        loop {
+            let response = match self.pace {
+                Pace::Wait => self.responses.recv_timeout(PATIENCE),
+                Pace::Poll => self.responses.try_recv().map_err(|error| match error {
+                    TryRecvError::Empty => RecvTimeoutError::Timeout,
+                    TryRecvError::Disconnected => RecvTimeoutError::Disconnected,
+                }),
+            };
+            match response {
+                Ok(Response::Executed(answer)) if answer.status.command_id == self.asked() => {
+                    self.due = None;
+                    self.take(&answer);
+                    return;
+                }
+                Ok(Response::Executed(_) | Response::Items(_)) => {}
+                Err(RecvTimeoutError::Timeout) if self.pace == Pace::Poll => return,
+                Err(_) => {
+                    self.due = None;
+                    self.refuse("the Data System does not answer".to_owned());
+                    return;
+                }
+            }
+        }
+    }
+
+    /// command-id# of the command under way.
+    fn asked(&self) -> u16 {
+        command::low_word(self.receiver.echo)
+    }
+
+    /// The network has brought a status: Parse-das-status.
+    fn take(&mut self, answer: &Answer) {
+        let bytes: [u8; STATUS] = answer.status.encode();
+        let status = self
+            .status_box
+            .write(&bytes)
+            .map_err(|error| error.to_string())
+            .and_then(|()| Status::decode(self.status_box.data()).map_err(|error| error.to_string()));
+        match status {
+            Ok(Status { summary: Summary::Done, .. }) => self.status.report = DataBaseReport::Done,
+            Ok(Status { summary: Summary::Refused(refusal), .. }) => {
+                self.refuse(format!("{refusal}: {}", answer.why));
+            }
+            Ok(status) => self.refuse(format!("an answer without a summary: {status:?}")),
+            Err(why) => self.refuse(why),
+        }
+    }
+
+    fn refuse(&mut self, why: String) {
+        self.status.report = DataBaseReport::Refused;
+        self.refusals.push(why);
+    }
+
+    /// The items that were reported, by name and number.
+    ///
+    /// # Errors
+    /// Why the data base does not give them.
+    pub fn items(&mut self) -> Result<Vec<Item>, String> {
+        let gone = || "the Data System has ended".to_owned();
+        self.requests.as_ref().ok_or_else(gone)?.send(Request::Items).map_err(|_| gone())?;
+        loop {
+            match self.responses.recv_timeout(PATIENCE) {
+                Ok(Response::Items(items)) => return items.map_err(|error| error.to_string()),
+                Ok(Response::Executed(_)) => {}
+                Err(_) => return Err("the Data System does not answer".to_owned()),
+            }
+        }
+    }
+}
+
+impl Drop for DataSystem {
+    fn drop(&mut self) {
+        // Without requests to come the thread ends; it closes the data base, and no journal is left behind.
+        self.requests = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rcs_core::{
+        interface::data_base::DataBaseVerb,
+        name::{Name10, Name16},
+    };
+
+    use super::*;
+
+    /// A client with its command buffer.
+    struct Client {
+        system: DataSystem,
+        command: DataBaseCommand,
+        tick: Tick,
+    }
+
+    impl Client {
+        fn new(answer_ticks: u64, pace: Pace) -> Self {
+            let mut client = Self {
+                system: DataSystem::new(Store::in_memory().unwrap(), answer_ticks, pace),
+                command: DataBaseCommand::default(),
+                tick: Tick::BEFORE_START,
+            };
+            client.step();
+            client
+        }
+
+        fn step(&mut self) -> DataBaseStatus {
+            self.tick = self.tick.next();
+            self.system.step(self.tick, &self.command);
+            self.system.status()
+        }
+
+        fn write(&mut self, command: DataBaseVerb) {
+            self.command = DataBaseCommand { number: self.command.number + 1, command, ..self.command };
+        }
+
+        /// Write a command, and what becomes of it in the end.
+        fn ask(&mut self, command: DataBaseVerb) -> DataBaseReport {
+            self.write(command);
+            loop {
+                let status = self.step();
+                assert_eq!(status.echo, self.command.number);
+                if status.report != DataBaseReport::Executing {
+                    return status.report;
+                }
+                thread::yield_now();
+            }
+        }
+
+        fn connect(&mut self) {
+            for verb in [DataBaseVerb::Abort, DataBaseVerb::Initiate, DataBaseVerb::Startup] {
+                assert_eq!(self.ask(verb), DataBaseReport::Done, "{verb}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_answer_takes_its_time_and_is_given_once() {
+        let mut client = Client::new(10, Pace::Wait);
+        client.write(DataBaseVerb::Abort);
+        let busy = (0..10).filter(|_| client.step().report == DataBaseReport::Executing).count();
+        assert_eq!((busy, client.step().report), (10, DataBaseReport::Done));
+        let before = client.system.status();
+        (0..50).for_each(|_| assert_eq!(client.step(), before));
+    }
+
+    #[test]
+    fn a_command_that_stands_there_at_the_start_is_not_executed() {
+        let mut system = DataSystem::new(Store::in_memory().unwrap(), 0, Pace::Wait);
+        let command =
+            DataBaseCommand { number: 9, command: DataBaseVerb::Abort, ..DataBaseCommand::default() };
+        for tick in 1..10 {
+            system.step(Tick(tick), &command);
+            assert_eq!(system.status(), DataBaseStatus::default());
+        }
+    }
+
+    #[test]
+    fn what_is_told_goes_through_the_mailboxes_into_the_data_base() {
+        for pace in [Pace::Wait, Pace::Poll] {
+            let mut client = Client::new(2, pace);
+            client.connect();
+            client.command.item = Name16::new("LINKBAR1").unwrap();
+            client.command.serial = Name16::new("17").unwrap();
+            client.command.position = Name10::new("UNIT_1").unwrap();
+            client.command.sector = 4;
+            assert_eq!(client.ask(DataBaseVerb::Update), DataBaseReport::Done);
+            assert_eq!(client.system.command_box().mailgram(), 4);
+            assert_eq!(client.system.command_box().data().len(), command::DML);
+            assert_eq!(client.system.status_box().data().len(), STATUS);
+            let items = client.system.items().unwrap();
+            assert_eq!((items.len(), items[0].number.as_str(), items[0].sector), (1, "17", 4));
+            assert!(client.system.refusals().is_empty());
+        }
+    }
+
+    #[test]
+    fn a_refusal_says_why() {
+        let mut client = Client::new(0, Pace::Wait);
+        assert_eq!(client.ask(DataBaseVerb::Startup), DataBaseReport::Refused);
+        assert_eq!(client.ask(DataBaseVerb::None), DataBaseReport::Refused);
+        assert_eq!(
+            client.system.refusals(),
+            ["the connection is in another state: Startup from a client that is Closed", "no command"]
+        );
+    }
+
+    #[test]
+    fn a_command_that_overtakes_another_gets_its_own_answer() {
+        let mut client = Client::new(5, Pace::Wait);
+        client.write(DataBaseVerb::Startup);
+        client.step();
+        assert_eq!(client.ask(DataBaseVerb::Abort), DataBaseReport::Done);
+        assert_eq!(client.ask(DataBaseVerb::Initiate), DataBaseReport::Done);
+    }
+}

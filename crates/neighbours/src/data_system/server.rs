@@ -1,0 +1,245 @@
+//! The server: bytes of a command in, bytes of a status out.
+//!
+//! It is strict about the order of a connection: an item is taken only from a client that has made itself known and begun
+//! (IV.4.2: Abort, Initiate, Startup).
+//!
+//! ```text
+//!            INITIATE              STARTUP
+//!   Closed -----------> Initiated ---------> Started --.
+//!     ^                     |                   |      | UPDATE
+//!     `------- ABORT -------+------- ABORT -----'  <---'
+//! ```
+
+use std::collections::HashMap;
+
+use super::{
+    command::{self, Transaction},
+    statement::{self, Column, Update},
+    status::{Refusal, ServerStatus, Status, Summary},
+    store::{Item, Store},
+};
+
+/// How far a client has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Session {
+    /// It is not known.
+    #[default]
+    Closed,
+    /// It is known.
+    Initiated,
+    /// Its commands are taken.
+    Started,
+}
+
+/// What happened to a command, for the log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// For the client.
+    pub status: Status,
+    /// For people: why it was refused; empty if it was not.
+    pub why: String,
+}
+
+/// The Data System's end of the mailboxes.
+#[derive(Debug)]
+pub struct Server {
+    store: Store,
+    sessions: HashMap<String, Session>,
+}
+
+impl Server {
+    /// A server without any client.
+    #[must_use]
+    pub fn new(store: Store) -> Self {
+        Self { store, sessions: HashMap::new() }
+    }
+
+    /// The data base.
+    #[must_use]
+    pub const fn store(&self) -> &Store {
+        &self.store
+    }
+
+    /// Execute the command that stands in the data of a mailbox.
+    pub fn execute(&mut self, bytes: &[u8]) -> Answer {
+        let (command_id, outcome) = match command::decode(bytes) {
+            Ok(received) => (received.command_id, self.carry_out(&received)),
+            Err(error) => (0, Err((Refusal::Protocol, error.to_string()))),
+        };
+        let (summary, why) = match outcome {
+            Ok(()) => (Summary::Done, String::new()),
+            Err((refusal, why)) => (Summary::Refused(refusal), why),
+        };
+        Answer { status: Status { command_id, server: ServerStatus::Ready, summary }, why }
+    }
+
+    fn carry_out(&mut self, received: &command::Received<'_>) -> Result<(), (Refusal, String)> {
+        let session = self.sessions.entry(received.client.to_owned()).or_default();
+        match (received.transaction, *session) {
+            (Transaction::Abort, _) => *session = Session::Closed,
+            (Transaction::Initiate, Session::Closed) => *session = Session::Initiated,
+            (Transaction::Startup, Session::Initiated) => *session = Session::Started,
+            (Transaction::Dml, Session::Started) => return self.update(received),
+            (asked, state) => {
+                return Err((Refusal::Sequence, format!("{asked:?} from a client that is {state:?}")));
+            }
+        }
+        Ok(())
+    }
+
+    fn update(&mut self, received: &command::Received<'_>) -> Result<(), (Refusal, String)> {
+        let update = statement::parse(received.statement)
+            .map_err(|error| (Refusal::Statement, error.to_string()))?;
+        let item = item(&update).map_err(|why| (Refusal::Value, why))?;
+        self.store.report(received.client, &item).map_err(|error| (Refusal::Store, error.to_string()))?;
+        Ok(())
+    }
+}
+
+/// An item without a name, or without a position, is none.
+fn item(update: &Update<'_>) -> Result<Item, String> {
+    let value = |column: Column| {
+        let value = update.value(column).unwrap_or_default();
+        if value.is_empty() { Err(format!("{} is empty", column.text())) } else { Ok(value.to_owned()) }
+    };
+    let sector = value(Column::Sector)?;
+    let number = sector.strip_prefix("SECTOR-").and_then(one_digit).ok_or_else(|| {
+        format!("SECTOR-0 to SECTOR-9 or SECTOR-A to SECTOR-Z was expected for SECTOR, found {sector}")
+    })?;
+    Ok(Item {
+        number: update.number.to_owned(),
+        name: value(Column::ItemName)?,
+        kind: value(Column::ItemType)?,
+        device: value(Column::Device)?,
+        position: value(Column::StoragePosition)?,
+        sector: number,
+    })
+}
+
+fn one_digit(text: &str) -> Option<u8> {
+    let mut characters = text.chars();
+    let digit = characters.next()?.to_digit(36)?;
+    if characters.next().is_some() { None } else { u8::try_from(digit).ok() }
+}
+
+#[cfg(test)]
+mod tests {
+    use rcs_core::{
+        interface::{DataBaseCommand, data_base::DataBaseVerb},
+        name::{Name10, Name16},
+    };
+
+    use super::*;
+
+    struct Client {
+        server: Server,
+        number: u32,
+    }
+
+    impl Client {
+        fn new() -> Self {
+            Self { server: Server::new(Store::in_memory().unwrap()), number: 0 }
+        }
+
+        fn send(&mut self, command: DataBaseCommand) -> Answer {
+            self.number += 1;
+            let (bytes, length) =
+                command::encode(&DataBaseCommand { number: self.number, ..command }).unwrap();
+            let answer = self.server.execute(&bytes[..length]);
+            assert_eq!(u32::from(answer.status.command_id), self.number);
+            answer
+        }
+
+        fn ask(&mut self, command: DataBaseVerb) -> Summary {
+            self.send(DataBaseCommand { command, ..DataBaseCommand::default() }).status.summary
+        }
+
+        fn tell(&mut self, item: &str, serial: &str, position: &str, sector: i32) -> Answer {
+            self.send(DataBaseCommand {
+                command: DataBaseVerb::Update,
+                item: Name16::new(item).unwrap(),
+                serial: Name16::new(serial).unwrap(),
+                position: Name10::new(position).unwrap(),
+                sector,
+                ..DataBaseCommand::default()
+            })
+        }
+
+        fn connect(&mut self) {
+            for verb in [DataBaseVerb::Abort, DataBaseVerb::Initiate, DataBaseVerb::Startup] {
+                assert_eq!(self.ask(verb), Summary::Done, "{verb}");
+            }
+        }
+
+        fn items(&self) -> Vec<String> {
+            let line = |i: Item| format!("{} {} {} {} {}", i.name, i.number, i.device, i.position, i.sector);
+            self.server.store().items().unwrap().into_iter().map(line).collect()
+        }
+    }
+
+    const SEQUENCE: Summary = Summary::Refused(Refusal::Sequence);
+
+    #[test]
+    fn an_item_is_where_it_was_last_reported() {
+        let mut client = Client::new();
+        client.connect();
+        for (serial, position, sector) in [("17", "UNIT_1", 4), ("18", "UNIT_1", 2), ("17", "H_ROBOT", 0)] {
+            assert_eq!(client.tell("LINKBAR1", serial, position, sector).status.summary, Summary::Done);
+        }
+        assert_eq!(client.items(), ["LINKBAR1 17 H_ROBOT H_ROBOT 0", "LINKBAR1 18 HWS UNIT_1 2"]);
+        assert_eq!(client.ask(DataBaseVerb::Abort), Summary::Done);
+        assert_eq!(client.items().len(), 2, "what was told stays after the connection has ended");
+    }
+
+    #[test]
+    fn a_client_that_has_not_begun_is_refused() {
+        let mut client = Client::new();
+        let told = client.tell("LINKBAR1", "", "UNIT_1", 4);
+        assert_eq!((told.status.summary, told.why.as_str()), (SEQUENCE, "Dml from a client that is Closed"));
+        assert_eq!(client.ask(DataBaseVerb::Startup), SEQUENCE);
+        assert_eq!(client.ask(DataBaseVerb::Initiate), Summary::Done);
+        assert_eq!(client.tell("LINKBAR1", "", "UNIT_1", 4).status.summary, SEQUENCE);
+        assert_eq!(client.ask(DataBaseVerb::Initiate), SEQUENCE);
+        assert_eq!(client.ask(DataBaseVerb::Startup), Summary::Done);
+        assert_eq!(client.ask(DataBaseVerb::Startup), SEQUENCE);
+        assert_eq!(client.tell("LINKBAR1", "", "UNIT_1", 4).status.summary, Summary::Done);
+        assert_eq!(client.ask(DataBaseVerb::Abort), Summary::Done);
+        assert_eq!(client.tell("LINKBAR1", "", "UNIT_2", 1).status.summary, SEQUENCE);
+        assert_eq!(client.items(), ["LINKBAR1  HWS UNIT_1 4"]);
+    }
+
+    #[test]
+    fn what_names_no_item_or_place_is_refused() {
+        let mut client = Client::new();
+        client.connect();
+        for (item, position, why) in
+            [("", "UNIT_1", "ITEM_NAME is empty"), ("LINKBAR1", "", "STORAGE_POS is empty")]
+        {
+            let told = client.tell(item, "", position, 1);
+            assert_eq!((told.status.summary, told.why.as_str()), (Summary::Refused(Refusal::Value), why));
+        }
+        assert!(client.items().is_empty());
+    }
+
+    #[test]
+    fn bytes_that_are_no_command_are_refused_and_change_nothing() {
+        let mut client = Client::new();
+        client.connect();
+        let answer = client.server.execute(b"hello");
+        assert_eq!(answer.status.summary, Summary::Refused(Refusal::Protocol));
+        assert_eq!(answer.why, "a command of 28 or 240 bytes was expected, found 5");
+        let update = DataBaseCommand {
+            number: 9,
+            command: DataBaseVerb::Update,
+            item: Name16::new("A").unwrap(),
+            position: Name10::new("B").unwrap(),
+            ..DataBaseCommand::default()
+        };
+        let (mut bytes, _) = command::encode(&update).unwrap();
+        bytes[32..38].copy_from_slice(b"DELETE");
+        let answer = client.server.execute(&bytes);
+        assert_eq!(answer.status.summary, Summary::Refused(Refusal::Statement));
+        assert_eq!(answer.why, "UPDATE expected at character 1, found DELETE");
+        assert_eq!(client.tell("A", "", "B", 0).status.summary, Summary::Done, "the connection stands");
+    }
+}

@@ -1,0 +1,321 @@
+//! The data base: items, devices, storage positions, and where every item has been, in one SQLite file.
+//!
+//! An item with a number is found by it, whatever it is called: a blank that has been machined keeps its number and changes
+//! its name. Items without a number are told apart by name. A report that says what is known already changes nothing, so
+//! that one that is sent twice counts once.
+//!
+//! ```sql
+//! SELECT * FROM whereabouts WHERE number = '17';   -- where it is
+//! SELECT * FROM history WHERE number = '17';       -- where it has been
+//! ```
+//!
+//! The file keeps a journal ahead of it: what was answered survives a killed program.
+
+use std::path::{Path, PathBuf};
+
+use rusqlite::{Connection, OptionalExtension as _, Row, params};
+
+/// Marks a file as one of ours: "RCS2".
+const APPLICATION_ID: i32 = 0x5243_5332;
+/// Version of the tables.
+const VERSION: i32 = 1;
+
+const TABLES: &str = "
+    CREATE TABLE device (
+        id INTEGER PRIMARY KEY,
+        name TEXT NOT NULL UNIQUE
+    );
+    CREATE TABLE storage_position (
+        id INTEGER PRIMARY KEY,
+        device INTEGER NOT NULL REFERENCES device,
+        name TEXT NOT NULL,
+        sector INTEGER NOT NULL,
+        UNIQUE (device, name, sector)
+    );
+    CREATE TABLE item (
+        id INTEGER PRIMARY KEY,
+        number TEXT NOT NULL,
+        type TEXT NOT NULL,
+        name TEXT NOT NULL,
+        storage_position INTEGER NOT NULL REFERENCES storage_position
+    );
+    CREATE UNIQUE INDEX item_by_number ON item (number) WHERE number <> '';
+    CREATE UNIQUE INDEX item_by_name ON item (name) WHERE number = '';
+    CREATE TABLE report (
+        id INTEGER PRIMARY KEY,
+        at TEXT NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ')),
+        client TEXT NOT NULL,
+        item INTEGER NOT NULL REFERENCES item,
+        type TEXT NOT NULL,
+        name TEXT NOT NULL,
+        storage_position INTEGER NOT NULL REFERENCES storage_position
+    );
+    CREATE VIEW whereabouts AS
+        SELECT item.number, item.name, item.type, device.name AS device, place.name AS position, place.sector
+        FROM item
+        JOIN storage_position AS place ON place.id = item.storage_position
+        JOIN device ON device.id = place.device
+        ORDER BY item.name, item.number;
+    CREATE VIEW history AS
+        SELECT report.at, report.client, item.number, report.name, device.name AS device,
+               place.name AS position, place.sector
+        FROM report
+        JOIN item ON item.id = report.item
+        JOIN storage_position AS place ON place.id = report.storage_position
+        JOIN device ON device.id = place.device
+        ORDER BY report.id;
+";
+
+/// An item as the data base knows it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Item {
+    /// `ITEM_NBR`; empty if it has none.
+    pub number: String,
+    /// `ITEM_NAME`.
+    pub name: String,
+    /// `ITEM_TYPE`.
+    pub kind: String,
+    /// `DEVICE`.
+    pub device: String,
+    /// `STORAGE_POS`.
+    pub position: String,
+    /// Number of the sector there; 0 for none.
+    pub sector: u8,
+}
+
+/// Why the data base cannot be had.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// SQLite says no.
+    #[error("{}: {source}", .file.display())]
+    Sqlite {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: rusqlite::Error,
+    },
+    /// A data base of another program.
+    #[error("{}: a data base of items was expected, this one belongs to another program", .file.display())]
+    Foreign {
+        /// The file.
+        file: PathBuf,
+    },
+    /// Tables of another version.
+    #[error("{}: tables of version {VERSION} were expected, found version {found}", .file.display())]
+    Version {
+        /// The file.
+        file: PathBuf,
+        /// Its version.
+        found: i32,
+    },
+}
+
+/// The data base.
+#[derive(Debug)]
+pub struct Store {
+    connection: Connection,
+}
+
+impl Store {
+    /// A data base that ends with the program.
+    ///
+    /// # Errors
+    /// [`StoreError::Sqlite`].
+    pub fn in_memory() -> Result<Self, StoreError> {
+        let file = PathBuf::from(":memory:");
+        let connection = Connection::open_in_memory()
+            .map_err(|source| StoreError::Sqlite { file: file.clone(), source })?;
+        Self::with_tables(connection, &file)
+    }
+
+    /// The data base in a file, which is made if it is not there.
+    ///
+    /// # Errors
+    /// [`StoreError`] if it cannot be opened, or is something else.
+    pub fn open(file: &Path) -> Result<Self, StoreError> {
+        let connection = Connection::open(file)
+            .map_err(|source| StoreError::Sqlite { file: file.to_owned(), source })?;
+        Self::with_tables(connection, file)
+    }
+
+    fn with_tables(mut connection: Connection, file: &Path) -> Result<Self, StoreError> {
+        let failed = |source| StoreError::Sqlite { file: file.to_owned(), source };
+        let number = |connection: &Connection, pragma: &str| {
+            connection.pragma_query_value(None, pragma, |row| row.get::<_, i32>(0)).map_err(failed)
+        };
+        let application = number(&connection, "application_id")?;
+        if application == APPLICATION_ID {
+            let found = number(&connection, "user_version")?;
+            if found != VERSION {
+                return Err(StoreError::Version { file: file.to_owned(), found });
+            }
+        } else {
+            let objects: i64 = connection
+                .query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))
+                .map_err(failed)?;
+            if application != 0 || objects != 0 {
+                return Err(StoreError::Foreign { file: file.to_owned() });
+            }
+            let transaction = connection.transaction().map_err(failed)?;
+            transaction.execute_batch(TABLES).map_err(failed)?;
+            transaction.pragma_update(None, "application_id", APPLICATION_ID).map_err(failed)?;
+            transaction.pragma_update(None, "user_version", VERSION).map_err(failed)?;
+            transaction.commit().map_err(failed)?;
+        }
+        connection.pragma_update(None, "foreign_keys", true).map_err(failed)?;
+        // With a journal ahead of the file nobody who reads holds up a report, and a killed program loses none.
+        connection.pragma_update(None, "journal_mode", "wal").map_err(failed)?;
+        connection.pragma_update(None, "synchronous", "normal").map_err(failed)?;
+        Ok(Self { connection })
+    }
+
+    /// An item is where a client says. True if that is news.
+    ///
+    /// # Errors
+    /// What SQLite says; nothing has changed then.
+    pub fn report(&mut self, client: &str, item: &Item) -> rusqlite::Result<bool> {
+        let transaction = self.connection.transaction()?;
+        transaction
+            .execute("INSERT INTO device (name) VALUES (?1) ON CONFLICT DO NOTHING", params![item.device])?;
+        transaction.execute(
+            "INSERT INTO storage_position (device, name, sector)
+             SELECT id, ?2, ?3 FROM device WHERE name = ?1 ON CONFLICT DO NOTHING",
+            params![item.device, item.position, item.sector],
+        )?;
+        let place: i64 = transaction.query_row(
+            "SELECT place.id FROM storage_position AS place JOIN device ON device.id = place.device
+             WHERE device.name = ?1 AND place.name = ?2 AND place.sector = ?3",
+            params![item.device, item.position, item.sector],
+            |row| row.get(0),
+        )?;
+        let known = transaction
+            .query_row(
+                "SELECT id, type, name, storage_position FROM item
+                 WHERE number = ?1 AND (number <> '' OR name = ?2)",
+                params![item.number, item.name],
+                |row| Ok((row.get::<_, i64>(0)?, (row.get(1)?, row.get(2)?, row.get(3)?))),
+            )
+            .optional()?;
+        let now = (item.kind.clone(), item.name.clone(), place);
+        let id = match known {
+            Some((_, before)) if before == now => return Ok(false),
+            Some((id, _)) => {
+                transaction.execute(
+                    "UPDATE item SET type = ?2, name = ?3, storage_position = ?4 WHERE id = ?1",
+                    params![id, item.kind, item.name, place],
+                )?;
+                id
+            }
+            None => {
+                transaction.execute(
+                    "INSERT INTO item (number, type, name, storage_position) VALUES (?1, ?2, ?3, ?4)",
+                    params![item.number, item.kind, item.name, place],
+                )?;
+                transaction.last_insert_rowid()
+            }
+        };
+        transaction.execute(
+            "INSERT INTO report (client, item, type, name, storage_position) VALUES (?1, ?2, ?3, ?4, ?5)",
+            params![client, id, item.kind, item.name, place],
+        )?;
+        transaction.commit()?;
+        Ok(true)
+    }
+
+    /// All items, by name and number.
+    ///
+    /// # Errors
+    /// What SQLite says.
+    pub fn items(&self) -> rusqlite::Result<Vec<Item>> {
+        let read = |row: &Row<'_>| {
+            Ok(Item {
+                number: row.get(0)?,
+                name: row.get(1)?,
+                kind: row.get(2)?,
+                device: row.get(3)?,
+                position: row.get(4)?,
+                sector: row.get(5)?,
+            })
+        };
+        let mut rows = self
+            .connection
+            .prepare("SELECT number, name, type, device, position, sector FROM whereabouts")?;
+        rows.query_map([], read)?.collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn item(number: &str, name: &str, position: &str, sector: u8) -> Item {
+        let text = str::to_owned;
+        Item {
+            number: text(number),
+            name: text(name),
+            kind: text("PART"),
+            device: text("HWS"),
+            position: text(position),
+            sector,
+        }
+    }
+
+    fn history(store: &Store) -> Vec<String> {
+        let mut rows = store
+            .connection
+            .prepare("SELECT number || ' ' || name || ' ' || position || ' ' || sector FROM history")
+            .unwrap();
+        rows.query_map([], |row| row.get(0)).unwrap().map(Result::unwrap).collect()
+    }
+
+    #[test]
+    fn an_item_keeps_its_number_and_its_past() {
+        let mut store = Store::in_memory().unwrap();
+        assert!(store.report("H_ROBOT", &item("17", "LINKBAR1_BH", "UNIT_1", 4)).unwrap());
+        assert!(store.report("H_ROBOT", &item("17", "LINKBAR1", "PFIXTURE", 0)).unwrap());
+        assert!(store.report("H_ROBOT", &item("18", "LINKBAR1", "UNIT_1", 1)).unwrap());
+        assert_eq!(
+            store.items().unwrap(),
+            [item("17", "LINKBAR1", "PFIXTURE", 0), item("18", "LINKBAR1", "UNIT_1", 1)]
+        );
+        assert_eq!(history(&store), ["17 LINKBAR1_BH UNIT_1 4", "17 LINKBAR1 PFIXTURE 0", "18 LINKBAR1 UNIT_1 1"]);
+    }
+
+    #[test]
+    fn items_without_a_number_are_told_apart_by_name() {
+        let mut store = Store::in_memory().unwrap();
+        store.report("H_ROBOT", &item("", "A", "UNIT_1", 1)).unwrap();
+        store.report("H_ROBOT", &item("", "B", "UNIT_1", 2)).unwrap();
+        store.report("H_ROBOT", &item("", "A", "UNIT_2", 3)).unwrap();
+        assert_eq!(store.items().unwrap(), [item("", "A", "UNIT_2", 3), item("", "B", "UNIT_1", 2)]);
+    }
+
+    #[test]
+    fn a_report_that_is_sent_twice_counts_once() {
+        let mut store = Store::in_memory().unwrap();
+        assert!(store.report("H_ROBOT", &item("17", "A", "UNIT_1", 1)).unwrap());
+        assert!(!store.report("H_ROBOT", &item("17", "A", "UNIT_1", 1)).unwrap());
+        assert_eq!(history(&store).len(), 1);
+    }
+
+    #[test]
+    fn a_file_is_there_again_and_other_files_are_refused() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("items.db");
+        Store::open(&file).unwrap().report("H_ROBOT", &item("17", "A", "UNIT_1", 1)).unwrap();
+        assert_eq!(Store::open(&file).unwrap().items().unwrap(), [item("17", "A", "UNIT_1", 1)]);
+
+        let newer = Connection::open(&file).unwrap();
+        newer.pragma_update(None, "user_version", 2).unwrap();
+        drop(newer);
+        assert!(matches!(Store::open(&file), Err(StoreError::Version { found: 2, .. })));
+
+        let other = place.path().join("other.db");
+        Connection::open(&other).unwrap().execute_batch("CREATE TABLE mine (a)").unwrap();
+        assert!(matches!(Store::open(&other), Err(StoreError::Foreign { .. })));
+        let text = place.path().join("text");
+        std::fs::write(&text, "not a data base, but long enough to be looked at as if it were one").unwrap();
+        assert!(matches!(Store::open(&text), Err(StoreError::Sqlite { .. })));
+        assert!(matches!(Store::open(place.path()), Err(StoreError::Sqlite { .. })));
+    }
+}

@@ -1,0 +1,14 @@
+//! The neighbours of the controller: who is reached through a mailbox of the factory network (chapter IX).
+//!
+//! * [`mailbox`]: the eight mailboxes of Table IX.1 and what stands in front of their data;
+//! * [`data_system`]: the command of Figure IX.2 to the byte, the status that answers it, and a server that keeps the items
+//!   of the workstation in SQLite.
+//!
+//! A level never sees a mailbox: what Task asks of the Data System is a record of common memory
+//! ([`rcs_core::interface::DataBaseCommand`]), and this crate makes bytes of it.
+
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+pub mod data_system;
+pub mod mailbox;

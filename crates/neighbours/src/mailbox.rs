@@ -1,0 +1,240 @@
+//! Mailboxes of the factory network (IX, Table IX.1).
+//!
+//! A mailbox is a piece of common memory of fixed size at a fixed address: its length, a mailgram number, a read and a write
+//! lock, and data. The order and the sizes of the first four stood in Figure IX.1, which is lost. CHOSEN here: four 16-bit
+//! words in the order in which the text names them, low byte first as the boards' processors have them.
+//!
+//! ```text
+//!   byte  0        2            4          6           8 ...
+//!         length   mailgram #   read lock  write lock  data
+//! ```
+
+use std::fmt;
+
+/// Bytes in front of the data (CHOSEN, see above).
+pub const HEAD: usize = 8;
+
+/// A mailbox of Table IX.1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// What the table calls it.
+    pub name: &'static str,
+    /// Its address in common memory.
+    pub address: u32,
+    /// Its size with the head, bytes.
+    pub size: usize,
+}
+
+/// HWSC to RCS Command.
+pub const HWSC_COMMAND: Place = Place { name: "HWSC to RCS Command", address: 0xF_6000, size: 256 };
+/// HWSC from RCS Status.
+pub const HWSC_STATUS: Place = Place { name: "HWSC from RCS Status", address: 0xF_6200, size: 256 };
+/// Data System from RCS Command.
+pub const DATA_SYSTEM_COMMAND: Place =
+    Place { name: "Data System from RCS Command", address: 0xF_7000, size: 512 };
+/// Data System to RCS Status.
+pub const DATA_SYSTEM_STATUS: Place =
+    Place { name: "Data System to RCS Status", address: 0xF_7300, size: 256 };
+/// Pedestal from RCS Command.
+pub const PEDESTAL_COMMAND: Place = Place { name: "Pedestal from RCS Command", address: 0xF_5000, size: 256 };
+/// Pedestal to RCS Status.
+pub const PEDESTAL_STATUS: Place = Place { name: "Pedestal to RCS Status", address: 0xF_5300, size: 256 };
+/// Pedestal Gripper to RCS Status.
+pub const PEDESTAL_GRIPPER_STATUS: Place =
+    Place { name: "Pedestal Gripper to RCS Status", address: 0xF_5600, size: 256 };
+/// Pedestal Table to RCS Status.
+pub const PEDESTAL_TABLE_STATUS: Place =
+    Place { name: "Pedestal Table to RCS Status", address: 0xF_5900, size: 256 };
+
+/// All of Table IX.1, in its order.
+pub const TABLE: [Place; 8] = [
+    HWSC_COMMAND,
+    HWSC_STATUS,
+    DATA_SYSTEM_COMMAND,
+    DATA_SYSTEM_STATUS,
+    PEDESTAL_COMMAND,
+    PEDESTAL_STATUS,
+    PEDESTAL_GRIPPER_STATUS,
+    PEDESTAL_TABLE_STATUS,
+];
+
+/// Why bytes are no mailbox, or no data for one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MailboxError {
+    /// More data than the mailbox holds.
+    #[error("{mailbox}: at most {room} bytes of data were expected, found {found}")]
+    TooLong {
+        /// The mailbox.
+        mailbox: Place,
+        /// Bytes that it has for data.
+        room: usize,
+        /// Bytes that were to be written.
+        found: usize,
+    },
+    /// The image of a mailbox has another size.
+    #[error("{mailbox}: {} bytes were expected, found {found}", .mailbox.size)]
+    Size {
+        /// The mailbox.
+        mailbox: Place,
+        /// Bytes found.
+        found: usize,
+    },
+    /// The length word says more than the mailbox holds, or less than its head.
+    #[error("{mailbox}: a length of {HEAD} to {} was expected, found {found}", .mailbox.size)]
+    Length {
+        /// The mailbox.
+        mailbox: Place,
+        /// The length word.
+        found: u16,
+    },
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "mailbox {} at {:05X}", self.name, self.address)
+    }
+}
+
+/// A mailbox: what a process writes into it, or has read from it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mailbox {
+    place: Place,
+    bytes: Vec<u8>,
+}
+
+impl Mailbox {
+    /// A mailbox as initialization leaves it (IX): its length, zeros, and no data.
+    #[must_use]
+    pub fn initialized(place: Place) -> Self {
+        let mut mailbox = Self { place, bytes: vec![0; place.size] };
+        mailbox.set_length(HEAD);
+        mailbox
+    }
+
+    /// A mailbox from its image.
+    ///
+    /// # Errors
+    /// [`MailboxError`] if the size or the length word cannot be.
+    pub fn from_image(place: Place, image: &[u8]) -> Result<Self, MailboxError> {
+        if image.len() != place.size {
+            return Err(MailboxError::Size { mailbox: place, found: image.len() });
+        }
+        let mailbox = Self { place, bytes: image.to_vec() };
+        let length = mailbox.word(0);
+        if (HEAD..=place.size).contains(&usize::from(length)) {
+            Ok(mailbox)
+        } else {
+            Err(MailboxError::Length { mailbox: place, found: length })
+        }
+    }
+
+    /// Write data, and count the mailgram number on so that the network sends it (IX): from 65535 it goes to 1, since 0 is
+    /// what initialization leaves.
+    ///
+    /// # Errors
+    /// [`MailboxError::TooLong`]; the mailbox stays as it was.
+    pub fn write(&mut self, data: &[u8]) -> Result<(), MailboxError> {
+        let room = self.place.size - HEAD;
+        if data.len() > room {
+            return Err(MailboxError::TooLong { mailbox: self.place, room, found: data.len() });
+        }
+        let (used, unused) = self.bytes[HEAD..].split_at_mut(data.len());
+        used.copy_from_slice(data);
+        unused.fill(0);
+        self.set_length(HEAD + data.len());
+        let next = self.mailgram().checked_add(1).unwrap_or(1);
+        self.bytes[2..4].copy_from_slice(&next.to_le_bytes());
+        Ok(())
+    }
+
+    /// The data.
+    #[must_use]
+    pub fn data(&self) -> &[u8] {
+        &self.bytes[HEAD..usize::from(self.word(0))]
+    }
+
+    /// How often data were written since initialization; 0 if never.
+    #[must_use]
+    pub fn mailgram(&self) -> u16 {
+        self.word(2)
+    }
+
+    /// All bytes, head included.
+    #[must_use]
+    pub fn image(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    fn word(&self, at: usize) -> u16 {
+        u16::from_le_bytes([self.bytes[at], self.bytes[at + 1]])
+    }
+
+    /// `length` is at most the size of the mailbox, which a word holds.
+    fn set_length(&mut self, length: usize) {
+        let length = u16::try_from(length).unwrap_or(u16::MAX);
+        self.bytes[..2].copy_from_slice(&length.to_le_bytes());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_mailboxes_overlap() {
+        let mut places = TABLE;
+        places.sort_by_key(|place| place.address);
+        for pair in places.windows(2) {
+            assert!(pair[0].address as usize + pair[0].size <= pair[1].address as usize, "{}", pair[1]);
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read_and_counted() {
+        let mut mailbox = Mailbox::initialized(HWSC_STATUS);
+        assert_eq!((mailbox.mailgram(), mailbox.data()), (0, &[][..]));
+        mailbox.write(&[1, 2, 3]).unwrap();
+        mailbox.write(&[4]).unwrap();
+        assert_eq!((mailbox.mailgram(), mailbox.data()), (2, &[4][..]));
+        assert_eq!(&mailbox.image()[..12], &[9, 0, 2, 0, 0, 0, 0, 0, 4, 0, 0, 0]);
+        assert_eq!(Mailbox::from_image(HWSC_STATUS, mailbox.image()), Ok(mailbox));
+    }
+
+    #[test]
+    fn the_mailgram_number_never_comes_back_to_zero() {
+        let mut mailbox = Mailbox::initialized(PEDESTAL_STATUS);
+        for _ in 0..=u32::from(u16::MAX) {
+            mailbox.write(&[]).unwrap();
+        }
+        assert_eq!(mailbox.mailgram(), 1);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_and_changes_nothing() {
+        let mut mailbox = Mailbox::initialized(HWSC_STATUS);
+        mailbox.write(&[7; 248]).unwrap();
+        let before = mailbox.clone();
+        let error = mailbox.write(&[8; 249]).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "mailbox HWSC from RCS Status at F6200: at most 248 bytes of data were expected, found 249"
+        );
+        assert_eq!(mailbox, before);
+    }
+
+    #[test]
+    fn an_image_of_another_size_or_length_is_refused() {
+        assert_eq!(
+            Mailbox::from_image(HWSC_STATUS, &[0; 255]),
+            Err(MailboxError::Size { mailbox: HWSC_STATUS, found: 255 })
+        );
+        for found in [0_u16, 7, 257] {
+            let mut image = [0; 256];
+            image[..2].copy_from_slice(&found.to_le_bytes());
+            assert_eq!(
+                Mailbox::from_image(HWSC_STATUS, &image),
+                Err(MailboxError::Length { mailbox: HWSC_STATUS, found })
+            );
+        }
+    }
+}
