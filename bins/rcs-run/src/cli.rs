@@ -99,6 +99,9 @@ pub struct RunArguments {
     /// Where to write the log; none for no log [default: runs/<job>.mcap]
     #[arg(long, value_name = "FILE")]
     pub log: Option<LogTarget>,
+    /// Keep the items of the Data System in this SQLite file, which is made if it is not there [default: forget them]
+    #[arg(long, value_name = "FILE")]
+    pub data_base: Option<PathBuf>,
     /// Stop after so many ticks if the job is not over before
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub ticks: Option<u64>,

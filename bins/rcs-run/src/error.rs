@@ -6,6 +6,7 @@ use executive::{
     memory::{ReadError, SharedMemoryError},
     serial::OpenError,
 };
+use neighbours::data_system::StoreError;
 use plant::{CellError, description::DescriptionError, fault::text::FaultFileError};
 use record::RecordError;
 use taskdata::load::Report;
@@ -76,6 +77,9 @@ pub enum Error {
     /// The simulated robot has no port.
     #[error("the simulated robot has no line to test: name a port with --robot serial:PATH")]
     NoLinkToTest,
+    /// The data base of the Data System cannot be had.
+    #[error("the Data System cannot keep its items: {0}")]
+    DataBase(#[from] StoreError),
     /// The log cannot be written.
     #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
     Log(#[from] RecordError),

@@ -26,7 +26,6 @@ use std::{
 
 use depc::Plate;
 use executive::{
-    data_base::DataSystem,
     failure::{self, Failure},
     generations::Generations,
     hwsc::{self, Hwsc, JobFailure},
@@ -35,6 +34,7 @@ use executive::{
     runner::Runner,
 };
 use levels::ladder::Ladder;
+use neighbours::data_system::DataSystem;
 use plant::CellEvent;
 use rcs_core::{
     interface::{DeviceInputs, ExternalInputs},
@@ -49,7 +49,9 @@ use self::{
     log::Log,
     pace::Pace,
     progress::Progress,
-    result::{CommandResult, EmergencyResult, FailureResult, FaultsResult, Page, PortResult, RunResult},
+    result::{
+        CommandResult, EmergencyResult, FailureResult, FaultsResult, ItemResult, Page, PortResult, RunResult,
+    },
     robot::{Port, Robot},
     setup::Setup,
     workstation::SimulatedWorkstation,
@@ -112,13 +114,13 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let setup = Setup::load(arguments)?;
     let log = setup.log.as_deref().map(|path| Log::start(path, arguments, &setup)).transpose()?;
     let publisher = publisher(arguments, &setup.job);
-    let Setup { store, job, description, cell, robot, log: log_path, .. } = setup;
+    let Setup { store, job, description, cell, robot, data_system, log: log_path, .. } = setup;
     let workstation = SimulatedWorkstation::new(cell, description.vise.location);
     let workstation = if robot.port().is_some() { workstation.with_robot_elsewhere() } else { workstation };
     let mut run = Run {
         runner: Runner::new(Ladder::default(), publisher),
         hwsc: Hwsc::new(job.steps.clone(), hwsc::TIME_LIMIT),
-        data_system: DataSystem::default(),
+        data_system,
         inputs: workstation.cell.inputs(),
         robot,
         workstation,
@@ -283,6 +285,7 @@ impl Run {
             self.runner.laps_mut().lap(Part::Cell);
             self.progress.show(&self.hwsc, &external.hws, &memory);
             self.data_system.step(tick, &memory.task.data_base);
+            self.note_refusals(tick);
             match self.hwsc.step(tick, &memory.task, &mut self.workstation) {
                 hwsc::Progress::Over => return Ending::Finished,
                 // Whatever the arm runs into belongs to the run.
@@ -327,6 +330,17 @@ impl Run {
         self.fresh.extend(lines.into_iter().map(|line| (Level::Error, "cell", line)));
         self.workstation.cell.watch_clearance(self.judge.margin());
         self.events.extend(self.fresh.iter().map(|(_, _, event)| format!("tick {tick}: {event}")));
+    }
+
+    /// What the Data System does not take is an event of the run; Task learns no more than that it was refused.
+    fn note_refusals(&mut self, tick: Tick) {
+        for refusal in self.data_system.refusals() {
+            let text = format!("the Data System refuses: {refusal}");
+            if let Some(log) = &mut self.log {
+                log.note(tick, Level::Warning, "Data System", &text);
+            }
+            self.events.push(format!("tick {tick}: {text}"));
+        }
     }
 
     /// Take up the reloads that the job has asked for, and let the next tick see them if no command is in progress.
@@ -374,7 +388,7 @@ impl Run {
         })
     }
 
-    fn result(&self, job: &Job, ending: &Ending, wall_s: f64) -> RunResult {
+    fn result(&mut self, job: &Job, ending: &Ending, wall_s: f64) -> RunResult {
         let ticks = self.runner.tick().0;
         let simulated_s = ticks as f64 * TICK_S;
         let commands =
@@ -404,7 +418,7 @@ impl Run {
             emergency_stop: self.workstation.last_emergency().map(EmergencyResult::from),
             digest: self.runner.digest().to_string(),
             parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
-            data_base: self.data_system.items().map(Into::into).collect(),
+            data_base: self.items(),
             contacts: self.judge.collisions().to_vec(),
             clearance: self.judge.nearest().cloned(),
             log: None,
@@ -413,6 +427,17 @@ impl Run {
                 Ending::Finished | Ending::Stopped => None,
             },
         }
+    }
+
+    /// What the data base holds at the end.
+    fn items(&mut self) -> Vec<ItemResult> {
+        self.data_system.items().map_or_else(
+            |why| {
+                eprintln!("rcs-run: the items cannot be listed: {why}");
+                Vec::new()
+            },
+            |items| items.into_iter().map(Into::into).collect(),
+        )
     }
 
     /// End the log and say what became of it. A log that broke does not make a finished job a failed one.

@@ -7,7 +7,8 @@ use std::{
 };
 
 use depc::fault::{Counts, FaultKind};
-use executive::{data_base::Item, failure::Failure, histogram, hwsc::Record, serial::SerialCounts};
+use executive::{failure::Failure, histogram, hwsc::Record, serial::SerialCounts};
+use neighbours::data_system::Item;
 use plant::{PartState, fault::Struck};
 use rcs_core::{
     interface::t3i::LinkCounters,
@@ -244,17 +245,12 @@ pub struct ItemResult {
     /// A location, or `H_ROBOT` while the robot holds it.
     pub position: String,
     /// Sector there, 0 for none.
-    pub sector: i32,
+    pub sector: u8,
 }
 
-impl From<&Item> for ItemResult {
-    fn from(item: &Item) -> Self {
-        Self {
-            item: item.name.to_string(),
-            serial: item.serial.to_string(),
-            position: item.position.to_string(),
-            sector: item.sector,
-        }
+impl From<Item> for ItemResult {
+    fn from(item: Item) -> Self {
+        Self { item: item.name, serial: item.number, position: item.position, sector: item.sector }
     }
 }
 

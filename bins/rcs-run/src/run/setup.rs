@@ -7,6 +7,7 @@ use std::{
 
 use depc::fault::Injector;
 use executive::serial::SerialLine;
+use neighbours::data_system::{self, ANSWER_TICKS, DataSystem, Pace};
 use plant::{
     Cell, CellDescription,
     fault::text::{self, FaultFile},
@@ -43,6 +44,8 @@ pub struct Setup {
     pub faults_text: String,
     /// The other end of the line.
     pub robot: Robot,
+    /// The Data System.
+    pub data_system: DataSystem,
     /// Where the log goes.
     pub log: Option<PathBuf>,
 }
@@ -80,12 +83,18 @@ impl Setup {
             Some(LogTarget::File(path)) => Some(path.clone()),
             None => Some(Path::new("runs").join(&job.name).with_added_extension("mcap")),
         };
+        let items = arguments
+            .data_base
+            .as_deref()
+            .map_or_else(data_system::Store::in_memory, data_system::Store::open)?;
+        let pace = if arguments.clock == ClockKind::Fast { Pace::Wait } else { Pace::Poll };
         // The last of all: a robot hears nothing of a run that cannot begin.
         let robot = match &arguments.robot {
             cli::Robot::Sim => Robot::Simulated(faults.line.map(|plan| Box::new(Injector::new(&plan)))),
             cli::Robot::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
         };
-        Ok(Self { store, job, description_text, description, cell, faults_text, robot, log })
+        let data_system = DataSystem::new(items, ANSWER_TICKS, pace);
+        Ok(Self { store, job, description_text, description, cell, faults_text, robot, data_system, log })
     }
 }
 

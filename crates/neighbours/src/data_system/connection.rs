@@ -136,9 +136,10 @@ impl DataSystem {
     fn send(&mut self, tick: Tick, command: &DataBaseCommand) {
         self.due = None;
         self.status = DataBaseStatus { echo: self.receiver.echo, report: DataBaseReport::Executing };
-        let written = command::encode(command).map_err(|error| error.to_string()).and_then(|(bytes, length)| {
-            self.command_box.write(&bytes[..length]).map_err(|error: MailboxError| error.to_string())
-        });
+        let written =
+            command::encode(command).map_err(|error| error.to_string()).and_then(|(bytes, length)| {
+                self.command_box.write(&bytes[..length]).map_err(|error: MailboxError| error.to_string())
+            });
         if let Err(why) = written {
             self.refuse(why);
             return;

@@ -88,8 +88,8 @@ impl Server {
     }
 
     fn update(&mut self, received: &command::Received<'_>) -> Result<(), (Refusal, String)> {
-        let update = statement::parse(received.statement)
-            .map_err(|error| (Refusal::Statement, error.to_string()))?;
+        let update =
+            statement::parse(received.statement).map_err(|error| (Refusal::Statement, error.to_string()))?;
         let item = item(&update).map_err(|why| (Refusal::Value, why))?;
         self.store.report(received.client, &item).map_err(|error| (Refusal::Store, error.to_string()))?;
         Ok(())

@@ -139,8 +139,9 @@ impl<'a> Scanner<'a> {
 
     fn wrong(&mut self, expected: &str) -> StatementError {
         let rest = self.rest();
-        let word = rest.find(|c: char| c == ' ' || c == ',' || c == ')').map_or(rest, |end| &rest[..end]);
-        let word = if word.is_empty() { rest.chars().next().map(String::from) } else { Some(word.to_owned()) };
+        let word = rest.find([' ', ',', ')']).map_or(rest, |end| &rest[..end]);
+        let word =
+            if word.is_empty() { rest.chars().next().map(String::from) } else { Some(word.to_owned()) };
         StatementError {
             at: self.at,
             expected: expected.to_owned(),
@@ -228,7 +229,8 @@ mod tests {
     #[test]
     fn order_and_blanks_do_not_matter() {
         let update =
-            parse("UPDATE  EQUIP_ITEM_ACTION SET(SECTOR,ITEM_NAME)=('SECTOR-0', 'A B')WHERE ITEM_NBR=''  ").unwrap();
+            parse("UPDATE  EQUIP_ITEM_ACTION SET(SECTOR,ITEM_NAME)=('SECTOR-0', 'A B')WHERE ITEM_NBR=''  ")
+                .unwrap();
         assert_eq!(update.value(Column::Sector), Some("SECTOR-0"));
         assert_eq!(update.value(Column::ItemName), Some("A B"));
         assert_eq!((update.value(Column::Device), update.number), (None, ""));

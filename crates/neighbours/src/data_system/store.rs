@@ -133,8 +133,8 @@ impl Store {
     /// # Errors
     /// [`StoreError`] if it cannot be opened, or is something else.
     pub fn open(file: &Path) -> Result<Self, StoreError> {
-        let connection = Connection::open(file)
-            .map_err(|source| StoreError::Sqlite { file: file.to_owned(), source })?;
+        let connection =
+            Connection::open(file).map_err(|source| StoreError::Sqlite { file: file.to_owned(), source })?;
         Self::with_tables(connection, file)
     }
 
@@ -278,7 +278,10 @@ mod tests {
             store.items().unwrap(),
             [item("17", "LINKBAR1", "PFIXTURE", 0), item("18", "LINKBAR1", "UNIT_1", 1)]
         );
-        assert_eq!(history(&store), ["17 LINKBAR1_BH UNIT_1 4", "17 LINKBAR1 PFIXTURE 0", "18 LINKBAR1 UNIT_1 1"]);
+        assert_eq!(
+            history(&store),
+            ["17 LINKBAR1_BH UNIT_1 4", "17 LINKBAR1 PFIXTURE 0", "18 LINKBAR1 UNIT_1 1"]
+        );
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the variables of
 //! V.4.2 without the serial number (contradiction 25): object, source grip, location and sector, destination grip, location
-//! and sector, end-at location and sector; `--` is a null field. The manual's own forms of lines end there: vise, trays and
+//! and sector, end-at location and sector; `--` is a null field. A serial number may stand behind them: `#17` (ours). The manual's own forms of lines end there: vise, trays and
 //! machine belong to the HWSC, not to the robot. Lines that begin with `**` say what they do:
 //!
 //! ```text

@@ -1,0 +1,113 @@
+//! The Data System behind a run: items in a file that outlives it, and that anybody can ask.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+    thread,
+    time::Duration,
+};
+
+use neighbours::data_system::{Item, Store};
+use serde_json::Value;
+
+const CONNECT: &str = "== STARTUP -- +0 -- 0 +0 -- 0 -- 0\n";
+const FETCH: &str = "** tray UNIT_1 4 LINKBAR1_BH\n\
+                     ** vise partial PFIXTURE LINKBAR\n\
+                     == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0 #17\n";
+
+struct Place(tempfile::TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn command(&self, job: &str, more: &[&str]) -> Command {
+        let path = self.file("try.job");
+        fs::write(&path, job).unwrap();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-run"));
+        command
+            .arg(path)
+            .args(["--json", "--log", "none", "--shared-memory", "off", "--data-base"])
+            .arg(self.file("items.db"))
+            .args(more)
+            .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
+            .stdin(Stdio::null());
+        command
+    }
+
+    fn run(&self, job: &str) -> Output {
+        self.command(job, &[]).output().unwrap()
+    }
+
+    fn items(&self) -> Vec<Item> {
+        Store::open(&self.file("items.db")).unwrap().items().unwrap()
+    }
+}
+
+fn item(number: &str, name: &str, position: &str, sector: u8) -> Item {
+    Item {
+        number: number.into(),
+        name: name.into(),
+        kind: "PART".into(),
+        device: "HWS".into(),
+        position: position.into(),
+        sector,
+    }
+}
+
+#[test]
+fn the_file_says_where_every_part_is() {
+    let place = Place::new();
+    let output = place.run(&format!("{CONNECT}{FETCH}"));
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(result["data_base"][0]["serial"], "17");
+    assert_eq!(place.items(), [item("17", "LINKBAR1_BH", "PFIXTURE", 0)]);
+    assert!(!place.file("items.db-wal").exists(), "the journal is taken into the file at the end");
+}
+
+#[test]
+fn without_startup_nothing_is_told() {
+    let place = Place::new();
+    assert!(place.run(FETCH).status.success());
+    assert!(place.items().is_empty());
+}
+
+#[test]
+fn what_was_told_survives_a_run_that_is_killed() {
+    let place = Place::new();
+    let job = format!("{CONNECT}{FETCH}** wait 1000000\n");
+    let mut run = place.command(&job, &[]).stdout(Stdio::null()).spawn().unwrap();
+    for _ in 0..600 {
+        thread::sleep(Duration::from_millis(100));
+        // The file is made by the run; until then there is nothing to ask.
+        if place.file("items.db").exists()
+            && Store::open(&place.file("items.db"))
+                .is_ok_and(|store| !store.items().unwrap_or_default().is_empty())
+        {
+            break;
+        }
+    }
+    run.kill().unwrap();
+    run.wait().unwrap();
+    assert_eq!(place.items(), [item("17", "LINKBAR1_BH", "PFIXTURE", 0)]);
+    assert!(place.run(CONNECT).status.success(), "the next run takes it over");
+    assert_eq!(place.items().len(), 1);
+}
+
+#[test]
+fn a_file_of_another_kind_is_refused_before_the_first_tick() {
+    let place = Place::new();
+    fs::write(place.file("items.db"), "these are the holiday pictures, or were, before somebody named them")
+        .unwrap();
+    let output = place.run(CONNECT);
+    assert_eq!(output.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(error.contains("the Data System cannot keep its items") && error.contains("items.db"), "{error}");
+}
