@@ -26,7 +26,7 @@ fn main() -> ExitCode {
         eprintln!("goldens: there is no scenario {unknown}; there are {}", known.join(", "));
         return ExitCode::from(2);
     }
-    rcs_run();
+    println!("runs of {}", rcs_run().display());
     let started = Instant::now();
     let wanted: Vec<&Scenario> = all.iter().filter(|s| names.is_empty() || names.contains(&s.name)).collect();
     let failed = make(&wanted);
