@@ -288,3 +288,17 @@ fn every_mistake_has_its_message() {
         assert_eq!(said.matches("error: ").count(), 1, "one mistake, one message: {said}");
     }
 }
+
+#[test]
+fn a_serial_number_may_stand_behind_the_nine_fields() {
+    let serial = |line: &str| match load(line).unwrap_or_else(|report| panic!("{report}"))[..] {
+        [Step::Command(command)] => command.serial,
+        ref other => panic!("{line}: {other:?}"),
+    };
+    assert_eq!(serial("== MOVE -- +0 -- 0 +0 HOME 0 -- 0"), Name16::EMPTY);
+    assert_eq!(serial("== MOVE -- +0 -- 0 +0 HOME 0 -- 0 #17"), name("17"));
+    let long = load("== MOVE -- +0 -- 0 +0 HOME 0 -- 0 #12345678901234567").unwrap_err();
+    assert!(long.contains("serial number: a name of at most 16 characters was expected"), "{long}");
+    let empty = load("== MOVE -- +0 -- 0 +0 HOME 0 -- 0 #").unwrap_err();
+    assert!(empty.contains("the line should end before #"), "{empty}");
+}

@@ -190,7 +190,7 @@ impl Reader<'_, '_> {
         let destination_sector = self.integer(fields, "destination sector")?;
         let end_at = self.field(fields, "end-at location")?;
         let end_at_sector = self.integer(fields, "end-at sector")?;
-        let serial = self.serial(fields)?;
+        let serial = self.serial(fields);
         if !TASK_COMMANDS.contains(&verb.name.as_str()) {
             self.unknown("command of Task", shown(&verb), verb.at, TASK_COMMANDS);
         }
@@ -219,23 +219,20 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// The serial number of the object, if the line has one behind its nine fields: `#17`.
-    fn serial(&mut self, fields: &mut Fields<'_, '_>) -> Option<Name16> {
-        let Some(word) = fields.take() else { return Some(Name16::EMPTY) };
+    /// The serial number of the object, if the line has one behind its nine fields: `#17`. What stands there instead is noted.
+    fn serial(&mut self, fields: &mut Fields<'_, '_>) -> Name16 {
+        let Some(word) = fields.take() else { return Name16::EMPTY };
         let Some(number) = word.text.strip_prefix('#').filter(|number| !number.is_empty()) else {
             let message = format!("the line should end before {}", word.text);
             let help =
                 "behind the nine fields only a serial number can stand: # and 1 to 16 characters, as in #17";
             self.problems.error_help("job.fields", word.at, message, help);
-            return None;
+            return Name16::EMPTY;
         };
-        match Name16::new(number) {
-            Ok(serial) => Some(serial),
-            Err(error) => {
-                self.problems.error("name.length", word.at, format!("serial number: {error}"));
-                None
-            }
-        }
+        Name16::new(number).unwrap_or_else(|error| {
+            self.problems.error("name.length", word.at, format!("serial number: {error}"));
+            Name16::EMPTY
+        })
     }
 
     /// A location of a command, with the object that is handled there.
