@@ -95,14 +95,18 @@ const RESTART: &str = "** after 60 estop terminals\n\
      ** panel cycle-start\n\
      ** wait 25\n";
 
+/// Look for the place at which the robot stands, with the link begun anew.
+const PAUSE: &str = "== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n";
+
 #[test]
 fn a_job_that_starts_the_robot_again_goes_on() {
-    let text = format!("{RESTART}== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n");
+    let text =
+        format!("{RESTART}{PAUSE}== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n");
     let outcome = job("restart", &text);
     assert_eq!(outcome.status, Some(0), "{}", outcome.last_words);
     let commands = outcome.result["commands"].as_array().expect("a result has commands");
     let states: Vec<&Value> = commands.iter().map(|command| &command["status"]).collect();
-    assert_eq!(states, ["finished", "error", "finished", "finished"], "{commands:?}");
+    assert_eq!(states, ["finished", "error", "finished", "finished", "finished"], "{commands:?}");
     let stop = &outcome.result["emergency_stop"];
     assert!(stop["cause"].as_str().is_some_and(|cause| cause.contains("terminals")), "{stop}");
     assert!(outcome.result.get("failure").is_none());
@@ -112,7 +116,7 @@ fn a_job_that_starts_the_robot_again_goes_on() {
 #[test]
 fn without_the_last_keys_the_next_command_finds_no_link() {
     let half: String = RESTART.lines().take(7).map(|line| format!("{line}\n")).collect();
-    let outcome = job("half", &format!("{half}== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n"));
+    let outcome = job("half", &format!("{half}{PAUSE}== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n"));
     assert_eq!(outcome.status, STOPPED, "{}", outcome.last_words);
     assert!(outcome.result["failure"]["process"].is_string());
 }

@@ -60,11 +60,7 @@ fn outcome_of(seed: u64) -> Outcome {
     let job = JOBS[numbers.below(JOBS.len() as u64) as usize];
     let ticks = (500 + numbers.below(2000)).to_string();
     let plan = plan(&mut numbers, seed);
-    let mut arguments = vec!["--ticks", &ticks];
-    if plan.is_some() {
-        arguments.extend(["--faults", "faults.toml"]);
-    }
-    run_with(job, seed, &format!("replays-{seed}"), &arguments, |scratch| {
+    run_with(job, seed, &format!("replays-{seed}"), &["--ticks", &ticks], |scratch| {
         if let Some(plan) = &plan {
             fs::write(scratch.file("faults.toml"), plan).expect("the plan can be written");
         }

@@ -63,6 +63,7 @@ impl Publisher {
     }
 
     fn set_up(name: &RunName) -> Result<Self, SharedMemoryError> {
+        runs::own_root()?;
         runs::clean()?;
         runs::have_room()?;
         let node = runs::node(name, "rcs-run")?;

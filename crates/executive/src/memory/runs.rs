@@ -224,10 +224,15 @@ fn lock() -> Result<File, SharedMemoryError> {
     let root = root();
     let path = root.join("lock");
     let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
-    own_directory(&root)?;
+    own_root()?;
     let file = File::options().create(true).append(true).open(&path).map_err(failed)?;
     file.lock().map_err(failed)?;
     Ok(file)
+}
+
+/// The directory of runs is there, and this user's alone.
+pub(super) fn own_root() -> Result<(), SharedMemoryError> {
+    own_directory(&root())
 }
 
 /// Makes the directory of runs, or sees that it is what an earlier run made. Its place can be guessed and lies
@@ -298,7 +303,26 @@ pub(super) fn node(name: &RunName, role: &str) -> Result<Node<ipc::Service>, Sha
     let _lock = lock()?;
     fs::create_dir_all(&place).map_err(|source| SharedMemoryError::Io { path: place.clone(), source })?;
     let role = role.try_into().map_err(|error| failed(format!("{error:?}")))?;
-    NodeBuilder::new().name(&role).config(&config).create().map_err(|error| failed(format!("{error:?}")))
+    let node = NodeBuilder::new()
+        .name(&role)
+        .config(&config)
+        .create()
+        .map_err(|error| failed(format!("{error:?}")))?;
+    keep_to_owner(&prefix(name, &layout()))?;
+    Ok(node)
+}
+
+/// Take the objects of a run from everybody but their owner: iceoryx2 makes that of a node for all to write.
+fn keep_to_owner(prefix: &str) -> Result<(), SharedMemoryError> {
+    for path in objects(prefix) {
+        match fs::set_permissions(&path, fs::Permissions::from_mode(0o600)) {
+            Ok(()) => {}
+            // A reader that has just left takes its object with it.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            Err(source) => return Err(SharedMemoryError::Io { path, source }),
+        }
+    }
+    Ok(())
 }
 
 pub(super) fn service_name(service: &'static str, epoch: Epoch) -> Result<ServiceName, SharedMemoryError> {
