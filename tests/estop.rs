@@ -58,7 +58,7 @@ fn before_the_end_of_the_move(ticks: u64) -> u64 {
 }
 
 #[test]
-fn over_the_vise_the_arm_runs_into_it_and_keeps_the_part() {
+fn over_the_vise_the_arm_runs_into_it() {
     // A second before the blank is in the vise.
     let stop = format!("** after {} estop joystick-box\n", before_the_end_of_the_move(25));
     let outcome = job("vise", &BLANK_TO_VISE.replace("{stop}", &stop));
@@ -66,7 +66,6 @@ fn over_the_vise_the_arm_runs_into_it_and_keeps_the_part() {
     let hit = touched(&outcome);
     assert!(hit.iter().any(|name| name.ends_with("_jaw") || *name == "vise_body"), "{hit:?}");
     assert!(outcome.last_words.contains("has run into things: "), "{}", outcome.last_words);
-    assert_eq!(outcome.part("LINKBAR1_BH")["held"], true, "air remains");
 }
 
 #[test]
