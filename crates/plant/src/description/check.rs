@@ -282,15 +282,16 @@ impl CellDescription {
     }
 
     fn check_contacts(&self, check: &mut Check) {
+        type Side<'a> = (&'static str, &'a [Pattern], fn(Kind) -> bool);
         let known = known(self);
         let means = |pattern: &Pattern, side: fn(Kind) -> bool| {
             known.iter().any(|(name, kind)| side(*kind) && pattern.matches(name, *kind))
         };
         for (number, permit) in self.contact.0.iter().enumerate() {
             let entry = |what: &str| format!("contact {}: {what}", number + 1);
-            let sides: [(&str, &[Pattern], fn(Kind) -> bool); 2] =
-                [("mover", &permit.mover, Kind::is_mover), ("obstacle", &permit.obstacle, Kind::is_obstacle)];
-            for (what, patterns, side) in sides {
+            let mover: Side<'_> = ("mover", &permit.mover, Kind::is_mover);
+            let obstacle: Side<'_> = ("obstacle", &permit.obstacle, Kind::is_obstacle);
+            for (what, patterns, side) in [mover, obstacle] {
                 check.that(!patterns.is_empty(), &entry(what), "at least one", "none");
                 for pattern in patterns {
                     let expected = format!("a name, a group or a pattern of something that can be a {what}");
