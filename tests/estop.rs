@@ -69,6 +69,16 @@ fn over_the_vise_the_arm_runs_into_it() {
 }
 
 #[test]
+fn in_front_of_the_vise_the_arm_sinks_and_keeps_the_part() {
+    // Four seconds before: nothing but the fingers has the blank. Later the jaws catch it as well, and draw it out.
+    let stop = format!("** after {} estop joystick-box\n", before_the_end_of_the_move(100));
+    let outcome = job("kept", &BLANK_TO_VISE.replace("{stop}", &stop));
+    assert_stopped(&outcome, "the E-stop on the joystick box was pressed");
+    assert!(touched(&outcome).contains(&"machine_pallet"), "{:?}", touched(&outcome));
+    assert_eq!(outcome.part("LINKBAR1_BH")["held"], true, "air remains");
+}
+
+#[test]
 fn at_home_and_safe_nothing_is_hit() {
     for place in ["HOME", "SAFE"] {
         // The stop comes behind the last command, and ends the job none the less.

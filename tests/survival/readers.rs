@@ -135,7 +135,7 @@ fn garbage_in_shared_memory_changes_no_bit() {
     scribbles.wait().expect("it is dead");
     drop(reader);
     assert!(refused > 0, "the garbage was not seen at all");
-    // Garbage where iceoryx2 keeps its indices may end the run by a signal, as a kill does; no bit may ever differ.
+    // A signal, as of a kill, has been seen to end the run (docs/shared-memory.md); no bit may ever differ.
     if ended.status.is_some() {
         assert_eq!(ended.status, Some(0), "{}", ended.said);
         assert_eq!(ended.digest(), alone(&scratch.file("")).digest());
