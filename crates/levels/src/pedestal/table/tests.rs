@@ -389,12 +389,13 @@ fn every_row_fires() {
 }
 
 proptest! {
-    /// From any angle to any other, over lines of any delay: reached to 0.06 degree, and the same bits twice.
+    /// From any angle to any other, over lines of any delay: reached to 0.06 degree, and the same bits twice. At 25 steps a
+    /// tick the whole way takes 1280 of the 1500 ticks that a turn has.
     #[test]
     fn turns(
         start in LIMIT_MINUS..=LIMIT_PLUS,
         delay in 0_u8..12,
-        speed in 20_i32..400,
+        speed in 25_i32..400,
         angles in prop::collection::vec(LIMIT_MINUS..=LIMIT_PLUS, 1..6),
     ) {
         let run = || {
