@@ -6,9 +6,12 @@ use std::{
     process::ExitCode,
 };
 
-use plant::CellDescription;
+use plant::{
+    Cell, CellDescription,
+    description::{DescriptionError, Place},
+};
 use serde::Serialize;
-use taskdata::load::{Diagnostic, Job, Report, Severity, Store};
+use taskdata::load::{Diagnostic, Job, Report, Severity, Source, Store, report::Problems, source::At};
 
 use crate::{
     cli::CheckArguments,
@@ -88,26 +91,13 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
         reports.push((format!("job {name}"), report));
         outcome.jobs.push(name);
     }
+    let (cell, report) = cell(&arguments.data.join(CELL));
+    reports.push(("cell description".to_owned(), report));
+    if let Some((path, cell)) = arguments.urdf.as_ref().zip(cell) {
+        fs::write(path, cell.urdf()).map_err(|source| Error::Write { path: path.clone(), source })?;
+    }
     for (_, report) in &reports {
         outcome.findings.extend(report.diagnostics().iter().map(finding));
-    }
-    let cell = arguments.data.join(CELL);
-    if let Err(error) = CellDescription::load(&cell) {
-        outcome.findings.push(Finding {
-            severity: "error",
-            code: "cell".to_owned(),
-            file: CELL.to_owned(),
-            offset: None,
-            block: None,
-            line: None,
-            column: None,
-            length: None,
-            place: cell.display().to_string(),
-            message: error.to_string(),
-            expected: None,
-            nearest: None,
-            help: None,
-        });
     }
     let count = |severity| outcome.findings.iter().filter(|finding| finding.severity == severity).count();
     (outcome.errors, outcome.warnings) = (count("error"), count("warning"));
@@ -116,7 +106,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
         serde_json::to_writer_pretty(io::stdout().lock(), &outcome).map_err(io::Error::from)?;
         println!();
     } else {
-        print(&reports, &outcome);
+        print(&reports);
     }
     if !outcome.ok {
         eprintln!(
@@ -126,6 +116,68 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
         );
     }
     Ok(ExitCode::from(if outcome.ok { 0 } else { UNUSABLE }))
+}
+
+/// The cell of a description, and what is wrong with that.
+fn cell(path: &Path) -> (Option<Cell>, Report) {
+    let mut problems = Problems::default();
+    let text = match fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) => {
+            problems.unreadable(&path.display().to_string(), &error);
+            return (None, Report::new(problems, &[], 0, Vec::new()));
+        }
+    };
+    let description = match CellDescription::from_toml(&text) {
+        Ok(description) => description,
+        Err(error) => return (None, cell_report(text, &error)),
+    };
+    let cell = Cell::new(&description, 1);
+    if let Err(error) = &cell {
+        problems.general("cell", error.to_string());
+    }
+    (cell.ok(), Report::new(problems, &[source(text)], 0, Vec::new()))
+}
+
+fn source(text: String) -> Source {
+    Source { name: CELL.to_owned(), text: text.into() }
+}
+
+/// The faults of a cell description, told as those of task data are.
+pub fn cell_report(text: String, error: &DescriptionError) -> Report {
+    let mut problems = Problems::default();
+    match error {
+        DescriptionError::Faults(faults) => {
+            for fault in faults.all() {
+                let (message, place) = (fault.message.clone(), fault.place);
+                match place {
+                    Some(place) => problems.error(fault.code, at(&place), message),
+                    None => problems.general(fault.code, message),
+                }
+                if let Some(expected) = &fault.expected {
+                    problems.expected(expected);
+                }
+                if let Some(nearest) = &fault.nearest {
+                    problems.nearest("one", nearest);
+                }
+            }
+        }
+        DescriptionError::Unreadable { .. } => problems.general("file", error.to_string()),
+    }
+    Report::new(problems, &[source(text)], 0, Vec::new())
+}
+
+/// A piece of a file without blocks.
+fn at(place: &Place) -> At {
+    let small = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+    At {
+        source: 0,
+        block: None,
+        line: small(place.line),
+        column: small(place.column),
+        start: small(place.start),
+        length: small(place.length),
+    }
 }
 
 /// All jobs of a data directory.
@@ -160,15 +212,11 @@ fn finding(diagnostic: &Diagnostic) -> Finding {
     }
 }
 
-fn print(reports: &[(String, Report)], outcome: &Outcome) {
+fn print(reports: &[(String, Report)]) {
     use std::io::IsTerminal as _;
     let graphical = io::stdout().is_terminal();
     for (what, report) in reports {
         println!("{what}: {}", report.render(graphical).trim_end());
-    }
-    match outcome.findings.iter().find(|finding| finding.code == "cell") {
-        None => println!("cell description: no errors"),
-        Some(finding) => println!("cell description: {}: {}", finding.place, finding.message),
     }
 }
 

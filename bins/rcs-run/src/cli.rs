@@ -167,6 +167,9 @@ pub struct CheckArguments {
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
     pub json: bool,
+    /// Write the cell as a URDF, for viewers and other simulators
+    #[arg(long, value_name = "FILE")]
+    pub urdf: Option<PathBuf>,
     /// Print the whole way of a command: the fields after == in a job
     #[arg(long, value_name = "COMMAND")]
     pub explain: Option<String>,

@@ -7,7 +7,7 @@ use executive::{
     serial::OpenError,
 };
 use neighbours::data_system::StoreError;
-use plant::{CellError, description::DescriptionError, fault::text::FaultFileError};
+use plant::{CellError, fault::text::FaultFileError};
 use record::RecordError;
 use taskdata::load::Report;
 
@@ -51,13 +51,13 @@ pub enum Error {
         /// Why.
         source: io::Error,
     },
-    /// The cell description cannot be used.
-    #[error("{}: {source}", path.display())]
-    Description {
-        /// The file.
+    /// A file that was asked for cannot be written.
+    #[error("{} cannot be written: {source}", path.display())]
+    Write {
+        /// Which.
         path: PathBuf,
         /// Why.
-        source: Box<DescriptionError>,
+        source: io::Error,
     },
     /// The cell cannot be built.
     #[error("the cell cannot be built: {0}")]

@@ -1,16 +1,19 @@
 //! The cell description: one TOML file that says where things stand, how large and how strong they are.
 //!
-//! Everything in the file is in inches, degrees, pounds and seconds, in world coordinates. Reading checks what the
-//! format can check (missing and misspelt entries, types), [`CellDescription::validate`] checks what the numbers must
-//! fulfil, and reports all faults at once, each with the name of the entry, what was expected and what was found.
+//! Everything in the file is in inches, degrees, pounds and seconds, in world coordinates. Reading finds all faults at once: what is
+//! no TOML, keys that are missing, unknown or misspelt, values of another kind, and numbers and names that
+//! [`CellDescription::validate`] does not accept. Each has its entry, its place in the text, what was expected and what was
+//! found.
 
 mod check;
 mod contact;
+mod fault;
 mod hydraulics;
+mod reading;
 mod sensing;
 mod tooling;
 
-use std::{fmt, path::Path};
+use std::path::Path;
 
 use rcs_core::{
     frame::{Frame, Vector},
@@ -19,7 +22,10 @@ use rcs_core::{
 };
 use serde::{Deserialize, Serialize};
 
+use reading::Document;
+
 pub use contact::{Kind, Pattern, Permit, Permits, commands, known};
+pub use fault::{Fault, Faults, Place};
 pub use hydraulics::{Actuators, Hydraulics};
 pub use sensing::SensorModels;
 pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChange};
@@ -35,45 +41,9 @@ pub enum DescriptionError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// The file is not TOML, or an entry is missing, misspelt or of another type.
+    /// The file or the description has faults.
     #[error("cell description: {0}")]
-    Syntax(#[from] Box<toml::de::Error>),
-    /// Numbers that do not make a cell.
-    #[error("cell description: {0}")]
-    Values(Faults),
-}
-
-/// All faults of a description.
-#[derive(Debug)]
-pub struct Faults(Vec<Fault>);
-
-/// One value that cannot be used.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
-    /// Which entry.
-    pub entry: String,
-    /// What was expected.
-    pub expected: String,
-    /// What was found.
-    pub found: String,
-}
-
-impl Faults {
-    /// The faults in the order of the file.
-    #[must_use]
-    pub fn all(&self) -> &[Fault] {
-        &self.0
-    }
-}
-
-impl fmt::Display for Faults {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (number, fault) in self.0.iter().enumerate() {
-            let separator = if number == 0 { "" } else { "; " };
-            write!(f, "{separator}{}: expected {}, found {}", fault.entry, fault.expected, fault.found)?;
-        }
-        Ok(())
-    }
+    Faults(Faults),
 }
 
 /// The whole cell.
@@ -505,11 +475,22 @@ impl CellDescription {
     /// Read a description from TOML text and check it.
     ///
     /// # Errors
-    /// [`DescriptionError::Syntax`] with line and column, or [`DescriptionError::Values`] with all faults.
+    /// [`DescriptionError::Faults`] with all faults of the text and their places.
     pub fn from_toml(text: &str) -> Result<Self, DescriptionError> {
-        let description: Self = toml::from_str(text).map_err(Box::new)?;
-        description.validate()?;
-        Ok(description)
+        let (document, mut found) = Document::parse(text);
+        // What stands behind a place that is no TOML may be anything.
+        let reading = found.is_empty().then(|| document.read::<Self>());
+        let mut value = None;
+        if let Some(reading) = reading {
+            found = reading.faults;
+            let unfit = reading.value.as_ref().map(|description| description.faults(&reading.stand_ins));
+            found.extend(unfit.into_iter().flatten().map(|fault| (fault, None)));
+            value = reading.value;
+        }
+        match value {
+            Some(description) if found.is_empty() => Ok(description),
+            _ => Err(DescriptionError::Faults(document.placed(text, found))),
+        }
     }
 
     /// Read a description from a file and check it.
@@ -558,30 +539,6 @@ mod tests {
     fn the_hydraulics_of_the_project_are_those_of_the_t3() {
         let cell = CellDescription::from_toml(TEXT).unwrap();
         assert_eq!(Actuators::from(&cell.robot), Actuators::default());
-    }
-
-    #[test]
-    fn a_misspelt_entry_is_named() {
-        let error =
-            CellDescription::from_toml(&TEXT.replace("servo_lag_s", "servo_lag")).unwrap_err().to_string();
-        assert!(error.contains("servo_lag"), "{error}");
-    }
-
-    #[test]
-    fn all_faults_are_reported_at_once() {
-        let text = TEXT
-            .replace("speed = 0.5 ", "speed = -0.5 ")
-            .replace("length = 3.0 ", "length = 4.0 ")
-            .replace("name = \"LINKBAR1\"", "name = \"LINKBAR1_BH\"");
-        let Err(DescriptionError::Values(faults)) = CellDescription::from_toml(&text) else {
-            panic!("accepted");
-        };
-        let entries: Vec<&str> = faults.all().iter().map(|f| f.entry.as_str()).collect();
-        assert_eq!(entries.len(), 5, "the length is that of three grippers: {faults}");
-        assert!(
-            faults.to_string().contains("expected the tool length of the arm, 12 in, found 13"),
-            "{faults}"
-        );
     }
 
     #[test]

@@ -27,7 +27,7 @@ const FREE_GAP: f64 = 0.001;
 /// How long the seals hold free fingers before trapped air drives them on, s; a part that slides out is clear by then.
 const BREAKAWAY_TIME: f64 = 0.25;
 /// Speed of fingers that trapped air drives, in/s: that of the coarse flow, which the same ports limit.
-const EXPANSION_SPEED: f64 = 4.0;
+pub const EXPANSION_SPEED: f64 = 4.0;
 
 /// Opening, force and air of the fingers.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]

@@ -74,8 +74,10 @@ impl Setup {
         let path = data.join(CELL);
         let description_text =
             fs::read_to_string(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
-        let description = CellDescription::from_toml(&description_text)
-            .map_err(|source| Error::Description { path, source: Box::new(source) })?;
+        let description = CellDescription::from_toml(&description_text).map_err(|error| Error::Data {
+            what: format!("the cell description {}", path.display()),
+            report: Box::new(check::cell_report(description_text.clone(), &error)),
+        })?;
         let (faults, faults_text) = faults(arguments, &description)?;
         let cell = Cell::with_faults(&description, arguments.seed, &faults.cell)?;
         let log = match &arguments.log {

@@ -66,6 +66,9 @@ pub enum CellError {
     /// The arm cannot begin where the description says.
     #[error("robot.start: {0}")]
     Start(#[from] DriveError),
+    /// Something stands where the robot is at the start.
+    #[error("robot.start: {0}")]
+    Blocked(CellEvent),
 }
 
 /// Something that should not happen, or that a person wants to know.
@@ -277,6 +280,10 @@ impl Cell {
             inputs: DeviceInputs::default(),
         };
         cell.hang_grippers();
+        cell.check_clearance();
+        if let Some(blocked) = cell.events.pop() {
+            return Err(CellError::Blocked(blocked));
+        }
         let begin = cell.faults.turn();
         cell.tell(begin);
         cell.inputs = cell.sense(LinkBytes::default(), false);

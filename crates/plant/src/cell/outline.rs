@@ -9,12 +9,12 @@ use super::{
     Cell,
     changing::ROBOT_HANDS,
     handling::Hand,
-    picture::{DARK, Link, Outline, STEEL, Urdf, link},
+    picture::{DARK, Link, Motion, Outline, STEEL, Urdf, link},
 };
 use crate::{
-    convert::{metres, to_pose},
+    convert::{metres, newtons, to_pose},
     description::Gripper,
-    gripper::body_opening,
+    gripper::{EXPANSION_SPEED, body_opening},
     holster::ears,
 };
 
@@ -122,7 +122,8 @@ impl Cell {
         urdf.end_link();
         let (square, limits) = (pedestal.table.square, pedestal.table.limits);
         let range = ((limits[0] - square).to_radians(), (limits[1] - square).to_radians());
-        let turn = Some(([1.0, 0.0, 0.0], range));
+        let speed = (pedestal.table.speed * pedestal.table.flip[1] / pedestal.table.flip[0]).to_radians();
+        let turn = Some(Motion { axis: [1.0, 0.0, 0.0], range, speed, effort: 0.0 });
         urdf.joint("pedestal_table_turn", "revolute", "world", name, &self.pedestal.square_frame(), turn);
         urdf_fingers(urdf, &pedestal.hand, Hand::Pedestal);
     }
@@ -153,7 +154,9 @@ fn urdf_fingers(urdf: &mut Urdf, gripper: &Gripper, hand: Hand) {
         let middle = Inches::new(-length / 2.0, side * thickness / 2.0, 0.0);
         let start = Frame { position: middle, rotation: Rotation::identity() };
         let range = (0.0, metres(gripper.opening[1] / 2.0));
-        urdf.joint(slide, "prismatic", hand.link(), finger, &start, Some(([0.0, side, 0.0], range)));
+        let effort = newtons(gripper.greatest_force);
+        let motion = Motion { axis: [0.0, side, 0.0], range, speed: metres(EXPANSION_SPEED), effort };
+        urdf.joint(slide, "prismatic", hand.link(), finger, &start, Some(motion));
     }
 }
 

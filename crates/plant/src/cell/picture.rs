@@ -11,9 +11,9 @@ use rcs_core::{
     kinematics::{JOINT_NAMES, T3},
 };
 
-use super::Cell;
+use super::{Cell, clearing::turret};
 use crate::{
-    convert::{metres, to_metres, to_pose},
+    convert::{metres, newtons, to_metres, to_pose},
     linkage::{AXES, STARTS},
     scene::{Block, along_x, jaw_blocks},
     solid::along,
@@ -140,8 +140,9 @@ impl Cell {
 
     fn urdf_arm(&self, urdf: &mut Urdf) {
         let robot = &self.description.robot;
+        let (turret_radius, turret_height) = turret(&self.description);
         let outlines = [
-            (robot.upper_arm_radius * 1.5, 8.0, -4.0),
+            (turret_radius, 2.0 * turret_height, -turret_height),
             (robot.upper_arm_radius * 0.8, T3.upper_arm, 0.0),
             (robot.forearm_radius, T3.forearm, 0.0),
             (robot.wrist_radius, T3.pitch_to_yaw, 0.0),
@@ -154,19 +155,16 @@ impl Cell {
                 position: Inches::new(from + length / 2.0, 0.0, 0.0),
                 rotation: Rotation::identity(),
             };
+            // The turret stands upright.
+            let middle = if joint == 0 { Frame { rotation: upright(), ..Frame::identity() } } else { middle };
             urdf.begin_link(name);
             urdf.shape(&middle, &Outline::Cylinder(radius, length), ROBOT);
             urdf.end_link();
             let start =
                 Frame { position: Inches::new(STARTS[joint], 0.0, 0.0), rotation: Rotation::identity() };
-            urdf.joint(
-                JOINT_NAMES[joint],
-                "revolute",
-                parent,
-                name,
-                &start,
-                Some((AXES[joint], T3.limits[joint])),
-            );
+            let speed = robot.joint_speeds[joint].to_radians();
+            let motion = Motion { axis: AXES[joint], range: T3.limits[joint], speed, effort: 0.0 };
+            urdf.joint(JOINT_NAMES[joint], "revolute", parent, name, &start, Some(motion));
         }
     }
 
@@ -187,9 +185,19 @@ impl Cell {
         }
         urdf.end_link();
         let widest = vise.program.iter().map(|program| program.opening_open).fold(0.0, f64::max);
-        let (start, range) = (Frame::identity(), (0.0, metres(widest)));
-        urdf.joint("jaw_slide", "prismatic", "vise", "movable_jaw", &start, Some(([0.0, 1.0, 0.0], range)));
+        let motion = Motion {
+            axis: [0.0, 1.0, 0.0],
+            range: (0.0, metres(widest)),
+            speed: metres(vise.speed),
+            effort: newtons(vise.force),
+        };
+        urdf.joint("jaw_slide", "prismatic", "vise", "movable_jaw", &Frame::identity(), Some(motion));
     }
+}
+
+/// The rotation of a cylinder along X onto the Z axis of a link.
+fn upright() -> Rotation {
+    Rotation::from_axis_angle(&Inches::y_axis(), -core::f64::consts::FRAC_PI_2)
 }
 
 /// Name of the link of a part.
@@ -211,6 +219,17 @@ const ROBOT: &str = "0.85 0.35 0.10 1";
 pub(super) const STEEL: &str = "0.60 0.62 0.65 1";
 pub(super) const DARK: &str = "0.25 0.27 0.30 1";
 const PART: &str = "0.15 0.45 0.80 1";
+
+/// How a joint moves: radians or metres.
+pub(super) struct Motion {
+    pub axis: [f64; 3],
+    /// Least and greatest value.
+    pub range: (f64, f64),
+    /// Greatest speed, a second.
+    pub speed: f64,
+    /// Greatest force, N, or moment, N·m; 0 where the description says nothing of it.
+    pub effort: f64,
+}
 
 /// Writes URDF text.
 pub(super) struct Urdf(String);
@@ -266,11 +285,17 @@ impl Urdf {
         parent: &str,
         child: &str,
         start: &Frame,
-        motion: Option<([f64; 3], (f64, f64))>,
+        motion: Option<Motion>,
     ) {
-        let motion = motion.map_or_else(String::new, |([x, y, z], (low, high))| {
-            format!("<axis xyz=\"{x} {y} {z}\"/><limit lower=\"{low}\" upper=\"{high}\" effort=\"0\" velocity=\"0\"/>")
-        });
+        let motion = motion.map_or_else(
+            String::new,
+            |Motion { axis: [x, y, z], range: (low, high), speed, effort }| {
+                format!(
+                    "<axis xyz=\"{x} {y} {z}\"/><limit lower=\"{low}\" upper=\"{high}\" effort=\"{effort}\" \
+                 velocity=\"{speed}\"/>"
+                )
+            },
+        );
         self.line(format_args!(
             "<joint name=\"{}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{}\"/>{}{motion}</joint>",
             escaped(name),

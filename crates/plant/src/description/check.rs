@@ -1,6 +1,8 @@
-//! What the numbers of a cell description must fulfil.
+//! What the numbers and names of a cell description must fulfil.
+//!
+//! Every check names its entry by the way to it (`gripper.parts.body[0]`), so that it can be found and underlined in the text.
 
-use std::{collections::BTreeSet, fmt};
+use std::collections::{BTreeMap, BTreeSet};
 
 use rcs_core::{
     kinematics::{JOINT_NAMES, T3},
@@ -8,355 +10,494 @@ use rcs_core::{
 };
 
 use super::{
-    CellDescription, DescriptionError, Fault, Faults, Gripper, Kind, Pattern, Points, Shape, commands, known,
+    CellDescription, DescriptionError, Gripper, Kind, PartType, Pattern, Points, Shape, commands,
+    fault::{Fault, Faults},
+    known,
+    reading::{Path, element, join},
 };
 
 impl CellDescription {
-    /// Check all numbers.
+    /// Check all numbers and names.
     ///
     /// # Errors
-    /// [`DescriptionError::Values`] with all faults.
+    /// [`DescriptionError::Faults`] with all faults, without their places.
     pub fn validate(&self) -> Result<(), DescriptionError> {
-        let mut check = Check(Vec::new());
-        self.check_robot(&mut check);
-        self.check_gripper_and_camera(&mut check);
+        let faults = self.faults(&BTreeSet::new());
+        if faults.is_empty() { Ok(()) } else { Err(DescriptionError::Faults(Faults(faults))) }
+    }
+
+    /// All faults of the entries that have no stand-ins.
+    pub(super) fn faults(&self, stand_ins: &BTreeSet<Path>) -> Vec<Fault> {
+        let mut check = Check { faults: Vec::new(), stand_ins };
+        self.check_physics_and_robot(&mut check);
+        self.check_hydraulics(&mut check);
+        self.check_sensors(&mut check);
+        self.check_grippers(&mut check);
+        self.check_camera(&mut check);
         self.check_changing(&mut check);
         self.check_drum(&mut check);
         self.check_pedestal(&mut check);
-        self.check_vise_and_trays(&mut check);
-        self.check_names_and_boxes(&mut check);
+        self.check_vise(&mut check);
+        self.check_trays(&mut check);
+        self.check_names(&mut check);
+        self.check_parts_and_boxes(&mut check);
+        self.check_nests(&mut check);
         self.check_contacts(&mut check);
-        if check.0.is_empty() { Ok(()) } else { Err(DescriptionError::Values(Faults(check.0))) }
+        check.faults
     }
 
-    fn check_robot(&self, check: &mut Check) {
-        check.within("physics.substeps", f64::from(self.physics.substeps), 4.0, 1000.0);
+    fn check_physics_and_robot(&self, check: &mut Check<'_>) {
+        let physics = &self.physics;
+        check.within("physics.substeps", f64::from(physics.substeps), 4.0, 1000.0);
         check.that(
-            (1..=64).contains(&self.physics.solver_iterations),
+            (1..=64).contains(&physics.solver_iterations),
             "physics.solver_iterations",
             "1 to 64",
-            self.physics.solver_iterations,
+            || physics.solver_iterations.to_string(),
         );
-        check.within("physics.contact_frequency", self.physics.contact_frequency, 10.0, 2000.0);
-        check.within("physics.contact_damping", self.physics.contact_damping, 0.1, 100.0);
-        check.within("robot.servo_lag_s", self.robot.servo_lag_s, 1e-3, 1.0);
-        check.positive("robot.stiffness", &[self.robot.stiffness]);
-        check.positive("robot.joint_speeds", &self.robot.joint_speeds);
-        let outline = [self.robot.upper_arm_radius, self.robot.forearm_radius, self.robot.wrist_radius];
-        check.positive("robot.*_radius", &outline);
+        check.within("physics.contact_frequency", physics.contact_frequency, 10.0, 2000.0);
+        check.within("physics.contact_damping", physics.contact_damping, 0.1, 100.0);
+        let robot = &self.robot;
+        check.within("robot.servo_lag_s", robot.servo_lag_s, 1e-3, 1.0);
+        check.positive(
+            "robot",
+            &[
+                ("stiffness", robot.stiffness),
+                ("upper_arm_radius", robot.upper_arm_radius),
+                ("forearm_radius", robot.forearm_radius),
+                ("wrist_radius", robot.wrist_radius),
+            ],
+        );
+        check.all_positive("robot.joint_speeds", &robot.joint_speeds);
+        let limits = T3.limits.iter().map(|(low, high)| (low.to_degrees(), high.to_degrees()));
+        for (joint, (angle, (low, high))) in robot.start.iter().zip(limits).enumerate() {
+            let expected = format!("the {} angle from {low:.0} to {high:.0} degrees", JOINT_NAMES[joint]);
+            let inside = (low - 1e-9..=high + 1e-9).contains(angle);
+            check.that(inside, &element("robot.start", joint), &expected, || angle.to_string());
+        }
+    }
+
+    fn check_hydraulics(&self, check: &mut Check<'_>) {
         let hydraulics = &self.robot.hydraulics;
         check.within("robot.hydraulics.pump_delay_s", hydraulics.pump_delay_s, 0.0, 60.0);
         check.within("robot.hydraulics.droop_rate", hydraulics.droop_rate, 0.1, 90.0);
         check.within("robot.hydraulics.shot_pin", hydraulics.shot_pin, 0.0, 90.0);
         check.within("robot.hydraulics.following_error", hydraulics.following_error, 0.0, 90.0);
         let weights = [
-            hydraulics.upper_arm_weight,
-            hydraulics.forearm_weight,
-            hydraulics.wrist_weight,
-            hydraulics.tool_weight,
+            ("upper_arm_weight", hydraulics.upper_arm_weight),
+            ("forearm_weight", hydraulics.forearm_weight),
+            ("wrist_weight", hydraulics.wrist_weight),
+            ("tool_weight", hydraulics.tool_weight),
         ];
-        check.positive("robot.hydraulics.*_weight", &weights);
-        let limits = T3.limits.iter().map(|(low, high)| (low.to_degrees(), high.to_degrees()));
-        for ((angle, (low, high)), joint) in self.robot.start.iter().zip(limits).zip(JOINT_NAMES) {
-            check.within(&format!("robot.start ({joint})"), *angle, low, high);
+        check.positive("robot.hydraulics", &weights);
+    }
+
+    fn check_sensors(&self, check: &mut Check<'_>) {
+        let sensors = &self.sensors;
+        let values = [
+            ("resolver_noise", sensors.resolver_noise, 1000.0),
+            ("proximity_hysteresis", sensors.proximity_hysteresis, 0.5),
+            ("ring_hysteresis", sensors.ring_hysteresis, 0.5),
+            ("resolver_delay", f64::from(sensors.resolver_delay), 1000.0),
+            ("converter_delay", f64::from(sensors.converter_delay), 1000.0),
+            ("force_delay", f64::from(sensors.force_delay), 1000.0),
+            ("switch_delay", f64::from(sensors.switch_delay), 1000.0),
+        ];
+        for (key, value, greatest) in values {
+            check.within(&join("sensors", key), value, 0.0, greatest);
         }
     }
 
-    fn check_gripper_and_camera(&self, check: &mut Check) {
+    fn check_grippers(&self, check: &mut Check<'_>) {
         let grippers = &self.gripper;
-        check.positive("gripper: weight, jaw_speed", &[grippers.weight, grippers.jaw_speed]);
+        check.positive("gripper", &[("weight", grippers.weight), ("jaw_speed", grippers.jaw_speed)]);
         for (name, gripper) in [("parts", &grippers.parts), ("v", &grippers.v), ("tool", &grippers.tool)] {
+            let path = join("gripper", name);
+            let (body, fingers) = (element(&join(&path, "body"), 0), element(&join(&path, "fingers"), 0));
             let length = self.quick_change.length + gripper.plate();
-            check.that(
-                (length - T3.plate_to_tool).abs() < 1e-6,
-                &format!("quick_change.length + gripper.{name}.body[0] + gripper.{name}.fingers[0]"),
-                format!("the tool length of the arm, {} in", T3.plate_to_tool),
-                length,
-            );
-            check_gripper(&format!("gripper.{name}"), gripper, check);
+            if check.trusts("quick_change.length") && check.trusts(&fingers) {
+                let expected = format!(
+                    "with quick_change.length and {fingers} the tool length of the arm, {} in",
+                    T3.plate_to_tool
+                );
+                let fits = (length - T3.plate_to_tool).abs() < 1e-6;
+                check.that(fits, &body, &expected, || length.to_string());
+            }
+            check_gripper(&path, gripper, check);
         }
-        let sensors = &self.sensors;
-        check.within("sensors.resolver_noise", sensors.resolver_noise, 0.0, 1000.0);
-        check.within("sensors.proximity_hysteresis", sensors.proximity_hysteresis, 0.0, 0.5);
-        check.within("sensors.ring_hysteresis", sensors.ring_hysteresis, 0.0, 0.5);
-        for (name, delay) in [
-            ("resolver", sensors.resolver_delay),
-            ("converter", sensors.converter_delay),
-            ("force", sensors.force_delay),
-            ("switch", sensors.switch_delay),
-        ] {
-            check.within(&format!("sensors.{name}_delay"), f64::from(delay), 0.0, 1000.0);
+        let force = &grippers.force;
+        check.positive("gripper.force", &[("weight", force.weight)]);
+        check.within("gripper.force.behind_tool", force.behind_tool, 0.0, T3.plate_to_tool);
+        check.within("gripper.force.weight_at", force.weight_at, 0.0, force.behind_tool);
+        check.within("gripper.force.noise", force.noise, 0.0, 100.0);
+        for (bridge, offset) in force.offsets.iter().enumerate() {
+            check.within(&element("gripper.force.offsets", bridge), *offset, -1000.0, 1000.0);
         }
+    }
+
+    fn check_camera(&self, check: &mut Check<'_>) {
         let camera = &self.camera;
-        check.positive("camera: view, reference_range_mm", &[camera.view, camera.reference_range_mm]);
+        let sizes = [("view", camera.view), ("reference_range_mm", camera.reference_range_mm)];
+        check.positive("camera", &sizes);
         let noises = [
-            camera.flood_noise,
-            camera.precise_noise,
-            camera.angle_noise,
-            camera.shape_noise,
-            camera.shape_tolerance,
+            ("flood_noise", camera.flood_noise),
+            ("precise_noise", camera.precise_noise),
+            ("angle_noise", camera.angle_noise),
+            ("shape_noise", camera.shape_noise),
+            ("shape_tolerance", camera.shape_tolerance),
         ];
-        for noise in noises {
-            check.within("camera.*_noise, shape_tolerance", noise, 0.0, 10.0);
+        for (key, noise) in noises {
+            check.within(&join("camera", key), noise, 0.0, 10.0);
         }
         check.within("camera.tilt", camera.tilt, -90.0, 90.0);
         check.within("camera.least_share", camera.least_share, 0.01, 1.0);
         check.within("camera.resolution", camera.resolution, 0.0, 10.0);
         check.within("camera.bloom", camera.bloom, 0.0, 10.0);
         check.within("camera.failure", camera.failure, 0.0, 1.0);
-        check.that(!camera.exposures.is_empty(), "camera.exposures", "at least one", "none");
-        for [darkest, brightest] in &camera.exposures {
-            check.within("camera.exposures: the greatest reflectance", *brightest, 0.0, 1.0);
-            check.within("camera.exposures: the least reflectance", *darkest, 0.0, *brightest);
+        check.that(!camera.exposures.is_empty(), "camera.exposures", "at least one", || "none".into());
+        for (number, [darkest, brightest]) in camera.exposures.iter().enumerate() {
+            let path = element("camera.exposures", number);
+            check.within(&element(&path, 1), *brightest, 0.0, 1.0);
+            check.within(&element(&path, 0), *darkest, 0.0, *brightest);
         }
     }
 
-    fn check_changing(&self, check: &mut Check) {
+    fn check_changing(&self, check: &mut Check<'_>) {
         let change = &self.quick_change;
         check.positive(
-            "quick_change: length, radius, travel_time_s, pins_reach, pins_play, tolerance, tolerance_degrees",
+            "quick_change",
             &[
-                change.length,
-                change.radius,
-                change.travel_time_s,
-                change.pins_reach,
-                change.pins_play,
-                change.tolerance,
-                change.tolerance_degrees,
+                ("length", change.length),
+                ("radius", change.radius),
+                ("travel_time_s", change.travel_time_s),
+                ("pins_reach", change.pins_reach),
+                ("pins_play", change.pins_play),
+                ("tolerance", change.tolerance),
+                ("tolerance_degrees", change.tolerance_degrees),
             ],
         );
         let holsters = &self.holsters;
-        let poses = [("right", holsters.right), ("left", holsters.left), ("centre", holsters.centre)];
-        for (name, points) in poses {
-            check.frame(&format!("holsters.{name}"), &points);
-        }
-        check.positive("holsters.ears", &holsters.ears);
+        check.frame("holsters.right", &holsters.right);
+        check.frame("holsters.left", &holsters.left);
+        check.frame("holsters.centre", &holsters.centre);
+        check.all_positive("holsters.ears", &holsters.ears);
         check.positive(
-            "holsters: seat, detent, catch_height, catch_aside, large_range, small_range",
+            "holsters",
             &[
-                holsters.seat,
-                holsters.detent,
-                holsters.catch_height,
-                holsters.catch_aside,
-                holsters.large_range,
-                holsters.small_range,
+                ("seat", holsters.seat),
+                ("detent", holsters.detent),
+                ("catch_height", holsters.catch_height),
+                ("catch_aside", holsters.catch_aside),
+                ("large_range", holsters.large_range),
+                ("small_range", holsters.small_range),
             ],
         );
         check.within("holsters.catch_height", holsters.catch_height, 0.0, change.pins_reach);
         check.within("holsters.detent", holsters.detent, 0.0, change.pins_play);
-        let force = &self.gripper.force;
-        check.positive("gripper.force.weight", &[force.weight]);
-        check.within("gripper.force.behind_tool", force.behind_tool, 0.0, T3.plate_to_tool);
-        check.within("gripper.force.weight_at", force.weight_at, 0.0, force.behind_tool);
-        check.within("gripper.force.noise", force.noise, 0.0, 100.0);
-        for offset in force.offsets {
-            check.within("gripper.force.offsets", offset, -1000.0, 1000.0);
-        }
     }
 
-    fn check_drum(&self, check: &mut Check) {
+    fn check_drum(&self, check: &mut Check<'_>) {
         let drum = &self.drum;
         check.frame("drum.pose", &drum.pose);
         check.positive(
-            "drum: finger_reach, detent_length, stop_force, seated, seated_degrees",
-            &[drum.finger_reach, drum.detent_length, drum.stop_force, drum.seated, drum.seated_degrees],
+            "drum",
+            &[
+                ("finger_reach", drum.finger_reach),
+                ("detent_length", drum.detent_length),
+                ("stop_force", drum.stop_force),
+                ("seated", drum.seated),
+                ("seated_degrees", drum.seated_degrees),
+            ],
         );
         check.within("drum.detent_length", drum.detent_length, 0.0, drum.finger_reach);
         check.within("drum.insertion_force", drum.insertion_force, 0.0, drum.stop_force);
         check.within("drum.extraction_force", drum.extraction_force, 0.0, drum.stop_force);
         check.within("drum.friction", drum.friction, 0.0, 2.0);
-        for plate in &drum.plate {
+        for (number, plate) in drum.plate.iter().enumerate() {
+            let path = join(&element("drum.plate", number), "high");
+            let expected = format!("more than its low, {:?}, on every axis", plate.low);
             let ascending = plate.low.iter().zip(plate.high).all(|(low, high)| *low < high);
-            let entry = format!("drum.plate {}: low, high", plate.name);
-            check.that(ascending, &entry, "low below high", format!("{:?}, {:?}", plate.low, plate.high));
+            check.that(ascending, &path, &expected, || format!("{:?}", plate.high));
         }
     }
 
-    fn check_pedestal(&self, check: &mut Check) {
+    fn check_pedestal(&self, check: &mut Check<'_>) {
         let pedestal = &self.pedestal;
-        check.positive("pedestal.stiffness", &[pedestal.stiffness]);
-        let stand = self.fixture.iter().any(|fixture| fixture.name == pedestal.stand);
-        check.that(stand, "pedestal.stand", "the name of a fixture", &pedestal.stand);
+        check.positive("pedestal", &[("stiffness", pedestal.stiffness)]);
+        let fixtures: Vec<&str> = self.fixture.iter().map(|fixture| fixture.name.as_str()).collect();
+        check.known("pedestal.stand", "the name of a fixture", &pedestal.stand, &fixtures);
         check_gripper("pedestal.hand", &pedestal.hand, check);
         let table = &pedestal.table;
         let [minus, plus] = table.limits;
-        check.that(minus < plus, "pedestal.table.limits", "ascending", format!("{:?}", table.limits));
+        check.ascending("pedestal.table.limits", table.limits);
         check.within("pedestal.table.start", table.start, minus, plus);
         check.within("pedestal.table.square", table.square, minus, plus);
-        check.positive("pedestal.table.flip", &table.flip);
-        check.positive("pedestal.table: speed, acceleration", &[table.speed, table.acceleration]);
-        for (limit, name) in table.limits.iter().zip(["-", "+"]) {
+        check.all_positive("pedestal.table.flip", &table.flip);
+        let motor = [("speed", table.speed), ("acceleration", table.acceleration)];
+        check.positive("pedestal.table", &motor);
+        for limit in table.limits {
             let counts = table.potentiometer_offset + table.potentiometer_scale * limit;
-            check.within(&format!("pedestal.table: potentiometer at the {name} limit"), counts, 1.0, 4095.0);
+            let expected = format!("such that a 12-bit converter reads the limit at {limit} degrees");
+            check.counts("pedestal.table.potentiometer_scale", &expected, counts);
         }
         check.within("pedestal.table.noise", table.noise, 0.0, 100.0);
     }
 
-    fn check_vise_and_trays(&self, check: &mut Check) {
+    fn check_vise(&self, check: &mut Check<'_>) {
         let vise = &self.vise;
-        check.positive("vise.jaw", &vise.jaw);
+        check.all_positive("vise.jaw", &vise.jaw);
         check.positive(
-            "vise: speed, force, friction, body_height",
-            &[vise.speed, vise.force, vise.friction, vise.body_height],
+            "vise",
+            &[
+                ("speed", vise.speed),
+                ("force", vise.force),
+                ("friction", vise.friction),
+                ("body_height", vise.body_height),
+            ],
         );
-        check.that(!vise.program.is_empty(), "vise.program", "at least one", "none");
-        for program in &vise.program {
-            let entry = |what: &str| format!("vise.program {}: {what}", program.name);
-            check.within(&entry("back"), program.back, 0.0, vise.jaw[0]);
-            check.within(&entry("depth"), program.depth, 0.0, vise.jaw[1]);
-            check.within(&entry("ledge"), program.ledge, -vise.jaw[2], 0.0);
+        check.ascending("vise.body_x", vise.body_x);
+        check.ascending("vise.body_y", vise.body_y);
+        check.that(!vise.program.is_empty(), "vise.program", "at least one", || "none".into());
+        for (number, program) in vise.program.iter().enumerate() {
+            let path = |key: &str| join(&element("vise.program", number), key);
+            check.within(&path("back"), program.back, 0.0, vise.jaw[0]);
+            check.within(&path("depth"), program.depth, 0.0, vise.jaw[1]);
+            check.within(&path("ledge"), program.ledge, -vise.jaw[2], 0.0);
             let closed = 2.0 * program.depth;
-            check.within(&entry("opening_partial"), program.opening_partial, closed, program.opening_open);
-            check.within(&entry("opening_open"), program.opening_open, closed, 20.0);
+            check.within(&path("opening_partial"), program.opening_partial, closed, program.opening_open);
+            check.within(&path("opening_open"), program.opening_open, closed, 20.0);
         }
-        check.that(vise.body_x[0] < vise.body_x[1], "vise.body_x", "ascending", format!("{:?}", vise.body_x));
-        check.that(vise.body_y[0] < vise.body_y[1], "vise.body_y", "ascending", format!("{:?}", vise.body_y));
+    }
+
+    fn check_trays(&self, check: &mut Check<'_>) {
         let shape = &self.tray_shape;
-        check.positive("tray_shape", &[shape.inside, shape.wall, shape.rim, shape.floor_thickness]);
+        check.positive(
+            "tray_shape",
+            &[
+                ("inside", shape.inside),
+                ("wall", shape.wall),
+                ("rim", shape.rim),
+                ("floor_thickness", shape.floor_thickness),
+            ],
+        );
         check.within("tray_shape.random_offset", shape.random_offset, 0.0, shape.inside / 2.0);
-        for tray in &self.tray {
-            check.that(
-                !tray.sectors.is_empty(),
-                &format!("tray {}: sectors", tray.unit),
-                "at least one",
-                "none",
-            );
-            for (number, [x, y]) in tray.sectors.iter().enumerate() {
-                let [cx, cy] = tray.centre;
-                let away = (x - cx).abs().max((y - cy).abs());
-                let entry = format!("tray {}: sector {}, distance from the centre", tray.unit, number + 1);
-                check.within(&entry, away, 0.0, shape.inside / 2.0);
+        for (number, tray) in self.tray.iter().enumerate() {
+            let path = join(&element("tray", number), "sectors");
+            check.that(!tray.sectors.is_empty(), &path, "at least one", || "none".into());
+            let [x, y] = tray.centre;
+            for (sector, at) in tray.sectors.iter().enumerate() {
+                let inside = (at[0] - x).abs().max((at[1] - y).abs()) <= shape.inside / 2.0;
+                let expected = format!("a point in the tray, within {} in of {x}, {y}", shape.inside / 2.0);
+                check.that(inside, &element(&path, sector), &expected, || format!("{at:?}"));
             }
         }
     }
 
-    fn check_names_and_boxes(&self, check: &mut Check) {
-        let mut names = BTreeSet::new();
-        let parts = self.part.iter().map(|p| ("part", &p.name));
-        let trays = self.tray.iter().map(|t| ("tray", &t.unit));
-        let fixtures = self.fixture.iter().map(|f| ("fixture", &f.name));
-        let programs = self.vise.program.iter().map(|p| ("vise.program", &p.name));
-        let vise = [("vise", &self.vise.location)];
-        for (kind, name) in parts.chain(trays).chain(fixtures).chain(programs).chain(vise) {
-            check.that(!name.is_empty(), kind, "a name", "an empty one");
-            check.that(names.insert((kind, name)), &format!("{kind} {name}"), "one entry for a name", "two");
-            if kind == "part" || kind == "tray" {
-                let fits = Name16::new(name);
-                check.that(
-                    fits.is_ok(),
-                    &format!("{kind} {name}"),
-                    "a name of at most 16 printable characters",
-                    name,
-                );
+    /// Names are there, fit, and are given once.
+    fn check_names(&self, check: &mut Check<'_>) {
+        let named = |list: &'static str, key: &'static str, names: Vec<&String>| {
+            let paths = (0..names.len()).map(move |number| join(&element(list, number), key));
+            (list, paths.zip(names.into_iter().cloned()).collect::<Vec<_>>())
+        };
+        let lists = [
+            named("part", "name", self.part.iter().map(|part| &part.name).collect()),
+            named("tray", "unit", self.tray.iter().map(|tray| &tray.unit).collect()),
+            named("fixture", "name", self.fixture.iter().map(|fixture| &fixture.name).collect()),
+            named("drum.plate", "name", self.drum.plate.iter().map(|plate| &plate.name).collect()),
+            named("vise.program", "name", self.vise.program.iter().map(|one| &one.name).collect()),
+        ];
+        for (list, names) in &lists {
+            let mut first: BTreeMap<&str, &str> = BTreeMap::new();
+            for (path, name) in names.iter().filter(|(path, _)| check.trusts(path)).collect::<Vec<_>>() {
+                check.that(!name.is_empty(), path, "a name", || "an empty one".into());
+                if let Some(other) = first.insert(name, path) {
+                    let expected = format!("another name than that of {other}");
+                    check.that(false, path, &expected, || name.clone());
+                }
+                if *list == "part" || *list == "tray" {
+                    let fits = Name16::new(name).is_ok();
+                    check.that(fits, path, "a name of at most 16 printable characters", || name.clone());
+                }
+                let group = Kind::ALL.iter().any(|kind| kind.groups().contains(&name.as_str()));
+                check.that(!group, path, "another name than that of a group", || name.clone());
             }
         }
-        check.that(!self.part.is_empty(), "part", "at least one", "none");
-        for part in &self.part {
-            check.positive(&format!("part {}: size", part.name), &part.size);
-            check.positive(&format!("part {}: weight", part.name), &[part.weight]);
-            check.within(&format!("part {}: reflectance", part.name), part.reflectance, 0.0, 1.0);
+        check.that(!self.vise.location.is_empty(), "vise.location", "a name", || "an empty one".into());
+        check.that(!self.part.is_empty(), "part", "at least one", || "none".into());
+    }
+
+    fn check_parts_and_boxes(&self, check: &mut Check<'_>) {
+        for (number, part) in self.part.iter().enumerate() {
+            let path = element("part", number);
+            let size = join(&path, "size");
+            check.all_positive(&size, &part.size);
+            check.positive(&path, &[("weight", part.weight)]);
+            check.within(&join(&path, "reflectance"), part.reflectance, 0.0, 1.0);
             let [x, y, z] = part.size;
             let round = match part.shape {
                 Shape::Box => true,
                 Shape::CylinderX => y == z,
                 Shape::CylinderZ => x == y,
             };
-            let entry = format!("part {}: size", part.name);
-            check.that(round, &entry, "one diameter across a cylinder", format!("{:?}", part.size));
-        }
-        for nest in &self.nest {
-            let entry = format!("nest {} {}", nest.location, nest.sector);
-            check.frame(&format!("{entry}: seat"), &nest.seat);
-            for part in &nest.parts {
-                let known = self.part(part).is_some();
-                check.that(known, &format!("{entry}: parts"), "parts of this description", part);
-            }
-            if let Some(tolerance) = nest.machining {
-                let tolerance = [tolerance.inches, tolerance.degrees];
-                check.positive(&format!("{entry}: machining"), &tolerance);
+            check.that(round, &size, "one diameter across a cylinder", || format!("{:?}", part.size));
+            let inside = self.tray_shape.inside;
+            let fits = self.has_a_nest(part) || y.max(z) < inside;
+            let expected = format!("a part that has a nest, or lies in a tray {inside} in wide");
+            if check.trusts("tray_shape") && check.trusts("nest") {
+                check.that(fits, &size, &expected, || format!("{:?}", part.size));
             }
         }
-        for fixture in &self.fixture {
-            check.positive(&format!("fixture {}: size", fixture.name), &fixture.size);
+        for (number, fixture) in self.fixture.iter().enumerate() {
+            check.all_positive(&join(&element("fixture", number), "size"), &fixture.size);
         }
     }
 
-    fn check_contacts(&self, check: &mut Check) {
+    fn has_a_nest(&self, part: &PartType) -> bool {
+        self.nest.iter().any(|nest| nest.takes(part))
+    }
+
+    fn check_nests(&self, check: &mut Check<'_>) {
+        let parts: Vec<&str> = self.part.iter().map(|part| part.name.as_str()).collect();
+        for (number, nest) in self.nest.iter().enumerate() {
+            let path = element("nest", number);
+            check.frame(&join(&path, "seat"), &nest.seat);
+            for (part, name) in nest.parts.iter().enumerate() {
+                let path = element(&join(&path, "parts"), part);
+                check.known(&path, "a part of this description", name, &parts);
+            }
+            if let Some(tolerance) = nest.machining {
+                let allowed = [("inches", tolerance.inches), ("degrees", tolerance.degrees)];
+                check.positive(&join(&path, "machining"), &allowed);
+            }
+        }
+    }
+
+    fn check_contacts(&self, check: &mut Check<'_>) {
         type Side<'a> = (&'static str, &'a [Pattern], fn(Kind) -> bool);
         let known = known(self);
-        let means = |pattern: &Pattern, side: fn(Kind) -> bool| {
-            known.iter().any(|(name, kind)| side(*kind) && pattern.matches(name, *kind))
-        };
+        let verbs: Vec<&str> = commands().collect();
         for (number, permit) in self.contact.0.iter().enumerate() {
-            let entry = |what: &str| format!("contact {}: {what}", number + 1);
+            let path = |key: &str| join(&element("contact", number), key);
             let mover: Side<'_> = ("mover", &permit.mover, Kind::is_mover);
             let obstacle: Side<'_> = ("obstacle", &permit.obstacle, Kind::is_obstacle);
-            for (what, patterns, side) in [mover, obstacle] {
-                check.that(!patterns.is_empty(), &entry(what), "at least one", "none");
-                for pattern in patterns {
-                    let expected = format!("a name, a group or a pattern of something that can be a {what}");
-                    check.that(means(pattern, side), &entry(what), expected, pattern);
+            for (key, patterns, side) in [mover, obstacle] {
+                check.that(!patterns.is_empty(), &path(key), "at least one", || "none".into());
+                let there: Vec<_> = known.iter().filter(|(_, kind)| side(*kind)).collect();
+                let groups = there.iter().flat_map(|(_, kind)| kind.groups().iter().copied());
+                let names: Vec<&str> = there.iter().map(|(name, _)| name.as_str()).chain(groups).collect();
+                for (which, pattern) in patterns.iter().enumerate() {
+                    let means = there.iter().any(|(name, kind)| pattern.matches(name, *kind));
+                    let expected = format!(
+                        "a name or a group of what can be a{} {key}",
+                        if key == "mover" { "" } else { "n" }
+                    );
+                    let wanted = if means { names.first().copied().unwrap_or_default() } else { &pattern.0 };
+                    check.known(&element(&path(key), which), &expected, wanted, &names);
                 }
             }
-            for verb in &permit.during {
-                let is_one = commands().any(|command| command == verb);
-                check.that(is_one, &entry("during"), "commands of E-move or Subtask", verb);
+            for (which, verb) in permit.during.iter().enumerate() {
+                let path = element(&path("during"), which);
+                check.known(&path, "a command of E-move or Subtask", verb, &verbs);
             }
-            check.within(&entry("depth"), permit.depth.unwrap_or(1.0), 0.001, 10.0);
-            check.that(!permit.why.is_empty(), &entry("why"), "a reason", "none");
+            check.within(&path("depth"), permit.depth.unwrap_or(1.0), 0.001, 10.0);
+            check.that(!permit.why.is_empty(), &path("why"), "a reason", || "none".into());
         }
     }
 }
 
-fn check_gripper(name: &str, gripper: &Gripper, check: &mut Check) {
-    let entry = |what: &str| format!("{name}{what}");
-    check.positive(&entry(".body"), &gripper.body);
-    check.positive(&entry(".fingers"), &gripper.fingers);
+fn check_gripper(name: &str, gripper: &Gripper, check: &mut Check<'_>) {
+    let path = |key: &str| join(name, key);
+    check.all_positive(&path("body"), &gripper.body);
+    check.all_positive(&path("fingers"), &gripper.fingers);
     let [least, greatest] = gripper.opening;
-    check.within(&entry(".opening"), greatest, least.max(0.0) + 0.1, 20.0);
-    check.within(&entry(".opening[0]"), least, 0.0, greatest);
-    check.within(&entry(".initial_opening"), gripper.initial_opening, least, greatest);
-    check.within(&entry(".friction"), gripper.friction, 0.01, 2.0);
+    check.within(&element(&path("opening"), 0), least, 0.0, greatest);
+    check.within(&element(&path("opening"), 1), greatest, least.max(0.0) + 0.1, 20.0);
+    check.within(&path("initial_opening"), gripper.initial_opening, least, greatest);
+    check.within(&path("friction"), gripper.friction, 0.01, 2.0);
     check.positive(
-        &entry(": finger_weight, compressibility, greatest_force, vent_time_s"),
-        &[gripper.finger_weight, gripper.compressibility, gripper.greatest_force, gripper.vent_time_s],
+        name,
+        &[
+            ("finger_weight", gripper.finger_weight),
+            ("compressibility", gripper.compressibility),
+            ("greatest_force", gripper.greatest_force),
+            ("vent_time_s", gripper.vent_time_s),
+        ],
     );
     let sensors = &gripper.sensors;
     let full = sensors.potentiometer_offset + sensors.potentiometer_scale * greatest;
-    check.within(&entry(".sensors: potentiometer at the greatest opening"), full, 1.0, 4095.0);
-    let gages = sensors.strain_offsets.iter().zip(sensors.strain_scales);
-    for (offset, scale) in gages.filter(|(_, scale)| *scale != 0.0) {
+    let expected = "such that a 12-bit converter reads the greatest opening";
+    check.counts(&path("sensors.potentiometer_scale"), expected, full);
+    let gages = sensors.strain_offsets.iter().zip(sensors.strain_scales).enumerate();
+    for (gage, (offset, scale)) in gages.filter(|(_, (_, scale))| *scale != 0.0) {
         let full = offset + scale * gripper.greatest_force;
-        check.within(&entry(".sensors: strain gage at the greatest force"), full, 1.0, 4095.0);
+        let expected = "such that a 12-bit converter reads the greatest force";
+        check.counts(&element(&path("sensors.strain_scales"), gage), expected, full);
     }
-    check.within(&entry(".sensors.noise"), sensors.noise, 0.0, 100.0);
+    check.within(&path("sensors.noise"), sensors.noise, 0.0, 100.0);
 }
 
 /// Collects faults.
-struct Check(Vec<Fault>);
+struct Check<'s> {
+    faults: Vec<Fault>,
+    stand_ins: &'s BTreeSet<Path>,
+}
 
-impl Check {
-    fn that(&mut self, holds: bool, entry: &str, expected: impl fmt::Display, found: impl fmt::Display) {
-        if !holds {
-            self.0.push(Fault {
-                entry: entry.into(),
-                expected: expected.to_string(),
-                found: found.to_string(),
-            });
+impl Check<'_> {
+    /// What stands at a path is what the text says: neither it, nor a part of it, nor what it is a part of has a stand-in.
+    fn trusts(&self, path: &str) -> bool {
+        let holds = |whole: &str, part: &str| {
+            part.strip_prefix(whole).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        !self.stand_ins.iter().any(|stand_in| holds(stand_in, path) || holds(path, stand_in))
+    }
+
+    fn that(&mut self, holds: bool, path: &str, expected: &str, found: impl FnOnce() -> String) {
+        if !holds && self.trusts(path) {
+            self.faults.push(Fault::unlike("cell.value", path, expected, found()));
         }
     }
 
-    fn within(&mut self, entry: &str, value: f64, low: f64, high: f64) {
-        self.that((low..=high).contains(&value), entry, format!("{low} to {high}"), value);
+    fn within(&mut self, path: &str, value: f64, low: f64, high: f64) {
+        let inside = (low..=high).contains(&value);
+        self.that(inside, path, &format!("{low} to {high}"), || value.to_string());
     }
 
-    fn frame(&mut self, entry: &str, points: &Points) {
+    /// A 12-bit converter that has to read `counts` can.
+    fn counts(&mut self, path: &str, expected: &str, counts: f64) {
+        self.that((1.0..=4095.0).contains(&counts), path, expected, || format!("{counts:.0} counts"));
+    }
+
+    fn ascending(&mut self, path: &str, [low, high]: [f64; 2]) {
+        self.that(low < high, path, "two numbers, the second one greater", || format!("{low}, {high}"));
+    }
+
+    fn frame(&mut self, path: &str, points: &Points) {
         let expected = "three points that do not stand on a line";
-        self.that(points.frame().is_some(), entry, expected, format!("{points:?}"));
+        self.that(points.frame().is_some(), path, expected, || {
+            format!("{:?}, {:?}, {:?}", points.wrist, points.tool, points.finger)
+        });
     }
 
-    fn positive(&mut self, entry: &str, values: &[f64]) {
-        let holds = values.iter().all(|v| v.is_finite() && *v > 0.0);
-        self.that(holds, entry, "more than 0", format!("{values:?}"));
+    /// Some keys of a table.
+    fn positive(&mut self, table: &str, values: &[(&str, f64)]) {
+        for (key, value) in values {
+            self.that(*value > 0.0, &join(table, key), "more than 0", || value.to_string());
+        }
+    }
+
+    /// All elements of an array.
+    fn all_positive(&mut self, array: &str, values: &[f64]) {
+        for (number, value) in values.iter().enumerate() {
+            self.that(*value > 0.0, &element(array, number), "more than 0", || value.to_string());
+        }
+    }
+
+    /// A name is one of those that are known. A known name that could not be read may be the one that is meant.
+    fn known(&mut self, path: &str, expected: &str, name: &str, known: &[&str]) {
+        let names_are_read =
+            !self.stand_ins.iter().any(|path| path.ends_with("name") || path.ends_with("unit"));
+        if !known.contains(&name) && names_are_read && self.trusts(path) {
+            self.faults.push(Fault::unlike("cell.name", path, expected, name).near(name, known));
+        }
     }
 }
