@@ -14,6 +14,7 @@ use serde::Serialize;
 use taskdata::load::{Diagnostic, Job, Report, Severity, Source, Store, report::Problems, source::At};
 
 use crate::{
+    agreement,
     cli::CheckArguments,
     error::{Error, UNUSABLE},
     explain,
@@ -80,19 +81,23 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
         findings: Vec::new(),
     };
     let mut reports = vec![("task data".to_owned(), data)];
-    for path in jobs(&arguments.data) {
+    let path = arguments.data.join(CELL);
+    let (cell, cell_report) = cell(&path, store.as_ref());
+    for job in jobs(&arguments.data) {
         // Without task data a job cannot be checked: the names of its commands mean nothing yet.
         let Some(store) = &store else { break };
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let report = match Job::load(&path, store) {
-            Ok((_, report)) => report,
+        let name = job.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let report = match Job::load(&job, store) {
+            Ok((job, report)) => match &cell {
+                Some(cell) => report.with(agreement::of_job(&job, cell.description(), &path)),
+                None => report,
+            },
             Err(report) => *report,
         };
         reports.push((format!("job {name}"), report));
         outcome.jobs.push(name);
     }
-    let (cell, report) = cell(&arguments.data.join(CELL));
-    reports.push(("cell description".to_owned(), report));
+    reports.push(("cell description".to_owned(), cell_report));
     if let Some((path, cell)) = arguments.urdf.as_ref().zip(cell) {
         fs::write(path, cell.urdf()).map_err(|source| Error::Write { path: path.clone(), source })?;
     }
@@ -118,8 +123,8 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::from(if outcome.ok { 0 } else { UNUSABLE }))
 }
 
-/// The cell of a description, and what is wrong with that.
-fn cell(path: &Path) -> (Option<Cell>, Report) {
+/// The cell of a description, and what is wrong with that, by itself and beside the task data.
+fn cell(path: &Path, store: Option<&Store>) -> (Option<Cell>, Report) {
     let mut problems = Problems::default();
     let text = match fs::read_to_string(path) {
         Ok(text) => text,
@@ -136,10 +141,16 @@ fn cell(path: &Path) -> (Option<Cell>, Report) {
     if let Err(error) = &cell {
         problems.general("cell", error.to_string());
     }
-    (cell.ok(), Report::new(problems, &[source(text)], 0, Vec::new()))
+    let source = source(text);
+    let report = Report::new(problems, std::slice::from_ref(&source), 0, Vec::new());
+    let report = match store {
+        Some(store) => report.with(agreement::of_cell(source, &description, store)),
+        None => report,
+    };
+    (cell.ok(), report)
 }
 
-fn source(text: String) -> Source {
+pub fn source(text: String) -> Source {
     Source { name: CELL.to_owned(), text: text.into() }
 }
 
@@ -168,7 +179,7 @@ pub fn cell_report(text: String, error: &DescriptionError) -> Report {
 }
 
 /// A piece of a file without blocks.
-fn at(place: &Place) -> At {
+pub fn at(place: &Place) -> At {
     let small = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
     At {
         source: 0,

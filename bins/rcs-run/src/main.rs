@@ -4,6 +4,7 @@
 //! [`link_test`] tries the line to a robot. The other subcommands look at task data and decision tables without
 //! running anything, or clean up after killed runs.
 
+mod agreement;
 mod check;
 mod clean;
 mod cli;

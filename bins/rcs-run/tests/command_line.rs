@@ -142,6 +142,61 @@ fn a_data_error_is_shown_with_its_place_and_nothing_runs() {
     }
 }
 
+/// What `check` and a run of the linkbar say of the shipped data with one text of a file replaced.
+fn said_of(place: &Place, file: &str, from: &str, to: &str) -> [String; 2] {
+    let data = place.data();
+    let path = data.join(file);
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.contains(from), "{file} has no {from:?}");
+    fs::write(&path, text.replacen(from, to, 1)).unwrap();
+    let data = data.display().to_string();
+    [&["check", &data][..], &["--log", "none", "--data", &data]].map(|arguments| {
+        let output = rcs_run(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", last_line(&output));
+        stdout(&output) + &String::from_utf8_lossy(&output.stderr)
+    })
+}
+
+#[test]
+fn a_name_that_only_the_cell_has_is_told_before_the_first_tick() {
+    let place = Place::new("only-in-the-cell");
+    let unknown = |from: &str, to: &str, sentences: &[&str]| {
+        for said in said_of(&place, "cell.toml", from, to) {
+            for sentence in sentences {
+                assert!(said.contains(sentence), "{sentence}: {said}");
+            }
+        }
+    };
+    unknown(
+        "location = \"PFIXTURE\"",
+        "location = \"PFIXTUR\"",
+        &[
+            "cell.toml: line 215, column 12: vise.location: expected a location of the task data, found PFIXTUR",
+            "the nearest one is PFIXTURE",
+            "linkbar.job: line 7, column 17: there is no vise at PFIXTURE; the cell description has one at PFIXTUR",
+        ],
+    );
+    unknown("unit = \"UNIT_1\"", "unit = \"UNIT_11\"", &["tray[1].unit: expected", "no unit named UNIT_1;"]);
+    unknown(
+        "name = \"LINKBAR1_BH\"",
+        "name = \"LINKBAR_BH\"",
+        &[
+            "no part named LINKBAR1_BH; the cell description has LINKBAR_BH, ",
+            "the nearest one is LINKBAR_BH",
+        ],
+    );
+}
+
+#[test]
+fn a_name_that_only_the_job_has_is_told_before_the_first_tick() {
+    let place = Place::new("only-in-the-job");
+    let said = said_of(&place, "jobs/linkbar.job", "vise partial PFIXTURE", "vise partial PFIXTURE CLEVISS");
+    for said in said {
+        assert!(said.contains("linkbar.job: line 7, column 26: the vise has no program CLEVISS;"), "{said}");
+        assert!(said.contains("the nearest one is CLEVIS"), "{said}");
+    }
+}
+
 #[test]
 fn a_finding_can_be_shown_in_an_editor() {
     let place = Place::new("finding");

@@ -13,7 +13,7 @@ mod reading;
 mod sensing;
 mod tooling;
 
-use std::path::Path;
+use std::{ops::Range, path::Path};
 
 use rcs_core::{
     frame::{Frame, Vector},
@@ -25,6 +25,7 @@ use serde::{Deserialize, Serialize};
 use reading::Document;
 
 pub use contact::{Kind, Pattern, Permit, Permits, commands, known};
+pub(crate) use fault::nearest;
 pub use fault::{Fault, Faults, Place};
 pub use hydraulics::{Actuators, Hydraulics};
 pub use sensing::SensorModels;
@@ -491,6 +492,14 @@ impl CellDescription {
             Some(description) if found.is_empty() => Ok(description),
             _ => Err(DescriptionError::Faults(document.placed(text, found))),
         }
+    }
+
+    /// Where an entry stands in the text of a description, by the way to it: `gripper.parts.body[0]`; if it is not there, the
+    /// nearest table around it.
+    #[must_use]
+    pub fn place(text: &str, entry: &str) -> Place {
+        let Range { start, end } = Document::parse(text).0.place(entry);
+        Place::of(text, start, end)
     }
 
     /// Read a description from a file and check it.

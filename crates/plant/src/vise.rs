@@ -105,16 +105,10 @@ impl Vise {
         0..self.description.program.len()
     }
 
-    /// Go on by the program of a name; false if there is none.
-    pub fn select(&mut self, name: &str) -> bool {
+    /// Go on by the program of a name, if there is one.
+    pub fn select(&mut self, name: &str) {
         let program = self.description.program.iter().position(|program| program.name == name);
         self.program = program.unwrap_or(self.program);
-        program.is_some()
-    }
-
-    /// Names of all programs.
-    pub fn programs(&self) -> impl Iterator<Item = &str> {
-        self.description.program.iter().map(|program| program.name.as_str())
     }
 
     /// Distance of the clamping faces of the program that is on, in.

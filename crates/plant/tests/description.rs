@@ -186,6 +186,25 @@ fn all_faults_are_told_at_once_in_the_order_of_the_text() {
 }
 
 #[test]
+fn what_is_measured_by_a_value_that_cannot_be_read_is_not_judged() {
+    for (from, to, entry) in [
+        ("jaw = [6.0, 3.0, 3.25]", "jaw = [6.0, 3.0]", "vise.jaw"),
+        ("inside = 21.0", "inside = \"21.0\"", "tray_shape.inside"),
+        ("limits = [-345.0, -20.0]", "limits = [-345.0, \"-20.0\"]", "pedestal.table.limits[1]"),
+        ("stop_force = 100.0", "stop_force = true", "drum.stop_force"),
+        ("pins_reach = 0.65", "pins_reach = [0.65]", "quick_change.pins_reach"),
+        ("opening_open = 2.760", "opening_open = \"\"", "vise.program[1].opening_open"),
+        ("opening = [0.50, 3.50]", "opening = [0.50]", "gripper.v.opening"),
+    ] {
+        let (_, faults) = faults(&[(from, to)]);
+        let entries: Vec<&str> = faults.iter().map(|fault| fault.entry.as_str()).collect();
+        assert_eq!(entries, [entry]);
+    }
+    let told = said("detent_length = 0.30", "detent_length = 3.0");
+    assert_eq!(told, ["3.0", "drum.detent_length: expected 0 to the 1.4 of drum.finger_reach, found 3"]);
+}
+
+#[test]
 fn a_box_that_holds_the_robot_at_the_start_is_told() {
     let text = TEXT.replacen("centre = [-23.26, -63.90, -36.0]", "centre = [0.0, -63.90, -16.0]", 1);
     let description = CellDescription::from_toml(&text).expect("its numbers are sound");

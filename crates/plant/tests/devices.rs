@@ -230,7 +230,7 @@ fn a_part_is_put_where_there_is_room() {
     let unit = rig.cell.workstation(&place("LINKBAR1", "UNIT_3", 3)).unwrap_err();
     assert_eq!(unit.to_string(), "no unit named UNIT_3; the cell description has UNIT_2, UNIT_1");
     let sector = rig.cell.workstation(&place("LINKBAR1", "UNIT_1", 5)).unwrap_err();
-    assert_eq!(sector.to_string(), "UNIT_1 has sectors 1 to 4, not 5");
+    assert_eq!(sector.to_string(), "UNIT_1 has sectors 1 to 4 in the cell description, not 5");
     assert_eq!(
         rig.cell.workstation(&WorkstationAction::Remove { id: 7 }),
         Err(WorkstationError::NoSuchPart { id: 7 })

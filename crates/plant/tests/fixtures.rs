@@ -47,7 +47,10 @@ fn a_program_opens_the_vise_for_its_parts() {
     rig.vise(WorkstationAction::VisePartial);
     assert!((rig.cell.vise_opening() - 0.705).abs() < 1e-9, "{}", rig.cell.vise_opening());
     let unknown = program(&mut rig, "CLEVI").unwrap_err();
-    assert_eq!(unknown.to_string(), "the vise has no program CLEVI; it has LINKBAR, CLEVIS");
+    assert_eq!(
+        unknown.to_string(),
+        "the vise has no program CLEVI; the cell description has LINKBAR, CLEVIS"
+    );
     rig.cell.workstation(&WorkstationAction::ViseOpen).unwrap();
     assert_eq!(program(&mut rig, "CLEVIS"), Err(WorkstationError::Busy));
 }
@@ -87,7 +90,10 @@ fn a_clevis_that_is_not_at_the_back_is_not_machined() {
     let larger = machine(&mut rig, "LCLEVIS_BH", "SHAFT", "PFIXTURE").unwrap_err();
     assert_eq!(larger.to_string(), "SHAFT does not fit into LCLEVIS_BH");
     let nowhere = machine(&mut rig, "LCLEVIS_BH", "LCLEVIS_IH", "TABLE").unwrap_err();
-    assert_eq!(nowhere.to_string(), "nothing can be machined at TABLE; there are PFIXTURE, V-VFIXTURE");
+    assert_eq!(
+        nowhere.to_string(),
+        "nothing can be machined at TABLE; the cell description has machines at PFIXTURE, V-VFIXTURE"
+    );
 }
 
 #[test]
@@ -155,7 +161,7 @@ fn a_part_that_leans_in_its_nest_is_not_machined() {
 fn a_part_with_nests_goes_only_there() {
     let mut rig = Rig::new(&description(), 1);
     let nowhere = place(&mut rig, "SHAFT_BH", "UNIT_1", 4).unwrap_err();
-    let text = "no place for SHAFT_BH in sector 4 of UNIT_1; there is one in UNIT_2 7, UNIT_2 8, V-VFIXTURE";
+    let text = "no place for SHAFT_BH in sector 4 of UNIT_1; the cell description has UNIT_2 7, UNIT_2 8, V-VFIXTURE";
     assert_eq!(nowhere.to_string(), text);
     place(&mut rig, "SHAFT_BH", "UNIT_2", 7).unwrap();
     let occupied = place(&mut rig, "SHAFT_BH", "UNIT_2", 7).unwrap_err();

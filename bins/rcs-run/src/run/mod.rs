@@ -12,7 +12,7 @@ mod progress;
 mod result;
 mod robot;
 pub mod setup;
-mod workstation;
+pub mod workstation;
 
 use std::{
     io::{self, Write as _},
@@ -115,7 +115,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let log = setup.log.as_deref().map(|path| Log::start(path, arguments, &setup)).transpose()?;
     let publisher = publisher(arguments, &setup.job);
     let Setup { store, job, description, cell, robot, data_system, log: log_path, .. } = setup;
-    let workstation = SimulatedWorkstation::new(cell, description.vise.location);
+    let workstation = SimulatedWorkstation::new(cell);
     let workstation = if robot.port().is_some() { workstation.with_robot_elsewhere() } else { workstation };
     let mut run = Run {
         runner: Runner::new(Ladder::default(), publisher),

@@ -16,7 +16,7 @@ use taskdata::load::{Job, Report, Store};
 
 use super::robot::{Port, Robot};
 use crate::{
-    check,
+    agreement, check,
     cli::{self, ClockKind, LogTarget, RunArguments},
     error::Error,
 };
@@ -67,9 +67,9 @@ impl Setup {
         let (store, report) =
             Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
         warn(&report, "the task data");
-        let path = job_path(&arguments.job, data)?;
+        let job_path = job_path(&arguments.job, data)?;
         let (job, report) =
-            Job::load(&path, &store).map_err(unusable(format!("the job {}", path.display())))?;
+            Job::load(&job_path, &store).map_err(unusable(format!("the job {}", job_path.display())))?;
         warn(&report, "the job");
         let path = data.join(CELL);
         let description_text =
@@ -78,6 +78,17 @@ impl Setup {
             what: format!("the cell description {}", path.display()),
             report: Box::new(check::cell_report(description_text.clone(), &error)),
         })?;
+        let source = check::source(description_text.clone());
+        let report = agreement::of_cell(source, &description, &store).with(agreement::of_job(
+            &job,
+            &description,
+            &path,
+        ));
+        if report.has_errors() {
+            let what = format!("the job {} in the cell of {}", job_path.display(), path.display());
+            return Err(Error::Data { what, report: Box::new(report) });
+        }
+        warn(&report, "the cell description");
         let (faults, faults_text) = faults(arguments, &description)?;
         let cell = Cell::with_faults(&description, arguments.seed, &faults.cell)?;
         let log = match &arguments.log {

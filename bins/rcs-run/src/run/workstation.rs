@@ -2,7 +2,8 @@
 
 use executive::hwsc::Workstation;
 use plant::{
-    BoxAction, BoxButton, Cell, CellEvent, Droop, EStop, Key, Placement, WorkstationAction, t3::Stage,
+    BoxAction, BoxButton, Cell, CellDescription, CellEvent, Droop, EStop, Key, Placement, WorkstationAction,
+    WorkstationError, t3::Stage,
 };
 use rcs_core::{
     interface::device::{joystick_frame, single_step},
@@ -30,7 +31,6 @@ pub struct Emergency {
 pub struct SimulatedWorkstation {
     /// The cell.
     pub cell: Cell,
-    vise: String,
     fault: Option<String>,
     /// The robot is not the simulated one: its panel is out of reach.
     robot_elsewhere: bool,
@@ -42,17 +42,9 @@ pub struct SimulatedWorkstation {
 }
 
 impl SimulatedWorkstation {
-    /// A workstation around a cell whose vise stands at `vise`.
-    pub const fn new(cell: Cell, vise: String) -> Self {
-        Self {
-            cell,
-            vise,
-            fault: None,
-            robot_elsewhere: false,
-            emergency: None,
-            stopped: false,
-            loads: Vec::new(),
-        }
+    /// A workstation around a cell.
+    pub const fn new(cell: Cell) -> Self {
+        Self { cell, fault: None, robot_elsewhere: false, emergency: None, stopped: false, loads: Vec::new() }
     }
 
     /// The cell follows a robot elsewhere, whose controller no line of a job can reach.
@@ -99,54 +91,54 @@ impl SimulatedWorkstation {
         std::mem::take(&mut self.loads)
     }
 
-    /// The cell has one vise.
-    fn at_vise(&self, location: &str) -> Result<(), String> {
-        if location == self.vise {
-            Ok(())
-        } else {
-            Err(format!("there is no vise at {location}; the cell has one at {}", self.vise))
-        }
-    }
-
     /// What the cell has to do for an action, in this order.
     fn translate(&self, action: &Action) -> Result<Vec<WorkstationAction>, String> {
-        Ok(vec![match action {
-            Action::Tray { location, object, offset } => WorkstationAction::Place {
-                part: object.to_string(),
-                unit: location.name.to_string(),
-                sector: u16::try_from(location.sector)
-                    .map_err(|_| format!("{} is no sector", location.sector))?,
-                placement: offset.as_ref().map_or(Placement::Random, placement),
-            },
-            Action::Vise { opening, location, program } => {
-                self.at_vise(location.name.as_str())?;
-                let opening = match opening {
-                    ViseOpening::Partial => WorkstationAction::VisePartial,
-                    ViseOpening::Close => WorkstationAction::ViseClose,
-                    ViseOpening::Open => WorkstationAction::ViseOpen,
-                };
-                let program = program.map(|name| WorkstationAction::ViseProgram { name: name.to_string() });
-                return Ok(program.into_iter().chain([opening]).collect());
-            }
-            Action::Machine { blank, part, location } => WorkstationAction::Machine {
-                from: blank.to_string(),
-                to: part.to_string(),
-                location: location.name.to_string(),
-            },
-            Action::Drum(Drum::Grip) => WorkstationAction::DrumGrip,
-            Action::Drum(Drum::Release) => WorkstationAction::DrumRelease,
-            Action::Drum(Drum::Tool(tool)) => WorkstationAction::DrumTool { part: tool.to_string() },
-            Action::Joystick(action) => WorkstationAction::Joystick(at_the_box(*action)),
-            Action::Press(_) | Action::Release(_) | Action::Panel(_) if self.robot_elsewhere => {
-                return Err("the robot at the serial port has its own panel and emergency stops".to_owned());
-            }
-            Action::Press(site) => WorkstationAction::T3(Key::Press(estop(*site))),
-            Action::Release(site) => WorkstationAction::T3(Key::Release(estop(*site))),
-            Action::Panel(key) => WorkstationAction::T3(at_the_panel(*key)),
-            // The emulator of the workstation controller counts the ticks itself.
-            Action::Wait { .. } | Action::Load { .. } => return Ok(Vec::new()),
-        }])
+        let at_the_robot = matches!(action, Action::Press(_) | Action::Release(_) | Action::Panel(_));
+        if at_the_robot && self.robot_elsewhere {
+            return Err("the robot at the serial port has its own panel and emergency stops".to_owned());
+        }
+        orders(action, self.cell.description()).map_err(|error| error.to_string())
     }
+}
+
+/// What an action asks of a cell, in this order.
+///
+/// # Errors
+/// [`WorkstationError`] if the cell has no such vise. Whether it has all else that is named the cell says.
+pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<WorkstationAction>, WorkstationError> {
+    Ok(vec![match action {
+        Action::Tray { location, object, offset } => WorkstationAction::Place {
+            part: object.to_string(),
+            unit: location.name.to_string(),
+            // The task data have this sector, and none below 0; no cell has one beyond what fits.
+            sector: u16::try_from(location.sector).unwrap_or(u16::MAX),
+            placement: offset.as_ref().map_or(Placement::Random, placement),
+        },
+        Action::Vise { opening, location, program } => {
+            cell.has_vise_at(location.name.as_str())?;
+            let opening = match opening {
+                ViseOpening::Partial => WorkstationAction::VisePartial,
+                ViseOpening::Close => WorkstationAction::ViseClose,
+                ViseOpening::Open => WorkstationAction::ViseOpen,
+            };
+            let program = program.map(|name| WorkstationAction::ViseProgram { name: name.to_string() });
+            return Ok(program.into_iter().chain([opening]).collect());
+        }
+        Action::Machine { blank, part, location } => WorkstationAction::Machine {
+            from: blank.to_string(),
+            to: part.to_string(),
+            location: location.name.to_string(),
+        },
+        Action::Drum(Drum::Grip) => WorkstationAction::DrumGrip,
+        Action::Drum(Drum::Release) => WorkstationAction::DrumRelease,
+        Action::Drum(Drum::Tool(tool)) => WorkstationAction::DrumTool { part: tool.to_string() },
+        Action::Joystick(action) => WorkstationAction::Joystick(at_the_box(*action)),
+        Action::Press(site) => WorkstationAction::T3(Key::Press(estop(*site))),
+        Action::Release(site) => WorkstationAction::T3(Key::Release(estop(*site))),
+        Action::Panel(key) => WorkstationAction::T3(at_the_panel(*key)),
+        // The emulator of the workstation controller counts the ticks itself.
+        Action::Wait { .. } | Action::Load { .. } => return Ok(Vec::new()),
+    }])
 }
 
 const fn estop(site: Site) -> EStop {
@@ -254,7 +246,6 @@ impl Workstation for SimulatedWorkstation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use plant::CellDescription;
     use rcs_core::interface::device::{DeviceInputs, DeviceOutputs, JoystickBox, KNOB_FULL};
     use std::path::Path;
     use taskdata::load::{Job, Source, Step, Store};
@@ -271,7 +262,7 @@ mod tests {
             let description = CellDescription::load(&data.join("cell.toml")).unwrap();
             let cell = Cell::new(&description, 1).unwrap();
             let Ok((store, _)) = Store::load(data) else { panic!("the shipped data do not load") };
-            Self { workstation: SimulatedWorkstation::new(cell, description.vise.location), store }
+            Self { workstation: SimulatedWorkstation::new(cell), store }
         }
 
         /// Begin what a line says, and let the cell go on until it is over.
@@ -315,9 +306,9 @@ mod tests {
         let refused = bench.play("** machine SHAFT_BH SHAFT V-VFIXTURE").unwrap_err();
         assert_eq!(refused, "SHAFT_BH is to be machined, but nothing is at V-VFIXTURE");
         let refused = bench.play("** vise open TABLE").unwrap_err();
-        assert_eq!(refused, "there is no vise at TABLE; the cell has one at PFIXTURE");
+        assert_eq!(refused, "there is no vise at TABLE; the cell description has one at PFIXTURE");
         let refused = bench.play("** vise open PFIXTURE CLEVISS").unwrap_err();
-        assert_eq!(refused, "the vise has no program CLEVISS; it has LINKBAR, CLEVIS");
+        assert_eq!(refused, "the vise has no program CLEVISS; the cell description has LINKBAR, CLEVIS");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use rcs_core::frame::{Frame, Vector as Inches, rotation_vector};
 
-use super::{Cell, WorkstationError, workstation::list};
+use super::{Cell, WorkstationError, order::Machine};
 use crate::{
     description::{PartType, Shape, Tolerance},
     part::Part,
@@ -19,15 +19,11 @@ impl Cell {
     /// # Errors
     /// [`WorkstationError`] if it is not what it should be, or not where it should be.
     pub(super) fn machine(&mut self, from: &str, to: &str, location: &str) -> Result<(), WorkstationError> {
-        let next = self.kind(to)?;
-        if location == self.vise.location() {
-            return self.machine_in_vise(from, &next);
-        }
-        let nests = || self.description.nest.iter().filter(|nest| nest.machining.is_some());
-        let nest = nests().find(|nest| nest.location == location).ok_or_else(|| {
-            let known = [self.vise.location()].into_iter().chain(nests().map(|nest| nest.location.as_str()));
-            WorkstationError::NoMachine { location: location.into(), known: list(known) }
-        })?;
+        let next = self.description.kind(to)?.clone();
+        let nest = match self.description.machine_at(location)? {
+            Machine::Vise => return self.machine_in_vise(from, &next),
+            Machine::Nest(nest) => nest,
+        };
         let (seat, allowed) = (nest.frame(), nest.machining.unwrap_or(SEATED));
         self.machine_in_nest(from, &next, &seat, allowed, location)
     }
@@ -93,11 +89,7 @@ fn check_part(from: &str, part: &Part, next: &PartType) -> Result<(), Workstatio
     if part.kind.name != from {
         return Err(WorkstationError::WrongPart { expected: from.into(), found: part.kind.name.clone() });
     }
-    let larger = next.size.iter().zip(part.kind.size).any(|(new, old)| *new > old + 1e-9);
-    if larger || next.shape != part.kind.shape {
-        return Err(WorkstationError::TooLarge { from: from.into(), to: next.name.clone() });
-    }
-    Ok(())
+    next.is_made_of(&part.kind)
 }
 
 /// Inches and radians from the seat are within the tolerance.

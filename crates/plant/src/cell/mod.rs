@@ -5,6 +5,7 @@ mod clearing;
 mod drumming;
 mod handling;
 mod machining;
+mod order;
 mod outline;
 mod picture;
 mod placing;
@@ -288,6 +289,12 @@ impl Cell {
         cell.tell(begin);
         cell.inputs = cell.sense(LinkBytes::default(), false);
         Ok(cell)
+    }
+
+    /// What it was built from, as the faults of the plan have displaced it.
+    #[must_use]
+    pub const fn description(&self) -> &CellDescription {
+        &self.description
     }
 
     /// What the devices show: before the first tick as the cell was built, then as the last tick left it.

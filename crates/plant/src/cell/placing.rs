@@ -3,10 +3,10 @@
 use rapier3d_f64::{parry::query, prelude::*};
 use rcs_core::frame::{Frame, Vector as Inches, rotation_by};
 
-use super::{Cell, Hand, Placement, WorkstationError, workstation::list};
+use super::{Cell, Hand, Placement, WorkstationError, order::Spot};
 use crate::{
     convert::{inches, to_pose},
-    description::PartType,
+    description::{Nest, PartType},
     part::{Part, PartState},
     solid::Solid,
 };
@@ -30,18 +30,10 @@ impl Cell {
         sector: u16,
         placement: &Placement,
     ) -> Result<Frame, WorkstationError> {
-        if self.description.nest.iter().any(|nest| nest.takes(kind)) {
-            return self.nest_frame(kind, unit, sector, placement);
-        }
-        let tray = self.description.tray(unit).ok_or_else(|| WorkstationError::UnknownUnit {
-            name: unit.into(),
-            known: list(self.description.tray.iter().map(|tray| tray.unit.as_str())),
-        })?;
-        let place = tray.sector(sector).ok_or(WorkstationError::UnknownSector {
-            unit: unit.into(),
-            sector,
-            sectors: tray.sectors.len(),
-        })?;
+        let place = match self.description.spot(kind, unit, sector)? {
+            Spot::Nest(nest) => return Ok(nest_frame(nest, placement)),
+            Spot::Sector(place) => place,
+        };
         let (x, y, angle) = match *placement {
             Placement::At { x, y, angle } => (x, y, angle),
             Placement::Random => {
@@ -55,38 +47,6 @@ impl Cell {
         Ok(Frame { position: turned.position + Inches::new(x, y, up), ..turned })
     }
 
-    /// In a nest a part lies where the nest has it, unless it is said how far from there.
-    fn nest_frame(
-        &self,
-        kind: &PartType,
-        unit: &str,
-        sector: u16,
-        placement: &Placement,
-    ) -> Result<Frame, WorkstationError> {
-        let nests = || self.description.nest.iter().filter(|nest| nest.takes(kind));
-        let nest = nests().find(|nest| nest.location == unit && nest.sector == sector).ok_or_else(|| {
-            let known: Vec<String> = nests()
-                .map(|nest| match nest.sector {
-                    0 => nest.location.clone(),
-                    sector => format!("{} {sector}", nest.location),
-                })
-                .collect();
-            WorkstationError::NoNest {
-                part: kind.name.clone(),
-                unit: unit.into(),
-                sector,
-                known: known.join(", "),
-            }
-        })?;
-        let (x, y, angle) = match *placement {
-            Placement::At { x, y, angle } => (x, y, angle),
-            Placement::Random => (0.0, 0.0, 0.0),
-        };
-        let seat = nest.frame();
-        let turned = seat.turned(&rotation_by(&Inches::new(angle.to_radians(), 0.0, 0.0)));
-        Ok(Frame { position: seat.position + Inches::new(x, y, DROP), ..turned })
-    }
-
     /// Put a part into a sector, unless a fault of the plan has it otherwise.
     pub(super) fn deliver(
         &mut self,
@@ -95,10 +55,11 @@ impl Cell {
         sector: u16,
         placement: &Placement,
     ) -> Result<(), WorkstationError> {
-        let meant = self.kind(part)?;
+        let meant = self.description.kind(part)?.clone();
         let (delivery, changes) = self.faults.delivery(part);
         self.tell(changes);
-        let kind = delivery.instead.as_deref().map_or(Ok(meant), |other| self.kind(other))?;
+        let kind =
+            delivery.instead.as_deref().map_or(Ok(meant), |other| self.description.kind(other).cloned())?;
         let place = self.place_frame(&kind, unit, sector, placement)?;
         if delivery.missing {
             return Ok(());
@@ -199,4 +160,15 @@ impl Cell {
         let on_floor = at.z < lowest + inches(part.radius()) + 0.1;
         (if on_floor { "floor" } else { "elsewhere" }.into(), 0, None)
     }
+}
+
+/// In a nest a part lies where the nest has it, unless it is said how far from there.
+fn nest_frame(nest: &Nest, placement: &Placement) -> Frame {
+    let (x, y, angle) = match *placement {
+        Placement::At { x, y, angle } => (x, y, angle),
+        Placement::Random => (0.0, 0.0, 0.0),
+    };
+    let seat = nest.frame();
+    let turned = seat.turned(&rotation_by(&Inches::new(angle.to_radians(), 0.0, 0.0)));
+    Frame { position: seat.position + Inches::new(x, y, DROP), ..turned }
 }

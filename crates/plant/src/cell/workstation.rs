@@ -4,7 +4,7 @@ use rcs_core::frame::Frame;
 
 use super::Cell;
 use crate::{
-    description::{PartType, Tolerance},
+    description::Tolerance,
     joystick::BoxAction,
     t3::{Key, Refusal},
     vise::Jaws,
@@ -91,23 +91,23 @@ pub enum WorkstationAction {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WorkstationError {
     /// No part of that name in the description.
-    #[error("no part named {name}; the cell description has {known}")]
+    #[error("no part named {name}; the cell description has {}", list(.known))]
     UnknownPart {
         /// The name.
         name: String,
         /// All names.
-        known: String,
+        known: Vec<String>,
     },
     /// No unit of that name.
-    #[error("no unit named {name}; the cell description has {known}")]
+    #[error("no unit named {name}; the cell description has {}", list(.known))]
     UnknownUnit {
         /// The name.
         name: String,
         /// All names.
-        known: String,
+        known: Vec<String>,
     },
     /// The unit has no such sector.
-    #[error("{unit} has sectors 1 to {sectors}, not {sector}")]
+    #[error("{unit} has sectors 1 to {sectors} in the cell description, not {sector}")]
     UnknownSector {
         /// The unit.
         unit: String,
@@ -117,7 +117,7 @@ pub enum WorkstationError {
         sectors: usize,
     },
     /// The part is made for a nest, and there is none.
-    #[error("no place for {part} in sector {sector} of {unit}; there is one in {known}")]
+    #[error("no place for {part} in sector {sector} of {unit}; the cell description has {}", places(.known))]
     NoNest {
         /// The part.
         part: String,
@@ -125,24 +125,40 @@ pub enum WorkstationError {
         unit: String,
         /// The sector asked for.
         sector: u16,
-        /// All places.
+        /// Locations and sectors of its nests; sector 0 is none.
+        known: Vec<(String, u16)>,
+    },
+    /// The cell has its vise elsewhere.
+    #[error("there is no vise at {location}; the cell description has one at {known}")]
+    NoVise {
+        /// The location asked for.
+        location: String,
+        /// That of the vise.
         known: String,
     },
     /// The vise has no such program.
-    #[error("the vise has no program {name}; it has {known}")]
+    #[error("the vise has no program {name}; the cell description has {}", list(.known))]
     UnknownProgram {
         /// The name.
         name: String,
         /// All names.
-        known: String,
+        known: Vec<String>,
+    },
+    /// The part is none that fits into the drum.
+    #[error("{name} is no tool; the cell description has {}", list(.known))]
+    NoTool {
+        /// The name.
+        name: String,
+        /// All tools.
+        known: Vec<String>,
     },
     /// Nothing can be machined there.
-    #[error("nothing can be machined at {location}; there are {known}")]
+    #[error("nothing can be machined at {location}; the cell description has machines at {}", list(.known))]
     NoMachine {
         /// The location asked for.
         location: String,
         /// All locations where something can.
-        known: String,
+        known: Vec<String>,
     },
     /// Something is there already.
     #[error("{part} cannot be put there: {by} is in the way")]
@@ -239,12 +255,13 @@ impl Cell {
     /// # Errors
     /// [`WorkstationError`]; then nothing has changed.
     pub fn workstation(&mut self, action: &WorkstationAction) -> Result<(), WorkstationError> {
+        self.description.admits(action)?;
         match action {
             WorkstationAction::Place { part, unit, sector, placement } => {
                 self.deliver(part, unit, *sector, placement)
             }
             WorkstationAction::Put { part, frame } => {
-                let kind = self.kind(part)?;
+                let kind = self.description.kind(part)?.clone();
                 self.put(&kind, frame)
             }
             WorkstationAction::Remove { id } => self.remove(*id),
@@ -256,7 +273,7 @@ impl Cell {
             WorkstationAction::DrumGrip => self.set_drum_fingers(true),
             WorkstationAction::DrumRelease => self.set_drum_fingers(false),
             WorkstationAction::DrumTool { part } => {
-                let kind = self.kind(part)?;
+                let kind = self.description.kind(part)?.clone();
                 self.put_into_drum(&kind)
             }
             WorkstationAction::Joystick(action) => {
@@ -272,13 +289,6 @@ impl Cell {
     #[must_use]
     pub fn workstation_busy(&self) -> bool {
         self.vise.moving() || self.joystick.busy() || self.t3.busy()
-    }
-
-    pub(super) fn kind(&self, name: &str) -> Result<PartType, WorkstationError> {
-        self.description.part(name).cloned().ok_or_else(|| WorkstationError::UnknownPart {
-            name: name.into(),
-            known: list(self.description.part.iter().map(|kind| kind.name.as_str())),
-        })
     }
 
     fn remove(&mut self, id: u32) -> Result<(), WorkstationError> {
@@ -298,10 +308,8 @@ impl Cell {
         if self.vise.moving() {
             return Err(WorkstationError::Busy);
         }
-        if self.vise.select(name) {
-            return Ok(());
-        }
-        Err(WorkstationError::UnknownProgram { name: name.into(), known: list(self.vise.programs()) })
+        self.vise.select(name);
+        Ok(())
     }
 
     fn work_vise(&mut self, jaws: Jaws) -> Result<(), WorkstationError> {
@@ -320,6 +328,15 @@ impl Cell {
 }
 
 /// Names in a row.
-pub(super) fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    names.collect::<Vec<_>>().join(", ")
+fn list(names: &[String]) -> String {
+    names.join(", ")
+}
+
+/// Places in a row.
+fn places(places: &[(String, u16)]) -> String {
+    let place = |(location, sector): &(String, u16)| match sector {
+        0 => location.clone(),
+        sector => format!("{location} {sector}"),
+    };
+    places.iter().map(place).collect::<Vec<_>>().join(", ")
 }

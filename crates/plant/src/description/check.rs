@@ -128,7 +128,11 @@ impl CellDescription {
         let force = &grippers.force;
         check.positive("gripper.force", &[("weight", force.weight)]);
         check.within("gripper.force.behind_tool", force.behind_tool, 0.0, T3.plate_to_tool);
-        check.within("gripper.force.weight_at", force.weight_at, 0.0, force.behind_tool);
+        check.up_to(
+            "gripper.force.weight_at",
+            force.weight_at,
+            ("gripper.force.behind_tool", force.behind_tool),
+        );
         check.within("gripper.force.noise", force.noise, 0.0, 100.0);
         for (bridge, offset) in force.offsets.iter().enumerate() {
             check.within(&element("gripper.force.offsets", bridge), *offset, -1000.0, 1000.0);
@@ -158,7 +162,7 @@ impl CellDescription {
         for (number, [darkest, brightest]) in camera.exposures.iter().enumerate() {
             let path = element("camera.exposures", number);
             check.within(&element(&path, 1), *brightest, 0.0, 1.0);
-            check.within(&element(&path, 0), *darkest, 0.0, *brightest);
+            check.up_to(&element(&path, 0), *darkest, (&element(&path, 1), *brightest));
         }
     }
 
@@ -192,8 +196,12 @@ impl CellDescription {
                 ("small_range", holsters.small_range),
             ],
         );
-        check.within("holsters.catch_height", holsters.catch_height, 0.0, change.pins_reach);
-        check.within("holsters.detent", holsters.detent, 0.0, change.pins_play);
+        check.up_to(
+            "holsters.catch_height",
+            holsters.catch_height,
+            ("quick_change.pins_reach", change.pins_reach),
+        );
+        check.up_to("holsters.detent", holsters.detent, ("quick_change.pins_play", change.pins_play));
     }
 
     fn check_drum(&self, check: &mut Check<'_>) {
@@ -209,9 +217,9 @@ impl CellDescription {
                 ("seated_degrees", drum.seated_degrees),
             ],
         );
-        check.within("drum.detent_length", drum.detent_length, 0.0, drum.finger_reach);
-        check.within("drum.insertion_force", drum.insertion_force, 0.0, drum.stop_force);
-        check.within("drum.extraction_force", drum.extraction_force, 0.0, drum.stop_force);
+        check.up_to("drum.detent_length", drum.detent_length, ("drum.finger_reach", drum.finger_reach));
+        check.up_to("drum.insertion_force", drum.insertion_force, ("drum.stop_force", drum.stop_force));
+        check.up_to("drum.extraction_force", drum.extraction_force, ("drum.stop_force", drum.stop_force));
         check.within("drum.friction", drum.friction, 0.0, 2.0);
         for (number, plate) in drum.plate.iter().enumerate() {
             let path = join(&element("drum.plate", number), "high");
@@ -230,12 +238,16 @@ impl CellDescription {
         let table = &pedestal.table;
         let [minus, plus] = table.limits;
         check.ascending("pedestal.table.limits", table.limits);
-        check.within("pedestal.table.start", table.start, minus, plus);
-        check.within("pedestal.table.square", table.square, minus, plus);
+        if check.trusts("pedestal.table.limits") {
+            check.within("pedestal.table.start", table.start, minus, plus);
+            check.within("pedestal.table.square", table.square, minus, plus);
+        }
         check.all_positive("pedestal.table.flip", &table.flip);
         let motor = [("speed", table.speed), ("acceleration", table.acceleration)];
         check.positive("pedestal.table", &motor);
-        for limit in table.limits {
+        let scale_is_known =
+            check.trusts("pedestal.table.limits") && check.trusts("pedestal.table.potentiometer_offset");
+        for limit in table.limits.into_iter().filter(|_| scale_is_known) {
             let counts = table.potentiometer_offset + table.potentiometer_scale * limit;
             let expected = format!("such that a 12-bit converter reads the limit at {limit} degrees");
             check.counts("pedestal.table.potentiometer_scale", &expected, counts);
@@ -260,12 +272,16 @@ impl CellDescription {
         check.that(!vise.program.is_empty(), "vise.program", "at least one", || "none".into());
         for (number, program) in vise.program.iter().enumerate() {
             let path = |key: &str| join(&element("vise.program", number), key);
-            check.within(&path("back"), program.back, 0.0, vise.jaw[0]);
-            check.within(&path("depth"), program.depth, 0.0, vise.jaw[1]);
-            check.within(&path("ledge"), program.ledge, -vise.jaw[2], 0.0);
-            let closed = 2.0 * program.depth;
-            check.within(&path("opening_partial"), program.opening_partial, closed, program.opening_open);
-            check.within(&path("opening_open"), program.opening_open, closed, 20.0);
+            if check.trusts("vise.jaw") {
+                check.within(&path("back"), program.back, 0.0, vise.jaw[0]);
+                check.within(&path("depth"), program.depth, 0.0, vise.jaw[1]);
+                check.within(&path("ledge"), program.ledge, -vise.jaw[2], 0.0);
+            }
+            let (closed, open) = (2.0 * program.depth, program.opening_open);
+            if check.trusts(&path("depth")) && check.trusts(&path("opening_open")) {
+                check.within(&path("opening_partial"), program.opening_partial, closed, open);
+                check.within(&path("opening_open"), open, closed, 20.0);
+            }
         }
     }
 
@@ -280,12 +296,16 @@ impl CellDescription {
                 ("floor_thickness", shape.floor_thickness),
             ],
         );
-        check.within("tray_shape.random_offset", shape.random_offset, 0.0, shape.inside / 2.0);
+        let inside_is_known = check.trusts("tray_shape.inside");
+        if inside_is_known {
+            check.within("tray_shape.random_offset", shape.random_offset, 0.0, shape.inside / 2.0);
+        }
         for (number, tray) in self.tray.iter().enumerate() {
             let path = join(&element("tray", number), "sectors");
             check.that(!tray.sectors.is_empty(), &path, "at least one", || "none".into());
             let [x, y] = tray.centre;
-            for (sector, at) in tray.sectors.iter().enumerate() {
+            let is_known = inside_is_known && check.trusts(&join(&element("tray", number), "centre"));
+            for (sector, at) in tray.sectors.iter().enumerate().filter(|_| is_known) {
                 let inside = (at[0] - x).abs().max((at[1] - y).abs()) <= shape.inside / 2.0;
                 let expected = format!("a point in the tray, within {} in of {x}, {y}", shape.inside / 2.0);
                 check.that(inside, &element(&path, sector), &expected, || format!("{at:?}"));
@@ -412,7 +432,10 @@ fn check_gripper(name: &str, gripper: &Gripper, check: &mut Check<'_>) {
     let [least, greatest] = gripper.opening;
     check.within(&element(&path("opening"), 0), least, 0.0, greatest);
     check.within(&element(&path("opening"), 1), greatest, least.max(0.0) + 0.1, 20.0);
-    check.within(&path("initial_opening"), gripper.initial_opening, least, greatest);
+    let opening_is_known = check.trusts(&path("opening"));
+    if opening_is_known {
+        check.within(&path("initial_opening"), gripper.initial_opening, least, greatest);
+    }
     check.within(&path("friction"), gripper.friction, 0.01, 2.0);
     check.positive(
         name,
@@ -426,9 +449,13 @@ fn check_gripper(name: &str, gripper: &Gripper, check: &mut Check<'_>) {
     let sensors = &gripper.sensors;
     let full = sensors.potentiometer_offset + sensors.potentiometer_scale * greatest;
     let expected = "such that a 12-bit converter reads the greatest opening";
-    check.counts(&path("sensors.potentiometer_scale"), expected, full);
+    if opening_is_known && check.trusts(&path("sensors.potentiometer_offset")) {
+        check.counts(&path("sensors.potentiometer_scale"), expected, full);
+    }
     let gages = sensors.strain_offsets.iter().zip(sensors.strain_scales).enumerate();
-    for (gage, (offset, scale)) in gages.filter(|(_, (_, scale))| *scale != 0.0) {
+    let force_is_known =
+        check.trusts(&path("greatest_force")) && check.trusts(&path("sensors.strain_offsets"));
+    for (gage, (offset, scale)) in gages.filter(|(_, (_, scale))| *scale != 0.0 && force_is_known) {
         let full = offset + scale * gripper.greatest_force;
         let expected = "such that a 12-bit converter reads the greatest force";
         check.counts(&element(&path("sensors.strain_scales"), gage), expected, full);
@@ -460,6 +487,14 @@ impl Check<'_> {
     fn within(&mut self, path: &str, value: f64, low: f64, high: f64) {
         let inside = (low..=high).contains(&value);
         self.that(inside, path, &format!("{low} to {high}"), || value.to_string());
+    }
+
+    /// From 0 to what another entry says.
+    fn up_to(&mut self, path: &str, value: f64, (other, greatest): (&str, f64)) {
+        if self.trusts(other) {
+            let expected = format!("0 to the {greatest} of {other}");
+            self.that((0.0..=greatest).contains(&value), path, &expected, || value.to_string());
+        }
     }
 
     /// A 12-bit converter that has to read `counts` can.

@@ -109,7 +109,7 @@ impl fmt::Display for Faults {
 }
 
 /// The known name that differs least from `wanted`, if it is near enough to be a slip of the pen.
-pub(super) fn nearest<'a>(wanted: &str, known: &[&'a str]) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(wanted: &str, known: &[&'a str]) -> Option<&'a str> {
     let limit = (wanted.chars().count() / 3).max(1);
     let distance = |name: &&str| strsim::osa_distance(&wanted.to_lowercase(), &name.to_lowercase());
     let near = known.iter().map(|name| (distance(name), *name)).filter(|(far, _)| *far <= limit);

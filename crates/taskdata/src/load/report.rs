@@ -372,6 +372,13 @@ impl Report {
         Self { diagnostics: problems.into_diagnostics(sources), files: sources.len(), blocks, loaded }
     }
 
+    /// The same with what another look at one of the sources found.
+    #[must_use]
+    pub fn with(mut self, other: Self) -> Self {
+        self.diagnostics.extend(other.diagnostics);
+        self
+    }
+
     /// Everything found, in the order of the text.
     #[must_use]
     pub fn diagnostics(&self) -> &[Diagnostic] {
