@@ -233,7 +233,8 @@ impl Ladder {
         self.step_in_order(ProcessId::ALL, tick, before, external, data, after);
     }
 
-    /// One tick with the processes in another order; a process that is not named is not stepped.
+    /// One tick with the processes in another order, or of some of them: those of a board. What `after` holds of a process that
+    /// is not named is what `before` held.
     pub fn step_in_order(
         &mut self,
         order: &[ProcessId],

@@ -9,7 +9,7 @@ use std::{path::Path, sync::OnceLock};
 
 use depc::{Limits, Plate, controller};
 use fingers::Fingers;
-use levels::ladder::{Ladder, LadderState, ProcessId};
+use levels::ladder::{Ladder, LadderState, PROCESS_COUNT, ProcessId};
 use proptest::prelude::*;
 use rcs_core::{
     digest::Digest,
@@ -231,6 +231,66 @@ proptest! {
             rig.digest
         };
         prop_assert_eq!(run(&seed), run(&[ProcessId::ALL.to_vec()]));
+    }
+}
+
+/// Take what a process wrote over into another common memory.
+fn take_outputs(process: ProcessId, from: &CommonMemory, into: &mut CommonMemory) {
+    match process {
+        ProcessId::Task => into.task = from.task,
+        ProcessId::Subtask => into.subtask = from.subtask,
+        ProcessId::Emove => into.emove = from.emove,
+        ProcessId::Prim => into.prim = from.prim,
+        ProcessId::T3i => into.t3i = from.t3i,
+        ProcessId::QuickChange => into.quick_change = from.quick_change,
+        ProcessId::Grip => into.grip = from.grip,
+        ProcessId::VGrip => into.v_grip = from.v_grip,
+        ProcessId::ToolGrip => into.tool_grip = from.tool_grip,
+        ProcessId::Pedestal => into.pedestal = from.pedestal,
+        ProcessId::Hand => into.hand = from.hand,
+        ProcessId::RotaryTable => into.table = from.table,
+    }
+}
+
+/// Where each process runs (at the place of its code), and the order in which it comes up there.
+fn partition() -> impl Strategy<Value = (Vec<usize>, Vec<ProcessId>)> {
+    let boards = prop::collection::vec(0..PROCESS_COUNT, PROCESS_COUNT);
+    (boards, Just(ProcessId::ALL.to_vec()).prop_shuffle())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    /// DESIGN 4: nor can their distribution over boards, each with a ladder of its own that steps some of the processes and is
+    /// given what the others wrote; with suspended processes and single steps on the way.
+    #[test]
+    fn distribution_does_not_matter(
+        (board_of, order) in partition(),
+        intervals in prop::collection::vec(interval(), 1..8),
+    ) {
+        let mut rig = Rig::new();
+        let mut boards = vec![rig.ladder.clone(); PROCESS_COUNT];
+        rig.command("PAUSE", "");
+        for k in 0..600_u16 {
+            if k == 250 {
+                rig.command("MOVE", "SAFE");
+            }
+            if let Some(interval) = k.checked_sub(300).and_then(|k| intervals.get(usize::from(k / 40))) {
+                rig.external.devices.joystick.hold = interval.hold;
+                rig.external.devices.joystick.single_step = if k % 3 == 0 { interval.single_step } else { 0 };
+                rig.gripper = interval.gripper;
+            }
+            let (before, external, tick) = (rig.before, rig.external, rig.tick.next());
+            rig.step(ProcessId::ALL);
+            let mut after = CommonMemory::default();
+            for (number, board) in boards.iter_mut().enumerate() {
+                let on_it = |process: &ProcessId| board_of[usize::from(process.code())] == number;
+                let own: Vec<ProcessId> = order.iter().copied().filter(on_it).collect();
+                let mut written = CommonMemory::default();
+                board.step_in_order(&own, tick, &before, &external, &store().view(), &mut written);
+                own.iter().for_each(|&process| take_outputs(process, &written, &mut after));
+            }
+            prop_assert_eq!(after, rig.before, "tick {}", tick);
+        }
     }
 }
 
