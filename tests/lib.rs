@@ -198,12 +198,13 @@ const FAULTS: &str = "faults.toml";
 
 /// The command that runs a job in a directory: equal arguments, so that equal runs write equal logs. Task data of the
 /// directory's own come before those of the repository.
-fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
+#[must_use]
+pub fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
     let own = directory.file("data");
     let data = if own.is_dir() { own } else { root().join("data") };
     let mut command = Command::new(rcs_run());
     command
-        .args(["run", job, "--json", "--log", "run.mcap", "--shared-memory", "off", "--seed"])
+        .args(["run", job, "--json", "--seed"])
         .arg(seed.to_string())
         .arg("--data")
         .arg(data)
@@ -211,6 +212,13 @@ fn command(directory: &Scratch, job: &str, seed: u64) -> Command {
     if directory.file(FAULTS).is_file() {
         command.args(["--faults", FAULTS]);
     }
+    command
+}
+
+/// The same with a log and without readers.
+fn logged(directory: &Scratch, job: &str, seed: u64) -> Command {
+    let mut command = command(directory, job, seed);
+    command.args(["--log", "run.mcap", "--shared-memory", "off"]);
     command
 }
 
@@ -237,7 +245,7 @@ pub fn run_with(
 ) -> Outcome {
     let scratch = Scratch::new(name);
     prepare(&scratch);
-    let output = command(&scratch, job, seed).args(arguments).output().expect("rcs-run can be started");
+    let output = logged(&scratch, job, seed).args(arguments).output().expect("rcs-run can be started");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     let result = serde_json::from_slice(&output.stdout)
         .unwrap_or_else(|error| panic!("{error} in {:?}; {said}", String::from_utf8_lossy(&output.stdout)));
@@ -256,7 +264,7 @@ pub fn run_with(
 /// If the program cannot be started.
 #[must_use]
 pub fn start(scratch: &Scratch, job: &str, seed: u64) -> Child {
-    command(scratch, job, seed)
+    logged(scratch, job, seed)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()

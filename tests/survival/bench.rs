@@ -1,7 +1,6 @@
 //! What the survival tests have in common: runs that are watched from outside, and a look at what they leave.
 
 use std::{
-    fs,
     path::{Path, PathBuf},
     process::{Child, Command, Output, Stdio},
     sync::Mutex,
@@ -135,17 +134,9 @@ impl Ended {
     }
 }
 
-/// Files and objects in shared memory that bear a run's name.
+/// Files and objects in shared memory of a run.
 pub fn traces(run: &RunName) -> Vec<PathBuf> {
-    let within = |directory: &Path| fs::read_dir(directory).into_iter().flatten().flatten().map(|e| e.path());
-    let (objects, places) = (within(Path::new("/dev/shm")), within(&runs::root()));
-    let named = objects.chain(places).filter(|path| {
-        path.file_name().is_some_and(|name| {
-            let name = name.to_string_lossy();
-            name.contains(&format!("-{run}_")) || name.starts_with(&format!("{run}@"))
-        })
-    });
-    named.collect()
+    runs::traces(run)
 }
 
 /// Nothing is left after `rcs-run clean`.

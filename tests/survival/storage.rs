@@ -2,6 +2,7 @@
 
 use std::{fs, path::Path, process::Command};
 
+use executive::memory::runs;
 use rustix::process::geteuid;
 use whole_system_tests::{Scratch, rcs_run};
 
@@ -41,7 +42,7 @@ fn without_shared_memory_nobody_looks_on_and_the_run_goes_on() {
     assert_goes_on(&ended, "nobody can look on, shared memory cannot be had: /dev/shm has 65536 bytes left");
     // Enough to begin with, and then taken by somebody else while the run goes on.
     let fills = "mount -t tmpfs -o size=8m tmpfs /dev/shm && \
-                 { (until ls /dev/shm/*linkbar*data > /dev/null 2>&1; do sleep 0.1; done; sleep 1; \
+                 { (until ls /dev/shm/rcs-*data > /dev/null 2>&1; do sleep 0.1; done; sleep 1; \
                     head -c 16M /dev/zero > /dev/shm/filler 2> /dev/null) & }";
     let more = ["--clock", "real", "--ticks", "100", "--log", "none"];
     let ended = apart(&scratch.file(""), fills, &more).expect("as before");
@@ -69,7 +70,8 @@ fn stale_and_strange_files_do_not_disturb_and_are_removed() {
     let root = scratch.file(&format!("rcs-ii-{user}"));
     // A killed run of an older version, with a layout that nobody knows any more, and its object.
     fs::create_dir_all(root.join("old-1@00c0ffee/nodes")).expect("a directory");
-    let object = format!("/dev/shm/rcs-{user}-00c0ffee-old-1_x.blackboard");
+    let old = runs::prefix(&"old-1".parse().expect("it is a name"), "00c0ffee");
+    let object = format!("/dev/shm/{old}x.blackboard");
     fs::write(&object, "old").expect("an object");
     // What looks like a run and is none, and what does not even look like one.
     fs::write(root.join("file-1@00c0ffee"), "a file").expect("a file");

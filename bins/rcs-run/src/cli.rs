@@ -3,7 +3,7 @@
 use std::{fmt, path::PathBuf, str::FromStr};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use executive::{memory::RunName, overrun::Policy, serial::SerialSettings};
+use executive::{boards::Board, memory::RunName, overrun::Policy, serial::SerialSettings};
 
 /// The RCS-II/T3 controller: runs jobs in the simulated cell, or with a robot at a serial port.
 #[derive(Debug, Parser)]
@@ -19,6 +19,7 @@ Examples:
   rcs-run my.job --seed 7 --json       a job file, other noise, the result as JSON
   rcs-run --faults data/faults/air-lost.toml
                                        the air fails in the middle of the job
+  rcs-run --boards split               one operating system process a board; the same result, to the bit
   rcs-run link-test --robot serial:/dev/ttyUSB0
                                        try the line to a robot; nothing moves
   rcs-run --robot serial:/dev/ttyUSB0 --clock real
@@ -48,6 +49,8 @@ pub enum Command {
     Run(RunArguments),
     /// Exchange frames with a robot at a serial port, holding the position that it reports, and judge the link
     LinkTest(LinkTestArguments),
+    /// Run one board of a run that was started with --boards manual
+    Board(BoardArguments),
     /// Load task data, jobs and the cell description, and print all errors and warnings, and what was loaded
     Check(CheckArguments),
     /// Print every decision table as Markdown
@@ -90,9 +93,15 @@ pub struct RunArguments {
     /// Faults of the cell and of the line to the simulated robot, on schedule or by chance (TOML; data/README.md)
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
-    /// How processes are spread over boards: one, all in one thread
-    #[arg(long, default_value = "one", value_parser = boards)]
+    /// How the control processes are spread over boards
+    #[arg(long, value_enum, default_value_t = Boards::One)]
     pub boards: Boards,
+    /// Name of the run in shared memory [default: <job>-<number of this process>]
+    #[arg(long, value_name = "NAME")]
+    pub run: Option<RunName>,
+    /// How many seconds to wait for boards that are started by hand
+    #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    pub wait: u32,
     /// Seed of the cell's noise and of where parts are delivered
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -111,6 +120,29 @@ pub struct RunArguments {
     /// Print one JSON object on standard output at the end, and nothing else there
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `board`.
+#[derive(Clone, Debug, Args)]
+pub struct BoardArguments {
+    /// Number of the board: 2 (E-move, Prim), 4 (T3 Interface), 6 (Task, Subtask), 8 (Quick Change, grippers, pedestal)
+    #[arg(value_name = "BOARD")]
+    pub board: Board,
+    /// The job of the run: name in the data directory, or a path
+    #[arg(default_value = "linkbar")]
+    pub job: String,
+    /// Name of the run, as rcs-run says it
+    #[arg(long, value_name = "NAME")]
+    pub run: RunName,
+    /// Task data and jobs; they must be those of the run
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
+    /// The core to run on if ticks come every 40 ms [default: the highest that is allowed]
+    #[arg(long, value_name = "N")]
+    pub cpu: Option<usize>,
+    /// End with this process, which has started the board
+    #[arg(long, value_name = "PROCESS", hide = true)]
+    pub parent: Option<u32>,
 }
 
 /// Arguments of `link-test`.
@@ -234,19 +266,25 @@ fn robot(text: &str) -> Result<Robot, String> {
 }
 
 /// How processes are spread.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Boards {
-    /// All in one thread.
+    /// All in one thread
     One,
+    /// One operating system process a board: 0 (this one), 2, 4, 6, 8
+    Split,
+    /// The same, but the boards are started by hand, with rcs-run board
+    Manual,
 }
 
-fn boards(text: &str) -> Result<Boards, String> {
-    match text {
-        "one" => Ok(Boards::One),
-        "split" => {
-            Err("this version runs all processes on one board, they cannot be split yet: use one".into())
+impl Boards {
+    /// The word on the command line.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::One => "one",
+            Self::Split => "split",
+            Self::Manual => "manual",
         }
-        _ => Err("one was expected".into()),
     }
 }
 
@@ -292,10 +330,17 @@ mod tests {
     }
 
     #[test]
-    fn what_this_version_cannot_do_is_refused_with_a_sentence() {
-        let error = Cli::try_parse_from(["rcs-run", "--boards=split"]).expect_err("it is refused");
+    fn a_board_is_one_that_has_processes() {
+        let board = |number| {
+            let command = Cli::try_parse_from(["rcs-run", "board", number, "--run", "x", "linkbar"])?.command;
+            let Some(Command::Board(arguments)) = command else { panic!("board was asked for") };
+            Ok::<_, clap::Error>(arguments.board)
+        };
+        assert_eq!(board("8").ok(), Some(Board::Eight));
+        let error = board("0").expect_err("it is rcs-run itself");
         assert_eq!(error.exit_code(), 2);
-        assert!(error.to_string().contains("one board"), "{error}");
+        assert!(error.to_string().contains("--boards split"), "{error}");
+        assert!(board("3").is_err());
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::{io, path::PathBuf};
 
 use executive::{
+    boards::{MemberError, SplitError},
     memory::{ReadError, SharedMemoryError},
     serial::OpenError,
 };
@@ -95,6 +96,12 @@ pub enum Error {
     /// There are several runs.
     #[error("there are several runs, name one: {}", .0.join(", "))]
     WhichRun(Vec<String>),
+    /// The boards of a run did not come together.
+    #[error("the boards did not come together: {0}")]
+    Boards(#[from] SplitError),
+    /// A board cannot take part in a run.
+    #[error(transparent)]
+    Board(#[from] MemberError),
     /// The result cannot be written.
     #[error("the result cannot be written: {0}")]
     Output(#[from] io::Error),

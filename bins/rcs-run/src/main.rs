@@ -1,10 +1,12 @@
 //! `rcs-run`: the RCS-II/T3 controller with its simulated cell.
 //!
-//! One thread runs the ticks: controller, log hand-off, cell, workstation controller, in this order ([`run`]).
+//! One thread runs the ticks: controller, log hand-off, cell, workstation controller, in this order ([`run`]). With
+//! `--boards split` the controller of a tick is spread over processes ([`board`]).
 //! [`link_test`] tries the line to a robot. The other subcommands look at task data and decision tables without
 //! running anything, or clean up after killed runs.
 
 mod agreement;
+mod board;
 mod check;
 mod clean;
 mod cli;
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
     let outcome = match cli.command {
         None => run::run(&cli.run),
         Some(Command::Run(arguments)) => run::run(&arguments),
+        Some(Command::Board(arguments)) => board::board(&arguments),
         Some(Command::LinkTest(arguments)) => link_test::link_test(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Tables) => tables::tables(),

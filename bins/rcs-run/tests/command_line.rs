@@ -97,7 +97,6 @@ fn help_and_version_are_given() {
 fn usage_errors_have_status_2_and_a_sentence() {
     for (arguments, sentence) in [
         (&["--robot", "serial:/dev/ttyS0"][..], "add --clock real"),
-        (&["--boards", "split"], "cannot be split yet"),
         (&["--clock", "slow"], "fast, real"),
         (&["--data", "/nowhere"], "there is no task data directory /nowhere"),
         (&["no-such-job"], "there is no job no-such-job: the data directory has "),
@@ -369,10 +368,8 @@ fn what_a_killed_run_left_is_removed_by_clean() {
     let cleaned = rcs_run(&["clean"]);
     assert_eq!(cleaned.status.code(), Some(0));
     assert_eq!(executive_runs(child.id()), 0);
-    let left =
-        fs::read_dir("/dev/shm").unwrap().flatten().map(|e| e.file_name().to_string_lossy().into_owned());
-    let suffix = format!("-linkbar-{}_", child.id());
-    assert_eq!(left.filter(|name| name.contains(&suffix)).count(), 0);
+    let name: RunName = format!("linkbar-{}", child.id()).parse().expect("it is a name");
+    assert_eq!(executive::memory::runs::traces(&name).len(), 0);
 }
 
 /// Traces in shared memory of the linkbar run of a process.

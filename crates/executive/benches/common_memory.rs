@@ -92,14 +92,14 @@ fn ticks() {
     let (external, data) = (ExternalInputs::default(), TaskData::default());
     let mut alone = Runner::new(Ladder::default(), None);
     measure("tick, not published", 1, || {
-        alone.step(&external, &data, 0);
+        let Ok(_) = alone.step(&external, &data, 0);
     });
     measure("rehearsal of a tick, not published", 1, || alone.rehearse(&external, &data));
     let name = RunName::unique("bench-tick");
     let publisher = Publisher::create(&name).expect("this machine has shared memory");
     let mut published = Runner::new(Ladder::default(), Some(publisher));
     let mut tick = || {
-        published.step(&external, &data, 0);
+        let Ok(_) = published.step(&external, &data, 0);
     };
     measure("tick, published", 1, &mut tick);
     let stop = AtomicBool::new(false);

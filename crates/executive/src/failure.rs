@@ -5,14 +5,16 @@
 //! on: [`Watch`] therefore keeps, for each process, common memory as it was in the tick when the process
 //! began to report its reason.
 
-use levels::ladder::{PROCESS_COUNT, ProcessInfo};
+use levels::ladder::{PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
+    handshake::Lower,
     interface::{
         CommonMemory, ExternalInputs, Header, HwsCommand, Reason,
         grip::{GripCommand, GripVerb},
+        hws::HwsReport,
         jaws::{JawsCommand, JawsVerb},
         pedestal::{PedestalCommand, PedestalVerb, TableVerb},
-        t3i::LinkFault,
+        t3i::{LinkFault, T3iReport},
     },
     record::Field,
     table::{RowText, Table},
@@ -343,6 +345,34 @@ pub fn present_commands(
         (!command.is_empty()).then(text)
     });
     lines.collect::<Vec<_>>().join("; ")
+}
+
+/// The commands that processes have not finished, as people say them: `Grip executed CLOSE-GRIP (...)`; empty for none.
+#[must_use]
+pub fn unfinished_commands(of: &[ProcessId], hws: &HwsCommand, memory: &CommonMemory) -> String {
+    let lines = of.iter().filter(|&&process| is_executing(process, memory)).filter_map(|process| {
+        let command = command(usize::from(process.code()), hws, memory);
+        (!command.is_empty()).then(|| format!("{process} executed {command}"))
+    });
+    lines.collect::<Vec<_>>().join(", ")
+}
+
+fn is_executing(process: ProcessId, memory: &CommonMemory) -> bool {
+    let lower = match process {
+        ProcessId::Task => return memory.task.status.report == HwsReport::Executing,
+        ProcessId::T3i => return memory.t3i.status.report == T3iReport::Executing,
+        ProcessId::Subtask => memory.subtask.status.report.lower(),
+        ProcessId::Emove => memory.emove.status.report.lower(),
+        ProcessId::Prim => memory.prim.status.report.lower(),
+        ProcessId::QuickChange => memory.quick_change.status.report.lower(),
+        ProcessId::Grip => memory.grip.status.report.lower(),
+        ProcessId::VGrip => memory.v_grip.status.report.lower(),
+        ProcessId::ToolGrip => memory.tool_grip.status.report.lower(),
+        ProcessId::Pedestal => memory.pedestal.status.report.lower(),
+        ProcessId::Hand => memory.hand.status.report.lower(),
+        ProcessId::RotaryTable => memory.table.status.report.lower(),
+    };
+    lower == Lower::Executing
 }
 
 #[cfg(test)]

@@ -4,13 +4,15 @@
 //! steps them with tick-parity buffers and sums up what they did, [`clock`] says when, [`realtime`] asks the
 //! system for punctuality, [`laps`] says where the time goes and [`overrun`] what is done if there is too little
 //! of it, [`serial`] is the line to a real robot, [`alloc`] proves that nothing is allocated
-//! on the way, [`memory`] lets others look on, [`status`] sums up what
-//! they see, [`hwsc`] plays the workstation controller, [`generations`] lets task data be loaded between commands, and [`failure`] finds the process, the
+//! on the way, [`boards`] spreads the processes over operating system processes, [`memory`] lets others look on,
+//! [`status`] sums up what they see, [`hwsc`] plays the workstation controller, [`generations`] lets task data be
+//! loaded between commands, and [`failure`] finds the process, the
 //! table and the row that explain why something went wrong.
 
 #![deny(unsafe_code)]
 
 pub mod alloc;
+pub mod boards;
 pub mod clock;
 pub mod failure;
 pub mod generations;

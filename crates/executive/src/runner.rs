@@ -10,6 +10,8 @@
 //! *rehearsed* ([`Runner::rehearse`]): a copy of the ladder runs it on what is there already, and the result
 //! is thrown away. The caches, the translation buffers and the branch predictor keep what they have learned.
 
+use std::convert::Infallible;
+
 use levels::ladder::{Ladder, ProcessId};
 use rcs_core::{
     digest::Digest,
@@ -29,7 +31,13 @@ use crate::{
 
 /// A ladder of control processes that can be stepped: [`Ladder`], or a test's own.
 pub trait Levels<Data: ?Sized> {
+    /// Why a tick could not be finished.
+    type Error;
+
     /// One tick of all processes: read `before` and `external`, write `after`, all of it.
+    ///
+    /// # Errors
+    /// If processes that run elsewhere did not take part. There must be no further tick then.
     fn step(
         &mut self,
         tick: Tick,
@@ -37,10 +45,13 @@ pub trait Levels<Data: ?Sized> {
         external: &ExternalInputs,
         data: &Data,
         after: &mut CommonMemory,
-    );
+    ) -> Result<(), Self::Error>;
 
     /// The same, with somebody who is told of each stage as soon as it is over, as by
     /// [`Ladder::step_observed`]. What is not told of counts as the executive's.
+    ///
+    /// # Errors
+    /// Those of [`step`](Self::step).
     fn step_observed(
         &mut self,
         tick: Tick,
@@ -49,12 +60,34 @@ pub trait Levels<Data: ?Sized> {
         data: &Data,
         after: &mut CommonMemory,
         _observe: &mut dyn FnMut(Option<ProcessId>),
-    ) {
-        self.step(tick, before, external, data, after);
+    ) -> Result<(), Self::Error> {
+        self.step(tick, before, external, data, after)
+    }
+
+    /// A copy that can rehearse a tick; `None` if there is nothing here that a rehearsal would make faster.
+    fn understudy(&self) -> Option<Box<Self>>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
+    /// Make the understudy equal again. Does not allocate.
+    fn teach(&self, _understudy: &mut Self)
+    where
+        Self: Sized,
+    {
+    }
+
+    /// Heap allocations in the ticks of processes that run elsewhere.
+    fn allocations(&self) -> u64 {
+        0
     }
 }
 
 impl Levels<TaskData<'_>> for Ladder {
+    type Error = Infallible;
+
     fn step(
         &mut self,
         tick: Tick,
@@ -62,8 +95,9 @@ impl Levels<TaskData<'_>> for Ladder {
         external: &ExternalInputs,
         data: &TaskData<'_>,
         after: &mut CommonMemory,
-    ) {
+    ) -> Result<(), Infallible> {
         Self::step(self, tick, before, external, data, after);
+        Ok(())
     }
 
     fn step_observed(
@@ -74,8 +108,17 @@ impl Levels<TaskData<'_>> for Ladder {
         data: &TaskData<'_>,
         after: &mut CommonMemory,
         observe: &mut dyn FnMut(Option<ProcessId>),
-    ) {
+    ) -> Result<(), Infallible> {
         Self::step_observed(self, ProcessId::ALL, tick, before, external, data, after, observe);
+        Ok(())
+    }
+
+    fn understudy(&self) -> Option<Box<Self>> {
+        Some(Box::new(self.clone()))
+    }
+
+    fn teach(&self, understudy: &mut Self) {
+        understudy.clone_from(self);
     }
 }
 
@@ -95,6 +138,8 @@ pub struct Runner<L> {
     /// What was published last, for rehearsals.
     published: Box<(ExternalInputs, Pulse)>,
     allocations_at_start: u64,
+    /// Allocations of processes that run elsewhere.
+    elsewhere: u64,
     last_ns: u64,
 }
 
@@ -115,6 +160,7 @@ impl<L> Runner<L> {
             publisher,
             published: Box::default(),
             allocations_at_start: alloc::allocations(),
+            elsewhere: 0,
             last_ns: 0,
         }
     }
@@ -125,12 +171,15 @@ impl<L> Runner<L> {
     /// Allocations are counted from here to the end of the call. The time that counts as the controller's is
     /// that of the processes and of publishing; the digest and the watch for failures belong to the
     /// bookkeeping of a run and are not in it.
+    ///
+    /// # Errors
+    /// Those of the levels. The tick does not count then, and common memory is as the tick before left it.
     pub fn step<Data: ?Sized>(
         &mut self,
         external: &ExternalInputs,
         data: &Data,
         skipped: u64,
-    ) -> &CommonMemory
+    ) -> Result<&CommonMemory, L::Error>
     where
         L: Levels<Data>,
     {
@@ -138,18 +187,20 @@ impl<L> Runner<L> {
         let laps = &mut self.laps;
         laps.lap(Part::Inputs);
         let mut controller_ns = 0;
-        self.tick = self.tick.next();
+        let tick = self.tick.next();
         let [even, odd] = &mut self.halves;
-        let (before, after) = if self.tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
-        self.levels.step_observed(self.tick, before, external, data, after, &mut |process| {
+        let (before, after) = if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
+        self.levels.step_observed(tick, before, external, data, after, &mut |process| {
             controller_ns += laps.lap(process.map_or(Part::Buffers, Part::Process));
-        });
+        })?;
+        self.tick = tick;
+        self.elsewhere = self.levels.allocations();
         if let Some(publisher) = &mut self.publisher {
             let pulse = Pulse {
                 tick: self.tick,
                 generation: external.generation,
                 skipped,
-                allocations: alloc::allocations() - self.allocations_at_start,
+                allocations: alloc::allocations() - self.allocations_at_start + self.elsewhere,
                 controller_ns: self.last_ns,
                 over: false,
             };
@@ -161,7 +212,12 @@ impl<L> Runner<L> {
         self.watch.observe(self.tick, external, before, after);
         self.digest.add_record(after, &mut self.scratch);
         self.laps.lap(Part::Bookkeeping);
-        after
+        Ok(after)
+    }
+
+    /// The ladder, between two ticks.
+    pub const fn levels_mut(&mut self) -> &mut L {
+        &mut self.levels
     }
 
     /// Run the next tick on a copy and forget it: see the head of this module. Changes nothing that anybody
@@ -170,19 +226,20 @@ impl<L> Runner<L> {
     /// The first rehearsal makes the copy, which allocates; no later one does.
     pub fn rehearse<Data: ?Sized>(&mut self, external: &ExternalInputs, data: &Data)
     where
-        L: Levels<Data> + Clone,
+        L: Levels<Data>,
     {
         let Some(understudy) = &mut self.understudy else {
-            self.understudy = Some(Box::new(self.levels.clone()));
+            self.understudy = self.levels.understudy();
             return;
         };
         let _section = Section::enter();
-        understudy.as_mut().clone_from(&self.levels);
+        self.levels.teach(understudy);
         let tick = self.tick.next();
         let [even, odd] = &mut self.halves;
         let (before, after) = if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
         // The half that the tick will write anew, all of it.
-        understudy.step_observed(tick, before, external, data, after, &mut |_| {});
+        // Whether it succeeds does not matter: the tick itself follows.
+        let _ = understudy.step_observed(tick, before, external, data, after, &mut |_| {});
         if let Some(publisher) = &mut self.publisher {
             publisher.publish(&self.published.0, before, self.published.1);
         }
@@ -247,7 +304,7 @@ impl<L> Runner<L> {
     /// them.
     #[must_use]
     pub fn allocations(&self) -> Option<u64> {
-        alloc::is_installed().then(|| alloc::allocations() - self.allocations_at_start)
+        alloc::is_installed().then(|| alloc::allocations() - self.allocations_at_start + self.elsewhere)
     }
 
     /// The writer of shared memory, if there is one.
@@ -268,6 +325,8 @@ mod tests {
     }
 
     impl Levels<u32> for Chain {
+        type Error = Infallible;
+
         fn step(
             &mut self,
             tick: Tick,
@@ -275,13 +334,22 @@ mod tests {
             _: &ExternalInputs,
             data: &u32,
             after: &mut CommonMemory,
-        ) {
+        ) -> Result<(), Infallible> {
             self.steps += 1;
             *after = *before;
             after.task.header.stamp = tick;
             after.task.status.echo = before.task.status.echo + *data;
             after.subtask.status.echo = before.task.status.echo;
             after.emove.status.echo = before.subtask.status.echo;
+            Ok(())
+        }
+
+        fn understudy(&self) -> Option<Box<Self>> {
+            Some(Box::new(self.clone()))
+        }
+
+        fn teach(&self, understudy: &mut Self) {
+            understudy.clone_from(self);
         }
     }
 
@@ -290,7 +358,7 @@ mod tests {
         let mut runner = Runner::new(Chain::default(), None);
         let external = ExternalInputs::default();
         for tick in 1..=10_u32 {
-            let memory = *runner.step(&external, &3, 0);
+            let Ok(memory) = runner.step(&external, &3, 0).copied();
             assert_eq!(memory, *runner.memory());
             let echoes = (memory.task.status.echo, memory.subtask.status.echo, memory.emove.status.echo);
             assert_eq!(echoes, (3 * tick, 3 * (tick - 1), 3 * tick.saturating_sub(2)));
@@ -303,10 +371,11 @@ mod tests {
         let (mut one, mut other) = (Runner::new(Chain::default(), None), Runner::new(Chain::default(), None));
         let external = ExternalInputs::default();
         for data in 1..=10 {
-            let expected = *one.step(&external, &data, 0);
+            let Ok(expected) = one.step(&external, &data, 0).copied();
             // Even if the tick itself is given something else.
             (0..3).for_each(|_| other.rehearse(&external, &77));
-            assert_eq!(*other.step(&external, &data, 0), expected);
+            let Ok(memory) = other.step(&external, &data, 0);
+            assert_eq!(*memory, expected);
         }
         assert_eq!((other.digest(), other.tick(), other.levels().steps), (one.digest(), one.tick(), 10));
         assert_eq!(other.times().count(), 10);
@@ -319,8 +388,9 @@ mod tests {
         let mut expected = Digest::new();
         let mut scratch = vec![0; CommonMemory::SIZE];
         for _ in 0..5 {
-            expected.add_record(one.step(&external, &1, 0), &mut scratch);
-            other.step(&external, &2, 0);
+            let Ok(memory) = one.step(&external, &1, 0);
+            expected.add_record(memory, &mut scratch);
+            let Ok(_) = other.step(&external, &2, 0);
         }
         assert_eq!(one.digest(), expected);
         assert_ne!(one.digest(), other.digest());

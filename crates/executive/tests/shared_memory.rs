@@ -1,10 +1,14 @@
 //! Common memory in shared memory: what is published is read, by readers that come and go, and nothing stays
 //! behind.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+mod common;
+
+use std::{
+    path::PathBuf,
+    sync::atomic::{AtomicBool, Ordering},
+};
 
 use executive::memory::{Attached, Publisher, RunName, SharedMemoryError, buffers::Pulse, list, runs};
-use levels::ladder::PROCESS_COUNT;
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport},
     name::Name16,
@@ -12,26 +16,10 @@ use rcs_core::{
     tick::Tick,
 };
 
+use crate::common::headers;
+
 fn name(test: &str) -> RunName {
     RunName::unique(test)
-}
-
-/// The headers of all processes.
-fn headers(memory: &mut CommonMemory) -> [&mut Header; PROCESS_COUNT] {
-    [
-        &mut memory.task.header,
-        &mut memory.subtask.header,
-        &mut memory.emove.header,
-        &mut memory.prim.header,
-        &mut memory.t3i.header,
-        &mut memory.quick_change.header,
-        &mut memory.grip.header,
-        &mut memory.v_grip.header,
-        &mut memory.tool_grip.header,
-        &mut memory.pedestal.header,
-        &mut memory.hand.header,
-        &mut memory.table.header,
-    ]
 }
 
 fn with_stamp(tick: u64) -> (ExternalInputs, CommonMemory, Pulse) {
@@ -52,13 +40,6 @@ fn with_stamp(tick: u64) -> (ExternalInputs, CommonMemory, Pulse) {
         memory,
         Pulse { tick, generation: 0, skipped: 3, allocations: 0, controller_ns: 4711, over: false },
     )
-}
-
-fn traces(name: &RunName) -> Vec<String> {
-    let objects = std::fs::read_dir("/dev/shm").unwrap().flatten().map(|entry| entry.path());
-    let places = std::fs::read_dir(runs::root()).into_iter().flatten().flatten().map(|entry| entry.path());
-    let all = objects.chain(places).map(|path| path.to_string_lossy().into_owned());
-    all.filter(|path| path.contains(name.as_str())).collect()
 }
 
 #[test]
@@ -122,9 +103,9 @@ fn readers_come_and_go_and_the_last_one_out_removes_everything() {
     drop(publisher);
     assert_eq!(reader.pulse(), Ok(Pulse { over: true, ..pulse }));
     assert_eq!(reader.memory(), Ok(memory));
-    assert!(!traces(&name).is_empty());
+    assert!(!runs::traces(&name).is_empty());
     drop(reader);
-    assert_eq!(traces(&name), Vec::<String>::new());
+    assert_eq!(runs::traces(&name), Vec::<PathBuf>::new());
     assert!(matches!(Attached::open(&name), Err(SharedMemoryError::NoSuchRun { .. })));
 }
 

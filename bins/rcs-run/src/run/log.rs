@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, path::Path};
 
 use depc::fault::{Counts, FaultKind};
 use executive::alloc::Section;
-use levels::ladder::Ladder;
+use levels::ladder::LadderState;
 use plant::{Cell, part_link};
 use rcs_core::{
     digest::Digest,
@@ -113,9 +113,15 @@ impl Log {
     }
 
     /// Hand over a tick. This belongs to the tick itself: what it allocates is counted.
-    pub fn tick(&mut self, tick: Tick, external: &ExternalInputs, memory: &CommonMemory, ladder: &Ladder) {
+    pub fn tick(
+        &mut self,
+        tick: Tick,
+        external: &ExternalInputs,
+        memory: &CommonMemory,
+        state: impl FnOnce() -> LadderState,
+    ) {
         let _section = Section::enter();
-        self.recorder.tick(tick, external, memory, || ladder.state());
+        self.recorder.tick(tick, external, memory, state);
     }
 
     /// End the log.
@@ -180,6 +186,7 @@ fn metadata(arguments: &RunArguments, job: &Job, attachments: &[Attachment]) -> 
         ("seed", arguments.seed.to_string()),
         ("clock", arguments.clock.text().to_owned()),
         ("robot", arguments.robot.to_string()),
+        ("boards", arguments.boards.text().to_owned()),
         ("configuration_digest", configuration.to_string()),
         ("faults", faults.unwrap_or_else(|| "none".to_owned())),
     ];

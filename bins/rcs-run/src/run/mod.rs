@@ -5,6 +5,7 @@
 //! allocates and takes its time; it is outside of what is counted as the controller's. What the log is told of
 //! the next tick, and its rehearsal, come before that tick begins.
 
+pub mod boards;
 mod contacts;
 mod log;
 mod pace;
@@ -26,6 +27,7 @@ use std::{
 
 use depc::Plate;
 use executive::{
+    boards::Lost,
     failure::{self, Failure},
     generations::Generations,
     hwsc::{self, Hwsc, JobFailure},
@@ -33,11 +35,11 @@ use executive::{
     memory::{Mirror, Publisher, RunName},
     runner::Runner,
 };
-use levels::ladder::Ladder;
+use levels::ladder::{Ladder, LadderState};
 use neighbours::data_system::DataSystem;
 use plant::CellEvent;
 use rcs_core::{
-    interface::{DeviceInputs, ExternalInputs},
+    interface::{DeviceInputs, DeviceOutputs, ExternalInputs, device::LinkBytes},
     tick::{TICK_S, Tick},
 };
 use record::Level;
@@ -45,6 +47,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use taskdata::load::{Job, job::Reload};
 
 use self::{
+    boards::Controller,
     contacts::{Commands, Judge},
     log::Log,
     pace::Pace,
@@ -61,9 +64,13 @@ use crate::{
     error::{Error, FAILED, STOPPED},
 };
 
+/// Ticks that the cell goes on after the controller has stopped: two seconds, in which the arm comes to rest and whatever is
+/// held badly falls.
+const SETTLING: usize = 50;
+
 /// What moves while a run goes on.
 struct Run {
-    runner: Runner<Ladder>,
+    runner: Runner<Controller>,
     hwsc: Hwsc,
     data_system: DataSystem,
     workstation: SimulatedWorkstation,
@@ -112,13 +119,15 @@ impl Ending {
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let interrupted = interruption()?;
     let setup = Setup::load(arguments)?;
+    let name = arguments.run.clone().unwrap_or_else(|| RunName::unique(&setup.job.name));
+    let controller = Controller::start(arguments, &name, &setup.store, &setup.job, &interrupted)?;
     let log = setup.log.as_deref().map(|path| Log::start(path, arguments, &setup)).transpose()?;
-    let publisher = publisher(arguments, &setup.job);
+    let publisher = publisher(arguments, &name);
     let Setup { store, job, description, cell, robot, data_system, log: log_path, .. } = setup;
     let workstation = SimulatedWorkstation::new(cell);
     let workstation = if robot.port().is_some() { workstation.with_robot_elsewhere() } else { workstation };
     let mut run = Run {
-        runner: Runner::new(Ladder::default(), publisher),
+        runner: Runner::new(controller, publisher),
         hwsc: Hwsc::new(job.steps.clone(), hwsc::TIME_LIMIT),
         data_system,
         inputs: workstation.cell.inputs(),
@@ -137,7 +146,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         run.ask_for_real_time(arguments.cpu);
     }
     let started = Instant::now();
-    let ending = run.play(Generations::new(store), &job.reloads, arguments.ticks, &interrupted);
+    let ending = run.play(Generations::new(store), &job.reloads, arguments, &interrupted);
     let wall_s = started.elapsed().as_secs_f64();
     let ending = ending.judged(&run.judge);
     run.progress.end();
@@ -178,11 +187,11 @@ pub fn interruption() -> Result<Arc<AtomicBool>, Error> {
 }
 
 /// Shared memory is a convenience: a run that cannot have it says so and goes on.
-fn publisher(arguments: &RunArguments, job: &Job) -> Option<Publisher> {
+fn publisher(arguments: &RunArguments, name: &RunName) -> Option<Publisher> {
     if arguments.shared_memory == Switch::Off {
         return None;
     }
-    match Publisher::create(&RunName::unique(&job.name)) {
+    match Publisher::create(name) {
         Ok(publisher) => Some(publisher),
         Err(error) => {
             eprintln!("rcs-run: nobody can look on, shared memory cannot be had: {error}");
@@ -213,6 +222,10 @@ impl Run {
         self.progress.say(&text);
         if let Some(log) = &mut self.log {
             log.note(Tick::BEFORE_START.next(), level, "executive", &text);
+            for board in self.runner.levels().unpunctual() {
+                let text = format!("{board}: not everything that real time needs was granted");
+                log.note(Tick::BEFORE_START.next(), Level::Warning, "executive", &text);
+            }
         }
     }
 
@@ -258,7 +271,7 @@ impl Run {
         &mut self,
         mut generations: Generations,
         reloads: &[Reload],
-        ticks: Option<u64>,
+        arguments: &RunArguments,
         interrupted: &AtomicBool,
     ) -> Ending {
         self.show_cell();
@@ -267,7 +280,15 @@ impl Run {
             self.robot.receive(&mut self.inputs);
             let external = self.external(&generations);
             let tick = self.runner.tick().next();
-            let memory = *self.runner.step(&external, &generations.current().view(), self.pace.skipped());
+            let data = generations.current().view();
+            let memory = loop {
+                match self.runner.step(&external, &data, self.pace.skipped()).copied() {
+                    Ok(memory) => break memory,
+                    // With a successor the boards run the same tick again.
+                    Err(lost) if self.runner.levels_mut().replace(&lost, arguments, interrupted) => {}
+                    Err(lost) => return Ending::Failed(self.lost(&lost, &external)),
+                }
+            };
             let outputs = memory.device_outputs();
             self.robot.send(&outputs);
             self.runner.laps_mut().lap(Part::Line);
@@ -275,12 +296,10 @@ impl Run {
                 if self.pace.is_real() {
                     log.timing(self.runner.last_ns(), self.pace.skipped());
                 }
-                log.tick(tick, &external, &memory, self.runner.levels());
+                log.tick(tick, &external, &memory, || self.runner.levels().state());
             }
             self.runner.laps_mut().lap(Part::Log);
-            let ladder = self.runner.levels();
-            self.inputs =
-                self.robot.advance(tick, &mut self.workstation.cell, &outputs, || acknowledged(ladder));
+            self.advance(tick, &outputs);
             self.observe(tick, Commands::from(&memory));
             self.runner.laps_mut().lap(Part::Cell);
             self.progress.show(&self.hwsc, &external.hws, &memory);
@@ -309,7 +328,7 @@ impl Run {
             if interrupted.load(Ordering::Relaxed) {
                 return Ending::Failed(outside(tick, "rcs-run", "interrupted".to_owned()));
             }
-            if ticks.is_some_and(|ticks| tick.0 >= ticks) {
+            if arguments.ticks.is_some_and(|ticks| tick.0 >= ticks) {
                 return Ending::Stopped;
             }
             self.reload(&mut generations, reloads);
@@ -317,6 +336,28 @@ impl Run {
             let laps = self.runner.laps_mut();
             laps.lap(Part::Inputs);
             laps.finish();
+        }
+    }
+
+    /// The rest of a tick: the cell moves.
+    fn advance(&mut self, tick: Tick, outputs: &DeviceOutputs) {
+        let controller = self.runner.levels();
+        self.inputs = self
+            .robot
+            .advance(tick, &mut self.workstation.cell, outputs, || acknowledged(&controller.state()));
+    }
+
+    /// A board is lost. The robot hears nothing any more and the valves stay as they are, while time goes on in the cell.
+    fn lost(&mut self, lost: &Lost, external: &ExternalInputs) -> Failure {
+        let memory = *self.runner.memory();
+        let silent = DeviceOutputs { link_tx: LinkBytes::default(), ..memory.device_outputs() };
+        for tick in (lost.tick.0..).take(SETTLING).map(Tick) {
+            self.advance(tick, &silent);
+            self.observe(tick, Commands::from(&memory));
+        }
+        Failure {
+            stopped: true,
+            ..outside(lost.tick, &lost.board.to_string(), lost.explain(&external.hws, &memory))
         }
     }
 
@@ -411,6 +452,7 @@ impl Run {
             part_us: pace::times(self.runner.laps()),
             late_us: self.pace.late(),
             realtime: self.pace.verdict(),
+            boards: self.runner.levels().results(),
             link: (&self.runner.memory().t3i.status.counters).into(),
             faults: self.robot.faults().map(FaultsResult::from),
             cell_faults: self.workstation.cell.faults().into_iter().map(Into::into).collect(),
@@ -472,8 +514,8 @@ impl Run {
 }
 
 /// The position that the robot has acknowledged or reported last, while the link runs.
-fn acknowledged(ladder: &Ladder) -> Option<Plate> {
-    let host = ladder.state().t3i.host;
+fn acknowledged(state: &LadderState) -> Option<Plate> {
+    let host = state.t3i.host;
     host.is_running().then(|| host.position())
 }
 

@@ -7,7 +7,9 @@ use std::{
 };
 
 use depc::fault::{Counts, FaultKind};
-use executive::{failure::Failure, histogram, hwsc::Record, serial::SerialCounts};
+use executive::{
+    boards::conductor::BoardFigures, failure::Failure, histogram, hwsc::Record, serial::SerialCounts,
+};
 use neighbours::data_system::Item;
 use plant::{PartState, fault::Struck};
 use rcs_core::{
@@ -265,6 +267,33 @@ impl fmt::Display for ItemResult {
     }
 }
 
+/// What a board with control processes did.
+#[derive(Clone, Debug, Serialize)]
+pub struct BoardResult {
+    /// Its number.
+    pub board: u8,
+    /// What runs on it.
+    pub processes: String,
+    /// Its process in the operating system.
+    pub pid: u32,
+    /// From its wake-up to its stamp.
+    pub tick_us: TickTimes,
+    /// Heap allocations in its ticks.
+    pub allocations: u64,
+}
+
+impl From<BoardFigures<'_>> for BoardResult {
+    fn from(figures: BoardFigures<'_>) -> Self {
+        Self {
+            board: figures.board.number(),
+            processes: figures.board.process_names(),
+            pid: figures.pid,
+            tick_us: figures.times.summary().into(),
+            allocations: figures.allocations,
+        }
+    }
+}
+
 /// Why a run failed.
 #[derive(Clone, Debug, Serialize)]
 pub struct FailureResult {
@@ -324,6 +353,9 @@ pub struct RunResult {
     /// What the system granted for real time, and what it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub realtime: Option<String>,
+    /// The boards, if there is more than one; `tick_us` above is from the pulse to the last stamp then.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boards: Option<Vec<BoardResult>>,
     /// The link.
     pub link: LinkResult,
     /// Faults of the line of `--faults`.
@@ -471,7 +503,17 @@ impl fmt::Display for Page<'_> {
              allocations: {allocations}",
             result.ticks, times.p50, times.p99, times.max, result.overruns
         )?;
-        writeln!(f, "slowest    {}", self.slowest)?;
+        for board in result.boards.iter().flatten() {
+            let TickTimes { p50, p99, max } = board.tick_us;
+            writeln!(
+                f,
+                "board {}    p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us; allocations: {}; process {}: {}",
+                board.board, board.allocations, board.pid, board.processes
+            )?;
+        }
+        if result.boards.is_none() {
+            writeln!(f, "slowest    {}", self.slowest)?;
+        }
         if let Some(TickTimes { p50, p99, max }) = &result.late_us {
             let mut blame = String::new();
             for (part, slots) in &result.overruns_by {

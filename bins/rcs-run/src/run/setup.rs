@@ -60,17 +60,7 @@ impl Setup {
             return Err(Error::NotInRealTime);
         }
         let data = &arguments.data;
-        if !data.is_dir() {
-            return Err(Error::NoData(data.clone()));
-        }
-        let unusable = |what: String| move |report| Error::Data { what, report };
-        let (store, report) =
-            Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
-        warn(&report, "the task data");
-        let job_path = job_path(&arguments.job, data)?;
-        let (job, report) =
-            Job::load(&job_path, &store).map_err(unusable(format!("the job {}", job_path.display())))?;
-        warn(&report, "the job");
+        let TaskFiles { store, job, job_path, warnings } = TaskFiles::load(data, &arguments.job)?;
         let path = data.join(CELL);
         let description_text =
             fs::read_to_string(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
@@ -88,7 +78,8 @@ impl Setup {
             let what = format!("the job {} in the cell of {}", job_path.display(), path.display());
             return Err(Error::Data { what, report: Box::new(report) });
         }
-        warn(&report, "the cell description");
+        let warnings = warnings.into_iter().chain(warning(&report, "the cell description"));
+        warnings.for_each(|line| eprintln!("rcs-run: {line}"));
         let (faults, faults_text) = faults(arguments, &description)?;
         let cell = Cell::with_faults(&description, arguments.seed, &faults.cell)?;
         let log = match &arguments.log {
@@ -111,6 +102,38 @@ impl Setup {
     }
 }
 
+/// What the control processes work with, on every board.
+pub struct TaskFiles {
+    /// Task data.
+    pub store: Store,
+    /// The job, with the task data that it loads on the way.
+    pub job: Job,
+    /// Its file.
+    pub job_path: PathBuf,
+    /// Lines that say that there are warnings.
+    pub warnings: Vec<String>,
+}
+
+impl TaskFiles {
+    /// Read and check task data and job.
+    ///
+    /// # Errors
+    /// [`Error`], with all errors of the data.
+    pub fn load(data: &Path, job: &str) -> Result<Self, Error> {
+        if !data.is_dir() {
+            return Err(Error::NoData(data.to_owned()));
+        }
+        let unusable = |what: String| move |report| Error::Data { what, report };
+        let (store, in_data) =
+            Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
+        let job_path = job_path(job, data)?;
+        let (job, in_job) =
+            Job::load(&job_path, &store).map_err(unusable(format!("the job {}", job_path.display())))?;
+        let warnings = [warning(&in_data, "the task data"), warning(&in_job, "the job")];
+        Ok(Self { store, job, job_path, warnings: warnings.into_iter().flatten().collect() })
+    }
+}
+
 /// The faults of `--faults`, none without it, with their text.
 fn faults(arguments: &RunArguments, cell: &CellDescription) -> Result<(FaultFile, String), Error> {
     let Some(path) = &arguments.faults else { return Ok(Default::default()) };
@@ -123,11 +146,11 @@ fn faults(arguments: &RunArguments, cell: &CellDescription) -> Result<(FaultFile
 }
 
 /// Warnings do not keep a run from beginning; one line says that there are some.
-fn warn(report: &Report, what: &str) {
+fn warning(report: &Report, what: &str) -> Option<String> {
     match report.warnings().count() {
-        0 => {}
-        1 => eprintln!("rcs-run: 1 warning in {what}; rcs-run check shows it"),
-        count => eprintln!("rcs-run: {count} warnings in {what}; rcs-run check shows them"),
+        0 => None,
+        1 => Some(format!("1 warning in {what}; rcs-run check shows it")),
+        count => Some(format!("{count} warnings in {what}; rcs-run check shows them")),
     }
 }
 

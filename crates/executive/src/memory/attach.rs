@@ -64,23 +64,7 @@ impl Attached {
     /// [`SharedMemoryError::NoSuchRun`] if no living run has the name, [`SharedMemoryError::OtherLayout`] if
     /// it comes from other sources, else what iceoryx2 says.
     pub fn open(name: &RunName) -> Result<Self, SharedMemoryError> {
-        let ours = runs::layout();
-        let runs = runs::list()?;
-        let mut named = runs.iter().filter(|run| run.name == *name && run.alive);
-        match named.clone().find(|run| run.layout == ours).or_else(|| named.next()) {
-            None => {
-                let alive = runs.iter().filter(|run| run.alive).map(|run| run.name.clone()).collect();
-                return Err(SharedMemoryError::NoSuchRun { run: Some(name.to_string()), alive });
-            }
-            Some(run) if run.layout != ours => {
-                return Err(SharedMemoryError::OtherLayout {
-                    run: name.to_string(),
-                    theirs: run.layout.clone(),
-                    ours,
-                });
-            }
-            Some(_) => {}
-        }
+        runs::find_living(name)?;
         let node = runs::node(name, "reader")?;
         let epoch = FIRST_EPOCH;
         let ports = Ports {

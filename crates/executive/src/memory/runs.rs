@@ -17,10 +17,11 @@ use std::{
 
 use iceoryx2::{
     config::Config,
-    node::{Node, NodeBuilder, NodeState},
+    node::{Node, NodeBuilder, NodeState, NodeView as _},
     prelude::{CallbackProgression, FileName, LogLevel, Path, SemanticString, ipc, set_log_level},
     service::service_name::ServiceName,
 };
+use rcs_core::digest::Digest;
 use rustix::{
     fs::{FallocateFlags, fallocate, statvfs},
     process::geteuid,
@@ -111,7 +112,7 @@ pub enum SharedMemoryError {
 }
 
 impl SharedMemoryError {
-    pub(super) fn service(service: &'static str, what: &dyn Debug) -> Self {
+    pub(crate) fn service(service: &'static str, what: &dyn Debug) -> Self {
         Self::Service { service, what: format!("{what:?}") }
     }
 }
@@ -123,8 +124,12 @@ fn alive_in_words(alive: &[RunName]) -> String {
     }
 }
 
-/// Most characters of a run's name.
-pub const RUN_NAME_MAX: usize = 40;
+/// Most characters of a run's name. The path of an event's socket holds it, and Linux gives such a path 107 bytes.
+pub const RUN_NAME_MAX: usize = 28;
+/// Bytes of a path that a socket can have.
+const SOCKET_PATH: usize = 107;
+/// Most bytes that iceoryx2 puts between a prefix and the end of a socket's path: a number of 31 digits and `.event`.
+const SOCKET_NAME: usize = 37;
 
 /// Name of a run: letters, digits, dots, hyphens and underscores.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -213,9 +218,22 @@ fn place(name: &RunName, layout: &str) -> PathBuf {
     root().join(format!("{name}@{layout}"))
 }
 
-/// What the names of a run's objects in shared memory start with.
-fn prefix(name: &RunName, layout: &str) -> String {
-    format!("rcs-{}-{layout}-{name}_", geteuid().as_raw())
+/// What the names of a run's objects in shared memory start with: short, since it stands in paths of sockets too.
+#[must_use]
+pub fn prefix(name: &RunName, layout: &str) -> String {
+    let mut digest = Digest::new();
+    digest.add(&geteuid().as_raw().to_le_bytes());
+    digest.add(layout.as_bytes());
+    digest.add(name.as_str().as_bytes());
+    let value = digest.value();
+    format!("rcs-{:08x}_", (value ^ (value >> 32)) & u64::from(u32::MAX))
+}
+
+/// What lies around of a run: its directory, and its objects in shared memory.
+#[must_use]
+pub fn traces(name: &RunName) -> Vec<PathBuf> {
+    let (place, prefix) = (place(name, &layout()), prefix(name, &layout()));
+    place.exists().then_some(place).into_iter().chain(objects(&prefix)).collect()
 }
 
 /// Held while a run's directory is made or removed, so that nobody clears away what another program is just
@@ -260,20 +278,31 @@ fn own_directory(path: &std::path::Path) -> Result<(), SharedMemoryError> {
     Err(SharedMemoryError::NotOurs { path: path.to_owned(), what })
 }
 
+/// See that events of a run can have their sockets.
+pub(crate) fn have_sockets(name: &RunName) -> Result<(), SharedMemoryError> {
+    let (place, prefix) = (place(name, &layout()), prefix(name, &layout()));
+    let longest = place.as_os_str().len() + 1 + prefix.len() + SOCKET_NAME;
+    if longest > SOCKET_PATH { Err(SharedMemoryError::BadPath(place)) } else { Ok(()) }
+}
+
 /// See that there is shared memory for a run. A page that the system cannot lay under an object when it is
 /// first touched ends the program with a bus error, so one has to ask beforehand.
-pub(super) fn have_room() -> Result<(), SharedMemoryError> {
+pub(crate) fn have_room() -> Result<(), SharedMemoryError> {
     let Ok(found) = statvfs(SHARED_MEMORY) else { return Ok(()) };
     let free = found.f_bavail.saturating_mul(found.f_frsize);
     if free < NEEDED { Err(SharedMemoryError::Full { free, needed: NEEDED }) } else { Ok(()) }
 }
 
 /// Have the system lay pages under all objects of a run, so that none is missing when it is first touched.
-pub(super) fn reserve(name: &RunName) -> Result<(), SharedMemoryError> {
+pub(crate) fn reserve(name: &RunName) -> Result<(), SharedMemoryError> {
     let prefix = prefix(name, &layout());
     for path in objects(&prefix) {
         let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
-        let file = File::options().read(true).write(true).open(&path).map_err(failed)?;
+        let file = match File::options().read(true).write(true).open(&path) {
+            // Of a board that has left meanwhile.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+            other => other.map_err(failed)?,
+        };
         let length = file.metadata().map_err(failed)?.len();
         if length > 0 {
             fallocate(&file, FallocateFlags::empty(), 0, length).map_err(|error| failed(error.into()))?;
@@ -294,7 +323,7 @@ pub(super) fn config(name: &RunName, layout: &str) -> Result<Config, SharedMemor
 }
 
 /// A node of iceoryx2 in a run of this layout.
-pub(super) fn node(name: &RunName, role: &str) -> Result<Node<ipc::Service>, SharedMemoryError> {
+pub(crate) fn node(name: &RunName, role: &str) -> Result<Node<ipc::Service>, SharedMemoryError> {
     // iceoryx2 warns on standard error where this program has its own words for the same.
     set_log_level(LogLevel::Fatal);
     let config = config(name, &layout())?;
@@ -325,7 +354,7 @@ fn keep_to_owner(prefix: &str) -> Result<(), SharedMemoryError> {
     Ok(())
 }
 
-pub(super) fn service_name(service: &'static str, epoch: Epoch) -> Result<ServiceName, SharedMemoryError> {
+pub(crate) fn service_name(service: &'static str, epoch: Epoch) -> Result<ServiceName, SharedMemoryError> {
     ServiceName::new(&format!("rcs-ii/{service}/{epoch}"))
         .map_err(|error| SharedMemoryError::service(service, &error))
 }
@@ -374,6 +403,40 @@ fn is_alive(place: &std::path::Path, config: &Config) -> bool {
     alive || listed.is_err()
 }
 
+/// Find a living run that this program can read, by its name.
+pub(crate) fn find_living(name: &RunName) -> Result<(), SharedMemoryError> {
+    let ours = layout();
+    let runs = list()?;
+    let mut named = runs.iter().filter(|run| run.name == *name && run.alive);
+    match named.clone().find(|run| run.layout == ours).or_else(|| named.next()) {
+        None => {
+            let alive = runs.iter().filter(|run| run.alive).map(|run| run.name.clone()).collect();
+            Err(SharedMemoryError::NoSuchRun { run: Some(name.to_string()), alive })
+        }
+        Some(run) if run.layout != ours => {
+            Err(SharedMemoryError::OtherLayout { run: name.to_string(), theirs: run.layout.clone(), ours })
+        }
+        Some(_) => Ok(()),
+    }
+}
+
+/// True if a node that lives, or may live, has the role in a run.
+pub(crate) fn has_living(name: &RunName, role: &str) -> bool {
+    let Ok(config) = config(name, &layout()) else { return false };
+    let mut found = false;
+    let listed = Node::<ipc::Service>::list(&config, |node| {
+        found |= match node {
+            NodeState::Alive(view) => {
+                view.details().as_ref().is_none_or(|details| details.name().as_str() == role)
+            }
+            NodeState::Dead(_) => false,
+            NodeState::Inaccessible(_) | NodeState::Undefined(_) => true,
+        };
+        if found { CallbackProgression::Stop } else { CallbackProgression::Continue }
+    });
+    found || listed.is_err()
+}
+
 /// Remove what killed runs left in shared memory; living runs are left alone.
 ///
 /// # Errors
@@ -393,7 +456,7 @@ pub fn clean() -> Result<Cleaned, SharedMemoryError> {
 
 /// The last one out: removes a run's directory and objects if no living node is left in it; false if there is
 /// one.
-pub(super) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, SharedMemoryError> {
+pub(crate) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, SharedMemoryError> {
     let config = config(name, layout)?;
     let place = place(name, layout);
     let _lock = lock()?;
@@ -449,7 +512,7 @@ mod tests {
     #[test]
     fn names_are_checked() {
         assert!("linkbar-17".parse::<RunName>().is_ok());
-        for bad in ["", "a/b", "..", "-x", "ab cd", &"x".repeat(41)] {
+        for bad in ["", "a/b", "..", "-x", "ab cd", &"x".repeat(RUN_NAME_MAX + 1)] {
             assert!(matches!(bad.parse::<RunName>(), Err(SharedMemoryError::BadName(_))), "{bad:?}");
         }
         let long = RunName::unique(&"job with blanks ".repeat(5));

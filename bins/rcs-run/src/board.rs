@@ -1,0 +1,74 @@
+//! `rcs-run board`: one board of a run, in this process.
+
+use std::{
+    process::ExitCode,
+    sync::{Arc, atomic::AtomicBool},
+};
+
+use executive::{
+    boards::{
+        Member,
+        member::{MemberEnd, end_with_parent},
+    },
+    realtime::{self, Verdict},
+};
+use signal_hook::consts::SIGINT;
+
+use crate::{
+    cli::BoardArguments,
+    error::{Error, STOPPED},
+    run::{boards, interruption, setup::TaskFiles},
+};
+
+/// Take a board's place in a run until the run is over.
+///
+/// # Errors
+/// [`Error`] if the board cannot take part, or if the run did what no run does.
+pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
+    let stop = match arguments.parent {
+        None => interruption()?,
+        Some(parent) => {
+            // The interrupt of a terminal reaches all processes of a run; board 0 ends it in good order.
+            let ignored = Arc::new(AtomicBool::new(false));
+            signal_hook::flag::register(SIGINT, ignored).map_err(Error::Signals)?;
+            if !end_with_parent(parent)? {
+                return Ok(ExitCode::from(STOPPED));
+            }
+            Arc::new(AtomicBool::new(false))
+        }
+    };
+    let TaskFiles { store, job, .. } = TaskFiles::load(&arguments.data, &arguments.job)?;
+    let mut member = Member::join(&arguments.run, arguments.board, boards::fingerprint(&store, &job))?;
+    let name = arguments.board;
+    let real_time = member.is_real_time().then(|| realtime::acquire(arguments.cpu));
+    let verdict = real_time.as_ref().map(|granted| &granted.verdict);
+    if let Some(verdict) = verdict {
+        eprintln!("rcs-run: {name}: real time: {verdict}");
+    }
+    let punctual = verdict.is_none_or(Verdict::complete);
+    if arguments.parent.is_none() {
+        eprintln!("rcs-run: {name} of {} waits for the pulse", arguments.run);
+    }
+    // Generation 0 is what was loaded before the first tick, each reload of the job the next.
+    let generation = |number: u32| match usize::try_from(number).ok()?.checked_sub(1) {
+        None => Some(store.view()),
+        Some(reload) => job.reloads.get(reload).map(|reload| reload.store.view()),
+    };
+    let end = member.run(generation, punctual, &stop)?;
+    drop(member);
+    Ok(match end {
+        MemberEnd::Over => ExitCode::SUCCESS,
+        MemberEnd::Asked => {
+            eprintln!("rcs-run: {name} has left {}, which stops without it", arguments.run);
+            ExitCode::SUCCESS
+        }
+        MemberEnd::Replaced => {
+            eprintln!("rcs-run: {name} ends: another process has its place in {}", arguments.run);
+            ExitCode::from(STOPPED)
+        }
+        MemberEnd::Orphaned => {
+            eprintln!("rcs-run: {name} ends: board 0 of {} is gone", arguments.run);
+            ExitCode::from(STOPPED)
+        }
+    })
+}

@@ -1,0 +1,298 @@
+//! What the boards exchange: the outputs of each process, doubled by tick parity, and what it remembers.
+//!
+//! Each process has one blackboard service with three entries: its outputs in even ticks, its outputs in odd ticks, its state.
+//! An entry is a byte image under the number of the tick that wrote it; iceoryx2 hands it over whole or not at all. A reader
+//! that finds another number than the one it needs takes nothing: then the process's outputs keep their old stamp, and its
+//! neighbours know it for lost (DESIGN 16 "Processes that are not stepped").
+//!
+//! A service belongs to the board on which the process runs, and bears the board's epoch in its name: a board that takes over
+//! from a killed one opens the next.
+
+use std::{fmt::Debug, marker::PhantomData};
+
+use iceoryx2::{
+    node::Node,
+    port::{reader::EntryHandle, writer::EntryHandleMut},
+    prelude::ipc,
+};
+use levels::{
+    emove::Emove,
+    grip::Grip,
+    jaws::{ToolGrip, VGrip},
+    ladder::{LadderState, ProcessId},
+    pedestal::{Hand, Pedestal, Table},
+    prim::Prim,
+    quick_change::QuickChange,
+    subtask::Subtask,
+    t3i::T3i,
+    task::Task,
+};
+use rcs_core::{
+    interface::CommonMemory,
+    process::Process,
+    record::{DecodeError, Field, Reader, Writer},
+    tick::Tick,
+};
+use taskdata::files::TaskData;
+
+use super::BOARDS;
+use crate::memory::{
+    buffers::Epoch,
+    runs::{SharedMemoryError, service_name},
+};
+
+/// Who may read a board's blackboards: the other boards, board 0, and a board that takes over.
+pub(super) const READERS: usize = BOARDS + 2;
+
+type StateOf<P> = <P as Process<TaskData<'static>>>::State;
+type OutputsOf<P> = <P as Process<TaskData<'static>>>::Outputs;
+
+/// Bytes of an entry.
+pub(super) const fn entry_size<T: Field>() -> usize {
+    Tick::SIZE + T::SIZE
+}
+
+/// Key of the state; 0 and 1 are the halves.
+const STATE: u32 = 2;
+
+/// The half of a tick.
+const fn half(tick: Tick) -> usize {
+    if tick.0.is_multiple_of(2) { 0 } else { 1 }
+}
+
+/// The writer's end of an entry of `N` bytes that holds a `T`.
+pub(super) struct EntryWriter<const N: usize, T> {
+    entry: EntryHandleMut<ipc::Service, u32, [u8; N]>,
+    holds: PhantomData<T>,
+}
+
+impl<const N: usize, T: Field> EntryWriter<N, T> {
+    pub(super) const fn new(entry: EntryHandleMut<ipc::Service, u32, [u8; N]>) -> Self {
+        Self { entry, holds: PhantomData }
+    }
+
+    pub(super) fn write(&self, tick: Tick, value: &T) {
+        self.entry.update_with_copy(stamped(tick, value));
+    }
+}
+
+/// An entry as it stands in shared memory.
+pub(super) fn stamped<const N: usize, T: Field>(tick: Tick, value: &T) -> [u8; N] {
+    let mut bytes = [0; N];
+    let mut w = Writer::new(&mut bytes);
+    tick.encode(&mut w);
+    value.encode(&mut w);
+    debug_assert_eq!(w.missing(), 0);
+    bytes
+}
+
+/// A reader's end of an entry.
+pub(super) struct EntryReader<const N: usize, T> {
+    entry: EntryHandle<ipc::Service, u32, [u8; N]>,
+    holds: PhantomData<T>,
+}
+
+impl<const N: usize, T: Field> EntryReader<N, T> {
+    pub(super) const fn new(entry: EntryHandle<ipc::Service, u32, [u8; N]>) -> Self {
+        Self { entry, holds: PhantomData }
+    }
+
+    /// The number of the tick, and the value.
+    pub(super) fn read(&self) -> Result<(Tick, T), DecodeError> {
+        let image: [u8; N] = *self.entry.get();
+        let mut r = Reader::new(&image);
+        Ok((Tick::decode(&mut r)?, T::decode(&mut r)?))
+    }
+
+    /// The value, if it was written in `tick`; the rest is not decoded otherwise.
+    pub(super) fn read_at(&self, tick: Tick) -> Result<Option<T>, DecodeError> {
+        let image: [u8; N] = *self.entry.get();
+        let mut r = Reader::new(&image);
+        if Tick::decode(&mut r)? != tick {
+            return Ok(None);
+        }
+        T::decode(&mut r).map(Some)
+    }
+}
+
+/// The writer's ends of a process's entries: outputs of `N` bytes, state of `S`.
+struct ProcessWriter<const N: usize, const S: usize, O, T> {
+    halves: [EntryWriter<N, O>; 2],
+    state: EntryWriter<S, T>,
+}
+
+impl<const N: usize, const S: usize, O: Field, T: Field> ProcessWriter<N, S, O, T> {
+    fn create(
+        node: &Node<ipc::Service>,
+        service: &'static str,
+        epoch: Epoch,
+    ) -> Result<Self, SharedMemoryError> {
+        let failed = |what: &dyn Debug| SharedMemoryError::service(service, what);
+        let none = Tick::BEFORE_START;
+        let factory = node
+            .service_builder(&service_name(service, epoch)?)
+            .blackboard_creator::<u32>()
+            .max_readers(READERS)
+            .max_nodes(READERS + 1)
+            .add::<[u8; N]>(0, stamped(none, &O::ZERO))
+            // No tick has written the odd half before tick 1.
+            .add::<[u8; N]>(1, stamped(Tick(u64::MAX), &O::ZERO))
+            .add::<[u8; S]>(STATE, stamped(none, &T::ZERO))
+            .create()
+            .map_err(|error| failed(&error))?;
+        let port = factory.writer_builder().create().map_err(|error| failed(&error))?;
+        let outputs = |key| port.entry(&key).map(EntryWriter::new).map_err(|error| failed(&error));
+        let state = port.entry(&STATE).map_err(|error| failed(&error))?;
+        Ok(Self { halves: [outputs(0)?, outputs(1)?], state: EntryWriter::new(state) })
+    }
+
+    fn write(&self, tick: Tick, outputs: &O, state: &T) {
+        let [even, odd] = &self.halves;
+        let place = if half(tick) == 0 { even } else { odd };
+        place.write(tick, outputs);
+        self.state.write(tick, state);
+    }
+}
+
+/// A reader's ends of a process's entries.
+struct ProcessReader<const N: usize, const S: usize, O, T> {
+    halves: [EntryReader<N, O>; 2],
+    state: EntryReader<S, T>,
+}
+
+impl<const N: usize, const S: usize, O: Field, T: Field> ProcessReader<N, S, O, T> {
+    fn open(
+        node: &Node<ipc::Service>,
+        service: &'static str,
+        epoch: Epoch,
+    ) -> Result<Self, SharedMemoryError> {
+        let failed = |what: &dyn Debug| SharedMemoryError::service(service, what);
+        let factory = node
+            .service_builder(&service_name(service, epoch)?)
+            .blackboard_opener::<u32>()
+            .open()
+            .map_err(|error| failed(&error))?;
+        let port = factory.reader_builder().create().map_err(|error| failed(&error))?;
+        let outputs = |key| port.entry(&key).map(EntryReader::new).map_err(|error| failed(&error));
+        let state = port.entry(&STATE).map_err(|error| failed(&error))?;
+        Ok(Self { halves: [outputs(0)?, outputs(1)?], state: EntryReader::new(state) })
+    }
+
+    fn outputs(&self, tick: Tick) -> Result<Option<O>, DecodeError> {
+        let [even, odd] = &self.halves;
+        if half(tick) == 0 { even.read_at(tick) } else { odd.read_at(tick) }
+    }
+}
+
+macro_rules! processes {
+    ($( $id:ident $field:ident $service:literal $process:ty; )+) => {
+        /// The writer's ends of a board's processes.
+        pub struct Writers {
+            $( $field: Option<ProcessWriter<
+                { entry_size::<OutputsOf<$process>>() },
+                { entry_size::<StateOf<$process>>() },
+                OutputsOf<$process>,
+                StateOf<$process>,
+            >>, )+
+        }
+
+        impl Writers {
+            /// Create the services of a board's processes.
+            ///
+            /// # Errors
+            /// What iceoryx2 says; a service that exists already belongs to the same board in another process.
+            pub fn create(
+                node: &Node<ipc::Service>,
+                processes: &[ProcessId],
+                epoch: Epoch,
+            ) -> Result<Self, SharedMemoryError> {
+                Ok(Self { $(
+                    $field: processes
+                        .contains(&ProcessId::$id)
+                        .then(|| ProcessWriter::create(node, $service, epoch))
+                        .transpose()?,
+                )+ })
+            }
+
+            /// Write what the board's processes wrote and remember in `tick`. Does not allocate.
+            pub fn write(&self, tick: Tick, memory: &CommonMemory, state: &LadderState) {
+                $( if let Some(process) = &self.$field {
+                    process.write(tick, &memory.$field, &state.$field);
+                } )+
+            }
+        }
+
+        /// The readers' ends of a board's processes.
+        pub struct Readers {
+            $( $field: Option<ProcessReader<
+                { entry_size::<OutputsOf<$process>>() },
+                { entry_size::<StateOf<$process>>() },
+                OutputsOf<$process>,
+                StateOf<$process>,
+            >>, )+
+        }
+
+        impl Readers {
+            /// Open the services of a board's processes.
+            ///
+            /// # Errors
+            /// What iceoryx2 says; a service that does not exist may come yet.
+            pub fn open(
+                node: &Node<ipc::Service>,
+                processes: &[ProcessId],
+                epoch: Epoch,
+            ) -> Result<Self, SharedMemoryError> {
+                Ok(Self { $(
+                    $field: processes
+                        .contains(&ProcessId::$id)
+                        .then(|| ProcessReader::open(node, $service, epoch))
+                        .transpose()?,
+                )+ })
+            }
+
+            /// Take over what the processes wrote in `tick`; the outputs of a process that did not write then stay as they
+            /// are. True if all did. Does not allocate.
+            ///
+            /// # Errors
+            /// If there are bytes that no process writes.
+            pub fn outputs(&self, tick: Tick, memory: &mut CommonMemory) -> Result<bool, DecodeError> {
+                let mut complete = true;
+                $( if let Some(process) = &self.$field {
+                    match process.outputs(tick)? {
+                        Some(outputs) => memory.$field = outputs,
+                        None => complete = false,
+                    }
+                } )+
+                Ok(complete)
+            }
+
+            /// Take over what the processes remember after `tick`. Does not allocate.
+            ///
+            /// # Errors
+            /// If there are bytes that no process writes.
+            pub fn states(&self, tick: Tick, states: &mut LadderState) -> Result<(), DecodeError> {
+                $( if let Some(process) = &self.$field
+                    && let Some(state) = process.state.read_at(tick)?
+                {
+                    states.$field = state;
+                } )+
+                Ok(())
+            }
+        }
+    };
+}
+
+processes! {
+    Task task "exchange/task" Task;
+    Subtask subtask "exchange/subtask" Subtask;
+    Emove emove "exchange/emove" Emove;
+    Prim prim "exchange/prim" Prim;
+    T3i t3i "exchange/t3i" T3i;
+    QuickChange quick_change "exchange/quick_change" QuickChange;
+    Grip grip "exchange/grip" Grip;
+    VGrip v_grip "exchange/v_grip" VGrip;
+    ToolGrip tool_grip "exchange/tool_grip" ToolGrip;
+    Pedestal pedestal "exchange/pedestal" Pedestal;
+    Hand hand "exchange/hand" Hand;
+    RotaryTable table "exchange/table" Table;
+}

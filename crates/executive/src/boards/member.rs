@@ -1,0 +1,352 @@
+//! A board's side of `--boards split`: waits for the pulse and steps its processes.
+//!
+//! A board does what the ladder does on one board, with the same code ([`Ladder::step_in_order`]), for its own processes.
+//! Everything it needs to know of a tick comes with the pulse: the number, what came from outside, the generation of the task
+//! data. It never counts pulses and never looks at a clock.
+//!
+//! A board that takes over from a killed one in the middle of a run finds a pulse that the other has not answered. It latches
+//! the outputs of its predecessor, whose processes it starts anew: they adopt the numbers of the commands that they find and
+//! report that they were restarted (DESIGN 16 "Handshake").
+
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    time::{Duration, Instant},
+};
+
+use iceoryx2::{node::Node, prelude::ipc};
+use levels::ladder::Ladder;
+use rcs_core::{
+    interface::CommonMemory,
+    record::{DecodeError, Field},
+    tick::Tick,
+};
+use rustix::process::{Pid, Signal, getppid, set_parent_process_death_signal};
+use taskdata::files::TaskData;
+
+use super::{
+    BOARDS, Board,
+    conductor::BOARD_0,
+    exchange::{Readers, Writers},
+    pulse::{Fingerprint, PulseTaker, Report, ReportWriter, RunCard, SystemPulse, sleep},
+};
+use crate::{
+    alloc::{self, Section},
+    memory::{
+        buffers::Epoch,
+        publish::FIRST_EPOCH,
+        runs::{self, RunName, SharedMemoryError},
+    },
+};
+
+/// How long a board sleeps for a pulse before it looks for itself.
+const LOOK: Duration = Duration::from_millis(100);
+/// Looks without a pulse after which it is asked whether board 0 still lives.
+const LIFE: u32 = 10;
+/// How long a place that is taken may become free: its holder may just have been killed.
+const CROWDED: Duration = Duration::from_secs(2);
+/// Time between two attempts to open what is not there yet.
+const AGAIN: Duration = Duration::from_millis(5);
+
+/// Why a board cannot take part, or no longer.
+#[derive(Debug, thiserror::Error)]
+pub enum MemberError {
+    /// Shared memory.
+    #[error(transparent)]
+    SharedMemory(#[from] SharedMemoryError),
+    /// Another program or other data than those of the run.
+    #[error("{board} cannot take part in {run}: {difference}")]
+    Different {
+        /// This board.
+        board: Board,
+        /// The run.
+        run: RunName,
+        /// In what it differs.
+        difference: &'static str,
+    },
+    /// Another process has the board.
+    #[error("{board} of {run} runs already: {source}")]
+    Taken {
+        /// This board.
+        board: Board,
+        /// The run.
+        run: RunName,
+        /// What iceoryx2 says.
+        source: SharedMemoryError,
+    },
+    /// Nobody knows what the devices of the board are to do.
+    #[error("{board} cannot be taken over: what it wrote in tick {last} is lost")]
+    NothingToLatch {
+        /// This board.
+        board: Board,
+        /// The last tick of all boards.
+        last: Tick,
+    },
+    /// There is nothing to take part in any more.
+    #[error("{0} is over")]
+    RunIsOver(RunName),
+    /// Shared memory holds something that no process writes.
+    #[error("shared memory holds something that no process writes: {0}")]
+    Decode(#[from] DecodeError),
+    /// A generation of the task data that was never loaded.
+    #[error("the pulse asks for generation {0} of the task data, which the job does not have")]
+    Generation(u32),
+    /// A pulse that does not follow upon the last one.
+    #[error("tick {found} came after tick {last}")]
+    OutOfStep {
+        /// The tick that was run last.
+        last: Tick,
+        /// That of the pulse.
+        found: Tick,
+    },
+}
+
+/// How a board's part in a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MemberEnd {
+    /// The run is over.
+    Over,
+    /// This board was asked to leave.
+    Asked,
+    /// Board 0 is gone.
+    Orphaned,
+    /// Board 0 gave this board up for lost, and its place to another process.
+    Replaced,
+}
+
+/// Arrange that this process ends with the process that started it. False if that one has ended already.
+///
+/// # Errors
+/// What the system says.
+pub fn end_with_parent(parent: u32) -> std::io::Result<bool> {
+    set_parent_process_death_signal(Some(Signal::KILL))?;
+    let present = getppid().map(Pid::as_raw_nonzero).and_then(|pid| u32::try_from(pid.get()).ok());
+    Ok(present == Some(parent))
+}
+
+struct Ports {
+    taker: PulseTaker,
+    writers: Writers,
+    reports: ReportWriter,
+    // The neighbours with the epochs under which they were opened.
+    neighbours: [Option<(Epoch, Readers)>; BOARDS],
+    node: Node<ipc::Service>,
+}
+
+/// A board in a run. Dropping it leaves the run.
+pub struct Member {
+    board: Board,
+    epoch: Epoch,
+    name: RunName,
+    // Taken out before the files are removed.
+    ports: Option<Ports>,
+    card: RunCard,
+    ladder: Ladder,
+    /// Common memory by tick parity, as far as this board knows it.
+    halves: [CommonMemory; 2],
+    tick: Tick,
+    report: Report,
+    allocations_at_start: u64,
+}
+
+impl Member {
+    /// Take a board's place in a run.
+    ///
+    /// # Errors
+    /// [`MemberError`] if there is no such run, if it runs with something else than `fingerprint`, or if the place is taken.
+    pub fn join(name: &RunName, board: Board, fingerprint: Fingerprint) -> Result<Self, MemberError> {
+        runs::find_living(name)?;
+        let node = runs::node(name, board.name())?;
+        let taker = PulseTaker::open(&node)?;
+        let card = taker.card()?;
+        if let Some(difference) = fingerprint.difference(&card.fingerprint) {
+            return Err(MemberError::Different { board, run: name.clone(), difference });
+        }
+        let deadline = Instant::now() + CROWDED;
+        let (pulse, writers, reports) = loop {
+            let pulse = taker.pulse()?;
+            if pulse.over {
+                return Err(MemberError::RunIsOver(name.clone()));
+            }
+            let epoch = pulse.epochs[board.index()];
+            let created = Writers::create(&node, board.processes(), epoch)
+                .and_then(|writers| Ok((writers, ReportWriter::create(&node, board, epoch)?)));
+            match created {
+                Ok((writers, reports)) => break (pulse, writers, reports),
+                Err(source) if Instant::now() > deadline => {
+                    return Err(MemberError::Taken { board, run: name.clone(), source });
+                }
+                Err(_) => std::thread::sleep(AGAIN),
+            }
+        };
+        runs::reserve(name)?;
+        let report = Report { fingerprint, pid: std::process::id(), punctual: true, ..Report::ZERO };
+        let mut halves = [CommonMemory::ZERO; 2];
+        let (tick, epoch) = (pulse.tick.previous(), pulse.epochs[board.index()]);
+        if pulse.tick != Tick::BEFORE_START {
+            latch(&node, board, &pulse, &mut halves)?;
+        }
+        reports.write(tick, &report);
+        let ports = Ports { taker, writers, reports, neighbours: [const { None }; BOARDS], node };
+        Ok(Self {
+            board,
+            epoch,
+            name: name.clone(),
+            ports: Some(ports),
+            card,
+            ladder: Ladder::default(),
+            halves,
+            tick,
+            report,
+            allocations_at_start: alloc::allocations(),
+        })
+    }
+
+    /// Ticks come every 40 ms: ask the system for what real time needs, and tell [`Member::run`] the outcome.
+    #[must_use]
+    pub const fn is_real_time(&self) -> bool {
+        self.card.real_time
+    }
+
+    /// Step the board's processes, once a pulse, until the run is over. `data` gives a generation of the task data; `stop` asks
+    /// to leave. `punctual` says whether everything that real time needs was granted.
+    ///
+    /// # Errors
+    /// [`MemberError`] if the run does what no run does.
+    pub fn run<'a>(
+        &mut self,
+        data: impl Fn(u32) -> Option<TaskData<'a>>,
+        punctual: bool,
+        stop: &AtomicBool,
+    ) -> Result<MemberEnd, MemberError> {
+        self.report.punctual = punctual;
+        self.allocations_at_start = alloc::allocations();
+        let mut silent = 0;
+        loop {
+            let Some(pulse) = self.pulse()?.filter(|pulse| !pulse.over) else { return Ok(MemberEnd::Over) };
+            if pulse.epochs[self.board.index()] != self.epoch {
+                return Ok(MemberEnd::Replaced);
+            }
+            if stop.load(Ordering::Relaxed) {
+                self.leave();
+                return Ok(MemberEnd::Asked);
+            }
+            if !self.follow(&pulse) {
+                std::thread::sleep(AGAIN);
+                silent += 1;
+            } else if pulse.tick == self.tick.next() {
+                let data = data(pulse.external.generation)
+                    .ok_or(MemberError::Generation(pulse.external.generation))?;
+                self.step(&pulse, &data)?;
+                silent = 0;
+            } else if pulse.tick == self.tick {
+                silent = if self.wait() { 0 } else { silent + 1 };
+            } else {
+                return Err(MemberError::OutOfStep { last: self.tick, found: pulse.tick });
+            }
+            if silent >= LIFE {
+                silent = 0;
+                if !runs::has_living(&self.name, BOARD_0) {
+                    return Ok(MemberEnd::Orphaned);
+                }
+            }
+        }
+    }
+
+    /// The pulse as it stands; `None` without ports.
+    fn pulse(&self) -> Result<Option<SystemPulse>, DecodeError> {
+        self.ports.as_ref().map(|ports| ports.taker.pulse()).transpose()
+    }
+
+    /// Sleep until the pulse wakes this board; false if none came.
+    fn wait(&self) -> bool {
+        let _section = Section::enter();
+        let Some(ports) = &self.ports else { return false };
+        let started = Instant::now();
+        sleep(&ports.taker.wake, LOOK);
+        started.elapsed() < LOOK
+    }
+
+    /// Open the neighbours that came, or came anew, since the last look; true if all are there. With the first time the board
+    /// is ready.
+    fn follow(&mut self, pulse: &SystemPulse) -> bool {
+        let Some(ports) = &mut self.ports else { return false };
+        let (mut complete, mut changed) = (true, !self.report.ready);
+        for board in self.board.others() {
+            let epoch = pulse.epochs[board.index()];
+            let place = &mut ports.neighbours[board.index()];
+            if place.as_ref().is_some_and(|(opened, _)| *opened == epoch) {
+                continue;
+            }
+            // What cannot be opened is not there yet; until it is, whoever takes over may need what is open.
+            match Readers::open(&ports.node, board.processes(), epoch) {
+                Ok(readers) => (*place, changed) = (Some((epoch, readers)), true),
+                Err(_) => complete = false,
+            }
+        }
+        if complete && changed {
+            self.report.ready = true;
+            ports.reports.write(self.tick, &self.report);
+            // The first call after a change of the run's nodes allocates: not in a tick.
+            ports.taker.done();
+        }
+        complete
+    }
+
+    /// One tick.
+    fn step(&mut self, pulse: &SystemPulse, data: &TaskData<'_>) -> Result<(), MemberError> {
+        let _section = Section::enter();
+        let started = Instant::now();
+        let Some(ports) = &self.ports else { return Ok(()) };
+        let tick = pulse.tick;
+        let [even, odd] = &mut self.halves;
+        let (before, after) = if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
+        for (_, readers) in ports.neighbours.iter().flatten() {
+            // A process that has not written keeps its old stamp, by which the others know.
+            let _complete: bool = readers.outputs(self.tick, before)?;
+        }
+        self.ladder.step_in_order(self.board.processes(), tick, before, &pulse.external, data, after);
+        ports.writers.write(tick, after, &self.ladder.state());
+        self.tick = tick;
+        self.report.allocations = alloc::allocations() - self.allocations_at_start;
+        self.report.step_ns = u64::try_from(started.elapsed().as_nanos()).unwrap_or(u64::MAX);
+        ports.reports.write(tick, &self.report);
+        ports.taker.done();
+        Ok(())
+    }
+
+    /// Say that no further tick will be stamped.
+    fn leave(&mut self) {
+        let Some(ports) = &self.ports else { return };
+        self.report.ready = false;
+        ports.reports.write(self.tick, &self.report);
+        ports.taker.done();
+    }
+}
+
+/// What the last predecessor that stepped wrote stays on its devices.
+fn latch(
+    node: &Node<ipc::Service>,
+    board: Board,
+    pulse: &SystemPulse,
+    halves: &mut [CommonMemory; 2],
+) -> Result<(), MemberError> {
+    let last = pulse.tick.previous();
+    let [even, odd] = halves;
+    let half = if last.0.is_multiple_of(2) { even } else { odd };
+    for epoch in (FIRST_EPOCH..pulse.epochs[board.index()]).rev() {
+        // One that never came to a tick may have left no services, or empty ones.
+        let Ok(predecessor) = Readers::open(node, board.processes(), epoch) else { continue };
+        if predecessor.outputs(last, half)? {
+            return Ok(());
+        }
+    }
+    Err(MemberError::NothingToLatch { board, last })
+}
+
+impl Drop for Member {
+    fn drop(&mut self) {
+        drop(self.ports.take());
+        // Board 0 or another board keeps the files; whoever leaves last removes them.
+        let _ = runs::remove_if_deserted(&self.name, &runs::layout());
+    }
+}

@@ -1,0 +1,170 @@
+//! `--boards split`: the control processes spread over operating system processes, one a board (IV.2.2).
+//!
+//! | board | runs                                                                                        |
+//! |-------|---------------------------------------------------------------------------------------------|
+//! | 0     | the pulse, diagnostics (the log, the watch for failures), and everything outside: the cell or the robot's port, the workstation controller, the Data System |
+//! | 2     | E-move, Prim                                                                                |
+//! | 4     | T3 Interface                                                                                |
+//! | 6     | Task, Subtask                                                                               |
+//! | 8     | Quick Change, the grippers; the Active Pedestal with its hand and table                     |
+//!
+//! The pedestal has a rack of its own in the original (III.2), on the other side of the factory network; here it shares the
+//! board of the grippers, since its hand is a gripper and a network is not what is tested.
+//!
+//! A tick, seen from board 0 ([`conductor`]) and from one of the others ([`member`]):
+//!
+//! ```text
+//!   board 0                                     board n
+//!   writes what came from outside and the
+//!   number of the tick, gives the pulse -------> wakes, reads the number: k
+//!   waits for all boards                         reads what the others wrote in tick k-1
+//!                                                steps its processes
+//!                                                writes into the half of k's parity
+//!   the last stamp is there <------------------- stamps k
+//!   gathers the halves of tick k: common memory
+//! ```
+//!
+//! So no board can be a tick ahead of another by more than one, and two halves are enough: while a fast board writes tick k, a
+//! slow one still reads k-1 from the other half ([`exchange`]). The pulse only wakes; what a board does follows from the number
+//! that it reads, so a pulse that is lost or comes twice changes nothing.
+//!
+//! The blackboards between the boards are not those that programs outside read ([`crate::memory`]): board 0 publishes common
+//! memory for them as in a run on one board. Whoever looks on sees the same services however the processes are spread, follows
+//! no board that is restarted, and cannot delay one.
+
+pub mod conductor;
+pub mod exchange;
+pub mod member;
+pub mod pulse;
+
+use std::{fmt, str::FromStr};
+
+use levels::ladder::ProcessId;
+
+pub use conductor::{Conductor, Lost, SplitError};
+pub use member::{Member, MemberError};
+pub use pulse::{Epochs, Fingerprint};
+
+/// A board with control processes; board 0 has none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Board {
+    /// E-move and Prim.
+    Two,
+    /// T3 Interface.
+    Four,
+    /// Task and Subtask.
+    Six,
+    /// Quick Change, grippers, pedestal.
+    Eight,
+}
+
+/// How many boards there are, without board 0.
+pub const BOARDS: usize = Board::ALL.len();
+
+impl Board {
+    /// All of them, by number.
+    pub const ALL: &'static [Self] = &[Self::Two, Self::Four, Self::Six, Self::Eight];
+
+    /// Number of the board (IV.2.2).
+    #[must_use]
+    pub const fn number(self) -> u8 {
+        match self {
+            Self::Two => 2,
+            Self::Four => 4,
+            Self::Six => 6,
+            Self::Eight => 8,
+        }
+    }
+
+    /// Place among [`Board::ALL`].
+    #[must_use]
+    pub const fn index(self) -> usize {
+        match self {
+            Self::Two => 0,
+            Self::Four => 1,
+            Self::Six => 2,
+            Self::Eight => 3,
+        }
+    }
+
+    /// The processes that it runs.
+    #[must_use]
+    pub const fn processes(self) -> &'static [ProcessId] {
+        match self {
+            Self::Two => &[ProcessId::Emove, ProcessId::Prim],
+            Self::Four => &[ProcessId::T3i],
+            Self::Six => &[ProcessId::Task, ProcessId::Subtask],
+            Self::Eight => &[
+                ProcessId::QuickChange,
+                ProcessId::Grip,
+                ProcessId::VGrip,
+                ProcessId::ToolGrip,
+                ProcessId::Pedestal,
+                ProcessId::Hand,
+                ProcessId::RotaryTable,
+            ],
+        }
+    }
+
+    /// Its name among the nodes and services of a run.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Two => "board-2",
+            Self::Four => "board-4",
+            Self::Six => "board-6",
+            Self::Eight => "board-8",
+        }
+    }
+
+    /// All boards but this one.
+    pub(super) fn others(self) -> impl Iterator<Item = Self> {
+        Self::ALL.iter().copied().filter(move |board| *board != self)
+    }
+
+    /// The names of its processes, for people.
+    #[must_use]
+    pub fn process_names(self) -> String {
+        self.processes().iter().map(|process| process.text()).collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl fmt::Display for Board {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "board {}", self.number())
+    }
+}
+
+impl FromStr for Board {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let found = Self::ALL.iter().copied().find(|board| board.number().to_string() == text);
+        found.ok_or_else(|| {
+            if text == "0" {
+                "board 0 is rcs-run itself, with --boards split or manual".to_owned()
+            } else {
+                "a board with control processes was expected: 2, 4, 6 or 8".to_owned()
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_process_runs_on_one_board() {
+        let mut all: Vec<ProcessId> =
+            Board::ALL.iter().flat_map(|board| board.processes()).copied().collect();
+        all.sort_unstable();
+        assert_eq!(all, ProcessId::ALL);
+        for (index, board) in Board::ALL.iter().enumerate() {
+            assert_eq!(board.index(), index);
+            assert_eq!(board.number().to_string().parse(), Ok(*board));
+            assert_eq!(board.name(), format!("board-{}", board.number()));
+        }
+        assert!("0".parse::<Board>().is_err_and(|text| text.contains("rcs-run itself")));
+    }
+}

@@ -1,0 +1,336 @@
+//! The system pulse (II.2.3) and the stamps that answer it.
+//!
+//! Board 0 owns the service `pulse`: what every board must know of the run ([`RunCard`]), and for each tick its number and what
+//! came from outside ([`SystemPulse`]). It needs no halves: the next pulse is not given before all boards have stamped this one.
+//! Each board owns a service with its [`Report`], which it writes last in a tick.
+//!
+//! Two event services wake: `pulse/wake` the boards, `pulse/done` board 0. Events carry nothing; whoever wakes reads a number.
+
+use std::{fmt::Debug, time::Duration};
+
+use iceoryx2::{
+    node::Node,
+    port::{listener::Listener, notifier::Notifier},
+    prelude::ipc,
+    service::port_factory::event,
+};
+use rcs_core::{
+    digest::Digest,
+    interface::ExternalInputs,
+    record,
+    record::{DecodeError, Field},
+    tick::Tick,
+};
+use taskdata::load::Source;
+
+use super::{
+    BOARDS, Board,
+    exchange::{EntryReader, EntryWriter, READERS, entry_size, stamped},
+};
+use crate::memory::{
+    buffers::{Epoch, layout_version},
+    runs::{SharedMemoryError, service_name},
+};
+
+/// Epoch of the services of board 0, which is never taken over: a run ends with it.
+const BOARD_0: Epoch = 1;
+
+record! {
+    /// What a program and its data are, told by their bytes: boards that differ in them must not run together.
+    pub struct Fingerprint {
+        /// Of the program: version control, and the layout of all buffers.
+        pub program: u64,
+        /// Of the task data.
+        pub data: u64,
+        /// Of the job, with the blocks that it loads on the way.
+        pub job: u64,
+    }
+}
+
+impl Fingerprint {
+    /// The fingerprint of this program with these task data and this job.
+    #[must_use]
+    pub fn of<'a>(
+        commit: &str,
+        data: impl IntoIterator<Item = &'a Source>,
+        job: impl IntoIterator<Item = &'a Source>,
+    ) -> Self {
+        let mut program = Digest::new();
+        program.add(commit.as_bytes());
+        program.add(&layout_version().to_le_bytes());
+        let texts = |sources: &mut dyn Iterator<Item = &'a Source>| {
+            let mut digest = Digest::new();
+            sources.for_each(|source| digest.add(source.text.as_bytes()));
+            digest.value()
+        };
+        Self {
+            program: program.value(),
+            data: texts(&mut data.into_iter()),
+            job: texts(&mut job.into_iter()),
+        }
+    }
+
+    /// In what this one differs from that of the run, in words; `None` if in nothing.
+    #[must_use]
+    pub fn difference(&self, run: &Self) -> Option<&'static str> {
+        if self.program != run.program {
+            Some("it was built from other sources")
+        } else if self.data != run.data {
+            Some("it has other task data: name the run's directory with --data")
+        } else if self.job != run.job {
+            Some("it has another job: name the run's job")
+        } else {
+            None
+        }
+    }
+}
+
+record! {
+    /// What a board must know of the run before the first tick.
+    pub struct RunCard {
+        /// What every board must have.
+        pub fingerprint: Fingerprint,
+        /// Ticks come every 40 ms: boards ask for real time.
+        pub real_time: bool,
+    }
+}
+
+/// The epoch of each board, in the order of [`Board::ALL`].
+pub type Epochs = [Epoch; BOARDS];
+
+record! {
+    /// One pulse.
+    pub struct SystemPulse {
+        /// The tick that is to be run; [`Tick::BEFORE_START`] until all boards are there.
+        pub tick: Tick,
+        /// The run is over: boards end.
+        pub over: bool,
+        /// The present epoch of each board.
+        pub epochs: Epochs,
+        /// What came from outside for the tick.
+        pub external: ExternalInputs,
+    }
+}
+
+record! {
+    /// What a board says of itself, after each tick.
+    pub struct Report {
+        /// What it runs with.
+        pub fingerprint: Fingerprint,
+        /// Its process number in the operating system.
+        pub pid: u32,
+        /// It reads all its neighbours and waits for pulses; no more once it has left.
+        pub ready: bool,
+        /// It got everything that it asked of the system for real time; true if it asked for nothing.
+        pub punctual: bool,
+        /// Heap allocations in its ticks so far.
+        pub allocations: u64,
+        /// Nanoseconds from its wake-up to its stamp in the last tick.
+        pub step_ns: u64,
+    }
+}
+
+/// Bytes of the entries.
+const PULSE: usize = entry_size::<SystemPulse>();
+const CARD: usize = entry_size::<RunCard>();
+const REPORT: usize = entry_size::<Report>();
+
+const PULSE_SERVICE: &str = "pulse";
+const WAKE: &str = "pulse/wake";
+const DONE: &str = "pulse/done";
+
+fn failed(service: &'static str) -> impl Fn(&dyn Debug) -> SharedMemoryError {
+    move |what| SharedMemoryError::service(service, what)
+}
+
+fn event(
+    node: &Node<ipc::Service>,
+    service: &'static str,
+) -> Result<event::PortFactory<ipc::Service>, SharedMemoryError> {
+    node.service_builder(&service_name(service, BOARD_0)?)
+        .event()
+        .max_listeners(READERS)
+        .max_notifiers(READERS)
+        .max_nodes(READERS + 1)
+        .open_or_create()
+        .map_err(|error| failed(service)(&error))
+}
+
+fn listener(
+    node: &Node<ipc::Service>,
+    service: &'static str,
+) -> Result<Listener<ipc::Service>, SharedMemoryError> {
+    event(node, service)?.listener_builder().create().map_err(|error| failed(service)(&error))
+}
+
+fn notifier(
+    node: &Node<ipc::Service>,
+    service: &'static str,
+) -> Result<Notifier<ipc::Service>, SharedMemoryError> {
+    event(node, service)?.notifier_builder().create().map_err(|error| failed(service)(&error))
+}
+
+/// Sleep until somebody notifies, or for so long. A signal ends it early.
+pub(super) fn sleep(listener: &Listener<ipc::Service>, at_most: Duration) {
+    // Who notified, and how often, does not matter: the caller looks at numbers. Without a listener that works it looks more
+    // often, but not all the time.
+    if listener.timed_wait(|_| (), at_most).is_err() {
+        std::thread::sleep(at_most.min(Duration::from_millis(1)));
+    }
+}
+
+/// Board 0's side.
+pub(super) struct PulseGiver {
+    pulse: EntryWriter<PULSE, SystemPulse>,
+    wake: Notifier<ipc::Service>,
+    pub(super) done: Listener<ipc::Service>,
+}
+
+impl PulseGiver {
+    pub(super) fn create(
+        node: &Node<ipc::Service>,
+        card: &RunCard,
+        first: &SystemPulse,
+    ) -> Result<Self, SharedMemoryError> {
+        let failed = failed(PULSE_SERVICE);
+        let factory = node
+            .service_builder(&service_name(PULSE_SERVICE, BOARD_0)?)
+            .blackboard_creator::<u32>()
+            .max_readers(READERS)
+            .max_nodes(READERS + 1)
+            .add::<[u8; PULSE]>(0, stamped(first.tick, first))
+            .add::<[u8; CARD]>(1, stamped(first.tick, card))
+            .create()
+            .map_err(|error| failed(&error))?;
+        let port = factory.writer_builder().create().map_err(|error| failed(&error))?;
+        let pulse = EntryWriter::new(port.entry(&0).map_err(|error| failed(&error))?);
+        Ok(Self { pulse, wake: notifier(node, WAKE)?, done: listener(node, DONE)? })
+    }
+
+    /// Write a pulse and wake the boards.
+    pub(super) fn give(&self, pulse: &SystemPulse) {
+        self.pulse.write(pulse.tick, pulse);
+        self.wake();
+    }
+
+    /// Wake the boards once more. A board that cannot be woken, because it is gone or does not empty its socket, is found
+    /// by its missing stamp.
+    pub(super) fn wake(&self) {
+        let _ = self.wake.notify();
+    }
+}
+
+/// The side of the boards.
+pub(super) struct PulseTaker {
+    pulse: EntryReader<PULSE, SystemPulse>,
+    card: EntryReader<CARD, RunCard>,
+    pub(super) wake: Listener<ipc::Service>,
+    done: Notifier<ipc::Service>,
+}
+
+impl PulseTaker {
+    pub(super) fn open(node: &Node<ipc::Service>) -> Result<Self, SharedMemoryError> {
+        let failed = failed(PULSE_SERVICE);
+        let factory = node
+            .service_builder(&service_name(PULSE_SERVICE, BOARD_0)?)
+            .blackboard_opener::<u32>()
+            .open()
+            .map_err(|error| failed(&error))?;
+        let port = factory.reader_builder().create().map_err(|error| failed(&error))?;
+        Ok(Self {
+            pulse: EntryReader::new(port.entry(&0).map_err(|error| failed(&error))?),
+            card: EntryReader::new(port.entry(&1).map_err(|error| failed(&error))?),
+            wake: listener(node, WAKE)?,
+            done: notifier(node, DONE)?,
+        })
+    }
+
+    pub(super) fn card(&self) -> Result<RunCard, DecodeError> {
+        self.card.read().map(|(_, card)| card)
+    }
+
+    pub(super) fn pulse(&self) -> Result<SystemPulse, DecodeError> {
+        self.pulse.read().map(|(_, pulse)| pulse)
+    }
+
+    /// Tell board 0 that there is a stamp to be read. If it cannot be told it looks by itself before long.
+    pub(super) fn done(&self) {
+        let _ = self.done.notify();
+    }
+}
+
+/// A board's own report.
+pub(super) struct ReportWriter(EntryWriter<REPORT, Report>);
+
+impl ReportWriter {
+    pub(super) fn create(
+        node: &Node<ipc::Service>,
+        board: Board,
+        epoch: Epoch,
+    ) -> Result<Self, SharedMemoryError> {
+        let failed = failed(board.name());
+        let factory = node
+            .service_builder(&service_name(board.name(), epoch)?)
+            .blackboard_creator::<u32>()
+            .max_readers(READERS)
+            .max_nodes(READERS + 1)
+            .add::<[u8; REPORT]>(0, stamped(Tick::BEFORE_START, &Report::ZERO))
+            .create()
+            .map_err(|error| failed(&error))?;
+        let port = factory.writer_builder().create().map_err(|error| failed(&error))?;
+        Ok(Self(EntryWriter::new(port.entry(&0).map_err(|error| failed(&error))?)))
+    }
+
+    /// The stamp: `tick` is done.
+    pub(super) fn write(&self, tick: Tick, report: &Report) {
+        self.0.write(tick, report);
+    }
+}
+
+/// A board's report as board 0 reads it.
+pub(super) struct ReportReader(EntryReader<REPORT, Report>);
+
+impl ReportReader {
+    pub(super) fn open(
+        node: &Node<ipc::Service>,
+        board: Board,
+        epoch: Epoch,
+    ) -> Result<Self, SharedMemoryError> {
+        let failed = failed(board.name());
+        let factory = node
+            .service_builder(&service_name(board.name(), epoch)?)
+            .blackboard_opener::<u32>()
+            .open()
+            .map_err(|error| failed(&error))?;
+        let port = factory.reader_builder().create().map_err(|error| failed(&error))?;
+        Ok(Self(EntryReader::new(port.entry(&0).map_err(|error| failed(&error))?)))
+    }
+
+    /// The tick that the board has stamped last, and what it says.
+    pub(super) fn read(&self) -> Result<(Tick, Report), DecodeError> {
+        self.0.read()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(text: &str) -> Source {
+        Source { name: "x".into(), text: text.into() }
+    }
+
+    #[test]
+    fn a_fingerprint_tells_program_data_and_job_apart() {
+        let of = |commit, data, job| Fingerprint::of(commit, [&source(data)], [&source(job)]);
+        let run = of("abc", "1", "2");
+        assert_eq!(of("abc", "1", "2").difference(&run), None);
+        for (other, word) in [
+            (of("abd", "1", "2"), "sources"),
+            (of("abc", "3", "2"), "task data"),
+            (of("abc", "1", "3"), "job"),
+        ] {
+            assert!(other.difference(&run).is_some_and(|text| text.contains(word)), "{word}");
+        }
+    }
+}

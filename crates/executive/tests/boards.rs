@@ -1,0 +1,265 @@
+//! Boards in threads of one process: the same bits as on one board, nothing allocated, and what happens when one leaves or does
+//! not fit.
+//!
+//! The boards' programs, with everything that only processes can do to each other, are tested in `tests/boards.rs` of the
+//! whole system.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::{
+        Mutex, OnceLock, PoisonError,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
+    thread::{self, ScopedJoinHandle},
+    time::Duration,
+};
+
+use executive::{
+    alloc::Counting,
+    boards::{
+        Board, Conductor, Fingerprint, Lost, Member, MemberError, SplitError, conductor::How,
+        member::MemberEnd, pulse::RunCard,
+    },
+    memory::{RunName, runs},
+    runner::{Levels, Runner},
+};
+use levels::ladder::Ladder;
+use rcs_core::{
+    digest::Digest,
+    interface::{ExternalInputs, HwsCommand, device::single_step},
+    name::Name16,
+    tick::Tick,
+};
+use taskdata::{files::TaskData, load::Store};
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations are counted for the whole process: one test at a time.
+static ALONE: Mutex<()> = Mutex::new(());
+
+const PATIENCE: Duration = Duration::from_secs(30);
+const FINGERPRINT: Fingerprint = Fingerprint { program: 1, data: 2, job: 3 };
+const CARD: RunCard = RunCard { fingerprint: FINGERPRINT, real_time: false };
+
+fn store() -> &'static Store {
+    static STORE: OnceLock<Store> = OnceLock::new();
+    STORE.get_or_init(|| match Store::load(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))) {
+        Ok((store, _)) => store,
+        Err(report) => panic!("{report}"),
+    })
+}
+
+/// What comes from outside in a tick: commands, hands at the joystick box, a gripper that comes and goes, another generation.
+fn external(tick: Tick) -> ExternalInputs {
+    let mut external = ExternalInputs::default();
+    let number = u32::try_from(tick.0 / 100).unwrap();
+    let verbs = ["PAUSE", "MOVE", "DANCE", "MOVE"];
+    let name = |text| Name16::new(text).unwrap();
+    external.hws = HwsCommand {
+        number,
+        command: name(verbs[number as usize % verbs.len()]),
+        destination: name("SAFE"),
+        ..HwsCommand::default()
+    };
+    let devices = &mut external.devices;
+    devices.joystick.velocity = 1000;
+    devices.joystick.hold = if (250..300).contains(&tick.0) { single_step::EMOVE } else { 0 };
+    devices.joystick.single_step = if tick.0.is_multiple_of(7) { single_step::EMOVE } else { 0 };
+    devices.quick_change.locked = true;
+    devices.quick_change.end_effector_id = if tick.0 % 500 < 400 { 1 } else { 2 };
+    devices.resolvers.valid = true;
+    external.generation = u32::from(tick.0 > 300);
+    external
+}
+
+/// Run so many ticks, or until the levels fail; gives the runner, and why they failed.
+fn play<L, E>(levels: L, ticks: u64) -> (Runner<L>, Option<E>)
+where
+    L: for<'a> Levels<TaskData<'a>, Error = E>,
+{
+    play_watched(levels, ticks, |_| ())
+}
+
+fn play_watched<L, E>(levels: L, ticks: u64, mut before: impl FnMut(Tick)) -> (Runner<L>, Option<E>)
+where
+    L: for<'a> Levels<TaskData<'a>, Error = E>,
+{
+    let mut runner = Runner::new(levels, None);
+    let data = store().view();
+    for tick in 1..=ticks {
+        before(Tick(tick));
+        if let Err(error) = runner.step(&external(Tick(tick)), &data, 0) {
+            return (runner, Some(error));
+        }
+    }
+    (runner, None)
+}
+
+/// A board in a thread, as `rcs-run board` does it in a process.
+fn board<'s>(
+    scope: &'s thread::Scope<'s, '_>,
+    name: &RunName,
+    board: Board,
+    stop: &'s AtomicBool,
+) -> ScopedJoinHandle<'s, Result<MemberEnd, MemberError>> {
+    let name = name.clone();
+    scope.spawn(move || {
+        let mut member = Member::join(&name, board, FINGERPRINT)?;
+        member.run(|generation| (generation < 2).then(|| store().view()), true, stop)
+    })
+}
+
+#[test]
+fn four_boards_compute_the_bits_of_one_and_allocate_nothing() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    const TICKS: u64 = 1500;
+    let (one, _) = play(Ladder::default(), TICKS);
+    let name = RunName::unique("bits");
+    let stop = AtomicBool::new(false);
+    thread::scope(|scope| {
+        let mut conductor = Conductor::create(&name, &CARD).expect("this machine has shared memory");
+        let boards: Vec<_> = Board::ALL.iter().map(|&b| board(scope, &name, b, &stop)).collect();
+        let mut arrivals = 0;
+        conductor.gather(PATIENCE, &stop, |_, _, _| arrivals += 1).expect("all come");
+        assert_eq!(arrivals, 4);
+        let (split, lost) = play(conductor, TICKS);
+        assert_eq!(lost, None);
+        assert_eq!(split.digest(), one.digest());
+        assert_ne!(one.digest(), Digest::new());
+        assert_eq!(*split.levels().states(), one.levels().state());
+        // All threads of this process count in one place, so that each figure is that of all boards.
+        assert_eq!(split.allocations(), Some(0));
+        for figures in split.levels().figures() {
+            assert_eq!((figures.times.count(), figures.allocations), (TICKS, 0), "{}", figures.board);
+        }
+        let (tick, board) =
+            (split.times().summary(), split.levels().figures().next().unwrap().times.summary());
+        println!(
+            "tick p50 {} us, p99 {} us; board 2 p50 {} us, p99 {} us",
+            tick.p50, tick.p99, board.p50, board.p99
+        );
+        drop(split);
+        for board in boards {
+            assert!(matches!(board.join().expect("no panic"), Ok(MemberEnd::Over)));
+        }
+    });
+    assert_eq!(runs::traces(&name), Vec::<PathBuf>::new());
+}
+
+#[test]
+fn a_board_that_leaves_stops_the_pulse_and_is_named() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let name = RunName::unique("leaves");
+    let (stop, leave) = (AtomicBool::new(false), AtomicBool::new(false));
+    thread::scope(|scope| {
+        let mut conductor = Conductor::create(&name, &CARD).expect("this machine has shared memory");
+        for &b in Board::ALL {
+            board(scope, &name, b, if b == Board::Eight { &leave } else { &stop });
+        }
+        conductor.gather(PATIENCE, &stop, |_, _, _| ()).expect("all come");
+        let (runner, lost) =
+            play_watched(conductor, 500, |tick| leave.store(tick == Tick(400), Ordering::Relaxed));
+        let lost: Lost = lost.expect("a board left");
+        assert_eq!((lost.board, lost.how), (Board::Eight, How::Left));
+        // The flag rises while the board may still answer the tick before.
+        assert!((400..=401).contains(&lost.tick.0), "{lost}");
+        assert_eq!(runner.tick(), lost.tick.previous(), "the tick does not count");
+        let text = lost.explain(&external(lost.tick).hws, runner.memory());
+        assert!(text.contains("board 8 (Quick Change, Grip,") && text.contains("left the run"), "{text}");
+    });
+    assert_eq!(runs::traces(&name), Vec::<PathBuf>::new());
+}
+
+#[test]
+fn who_is_missing_is_said() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let name = RunName::unique("missing");
+    let stop = AtomicBool::new(false);
+    thread::scope(|scope| {
+        let mut conductor = Conductor::create(&name, &CARD).expect("this machine has shared memory");
+        for &b in &[Board::Two, Board::Four, Board::Eight] {
+            board(scope, &name, b, &stop);
+        }
+        let error =
+            conductor.gather(Duration::from_millis(300), &stop, |_, _, _| ()).expect_err("one is missing");
+        // Nobody is ready without all neighbours.
+        assert!(
+            matches!(&error, SplitError::Missing { missing, .. } if missing.contains(&Board::Six)),
+            "{error}"
+        );
+        stop.store(true, Ordering::Relaxed);
+    });
+}
+
+#[test]
+fn a_board_with_other_data_or_in_a_taken_place_is_refused() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let name = RunName::unique("refused");
+    let stop = AtomicBool::new(false);
+    thread::scope(|scope| {
+        let conductor = Conductor::create(&name, &CARD).expect("this machine has shared memory");
+        let other = Fingerprint { data: 9, ..FINGERPRINT };
+        let Err(error) = Member::join(&name, Board::Two, other) else { panic!("it has other data") };
+        assert!(
+            error.to_string().contains("board 2 cannot take part") && error.to_string().contains("--data")
+        );
+        let (joined, has_joined) = mpsc::channel();
+        let (there, flag) = (name.clone(), &stop);
+        let first = scope.spawn(move || {
+            let mut member = Member::join(&there, Board::Two, FINGERPRINT)?;
+            joined.send(()).expect("it is waited for");
+            member.run(|_| Some(store().view()), true, flag)
+        });
+        has_joined.recv().expect("the first one joins");
+        let second = Member::join(&name, Board::Two, FINGERPRINT);
+        assert!(matches!(second, Err(MemberError::Taken { board: Board::Two, .. })));
+        drop(conductor);
+        assert!(matches!(first.join().expect("no panic"), Ok(MemberEnd::Over)));
+        let late = Member::join(&name, Board::Two, FINGERPRINT);
+        assert!(matches!(late, Err(MemberError::SharedMemory(_))), "the run is over");
+    });
+    assert_eq!(runs::traces(&name), Vec::<PathBuf>::new());
+}
+
+#[test]
+fn a_board_that_is_replaced_goes_on_as_one_whose_processes_were_restarted() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    const TICKS: u64 = 800;
+    let name = RunName::unique("replaced");
+    let (stop, leave) = (AtomicBool::new(false), AtomicBool::new(false));
+    thread::scope(|scope| {
+        let mut conductor = Conductor::create(&name, &CARD).expect("this machine has shared memory");
+        for &b in Board::ALL {
+            board(scope, &name, b, if b == Board::Two { &leave } else { &stop });
+        }
+        conductor.gather(PATIENCE, &stop, |_, _, _| ()).expect("all come");
+        let mut runner = Runner::new(conductor, None);
+        let data = store().view();
+        let mut restarted = None;
+        for tick in (1..=TICKS).map(Tick) {
+            leave.store(tick == Tick(433), Ordering::Relaxed);
+            while let Err(lost) = runner.step(&external(tick), &data, 0) {
+                assert_eq!((lost.board, lost.tick, restarted), (Board::Two, tick, None), "{lost}");
+                restarted = Some(tick);
+                board(scope, &name, Board::Two, &stop);
+                runner.levels_mut().await_successor(&lost, PATIENCE, &stop, |_, _, _| ()).expect("one comes");
+            }
+        }
+        let restarted = restarted.expect("a board left");
+        assert!((433..=434).contains(&restarted.0));
+
+        let mut one = Runner::new(Ladder::default(), None);
+        for tick in (1..=TICKS).map(Tick) {
+            if tick == restarted {
+                Board::Two.processes().iter().for_each(|&process| one.levels_mut().restart(process));
+            }
+            let Ok(_) = one.step(&external(tick), &data, 0);
+        }
+        assert_eq!(runner.digest(), one.digest());
+        assert_eq!(runner.memory(), one.memory());
+        assert_eq!(runner.levels().epochs(), &[2, 1, 1, 1]);
+    });
+    assert_eq!(runs::traces(&name), Vec::<PathBuf>::new());
+}

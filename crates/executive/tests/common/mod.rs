@@ -1,0 +1,22 @@
+//! What several tests of this crate need.
+
+use levels::ladder::PROCESS_COUNT;
+use rcs_core::interface::{CommonMemory, Header};
+
+/// The headers of all processes.
+pub const fn headers(memory: &mut CommonMemory) -> [&mut Header; PROCESS_COUNT] {
+    [
+        &mut memory.task.header,
+        &mut memory.subtask.header,
+        &mut memory.emove.header,
+        &mut memory.prim.header,
+        &mut memory.t3i.header,
+        &mut memory.quick_change.header,
+        &mut memory.grip.header,
+        &mut memory.v_grip.header,
+        &mut memory.tool_grip.header,
+        &mut memory.pedestal.header,
+        &mut memory.hand.header,
+        &mut memory.table.header,
+    ]
+}
