@@ -5,7 +5,10 @@ mod common;
 
 use std::{
     path::PathBuf,
-    sync::atomic::{AtomicBool, Ordering},
+    sync::{
+        Barrier,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 use executive::memory::{Attached, Publisher, RunName, SharedMemoryError, buffers::Pulse, list, runs};
@@ -61,22 +64,34 @@ fn a_reader_sees_what_was_published_last() {
 fn a_reader_meets_no_torn_tick() {
     let name = name("torn");
     let mut publisher = Publisher::create(&name).expect("this machine has shared memory");
-    let stop = AtomicBool::new(false);
+    let (stop, attached) = (AtomicBool::new(false), Barrier::new(2));
     std::thread::scope(|scope| {
         let reader = scope.spawn(|| {
             let reader = Attached::open(&name).expect("the run lives");
-            let (mut last, mut reads) = (0, 0_u32);
-            while !stop.load(Ordering::Relaxed) {
-                let Ok(memory) = reader.memory() else { continue };
+            attached.wait();
+            let mut last = 0;
+            loop {
+                // Once writing has ended the next attempt succeeds, whatever this one meets.
+                let written = stop.load(Ordering::Acquire);
+                let memory = match reader.memory() {
+                    Ok(memory) => memory,
+                    Err(error) => {
+                        assert!(!written, "{error}");
+                        continue;
+                    }
+                };
                 let tick = memory.task.header.stamp.0;
                 assert!(tick >= last, "{tick} after {last}");
                 if tick > 0 {
                     assert_eq!(memory, with_stamp(tick).1);
                 }
-                (last, reads) = (tick, reads + 1);
+                last = tick;
+                if written {
+                    return last;
+                }
             }
-            reads
         });
+        attached.wait();
         for tick in 1..20_000 {
             let (external, memory, pulse) = with_stamp(tick);
             publisher.publish(&external, &memory, pulse);
@@ -84,10 +99,8 @@ fn a_reader_meets_no_torn_tick() {
                 std::thread::yield_now();
             }
         }
-        // Writing has ended, so the next attempt of the reader succeeds whatever it met before.
-        std::thread::sleep(std::time::Duration::from_millis(50));
-        stop.store(true, Ordering::Relaxed);
-        assert!(reader.join().expect("no tick was torn") > 0);
+        stop.store(true, Ordering::Release);
+        assert_eq!(reader.join().expect("no tick was torn"), 19_999);
     });
 }
 
