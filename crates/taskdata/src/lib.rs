@@ -3,8 +3,8 @@
 //! People write *forms*; a form becomes records of *files* (POSE, MOVTAB, LOCPT …), and the control processes look the
 //! records up by number or by name while they run (II.2.4). The two halves of this crate are that border:
 //!
-//! * [`files`]: the records, and [`files::TaskData`], slices and sorted indexes over them. No heap, no standard
-//!   library, no look-up dearer than a binary search. This is all that the control processes see.
+//! * [`files`]: the records, and [`files::TaskData`], slices of them and their indexes. No heap, no standard library, no look-up
+//!   that takes longer for more records. This is all that the control processes see.
 //! * `load` (feature `load`): reads the blocks of a data directory, checks every form against all others and
 //!   against the arm, reports all errors at once, and builds the files and their indexes.
 

@@ -7,6 +7,7 @@ use taskdata::load::{
     entries::Entry,
     lex::words,
     parse::{Parsed, parse},
+    places::Places,
     report::Problems,
     source::{blocks, read_blocks_under},
 };
@@ -51,7 +52,7 @@ fn parsed(source: &Source) -> Vec<(BlockNumber, Parsed)> {
     });
     let all = read.collect();
     let said: Vec<String> = problems
-        .into_diagnostics(std::slice::from_ref(source))
+        .into_diagnostics(&mut Places::in_blocks(std::slice::from_ref(source)))
         .iter()
         .map(|d| format!("{} {d}", d.place()))
         .collect();

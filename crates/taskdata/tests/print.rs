@@ -16,6 +16,7 @@ use taskdata::{
         },
         lex::words,
         parse::{COMPILING_WORDS, parse},
+        places::Places,
         print,
         report::Problems,
         source::{At, BLOCK_COLUMNS, BLOCK_LINES, blocks},
@@ -255,8 +256,11 @@ fn read(text: &str) -> Vec<Entry> {
         let words = words(block, &mut problems);
         entries.extend(parse(&words, block.number, block.header, &mut problems).entries);
     }
-    let said: Vec<String> =
-        problems.into_diagnostics(&[source]).iter().map(|d| format!("{} {d}", d.place())).collect();
+    let said: Vec<String> = problems
+        .into_diagnostics(&mut Places::in_blocks(&[source]))
+        .iter()
+        .map(|d| format!("{} {d}", d.place()))
+        .collect();
     assert_eq!(said, Vec::<String>::new(), "{text}");
     entries
 }

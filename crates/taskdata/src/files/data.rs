@@ -7,7 +7,7 @@ use super::{
         ArrayId, EndEffId, LocptId, MovtabId, ObjGripsId, ObjectId, OwnerId, PathId, PedParaId, PoseId,
         SensorId, TrajId, TrajParaId,
     },
-    index::{Index, grip_key, name_key},
+    index::{Index, PlaceIndex, grip_key, name_key},
     records::{
         ApprDept, Array, EndEffPara, FoundEndEff, FoundPedPara, GripLoc, Locpt, Member, MovtabRecord,
         ObjGrips, ObjLoc, Object, Owner, Path, PathPoint, PedPara, PoseRecord, RelativeMove, SensorPara,
@@ -95,15 +95,15 @@ pub struct Indexes<'a> {
     /// PED-PARA by name of the object.
     pub ped_paras: Index<'a>,
     /// GRIP-LOC by name of the object, grip and location; the answer is the movetable.
-    pub grip_locs: Index<'a>,
+    pub grip_locs: PlaceIndex<'a>,
     /// VISION-PARA by name of the object and location.
-    pub visions: Index<'a>,
+    pub visions: PlaceIndex<'a>,
     /// Approaches and departs by direction, name of the object, grip and location; the answer is the path.
-    pub appr_depts: Index<'a>,
+    pub appr_depts: PlaceIndex<'a>,
     /// SENSOR-PARA by name.
     pub sensors: Index<'a>,
     /// REL-MOVES by name and location.
-    pub relative_moves: Index<'a>,
+    pub relative_moves: PlaceIndex<'a>,
 }
 
 impl<'a> TaskData<'a> {

@@ -1,12 +1,16 @@
 //! Indexes: every look-up that is not by record number reads one pilot and one slot, however many records there are.
 //!
-//! A key is two integers: most often a name, and a grip and a location packed side by side. The name of the object is part of
+//! A key is three integers: most often a name, and a grip and a location packed side by side. The name of the object is part of
 //! the key of all that belongs to it, so nothing has to be looked up first. The index is a perfect hash table, made once by the
 //! loader: a hash puts the key into one of many small buckets, the *pilot* of the bucket, one byte,
 //! is mixed into the hash, and the result is the slot. The loader has chosen the pilots so that no two keys share a slot, so
 //! there is nothing to search: the pilots of 100,000 keys (33 kB) stay in the processor's cache, and what is not in it is
 //! read once, half a cache line. A slot holds the record number and, where look-ups ask for just one thing of the record (the
 //! movetable of a grip, the path of an approach), that too, so that the record itself need not be read.
+//!
+//! What is valid at a location is looked up at several in turn: the location point, the array on it, the owners, the wild card.
+//! Such entries stand together, those of one name and grip in one slot of a [`PlaceIndex`]: a cache line tells which of the
+//! locations there is an entry for.
 
 use rcs_core::name::Name;
 
@@ -18,13 +22,14 @@ use super::{
 /// What records are looked up by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
-    /// A name, or one or two references.
-    pub(crate) main: u128,
+    /// A name, or one or two references. Not one integer of 128 bits: that would be aligned to 16 bytes, and a [`Slot`] would
+    /// be as long as two.
+    pub(crate) main: [u64; 2],
     /// What else there is: a grip, a location, a direction; 0 if nothing.
     pub(crate) rest: u64,
 }
 
-/// A key and what is known of it. Slots are aligned so that none lies across two cache lines.
+/// A key and what is known of it. Slots are 32 bytes, aligned so that none lies across two cache lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(align(32))]
 pub struct Slot {
@@ -36,6 +41,8 @@ pub struct Slot {
     /// in [`Index::numbers`].
     pub(crate) answer: u32,
 }
+
+const _: () = assert!(size_of::<Slot>() == 32);
 
 /// Keys in slots, and the record numbers of keys that several records have. Built by the loader.
 #[derive(Clone, Copy, Debug, Default)]
@@ -71,8 +78,8 @@ fn scaled(value: u64, end: usize) -> usize {
 /// The hash of a key: folded multiplications, each the exclusive or of the two halves of a product.
 pub(crate) fn hash_of(key: Key, seed: u64) -> u64 {
     let fold = |(high, low): (u64, u64)| high ^ low;
-    let first = low(key.main) ^ seed ^ 0x9E37_79B9_7F4A_7C15;
-    let mixed = fold(product(first, low(key.main >> 64) ^ 0xD1B5_4A32_D192_ED03));
+    let [upper, lower] = key.main;
+    let mixed = fold(product(lower ^ seed ^ 0x9E37_79B9_7F4A_7C15, upper ^ 0xD1B5_4A32_D192_ED03));
     fold(product(mixed ^ seed, key.rest ^ 0x2127_599B_F432_5C37))
 }
 
@@ -88,12 +95,16 @@ pub(crate) fn slot_of(hash: u64, pilot: u8, slots: usize) -> usize {
     scaled(turned.wrapping_mul(0xE703_7ED1_A0B4_28DB), slots)
 }
 
+/// The slot in which a key can only be.
+fn slot_at<'a, S>(pilots: &[u8], slots: &'a [S], seed: u64, key: Key) -> Option<&'a S> {
+    let hash = hash_of(key, seed);
+    let pilot = *pilots.get(bucket_of(hash, pilots.len()))?;
+    slots.get(slot_of(hash, pilot, slots.len()))
+}
+
 impl<'a> Index<'a> {
     fn slot(&self, key: Key) -> Option<&'a Slot> {
-        let hash = hash_of(key, self.seed);
-        let pilot = *self.pilots.get(bucket_of(hash, self.pilots.len()))?;
-        let slot = self.slots.get(slot_of(hash, pilot, self.slots.len()))?;
-        (slot.key == key && slot.number > 0).then_some(slot)
+        slot_at(self.pilots, self.slots, self.seed, key).filter(|slot| slot.key == key && slot.number > 0)
     }
 
     /// The record number of a key; of the first, if several records have it.
@@ -131,6 +142,120 @@ impl<'a> Index<'a> {
     }
 }
 
+/// Entries that a [`Group`] has room for.
+pub(crate) const ENTRIES: usize = 3;
+/// In place of the number of entries: there is no room for them, and they stand in [`PlaceIndex::crowded`].
+pub(crate) const CROWDED: u32 = u32::MAX;
+
+/// An entry that is valid at a location.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EntryAt {
+    /// The location, packed; 0 if there is no entry.
+    pub(crate) at: u32,
+    /// Record number.
+    pub(crate) number: u32,
+    /// What look-ups ask of the record.
+    pub(crate) answer: u32,
+}
+
+/// The entries of a key at all its locations: a cache line.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
+pub struct Group {
+    /// The key without a location.
+    pub(crate) key: Key,
+    /// The entries, in no order.
+    pub(crate) entries: [EntryAt; ENTRIES],
+    /// How many there are, or [`CROWDED`]. 0 for a group without a key.
+    pub(crate) count: u32,
+}
+
+const _: () = assert!(size_of::<Group>() == 64);
+
+impl Group {
+    /// The entry at a location.
+    fn entry(&self, at: Reference) -> Option<&EntryAt> {
+        let at = packed(at)?;
+        self.entries.iter().find(|entry| entry.at == at)
+    }
+
+    /// True if an entry names a location of this type.
+    fn names(&self, kind: RefType) -> bool {
+        self.entries.iter().any(|entry| entry.at >> 28 == u32::from(kind.code()))
+    }
+}
+
+/// A reference in 32 bits, never 0; `None` if it is none, or of a record beyond any that a file can have.
+pub(crate) fn packed(at: Reference) -> Option<u32> {
+    let kind = u32::from(at.kind.code());
+    (kind > 0 && kind < 16 && at.number < 1 << 28).then_some((kind << 28) | at.number)
+}
+
+/// What is valid at locations, by a key without the location. Built by the loader.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PlaceIndex<'a> {
+    /// The pilot of each bucket.
+    pub(crate) pilots: &'a [u8],
+    /// The slots, some of them empty.
+    pub(crate) groups: &'a [Group],
+    /// Seed of the hash.
+    pub(crate) seed: u64,
+    /// The entries of keys with more of them than a group has room for, by key and location.
+    pub(crate) crowded: Index<'a>,
+}
+
+impl<'a> PlaceIndex<'a> {
+    /// The record number, and what look-ups ask of the record, of the first location for which there is an entry: that of the
+    /// location `exact` names first, of the next of them, of one of the `owners`, of the wild card. The key may name any
+    /// location.
+    pub(crate) fn first(
+        &self,
+        key: Key,
+        exact: impl Iterator<Item = Reference>,
+        owners: impl Iterator<Item = Reference>,
+    ) -> Option<EntryAt> {
+        let key = key.without_place();
+        let group = slot_at(self.pilots, self.groups, self.seed, key)?;
+        if group.key != key || group.count == 0 {
+            return None;
+        }
+        let any = core::iter::once(Reference::ANY);
+        if group.count == CROWDED {
+            return exact.chain(owners).chain(any).find_map(|at| self.crowded.entry(key.at(at)));
+        }
+        // Most entries name a location point or the wild card: then it is no matter who owns the point.
+        let owners = group.names(RefType::Owner).then_some(owners).into_iter().flatten();
+        exact.chain(owners).chain(any).find_map(|at| group.entry(at)).copied()
+    }
+}
+
+impl Index<'_> {
+    fn entry(&self, key: Key) -> Option<EntryAt> {
+        self.slot(key).map(|slot| EntryAt { at: 0, number: slot.number, answer: slot.answer })
+    }
+}
+
+/// The bits of [`Key::rest`] that are a location, in the keys of a [`PlaceIndex`].
+const PLACE_BITS: u64 = (1 << 40) - 1;
+
+impl Key {
+    /// The key without its location.
+    pub(crate) const fn without_place(self) -> Self {
+        Self { rest: self.rest & !PLACE_BITS, ..self }
+    }
+
+    /// The key at another location.
+    fn at(self, at: Reference) -> Self {
+        Self { rest: (self.rest & !PLACE_BITS) | reference_bits(at), ..self }
+    }
+
+    /// The location in the key, packed.
+    pub(crate) fn place(self) -> Option<u32> {
+        let kind = u8::try_from((self.rest & PLACE_BITS) >> 32).ok().and_then(RefType::from_code)?;
+        packed(Reference { kind, number: u32::try_from(self.rest & u64::from(u32::MAX)).ok()? })
+    }
+}
+
 /// The record numbers of a key that several records have, from its position in [`Index::numbers`].
 pub(crate) fn run_at(numbers: &[u32], position: u32) -> Option<&[u32]> {
     let position = usize::try_from(position).ok()?;
@@ -140,12 +265,12 @@ pub(crate) fn run_at(numbers: &[u32], position: u32) -> Option<&[u32]> {
 
 /// A name in 128 bits. The same text has the same bits in every width, so that a 16-character field of a command finds a
 /// 10-character name.
-fn name_bits<const N: usize>(name: &Name<N>) -> u128 {
-    let mut bytes = [0_u8; 16];
-    for (slot, byte) in bytes.iter_mut().zip(name.bytes()) {
+fn name_bits<const N: usize>(name: &Name<N>) -> [u64; 2] {
+    let mut bytes = [[0_u8; 8]; 2];
+    for (slot, byte) in bytes.as_flattened_mut().iter_mut().zip(name.bytes()) {
         *slot = *byte;
     }
-    u128::from_be_bytes(bytes)
+    bytes.map(u64::from_be_bytes)
 }
 
 /// A reference in 40 bits.
@@ -167,19 +292,19 @@ pub fn name_key<const N: usize>(name: &Name<N>) -> Key {
 /// The key of a reference: members by what they are.
 #[must_use]
 pub fn reference_key(reference: Reference) -> Key {
-    Key { main: u128::from(reference_bits(reference)), rest: 0 }
+    Key { main: [0, reference_bits(reference)], rest: 0 }
 }
 
 /// The key of a start and an end.
 #[must_use]
 pub fn pair_key(start: Reference, end: Reference) -> Key {
-    Key { main: u128::from(reference_bits(start)), rest: reference_bits(end) }
+    Key { main: [0, reference_bits(start)], rest: reference_bits(end) }
 }
 
 /// The key of an object by its record number.
 #[must_use]
 pub fn object_key(object: ObjectId) -> Key {
-    Key { main: u128::from(object.number()), rest: 0 }
+    Key { main: [0, u64::from(object.number())], rest: 0 }
 }
 
 /// The key of a grip of an object. `None` for a grip number beyond -128 to 127, which no form has.
@@ -217,7 +342,7 @@ pub fn approach_key<const N: usize>(
 /// The key of an approach to a location as such, or of a depart from it. It has no name, so it is no object's.
 #[must_use]
 pub fn plain_key(direction: Direction, at: Reference) -> Key {
-    Key { main: 0, rest: (u64::from(direction.code()) << 56) | reference_bits(at) }
+    Key { main: [0; 2], rest: (u64::from(direction.code()) << 56) | reference_bits(at) }
 }
 
 #[cfg(test)]

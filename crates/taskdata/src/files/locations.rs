@@ -319,16 +319,32 @@ impl<'a> TaskData<'a> {
     /// The names under which forms can mean a place, the most exact first: the location point, the array on it, and the
     /// owners of either (VII.5, VII.7.5).
     pub fn aliases(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {
-        let point = Reference::location_point(place.locpt);
-        let array = Reference::array(place.array);
-        let pose = self.locpt(place.locpt).map_or(Reference::NONE, |l| Reference::pose(l.pose));
-        let members = self.indexes.members;
+        Self::exact(place).chain(self.owners(place))
+    }
+
+    /// The location point of a place, and the array on it.
+    pub(super) fn exact(place: &Place) -> impl Iterator<Item = Reference> + Clone + use<> {
+        let both = [Reference::location_point(place.locpt), Reference::array(place.array)];
+        both.into_iter().filter(|r| r.number != 0)
+    }
+
+    /// The owners of a place: of its location point, of the pose of that, or of a static array.
+    pub(super) fn owners(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {
+        let (data, place) = (*self, *place);
         // An array on a tray does not bring in the other trays that are divided in the same way.
-        let static_array = if place.locpt.is_null() { array } else { Reference::NONE };
-        let owners = [point, static_array, pose].into_iter().filter(|r| r.number != 0).flat_map(move |r| {
-            members.all(reference_key(r)).iter().map(|&n| Reference::owner(OwnerId::new(n)))
-        });
-        [point, array].into_iter().filter(|r| r.number != 0).chain(owners)
+        let array = if place.locpt.is_null() { place.array } else { ArrayId::NULL };
+        // The location point is read only if the other owners do not do.
+        (0..3)
+            .map(move |step| match step {
+                0 => Reference::location_point(place.locpt),
+                1 => Reference::array(array),
+                _ => data.locpt(place.locpt).map_or(Reference::NONE, |l| Reference::pose(l.pose)),
+            })
+            .filter(|r| r.number != 0)
+            .flat_map(move |r| {
+                let owners = data.indexes.members.all(reference_key(r)).iter();
+                owners.map(|&n| Reference::owner(OwnerId::new(n)))
+            })
     }
 
     /// Name of the location point of a place, or of its static array.

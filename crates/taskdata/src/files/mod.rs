@@ -1,8 +1,8 @@
 //! The files of chapter VII and how the control processes look into them.
 //!
 //! A file is a slice of records; a record number counts from 1, and 0 is the null pointer of the manual's `…-^`
-//! variables. Beside the files stand sorted indexes ([`index::Index`]), so that a look-up by name, or by object, grip and
-//! location, is a binary search over 16-byte keys: at 100,000 records 17 comparisons, whatever the data.
+//! variables. Beside the files stand perfect hash tables ([`index::Index`], [`index::PlaceIndex`]), so that a look-up by name, or
+//! by object, grip and location, reads one or two cache lines, however many records there are.
 //!
 //! * [`ids`], [`records`], [`index`]: numbers, records, indexes;
 //! * [`data`]: [`TaskData`], by number and by name;
@@ -23,7 +23,7 @@ pub use ids::{
     ApprDeptId, ArrayId, EndEffId, GripLocId, LocptId, MovtabId, ObjGripsId, ObjLocId, ObjectId, OwnerId,
     PathId, PedParaId, PoseId, RelativeMoveId, SensorId, TrajId, TrajParaId, VisionId,
 };
-pub use index::Index;
+pub use index::{Index, PlaceIndex};
 pub use locations::{Location, LookupError, Place};
 pub use records::{
     ApprDept, Array, Direction, EndEffPara, GripLoc, Locpt, Member, MovtabRecord, ObjGrips, ObjLoc, Object,

@@ -12,15 +12,15 @@ use rcs_core::{
 use super::{
     data::TaskData,
     ids::{GripLocId, MovtabId, ObjectId, PathId, RelativeMoveId, TrajId, VisionId},
-    index::{Key, approach_key, grip_at_key, name_at_key, pair_key, plain_key},
+    index::{EntryAt, Key, PlaceIndex, approach_key, grip_at_key, name_at_key, pair_key, plain_key},
     locations::{Location, LookupError, Place},
     records::{Direction, PathPoint, RefType, Reference, RelativeMove, Target, VisionPara},
 };
 
 impl<'a> TaskData<'a> {
-    /// The first of the aliases of a place, then `$$$`, for which `find` has an answer.
-    fn at_place<T>(&self, place: &Place, find: impl Fn(Reference) -> Option<T>) -> Option<T> {
-        self.aliases(place).chain(core::iter::once(Reference::ANY)).find_map(find)
+    /// The entry for the first of the aliases of a place, then `$$$`, that has one.
+    fn at_place(&self, index: &PlaceIndex<'a>, key: Key, place: &Place) -> Option<EntryAt> {
+        index.first(key, Self::exact(place), self.owners(place))
     }
 
     /// The movetable of a grip of an object at a place (VII.7.5); null if the form names `...`.
@@ -31,15 +31,15 @@ impl<'a> TaskData<'a> {
         grip: i32,
         place: &Place,
     ) -> Option<MovtabId> {
-        self.at_place(place, |at| self.indexes.grip_locs.answer(grip_at_key(object, grip, at)?))
-            .map(MovtabId::new)
+        let key = grip_at_key(object, grip, Reference::ANY)?;
+        self.at_place(&self.indexes.grip_locs, key, place).map(|entry| MovtabId::new(entry.answer))
     }
 
     /// The record number in GRIP-LOC for a grip of an object at a place (VII.7.5).
     #[must_use]
     pub fn grip_loc<const N: usize>(&self, object: &Name<N>, grip: i32, place: &Place) -> Option<GripLocId> {
-        self.at_place(place, |at| self.indexes.grip_locs.find(grip_at_key(object, grip, at)?))
-            .map(GripLocId::new)
+        let key = grip_at_key(object, grip, Reference::ANY)?;
+        self.at_place(&self.indexes.grip_locs, key, place).map(|entry| GripLocId::new(entry.number))
     }
 
     /// Where the tool frame is when an object at a location is held with a grip.
@@ -65,8 +65,8 @@ impl<'a> TaskData<'a> {
         object: &Name<N>,
         place: &Place,
     ) -> Option<(VisionId, &'a VisionPara)> {
-        let id =
-            VisionId::new(self.at_place(place, |at| self.indexes.visions.find(name_at_key(object, at)))?);
+        let key = name_at_key(object, Reference::ANY);
+        let id = VisionId::new(self.at_place(&self.indexes.visions, key, place)?.number);
         Some((id, id.of(self.visions)?))
     }
 
@@ -125,20 +125,21 @@ impl<'a> TaskData<'a> {
         grip: i32,
         place: &Place,
     ) -> Option<PathId> {
-        let paths = self.indexes.appr_depts;
-        self.at_place(place, |at| paths.answer(approach_key(direction, kind, object, grip, at)?))
-            .map(PathId::new)
+        let key = approach_key(direction, kind, object, grip, Reference::ANY)?;
+        self.at_place(&self.indexes.appr_depts, key, place).map(|entry| PathId::new(entry.answer))
     }
 
     fn plain(&self, direction: Direction, place: &Place) -> Option<PathId> {
-        self.at_place(place, |at| self.indexes.appr_depts.answer(plain_key(direction, at))).map(PathId::new)
+        let key = plain_key(direction, Reference::ANY);
+        self.at_place(&self.indexes.appr_depts, key, place).map(|entry| PathId::new(entry.answer))
     }
 
     /// The relative move that a command looks for at a place (extension).
     #[must_use]
     pub fn relative_move<const N: usize>(&self, name: &Name<N>, place: &Place) -> Option<&'a RelativeMove> {
-        let number = self.at_place(place, |at| self.indexes.relative_moves.find(name_at_key(name, at)))?;
-        RelativeMoveId::new(number).of(self.relative_moves)
+        let key = name_at_key(name, Reference::ANY);
+        let entry = self.at_place(&self.indexes.relative_moves, key, place)?;
+        RelativeMoveId::new(entry.number).of(self.relative_moves)
     }
 
     /// The intermediate trajectory from one place to another (VII.6): exact names first, then through the owner of the

@@ -4,7 +4,9 @@
 //! further blocks with `n load` or `offset n OLOAD`, and so on. An area without such a root has no directory, and all its
 //! blocks are loaded in the order in which they stand.
 
-use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashSet, hash_map::Entry};
+
+use rustc_hash::FxHashMap;
 
 use super::{
     collected::Collected,
@@ -45,14 +47,14 @@ pub(super) fn read(
 ) -> Read {
     let new = sources.get(first..).unwrap_or_default();
     let found = parallel::map(new.len(), |i| new.get(i).map(|source| blocks(first + i, source)));
-    let mut all: BTreeMap<BlockNumber, Content> = BTreeMap::new();
+    let mut all: FxHashMap<BlockNumber, Content> = FxHashMap::default();
     let mut order = Vec::new();
     for (found, faults) in found.into_iter().flatten() {
         for (at, fault) in faults {
             note(fault, at, problems);
         }
         for (block, content) in found.iter().zip(contents(&found)) {
-            if let std::collections::btree_map::Entry::Vacant(e) = all.entry(block.number) {
+            if let Entry::Vacant(e) = all.entry(block.number) {
                 order.push(block.number);
                 e.insert(content);
             } else {
@@ -129,7 +131,7 @@ fn contents(blocks: &[Block<'_>]) -> impl Iterator<Item = Content> + use<> {
 
 struct Loader<'b, 'p> {
     /// The blocks; those that were loaded are empty.
-    all: BTreeMap<BlockNumber, Content>,
+    all: FxHashMap<BlockNumber, Content>,
     known: &'b BTreeSet<BlockNumber>,
     read: Read,
     problems: &'p mut Problems,

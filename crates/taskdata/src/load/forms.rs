@@ -126,6 +126,8 @@ fn movetable_entry(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
             return Err(p.expected("---- or -mtb- after the values of a line"));
         }
     }
+    // Most movetables have one line, and there are many movetables.
+    lines.shrink_to_fit();
     let name = p.name("name of the movetable")?;
     if let Some(at) = ninth {
         let message = format!("a movetable has at most {MAX_LINES} lines, {} has {}", name.name, lines.len());
@@ -213,6 +215,8 @@ fn points(p: &mut Parser<'_, '_>) -> Result<Vec<PointEntry>, Skip> {
         let target = if p.take_if("stop").is_some() { None } else { Some(p.typed("path point", POINTS)?) };
         points.push(PointEntry { para, target, at: word.at.to(p.last_at()) });
     }
+    // Most paths have one or two points, and there are many paths.
+    points.shrink_to_fit();
     Ok(points)
 }
 

@@ -6,7 +6,7 @@
 
 use crate::files::{
     Index,
-    index::{Key, Slot, bucket_of, hash_of, run_at, slot_of},
+    index::{CROWDED, ENTRIES, EntryAt, Group, Key, PlaceIndex, Slot, bucket_of, hash_of, run_at, slot_of},
 };
 
 /// Keys in a bucket, on average.
@@ -24,14 +24,26 @@ pub(super) struct Pair {
     pub answer: u32,
 }
 
-/// An index, owned.
+/// What stands in the slots of a table.
+trait Cells: Default {
+    /// So many empty slots.
+    fn empty(slots: usize) -> Self;
+
+    /// The key by which a pair finds its slot.
+    fn key(pair: &Pair) -> Key {
+        pair.key
+    }
+
+    /// Fill a slot with all pairs of a key, in the order of their records.
+    fn put<'p>(&mut self, slot: usize, pairs: impl Iterator<Item = &'p Pair> + Clone);
+}
+
+/// Cells that are found by the pilot of the bucket of a key.
 #[derive(Clone, Debug, Default)]
-pub(super) struct OwnedIndex {
+struct Table<C> {
     pilots: Vec<u8>,
-    slots: Vec<Slot>,
-    numbers: Vec<u32>,
     seed: u64,
-    keys: usize,
+    cells: C,
 }
 
 /// A key in its bucket.
@@ -42,9 +54,9 @@ struct Spread {
     pair: u32,
 }
 
-impl OwnedIndex {
-    /// An index of keys in the order of their records.
-    pub fn new(pairs: &[Pair]) -> Self {
+impl<C: Cells> Table<C> {
+    /// The table of keys in the order of their records.
+    fn new(pairs: &[Pair]) -> Self {
         if pairs.is_empty() {
             return Self::default();
         }
@@ -53,81 +65,176 @@ impl OwnedIndex {
         (0..).find_map(|seed| Self::placed(pairs, slots, seed)).unwrap_or_default()
     }
 
-    /// The index with this seed; `None` if a bucket finds no pilot.
+    /// The table with this seed; `None` if a bucket finds no pilot.
     fn placed(pairs: &[Pair], slots: usize, seed: u64) -> Option<Self> {
         let buckets = pairs.len() / KEYS_A_BUCKET + 1;
-        let (mut spread, begins) = spread(pairs, buckets, seed);
-        let mut index = Self {
-            pilots: vec![0; buckets],
-            slots: vec![Slot::default(); slots],
-            numbers: Vec::new(),
-            seed,
-            keys: 0,
-        };
+        let hashes: Vec<u64> = pairs.iter().map(|pair| hash_of(C::key(pair), seed)).collect();
+        let (mut spread, begins) = spread(&hashes, buckets);
+        let mut table = Self { pilots: vec![0; buckets], seed, cells: C::empty(slots) };
         let mut taken = Taken::new(slots);
         for &bucket in &fullest_first(&begins) {
             let range = begins.get(long(bucket)..)?;
             let keys = spread.get_mut(long(*range.first()?)..long(*range.get(1)?))?;
             // Equal keys come together, in the order of their records.
             keys.sort_by_key(|key| key.hash);
-            *index.pilots.get_mut(long(bucket))? = index.place(pairs, keys, &mut taken)?;
+            *table.pilots.get_mut(long(bucket))? = table.place(pairs, keys, &mut taken)?;
         }
-        Some(index)
+        Some(table)
     }
 
     /// Put the keys of a bucket into slots; gives its pilot. Equal keys stand together.
     fn place(&mut self, pairs: &[Pair], keys: &[Spread], taken: &mut Taken) -> Option<u8> {
-        let mut hashes = [0; FULLEST];
+        let mut places = [Place::default(); FULLEST];
         let mut count = 0;
         for run in keys.chunk_by(|a, b| a.hash == b.hash) {
-            *hashes.get_mut(count)? = run.first()?.hash;
+            places.get_mut(count)?.hash = run.first()?.hash;
             count += 1;
         }
-        let (pilot, slots) = taken.pilot(hashes.get(..count)?)?;
-        for (run, &slot) in keys.chunk_by(|a, b| a.hash == b.hash).zip(&slots) {
-            let pair = |spread: &Spread| pairs.get(long(spread.pair));
-            let first = run.first().and_then(pair)?;
+        let pilot = taken.pilot(places.get_mut(..count)?)?;
+        for (run, &Place { slot, .. }) in keys.chunk_by(|a, b| a.hash == b.hash).zip(&places) {
+            let run = run.iter().filter_map(|spread| pairs.get(long(spread.pair)));
+            let key = C::key(run.clone().next()?);
             // Two keys with one hash go their own ways with another seed.
-            if !run.iter().filter_map(pair).all(|p| p.key == first.key) {
+            if !run.clone().all(|pair| C::key(pair) == key) {
                 return None;
             }
-            let mut answer = first.answer;
-            if run.len() > 1 {
-                self.numbers.push(short(run.len()));
-                answer = short(self.numbers.len());
-                self.numbers.extend(run.iter().filter_map(pair).map(|p| p.number));
-            }
-            *self.slots.get_mut(slot)? = Slot { key: first.key, number: first.number, answer };
-            self.keys += 1;
+            self.cells.put(slot, run);
         }
         Some(pilot)
+    }
+}
+
+/// The cells of an [`Index`].
+#[derive(Clone, Debug, Default)]
+struct Numbered {
+    slots: Vec<Slot>,
+    numbers: Vec<u32>,
+    keys: usize,
+}
+
+impl Cells for Numbered {
+    fn empty(slots: usize) -> Self {
+        Self { slots: vec![Slot::default(); slots], numbers: Vec::new(), keys: 0 }
+    }
+
+    fn put<'p>(&mut self, slot: usize, pairs: impl Iterator<Item = &'p Pair> + Clone) {
+        let mut all = pairs.clone();
+        let (Some(first), Some(slot)) = (all.next(), self.slots.get_mut(slot)) else { return };
+        *slot = Slot { key: first.key, number: first.number, answer: first.answer };
+        self.keys += 1;
+        if all.next().is_some() {
+            self.numbers.push(short(pairs.clone().count()));
+            slot.answer = short(self.numbers.len());
+            self.numbers.extend(pairs.map(|pair| pair.number));
+        }
+    }
+}
+
+/// An index, owned.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OwnedIndex(Table<Numbered>);
+
+impl OwnedIndex {
+    /// An index of keys in the order of their records.
+    pub fn new(pairs: &[Pair]) -> Self {
+        Self(Table::new(pairs))
     }
 
     /// For looking up.
     pub fn view(&self) -> Index<'_> {
-        Index {
-            pilots: &self.pilots,
-            slots: &self.slots,
-            numbers: &self.numbers,
-            seed: self.seed,
-            keys: self.keys,
-        }
+        let Table { pilots, seed, cells } = &self.0;
+        Index { pilots, slots: &cells.slots, numbers: &cells.numbers, seed: *seed, keys: cells.keys }
     }
 
     /// All keys, in no order.
     pub fn keys(&self) -> impl Iterator<Item = Key> + '_ {
-        self.slots.iter().filter(|slot| slot.number > 0).map(|slot| slot.key)
+        self.0.cells.slots.iter().filter(|slot| slot.number > 0).map(|slot| slot.key)
     }
 
     /// The record numbers of each key that several records have.
     pub fn shared(&self) -> impl Iterator<Item = &[u32]> {
         let mut position = 1;
         std::iter::from_fn(move || {
-            let run = run_at(&self.numbers, position)?;
+            let run = run_at(&self.0.cells.numbers, position)?;
             position += short(run.len()) + 1;
             Some(run)
         })
     }
+}
+
+/// The cells of a [`PlaceIndex`].
+#[derive(Clone, Debug, Default)]
+struct Grouped {
+    groups: Vec<Group>,
+    /// Pairs of keys that have no room in a group.
+    crowded: Vec<Pair>,
+}
+
+impl Cells for Grouped {
+    fn empty(slots: usize) -> Self {
+        Self { groups: vec![Group::default(); slots], crowded: Vec::new() }
+    }
+
+    fn key(pair: &Pair) -> Key {
+        pair.key.without_place()
+    }
+
+    fn put<'p>(&mut self, slot: usize, pairs: impl Iterator<Item = &'p Pair> + Clone) {
+        let (Some(first), Some(group)) = (pairs.clone().next(), self.groups.get_mut(slot)) else { return };
+        let mut entries = [EntryAt::default(); ENTRIES];
+        let mut free = entries.iter_mut();
+        // Two records for one location are an error; the other index finds it.
+        let mut known = [0; ENTRIES];
+        let fits = pairs.clone().zip(0..).all(|(pair, i)| {
+            let at = pair.key.place().filter(|at| !known.contains(at));
+            let (Some(at), Some(entry), Some(known)) = (at, free.next(), known.get_mut(i)) else {
+                return false;
+            };
+            *known = at;
+            *entry = EntryAt { at, number: pair.number, answer: pair.answer };
+            true
+        });
+        if !fits {
+            entries = Default::default();
+            self.crowded.extend(pairs.clone());
+        }
+        let count = if fits { short(pairs.count()) } else { CROWDED };
+        *group = Group { key: Self::key(first), entries, count };
+    }
+}
+
+/// An index by key and location, owned.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OwnedPlaceIndex {
+    table: Table<Grouped>,
+    crowded: OwnedIndex,
+}
+
+impl OwnedPlaceIndex {
+    /// An index of keys with locations in the order of their records.
+    pub fn new(pairs: &[Pair]) -> Self {
+        let mut table: Table<Grouped> = Table::new(pairs);
+        let crowded = OwnedIndex::new(&std::mem::take(&mut table.cells.crowded));
+        Self { table, crowded }
+    }
+
+    /// For looking up.
+    pub fn view(&self) -> PlaceIndex<'_> {
+        let Table { pilots, seed, cells } = &self.table;
+        PlaceIndex { pilots, groups: &cells.groups, seed: *seed, crowded: self.crowded.view() }
+    }
+
+    /// The record numbers of each key that several records have at one location.
+    pub fn shared(&self) -> impl Iterator<Item = &[u32]> {
+        self.crowded.shared()
+    }
+}
+
+/// A hash and the slot to which a pilot sends it.
+#[derive(Clone, Copy, Default)]
+struct Place {
+    hash: u64,
+    slot: usize,
 }
 
 /// Which slots are taken, a bit each: what is asked so often must fit into the fastest cache.
@@ -145,37 +252,37 @@ impl Taken {
         self.bits.get(slot / 64).is_some_and(|word| word & (1 << (slot % 64)) == 0)
     }
 
-    /// The first pilot that sends each hash into a free slot of its own, and these slots, which are then taken.
-    fn pilot(&mut self, hashes: &[u64]) -> Option<(u8, [usize; FULLEST])> {
-        let mut slots = [0; FULLEST];
+    /// The first pilot that sends each hash into a free slot of its own; these slots are then taken, and put behind the hashes.
+    fn pilot(&mut self, hashes: &mut [Place]) -> Option<u8> {
         let mut fits = |pilot: &u8| {
-            hashes.iter().enumerate().all(|(count, &hash)| {
-                let slot = slot_of(hash, *pilot, self.slots);
-                let (before, rest) = slots.split_at_mut(count);
-                let free = self.is_free(slot) && !before.contains(&slot);
-                free && rest.first_mut().map(|next| *next = slot).is_some()
+            (0..hashes.len()).all(|count| {
+                let Some((place, before)) = hashes.get_mut(..=count).and_then(<[Place]>::split_last_mut)
+                else {
+                    return false;
+                };
+                place.slot = slot_of(place.hash, *pilot, self.slots);
+                self.is_free(place.slot) && !before.iter().any(|other| other.slot == place.slot)
             })
         };
         let pilot = (0..=u8::MAX).find(&mut fits)?;
-        for &slot in slots.iter().take(hashes.len()) {
-            *self.bits.get_mut(slot / 64)? |= 1 << (slot % 64);
+        for place in hashes.iter() {
+            *self.bits.get_mut(place.slot / 64)? |= 1 << (place.slot % 64);
         }
-        Some((pilot, slots))
+        Some(pilot)
     }
 }
 
 /// The keys bucket after bucket, and where each bucket begins, the end of the last included.
-fn spread(pairs: &[Pair], buckets: usize, seed: u64) -> (Vec<Spread>, Vec<u32>) {
-    let hashes: Vec<u64> = pairs.iter().map(|pair| hash_of(pair.key, seed)).collect();
+fn spread(hashes: &[u64], buckets: usize) -> (Vec<Spread>, Vec<u32>) {
     let mut begins = vec![0_u32; buckets + 1];
-    for &hash in &hashes {
+    for &hash in hashes {
         if let Some(count) = begins.get_mut(bucket_of(hash, buckets) + 1) {
             *count += 1;
         }
     }
     add_up(&mut begins);
     let mut next = begins.clone();
-    let mut spread = vec![Spread::default(); pairs.len()];
+    let mut spread = vec![Spread::default(); hashes.len()];
     for (&hash, pair) in hashes.iter().zip(0..) {
         if let Some(next) = next.get_mut(bucket_of(hash, buckets))
             && let Some(key) = spread.get_mut(long(*next))
@@ -240,14 +347,14 @@ mod tests {
         keys.iter().zip(1..).map(|(&key, number)| Pair { key, number, answer: 0 }).collect()
     }
 
-    const fn key(main: u128, rest: u64) -> Key {
-        Key { main, rest }
+    const fn key(main: u64, rest: u64) -> Key {
+        Key { main: [0, main], rest }
     }
 
     proptest! {
         #[test]
         fn finds_what_a_map_finds(
-            keys in prop::collection::vec((0_u128..50, 0_u64..10), 0..600), probe in (0_u128..50, 0_u64..10)
+            keys in prop::collection::vec((0_u64..50, 0_u64..10), 0..600), probe in (0_u64..50, 0_u64..10)
         ) {
             let keys: Vec<Key> = keys.into_iter().map(|(main, rest)| key(main, rest)).collect();
             let probe = key(probe.0, probe.1);
@@ -264,7 +371,36 @@ mod tests {
         }
 
         #[test]
-        fn answers_for_a_key_of_one_record(keys in prop::collection::btree_set(0_u128..500, 0..300)) {
+        fn the_first_location_with_an_entry_is_found(
+            entries in prop::collection::btree_set((0_u64..6, 0_u64..3, 0_usize..9), 0..60),
+            object in 0_u64..6, grip in 0_u64..3, at in 0_usize..3, owners in prop::collection::vec(3_usize..8, 0..3),
+        ) {
+            use crate::files::{ArrayId, LocptId, OwnerId, Reference, index::name_at_key};
+            let places: Vec<Reference> = (1..3).map(|n| Reference::location_point(LocptId::new(n)))
+                .chain([Reference::array(ArrayId::new(1))])
+                .chain((1..6).map(|n| Reference::owner(OwnerId::new(n))))
+                .chain([Reference::ANY]).collect();
+            let key = |object: u64, grip: u64, place: usize| {
+                let name = rcs_core::name::Name10::clipped(&format!("P{object}"));
+                let key = name_at_key(&name, places[place]);
+                Key { rest: key.rest | (grip << 40), ..key }
+            };
+            let entries: Vec<_> = entries.into_iter().collect();
+            let pairs = entries.iter().zip(1..).map(|(&(o, g, p), number)| {
+                Pair { key: key(o, g, p), number, answer: number + 7 }
+            });
+            let index = OwnedPlaceIndex::new(&pairs.collect::<Vec<_>>());
+            let mut asked = std::iter::once(at).chain(owners.iter().copied()).chain([8]);
+            let expected = asked.find_map(|place| entries.iter().position(|e| *e == (object, grip, place)));
+            let owners = owners.iter().map(|place| places[*place]);
+            let found = index.view().first(key(object, grip, 8), [places[at]].into_iter(), owners);
+            prop_assert_eq!(found.map(|e| e.number), expected.map(|i| short(i) + 1));
+            prop_assert_eq!(found.map(|e| e.answer), expected.map(|i| short(i) + 8));
+            prop_assert_eq!(index.shared().count(), 0);
+        }
+
+        #[test]
+        fn answers_for_a_key_of_one_record(keys in prop::collection::btree_set(0_u64..500, 0..300)) {
             let pairs = keys.iter().zip(1..).map(|(&main, number)| {
                 Pair { key: key(main, 0), number, answer: number + 7 }
             });
@@ -285,6 +421,15 @@ mod tests {
     }
 
     #[test]
+    fn two_records_for_one_location_are_found() {
+        use crate::files::{Reference, index::name_at_key};
+        let key = name_at_key(&rcs_core::name::Name10::clipped("PART"), Reference::ANY);
+        let index = OwnedPlaceIndex::new(&numbered(&[key, key]));
+        assert_eq!(index.shared().collect::<Vec<_>>(), [[1, 2]]);
+        assert!(OwnedPlaceIndex::new(&[]).view().first(key, [].into_iter(), [].into_iter()).is_none());
+    }
+
+    #[test]
     fn an_empty_index_finds_nothing() {
         let index = OwnedIndex::new(&[]);
         assert_eq!(
@@ -302,7 +447,7 @@ mod tests {
             };
             let keys: Vec<Key> = (1..=100_000).map(key).collect();
             let index = OwnedIndex::new(&numbered(&keys));
-            assert_eq!(index.seed, 0);
+            assert_eq!(index.0.seed, 0);
             assert!((1..=100_000).all(|i| index.view().find(key(i)) == Some(i)));
         }
     }

@@ -26,12 +26,7 @@ fn short(value: usize) -> u32 {
 
 /// A piece of a line.
 fn piece(line: &Line<'_>, from: usize, length: usize) -> At {
-    At {
-        start: line.at.start.saturating_add(short(from)),
-        column: short(from).saturating_add(1),
-        length: short(length),
-        ..line.at
-    }
+    At { start: line.at.start.saturating_add(short(from)), length: short(length), ..line.at }
 }
 
 /// The words of one line, for text that is read line by line. An open comment ends with the line.
@@ -43,9 +38,12 @@ pub fn words_of_line<'a>(line: &Line<'a>) -> Vec<Word<'a>> {
     words
 }
 
+/// Words for which room is made at once in each line.
+const WORDS_A_LINE: usize = 8;
+
 /// The words of a block. A comment that is not closed in its block is an error.
 pub fn words<'a>(block: &Block<'a>, problems: &mut Problems) -> Vec<Word<'a>> {
-    let mut words = Vec::new();
+    let mut words = Vec::with_capacity(block.lines.len().saturating_mul(WORDS_A_LINE));
     let mut open = None;
     for line in &block.lines {
         scan(line, &mut open, &mut words);
@@ -63,31 +61,34 @@ pub fn words<'a>(block: &Block<'a>, problems: &mut Problems) -> Vec<Word<'a>> {
 
 /// Add the words of a line; `open` is where a comment in parentheses began that is not closed yet.
 fn scan<'a>(line: &Line<'a>, open: &mut Option<At>, words: &mut Vec<Word<'a>>) {
+    let bytes = line.text.as_bytes();
     let mut first = true;
     let mut position = 0;
+    // The position of the next byte that is meant; lines are short, so the bytes are looked at one by one.
+    let next = |from: usize, meant: fn(u8) -> bool| {
+        bytes.get(from..).and_then(|rest| rest.iter().position(|b| meant(*b))).map(|ahead| from + ahead)
+    };
     loop {
-        let Some(rest) = line.text.get(position..) else { return };
         if open.is_some() {
-            let Some(end) = rest.find(')') else { return };
+            let Some(end) = next(position, |b| b == b')') else { return };
             *open = None;
-            position += end + 1;
+            position = end + 1;
             continue;
         }
-        let Some(blanks) = rest.find(|c: char| c != ' ') else { return };
-        position += blanks;
-        let Some(rest) = line.text.get(position..) else { return };
-        match rest.as_bytes().first() {
+        let Some(begin) = next(position, |b| b != b' ') else { return };
+        match bytes.get(begin) {
             Some(b'%') | None => return,
             Some(b'(') => {
-                *open = Some(piece(line, position, rest.trim_end().len()));
-                position += 1;
+                let length = line.text.trim_end().len().saturating_sub(begin);
+                *open = Some(piece(line, begin, length));
+                position = begin + 1;
             }
             Some(_) => {
-                let length = rest.find(' ').unwrap_or(rest.len());
-                let text = rest.get(..length).unwrap_or(rest);
-                words.push(Word { text, at: piece(line, position, length), first });
+                position = next(begin, |b| b == b' ').unwrap_or(bytes.len());
+                // Blanks are characters of their own, so a word begins and ends between characters.
+                let text = line.text.get(begin..position).unwrap_or_default();
+                words.push(Word { text, at: piece(line, begin, text.len()), first });
                 first = false;
-                position += length;
             }
         }
     }

@@ -7,7 +7,8 @@
 //! 3. [`directory`]: which blocks are loaded at all (Figure VIII.12);
 //! 4. `link`: names into record numbers, duplicates, unknown names;
 //! 5. `check`: what a command would run into; every place the robot is sent to can be reached;
-//! 6. [`store`]: the files; [`origins`]: where each record was entered; [`report`]: everything that was found.
+//! 6. [`store`]: the files; [`origins`]: where each record was entered; [`report`]: everything that was found, with its
+//!    [`places`].
 //!
 //! [`print`] writes entries as forms again. [`job`] reads the job files, which stand beside the blocks.
 
@@ -25,6 +26,7 @@ pub mod names;
 pub mod origins;
 mod parallel;
 pub mod parse;
+pub mod places;
 pub mod print;
 pub mod report;
 pub mod source;
@@ -38,7 +40,7 @@ pub use report::{Diagnostic, Loaded, Report, Severity};
 pub use source::{BlockNumber, Source};
 pub use store::Store;
 
-use report::Problems;
+use {places::Places, report::Problems};
 
 impl Store {
     /// Load all files `*.blk` under a data directory.
@@ -51,7 +53,7 @@ impl Store {
             Err((path, error)) => {
                 let mut problems = Problems::default();
                 problems.unreadable(&path, &error);
-                Err(Box::new(Report::new(problems, &[], 0, Vec::new())))
+                Err(Box::new(Report::new(problems, Places::in_blocks(&[]), 0, Vec::new())))
             }
         }
     }
@@ -101,7 +103,7 @@ impl Store {
         sources.extend(texts);
         let read = directory::read(&sources, first, &self.blocks, &mut problems);
         let entries = self.entries.with(read.entries);
-        let (files, indexes, origins) = link::link(&entries, read.broken, &sources, &mut problems);
+        let (files, indexes, origins) = link::link(&entries, read.broken, &mut problems);
         let count = read.blocks.len();
         let blocks = self.blocks.union(&read.blocks).copied().collect();
         let store = Self { files, indexes, sources, entries, blocks, origins };
@@ -121,7 +123,7 @@ impl Store {
     ) -> Result<(Self, Report), Box<Report>> {
         let failed = problems.has_errors();
         let loaded = if failed { Vec::new() } else { self.loaded() };
-        let mut report = Report::new(problems, &self.sources, blocks, loaded);
+        let mut report = Report::new(problems, Places::in_blocks(&self.sources), blocks, loaded);
         report.files = self.sources.len() - before;
         if failed { Err(Box::new(report)) } else { Ok((self, report)) }
     }

@@ -1,9 +1,11 @@
 //! Work on all processors whose results come in order, so that a load says the same however many processors there are.
 
 use std::{
+    iter::Flatten,
     num::NonZero,
+    ops::Range,
     sync::atomic::{AtomicUsize, Ordering},
-    thread,
+    thread, vec,
 };
 
 /// The results of `work` on `0..count`, in this order. Each processor takes the next piece when it has done one; work of one
@@ -46,12 +48,25 @@ pub(super) fn map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Ve
 pub(super) fn map_pieces<T: Send>(
     count: usize,
     size: usize,
-    work: impl Fn(std::ops::Range<usize>) -> T + Sync,
+    work: impl Fn(Range<usize>) -> T + Sync,
 ) -> Vec<T> {
     map(count.div_ceil(size), |piece| {
         let first = piece.saturating_mul(size);
         work(first..first.saturating_add(size).min(count))
     })
+}
+
+/// Items that one processor is given at a time by [`map_each`].
+const ITEMS_AT_A_TIME: usize = 2048;
+
+/// The results of `work` on all items, in their order.
+pub(super) fn map_each<'i, I: Sync, T: Send>(
+    items: &'i [I],
+    work: impl Fn(&'i I) -> T + Sync,
+) -> Flatten<vec::IntoIter<Vec<T>>> {
+    let piece =
+        |range: Range<usize>| items.get(range).unwrap_or_default().iter().map(&work).collect::<Vec<T>>();
+    map_pieces(items.len(), ITEMS_AT_A_TIME, piece).into_iter().flatten()
 }
 
 #[cfg(test)]
@@ -63,5 +78,7 @@ mod tests {
         assert_eq!(map(1000, |i| i * i), (0..1000).map(|i| i * i).collect::<Vec<_>>());
         assert_eq!(map_pieces(10, 4, |range| range), [0..4, 4..8, 8..10]);
         assert_eq!(map_pieces(0, 4, |range| range), []);
+        let items: Vec<usize> = (0..5000).collect();
+        assert!(map_each(&items, |i| i + 1).eq(1..5001));
     }
 }

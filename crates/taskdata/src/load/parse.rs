@@ -202,20 +202,31 @@ impl<'a> Parser<'a, '_> {
 
     /// A name. One that is too long is noted, and the entry is read on.
     pub fn name<const N: usize>(&mut self, what: impl Display) -> Result<Named<N>, Skip> {
+        self.name_within(what, N)
+    }
+
+    /// A name of at most `most` characters.
+    fn name_within<const N: usize>(&mut self, what: impl Display, most: usize) -> Result<Named<N>, Skip> {
         let Some(word) = self.peek().filter(|w| !is_compiling_word(w.text) && !is_integer(w.text)) else {
             return Err(self.expected(&what.to_string()));
         };
         self.next += 1;
-        if let Err(error) = Name::<N>::new(word.text) {
+        let found = word.text.len();
+        let read = match Name::<N>::new(word.text) {
+            Ok(_) if found > most => Err(NameError::TooLong { allowed: most, found }),
+            read => read,
+        };
+        let name = read.unwrap_or_else(|error| {
             let message = match error {
-                NameError::TooLong { allowed, found } => {
-                    format!("{what} has at most {allowed} characters, {} has {found}", word.text)
+                NameError::TooLong { found, .. } => {
+                    format!("{what} has at most {most} characters, {} has {found}", word.text)
                 }
                 NameError::BadCharacter { .. } => format!("{what}: {error}"),
             };
             self.flaw("name.length", word.at, message, None);
-        }
-        Ok(Named { name: Name::clipped(word.text), at: word.at })
+            Name::clipped(word.text)
+        });
+        Ok(Named { name, at: word.at })
     }
 
     /// One of the type words `allowed`.
@@ -239,14 +250,8 @@ impl<'a> Parser<'a, '_> {
         if kind == RefType::Any {
             return Ok(Typed { kind, name: Named { name: Name::clipped(kind.text()), at } });
         }
-        let name = match kind {
-            RefType::Object | RefType::View => self.name::<16>(what)?,
-            _ => {
-                let short = self.name::<10>(what)?;
-                Named { name: Name::clipped(short.name.as_str()), at: short.at }
-            }
-        };
-        Ok(Typed { kind, name })
+        let most = if matches!(kind, RefType::Object | RefType::View) { 16 } else { 10 };
+        Ok(Typed { kind, name: self.name_within(what, most)? })
     }
 
     /// The last word that was taken.

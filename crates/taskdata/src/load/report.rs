@@ -7,7 +7,10 @@ use miette::{
     SourceSpan,
 };
 
-use super::source::{At, BlockNumber, Source};
+use super::{
+    places::{Places, Position},
+    source::{At, BlockNumber},
+};
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +45,8 @@ pub struct Problem {
     pub message: String,
     /// What to do, or the nearest known name.
     pub help: Option<String>,
+    /// The first of two things of which there must be one; it becomes the help.
+    pub first: Option<At>,
     /// What was expected in its place, for programs; the message says it too.
     pub expected: Option<String>,
     /// The nearest known name, for programs; the help says it too.
@@ -71,6 +76,14 @@ impl Problems {
         self.push(Severity::Error, code, at, message.into(), Some(help.into()));
     }
 
+    /// Add an error of something that is there already.
+    pub fn duplicate(&mut self, at: At, message: impl Into<String>, first: At) {
+        self.error("duplicate", at, message);
+        if let Some(last) = self.list.last_mut() {
+            last.first = Some(first);
+        }
+    }
+
     /// Add a warning.
     pub fn warning(&mut self, code: &'static str, at: At, message: impl Into<String>, help: Option<String>) {
         self.push(Severity::Warning, code, at, message.into(), help);
@@ -91,6 +104,7 @@ impl Problems {
             at: Some(at),
             message,
             help,
+            first: None,
             expected: None,
             nearest: None,
         });
@@ -131,6 +145,7 @@ impl Problems {
             at: None,
             message,
             help: None,
+            first: None,
             expected: None,
             nearest: None,
         });
@@ -149,9 +164,9 @@ impl Problems {
 
     /// The problems tied to their sources, in the order of the text.
     #[must_use]
-    pub fn into_diagnostics(mut self, sources: &[Source]) -> Vec<Diagnostic> {
+    pub fn into_diagnostics(mut self, places: &mut Places<'_>) -> Vec<Diagnostic> {
         self.list.sort_by_key(|p| p.at.map_or((0, 0), |at| (at.source, at.start)));
-        self.list.into_iter().map(|p| Diagnostic::new(p, sources)).collect()
+        self.list.into_iter().map(|p| Diagnostic::new(p, places)).collect()
     }
 }
 
@@ -166,29 +181,34 @@ pub struct Diagnostic {
     nearest: Option<String>,
     file: String,
     at: Option<At>,
+    position: Option<Position>,
     text: String,
     line_text: String,
     source: Option<NamedSource<Arc<str>>>,
 }
 
 impl Diagnostic {
-    fn new(problem: Problem, sources: &[Source]) -> Self {
-        let source = problem.at.and_then(|at| sources.get(usize::try_from(at.source).ok()?));
+    fn new(problem: Problem, places: &mut Places<'_>) -> Self {
+        let source = problem.at.and_then(|at| places.source(at));
+        let position = problem.at.and_then(|at| places.position(at));
         let text =
             source.zip(problem.at).and_then(|(s, at)| s.text.get(range(at))).unwrap_or_default().to_owned();
-        let line_text =
-            source.zip(problem.at).map(|(s, at)| line_around(&s.text, at).to_owned()).unwrap_or_default();
+        let begin =
+            problem.at.zip(position).map(|(at, p)| at.start.saturating_sub(p.column.saturating_sub(1)));
+        let line_text = source.zip(begin).map(|(s, begin)| line_from(&s.text, begin).to_owned());
+        let first = problem.first.map(|first| format!("the first is in {}", places.words(first)));
         Self {
             severity: problem.severity,
             code: problem.code,
             message: problem.message,
-            help: problem.help,
+            help: problem.help.or(first),
             expected: problem.expected,
             nearest: problem.nearest,
             file: source.map(|s| s.name.clone()).unwrap_or_default(),
             at: problem.at,
+            position,
             text,
-            line_text,
+            line_text: line_text.unwrap_or_default(),
             source: source.map(|s| NamedSource::new(&s.name, Arc::clone(&s.text))),
         }
     }
@@ -238,19 +258,19 @@ impl Diagnostic {
     /// The block, if it stands in one.
     #[must_use]
     pub fn block(&self) -> Option<BlockNumber> {
-        self.at.and_then(|at| at.block)
+        self.position.and_then(|position| position.block)
     }
 
     /// Line of the block from 0 (as the manual counts), or of the file from 1 outside blocks.
     #[must_use]
     pub fn line(&self) -> Option<u32> {
-        self.at.map(|at| at.line)
+        self.position.map(|position| position.line)
     }
 
     /// Column from 1.
     #[must_use]
     pub fn column(&self) -> Option<u32> {
-        self.at.map(|at| at.column)
+        self.position.map(|position| position.column)
     }
 
     /// Number of bytes that are underlined.
@@ -268,12 +288,12 @@ impl Diagnostic {
     /// File, block, line and column in words.
     #[must_use]
     pub fn place(&self) -> String {
-        match (self.at, self.block()) {
-            (Some(at), Some(block)) => {
-                format!("{}: {block}, line {}, column {}", self.file, at.line, at.column)
+        match self.position {
+            Some(Position { block: Some(block), line, column }) => {
+                format!("{}: {block}, line {line}, column {column}", self.file)
             }
-            (Some(at), None) => format!("{}: line {}, column {}", self.file, at.line, at.column),
-            (None, _) => self.file.clone(),
+            Some(Position { line, column, .. }) => format!("{}: line {line}, column {column}", self.file),
+            None => self.file.clone(),
         }
     }
 
@@ -282,8 +302,8 @@ impl Diagnostic {
         let place = self.place();
         let colon = if place.is_empty() { "" } else { ": " };
         writeln!(f, "{}: {place}{colon}{}", self.severity.text(), self.message)?;
-        if let Some(at) = self.at.filter(|_| !self.line_text.is_empty()) {
-            let before = usize::try_from(at.column).unwrap_or(1).saturating_sub(1);
+        if let Some(position) = self.position.filter(|_| !self.line_text.is_empty()) {
+            let before = usize::try_from(position.column).unwrap_or(1).saturating_sub(1);
             let rest = self.line_text.chars().count().saturating_sub(before);
             let width = self.text.lines().next().unwrap_or_default().chars().count().clamp(1, rest.max(1));
             writeln!(f, "    {}", self.line_text)?;
@@ -325,9 +345,10 @@ impl miette::Diagnostic for Diagnostic {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let at = self.at?;
-        let label = at.block.map(|block| format!("{block}, line {}, column {}", at.line, at.column));
-        let range = range(at);
+        let label = self.position.and_then(|Position { block, line, column }| {
+            block.map(|block| format!("{block}, line {line}, column {column}"))
+        });
+        let range = range(self.at?);
         let span = SourceSpan::new(range.start.into(), range.len());
         Some(Box::new(std::iter::once(LabeledSpan::new_with_span(label, span))))
     }
@@ -338,9 +359,9 @@ fn range(at: At) -> std::ops::Range<usize> {
     start..start.saturating_add(usize::try_from(at.length).unwrap_or(0))
 }
 
-/// The line of a block that holds the beginning of a piece; without the line number of a listing.
-fn line_around(text: &str, at: At) -> &str {
-    let start = usize::try_from(at.start.saturating_sub(at.column.saturating_sub(1))).unwrap_or(0);
+/// The line that begins at a byte; that of a listing begins after its number.
+fn line_from(text: &str, start: u32) -> &str {
+    let start = usize::try_from(start).unwrap_or(usize::MAX);
     text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default()
 }
 
@@ -368,8 +389,9 @@ pub struct Report {
 impl Report {
     /// A report of what was found in the sources.
     #[must_use]
-    pub fn new(problems: Problems, sources: &[Source], blocks: usize, loaded: Vec<Loaded>) -> Self {
-        Self { diagnostics: problems.into_diagnostics(sources), files: sources.len(), blocks, loaded }
+    pub fn new(problems: Problems, mut places: Places<'_>, blocks: usize, loaded: Vec<Loaded>) -> Self {
+        let files = places.sources().len();
+        Self { diagnostics: problems.into_diagnostics(&mut places), files, blocks, loaded }
     }
 
     /// The same with what another look at one of the sources found.

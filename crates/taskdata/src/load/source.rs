@@ -27,17 +27,12 @@ pub struct Source {
     pub text: Arc<str>,
 }
 
-/// A piece of a source: what a diagnostic underlines.
+/// A piece of a source: what a diagnostic underlines. Every word of a load has one, so it is small; [`Places`] knows its block,
+/// line and column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct At {
     /// Position of the source in the list of sources.
     pub source: u32,
-    /// Block and offset, if it lies in a block.
-    pub block: Option<BlockNumber>,
-    /// Line in the block from 0, or line in the file from 1 if there is no block.
-    pub line: u32,
-    /// Column from 1.
-    pub column: u32,
     /// First byte in the source.
     pub start: u32,
     /// Number of bytes.
@@ -51,19 +46,6 @@ impl At {
         let last = end.start.saturating_add(end.length);
         Self { length: last.saturating_sub(self.start).max(self.length), ..self }
     }
-}
-
-/// A place in words: file, block and line.
-#[must_use]
-pub fn place(sources: &[Source], at: At) -> String {
-    let file = usize::try_from(at.source)
-        .ok()
-        .and_then(|i| sources.get(i))
-        .map_or("?", |source| source.name.as_str());
-    at.block.map_or_else(
-        || format!("{file}, line {}", at.line),
-        |block| format!("{file}, {block}, line {}", at.line),
-    )
 }
 
 /// Number of a block and the offset of its area.
@@ -86,7 +68,7 @@ impl std::fmt::Display for BlockNumber {
 pub struct Line<'a> {
     /// The text.
     pub text: &'a str,
-    /// Where it stands; its column is 1.
+    /// Where it stands.
     pub at: At,
 }
 
@@ -187,21 +169,17 @@ fn header_number(line: &str) -> Option<BlockNumber> {
 pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockFault)>) {
     let mut found: Vec<Block<'_>> = Vec::new();
     let mut faults = Vec::new();
-    for (number, (start, text)) in lines_of(&source.text).enumerate() {
-        let at = At {
-            source: short(index),
-            block: None,
-            line: short(number).saturating_add(1),
-            column: 1,
-            start: short(start),
-            length: short(text.len()),
-        };
-        if let Some(position) = text.bytes().position(|b| !(b.is_ascii_graphic() || b == b' '))
+    for (start, text) in lines_of(&source.text) {
+        let at = At { source: short(index), start: short(start), length: short(text.len()) };
+        let printable = |b: u8| (b' '..=b'~').contains(&b);
+        // Without a branch for each byte this is much quicker than to look for the first.
+        let plain = text.bytes().fold(true, |all, b| all & printable(b));
+        if !plain
             && !text.starts_with(REMARK)
+            && let Some(position) = text.bytes().position(|b| !printable(b))
         {
             let bad = text.get(position..).and_then(|rest| rest.chars().next()).map_or(1, char::len_utf8);
-            let bad_at =
-                At { start: short(start + position), column: short(position) + 1, length: short(bad), ..at };
+            let bad_at = At { start: short(start + position), length: short(bad), ..at };
             faults.push((bad_at, BlockFault::NotAscii));
         }
         if text.starts_with(REMARK) {
@@ -213,17 +191,14 @@ pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockF
                     if number.number > LAST_BLOCK {
                         faults.push((at, BlockFault::Number(number.number)));
                     }
-                    found.push(Block { number, header: at, lines: Vec::new() });
+                    found.push(Block { number, header: at, lines: Vec::with_capacity(BLOCK_LINES) });
                 }
                 None => faults.push((at, BlockFault::Header)),
             }
             continue;
         }
         match found.last_mut() {
-            Some(block) => {
-                let line = short(block.lines.len());
-                block.lines.push(Line { text, at: At { block: Some(block.number), line, ..at } });
-            }
+            Some(block) => block.lines.push(Line { text, at }),
             None if text.trim().is_empty() => {}
             None => faults.push((at, BlockFault::NoHeader)),
         }
@@ -257,7 +232,6 @@ fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
             let past = short(BLOCK_COLUMNS);
             let at = At {
                 start: line.at.start.saturating_add(past),
-                column: past + 1,
                 length: short(columns - BLOCK_COLUMNS),
                 ..line.at
             };
@@ -272,6 +246,9 @@ const LISTING_WIDTH: usize = 3;
 /// True if every line begins with its own number in two columns, as in the listings of the manual. No form can look so: the
 /// numbers of a movetable's lines begin at 1.
 fn is_listing(lines: &[Line<'_>]) -> bool {
+    if lines.first().is_none_or(|line| !line.text.starts_with(" 0")) {
+        return false;
+    }
     let own_number = |(number, line): (usize, &Line<'_>)| {
         line.text
             .strip_prefix(format!("{number:2}").as_str())
@@ -298,7 +275,6 @@ mod tests {
         assert_eq!(blocks.len(), 2);
         let texts: Vec<&str> = blocks[0].lines.iter().map(|l| l.text).collect();
         assert_eq!(texts, ["", "  -pt- A", "  -pt- B"]);
-        assert_eq!(blocks[0].lines[2].at.line, 2);
         let at = blocks[0].lines[2].at;
         assert_eq!(&s.text[at.start as usize..(at.start + at.length) as usize], "  -pt- B");
         assert_eq!(blocks[1].number, BlockNumber { offset: 21_000, number: 722 });
@@ -332,6 +308,10 @@ mod tests {
                 BlockFault::TooWide(65)
             ]
         );
-        assert_eq!((faults[3].0.line, faults[4].0.column), (16, 65));
+        let text = |at: At| &text[at.start as usize..(at.start + at.length) as usize];
+        assert_eq!(
+            faults[1..].iter().map(|f| text(f.0)).collect::<Vec<_>>(),
+            ["BLOCK# one OFFSET 21000", "\u{e9}", "y", "x"]
+        );
     }
 }

@@ -10,10 +10,11 @@ use crate::files::{
 
 use super::{
     collected::Collected,
-    index::OwnedIndex,
+    index::{OwnedIndex, OwnedPlaceIndex},
     origins::Origins,
+    places::Places,
     report::Loaded,
-    source::{At, BlockNumber, Source, place},
+    source::{At, BlockNumber, Source},
 };
 
 /// Records that a file can hold (DESIGN 7); one more is the manual's FILE FULL.
@@ -109,11 +110,11 @@ pub(super) struct OwnedIndexes {
     pub obj_grips: OwnedIndex,
     pub obj_locs: OwnedIndex,
     pub ped_paras: OwnedIndex,
-    pub grip_locs: OwnedIndex,
-    pub visions: OwnedIndex,
-    pub appr_depts: OwnedIndex,
+    pub grip_locs: OwnedPlaceIndex,
+    pub visions: OwnedPlaceIndex,
+    pub appr_depts: OwnedPlaceIndex,
     pub sensors: OwnedIndex,
-    pub relative_moves: OwnedIndex,
+    pub relative_moves: OwnedPlaceIndex,
 }
 
 /// Loaded task data: the files, their indexes and the text that they came from.
@@ -194,7 +195,7 @@ impl Store {
     /// A place of the text in words: file, block and line; "?" if the text is not known.
     #[must_use]
     pub fn place(&self, at: At) -> String {
-        place(&self.sources, at)
+        Places::in_blocks(&self.sources).words(at)
     }
 
     /// How many records each file has, by the manual's names.

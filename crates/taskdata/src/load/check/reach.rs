@@ -72,6 +72,12 @@ fn from_vertical(frame: &Frame) -> f64 {
     axis.x.hypot(axis.y).atan2(axis.z.abs()).to_degrees()
 }
 
+/// True if the gripper axis is so near to vertical that it is warned of.
+fn is_vertical(frame: &Frame) -> bool {
+    // Most frames are far from it: then no angle has to be worked out.
+    frame.x().z.abs() > 0.99 && from_vertical(frame) < VERTICAL
+}
+
 /// Why the arm cannot take a frame.
 struct Fault {
     code: &'static str,
@@ -209,7 +215,7 @@ impl<'a> Reach<'a> {
     fn follow(&self, path: PathId, reference: &Frame, what: What<'_>, fixed: bool, findings: &mut Findings) {
         let data = self.data;
         let first = path.of(data.paths).map_or(0, |p| usize::try_from(p.first).unwrap_or(0));
-        let upright = from_vertical(reference) < VERTICAL;
+        let upright = || is_vertical(reference);
         let mut before = *reference;
         for (i, point) in data.path(path).iter().enumerate() {
             let base = if fixed { reference } else { &before };
@@ -218,7 +224,7 @@ impl<'a> Reach<'a> {
             let what = || format!("{}, {}", what(), self.point_name(point));
             match point.target {
                 // Where the reference is vertical and warned of, its points need no warning of their own.
-                Target::Movetable(_) if upright => {
+                Target::Movetable(_) if upright() => {
                     if let Some(fault) = fault(&frame) {
                         findings.error(fault.code, at, format!("{}: {}", what(), fault.message), fault.help);
                     }
@@ -386,8 +392,8 @@ impl<'a> Reach<'a> {
 
 /// Warn of a frame near the vertical.
 fn vertical(what: What<'_>, frame: &Frame, at: At, findings: &mut Findings) {
-    let degrees = from_vertical(frame);
-    if degrees < VERTICAL {
+    if is_vertical(frame) {
+        let degrees = from_vertical(frame);
         let help = "tilt the gripper by 3 degrees or more, as LK-GRP-1 does (VIII.9.5)".to_owned();
         let message = format!("{}: the gripper is {degrees:.1} degrees from vertical", what());
         findings.warning("vertical", at, message, help);

@@ -51,6 +51,7 @@ pub use action::{
 
 use super::{
     Store,
+    places::Places,
     report::{Problems, Report},
     source::{At, Line, Source, lines_of, read},
 };
@@ -121,7 +122,7 @@ impl Job {
             Err(error) => {
                 let mut problems = Problems::default();
                 problems.unreadable(&path.display().to_string(), &error);
-                Err(Box::new(Report::new(problems, &[], 0, Vec::new())))
+                Err(Box::new(Report::new(problems, Places::in_lines(&[]), 0, Vec::new())))
             }
         }
     }
@@ -135,10 +136,10 @@ impl Job {
         let reloads = reload::reloads(&source, store, &mut problems);
         let views = reloads.iter().map(|reload| reload.store.view()).collect();
         let mut reader = read::Reader::new(store.view(), views, &mut problems);
-        let steps = source_lines(&source).filter_map(|line| reader.line(&line)).collect();
+        let steps = source_lines(&source).filter_map(|(number, line)| reader.line(number, &line)).collect();
         reader.end();
         let failed = problems.has_errors();
-        let report = Report::new(problems, std::slice::from_ref(&source), 0, Vec::new());
+        let report = Report::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new());
         if failed {
             return Err(Box::new(report));
         }
@@ -153,20 +154,15 @@ impl Job {
     }
 }
 
-fn source_lines(source: &Source) -> impl Iterator<Item = Line<'_>> {
+/// The lines of a job, each with its number from 1.
+fn source_lines(source: &Source) -> impl Iterator<Item = (u32, Line<'_>)> {
     let short = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
-    lines_of(&source.text).enumerate().filter(|(_, (_, text))| !text.starts_with("BLOCK#")).map(
-        move |(number, (start, text))| {
-            let line = short(number).saturating_add(1);
-            let at = At {
-                source: 0,
-                block: None,
-                line,
-                column: 1,
-                start: short(start),
-                length: short(text.len()),
-            };
-            Line { text, at }
-        },
-    )
+    let line = move |(start, text): (usize, _)| Line {
+        text,
+        at: At { source: 0, start: short(start), length: short(text.len()) },
+    };
+    (1..)
+        .zip(lines_of(&source.text))
+        .filter(|(_, (_, text))| !text.starts_with("BLOCK#"))
+        .map(move |(number, found)| (number, line(found)))
 }

@@ -99,8 +99,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The step of a line; `None` if it has none, or if it cannot be read, which is noted.
-    pub(super) fn line(&mut self, line: &Line<'_>) -> Option<JobLine> {
+    /// The step of line `number`; `None` if it has none, or if it cannot be read, which is noted.
+    pub(super) fn line(&mut self, number: u32, line: &Line<'_>) -> Option<JobLine> {
         let words = words_of_line(line);
         let first = words.first()?;
         let mut fields = Fields { words: &words, next: 1 };
@@ -121,9 +121,10 @@ impl Reader<'_, '_> {
             self.problems.error("job.fields", extra.at, format!("the line should end before {}", extra.text));
             return None;
         }
-        let end = words.last().map_or(0, |w| w.at.column.saturating_add(w.at.length).saturating_sub(1));
-        let text = line.text.get(..usize::try_from(end).unwrap_or(0)).unwrap_or(line.text);
-        Some(JobLine { step, text: text.trim().to_owned(), line: line.at.line })
+        let end = words.last().map_or(0, |w| w.at.start.saturating_add(w.at.length));
+        let length = usize::try_from(end.saturating_sub(line.at.start)).unwrap_or(0);
+        let text = line.text.get(..length).unwrap_or(line.text);
+        Some(JobLine { step, text: text.trim().to_owned(), line: number })
     }
 
     pub(super) fn missing(&mut self, what: &str, at: At) {

@@ -28,7 +28,7 @@ pub struct Reload {
 pub(super) fn reloads(job: &Source, store: &Store, problems: &mut Problems) -> Vec<Reload> {
     let directory = Path::new(&job.name).parent().unwrap_or(Path::new(""));
     let mut loaded: Vec<Reload> = Vec::new();
-    for line in source_lines(job) {
+    for (_, line) in source_lines(job) {
         let words = words_of_line(&line);
         let texts: Vec<&str> = words.iter().map(|word| word.text).collect();
         let Some(file) = file_of(&texts).and_then(|at| words.get(at)) else { continue };

@@ -16,7 +16,7 @@ impl Linker<'_> {
                 threshold: entry.threshold,
             });
         }
-        let mut keys = Vec::new();
+        let mut keyed = Keyed::with_capacity("this relative move at this location", all.relative_moves.len());
         for entry in &all.relative_moves {
             let (at, movetable) = (self.reference(entry.place), self.movetable(entry.movetable));
             let sensor = match entry.sensor {
@@ -27,10 +27,9 @@ impl Linker<'_> {
                 let para = self.para(entry.para);
                 let name = entry.name.name;
                 self.files.relative_moves.push(RelativeMove { name, at, movetable, para, sensor });
-                keys.push((name_at_key(&name, at), entry.at));
+                keyed.push(name_at_key(&name, at), 0, entry.at);
             }
         }
-        let keyed = Keyed::new("this relative move at this location", keys.into_iter());
-        [(self.indexes.relative_moves, self.origins.relative_moves)] = self.indexed([keyed]);
+        [(self.indexes.relative_moves, self.origins.relative_moves)] = self.indexed_at([keyed]);
     }
 }

@@ -4,44 +4,48 @@
 //! names and the duplicates, which share a key.
 
 mod guarded;
+mod known;
 mod objects;
 mod places;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use rcs_core::frame::Frame;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::files::{
-    ArrayId, LocptId, Member, MovtabId, Object, ObjectId, OwnerId, PoseId, RefType, Reference, TrajParaId,
+    ArrayId, LocptId, Member, MovtabId, ObjLoc, Object, ObjectId, OwnerId, PoseId, RefType, Reference,
+    TrajParaId,
     data::NULL_NAME,
-    index::{Key, grip_key, name_key, pair_key, reference_key},
+    index::{Key, grip_key, name_key, object_key, pair_key, reference_key},
 };
 
 use super::{
     collected::Collected,
     entries::{Named, Typed},
-    index::{OwnedIndex, Pair},
+    index::{OwnedIndex, OwnedPlaceIndex, Pair},
     names::nearest,
     origins::Origins,
     parallel,
     report::Problems,
-    source::{At, Source, place},
+    source::At,
     store::{FILE_NAMES, FILE_RECORDS, Files, OwnedIndexes},
 };
+
+use known::Known;
 
 /// Unknown names for which the nearest known one is looked for; in data where everything is unknown that would take hours.
 const NEAREST_FOR: usize = 200;
 
 /// What links the entries of a load.
 pub(super) struct Linker<'a> {
-    sources: &'a [Source],
     broken: HashSet<String>,
     problems: &'a mut Problems,
     files: Files,
     indexes: OwnedIndexes,
     origins: Origins,
     /// Parameters that have a record already.
-    paras: HashMap<[i32; 4], TrajParaId>,
+    paras: FxHashMap<[i32; 4], TrajParaId>,
     /// Names that were looked for in vain.
     unknown: usize,
 }
@@ -50,17 +54,15 @@ pub(super) struct Linker<'a> {
 pub(super) fn link(
     entries: &Collected,
     broken: HashSet<String>,
-    sources: &[Source],
     problems: &mut Problems,
 ) -> (Files, OwnedIndexes, Origins) {
     let mut linker = Linker {
-        sources,
         broken,
         problems,
         files: Files::default(),
         indexes: OwnedIndexes::default(),
         origins: Origins::default(),
-        paras: HashMap::new(),
+        paras: FxHashMap::default(),
         unknown: 0,
     };
     linker.declare(entries);
@@ -81,21 +83,30 @@ struct Keyed {
 }
 
 impl Keyed {
+    /// Keys of a file that will have about so many records.
+    fn with_capacity(what: &'static str, records: usize) -> Self {
+        Self { what, keys: Vec::with_capacity(records), ats: Vec::with_capacity(records) }
+    }
+
+    /// The key of the next record, with what look-ups ask of it; 0 if they take the record.
+    fn push(&mut self, key: Key, answer: u32, at: At) {
+        self.keys.push(Pair { key, number: number(self.keys.len()) + 1, answer });
+        self.ats.push(at);
+    }
+
     /// Keys of records that are looked up for themselves.
-    fn new(what: &'static str, records: impl Iterator<Item = (Key, At)>) -> Self {
-        Self::answered(what, records.map(|(key, at)| (key, 0, at)))
+    fn new(what: &'static str, records: impl ExactSizeIterator<Item = (Key, At)>) -> Self {
+        let mut keyed = Self::with_capacity(what, records.len());
+        records.for_each(|(key, at)| keyed.push(key, 0, at));
+        keyed
     }
 
     /// Keys of names.
-    fn names<'n, const N: usize>(what: &'static str, names: impl Iterator<Item = &'n Named<N>>) -> Self {
+    fn names<'n, const N: usize>(
+        what: &'static str,
+        names: impl ExactSizeIterator<Item = &'n Named<N>>,
+    ) -> Self {
         Self::new(what, names.map(|n| (name_key(&n.name), n.at)))
-    }
-
-    /// Keys with what look-ups ask of each record.
-    fn answered(what: &'static str, records: impl Iterator<Item = (Key, u32, At)>) -> Self {
-        let pair = |((key, answer, at), number)| (Pair { key, number, answer }, at);
-        let (keys, ats) = records.zip(1..).map(pair).unzip();
-        Self { what, keys, ats }
     }
 }
 
@@ -115,22 +126,32 @@ impl Linker<'_> {
         let mut made = parallel::map(N, make).into_iter();
         lists.map(|list| {
             let index = made.next().unwrap_or_default();
-            self.twice(&list, &index);
+            self.twice(list.what, &list.ats, index.shared());
             (index, list.ats)
         })
     }
 
-    /// Note each record whose key an earlier one has.
-    fn twice(&mut self, list: &Keyed, index: &OwnedIndex) {
+    /// The same for what is valid at locations.
+    fn indexed_at<const N: usize>(&mut self, lists: [Keyed; N]) -> [(OwnedPlaceIndex, Vec<At>); N] {
+        let make =
+            |i: usize| lists.get(i).map_or_else(OwnedPlaceIndex::default, |l| OwnedPlaceIndex::new(&l.keys));
+        let mut made = parallel::map(N, make).into_iter();
+        lists.map(|list| {
+            let index = made.next().unwrap_or_default();
+            self.twice(list.what, &list.ats, index.shared());
+            (index, list.ats)
+        })
+    }
+
+    /// Note each record whose key an earlier one has; `shared` are the numbers of those that have one key.
+    fn twice<'n>(&mut self, what: &str, ats: &[At], shared: impl Iterator<Item = &'n [u32]>) {
         let at = |n: &u32| {
             let position = usize::try_from(n.saturating_sub(1)).ok();
-            position.and_then(|i| list.ats.get(i)).copied().unwrap_or_default()
+            position.and_then(|i| ats.get(i)).copied().unwrap_or_default()
         };
-        for pair in index.shared().flat_map(|numbers| numbers.windows(2)) {
+        for pair in shared.flat_map(|numbers| numbers.windows(2)) {
             if let [first, second] = pair {
-                let help = format!("the first is in {}", place(self.sources, at(first)));
-                let message = format!("{} is given twice", list.what);
-                self.problems.error_help("duplicate", at(second), message, help);
+                self.problems.duplicate(at(second), format!("{what} is given twice"), at(first));
             }
         }
     }
@@ -141,7 +162,7 @@ impl Linker<'_> {
             self.problems.error("name.null", null.name.at, "... is the null movetable and cannot be defined");
         }
         // An object has one form entry for each grip; its name is declared by the first.
-        let mut seen = HashSet::with_capacity(all.objects.len());
+        let mut seen = FxHashSet::with_capacity_and_hasher(all.objects.len(), Default::default());
         let objects: Vec<Named<16>> =
             all.objects.iter().map(|e| e.name).filter(|name| seen.insert(name.name)).collect();
         self.files.objects = objects.iter().map(|o| Object { name: o.name }).collect();
@@ -183,7 +204,7 @@ impl Linker<'_> {
         file: impl Fn(&OwnedIndexes) -> &OwnedIndex,
     ) -> Option<u32> {
         let index = file(&self.indexes);
-        if let Some(found) = index.view().find(name_key(&name.name)) {
+        if let Some(found) = known::named(index, &name) {
             return Some(found);
         }
         let wanted = name.name.as_str();
@@ -236,9 +257,14 @@ impl Linker<'_> {
         })
     }
 
+    /// What can be looked up on all processors.
+    const fn known(&self) -> Known<'_> {
+        Known { files: &self.files, indexes: &self.indexes }
+    }
+
     /// A frame with a movetable applied.
     fn moved(&self, frame: &Frame, by: MovtabId) -> Frame {
-        by.of(&self.files.movetables).map_or(*frame, |m| m.movetable.apply(frame))
+        self.known().moved(frame, by)
     }
 
     /// Indexes by what records refer to.
@@ -246,11 +272,15 @@ impl Linker<'_> {
         let by_member =
             |m: &Member| Pair { key: reference_key(m.member), number: m.owner.number(), answer: 0 };
         let members: Vec<Pair> = self.files.members.iter().map(by_member).collect();
+        let by_object = |(r, number): (&ObjLoc, _)| Pair { key: object_key(r.object), number, answer: 0 };
+        let obj_locs: Vec<Pair> = self.files.obj_locs.iter().zip(1..).map(by_object).collect();
         self.indexes.members = OwnedIndex::new(&members);
+        self.indexes.obj_locs = OwnedIndex::new(&obj_locs);
         if self.files.trajectories.iter().all(|t| t.start != Reference::NONE && t.end != Reference::NONE) {
             let ends = self.files.trajectories.iter().zip(&self.origins.trajectories);
-            let records = ends.map(|(t, at)| (pair_key(t.start, t.end), t.path.number(), *at));
-            let keyed = Keyed::answered("a trajectory between these locations", records);
+            let mut keyed =
+                Keyed::with_capacity("a trajectory between these locations", self.files.trajectories.len());
+            ends.for_each(|(t, at)| keyed.push(pair_key(t.start, t.end), t.path.number(), *at));
             let [trajectories] = self.indexed([keyed]);
             self.indexes.trajectories = trajectories.0;
         }
@@ -258,11 +288,10 @@ impl Linker<'_> {
 
     /// FILE FULL (VII): a file holds what its declaration allows.
     fn check_full(&mut self, all: &Collected) {
-        let mut declared = HashMap::new();
+        let mut declared = FxHashMap::default();
         for entry in &all.files {
             if let Some(first) = declared.insert(entry.file, entry) {
-                let help = format!("the first is in {}", place(self.sources, first.at));
-                self.problems.error_help("duplicate", entry.at, "this file is declared twice", help);
+                self.problems.duplicate(entry.at, "this file is declared twice", first.at);
             }
         }
         for (file, records) in FILE_NAMES.iter().zip(self.files.records()) {
@@ -296,5 +325,11 @@ fn nearest_of(wanted: &str, index: &OwnedIndex) -> Option<String> {
 
 /// The name that a key was made of.
 fn key_text(key: Key) -> String {
-    key.main.to_be_bytes().iter().take_while(|b| **b != 0).map(|b| char::from(*b)).collect()
+    key.main
+        .map(u64::to_be_bytes)
+        .as_flattened()
+        .iter()
+        .take_while(|b| **b != 0)
+        .map(|b| char::from(*b))
+        .collect()
 }

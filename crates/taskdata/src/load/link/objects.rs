@@ -1,48 +1,39 @@
 //! Everything that belongs to objects (VII.7).
 
 use crate::files::{
-    ApprDept, EndEffPara, GripLoc, ObjGrips, ObjLoc, ObjectId, PedPara, RefType, VisionPara,
-    index::{Key, approach_key, grip_at_key, grip_key, name_at_key, object_key, plain_key},
+    ApprDept, EndEffPara, GripLoc, ObjGrips, ObjLoc, ObjectId, PedPara, RefType, Reference, VisionPara,
+    index::{approach_key, grip_at_key, name_at_key, plain_key},
 };
 
 use super::{
     super::{
         collected::Collected,
-        entries::{ApprDeptEntry, Named},
-        index::{OwnedIndex, Pair},
-        source::At,
+        entries::{ApprDeptEntry, GripEntry, Named, ObjLocEntry, ObjectEntry},
+        parallel,
     },
     Keyed, Linker, sure,
 };
 
 impl Linker<'_> {
     pub(super) fn objects(&mut self, all: &Collected) {
-        for entry in &all.objects {
-            let object = self.object(entry.name).unwrap_or_default();
+        let known = self.known();
+        let end_eff = |entry: &ObjectEntry| {
+            let object = known.object(&entry.name).unwrap_or_default();
             let [appr_size, grasp_size, grasp_force, depart_size] = entry.values;
-            let record =
-                EndEffPara { object, grip: entry.grip, appr_size, grasp_size, grasp_force, depart_size };
-            self.files.end_effs.push(record);
-        }
+            EndEffPara { object, grip: entry.grip, appr_size, grasp_size, grasp_force, depart_size }
+        };
+        self.files.end_effs = parallel::map_each(&all.objects, end_eff).collect();
         self.show_files(all);
         let locations = self.object_locations(all);
-        let (grips, views) = (self.grips(all), self.views(all));
-        let paths: Vec<_> = all.appr_depts.iter().filter_map(|entry| self.appr_dept(entry)).collect();
-        let [locations, grips, views, paths] = self.indexed([
-            Keyed::new("this location of this object", locations.into_iter()),
-            Keyed::answered("this grip of this object at this location", grips.into_iter()),
-            Keyed::new("the view of this object at this location", views.into_iter()),
-            Keyed::answered("this approach or depart", paths.into_iter()),
-        ]);
+        let (grips, views, paths) = (self.grips(all), self.views(all), self.appr_depts(all));
+        let [grips, paths, views] = self.indexed_at([grips, paths, views]);
+        let [locations] = self.indexed([locations]);
         let (indexes, origins) = (&mut self.indexes, &mut self.origins);
         // An object may be assigned to members of several owners, but not twice to the same.
         origins.obj_locs = locations.1;
         (indexes.grip_locs, origins.grip_locs) = grips;
         (indexes.visions, origins.visions) = views;
         (indexes.appr_depts, origins.appr_depts) = paths;
-        let by_object = |r: &ObjLoc, number| Pair { key: object_key(r.object), number, answer: 0 };
-        let pairs: Vec<Pair> = self.files.obj_locs.iter().zip(1..).map(|(r, n)| by_object(r, n)).collect();
-        self.indexes.obj_locs = OwnedIndex::new(&pairs);
     }
 
     fn show_files(&mut self, all: &Collected) {
@@ -66,37 +57,50 @@ impl Linker<'_> {
         }
     }
 
-    fn object_locations(&mut self, all: &Collected) -> Vec<(Key, At)> {
-        let mut keys = Vec::new();
-        for entry in &all.obj_locs {
-            if let (Some(object), Some(assigned)) =
-                (self.object(entry.object), self.reference(entry.assigned))
-            {
-                self.files.obj_locs.push(ObjLoc { object, assigned });
-                keys.push((name_at_key(&entry.object.name, assigned), entry.object.at));
+    fn object_locations(&mut self, all: &Collected) -> Keyed {
+        let mut keyed = Keyed::with_capacity("this location of this object", all.obj_locs.len());
+        let known = self.known();
+        let linked = parallel::map_each(&all.obj_locs, |entry| known.obj_loc(entry));
+        for (entry, linked) in all.obj_locs.iter().zip(linked) {
+            if let Some(record) = linked.or_else(|| self.obj_loc(entry)) {
+                self.files.obj_locs.push(record);
+                keyed.push(name_at_key(&entry.object.name, record.assigned), 0, entry.object.at);
             }
         }
-        keys
+        keyed
     }
 
-    /// Grips at locations; gives their keys, answers and places.
-    fn grips(&mut self, all: &Collected) -> Vec<(Key, u32, At)> {
-        let mut keys = Vec::new();
-        for entry in &all.grips {
-            let (object, at, movetable) =
-                (self.object(entry.object), self.reference(entry.place), self.movetable(entry.movetable));
-            if let (Some(object), Some(at), Some(movetable)) = (object, at, movetable) {
-                self.known_grip(object, entry.grip, entry.object);
-                self.files.grip_locs.push(GripLoc { object, grip: entry.grip, at, movetable });
-                let key = sure(grip_at_key(&entry.object.name, entry.grip, at));
-                keys.push((key, movetable.number(), entry.object.at.to(entry.movetable.at)));
+    fn obj_loc(&mut self, entry: &ObjLocEntry) -> Option<ObjLoc> {
+        let (object, assigned) = (self.object(entry.object), self.reference(entry.assigned));
+        Some(ObjLoc { object: object?, assigned: assigned? })
+    }
+
+    /// Grips at locations.
+    fn grips(&mut self, all: &Collected) -> Keyed {
+        let mut keyed = Keyed::with_capacity("this grip of this object at this location", all.grips.len());
+        let known = self.known();
+        let linked = parallel::map_each(&all.grips, |entry| known.grip(entry));
+        for (entry, linked) in all.grips.iter().zip(linked) {
+            if let Some(record) = linked.or_else(|| self.grip(entry)) {
+                let key = sure(grip_at_key(&entry.object.name, entry.grip, record.at));
+                let at = entry.object.at.to(entry.movetable.at);
+                keyed.push(key, record.movetable.number(), at);
+                self.files.grip_locs.push(record);
             }
         }
-        keys
+        keyed
     }
 
-    fn views(&mut self, all: &Collected) -> Vec<(Key, At)> {
-        let mut keys = Vec::new();
+    fn grip(&mut self, entry: &GripEntry) -> Option<GripLoc> {
+        let (object, at) = (self.object(entry.object), self.reference(entry.place));
+        let movetable = self.movetable(entry.movetable);
+        let record = GripLoc { object: object?, grip: entry.grip, at: at?, movetable: movetable? };
+        self.known_grip(record.object, entry.grip, entry.object);
+        Some(record)
+    }
+
+    fn views(&mut self, all: &Collected) -> Keyed {
+        let mut keyed = Keyed::with_capacity("the view of this object at this location", all.views.len());
         for entry in &all.views {
             let (object, at, movetable) =
                 (self.object(entry.object), self.reference(entry.place), self.movetable(entry.movetable));
@@ -113,15 +117,15 @@ impl Linker<'_> {
                     enabled: entry.enabled,
                 });
                 let place = entry.object.at.to(entry.movetable.at);
-                keys.push((name_at_key(&entry.object.name, at), place));
+                keyed.push(name_at_key(&entry.object.name, at), 0, place);
             }
         }
-        keys
+        keyed
     }
 
     /// A grip must stand in the object form, which has its openings and its force (VII.7.1).
     fn known_grip(&mut self, object: ObjectId, grip: i32, name: Named<16>) {
-        if self.indexes.end_effs.view().find(sure(grip_key(&name.name, grip))).is_none() {
+        if !self.known().has_grip(&name, grip) {
             let grips: Vec<String> = self
                 .files
                 .end_effs
@@ -138,21 +142,34 @@ impl Linker<'_> {
         }
     }
 
-    /// An approach or depart; gives its key, answer and place.
-    fn appr_dept(&mut self, entry: &ApprDeptEntry) -> Option<(Key, u32, At)> {
-        let ApprDeptEntry { direction, grip, .. } = *entry;
+    fn appr_depts(&mut self, all: &Collected) -> Keyed {
+        let mut keyed = Keyed::with_capacity("this approach or depart", all.appr_depts.len());
+        let known = self.known();
+        let linked = parallel::map_each(&all.appr_depts, |entry| known.subject(entry));
+        for (entry, linked) in all.appr_depts.iter().zip(linked) {
+            let found = linked.or_else(|| self.subject(entry));
+            let path = self.path(&entry.points);
+            let Some((subject, at)) = found else { continue };
+            let ApprDeptEntry { direction, grip, .. } = *entry;
+            let key = if matches!(subject.kind, RefType::Object | RefType::View) {
+                sure(approach_key(direction, subject.kind, &entry.subject.name.name, grip, at))
+            } else {
+                plain_key(direction, at)
+            };
+            self.files.appr_depts.push(ApprDept { direction, subject, grip, at, path });
+            keyed.push(key, path.number(), entry.at);
+        }
+        keyed
+    }
+
+    /// What is approached or departed, and where.
+    fn subject(&mut self, entry: &ApprDeptEntry) -> Option<(Reference, Reference)> {
         let subject = self.reference(entry.subject);
         let at = entry.place.map_or(subject, |place| self.reference(place));
-        let path = self.path(&entry.points);
         let (subject, at) = (subject?, at?);
-        let name = entry.subject.name;
-        let key = if matches!(subject.kind, RefType::Object | RefType::View) {
-            self.known_grip(ObjectId::new(subject.number), grip, name);
-            sure(approach_key(direction, subject.kind, &name.name, grip, at))
-        } else {
-            plain_key(direction, at)
-        };
-        self.files.appr_depts.push(ApprDept { direction, subject, grip, at, path });
-        Some((key, path.number(), entry.at))
+        if matches!(subject.kind, RefType::Object | RefType::View) {
+            self.known_grip(ObjectId::new(subject.number), entry.grip, entry.subject.name);
+        }
+        Some((subject, at))
     }
 }

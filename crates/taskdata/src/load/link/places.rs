@@ -3,15 +3,15 @@
 use rcs_core::{frame::Frame, movetable::Movetable, name::Name, pose::Pose};
 
 use crate::files::{
-    Array, ArrayId, Locpt, LocptId, Member, MovtabId, MovtabRecord, Owner, OwnerId, Path, PathId, PathPoint,
-    PoseId, PoseRecord, RefType, Reference, Target, Traj, TrajPara, TrajParaId, data::NULL_NAME,
-    index::name_key,
+    Array, ArrayId, LocptId, Member, MovtabId, MovtabRecord, Owner, OwnerId, Path, PathId, PathPoint, PoseId,
+    PoseRecord, RefType, Reference, Target, Traj, TrajPara, TrajParaId, data::NULL_NAME, index::name_key,
 };
 
 use super::{
     super::{
         collected::Collected,
         entries::{Named, OwnerEntry, PointEntry, PoseEntry, Typed},
+        parallel,
     },
     Keyed, Linker, number,
 };
@@ -27,12 +27,14 @@ impl Linker<'_> {
             self.files.poses.push(record);
             self.origins.poses.push(entry.at);
         }
-        for entry in &all.locpts {
-            let (pose, movetable) = (self.pose(entry.pose), self.movetable(entry.movetable));
-            let (pose, movetable) = (pose.unwrap_or_default(), movetable.unwrap_or_default());
-            let base = pose.of(&self.files.poses).map_or_else(Frame::identity, |p| p.frame);
-            let frame = self.moved(&base, movetable);
-            self.files.locpts.push(Locpt { name: entry.name.name, pose, movetable, frame });
+        let known = self.known();
+        let linked = parallel::map_each(&all.locpts, |entry| known.locpt(entry));
+        for (entry, linked) in all.locpts.iter().zip(linked) {
+            let record = linked.unwrap_or_else(|| {
+                let (pose, movetable) = (self.pose(entry.pose), self.movetable(entry.movetable));
+                self.known().locpt_at(entry, pose.unwrap_or_default(), movetable.unwrap_or_default())
+            });
+            self.files.locpts.push(record);
         }
         self.arrays(all);
         for (i, entry) in all.owners.iter().enumerate() {

@@ -1,0 +1,103 @@
+//! Look-ups of names that are declared, without a note of those that are not: these can be made on all processors at once. Entries
+//! with a name that is not known are linked once more one by one, with notes.
+
+use rcs_core::frame::Frame;
+
+use crate::files::{
+    ArrayId, GripLoc, Locpt, LocptId, MovtabId, ObjLoc, ObjectId, OwnerId, PoseId, RefType, Reference,
+    data::NULL_NAME,
+    index::{grip_key, name_key},
+};
+
+use super::{
+    super::{
+        entries::{ApprDeptEntry, GripEntry, Named, ObjLocEntry, PointAt, Typed},
+        index::OwnedIndex,
+        store::{Files, OwnedIndexes},
+    },
+    sure,
+};
+
+/// The record number of a name in its index.
+pub(super) fn named<const N: usize>(index: &OwnedIndex, name: &Named<N>) -> Option<u32> {
+    index.view().find(name_key(&name.name))
+}
+
+/// The files and indexes that are made already.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'l> {
+    pub(super) files: &'l Files,
+    pub(super) indexes: &'l OwnedIndexes,
+}
+
+impl Known<'_> {
+    pub(super) fn movetable(&self, name: &Named<10>) -> Option<MovtabId> {
+        if name.name.as_str() == NULL_NAME {
+            return Some(MovtabId::NULL);
+        }
+        named(&self.indexes.movetables, name).map(MovtabId::new)
+    }
+
+    pub(super) fn object(&self, name: &Named<16>) -> Option<ObjectId> {
+        named(&self.indexes.objects, name).map(ObjectId::new)
+    }
+
+    /// A type and a name as a reference.
+    pub(super) fn reference(&self, typed: &Typed) -> Option<Reference> {
+        let number = |index| named(index, &typed.name);
+        Some(match typed.kind {
+            RefType::Any => Reference::ANY,
+            RefType::LocationPoint => Reference::location_point(LocptId::new(number(&self.indexes.locpts)?)),
+            RefType::Array => Reference::array(ArrayId::new(number(&self.indexes.arrays)?)),
+            RefType::Owner => Reference::owner(OwnerId::new(number(&self.indexes.owners)?)),
+            RefType::Pose => Reference::pose(PoseId::new(number(&self.indexes.poses)?)),
+            RefType::Object => Reference::object(self.object(&typed.name)?),
+            RefType::View => Reference::view(self.object(&typed.name)?),
+            RefType::None | RefType::Movetable => return None,
+        })
+    }
+
+    /// True if an object form has the grip (VII.7.1).
+    pub(super) fn has_grip(&self, object: &Named<16>, grip: i32) -> bool {
+        self.indexes.end_effs.view().find(sure(grip_key(&object.name, grip))).is_some()
+    }
+
+    /// A frame with a movetable applied.
+    pub(super) fn moved(&self, frame: &Frame, by: MovtabId) -> Frame {
+        by.of(&self.files.movetables).map_or(*frame, |m| m.movetable.apply(frame))
+    }
+
+    /// A location point.
+    pub(super) fn locpt(&self, entry: &PointAt) -> Option<Locpt> {
+        let pose = PoseId::new(named(&self.indexes.poses, &entry.pose)?);
+        let movetable = self.movetable(&entry.movetable)?;
+        Some(self.locpt_at(entry, pose, movetable))
+    }
+
+    /// A location point at a pose that may be null, with a movetable.
+    pub(super) fn locpt_at(&self, entry: &PointAt, pose: PoseId, movetable: MovtabId) -> Locpt {
+        let base = pose.of(&self.files.poses).map_or_else(Frame::identity, |p| p.frame);
+        Locpt { name: entry.name.name, pose, movetable, frame: self.moved(&base, movetable) }
+    }
+
+    /// A location of an object.
+    pub(super) fn obj_loc(&self, entry: &ObjLocEntry) -> Option<ObjLoc> {
+        Some(ObjLoc { object: self.object(&entry.object)?, assigned: self.reference(&entry.assigned)? })
+    }
+
+    /// A grip at a location.
+    pub(super) fn grip(&self, entry: &GripEntry) -> Option<GripLoc> {
+        let (object, at) = (self.object(&entry.object)?, self.reference(&entry.place)?);
+        let movetable = self.movetable(&entry.movetable)?;
+        let record = GripLoc { object, grip: entry.grip, at, movetable };
+        self.has_grip(&entry.object, entry.grip).then_some(record)
+    }
+
+    /// What is approached or departed, and where.
+    pub(super) fn subject(&self, entry: &ApprDeptEntry) -> Option<(Reference, Reference)> {
+        let subject = self.reference(&entry.subject)?;
+        let at = entry.place.as_ref().map_or(Some(subject), |place| self.reference(place))?;
+        let of_object = matches!(subject.kind, RefType::Object | RefType::View);
+        (!of_object || self.has_grip(&entry.subject.name, entry.grip)).then_some((subject, at))
+    }
+}

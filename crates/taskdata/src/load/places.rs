@@ -1,0 +1,133 @@
+//! Block, line and column of a piece of text: worked out when something is said of it, from the text itself.
+
+use std::collections::HashMap;
+
+use super::source::{At, Block, BlockNumber, Source, blocks, lines_of};
+
+/// A place as a person finds it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Position {
+    /// Block and offset, if it lies in a block.
+    pub block: Option<BlockNumber>,
+    /// Line in the block from 0 (as the manual counts), or line in the file from 1 if there is no block.
+    pub line: u32,
+    /// Column from 1.
+    pub column: u32,
+}
+
+/// A source that something is said of.
+struct Lines<'s> {
+    blocks: Vec<Block<'s>>,
+    /// First byte of each line of the file.
+    starts: Vec<u32>,
+}
+
+/// The places of pieces of some sources. Each source is gone through once, when its first piece is asked for.
+pub struct Places<'s> {
+    sources: &'s [Source],
+    /// True if what stands under a header is a block.
+    in_blocks: bool,
+    known: HashMap<u32, Lines<'s>>,
+}
+
+/// How many of the items in ascending order begin at a byte or before it, without the last of them: the position of the last.
+fn last_begun<T>(items: &[T], start: impl Fn(&T) -> u32, byte: u32) -> Option<usize> {
+    items.partition_point(|item| start(item) <= byte).checked_sub(1)
+}
+
+fn short(value: usize) -> u32 {
+    u32::try_from(value).unwrap_or(u32::MAX)
+}
+
+impl<'s> Places<'s> {
+    /// Places in files of blocks.
+    #[must_use]
+    pub fn in_blocks(sources: &'s [Source]) -> Self {
+        Self { sources, in_blocks: true, known: HashMap::new() }
+    }
+
+    /// Places in files of lines, such as jobs.
+    #[must_use]
+    pub fn in_lines(sources: &'s [Source]) -> Self {
+        Self { sources, in_blocks: false, known: HashMap::new() }
+    }
+
+    /// The sources.
+    #[must_use]
+    pub const fn sources(&self) -> &'s [Source] {
+        self.sources
+    }
+
+    /// The source of a piece.
+    #[must_use]
+    pub fn source(&self, at: At) -> Option<&'s Source> {
+        self.sources.get(usize::try_from(at.source).ok()?)
+    }
+
+    /// Where a piece begins; `None` if there is no such source.
+    pub fn position(&mut self, at: At) -> Option<Position> {
+        let source = self.source(at)?;
+        let lines = self.known.entry(at.source).or_insert_with(|| Lines {
+            blocks: if self.in_blocks { blocks(0, source).0 } else { Vec::new() },
+            starts: lines_of(&source.text).map(|(start, _)| short(start)).collect(),
+        });
+        Some(lines.in_block(at.start).unwrap_or_else(|| lines.in_file(at.start)))
+    }
+
+    /// A place in words: file, block and line.
+    #[must_use]
+    pub fn words(&mut self, at: At) -> String {
+        let file = self.source(at).map_or("?", |source| source.name.as_str());
+        match self.position(at) {
+            Some(Position { block: Some(block), line, .. }) => format!("{file}, {block}, line {line}"),
+            Some(Position { line, .. }) => format!("{file}, line {line}"),
+            None => file.to_owned(),
+        }
+    }
+}
+
+impl Lines<'_> {
+    /// The place in the lines of a block. Headers, and what stands between lines, are in none.
+    fn in_block(&self, byte: u32) -> Option<Position> {
+        let block = self.blocks.get(last_begun(&self.blocks, |block| block.header.start, byte)?)?;
+        let number = last_begun(&block.lines, |line| line.at.start, byte)?;
+        let line = block.lines.get(number)?.at;
+        let column = byte.saturating_sub(line.start);
+        let within = column <= line.length;
+        within.then_some(Position { block: Some(block.number), line: short(number), column: column + 1 })
+    }
+
+    fn in_file(&self, byte: u32) -> Position {
+        let number = last_begun(&self.starts, |start| *start, byte).unwrap_or(0);
+        let start = self.starts.get(number).copied().unwrap_or(0);
+        Position { block: None, line: short(number) + 1, column: byte.saturating_sub(start) + 1 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_count_from_0_in_a_block_and_from_1_in_the_file() {
+        let text =
+            "%% remark\nBLOCK# 7 OFFSET 21000\nA\n%% remark\n  B\n\nBLOCK# 8 OFFSET 21000\n 0 C\n 1   D\n";
+        let sources = [Source { name: "f.blk".to_owned(), text: text.into() }];
+        let mut places = Places::in_blocks(&sources);
+        let mut place = |word: &str| {
+            let at = At { source: 0, start: short(text.find(word).unwrap()), length: 1 };
+            let found = places.position(at).unwrap();
+            (found.block.map(|block| block.number), found.line, found.column)
+        };
+        assert_eq!(place("A\n"), (Some(7), 0, 1));
+        assert_eq!(place("B\n"), (Some(7), 1, 3));
+        assert_eq!(place("D\n"), (Some(8), 1, 3));
+        assert_eq!(place("BLOCK# 8"), (None, 7, 1));
+        assert_eq!(place("remark"), (None, 1, 4));
+        assert_eq!(
+            places.words(At { source: 0, start: 32, length: 1 }),
+            "f.blk, block 7 (offset 21000), line 0"
+        );
+        assert_eq!(places.words(At { source: 1, start: 0, length: 1 }), "?");
+    }
+}
