@@ -137,6 +137,43 @@ fn the_data_are_the_figures_but_for_the_readings_that_are_marked() {
     );
 }
 
+/// What the first remark of each block says of where the block comes from; empty if it says nothing.
+fn origins(source: &Source) -> Vec<(BlockNumber, String)> {
+    let (blocks, _) = blocks(0, source);
+    let said = |start: u32| {
+        let after_header = source.text[start as usize..].lines().nth(1).unwrap_or_default();
+        after_header.strip_prefix("%% From: ").unwrap_or_default().to_owned()
+    };
+    blocks.iter().map(|block| (block.number, said(block.header.start))).collect()
+}
+
+#[test]
+fn every_block_of_the_data_says_where_it_comes_from() {
+    // The figures of each block, by the remark above it.
+    let mut figure_of: BTreeMap<BlockNumber, Vec<&str>> = BTreeMap::new();
+    let printed = figures();
+    for block in blocks(0, &printed).0 {
+        let above = printed.text[..block.header.start as usize].lines().last().unwrap();
+        let number =
+            REPEATED.iter().find(|r| r.0 == block.number.number).map_or(block.number.number, |r| r.1);
+        let figure = above.strip_prefix("%% Figure ").unwrap();
+        figure_of.entry(BlockNumber { number, ..block.number }).or_default().push(figure);
+    }
+    let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"));
+    let mut count = 0;
+    for (number, origin) in read_blocks_under(data).unwrap().iter().flat_map(origins) {
+        match figure_of.get(&number).map(Vec::as_slice) {
+            None => {
+                assert!(origin.starts_with("derived") || origin.starts_with("taught"), "{number}: {origin}")
+            }
+            Some([figure]) => assert_eq!(origin, format!("Figure {figure}."), "{number}"),
+            Some(figures) => assert_eq!(origin, format!("Figures {}.", figures.join(" and ")), "{number}"),
+        }
+        count += 1;
+    }
+    assert!(count > figure_of.len());
+}
+
 #[test]
 fn negative_numbers_leading_zeros_and_signs_are_read() {
     let Entry::Pose(pose) = &parsed(&figures())[0].1.entries[0] else { panic!("Figure VII.1 comes first") };
