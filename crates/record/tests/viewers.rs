@@ -1,0 +1,98 @@
+//! The layout for Foxglove and Lichtblick that is shipped asks for nothing that a log does not have.
+
+use std::{fs, path::Path};
+
+use prost::Message as _;
+use prost_types::{DescriptorProto, FileDescriptorSet, field_descriptor_proto::Type};
+use rcs_core::{
+    interface::{CommonMemory, ExternalInputs},
+    tick::Tick,
+};
+use record::{CellFrame, CellModel, End, Epoch, Pace, Recorder, Setup};
+use serde_json::Value;
+
+/// A log of one tick: it has all channels.
+fn log() -> Vec<u8> {
+    let path = std::env::temp_dir().join(format!("record-viewers-{}.mcap", std::process::id()));
+    let setup = Setup { epoch: Epoch::Fixed, cell: Some(CellModel::default()), ..Setup::default() };
+    let mut recorder = Recorder::start(&path, Pace::Wait, setup).unwrap();
+    recorder.cell(&CellFrame::new(Tick(1)));
+    let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
+    recorder.tick(Tick(1), &external, &memory, Default::default);
+    recorder.finish(End::default()).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    fs::remove_file(path).unwrap();
+    bytes
+}
+
+/// All message types of a set, by their names without the package.
+fn messages(set: &FileDescriptorSet) -> impl Iterator<Item = &DescriptorProto> {
+    set.file.iter().flat_map(|file| &file.message_type)
+}
+
+/// True if a message type of a set has the field that a path such as `.pose.x` or `.position[0]` leads to.
+fn has_field(set: &FileDescriptorSet, message: &str, path: &str) -> bool {
+    let simple = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
+    let mut message = messages(set).find(|m| m.name() == simple(message));
+    path.split('.').filter(|part| !part.is_empty()).all(|part| {
+        let name = part.split('[').next().unwrap_or_default();
+        let field = message.and_then(|m| m.field.iter().find(|f| f.name() == name));
+        message = field
+            .filter(|f| f.r#type() == Type::Message)
+            .and_then(|f| messages(set).find(|m| m.name() == simple(f.type_name())));
+        field.is_some()
+    })
+}
+
+/// Paths, topics and panels that a part of a layout names.
+fn named<'v>(value: &'v Value, found: &mut Vec<(&'v str, &'v str)>) {
+    match value {
+        Value::Object(map) => {
+            for (key, value) in map {
+                match (key.as_str(), value) {
+                    ("value" | "topicToRender" | "first" | "second", Value::String(text)) => {
+                        found.push((key, text))
+                    }
+                    ("topics", Value::Object(topics)) => {
+                        found.extend(topics.keys().map(|t| ("topic", t.as_str())))
+                    }
+                    _ => named(value, found),
+                }
+            }
+        }
+        Value::Array(list) => list.iter().for_each(|value| named(value, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn the_foxglove_layout_names_channels_and_fields_that_a_log_has() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../viewers/foxglove.json");
+    let layout: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let log = log();
+    let summary = mcap::Summary::read(&log).unwrap().unwrap();
+    let mut names = Vec::new();
+    named(&layout, &mut names);
+    let mut panels = 0;
+    for (key, name) in &names {
+        if matches!(*key, "first" | "second") {
+            assert!(layout["configById"].get(name).is_some(), "the panel {name} has no settings");
+            panels += 1;
+            continue;
+        }
+        let (topic, field) = name.find('.').map_or((*name, ""), |dot| name.split_at(dot));
+        let channel = summary.channels.values().find(|channel| channel.topic == topic);
+        let schema = channel.unwrap_or_else(|| panic!("no channel {topic}")).schema.as_ref().unwrap();
+        if schema.encoding == "protobuf" {
+            let set = FileDescriptorSet::decode(&*schema.data).unwrap();
+            assert!(has_field(&set, &schema.name, field), "{name} is no field of {}", schema.name);
+        } else {
+            let text = String::from_utf8_lossy(&schema.data);
+            let field = field.trim_start_matches('.').split('[').next().unwrap_or_default();
+            let has = text.lines().any(|line| line.split_whitespace().nth(1) == Some(field));
+            assert!(field.is_empty() || has, "{name} is no field of {text}");
+        }
+    }
+    assert_eq!(panels, layout["configById"].as_object().unwrap().len(), "each panel has its place");
+    assert!(names.len() > 20);
+}
