@@ -247,6 +247,12 @@ impl Recorder {
         self.lost
     }
 
+    /// Ticks that are handed over and that the writer has not yet taken: more than a few only if the machine does not let it run.
+    #[must_use]
+    pub fn pending(&self) -> usize {
+        self.ticks.buffer().capacity() - self.ticks.slots()
+    }
+
     /// Wait until everything is written, and end the log.
     ///
     /// # Errors
