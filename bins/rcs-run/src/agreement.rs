@@ -9,7 +9,10 @@ use plant::CellDescription;
 use rcs_core::name::Name16;
 use taskdata::{
     files::TaskData,
-    load::{Job, Report, Source, Step, Store, job::JobLine, names::nearest, report::Problems, source::At},
+    load::{
+        Job, Report, Source, Step, Store, job::JobLine, names::nearest, places::Places, report::Problems,
+        source::At,
+    },
 };
 
 use crate::{check::at, run::workstation::orders};
@@ -29,7 +32,7 @@ pub fn of_job(job: &Job, cell: &CellDescription, path: &Path) -> Report {
             _ => problems.help(format!("what the cell has stands in {}", path.display())),
         }
     }
-    Report::new(problems, std::slice::from_ref(job.source()), 0, Vec::new())
+    Report::new(problems, Places::in_lines(std::slice::from_ref(job.source())), 0, Vec::new())
 }
 
 /// Where a word of an action stands; its line if it is not in it.
@@ -43,15 +46,7 @@ fn place(source: &Source, line: &JobLine, word: Option<&str>) -> At {
     let found = words.skip(first).find(|(found, _)| Some(*found) == word);
     let (start, length) = found.map_or((0, text.len()), |(found, start)| (start, found.len()));
     let short = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
-    let column = text.get(..start).map_or(0, |before| before.chars().count()) + 1;
-    At {
-        source: 0,
-        block: None,
-        line: line.line,
-        column: short(column),
-        start: short(begin + start),
-        length: short(length),
-    }
+    At { source: 0, start: short(begin + start), length: short(length) }
 }
 
 /// What of the names in a cell description the task data do not have: errors for locations, warnings for what no job need use.
@@ -61,7 +56,7 @@ pub fn of_cell(source: Source, cell: &CellDescription, store: &Store) -> Report 
     names.sectors(cell);
     names.objects(cell);
     let problems = names.problems;
-    Report::new(problems, &[source], 0, Vec::new())
+    Report::new(problems, Places::in_lines(&[source]), 0, Vec::new())
 }
 
 /// Looks up the names of a cell description.

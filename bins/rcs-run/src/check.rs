@@ -11,7 +11,9 @@ use plant::{
     description::{DescriptionError, Place},
 };
 use serde::Serialize;
-use taskdata::load::{Diagnostic, Job, Report, Severity, Source, Store, report::Problems, source::At};
+use taskdata::load::{
+    Diagnostic, Job, Report, Severity, Source, Store, places::Places, report::Problems, source::At,
+};
 
 use crate::{
     agreement,
@@ -130,7 +132,7 @@ fn cell(path: &Path, store: Option<&Store>) -> (Option<Cell>, Report) {
         Ok(text) => text,
         Err(error) => {
             problems.unreadable(&path.display().to_string(), &error);
-            return (None, Report::new(problems, &[], 0, Vec::new()));
+            return (None, Report::new(problems, Places::in_lines(&[]), 0, Vec::new()));
         }
     };
     let description = match CellDescription::from_toml(&text) {
@@ -142,7 +144,7 @@ fn cell(path: &Path, store: Option<&Store>) -> (Option<Cell>, Report) {
         problems.general("cell", error.to_string());
     }
     let source = source(text);
-    let report = Report::new(problems, std::slice::from_ref(&source), 0, Vec::new());
+    let report = Report::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new());
     let report = match store {
         Some(store) => report.with(agreement::of_cell(source, &description, store)),
         None => report,
@@ -175,20 +177,13 @@ pub fn cell_report(text: String, error: &DescriptionError) -> Report {
         }
         DescriptionError::Unreadable { .. } => problems.general("file", error.to_string()),
     }
-    Report::new(problems, &[source(text)], 0, Vec::new())
+    Report::new(problems, Places::in_lines(&[source(text)]), 0, Vec::new())
 }
 
 /// A piece of a file without blocks.
 pub fn at(place: &Place) -> At {
     let small = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
-    At {
-        source: 0,
-        block: None,
-        line: small(place.line),
-        column: small(place.column),
-        start: small(place.start),
-        length: small(place.length),
-    }
+    At { source: 0, start: small(place.start), length: small(place.length) }
 }
 
 /// All jobs of a data directory.

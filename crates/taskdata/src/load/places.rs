@@ -11,12 +11,15 @@ pub struct Position {
     pub block: Option<BlockNumber>,
     /// Line in the block from 0 (as the manual counts), or line in the file from 1 if there is no block.
     pub line: u32,
-    /// Column from 1.
+    /// Column from 1, in characters.
     pub column: u32,
+    /// First byte of the line in the source; that of a listing is behind the line number.
+    pub begin: u32,
 }
 
 /// A source that something is said of.
 struct Lines<'s> {
+    text: &'s str,
     blocks: Vec<Block<'s>>,
     /// First byte of each line of the file.
     starts: Vec<u32>,
@@ -68,6 +71,7 @@ impl<'s> Places<'s> {
     pub fn position(&mut self, at: At) -> Option<Position> {
         let source = self.source(at)?;
         let lines = self.known.entry(at.source).or_insert_with(|| Lines {
+            text: &source.text,
             blocks: if self.in_blocks { blocks(0, source).0 } else { Vec::new() },
             starts: lines_of(&source.text).map(|(start, _)| short(start)).collect(),
         });
@@ -92,15 +96,25 @@ impl Lines<'_> {
         let block = self.blocks.get(last_begun(&self.blocks, |block| block.header.start, byte)?)?;
         let number = last_begun(&block.lines, |line| line.at.start, byte)?;
         let line = block.lines.get(number)?.at;
-        let column = byte.saturating_sub(line.start);
-        let within = column <= line.length;
-        within.then_some(Position { block: Some(block.number), line: short(number), column: column + 1 })
+        let within = byte.saturating_sub(line.start) <= line.length;
+        within.then(|| Position {
+            block: Some(block.number),
+            line: short(number),
+            column: self.column(line.start, byte),
+            begin: line.start,
+        })
     }
 
     fn in_file(&self, byte: u32) -> Position {
         let number = last_begun(&self.starts, |start| *start, byte).unwrap_or(0);
-        let start = self.starts.get(number).copied().unwrap_or(0);
-        Position { block: None, line: short(number) + 1, column: byte.saturating_sub(start) + 1 }
+        let begin = self.starts.get(number).copied().unwrap_or(0);
+        Position { block: None, line: short(number) + 1, column: self.column(begin, byte), begin }
+    }
+
+    fn column(&self, begin: u32, byte: u32) -> u32 {
+        let long = |position: u32| usize::try_from(position).unwrap_or(usize::MAX);
+        let before = self.text.get(long(begin)..long(byte)).unwrap_or_default();
+        short(before.chars().count()) + 1
     }
 }
 
@@ -128,6 +142,9 @@ mod tests {
             places.words(At { source: 0, start: 32, length: 1 }),
             "f.blk, block 7 (offset 21000), line 0"
         );
+        let sources = [Source { name: "cell.toml".to_owned(), text: "a = 1\nb = \"\u{b5}\" # c".into() }];
+        let found = Places::in_lines(&sources).position(At { source: 0, start: 13, length: 1 });
+        assert_eq!(found, Some(Position { block: None, line: 2, column: 7, begin: 6 }));
         assert_eq!(places.words(At { source: 1, start: 0, length: 1 }), "?");
     }
 }

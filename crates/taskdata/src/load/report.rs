@@ -193,9 +193,8 @@ impl Diagnostic {
         let position = problem.at.and_then(|at| places.position(at));
         let text =
             source.zip(problem.at).and_then(|(s, at)| s.text.get(range(at))).unwrap_or_default().to_owned();
-        let begin =
-            problem.at.zip(position).map(|(at, p)| at.start.saturating_sub(p.column.saturating_sub(1)));
-        let line_text = source.zip(begin).map(|(s, begin)| line_from(&s.text, begin).to_owned());
+        let line_text =
+            source.zip(position).map(|(s, position)| line_from(&s.text, position.begin).to_owned());
         let first = problem.first.map(|first| format!("the first is in {}", places.words(first)));
         Self {
             severity: problem.severity,
@@ -289,7 +288,7 @@ impl Diagnostic {
     #[must_use]
     pub fn place(&self) -> String {
         match self.position {
-            Some(Position { block: Some(block), line, column }) => {
+            Some(Position { block: Some(block), line, column, .. }) => {
                 format!("{}: {block}, line {line}, column {column}", self.file)
             }
             Some(Position { line, column, .. }) => format!("{}: line {line}, column {column}", self.file),
@@ -345,7 +344,7 @@ impl miette::Diagnostic for Diagnostic {
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let label = self.position.and_then(|Position { block, line, column }| {
+        let label = self.position.and_then(|Position { block, line, column, .. }| {
             block.map(|block| format!("{block}, line {line}, column {column}"))
         });
         let range = range(self.at?);
