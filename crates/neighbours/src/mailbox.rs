@@ -46,6 +46,11 @@ pub const PEDESTAL_GRIPPER_STATUS: Place =
 pub const PEDESTAL_TABLE_STATUS: Place =
     Place { name: "Pedestal Table to RCS Status", address: 0xF_5900, size: 256 };
 
+/// Workstation to Cell Command: not in the table. What the workstation does itself (vise, trays, machine), for the simulated cell.
+pub const CELL_COMMAND: Place = Place { name: "Workstation to Cell Command", address: 0xF_6400, size: 256 };
+/// Workstation from Cell Status: not in the table.
+pub const CELL_STATUS: Place = Place { name: "Workstation from Cell Status", address: 0xF_6600, size: 256 };
+
 /// All of Table IX.1, in its order.
 pub const TABLE: [Place; 8] = [
     HWSC_COMMAND,
@@ -95,20 +100,35 @@ impl fmt::Display for Place {
     }
 }
 
-/// A mailbox: what a process writes into it, or has read from it.
+/// Size of the largest mailbox, bytes.
+pub const MAX_SIZE: usize = 512;
+
+/// A mailbox: what a process writes into it, or has read from it. Writing and copying do not allocate.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mailbox {
     place: Place,
-    bytes: Vec<u8>,
+    /// Zero behind the size of the mailbox.
+    bytes: [u8; MAX_SIZE],
 }
 
 impl Mailbox {
     /// A mailbox as initialization leaves it (IX): its length, zeros, and no data.
     #[must_use]
     pub fn initialized(place: Place) -> Self {
-        let mut mailbox = Self { place, bytes: vec![0; place.size] };
+        let mut mailbox = Self { place, bytes: [0; MAX_SIZE] };
         mailbox.set_length(HEAD);
         mailbox
+    }
+
+    /// Which mailbox it is.
+    #[must_use]
+    pub const fn place(&self) -> Place {
+        self.place
+    }
+
+    /// Initialize the mailbox again (IX): no data, and the mailgram number from zero.
+    pub fn initialize(&mut self) {
+        *self = Self::initialized(self.place);
     }
 
     /// A mailbox from its image.
@@ -119,13 +139,36 @@ impl Mailbox {
         if image.len() != place.size {
             return Err(MailboxError::Size { mailbox: place, found: image.len() });
         }
-        let mailbox = Self { place, bytes: image.to_vec() };
+        let mut mailbox = Self { place, bytes: [0; MAX_SIZE] };
+        mailbox.bytes[..place.size].copy_from_slice(image);
         let length = mailbox.word(0);
         if (HEAD..=place.size).contains(&usize::from(length)) {
             Ok(mailbox)
         } else {
             Err(MailboxError::Length { mailbox: place, found: length })
         }
+    }
+
+    /// Take over what the network has brought: head and data, without the unused rest. Nothing changes if it cannot be.
+    ///
+    /// # Errors
+    /// [`MailboxError::Length`] if the length word is not the number of bytes, or more than the mailbox holds.
+    pub fn receive(&mut self, used: &[u8]) -> Result<(), MailboxError> {
+        let found = used.first_chunk().map_or(0, |word| u16::from_le_bytes(*word));
+        let legal = (HEAD..=self.place.size).contains(&used.len()) && used.len() == usize::from(found);
+        if !legal {
+            return Err(MailboxError::Length { mailbox: self.place, found });
+        }
+        let (here, unused) = self.bytes.split_at_mut(used.len());
+        here.copy_from_slice(used);
+        unused.fill(0);
+        Ok(())
+    }
+
+    /// Head and data, without the unused rest: what the network carries.
+    #[must_use]
+    pub fn used(&self) -> &[u8] {
+        &self.bytes[..usize::from(self.word(0))]
     }
 
     /// Write data, and count the mailgram number on so that the network sends it (IX): from 65535 it goes to 1, since 0 is
@@ -138,7 +181,7 @@ impl Mailbox {
         if data.len() > room {
             return Err(MailboxError::TooLong { mailbox: self.place, room, found: data.len() });
         }
-        let (used, unused) = self.bytes[HEAD..].split_at_mut(data.len());
+        let (used, unused) = self.bytes[HEAD..self.place.size].split_at_mut(data.len());
         used.copy_from_slice(data);
         unused.fill(0);
         self.set_length(HEAD + data.len());
@@ -162,7 +205,7 @@ impl Mailbox {
     /// All bytes, head included.
     #[must_use]
     pub fn image(&self) -> &[u8] {
-        &self.bytes
+        &self.bytes[..self.place.size]
     }
 
     fn word(&self, at: usize) -> u16 {
@@ -182,7 +225,7 @@ mod tests {
 
     #[test]
     fn no_two_mailboxes_overlap() {
-        let mut places = TABLE;
+        let mut places = [&TABLE[..], &[CELL_COMMAND, CELL_STATUS]].concat();
         places.sort_by_key(|place| place.address);
         for pair in places.windows(2) {
             assert!(pair[0].address as usize + pair[0].size <= pair[1].address as usize, "{}", pair[1]);
@@ -220,6 +263,20 @@ mod tests {
             "mailbox HWSC from RCS Status at F6200: at most 248 bytes of data were expected, found 249"
         );
         assert_eq!(mailbox, before);
+    }
+
+    #[test]
+    fn what_the_network_brings_is_taken_whole_or_not_at_all() {
+        let mut sent = Mailbox::initialized(HWSC_STATUS);
+        sent.write(&[1, 2, 3]).unwrap();
+        let mut mailbox = Mailbox::initialized(HWSC_STATUS);
+        mailbox.write(&[9; 20]).unwrap();
+        mailbox.receive(sent.used()).unwrap();
+        assert_eq!(mailbox, sent);
+        for wrong in [&[][..], &[11], &[11, 0, 1, 0, 0, 0, 0, 0, 1, 2], &[7, 0, 1, 0, 0, 0, 0], &[1; 257]] {
+            assert!(mailbox.receive(wrong).is_err(), "{wrong:?}");
+            assert_eq!(mailbox, sent);
+        }
     }
 
     #[test]

@@ -1,0 +1,251 @@
+//! The controller's end of the line: waits for neighbours, lets in who may, and reads what they send.
+//!
+//! One thread waits for connections; each connection has a thread that says hello and then reads. Who is let in: at a socket in
+//! the file system, processes of the same user; at a TCP port, who knows the secret. Everybody else is told why and
+//! refused, and the controller is told.
+
+use std::{
+    fs, io,
+    net::TcpListener,
+    os::unix::{fs::PermissionsExt as _, net::UnixListener},
+    path::Path,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+    },
+    thread::{self, JoinHandle},
+    time::Duration,
+};
+
+use rustix::{net::sockopt, process::geteuid};
+
+use super::{
+    Address, Desk, News, Secret,
+    frame::{Frame, FrameError},
+    hello::{Challenge, ClockKind, HELLO},
+    office::{Counter, Outlet as _},
+    stream::{Stream, is_timeout},
+};
+
+/// A neighbour that does not answer a pulse for so long is gone.
+pub const PATIENCE: Duration = Duration::from_secs(10);
+/// Connections that have not said who they are, at most.
+const STRANGERS: usize = 8;
+
+/// Why nobody can connect.
+#[derive(Debug, thiserror::Error)]
+pub enum ListenError {
+    /// The address cannot be had.
+    #[error("{address}: {source}")]
+    Address {
+        /// The address.
+        address: Address,
+        /// Why.
+        source: io::Error,
+    },
+    /// Another run has it.
+    #[error("{0}: another run waits for its neighbours there")]
+    InUse(Address),
+    /// Anybody on the network could command the robot.
+    #[error("{0}: a TCP port needs a secret that the neighbours know; name a file with --secret")]
+    NoSecret(Address),
+}
+
+enum Socket {
+    Unix(UnixListener),
+    Tcp(TcpListener),
+}
+
+/// Waits for neighbours.
+pub struct Listener {
+    /// Where they can connect: with the port that the system has chosen, if it was to.
+    address: Address,
+    over: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// What the threads work with.
+struct Reception {
+    counters: Vec<Counter>,
+    secret: Option<Secret>,
+    clock: ClockKind,
+    strangers: AtomicUsize,
+}
+
+impl Listener {
+    /// Wait for the neighbours of some desks at an address.
+    ///
+    /// # Errors
+    /// [`ListenError`].
+    ///
+    /// # Panics
+    /// If there are no desks.
+    pub fn start<'a>(
+        address: &Address,
+        secret: Option<Secret>,
+        desks: impl IntoIterator<Item = &'a Desk>,
+    ) -> Result<Self, ListenError> {
+        let failed = |source| ListenError::Address { address: address.clone(), source };
+        let (socket, bound) = match address {
+            Address::Unix(path) => (Socket::Unix(unix(path, address)?), address.clone()),
+            Address::Tcp(_) if secret.is_none() => return Err(ListenError::NoSecret(address.clone())),
+            Address::Tcp(place) => {
+                let listener = TcpListener::bind(place).map_err(failed)?;
+                let bound = listener.local_addr().map_err(failed)?;
+                (Socket::Tcp(listener), Address::Tcp(bound))
+            }
+        };
+        let counters: Vec<_> = desks.into_iter().map(Desk::counter).collect();
+        let clock = counters.first().expect("a network has neighbours").clock();
+        let reception = Arc::new(Reception { counters, secret, clock, strangers: AtomicUsize::new(0) });
+        let over = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&over);
+        let thread = Some(thread::spawn(move || listen(&socket, &flag, &reception)));
+        Ok(Self { address: bound, over, thread })
+    }
+
+    /// Where neighbours can connect.
+    #[must_use]
+    pub const fn address(&self) -> &Address {
+        &self.address
+    }
+}
+
+impl Drop for Listener {
+    fn drop(&mut self) {
+        self.over.store(true, Ordering::Release);
+        // Wakes the thread that waits for a connection.
+        let woken = match &self.address {
+            Address::Unix(path) => std::os::unix::net::UnixStream::connect(path).is_ok(),
+            Address::Tcp(place) => std::net::TcpStream::connect(place).is_ok(),
+        };
+        if let Some(thread) = self.thread.take().filter(|_| woken) {
+            // It has nothing to return, and a panic in it was reported.
+            let _ = thread.join();
+        }
+        if let Address::Unix(path) = &self.address {
+            // Somebody may have removed it.
+            let _ = fs::remove_file(path);
+        }
+    }
+}
+
+/// A socket that a killed run has left is taken over.
+fn unix(path: &Path, address: &Address) -> Result<UnixListener, ListenError> {
+    let failed = |source| ListenError::Address { address: address.clone(), source };
+    let listener = match UnixListener::bind(path) {
+        Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
+            if std::os::unix::net::UnixStream::connect(path).is_ok() {
+                return Err(ListenError::InUse(address.clone()));
+            }
+            fs::remove_file(path).map_err(failed)?;
+            UnixListener::bind(path).map_err(failed)?
+        }
+        bound => bound.map_err(failed)?,
+    };
+    fs::set_permissions(path, fs::Permissions::from_mode(0o600)).map_err(failed)?;
+    Ok(listener)
+}
+
+fn listen(socket: &Socket, over: &AtomicBool, reception: &Arc<Reception>) {
+    while !over.load(Ordering::Acquire) {
+        let accepted = match socket {
+            Socket::Unix(listener) => listener.accept().map(|(stream, _)| Stream::Unix(stream)),
+            Socket::Tcp(listener) => listener.accept().map(|(stream, _)| Stream::Tcp(stream)),
+        };
+        let Ok(stream) = accepted else {
+            // Out of file descriptors, perhaps: it must not become a busy loop.
+            thread::sleep(Duration::from_millis(100));
+            continue;
+        };
+        if over.load(Ordering::Acquire) {
+            return;
+        }
+        let reception = Arc::clone(reception);
+        if reception.strangers.fetch_add(1, Ordering::AcqRel) < STRANGERS {
+            thread::spawn(move || receive(stream, &reception));
+        } else {
+            reception.strangers.fetch_sub(1, Ordering::AcqRel);
+            reception.tell(News::Refused("too many connect at once".to_owned()));
+        }
+    }
+}
+
+impl Reception {
+    fn tell(&self, news: News) {
+        if let Some(counter) = self.counters.first() {
+            counter.tell(news);
+        }
+    }
+
+    /// Say hello; whose desk it is.
+    fn greet(&self, stream: &mut Stream) -> Result<&Counter, String> {
+        let said = |error: &dyn std::fmt::Display| error.to_string();
+        stream.prepare(PATIENCE).map_err(|error| said(&error))?;
+        if let Stream::Unix(socket) = stream {
+            let peer = sockopt::socket_peercred(socket).map_err(|error| said(&error))?;
+            if peer.uid != geteuid() {
+                return Err(format!(
+                    "user {} was expected, found user {}",
+                    geteuid().as_raw(),
+                    peer.uid.as_raw()
+                ));
+            }
+        }
+        let challenge = Challenge::new(self.clock).map_err(|error| said(&error))?;
+        io::Write::write_all(stream, challenge.bytes()).map_err(|error| said(&error))?;
+        let mut answer = [0; HELLO];
+        io::Read::read_exact(stream, &mut answer).map_err(|error| format!("no hello: {error}"))?;
+        let role = challenge.judge(&answer, self.secret.as_ref()).map_err(|error| said(&error))?;
+        self.counters
+            .iter()
+            .find(|counter| counter.role() == role)
+            .ok_or_else(|| format!("no {role} was expected in another process"))
+    }
+}
+
+/// A connection, from the hello to its end.
+fn receive(mut stream: Stream, reception: &Reception) {
+    let greeted = reception.greet(&mut stream).and_then(|counter| {
+        let outlet = stream.try_clone().map_err(|error| error.to_string())?;
+        counter.attach(Box::new(outlet)).map_err(|error| error.to_string())?;
+        Ok(counter)
+    });
+    reception.strangers.fetch_sub(1, Ordering::AcqRel);
+    match greeted {
+        Ok(counter) => {
+            let why = read(&mut stream, counter);
+            // He may be gone already.
+            let _ = stream.send(&Frame::last_words(&why));
+            stream.shut_down();
+            counter.detach(why);
+        }
+        Err(why) => {
+            let _ = stream.send(&Frame::last_words(&why));
+            stream.shut_down();
+            reception.tell(News::Refused(why));
+        }
+    }
+}
+
+/// Read until the connection ends; why it did.
+fn read(stream: &mut Stream, counter: &Counter) -> String {
+    loop {
+        match Frame::read(stream) {
+            Ok(frame) => {
+                if let Err(error) = counter.deliver(&frame) {
+                    return error.to_string();
+                }
+            }
+            // Between two frames there may be silence as long as nobody waits for an answer.
+            Err(FrameError::Stream(error)) if is_timeout(&error) && !counter.is_waited_for() => {}
+            Err(FrameError::Stream(error)) if is_timeout(&error) => {
+                return format!("no answer for {} s", PATIENCE.as_secs());
+            }
+            Err(FrameError::Stream(error)) if error.kind() == io::ErrorKind::UnexpectedEof => {
+                return "the connection was closed".to_owned();
+            }
+            Err(error) => return error.to_string(),
+        }
+    }
+}

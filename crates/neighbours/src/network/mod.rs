@@ -1,0 +1,34 @@
+//! How mailboxes travel between the controller and neighbours in other processes, or on other machines.
+//!
+//! The mailboxes are the controller's: common memory, which the network fills and empties (IX). The tick copies in and out of
+//! it and never waits for the network; threads of their own carry what is new. As in the original a mailbox holds the latest
+//! mailgram, and nothing queues.
+//!
+//! ```text
+//!   tick --Desk--> mailboxes in memory <--Counter-- threads <--socket--> Peer in another process
+//! ```
+//!
+//! * [`role`]: who a neighbour is, and which mailboxes are his;
+//! * [`frame`]: a mailgram on the line, and the pulse that tells of ticks;
+//! * [`hello`]: how a connection begins, and who is let in;
+//! * [`office`]: the mailboxes between tick and threads;
+//! * [`listener`]: the controller's end of the line, [`peer`]: the neighbour's.
+//!
+//! In fast clock the tick waits for the pulse of every neighbour that is there, so that runs with neighbours in other processes
+//! have the same bits every time.
+
+pub mod address;
+pub mod frame;
+pub mod hello;
+pub mod listener;
+pub mod office;
+pub mod peer;
+pub mod role;
+mod stream;
+
+pub use address::Address;
+pub use hello::Secret;
+pub use listener::Listener;
+pub use office::{Desk, News};
+pub use peer::{Peer, PeerError, Received};
+pub use role::Role;

@@ -1,0 +1,527 @@
+//! The mailboxes of one neighbour, between the tick and the threads of the network.
+//!
+//! [`Desk`] is the tick's side. [`Desk::exchange`] copies what the controller has written into the shared mailboxes and what the
+//! neighbour has written out of them, once a tick. On the 40 ms grid it takes a lock only if nobody has it, and else tries again
+//! in the next tick; it does not wait and does not allocate. [`Counter`] is the side of the network: it puts in what arrives,
+//! and a thread ([`Desk`] starts it) sends what is new.
+//!
+//! A neighbour comes and goes. When one comes, the mailboxes that he writes are initialized (IX), and all that he reads are
+//! sent.
+
+use std::{
+    io,
+    sync::{
+        Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError,
+        atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering},
+        mpsc::{Receiver, Sender, channel},
+    },
+    thread::{self, JoinHandle},
+    time::Duration,
+};
+
+use super::{
+    Role,
+    frame::{Frame, FrameError},
+    hello::ClockKind,
+};
+use crate::mailbox::{Mailbox, Place};
+
+/// Where frames go out to a neighbour.
+pub trait Outlet: Send {
+    /// Send a frame.
+    ///
+    /// # Errors
+    /// If it cannot be sent: then the neighbour is gone.
+    fn send(&mut self, frame: &Frame) -> io::Result<()>;
+
+    /// End the connection, so that whoever reads from it notices.
+    fn close(&mut self);
+}
+
+/// What happened on the network.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum News {
+    /// A neighbour has come.
+    Came(Role),
+    /// A neighbour has gone, and why.
+    Gone(Role, String),
+    /// Somebody was not let in, and why.
+    Refused(String),
+}
+
+impl std::fmt::Display for News {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Came(role) => write!(f, "{role} has connected"),
+            Self::Gone(role, why) => write!(f, "{role} has gone: {why}"),
+            Self::Refused(why) => write!(f, "a connection was refused: {why}"),
+        }
+    }
+}
+
+/// What both sides see.
+struct Shared {
+    role: Role,
+    /// Written by the tick.
+    outgoing: Vec<Mutex<Mailbox>>,
+    /// Written by the neighbour.
+    incoming: Vec<Mutex<Mailbox>>,
+    /// Number of the connection; 0 while there is none.
+    connection: AtomicU32,
+    /// The last tick that was run.
+    pulse: AtomicU64,
+    /// The last pulse that came back. Behind a lock, since a tick may wait for it.
+    answered: Mutex<u64>,
+    news_of_answer: Condvar,
+    outlet: Mutex<Option<Box<dyn Outlet>>>,
+    over: AtomicBool,
+}
+
+/// A panic in another thread is reported where it happened; mailboxes hold plain bytes, which are whole whatever happens.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The tick's side.
+pub struct Desk {
+    shared: Arc<Shared>,
+    clock: ClockKind,
+    outgoing: Vec<Mailbox>,
+    incoming: Vec<Mailbox>,
+    /// Number of the connection that the tick knows of.
+    connection: u32,
+    news: (Sender<News>, Receiver<News>),
+    /// Connections so far.
+    numbers: Arc<AtomicU32>,
+    carrier: Option<JoinHandle<()>>,
+}
+
+/// What an exchange found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Presence {
+    /// The neighbour is there.
+    pub here: bool,
+    /// He has come since the last exchange: his mailboxes were initialized.
+    pub new: bool,
+}
+
+impl Desk {
+    /// The mailboxes of a neighbour, initialized; nobody is there yet.
+    #[must_use]
+    pub fn new(role: Role, clock: ClockKind) -> Self {
+        let boxes =
+            |places: &[Place]| places.iter().map(|&place| Mailbox::initialized(place)).collect::<Vec<_>>();
+        let (outgoing, incoming) = (boxes(role.from_controller()), boxes(role.to_controller()));
+        let shared = Arc::new(Shared {
+            role,
+            outgoing: outgoing.iter().cloned().map(Mutex::new).collect(),
+            incoming: incoming.iter().cloned().map(Mutex::new).collect(),
+            connection: AtomicU32::new(0),
+            pulse: AtomicU64::new(0),
+            answered: Mutex::new(0),
+            news_of_answer: Condvar::new(),
+            outlet: Mutex::new(None),
+            over: AtomicBool::new(false),
+        });
+        let theirs = Arc::clone(&shared);
+        let carrier = Some(thread::spawn(move || carry(&theirs)));
+        let numbers = Arc::default();
+        Self { shared, clock, outgoing, incoming, connection: 0, news: channel(), numbers, carrier }
+    }
+
+    /// The network's side.
+    #[must_use]
+    pub fn counter(&self) -> Counter {
+        Counter {
+            shared: Arc::clone(&self.shared),
+            clock: self.clock,
+            news: self.news.0.clone(),
+            numbers: Arc::clone(&self.numbers),
+        }
+    }
+
+    /// Who the neighbour is.
+    #[must_use]
+    pub fn role(&self) -> Role {
+        self.shared.role
+    }
+
+    /// A mailbox to the neighbour, to be written.
+    ///
+    /// # Panics
+    /// If the neighbour has no such mailbox.
+    pub fn outgoing(&mut self, place: Place) -> &mut Mailbox {
+        let mailbox = self.outgoing.iter_mut().find(|mailbox| mailbox.place() == place);
+        mailbox.unwrap_or_else(|| panic!("{place} does not go to {}", self.shared.role))
+    }
+
+    /// A mailbox from the neighbour, as it was at the last exchange.
+    ///
+    /// # Panics
+    /// If the neighbour has no such mailbox.
+    #[must_use]
+    pub fn incoming(&self, place: Place) -> &Mailbox {
+        let mailbox = self.incoming.iter().find(|mailbox| mailbox.place() == place);
+        mailbox.unwrap_or_else(|| panic!("{place} does not come from {}", self.shared.role))
+    }
+
+    /// The neighbour is there.
+    #[must_use]
+    pub fn is_connected(&self) -> bool {
+        self.shared.connection.load(Ordering::Acquire) != 0
+    }
+
+    /// What happened since the last call, the oldest first.
+    pub fn news(&self) -> Option<News> {
+        self.news.1.try_recv().ok()
+    }
+
+    /// Once a tick: the network gets what was written in it, and the tick what has come. In fast clock a neighbour who is there is
+    /// waited for.
+    pub fn exchange(&mut self, tick: u64) -> Presence {
+        let connection = self.shared.connection.load(Ordering::Acquire);
+        let waits = self.clock == ClockKind::Fast && connection != 0;
+        for (ours, shared) in self.outgoing.iter().zip(&self.shared.outgoing) {
+            with(shared, waits, |theirs| {
+                if theirs.mailgram() != ours.mailgram() {
+                    theirs.clone_from(ours);
+                }
+            });
+        }
+        self.shared.pulse.store(tick, Ordering::Release);
+        if let Some(carrier) = &self.carrier {
+            carrier.thread().unpark();
+        }
+        if waits {
+            self.wait(tick, connection);
+        }
+        let new = connection != 0 && connection != self.connection;
+        self.connection = connection;
+        for (ours, shared) in self.incoming.iter_mut().zip(&self.shared.incoming) {
+            with(shared, waits, |theirs| {
+                if new || theirs.mailgram() != ours.mailgram() || theirs.data() != ours.data() {
+                    ours.clone_from(theirs);
+                }
+            });
+        }
+        // Somebody who has come meanwhile is somebody of the next tick.
+        if self.shared.connection.load(Ordering::Acquire) != connection {
+            self.incoming.iter_mut().for_each(Mailbox::initialize);
+        }
+        Presence { here: connection != 0, new }
+    }
+
+    /// Until the neighbour has answered the pulse, or is gone. Whoever reads from him notices if he is silent.
+    fn wait(&self, tick: u64, connection: u32) {
+        let mut answered = locked(&self.shared.answered);
+        while *answered < tick && self.shared.connection.load(Ordering::Acquire) == connection {
+            answered = self.shared.news_of_answer.wait(answered).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Wait until the neighbour is there, at most so long; true if he is.
+    #[must_use]
+    pub fn await_connection(&self, limit: Duration) -> bool {
+        let here = || self.is_connected();
+        let guard = locked(&self.shared.answered);
+        let waited = self.shared.news_of_answer.wait_timeout_while(guard, limit, |_| !here());
+        drop(waited.unwrap_or_else(PoisonError::into_inner));
+        here()
+    }
+}
+
+/// Look at a shared mailbox; if somebody else does and the tick does not wait, another time.
+fn with(shared: &Mutex<Mailbox>, waits: bool, look: impl FnOnce(&mut Mailbox)) {
+    if waits {
+        look(&mut locked(shared));
+        return;
+    }
+    match shared.try_lock() {
+        Ok(mut mailbox) => look(&mut mailbox),
+        Err(TryLockError::Poisoned(poisoned)) => look(&mut poisoned.into_inner()),
+        Err(TryLockError::WouldBlock) => {}
+    }
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        self.shared.over.store(true, Ordering::Release);
+        if let Some(carrier) = self.carrier.take() {
+            carrier.thread().unpark();
+            // It has nothing to return, and a panic in it was reported.
+            let _ = carrier.join();
+        }
+    }
+}
+
+/// The thread that sends: what is new, and then the pulse.
+fn carry(shared: &Shared) {
+    let (mut sent, mut connection, mut pulse) = (vec![0; shared.outgoing.len()], 0, 0);
+    while !shared.over.load(Ordering::Acquire) {
+        thread::park_timeout(Duration::from_secs(1));
+        let present = shared.connection.load(Ordering::Acquire);
+        if present != connection {
+            connection = present;
+            sent.fill(0);
+        }
+        if connection == 0 {
+            continue;
+        }
+        // The tick first: what it wrote stands in the mailboxes already.
+        let tick = shared.pulse.load(Ordering::Acquire);
+        let mut outlet = locked(&shared.outlet);
+        let Some(line) = outlet.as_mut() else { continue };
+        let sending = send_new(shared, &mut sent, line.as_mut())
+            .and_then(|()| if tick == pulse { Ok(()) } else { line.send(&Frame::pulse(tick)) });
+        pulse = tick;
+        if sending.is_err() {
+            line.close();
+        }
+    }
+    if let Some(line) = locked(&shared.outlet).as_mut() {
+        // He may be gone already.
+        let _ = line.send(&Frame::last_words("the run is over"));
+        line.close();
+    }
+}
+
+fn send_new(shared: &Shared, sent: &mut [u16], line: &mut dyn Outlet) -> io::Result<()> {
+    for (mailbox, sent) in shared.outgoing.iter().zip(sent) {
+        let mailbox = locked(mailbox).clone();
+        if mailbox.mailgram() != *sent {
+            line.send(&Frame::of(&mailbox))?;
+            *sent = mailbox.mailgram();
+        }
+    }
+    Ok(())
+}
+
+/// The side of the network.
+#[derive(Clone)]
+pub struct Counter {
+    shared: Arc<Shared>,
+    clock: ClockKind,
+    news: Sender<News>,
+    numbers: Arc<AtomicU32>,
+}
+
+/// The neighbour is there already.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0} is connected already")]
+pub struct Occupied(pub Role);
+
+impl Counter {
+    /// Whose it is.
+    #[must_use]
+    pub fn role(&self) -> Role {
+        self.shared.role
+    }
+
+    /// The clock of the controller.
+    #[must_use]
+    pub const fn clock(&self) -> ClockKind {
+        self.clock
+    }
+
+    /// Tell the controller what happened.
+    pub fn tell(&self, news: News) {
+        // A run that is over has no ears.
+        let _ = self.news.send(news);
+    }
+
+    /// The neighbour comes. His mailboxes are initialized.
+    ///
+    /// # Errors
+    /// [`Occupied`].
+    pub fn attach(&self, outlet: Box<dyn Outlet>) -> Result<(), Occupied> {
+        let mut line = locked(&self.shared.outlet);
+        if line.is_some() {
+            return Err(Occupied(self.shared.role));
+        }
+        for mailbox in &self.shared.incoming {
+            locked(mailbox).initialize();
+        }
+        *line = Some(outlet);
+        let number = self.numbers.fetch_add(1, Ordering::Relaxed).wrapping_add(1).max(1);
+        let mut answered = locked(&self.shared.answered);
+        *answered = 0;
+        self.shared.connection.store(number, Ordering::Release);
+        self.shared.news_of_answer.notify_all();
+        drop(answered);
+        self.tell(News::Came(self.shared.role));
+        Ok(())
+    }
+
+    /// The neighbour goes.
+    pub fn detach(&self, why: String) {
+        let mut line = locked(&self.shared.outlet);
+        *line = None;
+        let answered = locked(&self.shared.answered);
+        self.shared.connection.store(0, Ordering::Release);
+        self.shared.news_of_answer.notify_all();
+        drop(answered);
+        self.tell(News::Gone(self.shared.role, why));
+    }
+
+    /// A pulse was sent and has not come back.
+    #[must_use]
+    pub fn is_waited_for(&self) -> bool {
+        *locked(&self.shared.answered) < self.shared.pulse.load(Ordering::Acquire)
+    }
+
+    /// A frame has come from the neighbour.
+    ///
+    /// # Errors
+    /// [`DeliveryError`] if it is none of his.
+    pub fn deliver(&self, frame: &Frame) -> Result<(), DeliveryError> {
+        if let Some(tick) = frame.as_pulse() {
+            *locked(&self.shared.answered) = tick;
+            self.shared.news_of_answer.notify_all();
+            return Ok(());
+        }
+        let expected = self.shared.role.to_controller();
+        let at = expected.iter().position(|place| place.address == frame.address());
+        let Some(mailbox) = at.and_then(|at| self.shared.incoming.get(at)) else {
+            return Err(FrameError::Address { expected, found: frame.address() }.into());
+        };
+        Ok(locked(mailbox).receive(frame.mailbox())?)
+    }
+}
+
+/// Why a frame is none of a neighbour's.
+#[derive(Debug, thiserror::Error)]
+pub enum DeliveryError {
+    /// It is for no mailbox of his.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The mailbox cannot hold it.
+    #[error(transparent)]
+    Mailbox(#[from] crate::mailbox::MailboxError),
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+
+    use super::*;
+    use crate::mailbox::{HWSC_COMMAND, HWSC_STATUS};
+
+    /// A line that ends in a channel.
+    struct Wire(mpsc::Sender<Frame>);
+
+    impl Outlet for Wire {
+        fn send(&mut self, frame: &Frame) -> io::Result<()> {
+            self.0.send(frame.clone()).map_err(|_| io::ErrorKind::BrokenPipe.into())
+        }
+
+        fn close(&mut self) {}
+    }
+
+    fn came(desk: &Desk) -> (Counter, mpsc::Receiver<Frame>) {
+        let (send, receive) = mpsc::channel();
+        let counter = desk.counter();
+        counter.attach(Box::new(Wire(send))).unwrap();
+        (counter, receive)
+    }
+
+    fn mailgram(place: Place, data: &[u8]) -> Frame {
+        let mut mailbox = Mailbox::initialized(place);
+        mailbox.write(data).unwrap();
+        Frame::of(&mailbox)
+    }
+
+    #[test]
+    fn in_fast_clock_the_tick_waits_for_what_answers_it() {
+        let mut desk = Desk::new(Role::Workstation, ClockKind::Fast);
+        let (counter, line) = came(&desk);
+        let echo = thread::spawn(move || {
+            // Answers each pulse by a command that says its number.
+            for frame in line.iter() {
+                if let Some(tick) = frame.as_pulse() {
+                    counter.deliver(&mailgram(HWSC_COMMAND, &tick.to_le_bytes())).unwrap();
+                    counter.deliver(&frame).unwrap();
+                    if tick == 100 {
+                        return;
+                    }
+                }
+            }
+        });
+        for tick in 1..=100_u64 {
+            desk.outgoing(HWSC_STATUS).write(&[1]).unwrap();
+            let presence = desk.exchange(tick);
+            assert_eq!(presence, Presence { here: true, new: tick == 1 });
+            assert_eq!(desk.incoming(HWSC_COMMAND).data(), tick.to_le_bytes());
+        }
+        echo.join().unwrap();
+    }
+
+    #[test]
+    fn on_the_grid_nobody_is_waited_for() {
+        let mut desk = Desk::new(Role::Workstation, ClockKind::Real);
+        let (counter, line) = came(&desk);
+        assert_eq!(desk.exchange(1), Presence { here: true, new: true });
+        assert_eq!(desk.exchange(2), Presence { here: true, new: false });
+        counter.deliver(&mailgram(HWSC_COMMAND, b"go")).unwrap();
+        desk.exchange(3);
+        assert_eq!(desk.incoming(HWSC_COMMAND).data(), b"go");
+        drop(line);
+    }
+
+    #[test]
+    fn a_mailbox_that_somebody_has_is_left_for_the_next_tick() {
+        let mut desk = Desk::new(Role::Workstation, ClockKind::Real);
+        let (counter, _line) = came(&desk);
+        desk.exchange(1);
+        counter.deliver(&mailgram(HWSC_COMMAND, b"go")).unwrap();
+        let shared = Arc::clone(&desk.shared);
+        let held = locked(&shared.incoming[0]);
+        desk.exchange(2);
+        assert_eq!(desk.incoming(HWSC_COMMAND).data(), b"");
+        drop(held);
+        desk.exchange(3);
+        assert_eq!(desk.incoming(HWSC_COMMAND).data(), b"go");
+    }
+
+    #[test]
+    fn who_comes_again_finds_his_mailboxes_initialized_and_gets_all_that_is_for_him() {
+        let mut desk = Desk::new(Role::Workstation, ClockKind::Real);
+        let (counter, _line) = came(&desk);
+        counter.deliver(&mailgram(HWSC_COMMAND, b"go")).unwrap();
+        desk.outgoing(HWSC_STATUS).write(b"status").unwrap();
+        desk.exchange(1);
+        let occupied = desk.counter().attach(Box::new(Wire(mpsc::channel().0)));
+        assert_eq!(occupied, Err(Occupied(Role::Workstation)));
+        counter.detach("the cable was cut".to_owned());
+        assert!(!desk.exchange(2).here);
+        let (_, line) = came(&desk);
+        assert_eq!(desk.exchange(3), Presence { here: true, new: true });
+        assert_eq!(desk.incoming(HWSC_COMMAND).mailgram(), 0);
+        let first = line.recv_timeout(Duration::from_secs(60)).unwrap();
+        assert_eq!((first.address(), first.data()), (HWSC_STATUS.address, &b"status"[..]));
+        let news: Vec<_> = std::iter::from_fn(|| desk.news()).collect();
+        let (came, gone) =
+            (News::Came(Role::Workstation), News::Gone(Role::Workstation, "the cable was cut".into()));
+        assert_eq!(news, [came.clone(), gone, came]);
+    }
+
+    #[test]
+    fn a_tick_that_waits_goes_on_when_the_neighbour_is_gone() {
+        let mut desk = Desk::new(Role::Workstation, ClockKind::Fast);
+        let (counter, line) = came(&desk);
+        let leaver = thread::spawn(move || {
+            while line.recv().unwrap().as_pulse().is_none() {}
+            counter.detach("enough".to_owned());
+        });
+        desk.exchange(1);
+        leaver.join().unwrap();
+        assert!(!desk.exchange(2).here);
+    }
+
+    #[test]
+    fn frames_for_others_mailboxes_are_refused() {
+        let desk = Desk::new(Role::Workstation, ClockKind::Real);
+        let error = desk.counter().deliver(&mailgram(HWSC_STATUS, b"all is well")).unwrap_err().to_string();
+        assert!(error.starts_with("the address of mailbox HWSC to RCS Command at F6000 or "), "{error}");
+        assert!(error.ends_with("found F6200"), "{error}");
+    }
+}

@@ -1,0 +1,180 @@
+//! The neighbour's end of the line.
+
+use std::{
+    io,
+    net::TcpStream,
+    os::unix::net::UnixStream,
+    thread,
+    time::{Duration, Instant},
+};
+
+use super::{
+    Address, Role, Secret,
+    frame::{Frame, FrameError, LAST_WORDS},
+    hello::{Challenge, ClockKind, HELLO, HelloError},
+    office::Outlet as _,
+    stream::Stream,
+};
+use crate::mailbox::{Mailbox, MailboxError, Place};
+
+/// How long the other side may take for a hello or a frame.
+const LIMIT: Duration = Duration::from_secs(10);
+/// Between two attempts to connect.
+const PAUSE: Duration = Duration::from_millis(50);
+
+/// Why a connection does not come about, or ends.
+#[derive(Debug, thiserror::Error)]
+pub enum PeerError {
+    /// Nobody is there, or the line broke.
+    #[error("{address}: {source}")]
+    Line {
+        /// Where.
+        address: Address,
+        /// Why.
+        source: io::Error,
+    },
+    /// The other side is no controller.
+    #[error("{address}: {source}")]
+    Hello {
+        /// Where.
+        address: Address,
+        /// Why.
+        source: HelloError,
+    },
+    /// What came is no frame.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// What came fits no mailbox.
+    #[error(transparent)]
+    Mailbox(#[from] MailboxError),
+    /// The controller has closed the connection, and said why.
+    #[error("the controller says: {0}")]
+    LastWords(String),
+}
+
+impl PeerError {
+    /// True if a later attempt may do better: nobody is there, or he has just gone.
+    #[must_use]
+    pub fn is_passing(&self) -> bool {
+        match self {
+            Self::Line { .. } | Self::Frame(FrameError::Stream(_)) => true,
+            Self::LastWords(text) => text == "the run is over",
+            _ => false,
+        }
+    }
+}
+
+/// What the controller sends.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Received {
+    /// A mailgram has come: the mailbox holds it.
+    Mailgram(Place),
+    /// A tick is over, and all that was written in it has come. It is to be answered by [`Peer::pulse`].
+    Pulse(u64),
+}
+
+/// A connection to the controller.
+pub struct Peer {
+    stream: Stream,
+    role: Role,
+    clock: ClockKind,
+    incoming: Vec<Mailbox>,
+}
+
+impl Peer {
+    /// Connect as a neighbour.
+    ///
+    /// # Errors
+    /// [`PeerError`]. Whether one is let in shows at the first [`receive`](Self::receive).
+    pub fn connect(address: &Address, role: Role, secret: Option<&Secret>) -> Result<Self, PeerError> {
+        let failed = |source| PeerError::Line { address: address.clone(), source };
+        let mut stream = match address {
+            Address::Unix(path) => Stream::Unix(UnixStream::connect(path).map_err(failed)?),
+            Address::Tcp(place) => Stream::Tcp(TcpStream::connect_timeout(place, LIMIT).map_err(failed)?),
+        };
+        stream.prepare(LIMIT).map_err(failed)?;
+        let mut bytes = [0; HELLO];
+        io::Read::read_exact(&mut stream, &mut bytes).map_err(failed)?;
+        let challenge = Challenge::from_bytes(bytes)
+            .map_err(|source| PeerError::Hello { address: address.clone(), source })?;
+        io::Write::write_all(&mut stream, &challenge.answer(role, secret)).map_err(failed)?;
+        // A run in fast clock may stand still for as long as it likes.
+        stream.unlimited().map_err(failed)?;
+        let incoming = role.from_controller().iter().map(|&place| Mailbox::initialized(place)).collect();
+        Ok(Self { stream, role, clock: challenge.clock(), incoming })
+    }
+
+    /// Connect, and try again for a while as long as nobody is there.
+    ///
+    /// # Errors
+    /// The last [`PeerError`].
+    pub fn connect_within(
+        limit: Duration,
+        address: &Address,
+        role: Role,
+        secret: Option<&Secret>,
+    ) -> Result<Self, PeerError> {
+        let started = Instant::now();
+        loop {
+            match Self::connect(address, role, secret) {
+                Err(error) if error.is_passing() && started.elapsed() < limit => thread::sleep(PAUSE),
+                other => return other,
+            }
+        }
+    }
+
+    /// The clock of the controller.
+    #[must_use]
+    pub const fn clock(&self) -> ClockKind {
+        self.clock
+    }
+
+    /// A mailbox from the controller.
+    ///
+    /// # Panics
+    /// If it does not go to this neighbour.
+    #[must_use]
+    pub fn mailbox(&self, place: Place) -> &Mailbox {
+        let mailbox = self.incoming.iter().find(|mailbox| mailbox.place() == place);
+        mailbox.unwrap_or_else(|| panic!("{place} does not go to {}", self.role))
+    }
+
+    /// What comes next.
+    ///
+    /// # Errors
+    /// [`PeerError`] if the connection ends.
+    pub fn receive(&mut self) -> Result<Received, PeerError> {
+        let frame = Frame::read(&mut self.stream)?;
+        if let Some(tick) = frame.as_pulse() {
+            return Ok(Received::Pulse(tick));
+        }
+        if frame.address() == LAST_WORDS {
+            return Err(PeerError::LastWords(String::from_utf8_lossy(frame.data()).into_owned()));
+        }
+        let expected = self.role.from_controller();
+        let mailbox = self.incoming.iter_mut().find(|mailbox| mailbox.place().address == frame.address());
+        let mailbox = mailbox.ok_or(FrameError::Address { expected, found: frame.address() })?;
+        mailbox.receive(frame.mailbox())?;
+        Ok(Received::Mailgram(mailbox.place()))
+    }
+
+    /// Answer all pulses up to the one of a tick.
+    ///
+    /// # Errors
+    /// [`PeerError`] if the connection ends.
+    pub fn pulse(&mut self, tick: u64) -> Result<(), PeerError> {
+        self.frame(&Frame::pulse(tick))
+    }
+
+    /// Send what stands in a mailbox.
+    ///
+    /// # Errors
+    /// [`PeerError`] if the connection ends.
+    pub fn send(&mut self, mailbox: &Mailbox) -> Result<(), PeerError> {
+        self.frame(&Frame::of(mailbox))
+    }
+
+    fn frame(&mut self, frame: &Frame) -> Result<(), PeerError> {
+        self.stream.send(frame).map_err(|error| FrameError::Stream(error).into())
+    }
+}

@@ -1,0 +1,110 @@
+//! Who a neighbour is, and which mailboxes are his.
+
+use std::{fmt, str::FromStr};
+
+use crate::mailbox::{
+    CELL_COMMAND, CELL_STATUS, DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, HWSC_COMMAND, HWSC_STATUS, Place,
+};
+
+/// A neighbour of the controller. The number stands in the hello.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u16)]
+pub enum Role {
+    /// The workstation controller (HWSC).
+    Workstation = 1,
+    /// The Data System.
+    DataSystem = 2,
+}
+
+impl Role {
+    /// All neighbours.
+    pub const ALL: [Self; 2] = [Self::Workstation, Self::DataSystem];
+
+    /// The word on the command line.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Workstation => "workstation",
+            Self::DataSystem => "data-system",
+        }
+    }
+
+    /// Mailboxes that the neighbour writes.
+    #[must_use]
+    pub const fn to_controller(self) -> &'static [Place] {
+        match self {
+            Self::Workstation => &[HWSC_COMMAND, CELL_COMMAND],
+            Self::DataSystem => &[DATA_SYSTEM_STATUS],
+        }
+    }
+
+    /// Mailboxes that the neighbour reads.
+    #[must_use]
+    pub const fn from_controller(self) -> &'static [Place] {
+        match self {
+            Self::Workstation => &[HWSC_STATUS, CELL_STATUS],
+            Self::DataSystem => &[DATA_SYSTEM_COMMAND],
+        }
+    }
+
+    /// The neighbour of a number.
+    #[must_use]
+    pub fn from_number(number: u16) -> Option<Self> {
+        Self::ALL.into_iter().find(|&role| role as u16 == number)
+    }
+}
+
+impl fmt::Display for Role {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.text())
+    }
+}
+
+/// A word that is no neighbour.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{} was expected, found {found}", Role::ALL.map(Role::text).join(" or "))]
+pub struct UnknownRole {
+    found: String,
+}
+
+impl FromStr for Role {
+    type Err = UnknownRole;
+
+    fn from_str(text: &str) -> Result<Self, UnknownRole> {
+        Self::ALL
+            .into_iter()
+            .find(|role| role.text() == text)
+            .ok_or_else(|| UnknownRole { found: text.to_owned() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_and_numbers_come_back() {
+        for role in Role::ALL {
+            assert_eq!(role.text().parse(), Ok(role));
+            assert_eq!(Role::from_number(role as u16), Some(role));
+        }
+        assert_eq!(Role::from_number(0), None);
+        assert_eq!(
+            "foreman".parse::<Role>().unwrap_err().to_string(),
+            "workstation or data-system was expected, found foreman"
+        );
+    }
+
+    #[test]
+    fn no_mailbox_has_two_writers() {
+        let mut all: Vec<u32> = Role::ALL
+            .iter()
+            .flat_map(|role| role.to_controller().iter().chain(role.from_controller()))
+            .map(|place| place.address)
+            .collect();
+        let count = all.len();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), count);
+    }
+}

@@ -1,0 +1,277 @@
+//! What Task reads of the mailbox, and what it answers: READ-HWS-COMMAND, WRITE-HWS-STATUS and UPDATE-MAILGRAM? (Figure IV.1,
+//! IX.1).
+//!
+//! A command is executed once. Its number says so:
+//!
+//! | number of the mailgram                    | what becomes of it                                                   |
+//! |-------------------------------------------|----------------------------------------------------------------------|
+//! | the last one, and the same fields         | repeated: answered with the present status, not executed again       |
+//! | the last one, and other fields            | refused                                                              |
+//! | the one after the last                    | taken                                                                |
+//! | any other                                 | refused; taken if it is the first since the mailboxes were initialized |
+//!
+//! A workstation controller that (re)connects reads `command-#-echo` in the status and goes on from there (IX.1).
+
+use std::fmt;
+
+use rcs_core::interface::{HwsCommand, TaskOutputs};
+
+use super::{
+    command::{self, CommandError},
+    status::{self, TaskState},
+};
+use crate::{
+    fields::successor,
+    mailbox::{HWSC_COMMAND, HWSC_STATUS, Mailbox},
+};
+
+/// Why a mailgram with a command was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// The bytes are no command.
+    Garbled(CommandError),
+    /// The number was given to another command.
+    Changed {
+        /// Both have it.
+        number: u16,
+    },
+    /// Another number comes next.
+    OutOfOrder {
+        /// The one that comes next.
+        expected: u16,
+        /// The one of the command.
+        found: u16,
+    },
+}
+
+impl Refusal {
+    /// `verdict` in the status.
+    #[must_use]
+    pub const fn code(&self) -> u16 {
+        match self {
+            Self::Garbled(_) => 1,
+            Self::Changed { .. } => 2,
+            Self::OutOfOrder { .. } => 3,
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Garbled(error) => error.fmt(f),
+            Self::Changed { number } => {
+                write!(
+                    f,
+                    "command {number} was given before with other fields; {} comes next",
+                    successor(*number)
+                )
+            }
+            Self::OutOfOrder { expected, found } => {
+                write!(f, "command {expected} comes next, found {found}")
+            }
+        }
+    }
+}
+
+/// Task's end of the two mailboxes. Does not allocate.
+#[derive(Clone, Debug)]
+pub struct Gate {
+    /// Mailgram number that was read last.
+    read: u16,
+    refused: Option<Refusal>,
+    command: HwsCommand,
+    /// No command was taken since the mailboxes were initialized.
+    fresh: bool,
+    status_box: Mailbox,
+}
+
+impl Default for Gate {
+    fn default() -> Self {
+        Self {
+            read: 0,
+            refused: None,
+            command: HwsCommand::default(),
+            fresh: true,
+            status_box: Mailbox::initialized(HWSC_STATUS),
+        }
+    }
+}
+
+impl Gate {
+    /// What stands in Task's command buffer.
+    #[must_use]
+    pub const fn command(&self) -> &HwsCommand {
+        &self.command
+    }
+
+    /// The mailbox to the workstation controller.
+    #[must_use]
+    pub const fn status_box(&self) -> &Mailbox {
+        &self.status_box
+    }
+
+    /// The mailboxes are initialized (block 641, IX.1): the next command may have any number but the last. The command that Task
+    /// has stays.
+    pub fn initialize(&mut self) {
+        (self.read, self.refused, self.fresh) = (0, None, true);
+        self.status_box.initialize();
+    }
+
+    /// READ-HWS-COMMAND, once a tick: look into the mailbox. Some if a mailgram has come that is refused.
+    pub fn read(&mut self, command_box: &Mailbox) -> Option<Refusal> {
+        debug_assert_eq!(command_box.place(), HWSC_COMMAND);
+        let mailgram = command_box.mailgram();
+        if mailgram == 0 || mailgram == self.read {
+            return None;
+        }
+        self.read = mailgram;
+        self.refused = self.take(command_box.data()).err();
+        self.refused
+    }
+
+    fn take(&mut self, data: &[u8]) -> Result<(), Refusal> {
+        let command = command::decode(data).map_err(Refusal::Garbled)?;
+        let (last, found) = (self.command.number, command.number);
+        if found == last {
+            if command == self.command {
+                return Ok(());
+            }
+            return Err(Refusal::Changed { number: word(found) });
+        }
+        let expected = successor(word(last));
+        if !self.fresh && word(found) != expected {
+            return Err(Refusal::OutOfOrder { expected, found: word(found) });
+        }
+        (self.command, self.fresh) = (command, false);
+        Ok(())
+    }
+
+    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, once a tick: what Task has written goes into the mailbox if it is news. True if it
+    /// is.
+    pub fn write(&mut self, task: &TaskOutputs, state: TaskState) -> bool {
+        let bytes = status::encode(&task.status, state, self.read, self.refused.as_ref());
+        if self.status_box.data() == bytes {
+            return false;
+        }
+        self.status_box.write(&bytes).is_ok()
+    }
+}
+
+/// A number that came out of a mailbox has two bytes.
+fn word(number: u32) -> u16 {
+    u16::try_from(number).unwrap_or(u16::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use rcs_core::interface::hws::{HwsReport, HwsStatus};
+
+    use super::{super::command::tests::transfer, *};
+
+    /// A workstation controller that writes whatever it is told.
+    struct Bench {
+        gate: Gate,
+        command_box: Mailbox,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            Self { gate: Gate::default(), command_box: Mailbox::initialized(HWSC_COMMAND) }
+        }
+
+        fn send(&mut self, data: &[u8]) -> Option<String> {
+            self.command_box.write(data).unwrap();
+            let refused = self.gate.read(&self.command_box);
+            assert_eq!(self.gate.read(&self.command_box), None, "a mailgram is judged once");
+            refused.map(|refusal| refusal.to_string())
+        }
+
+        fn command(&mut self, command: &HwsCommand) -> Option<String> {
+            self.send(&command::encode(command).unwrap())
+        }
+
+        fn status(&mut self, echo: u32, report: HwsReport) -> status::Status {
+            let status = HwsStatus { echo, report, ..HwsStatus::default() };
+            self.gate.write(&TaskOutputs { status, ..TaskOutputs::default() }, TaskState::Runs);
+            status::decode(self.gate.status_box().data()).unwrap()
+        }
+    }
+
+    #[test]
+    fn commands_are_taken_in_their_order() {
+        let mut bench = Bench::new();
+        for number in [40, 41, 42] {
+            assert_eq!(bench.command(&transfer(number)), None);
+            assert_eq!(*bench.gate.command(), transfer(number));
+        }
+    }
+
+    #[test]
+    fn what_is_refused_does_not_reach_task_and_the_status_says_why() {
+        let mut bench = Bench::new();
+        bench.command(&transfer(7));
+        let other = HwsCommand { source_sector: 1, ..transfer(7) };
+        let good = command::encode(&transfer(8)).unwrap();
+        let refused = [
+            (bench.send(b"hello"), 1, "a command of 126 bytes was expected, found 5"),
+            (bench.send(&good[..100]), 1, "a command of 126 bytes was expected, found 100"),
+            (bench.command(&other), 2, "command 7 was given before with other fields; 8 comes next"),
+            (bench.command(&transfer(6)), 3, "command 8 comes next, found 6"),
+            (bench.command(&transfer(9)), 3, "command 8 comes next, found 9"),
+        ];
+        for (at, (said, _, why)) in refused.iter().enumerate() {
+            assert_eq!(said.as_deref(), Some(*why), "{at}");
+        }
+        assert_eq!(*bench.gate.command(), transfer(7));
+        bench.send(b"hello");
+        let status = bench.status(7, HwsReport::Executing);
+        assert_eq!((status.echo, status.report), (7, HwsReport::Executing), "it goes on");
+        assert_eq!((status.verdict, status.mailgram_echo), (1, bench.command_box.mailgram()));
+        assert_eq!(status.reason, "a command of 126 bytes was expected, found 5");
+        assert_eq!(bench.command(&transfer(8)), None);
+        let status = bench.status(8, HwsReport::Executing);
+        assert_eq!((status.verdict, status.reason.as_str()), (0, ""));
+    }
+
+    #[test]
+    fn a_repeated_command_is_answered_and_not_executed_again() {
+        let mut bench = Bench::new();
+        bench.command(&transfer(7));
+        let before = bench.status(7, HwsReport::Finished);
+        assert_eq!(bench.command(&transfer(7)), None);
+        let after = bench.status(7, HwsReport::Finished);
+        assert_eq!((after.report, after.verdict), (HwsReport::Finished, 0));
+        assert_ne!(after.mailgram_echo, before.mailgram_echo, "a new mailgram answers it");
+    }
+
+    #[test]
+    fn the_mailbox_is_written_when_there_is_news() {
+        let mut bench = Bench::new();
+        let task = TaskOutputs::default();
+        assert!(bench.gate.write(&task, TaskState::Runs));
+        assert!(!bench.gate.write(&task, TaskState::Runs));
+        assert!(bench.gate.write(&task, TaskState::Held));
+        assert_eq!(bench.gate.status_box().mailgram(), 2);
+    }
+
+    #[test]
+    fn after_initialization_numbers_are_synchronized() {
+        let mut bench = Bench::new();
+        bench.command(&transfer(7));
+        bench.gate.initialize();
+        bench.command_box.initialize();
+        assert_eq!(bench.gate.read(&bench.command_box), None);
+        assert_eq!(*bench.gate.command(), transfer(7), "Task goes on with what it has");
+        assert!(bench.command(&HwsCommand { serial: Default::default(), ..transfer(7) }).is_some());
+        assert_eq!(bench.command(&transfer(300)), None);
+        assert_eq!(bench.command(&transfer(302)).as_deref(), Some("command 301 comes next, found 302"));
+    }
+
+    #[test]
+    fn numbers_run_round() {
+        let mut bench = Bench::new();
+        assert_eq!(bench.command(&transfer(65_535)), None);
+        assert_eq!(bench.command(&transfer(1)), None);
+    }
+}

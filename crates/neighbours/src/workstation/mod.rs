@@ -1,0 +1,19 @@
+//! The workstation controller (HWSC) and Task (V.4.2, IX.1).
+//!
+//! The manual names the fields of the two interfaces with their widths, in an order; the mailboxes hold them in that order,
+//! without gaps. What it does not say is marked CHOSEN in [`command`] and [`status`].
+//!
+//! ```text
+//!   HWSC --command::encode--> F6000 --Gate--> HwsCommand --> Task
+//!   HWSC <--status::decode--- F6200 <-------- HwsStatus  <-- Task
+//! ```
+//!
+//! [`Gate`] stands where Task's READ-HWS-COMMAND and WRITE-HWS-STATUS stood (Figure IV.1). What it refuses never reaches Task:
+//! the command that is being executed goes on, and nothing new begins.
+
+pub mod command;
+mod gate;
+pub mod status;
+
+pub use gate::{Gate, Refusal};
+pub use status::{Status, TaskState};
