@@ -3,7 +3,7 @@
 
 use std::fmt::{self, Write as _};
 
-use rcs_core::name::Name;
+use rcs_core::name::{Name, Name16};
 
 /// What stands behind a text that is shorter than its field.
 const BLANK: u8 = b' ';
@@ -25,6 +25,13 @@ pub enum FieldError {
         /// The character.
         found: u8,
     },
+    /// A word that is none of the field's.
+    Word {
+        /// The field, in the manual's words.
+        field: &'static str,
+        /// The word.
+        found: Name16,
+    },
     /// A code that is none of the field's.
     Code {
         /// The field, in the manual's words.
@@ -44,6 +51,7 @@ impl fmt::Display for FieldError {
                     "printable characters and blanks behind them were expected for {field}, found {found:02X} at byte {at}"
                 )
             }
+            Self::Word { field, found } => write!(f, "{found} is no word of {field}"),
             Self::Code { field, found } => write!(f, "{found} is no code of {field}"),
         }
     }
@@ -231,8 +239,6 @@ pub fn successor(number: u16) -> u16 {
 
 #[cfg(test)]
 mod tests {
-    use rcs_core::name::Name16;
-
     use super::*;
 
     #[test]

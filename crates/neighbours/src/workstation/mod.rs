@@ -9,10 +9,11 @@
 //! ```
 //!
 //! [`Gate`] stands where Task's READ-HWS-COMMAND and WRITE-HWS-STATUS stood (Figure IV.1). What it refuses never reaches Task:
-//! the command that is being executed goes on, and nothing new begins.
+//! the command that is being executed goes on, and nothing new begins. [`player`] is an emulator of the other end, that plays jobs.
 
 pub mod command;
 mod gate;
+pub mod player;
 pub mod status;
 
 pub use gate::{Gate, Refusal};

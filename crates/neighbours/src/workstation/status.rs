@@ -53,8 +53,8 @@ impl TaskState {
 }
 
 /// A status as it is read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Status {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Status<'a> {
     /// `"command-echo"`.
     pub command: Name16,
     /// `"status"`.
@@ -70,7 +70,7 @@ pub struct Status {
     /// `task-state`.
     pub task: TaskState,
     /// `reason`.
-    pub reason: String,
+    pub reason: &'a str,
 }
 
 /// The bytes of a status.
@@ -104,13 +104,13 @@ pub fn encode(
 ///
 /// # Errors
 /// [`FieldError`] for the first field that cannot be.
-pub fn decode(bytes: &[u8]) -> Result<Status, FieldError> {
+pub fn decode(bytes: &[u8]) -> Result<Status<'_>, FieldError> {
     let mut fields = Unpacker::new(bytes);
     fields.raw("fdbf>w, echo>w, status-length>w, time-stamp-status>w", 34)?;
     let command = fields.name("command-echo")?;
     let report = fields.name::<16>("status")?;
     let report =
-        HwsReport::from_text(report.as_str()).ok_or(FieldError::Code { field: "status", found: 0 })?;
+        HwsReport::from_text(report.as_str()).ok_or(FieldError::Word { field: "status", found: report })?;
     let (echo, mailgram_echo) = (fields.word("command-#-echo")?, fields.word("mailgram-echo")?);
     let verdict = fields.word("verdict")?;
     let (code, task) = (fields.word("status-code")?, fields.word("task-state")?);
@@ -128,7 +128,7 @@ pub fn decode(bytes: &[u8]) -> Result<Status, FieldError> {
             .into_iter()
             .find(|&state| state as u16 == task)
             .ok_or(FieldError::Code { field: "task-state", found: task })?,
-        reason: fields.text("reason", REASON)?.to_owned(),
+        reason: fields.text("reason", REASON)?,
     })
 }
 
@@ -171,10 +171,7 @@ mod tests {
             for &reason in Reason::ALL {
                 let bytes = encode(&HwsStatus { report, reason, ..failed() }, TaskState::Lost, 0, None);
                 let status = decode(&bytes).unwrap();
-                assert_eq!(
-                    (status.report, status.code, status.reason.as_str()),
-                    (report, reason, reason.text())
-                );
+                assert_eq!((status.report, status.code, status.reason), (report, reason, reason.text()));
             }
         }
     }

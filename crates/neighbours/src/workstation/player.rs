@@ -3,8 +3,8 @@
 //! A job is a list of steps: commands for Task, and actions of the workstation itself (vise, machining)
 //! between them. The emulator first sends PAUSE, as the startup sequence does (V.4.1), and then one step
 //! after the other: a command is over when Task answers its number with `finished`, an action when the
-//! workstation is no longer busy. An error, a lost Task, a fault of the workstation or a step that takes too
-//! long end the job with a [`JobFailure`]. While the workstation does something, the operator may have the
+//! workstation is no longer busy. A command that is not answered is sent once more, as it was. An error, a lost Task, a fault of
+//! the workstation or a step that takes too long end the job with a [`JobFailure`]. While the workstation does something, the operator may have the
 //! robot: a joystick box that is on ends only a command.
 //!
 //! ```text
@@ -20,22 +20,28 @@
 //! Actions that are to happen while the robot executes a command stand in the job before that command. They
 //! are kept until it is sent, and begun when their time comes, whatever step is going on then. A job is not
 //! over before they are.
+//!
+//! The emulator knows Task by its mailboxes only: it reads a [`Status`], and writes a command ([`Hwsc::mailgram`]). So it can run in
+//! the controller's process or in one of its own, and whoever speaks the same mailboxes can take its place.
 
 use rcs_core::{
-    handshake::{Commander, Lower},
-    interface::{HwsCommand, Reason, TaskOutputs, hws::HwsReport},
+    handshake::{Commander, ECHO_LIMIT, Lower},
+    interface::{Header, HwsCommand, Reason, hws::HwsReport},
     name::Name16,
     tick::{TICK_MS, Tick},
 };
 use taskdata::load::job::{JobLine, Panel, Step, Workstation as Action};
 
+use super::status::{Status, TaskState};
+use crate::fields::command_number;
+
 /// What the workstation can do by itself.
 pub trait Workstation {
-    /// Begin an action.
+    /// Begin an action; `line` is how the job says it, without the asterisks.
     ///
     /// # Errors
     /// A sentence, if the workstation cannot do it.
-    fn begin(&mut self, action: &Action) -> Result<(), String>;
+    fn begin(&mut self, action: &Action, line: &str) -> Result<(), String>;
 
     /// True while an action goes on.
     fn busy(&self) -> bool;
@@ -94,6 +100,9 @@ pub enum JobFailure {
     /// Task does not answer.
     #[error("Task does not answer")]
     Lost,
+    /// The mailbox of the command is refused.
+    #[error("the controller refuses the command: {0}")]
+    Refused(String),
     /// The operator has the robot.
     #[error("the joystick box is on")]
     Joystick,
@@ -131,6 +140,12 @@ pub struct Hwsc {
     began: Option<Tick>,
     commander: Commander,
     command: HwsCommand,
+    /// Ticks in which a command must be echoed.
+    answer_ticks: u64,
+    /// The command has been sent twice.
+    repeated: bool,
+    /// The command is to be sent.
+    to_send: bool,
     records: Vec<Record>,
     progress: Progress,
     time_limit: u64,
@@ -143,6 +158,8 @@ struct Later {
     /// Ticks from the command.
     ticks: u64,
     action: Action,
+    /// The line without what says when.
+    line: String,
     /// When the command was sent; `None` as long as it was not.
     since: Option<Tick>,
 }
@@ -164,6 +181,9 @@ impl Hwsc {
             began: None,
             commander: Commander::default(),
             command: HwsCommand::default(),
+            answer_ticks: ECHO_LIMIT,
+            repeated: false,
+            to_send: false,
             records,
             progress: Progress::Running,
             time_limit,
@@ -171,10 +191,23 @@ impl Hwsc {
         }
     }
 
-    /// What stands in Task's command buffer now.
+    /// Wait so many ticks for the echo of a command before it is sent again, instead of the three of a neighbour in the same
+    /// process: a network takes its time.
+    #[must_use]
+    pub const fn with_answer_ticks(mut self, ticks: u64) -> Self {
+        self.answer_ticks = ticks;
+        self
+    }
+
+    /// The command that was sent last.
     #[must_use]
     pub const fn command(&self) -> &HwsCommand {
         &self.command
+    }
+
+    /// The command that is to be written into the mailbox now, if there is one: each is given once.
+    pub fn mailgram(&mut self) -> Option<&HwsCommand> {
+        std::mem::take(&mut self.to_send).then_some(&self.command)
     }
 
     /// All steps that were begun, the first PAUSE included.
@@ -203,11 +236,11 @@ impl Hwsc {
 
     /// Once a tick, after the controller: read what Task wrote in `tick`, write what it will read in the next
     /// one.
-    pub fn step(&mut self, tick: Tick, task: &TaskOutputs, workstation: &mut impl Workstation) -> &Progress {
+    pub fn step(&mut self, tick: Tick, task: &Status<'_>, workstation: &mut impl Workstation) -> &Progress {
         if self.progress != Progress::Running {
             return &self.progress;
         }
-        self.commander.start(task.status.echo);
+        self.commander.start(u32::from(task.echo));
         let emergency = workstation.emergency();
         if let Some(emergency) = emergency.clone().filter(|_| !self.resets()) {
             self.fail(JobFailure::Emergency(emergency));
@@ -260,7 +293,7 @@ impl Hwsc {
         &mut self,
         tick: Tick,
         began: Tick,
-        task: &TaskOutputs,
+        task: &Status<'_>,
         workstation: &impl Workstation,
     ) -> Option<Result<(), JobFailure>> {
         let ticks = tick.since(began);
@@ -270,16 +303,25 @@ impl Hwsc {
         if let Some(fault) = workstation.fault() {
             return Some(Err(JobFailure::Workstation(fault)));
         }
-        let lower =
-            self.commander.read(tick.next(), &task.header, task.status.echo, lower(task.status.report));
+        let lower = self.read(tick, task);
         let step = self.step_at(self.current).map(|line| line.step);
+        let commanding = matches!(step, None | Some(Step::Command(_)));
+        if commanding && lower == Lower::Pending && task.verdict != 0 {
+            return Some(Err(JobFailure::Refused(task.reason.to_owned())));
+        }
         let finished = match (step, lower) {
+            (_, Lower::Lost) if commanding && !self.repeated => {
+                self.repeated = true;
+                self.to_send = true;
+                self.commander.sent = tick.next();
+                return None;
+            }
             (_, Lower::Lost) => return Some(Err(JobFailure::Lost)),
             (Some(Step::Workstation(Action::Wait { ticks: wanted })), _) => {
                 return (ticks >= u64::from(wanted)).then_some(Ok(()));
             }
             (Some(Step::Workstation(_) | Step::After { .. }), _) => !workstation.busy(),
-            (_, Lower::Error) => return Some(Err(JobFailure::Command(task.status.reason))),
+            (_, Lower::Error) => return Some(Err(JobFailure::Command(task.code))),
             (_, Lower::Joystick) => return Some(Err(JobFailure::Joystick)),
             (_, Lower::Pending | Lower::Executing) => false,
             (_, Lower::Done) => true,
@@ -293,10 +335,29 @@ impl Hwsc {
         }
     }
 
+    /// What Task makes of the last command.
+    fn read(&self, tick: Tick, task: &Status<'_>) -> Lower {
+        // The mailbox has the lower part of the number.
+        let last = self.commander.number;
+        let echo = if command_number(last) == task.echo { last } else { u32::from(task.echo) };
+        let lost = task.task == TaskState::Lost;
+        let header = Header {
+            stamp: if lost { Tick::BEFORE_START } else { tick },
+            republished: task.task == TaskState::Held,
+            ..Header::default()
+        };
+        match self.commander.read(tick.next(), &header, echo, lower(task.report)) {
+            Lower::Lost if !lost && tick.next().since(self.commander.sent) <= self.answer_ticks => {
+                Lower::Pending
+            }
+            lower => lower,
+        }
+    }
+
     /// Begin the actions whose time has come.
     fn begin_later(&mut self, tick: Tick, workstation: &mut impl Workstation) -> Result<(), String> {
         for later in self.later.extract_if(.., |later| later.is_due(tick)) {
-            workstation.begin(&later.action)?;
+            workstation.begin(&later.action, &later.line)?;
         }
         Ok(())
     }
@@ -329,10 +390,11 @@ impl Hwsc {
                 (text.clone(), None, None)
             }
             Some(JobLine { step: Step::Workstation(action), text, .. }) => {
-                (text.clone(), None, workstation.begin(action).err())
+                (text.clone(), None, workstation.begin(action, spoken(text)).err())
             }
             Some(JobLine { step: Step::After { ticks, action }, text, .. }) => {
-                let later = Later { ticks: u64::from(*ticks), action: *action, since: None };
+                let line = after(spoken(text)).to_owned();
+                let later = Later { ticks: u64::from(*ticks), action: *action, line, since: None };
                 let text = text.clone();
                 self.later.push(later);
                 (text, None, None)
@@ -347,6 +409,7 @@ impl Hwsc {
         if let Some(command) = command {
             self.later.iter_mut().for_each(|later| later.since = later.since.or(Some(tick)));
             self.command = HwsCommand { number: self.commander.send(tick.next()), ..command };
+            (self.to_send, self.repeated) = (true, false);
         }
         if let Some(refused) = refused {
             self.fail(JobFailure::Workstation(refused));
@@ -365,6 +428,17 @@ impl Hwsc {
     }
 }
 
+/// A line for the workstation without the asterisks in front of it.
+fn spoken(line: &str) -> &str {
+    line.trim_start().trim_start_matches('*').trim_start()
+}
+
+/// A line without the `after` and the number in front of it.
+fn after(line: &str) -> &str {
+    let words = |line| str::split_once(line, char::is_whitespace).map_or("", |(_, rest)| rest.trim_start());
+    words(words(line))
+}
+
 const fn lower(report: HwsReport) -> Lower {
     match report {
         HwsReport::Idle | HwsReport::Finished => Lower::Done,
@@ -380,7 +454,7 @@ mod tests {
     use rcs_core::{
         frame::Frame,
         handshake::{Arrival, Receiver},
-        interface::Header,
+        interface::hws::HwsStatus,
         name::Name10,
     };
     use taskdata::{
@@ -397,36 +471,62 @@ mod tests {
         fails_at: Option<usize>,
         silent: bool,
         joystick: bool,
+        /// Mailgrams that do not arrive.
+        losing: u32,
+        /// Numbers of all mailgrams.
+        sent: Vec<u32>,
+        command: HwsCommand,
     }
 
     impl Task {
-        fn step(&mut self, tick: Tick, command: &HwsCommand) -> TaskOutputs {
-            let mut outputs =
-                TaskOutputs { header: Header { stamp: tick, ..Header::default() }, ..TaskOutputs::default() };
-            if self.silent {
-                return outputs;
+        /// What the emulator has sent reaches Task in the next tick, unless it is lost.
+        fn step(&mut self, hwsc: &mut Hwsc) -> Status<'static> {
+            let mut status = HwsStatus::default();
+            if let Some(command) = hwsc.mailgram() {
+                self.sent.push(command.number);
+                if self.losing == 0 {
+                    self.command = *command;
+                }
+                self.losing = self.losing.saturating_sub(1);
             }
-            match self.receiver.observe(command.number) {
+            if self.silent {
+                return answer(&status);
+            }
+            match self.receiver.observe(self.command.number) {
                 Arrival::New => {
-                    self.received.push(command.command.to_string());
+                    self.received.push(self.command.command.to_string());
                     self.left = 4;
                 }
                 _ => self.left = self.left.saturating_sub(1),
             }
-            outputs.status.echo = self.receiver.echo;
-            outputs.status.report = match self.left {
+            status.echo = self.receiver.echo;
+            status.report = match self.left {
                 0 if self.receiver.echo == 0 => HwsReport::Idle,
                 0 if self.fails_at == Some(self.received.len()) => HwsReport::Error,
                 0 => HwsReport::Finished,
                 _ => HwsReport::Executing,
             };
             if self.joystick {
-                outputs.status.report = HwsReport::JoystickOn;
+                status.report = HwsReport::JoystickOn;
             }
-            if outputs.status.report == HwsReport::Error {
-                outputs.status.reason = Reason::GraspMissed;
+            if status.report == HwsReport::Error {
+                status.reason = Reason::GraspMissed;
             }
-            outputs
+            answer(&status)
+        }
+    }
+
+    /// What the emulator reads when Task runs and nothing was refused.
+    fn answer(status: &HwsStatus) -> Status<'static> {
+        Status {
+            command: status.command,
+            report: status.report,
+            echo: command_number(status.echo),
+            mailgram_echo: 0,
+            verdict: 0,
+            code: status.reason,
+            task: TaskState::Runs,
+            reason: status.reason.text(),
         }
     }
 
@@ -435,12 +535,14 @@ mod tests {
     struct Vise {
         busy: std::cell::Cell<u32>,
         told: Vec<ViseOpening>,
+        lines: Vec<String>,
         fault: Option<&'static str>,
         emergency: Option<&'static str>,
     }
 
     impl Workstation for Vise {
-        fn begin(&mut self, action: &Action) -> Result<(), String> {
+        fn begin(&mut self, action: &Action, line: &str) -> Result<(), String> {
+            self.lines.push(line.to_owned());
             if *action == RESET {
                 self.emergency = None;
                 return Ok(());
@@ -499,7 +601,7 @@ mod tests {
 
     fn play_on(hwsc: &mut Hwsc, task: &mut Task, vise: &mut Vise, from: u64) -> u64 {
         for tick in from..200 {
-            let outputs = task.step(Tick(tick), hwsc.command());
+            let outputs = task.step(hwsc);
             if *hwsc.step(Tick(tick), &outputs, vise) != Progress::Running {
                 return tick;
             }
@@ -558,18 +660,52 @@ mod tests {
         assert_eq!(task.received, ["PAUSE", "MOVE"]);
         assert_eq!(hwsc.records().last().map(|r| r.outcome), Some(Outcome::Failed));
         let number = hwsc.command().number;
-        let outputs = task.step(Tick(last + 1), hwsc.command());
+        let outputs = task.step(&mut hwsc);
         hwsc.step(Tick(last + 1), &outputs, &mut Vise::default());
         assert_eq!(hwsc.command().number, number);
     }
 
     #[test]
-    fn a_task_that_does_not_answer_is_lost_after_three_ticks() {
-        let mut task = Task { silent: true, ..Task::default() };
+    fn a_task_that_does_not_answer_is_asked_twice_and_then_lost() {
+        for (ticks, limit) in [(ECHO_LIMIT, 10), (20, 45)] {
+            let mut task = Task { silent: true, ..Task::default() };
+            let mut hwsc = Hwsc::new(vec![command("MOVE")], 100).with_answer_ticks(ticks);
+            let last = play(&mut hwsc, &mut task, &mut Vise::default());
+            assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Lost));
+            assert!((2 * ticks..limit).contains(&last), "{last}");
+            assert_eq!(task.sent, [4, 4], "the same number");
+        }
+    }
+
+    #[test]
+    fn a_command_that_was_lost_on_the_way_is_sent_again_and_executed_once() {
+        let mut task = Task { losing: 1, ..Task::default() };
         let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
-        let last = play(&mut hwsc, &mut task, &mut Vise::default());
-        assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Lost));
-        assert!(last <= 6, "{last}");
+        play(&mut hwsc, &mut task, &mut Vise::default());
+        assert_eq!(*hwsc.progress(), Progress::Over);
+        assert_eq!((task.received, task.sent), (vec!["PAUSE".to_owned(), "MOVE".to_owned()], vec![4, 4, 5]));
+    }
+
+    #[test]
+    fn a_command_that_the_mailbox_refuses_ends_the_job_with_what_it_says() {
+        let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
+        let refused =
+            Status { verdict: 3, reason: "command 8 comes next, found 4", ..answer(&HwsStatus::default()) };
+        for tick in 1..4 {
+            hwsc.step(Tick(tick), &refused, &mut Vise::default());
+        }
+        let failure = JobFailure::Refused("command 8 comes next, found 4".into());
+        assert_eq!(*hwsc.progress(), Progress::Failed(failure));
+    }
+
+    #[test]
+    fn a_workstation_is_told_the_line_without_what_says_when() {
+        let mut later = later(2, ViseOpening::Open);
+        later.text = "**  after 2   vise open  PFIXTURE".into();
+        let mut jaws = Vise::default();
+        let mut hwsc = Hwsc::new(vec![vise(ViseOpening::Close), later, command("MOVE")], 100);
+        play(&mut hwsc, &mut Task::default(), &mut jaws);
+        assert_eq!(jaws.lines, ["vise Close PFIXTURE", "vise open  PFIXTURE"]);
     }
 
     #[test]
@@ -600,7 +736,7 @@ mod tests {
         let mut tick = 0;
         while jaws.told.is_empty() {
             tick += 1;
-            let outputs = task.step(Tick(tick), hwsc.command());
+            let outputs = task.step(&mut hwsc);
             assert_eq!(*hwsc.step(Tick(tick), &outputs, &mut jaws), Progress::Running);
         }
         assert_eq!(task.received, ["PAUSE", "MOVE"]);
