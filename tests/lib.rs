@@ -42,6 +42,16 @@ pub fn rcs_log() -> &'static Path {
     program("rcs-log", &PROGRAM)
 }
 
+/// The program `rcs-neighbour`, brought up to date.
+///
+/// # Panics
+/// If it does not build.
+#[must_use]
+pub fn rcs_neighbour() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    program("rcs-neighbour", &PROGRAM)
+}
+
 fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
     built.get_or_init(|| {
         // Tests lie in <target>/release/deps, programs in <target>/release.

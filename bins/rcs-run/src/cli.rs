@@ -4,6 +4,7 @@ use std::{fmt, path::PathBuf, str::FromStr};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use executive::{boards::Board, memory::RunName, overrun::Policy, serial::SerialSettings};
+use neighbours::network::{Address, Role};
 
 /// The RCS-II/T3 controller: runs jobs in the simulated cell, or with a robot at a serial port.
 #[derive(Debug, Parser)]
@@ -27,6 +28,8 @@ Examples:
   rcs-run check                        look at the task data without running anything
   rcs-run check --explain 'MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0'
                                        the whole way of a command, and how long it takes
+  rcs-run --network unix:/tmp/rcs.sock --outside workstation --clock real
+                                       take commands from a workstation controller in another process
   rcs-run status                       what the run in the other terminal is doing
   rcs-run tables > tables.md           all decision tables
 
@@ -99,7 +102,7 @@ pub struct RunArguments {
     /// Name of the run in shared memory [default: <job>-<number of this process>]
     #[arg(long, value_name = "NAME")]
     pub run: Option<RunName>,
-    /// How many seconds to wait for boards that are started by hand
+    /// How many seconds to wait for boards that are started by hand, and for neighbours in other processes
     #[arg(long, value_name = "N", default_value_t = 300, value_parser = clap::value_parser!(u32).range(1..=86_400))]
     pub wait: u32,
     /// Seed of the cell's noise and of where parts are delivered
@@ -111,6 +114,15 @@ pub struct RunArguments {
     /// Keep the items of the Data System in this SQLite file, which is made if it is not there [default: forget them]
     #[arg(long, value_name = "FILE")]
     pub data_base: Option<PathBuf>,
+    /// Let neighbours in other processes connect here: unix:PATH, or tcp:IP:PORT with a secret (docs/neighbours.md)
+    #[arg(long, value_name = "ADDRESS", requires = "outside")]
+    pub network: Option<Address>,
+    /// Neighbours that are other processes, with commas between them: workstation
+    #[arg(long, value_name = "NEIGHBOURS", value_delimiter = ',', requires = "network")]
+    pub outside: Vec<Role>,
+    /// File with the secret that proves neighbours to be ours, at least 16 bytes
+    #[arg(long, value_name = "FILE", requires = "network")]
+    pub secret: Option<PathBuf>,
     /// Stop after so many ticks if the job is not over before
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub ticks: Option<u64>,

@@ -7,7 +7,10 @@ use executive::{
     memory::{ReadError, SharedMemoryError},
     serial::OpenError,
 };
-use neighbours::data_system::StoreError;
+use neighbours::{
+    data_system::StoreError,
+    network::{hello::SecretError, listener::ListenError},
+};
 use plant::{CellError, fault::text::FaultFileError};
 use record::RecordError;
 use taskdata::load::Report;
@@ -81,6 +84,15 @@ pub enum Error {
     /// The data base of the Data System cannot be had.
     #[error("the Data System cannot keep its items: {0}")]
     DataBase(#[from] StoreError),
+    /// Neighbours cannot connect.
+    #[error("neighbours cannot connect: {0}")]
+    Network(#[from] ListenError),
+    /// The secret cannot be used.
+    #[error(transparent)]
+    Secret(#[from] SecretError),
+    /// The workstation controller has not come.
+    #[error("the workstation controller has not come within {0} s; --wait gives it more")]
+    NobodyCommands(u32),
     /// The log cannot be written.
     #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
     Log(#[from] RecordError),

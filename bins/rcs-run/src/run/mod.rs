@@ -8,6 +8,8 @@
 pub mod boards;
 mod contacts;
 mod log;
+mod neighbours;
+mod outside;
 mod pace;
 mod progress;
 mod result;
@@ -25,18 +27,17 @@ use std::{
     time::Instant,
 };
 
+use ::neighbours::workstation::player::{self, JobFailure};
 use depc::Plate;
 use executive::{
     boards::Lost,
     failure::{self, Failure},
     generations::Generations,
-    hwsc::{self, Hwsc, JobFailure},
     laps::Part,
     memory::{Mirror, Publisher, RunName},
     runner::Runner,
 };
 use levels::ladder::{Ladder, LadderState};
-use neighbours::data_system::DataSystem;
 use plant::CellEvent;
 use rcs_core::{
     interface::{DeviceInputs, DeviceOutputs, ExternalInputs, device::LinkBytes},
@@ -50,6 +51,7 @@ use self::{
     boards::Controller,
     contacts::{Commands, Judge},
     log::Log,
+    neighbours::Neighbours,
     pace::Pace,
     progress::Progress,
     result::{
@@ -71,8 +73,7 @@ const SETTLING: usize = 50;
 /// What moves while a run goes on.
 struct Run {
     runner: Runner<Controller>,
-    hwsc: Hwsc,
-    data_system: DataSystem,
+    neighbours: Neighbours,
     workstation: SimulatedWorkstation,
     inputs: DeviceInputs,
     robot: Robot,
@@ -119,17 +120,17 @@ impl Ending {
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let interrupted = interruption()?;
     let setup = Setup::load(arguments)?;
+    setup.neighbours.gather(arguments.wait, &interrupted)?;
     let name = arguments.run.clone().unwrap_or_else(|| RunName::unique(&setup.job.name));
     let controller = Controller::start(arguments, &name, &setup.store, &setup.job, &interrupted)?;
     let log = setup.log.as_deref().map(|path| Log::start(path, arguments, &setup)).transpose()?;
     let publisher = publisher(arguments, &name);
-    let Setup { store, job, description, cell, robot, data_system, log: log_path, .. } = setup;
+    let Setup { store, job, description, cell, robot, neighbours, log: log_path, .. } = setup;
     let workstation = SimulatedWorkstation::new(cell);
     let workstation = if robot.port().is_some() { workstation.with_robot_elsewhere() } else { workstation };
     let mut run = Run {
         runner: Runner::new(controller, publisher),
-        hwsc: Hwsc::new(job.steps.clone(), hwsc::TIME_LIMIT),
-        data_system,
+        neighbours,
         inputs: workstation.cell.inputs(),
         robot,
         workstation,
@@ -154,14 +155,14 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let log_text = run.finish_log(&ending, &mut result, log_path);
     let page = Page {
         result: &result,
-        steps: run.hwsc.records(),
+        steps: run.neighbours.records(),
         events: &run.events,
         log: &log_text,
         slowest: &pace::slowest(run.runner.laps()),
         stopped: matches!(ending, Ending::Stopped),
     };
     print(&page, arguments.json)?;
-    let run_line = run.hwsc.records().last().map(|record| record.text.clone());
+    let run_line = run.neighbours.records().last().map(|record| record.text.clone());
     // What is shared goes before the last word: whoever reads it may start the next run at once.
     drop(mirror);
     drop(run);
@@ -247,9 +248,9 @@ impl Run {
     /// What comes from outside for the next tick.
     fn external(&self, generations: &Generations) -> ExternalInputs {
         ExternalInputs {
-            hws: *self.hwsc.command(),
+            hws: *self.neighbours.hws(),
             devices: self.pace.inputs(self.inputs),
-            data_base: self.data_system.status(),
+            data_base: self.neighbours.data_base(),
             generation: generations.number(),
         }
     }
@@ -302,18 +303,17 @@ impl Run {
             self.advance(tick, &outputs);
             self.observe(tick, Commands::from(&memory));
             self.runner.laps_mut().lap(Part::Cell);
-            self.progress.show(&self.hwsc, &external.hws, &memory);
-            self.data_system.step(tick, &memory.task.data_base);
-            self.note_refusals(tick);
-            match self.hwsc.step(tick, &memory.task, &mut self.workstation) {
-                hwsc::Progress::Over => return Ending::Finished,
+            self.progress.show(self.neighbours.records(), &external.hws, &memory);
+            let progress = self.neighbours.step(tick, &memory, &mut self.workstation, generations.current());
+            self.note_neighbours(tick);
+            match progress {
+                player::Progress::Over => return Ending::Finished,
                 // Whatever the arm runs into belongs to the run.
-                hwsc::Progress::Failed(_) if self.workstation.is_settling(tick) => {}
-                hwsc::Progress::Failed(failure) => {
-                    let failure = failure.clone();
+                player::Progress::Failed(_) if self.workstation.is_settling(tick) => {}
+                player::Progress::Failed(failure) => {
                     return Ending::Failed(self.explain(&failure, &external));
                 }
-                hwsc::Progress::Running => {}
+                player::Progress::Running => {}
             }
             // An arm that sinks without pressure is stopped by what it meets, and the emergency is the verdict.
             let stuck = self.judge.is_stuck() && !self.workstation.is_settling(tick);
@@ -326,6 +326,10 @@ impl Run {
             }
             self.runner.laps_mut().lap(Part::Workstation);
             if interrupted.load(Ordering::Relaxed) {
+                if self.neighbours.are_commanding() {
+                    // There is no job that ends by itself.
+                    return Ending::Stopped;
+                }
                 return Ending::Failed(outside(tick, "rcs-run", "interrupted".to_owned()));
             }
             if arguments.ticks.is_some_and(|ticks| tick.0 >= ticks) {
@@ -373,12 +377,11 @@ impl Run {
         self.events.extend(self.fresh.iter().map(|(_, _, event)| format!("tick {tick}: {event}")));
     }
 
-    /// What the Data System does not take is an event of the run; Task learns no more than that it was refused.
-    fn note_refusals(&mut self, tick: Tick) {
-        for refusal in self.data_system.refusals() {
-            let text = format!("the Data System refuses: {refusal}");
+    /// What neighbours say beside their mailboxes is an event of the run; Task learns no more than their statuses tell.
+    fn note_neighbours(&mut self, tick: Tick) {
+        for (level, source, text) in self.neighbours.notes() {
             if let Some(log) = &mut self.log {
-                log.note(tick, Level::Warning, "Data System", &text);
+                log.note(tick, level, source, &text);
             }
             self.events.push(format!("tick {tick}: {text}"));
         }
@@ -433,7 +436,7 @@ impl Run {
         let ticks = self.runner.tick().0;
         let simulated_s = ticks as f64 * TICK_S;
         let commands =
-            self.hwsc.records().iter().filter(|record| record.is_command).map(|record| CommandResult {
+            self.neighbours.records().iter().filter(|record| record.is_command).map(|record| CommandResult {
                 text: record.text.trim_start_matches("==").trim_start().to_owned(),
                 status: record.outcome.text(),
                 ticks: record.ticks,
@@ -473,7 +476,7 @@ impl Run {
 
     /// What the data base holds at the end.
     fn items(&mut self) -> Vec<ItemResult> {
-        self.data_system.items().map_or_else(
+        self.neighbours.items().map_or_else(
             |why| {
                 eprintln!("rcs-run: the items cannot be listed: {why}");
                 Vec::new()

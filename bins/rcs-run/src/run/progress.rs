@@ -5,9 +5,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use executive::{failure, hwsc::Hwsc};
+use executive::failure;
 use indicatif::{ProgressBar, ProgressStyle};
 use levels::ladder::Ladder;
+use neighbours::workstation::player::Record;
 use rcs_core::interface::{CommonMemory, HwsCommand};
 
 /// Time between two pictures.
@@ -38,14 +39,14 @@ impl Progress {
     }
 
     /// Show where the run is, at most ten times a second.
-    pub fn show(&mut self, hwsc: &Hwsc, hws: &HwsCommand, memory: &CommonMemory) {
+    pub fn show(&mut self, steps: &[Record], hws: &HwsCommand, memory: &CommonMemory) {
         let Some(bar) = &self.bar else { return };
         if self.shown.elapsed() < PERIOD {
             return;
         }
         self.shown = Instant::now();
-        bar.set_position(hwsc.records().len() as u64);
-        let line = hwsc.records().last().map_or("", |record| record.text.as_str());
+        bar.set_position(steps.len() as u64);
+        let line = steps.last().map_or("", |record| record.text.as_str());
         bar.set_prefix(line.to_owned());
         bar.set_message(levels(hws, memory));
     }

@@ -7,10 +7,9 @@ use std::{
 };
 
 use depc::fault::{Counts, FaultKind};
-use executive::{
-    boards::conductor::BoardFigures, failure::Failure, histogram, hwsc::Record, serial::SerialCounts,
-};
+use executive::{boards::conductor::BoardFigures, failure::Failure, histogram, serial::SerialCounts};
 use neighbours::data_system::Item;
+use neighbours::workstation::player::Record;
 use plant::{PartState, fault::Struck};
 use rcs_core::{
     interface::t3i::LinkCounters,

@@ -7,14 +7,21 @@ use std::{
 
 use depc::fault::Injector;
 use executive::serial::SerialLine;
-use neighbours::data_system::{self, ANSWER_TICKS, DataSystem, Pace};
+use neighbours::{
+    data_system::{self, ANSWER_TICKS, DataSystem, Pace},
+    network::{Desk, Listener, Role, Secret, hello},
+    workstation::player::{Hwsc, TIME_LIMIT},
+};
 use plant::{
     Cell, CellDescription,
     fault::text::{self, FaultFile},
 };
-use taskdata::load::{Job, Report, Store};
+use taskdata::load::{Job, Report, Source, Store};
 
-use super::robot::{Port, Robot};
+use super::{
+    neighbours::Neighbours,
+    robot::{Port, Robot},
+};
 use crate::{
     agreement, check,
     cli::{self, ClockKind, LogTarget, RunArguments},
@@ -44,8 +51,8 @@ pub struct Setup {
     pub faults_text: String,
     /// The other end of the line.
     pub robot: Robot,
-    /// The Data System.
-    pub data_system: DataSystem,
+    /// Who commands, and the Data System.
+    pub neighbours: Neighbours,
     /// Where the log goes.
     pub log: Option<PathBuf>,
 }
@@ -60,7 +67,9 @@ impl Setup {
             return Err(Error::NotInRealTime);
         }
         let data = &arguments.data;
-        let TaskFiles { store, job, job_path, warnings } = TaskFiles::load(data, &arguments.job)?;
+        let commanded = arguments.outside.contains(&Role::Workstation);
+        let played = (!commanded).then_some(arguments.job.as_str());
+        let TaskFiles { store, job, job_path, warnings } = TaskFiles::load(data, played)?;
         let path = data.join(CELL);
         let description_text =
             fs::read_to_string(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
@@ -87,18 +96,13 @@ impl Setup {
             Some(LogTarget::File(path)) => Some(path.clone()),
             None => Some(Path::new("runs").join(&job.name).with_added_extension("mcap")),
         };
-        let items = arguments
-            .data_base
-            .as_deref()
-            .map_or_else(data_system::Store::in_memory, data_system::Store::open)?;
-        let pace = if arguments.clock == ClockKind::Fast { Pace::Wait } else { Pace::Poll };
+        let neighbours = neighbours(arguments, &job)?;
         // The last of all: a robot hears nothing of a run that cannot begin.
         let robot = match &arguments.robot {
             cli::Robot::Sim => Robot::Simulated(faults.line.map(|plan| Box::new(Injector::new(&plan)))),
             cli::Robot::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
         };
-        let data_system = DataSystem::new(items, ANSWER_TICKS, pace);
-        Ok(Self { store, job, description_text, description, cell, faults_text, robot, data_system, log })
+        Ok(Self { store, job, description_text, description, cell, faults_text, robot, neighbours, log })
     }
 }
 
@@ -108,30 +112,62 @@ pub struct TaskFiles {
     pub store: Store,
     /// The job, with the task data that it loads on the way.
     pub job: Job,
-    /// Its file.
+    /// Its file; empty without one.
     pub job_path: PathBuf,
     /// Lines that say that there are warnings.
     pub warnings: Vec<String>,
 }
 
 impl TaskFiles {
-    /// Read and check task data and job.
+    /// Read and check task data and job; without one it has no steps: another process commands.
     ///
     /// # Errors
     /// [`Error`], with all errors of the data.
-    pub fn load(data: &Path, job: &str) -> Result<Self, Error> {
+    pub fn load(data: &Path, job: Option<&str>) -> Result<Self, Error> {
         if !data.is_dir() {
             return Err(Error::NoData(data.to_owned()));
         }
         let unusable = |what: String| move |report| Error::Data { what, report };
         let (store, in_data) =
             Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
-        let job_path = job_path(job, data)?;
-        let (job, in_job) =
-            Job::load(&job_path, &store).map_err(unusable(format!("the job {}", job_path.display())))?;
+        let job_path = job.map(|job| job_path(job, data)).transpose()?.unwrap_or_default();
+        let read = match job {
+            Some(_) => Job::load(&job_path, &store),
+            None => {
+                let name = format!("{}.{EXTENSION}", Role::Workstation);
+                Job::from_source(Source { name, text: "".into() }, &store)
+            }
+        };
+        let (job, in_job) = read.map_err(unusable(format!("the job {}", job_path.display())))?;
         let warnings = [warning(&in_data, "the task data"), warning(&in_job, "the job")];
         Ok(Self { store, job, job_path, warnings: warnings.into_iter().flatten().collect() })
     }
+}
+
+/// Who is in this process, and where the others can connect.
+fn neighbours(arguments: &RunArguments, job: &Job) -> Result<Neighbours, Error> {
+    let (clock, pace) = match arguments.clock {
+        ClockKind::Fast => (hello::ClockKind::Fast, Pace::Wait),
+        ClockKind::Real => (hello::ClockKind::Real, Pace::Poll),
+    };
+    let items = arguments
+        .data_base
+        .as_deref()
+        .map_or_else(data_system::Store::in_memory, data_system::Store::open)?;
+    let data_system = DataSystem::new(items, ANSWER_TICKS, pace);
+    let desks: Vec<_> = arguments.outside.iter().map(|&role| Desk::new(role, clock)).collect();
+    let secret = arguments.secret.as_deref().map(Secret::load).transpose()?;
+    let listener = match &arguments.network {
+        Some(address) => Some(Listener::start(address, secret, &desks)?),
+        None => None,
+    };
+    if let Some(listener) = &listener {
+        eprintln!("rcs-run: neighbours can connect at {}", listener.address());
+    }
+    Ok(match desks.into_iter().next() {
+        Some(desk) => Neighbours::with_outside(desk, data_system, listener),
+        None => Neighbours::with_job(Hwsc::new(job.steps.clone(), TIME_LIMIT), data_system, listener),
+    })
 }
 
 /// The faults of `--faults`, none without it, with their text.

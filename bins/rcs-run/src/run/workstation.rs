@@ -1,6 +1,6 @@
 //! The workstation of the simulated cell, as the workstation controller's emulator sees it.
 
-use executive::hwsc::Workstation;
+use neighbours::workstation::player::Workstation;
 use plant::{
     BoxAction, BoxButton, Cell, CellDescription, CellEvent, Droop, EStop, Key, Placement, WorkstationAction,
     WorkstationError, t3::Stage,
@@ -214,7 +214,7 @@ fn placement(offset: &Offset) -> Placement {
 }
 
 impl Workstation for SimulatedWorkstation {
-    fn begin(&mut self, action: &Action) -> Result<(), String> {
+    fn begin(&mut self, action: &Action, _: &str) -> Result<(), String> {
         if let Action::Load { number } = action {
             self.loads.push(*number);
             return Ok(());
@@ -271,7 +271,7 @@ mod tests {
             let (job, _) = Job::from_source(source, &self.store).map_err(|report| report.to_string())?;
             let [line] = &job.steps[..] else { panic!("{line} is one line") };
             let Step::Workstation(action) = line.step else { panic!("{line:?}") };
-            self.workstation.begin(&action)?;
+            self.workstation.begin(&action, "")?;
             let mut seen = Vec::new();
             loop {
                 seen.push(self.workstation.cell.step(&DeviceOutputs::default()));

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   controller -> neighbour   52 43 53 32  "RCS2"      neighbour -> controller   52 43 53 32  "RCS2"
-//!                             01 00        version                              rr 00        who: 1 workstation, 2 Data System
+//!                             01 00        version                              rr 00        who: 1 workstation
 //!                             cc 00        clock: 0 the 40 ms grid, 1 fast      00 00
 //!                             32 bytes     random                               32 bytes     proof
 //! ```
@@ -213,13 +213,13 @@ mod tests {
     fn only_who_knows_the_secret_is_let_in() {
         let challenge = Challenge::new(ClockKind::Real).unwrap();
         let (ours, other) = (secret("correct horse battery"), secret("incorrect horse battery"));
-        let answer = challenge.answer(Role::DataSystem, Some(&ours));
-        assert_eq!(challenge.judge(&answer, Some(&ours)), Ok(Role::DataSystem));
+        let answer = challenge.answer(Role::Workstation, Some(&ours));
+        assert_eq!(challenge.judge(&answer, Some(&ours)), Ok(Role::Workstation));
         assert_eq!(challenge.judge(&answer, Some(&other)), Err(HelloError::Proof));
         assert_eq!(challenge.judge(&answer, None), Err(HelloError::Proof));
-        let bare = challenge.answer(Role::DataSystem, None);
+        let bare = challenge.answer(Role::Workstation, None);
         assert_eq!(challenge.judge(&bare, Some(&ours)), Err(HelloError::Proof));
-        assert_eq!(challenge.judge(&bare, None), Ok(Role::DataSystem));
+        assert_eq!(challenge.judge(&bare, None), Ok(Role::Workstation));
         let later = Challenge::new(ClockKind::Real).unwrap();
         assert_eq!(
             later.judge(&answer, Some(&ours)),
@@ -227,7 +227,7 @@ mod tests {
             "an overheard answer is worth nothing"
         );
         let mut posing = answer;
-        posing[4] = Role::Workstation as u8;
+        posing[4] = 2;
         assert_eq!(challenge.judge(&posing, Some(&ours)), Err(HelloError::Proof), "who is proven too");
     }
 

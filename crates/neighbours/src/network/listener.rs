@@ -178,10 +178,14 @@ impl Reception {
         }
     }
 
-    /// Say hello; whose desk it is.
+    /// Say hello; whose desk it is. Who is refused has said his hello before, so that he can hear why.
     fn greet(&self, stream: &mut Stream) -> Result<&Counter, String> {
         let said = |error: &dyn std::fmt::Display| error.to_string();
         stream.prepare(PATIENCE).map_err(|error| said(&error))?;
+        let challenge = Challenge::new(self.clock).map_err(|error| said(&error))?;
+        io::Write::write_all(stream, challenge.bytes()).map_err(|error| said(&error))?;
+        let mut answer = [0; HELLO];
+        io::Read::read_exact(stream, &mut answer).map_err(|error| format!("no hello: {error}"))?;
         if let Stream::Unix(socket) = stream {
             let peer = sockopt::socket_peercred(socket).map_err(|error| said(&error))?;
             if peer.uid != geteuid() {
@@ -192,10 +196,6 @@ impl Reception {
                 ));
             }
         }
-        let challenge = Challenge::new(self.clock).map_err(|error| said(&error))?;
-        io::Write::write_all(stream, challenge.bytes()).map_err(|error| said(&error))?;
-        let mut answer = [0; HELLO];
-        io::Read::read_exact(stream, &mut answer).map_err(|error| format!("no hello: {error}"))?;
         let role = challenge.judge(&answer, self.secret.as_ref()).map_err(|error| said(&error))?;
         self.counters
             .iter()

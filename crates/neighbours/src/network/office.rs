@@ -140,6 +140,12 @@ impl Desk {
         }
     }
 
+    /// The clock of the run.
+    #[must_use]
+    pub const fn clock(&self) -> ClockKind {
+        self.clock
+    }
+
     /// Who the neighbour is.
     #[must_use]
     pub fn role(&self) -> Role {
@@ -183,7 +189,7 @@ impl Desk {
         let waits = self.clock == ClockKind::Fast && connection != 0;
         for (ours, shared) in self.outgoing.iter().zip(&self.shared.outgoing) {
             with(shared, waits, |theirs| {
-                if theirs.mailgram() != ours.mailgram() {
+                if theirs != ours {
                     theirs.clone_from(ours);
                 }
             });
@@ -192,31 +198,34 @@ impl Desk {
         if let Some(carrier) = &self.carrier {
             carrier.thread().unpark();
         }
-        if waits {
-            self.wait(tick, connection);
-        }
+        let answered = waits && self.wait(tick, connection);
         let new = connection != 0 && connection != self.connection;
         self.connection = connection;
         for (ours, shared) in self.incoming.iter_mut().zip(&self.shared.incoming) {
             with(shared, waits, |theirs| {
-                if new || theirs.mailgram() != ours.mailgram() || theirs.data() != ours.data() {
+                if theirs != ours {
                     ours.clone_from(theirs);
                 }
             });
         }
-        // Somebody who has come meanwhile is somebody of the next tick.
-        if self.shared.connection.load(Ordering::Acquire) != connection {
+        let now = self.shared.connection.load(Ordering::Acquire);
+        if now != connection && now != 0 {
+            // Somebody who has come meanwhile is somebody of the next tick.
             self.incoming.iter_mut().for_each(Mailbox::initialize);
         }
-        Presence { here: connection != 0, new }
+        // Who has answered was there, even if he has gone since: so a run ends in the same tick every time.
+        let here = if waits { answered } else { connection != 0 && now == connection };
+        Presence { here, new }
     }
 
-    /// Until the neighbour has answered the pulse, or is gone. Whoever reads from him notices if he is silent.
-    fn wait(&self, tick: u64, connection: u32) {
+    /// Until the neighbour has answered the pulse, or is gone; true if he has answered. Whoever reads from him notices if he is
+    /// silent.
+    fn wait(&self, tick: u64, connection: u32) -> bool {
         let mut answered = locked(&self.shared.answered);
         while *answered < tick && self.shared.connection.load(Ordering::Acquire) == connection {
             answered = self.shared.news_of_answer.wait(answered).unwrap_or_else(PoisonError::into_inner);
         }
+        *answered >= tick
     }
 
     /// Wait until the neighbour is there, at most so long; true if he is.
@@ -256,13 +265,15 @@ impl Drop for Desk {
 
 /// The thread that sends: what is new, and then the pulse.
 fn carry(shared: &Shared) {
-    let (mut sent, mut connection, mut pulse) = (vec![0; shared.outgoing.len()], 0, 0);
+    let initialized =
+        || shared.role.from_controller().iter().map(|&place| Mailbox::initialized(place)).collect();
+    let (mut sent, mut connection, mut pulse): (Vec<Mailbox>, _, _) = (initialized(), 0, 0);
     while !shared.over.load(Ordering::Acquire) {
         thread::park_timeout(Duration::from_secs(1));
         let present = shared.connection.load(Ordering::Acquire);
         if present != connection {
             connection = present;
-            sent.fill(0);
+            sent = initialized();
         }
         if connection == 0 {
             continue;
@@ -285,12 +296,12 @@ fn carry(shared: &Shared) {
     }
 }
 
-fn send_new(shared: &Shared, sent: &mut [u16], line: &mut dyn Outlet) -> io::Result<()> {
+fn send_new(shared: &Shared, sent: &mut [Mailbox], line: &mut dyn Outlet) -> io::Result<()> {
     for (mailbox, sent) in shared.outgoing.iter().zip(sent) {
         let mailbox = locked(mailbox).clone();
-        if mailbox.mailgram() != *sent {
+        if mailbox != *sent {
             line.send(&Frame::of(&mailbox))?;
-            *sent = mailbox.mailgram();
+            *sent = mailbox;
         }
     }
     Ok(())
@@ -512,7 +523,7 @@ mod tests {
             while line.recv().unwrap().as_pulse().is_none() {}
             counter.detach("enough".to_owned());
         });
-        desk.exchange(1);
+        assert_eq!(desk.exchange(1), Presence { here: false, new: true });
         leaver.join().unwrap();
         assert!(!desk.exchange(2).here);
     }

@@ -11,6 +11,7 @@
 //! [`Gate`] stands where Task's READ-HWS-COMMAND and WRITE-HWS-STATUS stood (Figure IV.1). What it refuses never reaches Task:
 //! the command that is being executed goes on, and nothing new begins. [`player`] is an emulator of the other end, that plays jobs.
 
+pub mod cell;
 pub mod command;
 mod gate;
 pub mod player;

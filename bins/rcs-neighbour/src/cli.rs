@@ -1,0 +1,73 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use neighbours::network::Address;
+
+/// Neighbours of the RCS-II/T3 controller as processes of their own.
+#[derive(Debug, Parser)]
+#[command(
+    name = "rcs-neighbour",
+    version,
+    about,
+    after_help = "\
+Examples:
+  rcs-run --network unix:/tmp/rcs.sock --outside workstation
+                                       a controller that waits for a workstation controller
+  rcs-neighbour workstation --network unix:/tmp/rcs.sock linkbar
+                                       and one that plays the linkbar
+
+Exit status: 0 finished; 1 the job failed or the connection broke; 2 usage, configuration or data error."
+)]
+pub struct Cli {
+    /// Which neighbour.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The neighbours.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// The workstation controller (HWSC): plays a job
+    Workstation(WorkstationArguments),
+}
+
+/// Where the controller is.
+#[derive(Clone, Debug, Args)]
+pub struct ControllerArguments {
+    /// Where the run waits for its neighbours: unix:PATH or tcp:IP:PORT
+    #[arg(long, value_name = "ADDRESS")]
+    pub network: Address,
+    /// File with the secret that the run knows
+    #[arg(long, value_name = "FILE")]
+    pub secret: Option<PathBuf>,
+    /// How long to wait for the run
+    #[arg(long, value_name = "SECONDS", default_value_t = 60)]
+    pub wait: u64,
+}
+
+/// Arguments of `workstation`.
+#[derive(Clone, Debug, Args)]
+pub struct WorkstationArguments {
+    /// Where the controller is.
+    #[command(flatten)]
+    pub controller: ControllerArguments,
+    /// Name of a job in the data directory, or a path
+    #[arg(default_value = "linkbar")]
+    pub job: String,
+    /// Task data, against which the job is checked, and jobs
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_definitions_are_consistent() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,74 @@
+//! `rcs-neighbour`: neighbours of the controller as processes of their own, on this machine or on another.
+//!
+//! Each connects to the mailboxes of a run (`rcs-run --network … --outside …`) and does there what the one in the controller's
+//! process would do. Programs of others speak the same bytes: docs/neighbours.md.
+
+mod cli;
+mod workstation;
+
+use std::{process::ExitCode, time::Duration};
+
+use clap::Parser as _;
+use neighbours::network::{Peer, PeerError, Role, Secret, hello::SecretError};
+use taskdata::load::Report;
+
+use crate::cli::{Cli, Command, ControllerArguments};
+
+/// Exit status of a job that failed, or a connection that broke.
+const FAILED: u8 = 1;
+/// Exit status of a usage, configuration or data error.
+const UNUSABLE: u8 = 2;
+
+/// Why a neighbour ends before its time.
+#[derive(Debug, thiserror::Error)]
+enum Error {
+    /// The controller cannot be reached, or has gone.
+    #[error(transparent)]
+    Peer(#[from] PeerError),
+    /// The secret cannot be used.
+    #[error(transparent)]
+    Secret(#[from] SecretError),
+    /// Task data or the job have errors.
+    #[error("{what} cannot be used")]
+    Data {
+        /// Which.
+        what: String,
+        /// All that was found.
+        report: Box<Report>,
+    },
+    /// The job came to nothing.
+    #[error("{0}")]
+    Job(String),
+}
+
+impl Error {
+    const fn status(&self) -> u8 {
+        match self {
+            Self::Peer(_) | Self::Job(_) => FAILED,
+            Self::Secret(_) | Self::Data { .. } => UNUSABLE,
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Workstation(arguments) => workstation::play(&arguments),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            if let Error::Data { report, .. } = &error {
+                eprint!("{}", report.render_for_stderr());
+            }
+            eprintln!("rcs-neighbour: {error}");
+            ExitCode::from(error.status())
+        }
+    }
+}
+
+/// Connect to the controller.
+fn connect(arguments: &ControllerArguments, role: Role) -> Result<Peer, Error> {
+    let secret = arguments.secret.as_deref().map(Secret::load).transpose()?;
+    let wait = Duration::from_secs(arguments.wait);
+    Ok(Peer::connect_within(wait, &arguments.network, role, secret.as_ref())?)
+}

@@ -1,0 +1,155 @@
+//! The workstation controller: the emulator of the controller's own process, behind mailboxes.
+
+use std::{collections::VecDeque, path::PathBuf};
+
+use neighbours::{
+    fields::{FieldError, successor},
+    mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS, Mailbox},
+    network::{Peer, Received, Role, hello::ClockKind},
+    workstation::{
+        cell::{self, CellStatus, Trouble},
+        command,
+        player::{Hwsc, Progress, TIME_LIMIT, Workstation},
+        status,
+    },
+};
+use rcs_core::tick::Tick;
+use taskdata::load::{Job, Store, job::Workstation as Action};
+
+use crate::{Error, cli::WorkstationArguments, connect};
+
+/// Ticks in which a command must be echoed over a network: 2 s.
+const NETWORK_TICKS: u64 = 50;
+
+/// Play a job.
+pub fn play(arguments: &WorkstationArguments) -> Result<(), Error> {
+    let job = job(arguments)?;
+    let mut peer = connect(&arguments.controller, Role::Workstation)?;
+    let hwsc = Hwsc::new(job.steps, TIME_LIMIT);
+    let mut hwsc = if peer.clock() == ClockKind::Fast { hwsc } else { hwsc.with_answer_ticks(NETWORK_TICKS) };
+    let mut command_box = Mailbox::initialized(HWSC_COMMAND);
+    let (mut cell, mut told) = (Cell::default(), 0);
+    loop {
+        let Received::Pulse(tick) = peer.receive()? else { continue };
+        if peer.mailbox(HWSC_STATUS).mailgram() != 0 && peer.mailbox(CELL_STATUS).mailgram() != 0 {
+            cell.read(peer.mailbox(CELL_STATUS)).map_err(unreadable)?;
+            let status = status::decode(peer.mailbox(HWSC_STATUS).data()).map_err(unreadable)?;
+            let progress = hwsc.step(Tick(tick), &status, &mut cell).clone();
+            tell(&hwsc, &mut told, progress != Progress::Running);
+            match progress {
+                Progress::Running => {}
+                Progress::Over => return Ok(()),
+                Progress::Failed(failure) => {
+                    let line = hwsc.records().last().map_or("", |record| record.text.as_str());
+                    return Err(Error::Job(format!("`{line}` failed: {failure}")));
+                }
+            }
+            if let Some(command) = hwsc.mailgram() {
+                let bytes = command::encode(command).map_err(|error| Error::Job(error.to_string()))?;
+                command_box.write(&bytes).map_err(|error| Error::Job(error.to_string()))?;
+                peer.send(&command_box)?;
+            }
+            cell.send(&mut peer)?;
+        }
+        peer.pulse(tick)?;
+    }
+}
+
+fn unreadable(error: FieldError) -> Error {
+    Error::Job(format!("a status of the controller cannot be read: {error}"))
+}
+
+fn job(arguments: &WorkstationArguments) -> Result<Job, Error> {
+    let unusable = |what: String| move |report| Error::Data { what, report };
+    let data = &arguments.data;
+    let (store, _) =
+        Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
+    let named = data.join("jobs").join(&arguments.job).with_added_extension("job");
+    let path = if named.is_file() { named } else { PathBuf::from(&arguments.job) };
+    let (job, _) = Job::load(&path, &store).map_err(unusable(format!("the job {}", path.display())))?;
+    Ok(job)
+}
+
+/// One line on standard output for every step that is over.
+fn tell(hwsc: &Hwsc, told: &mut usize, over: bool) {
+    let finished = if over { hwsc.records().len() } else { hwsc.records().len().saturating_sub(1) };
+    for record in hwsc.records().get(*told..finished).unwrap_or_default() {
+        println!("{}: {} after {} ticks", record.text, record.outcome.text(), record.ticks);
+    }
+    *told = finished.max(*told);
+}
+
+/// The simulated cell, as far as its mailboxes show it.
+struct Cell {
+    command_box: Mailbox,
+    /// Number of the line that was sent last.
+    number: u16,
+    /// Lines that are to be sent: the mailbox holds one.
+    lines: VecDeque<String>,
+    echo: u16,
+    busy: bool,
+    trouble: Trouble,
+    text: String,
+}
+
+impl Default for Cell {
+    fn default() -> Self {
+        Self {
+            command_box: Mailbox::initialized(CELL_COMMAND),
+            number: 0,
+            lines: VecDeque::new(),
+            echo: 0,
+            busy: false,
+            trouble: Trouble::None,
+            text: String::new(),
+        }
+    }
+}
+
+impl Cell {
+    fn read(&mut self, mailbox: &Mailbox) -> Result<(), FieldError> {
+        let CellStatus { echo, busy, trouble, text } = CellStatus::decode(mailbox.data())?;
+        (self.echo, self.busy, self.trouble) = (echo, busy, trouble);
+        self.text.clear();
+        self.text.push_str(text);
+        Ok(())
+    }
+
+    /// Send the next line, if the one before has arrived.
+    fn send(&mut self, peer: &mut Peer) -> Result<(), Error> {
+        if self.echo != self.number {
+            return Ok(());
+        }
+        let Some(line) = self.lines.pop_front() else { return Ok(()) };
+        self.number = successor(self.number);
+        let bytes = cell::encode_line(self.number, &line);
+        self.command_box.write(&bytes).map_err(|error| Error::Job(error.to_string()))?;
+        Ok(peer.send(&self.command_box)?)
+    }
+
+    fn trouble(&self, wanted: &[Trouble]) -> Option<String> {
+        wanted.contains(&self.trouble).then(|| self.text.clone())
+    }
+}
+
+impl Workstation for Cell {
+    fn begin(&mut self, action: &Action, line: &str) -> Result<(), String> {
+        if matches!(action, Action::Load { .. }) {
+            return Err("blocks are loaded by the controller's own jobs only".to_owned());
+        }
+        self.lines.push_back(line.to_owned());
+        Ok(())
+    }
+
+    fn busy(&self) -> bool {
+        !self.lines.is_empty() || self.echo != self.number || self.busy
+    }
+
+    fn fault(&self) -> Option<String> {
+        self.trouble(&[Trouble::Refused, Trouble::Fault])
+    }
+
+    fn emergency(&self) -> Option<String> {
+        self.trouble(&[Trouble::Emergency])
+    }
+}

@@ -1,0 +1,183 @@
+//! The neighbours of a run: who commands Task, and the Data System.
+//!
+//! A neighbour lives in this process, or in another one behind the network. Either way he is reached through his mailboxes, and
+//! a run cannot tell the difference: with the clock in lock step not a bit of it changes.
+
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    time::{Duration, Instant},
+};
+
+use neighbours::{
+    data_system::{DataSystem, Item},
+    mailbox::{HWSC_COMMAND, Mailbox},
+    network::{Desk, Listener},
+    workstation::{
+        Gate, TaskState,
+        player::{Hwsc, JobFailure, Progress, Record},
+        status,
+    },
+};
+use rcs_core::{
+    interface::{CommonMemory, DataBaseStatus, Header, HwsCommand},
+    tick::Tick,
+};
+use record::Level;
+use taskdata::load::Store;
+
+use super::{outside::OutsideWorkstation, workstation::SimulatedWorkstation};
+use crate::error::Error;
+
+/// A line for the log: how grave it is, who says it, and the words.
+pub type Note = (Level, &'static str, String);
+
+/// Who commands Task.
+enum Chief {
+    /// The emulator, with a job.
+    Emulator { hwsc: Box<Hwsc>, command_box: Mailbox },
+    /// Another process.
+    Outside(Box<OutsideWorkstation>),
+}
+
+/// The neighbours of a run.
+pub struct Neighbours {
+    gate: Gate,
+    chief: Chief,
+    data_system: DataSystem,
+    /// Lets neighbours in as long as the run lasts; nobody without a network.
+    _listener: Option<Listener>,
+    notes: Vec<Note>,
+}
+
+impl Neighbours {
+    /// The emulator plays a job.
+    #[must_use]
+    pub fn with_job(hwsc: Hwsc, data_system: DataSystem, listener: Option<Listener>) -> Self {
+        let chief = Chief::Emulator { hwsc: Box::new(hwsc), command_box: Mailbox::initialized(HWSC_COMMAND) };
+        Self { gate: Gate::default(), chief, data_system, _listener: listener, notes: Vec::new() }
+    }
+
+    /// Another process commands.
+    #[must_use]
+    pub fn with_outside(desk: Desk, data_system: DataSystem, listener: Option<Listener>) -> Self {
+        let chief = Chief::Outside(Box::new(OutsideWorkstation::new(desk)));
+        Self { gate: Gate::default(), chief, data_system, _listener: listener, notes: Vec::new() }
+    }
+
+    /// Wait for the workstation controller, if it is another process: for so many seconds at most, and not beyond an interruption,
+    /// of which the run will see to it.
+    ///
+    /// # Errors
+    /// [`Error::NobodyCommands`].
+    pub fn gather(&self, seconds: u32, interrupted: &AtomicBool) -> Result<(), Error> {
+        let Chief::Outside(outside) = &self.chief else { return Ok(()) };
+        let started = Instant::now();
+        while !outside.desk().await_connection(Duration::from_millis(100)) {
+            if interrupted.load(Ordering::Relaxed) {
+                return Ok(());
+            }
+            if started.elapsed() >= Duration::from_secs(seconds.into()) {
+                return Err(Error::NobodyCommands(seconds));
+            }
+        }
+        Ok(())
+    }
+
+    /// Another process commands.
+    #[must_use]
+    pub const fn are_commanding(&self) -> bool {
+        matches!(self.chief, Chief::Outside(_))
+    }
+
+    /// What stands in Task's command buffer.
+    #[must_use]
+    pub const fn hws(&self) -> &HwsCommand {
+        self.gate.command()
+    }
+
+    /// What Task reads of the Data System.
+    #[must_use]
+    pub const fn data_base(&self) -> DataBaseStatus {
+        self.data_system.status()
+    }
+
+    /// Steps of the job so far, or commands of whoever commands.
+    #[must_use]
+    pub fn records(&self) -> &[Record] {
+        match &self.chief {
+            Chief::Emulator { hwsc, .. } => hwsc.records(),
+            Chief::Outside(outside) => outside.records(),
+        }
+    }
+
+    /// Once a tick, after controller and cell: all read what the tick has written.
+    pub fn step(
+        &mut self,
+        tick: Tick,
+        memory: &CommonMemory,
+        workstation: &mut SimulatedWorkstation,
+        store: &Store,
+    ) -> Progress {
+        self.data_system.step(tick, &memory.task.data_base);
+        for refusal in self.data_system.refusals() {
+            let text = format!("the Data System refuses: {refusal}");
+            self.notes.push((Level::Warning, "Data System", text));
+        }
+        self.gate.write(&memory.task, task_state(&memory.task.header, tick));
+        match &mut self.chief {
+            Chief::Emulator { hwsc, command_box } => {
+                let progress = emulate(hwsc, command_box, &mut self.gate, tick, workstation);
+                // What the gate refuses comes back to the emulator by its status.
+                self.gate.read(command_box);
+                progress
+            }
+            Chief::Outside(outside) => {
+                outside.step(tick, &mut self.gate, &memory.task, workstation, store, &mut self.notes)
+            }
+        }
+    }
+
+    /// What is to be said, since the last call.
+    pub fn notes(&mut self) -> Vec<Note> {
+        std::mem::take(&mut self.notes)
+    }
+
+    /// The items that the Data System keeps.
+    ///
+    /// # Errors
+    /// Why it does not give them.
+    pub fn items(&mut self) -> Result<Vec<Item>, String> {
+        self.data_system.items()
+    }
+}
+
+/// The emulator reads its status mailbox and writes its command mailbox.
+fn emulate(
+    hwsc: &mut Hwsc,
+    command_box: &mut Mailbox,
+    gate: &mut Gate,
+    tick: Tick,
+    workstation: &mut SimulatedWorkstation,
+) -> Progress {
+    let unreadable = |why: String| Progress::Failed(JobFailure::Refused(why));
+    let progress = match status::decode(gate.status_box().data()) {
+        Ok(status) => hwsc.step(tick, &status, workstation).clone(),
+        Err(error) => return unreadable(error.to_string()),
+    };
+    let Some(command) = hwsc.mailgram() else { return progress };
+    let written = neighbours::workstation::command::encode(command)
+        .map_err(|error| error.to_string())
+        .and_then(|bytes| command_box.write(&bytes).map_err(|error| error.to_string()));
+    written.map_or_else(unreadable, |()| progress)
+}
+
+/// Whether Task has run in a tick.
+fn task_state(header: &Header, tick: Tick) -> TaskState {
+    if header.stamp != tick {
+        TaskState::Lost
+    } else if header.republished {
+        TaskState::Held
+    } else {
+        TaskState::Runs
+    }
+}

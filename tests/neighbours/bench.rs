@@ -1,0 +1,177 @@
+//! A controller that waits for neighbours, and a workstation controller that says whatever a test wants.
+
+use std::{
+    io::{BufRead as _, BufReader, Read as _},
+    path::PathBuf,
+    process::{Child, Command, Stdio},
+    thread::{self, JoinHandle},
+    time::Duration,
+};
+
+use neighbours::{
+    mailbox::{HWSC_COMMAND, HWSC_STATUS, Mailbox},
+    network::{Address, Peer, PeerError, Received, Role, Secret},
+    workstation::{
+        Status, command,
+        status::{self},
+    },
+};
+use rcs_core::{interface::HwsCommand, name::Name16};
+use serde_json::Value;
+use whole_system_tests::{Scratch, rcs_run, root};
+
+/// How long something may take that takes milliseconds.
+pub const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A controller with neighbours in other processes.
+pub struct Controller {
+    pub child: Child,
+    pub address: Address,
+    pub scratch: Scratch,
+    said: Option<JoinHandle<String>>,
+}
+
+/// How a controller ended.
+pub struct Ended {
+    pub status: Option<i32>,
+    pub result: Value,
+    pub page: String,
+    pub said: String,
+}
+
+impl Controller {
+    /// One with a socket in its own directory.
+    pub fn start(name: &str, outside: &str, more: &[&str]) -> Self {
+        Self::start_at(Scratch::new(name), None, outside, more)
+    }
+
+    /// One at an address.
+    pub fn start_at(scratch: Scratch, address: Option<&str>, outside: &str, more: &[&str]) -> Self {
+        let socket = format!("unix:{}", scratch.file("rcs.sock").display());
+        let mut child = Command::new(rcs_run())
+            .args(["--network", address.unwrap_or(&socket), "--outside", outside])
+            .args(["--log", "none", "--shared-memory", "off", "--wait", "120"])
+            .args(more)
+            .current_dir(root())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("rcs-run can be started");
+        let mut stderr = BufReader::new(child.stderr.take().expect("it is piped"));
+        let mut said = String::new();
+        let address = loop {
+            let mut line = String::new();
+            assert!(stderr.read_line(&mut line).expect("text") > 0, "rcs-run ended at once: {said}");
+            said.push_str(&line);
+            if let Some((_, address)) = line.trim_end().split_once("can connect at ") {
+                break address.parse().expect("an address");
+            }
+        };
+        let said = thread::spawn(move || {
+            stderr.read_to_string(&mut said).expect("text");
+            said
+        });
+        Self { child, address, scratch, said: Some(said) }
+    }
+
+    /// Connect to it.
+    pub fn connect(&self, role: Role, secret: Option<&Secret>) -> Peer {
+        Peer::connect_within(PATIENCE, &self.address, role, secret).expect("it waits")
+    }
+
+    /// Wait for its end.
+    pub fn end(mut self) -> Ended {
+        let mut page = String::new();
+        self.child.stdout.take().expect("it is piped").read_to_string(&mut page).expect("text");
+        let status = self.child.wait().expect("a child").code();
+        let said = self.said.take().expect("once").join().expect("it reads");
+        Ended { status, result: serde_json::from_str(&page).unwrap_or(Value::Null), page, said }
+    }
+}
+
+impl Drop for Controller {
+    fn drop(&mut self) {
+        // It is over already if the test went well.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// A workstation controller.
+pub struct Workstation {
+    pub peer: Peer,
+    pub tick: u64,
+    command_box: Mailbox,
+}
+
+impl Workstation {
+    pub fn connect(controller: &Controller) -> Self {
+        let peer = controller.connect(Role::Workstation, None);
+        let mut workstation = Self { peer, tick: 0, command_box: Mailbox::initialized(HWSC_COMMAND) };
+        // Until the first status is there nothing is known of the controller.
+        while workstation.peer.mailbox(HWSC_STATUS).mailgram() == 0 {
+            workstation.tick();
+        }
+        workstation
+    }
+
+    /// Read to the end of a tick, and let the next one begin.
+    pub fn tick(&mut self) {
+        self.read_tick().expect("the controller goes on");
+    }
+
+    fn read_tick(&mut self) -> Result<(), PeerError> {
+        loop {
+            if let Received::Pulse(tick) = self.peer.receive()? {
+                self.tick = tick;
+                return self.peer.pulse(tick);
+            }
+        }
+    }
+
+    /// Let the controller run to a tick.
+    pub fn run_to(&mut self, tick: u64) {
+        while self.tick < tick {
+            self.tick();
+        }
+    }
+
+    /// Write into the mailbox of commands, whatever it is.
+    pub fn write(&mut self, data: &[u8]) {
+        self.command_box.write(data).expect("it fits");
+        self.peer.send(&self.command_box).expect("the controller reads");
+    }
+
+    pub fn send(&mut self, command: &HwsCommand) {
+        self.write(&command::encode(command).expect("it fits"));
+    }
+
+    pub fn status(&self) -> Status<'_> {
+        status::decode(self.peer.mailbox(HWSC_STATUS).data()).expect("a status")
+    }
+
+    /// Send a command, and let it come to its end; what the status says then.
+    pub fn carry_out(&mut self, command: &HwsCommand) -> (String, String) {
+        self.send(command);
+        loop {
+            self.tick();
+            let status = self.status();
+            let mine = u32::from(status.echo) == command.number;
+            if mine && !matches!(status.report.text(), "executing" | "idle") {
+                return (status.report.text().to_owned(), status.reason.to_owned());
+            }
+            assert_eq!(status.verdict, 0, "{}", status.reason);
+        }
+    }
+}
+
+/// A command without fields.
+pub fn bare(number: u32, verb: &str) -> HwsCommand {
+    HwsCommand { number, command: Name16::clipped(verb), ..HwsCommand::default() }
+}
+
+/// A program of the examples.
+pub fn example(name: &str) -> PathBuf {
+    root().join("examples").join(name)
+}

@@ -1,0 +1,7 @@
+//! Neighbours in other processes: whoever commands the robot can be replaced, and nobody else commands it.
+//!
+//! Nearly all of it in fast clock, where the tick waits for its neighbours: nothing depends on how fast the machine is.
+
+mod bench;
+mod strangers;
+mod workstation;

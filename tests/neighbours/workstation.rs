@@ -1,0 +1,180 @@
+//! The workstation controller in another process (V.4.2, IX.1).
+
+use std::process::{Command, Stdio};
+
+use neighbours::{mailbox::HWSC_COMMAND, workstation::command};
+use rcs_core::interface::HwsCommand;
+use rustix::process::{Pid, Signal, kill_process};
+use whole_system_tests::{rcs_neighbour, rcs_run, root};
+
+use crate::bench::{Controller, Workstation, bare, example};
+
+/// The job of the controller's own emulator and that of one in another process are the same to the bit.
+#[test]
+fn a_job_from_another_process_has_the_same_bits() {
+    let own = Command::new(rcs_run())
+        .args(["linkbar", "--json", "--log", "none", "--shared-memory", "off"])
+        .current_dir(root())
+        .output()
+        .expect("rcs-run can be started");
+    let own: serde_json::Value = serde_json::from_slice(&own.stdout).expect("a result");
+    // Brought up to date before the controller waits for it.
+    let program = rcs_neighbour();
+    let controller = Controller::start("bits", "workstation", &["--json"]);
+    let played = Command::new(program)
+        .args(["workstation", "--network", &controller.address.to_string(), "linkbar"])
+        .current_dir(root())
+        .output()
+        .expect("rcs-neighbour can be started");
+    assert!(played.status.success(), "{}", String::from_utf8_lossy(&played.stderr));
+    let ended = controller.end();
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert_eq!(ended.result["digest"], own["digest"]);
+    assert_eq!(ended.result["parts"], own["parts"]);
+    let texts = |result: &serde_json::Value| {
+        let commands = result["commands"].as_array().expect("commands").clone();
+        commands
+            .iter()
+            .map(|command| (command["status"].clone(), command["ticks"].clone()))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(texts(&ended.result), texts(&own));
+}
+
+/// The client in another language that the documentation shows.
+#[test]
+fn the_python_example_transfers_a_part() {
+    let python =
+        Command::new("python3").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
+    if !python.is_ok_and(|status| status.success()) {
+        eprintln!("no python3 here: its example is not tried");
+        return;
+    }
+    let controller = Controller::start("python", "workstation", &["--json"]);
+    let output = Command::new("python3")
+        .arg(example("hwsc.py"))
+        .arg(controller.address.to_string())
+        .output()
+        .expect("python3 can be started");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+    assert!(said.ends_with("TRANSFER 2: executing\nTRANSFER 2: finished\n"), "{said}");
+    let ended = controller.end();
+    assert_eq!(ended.result["parts"][0]["location"], "PFIXTURE", "{}", ended.said);
+}
+
+/// A controller that gets `what` after a PAUSE, until tick 200; its digest.
+fn digest_with(name: &str, what: impl FnOnce(&mut Workstation)) -> String {
+    let controller = Controller::start(name, "workstation", &["--json"]);
+    let mut workstation = Workstation::connect(&controller);
+    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
+    what(&mut workstation);
+    workstation.run_to(200);
+    drop(workstation);
+    let ended = controller.end();
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert_eq!(ended.result["ticks"], 201, "a run in fast clock ends when nobody commands");
+    ended.result["digest"].as_str().expect("a digest").to_owned()
+}
+
+/// Refused commands say why, and no buffer of the controller differs from those of a run without them.
+#[test]
+fn refused_commands_say_why_and_nothing_moves() {
+    let quiet = digest_with("quiet", |_| {});
+    let disturbed = digest_with("disturbed", |workstation| {
+        let good = command::encode(&bare(2, "MOVE")).expect("it fits");
+        let mut garbled = good;
+        garbled[21] = 0x9C;
+        let other = HwsCommand { source_sector: 3, ..bare(1, "PAUSE") };
+        let cases: [(&[u8], &str); 6] = [
+            (&garbled, "for command-16, found 9C at byte 21"),
+            (&good[..60], "a command of 126 bytes was expected, found 60"),
+            (&[good.as_slice(), b"more"].concat(), "a command of 126 bytes was expected, found 130"),
+            (
+                &command::encode(&other).expect("it fits"),
+                "command 1 was given before with other fields; 2 comes next",
+            ),
+            (&command::encode(&bare(7, "MOVE")).expect("it fits"), "command 2 comes next, found 7"),
+            (&command::encode(&bare(0, "MOVE")).expect("it fits"), "found 0"),
+        ];
+        for (data, why) in cases {
+            workstation.write(data);
+            workstation.tick();
+            workstation.tick();
+            let status = workstation.status();
+            assert!(status.verdict != 0 && status.reason.ends_with(why), "{why}: {status:?}");
+            assert_eq!((status.echo, status.report.text()), (1, "finished"));
+        }
+        // The same command once more is no new one.
+        workstation.send(&bare(1, "PAUSE"));
+        workstation.tick();
+        workstation.tick();
+        assert_eq!((workstation.status().verdict, workstation.status().report.text()), (0, "finished"));
+    });
+    assert_eq!(disturbed, quiet);
+}
+
+#[test]
+fn a_command_that_task_does_not_know_fails_and_the_next_one_is_carried_out() {
+    let controller = Controller::start("unknown", "workstation", &["--json"]);
+    let mut workstation = Workstation::connect(&controller);
+    let outcome = workstation.carry_out(&bare(1, "FROBNICATE"));
+    assert_eq!(outcome, ("error".to_owned(), "the command is not known".to_owned()));
+    let lost = HwsCommand { object: HwsCommand::default().object, ..bare(2, "TRANSFER") };
+    let outcome = workstation.carry_out(&lost);
+    assert_eq!(outcome.0, "error");
+    assert_eq!(workstation.carry_out(&bare(3, "PAUSE")).0, "finished");
+    drop(workstation);
+    let ended = controller.end();
+    let statuses: Vec<_> =
+        ended.result["commands"].as_array().expect("commands").iter().map(|c| &c["status"]).collect();
+    assert_eq!(statuses, ["error", "error", "finished"]);
+}
+
+/// On the 40 ms grid the controller goes on without anybody, and numbers are synchronized when somebody comes (IX.1).
+#[test]
+fn a_workstation_controller_that_comes_again_goes_on_from_the_echo() {
+    let controller = Controller::start("again", "workstation", &["--json", "--clock", "real"]);
+    let mut first = Workstation::connect(&controller);
+    assert_eq!(first.carry_out(&bare(1, "PAUSE")).0, "finished");
+    let last = first.tick;
+    drop(first);
+    let mut second = Workstation::connect(&controller);
+    assert!(second.tick > last, "the ticks went on");
+    assert_eq!((second.status().echo, second.status().verdict), (1, 0));
+    // One that forgot everything, and would begin to count again.
+    second.send(&HwsCommand { source_sector: 1, ..bare(1, "PAUSE") });
+    while second.status().verdict == 0 {
+        second.tick();
+    }
+    assert_eq!(second.status().reason, "command 1 was given before with other fields; 2 comes next");
+    second.send(&bare(2, "PAUSE"));
+    while second.status().echo != 2 {
+        second.tick();
+    }
+    let pid = Pid::from_child(&controller.child);
+    kill_process(pid, Signal::TERM).expect("it runs");
+    let ended = controller.end();
+    assert_eq!(ended.status, Some(0), "an end that was asked for is no failure: {}", ended.said);
+    assert_eq!(ended.result["commands"].as_array().map(Vec::len), Some(2));
+    assert_eq!(ended.result["allocations_after_start"], 0);
+}
+
+/// What no frame of a neighbour can be ends the connection, with words that say why.
+#[test]
+fn a_line_that_talks_nonsense_is_closed() {
+    let controller = Controller::start("nonsense", "workstation", &["--clock", "real"]);
+    let mut workstation = Workstation::connect(&controller);
+    let mut status = neighbours::mailbox::Mailbox::initialized(neighbours::mailbox::HWSC_STATUS);
+    status.write(b"finished").expect("it fits");
+    workstation.peer.send(&status).expect("the controller reads");
+    let why = loop {
+        match workstation.peer.receive() {
+            Ok(_) => {}
+            Err(error) => break error.to_string(),
+        }
+    };
+    let expected = format!("the address of {HWSC_COMMAND}");
+    assert!(why.contains(&expected) && why.ends_with("found F6200"), "{why}");
+    drop(Workstation::connect(&controller));
+}
