@@ -49,7 +49,7 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Run a job (the same as without a subcommand)
-    Run(RunArguments),
+    Run(Box<RunArguments>),
     /// Exchange frames with a robot at a serial port, holding the position that it reports, and judge the link
     LinkTest(LinkTestArguments),
     /// Run one board of a run that was started with --boards manual

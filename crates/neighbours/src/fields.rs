@@ -76,13 +76,13 @@ pub struct Packer<const N: usize> {
     at: usize,
 }
 
-impl<const N: usize> Packer<N> {
-    /// No field yet.
-    #[must_use]
-    pub const fn new() -> Self {
+impl<const N: usize> Default for Packer<N> {
+    fn default() -> Self {
         Self { bytes: [BLANK; N], at: 0 }
     }
+}
 
+impl<const N: usize> Packer<N> {
     fn put(&mut self, bytes: &[u8]) {
         self.bytes[self.at..self.at + bytes.len()].copy_from_slice(bytes);
         self.at += bytes.len();
@@ -243,7 +243,7 @@ mod tests {
 
     #[test]
     fn what_is_packed_is_unpacked() {
-        let mut packer = Packer::<26>::new();
+        let mut packer = Packer::<26>::default();
         packer.text(16, &Name16::new("LINKBAR1").unwrap());
         packer.word(0x1234);
         packer.integer("grip", -2).unwrap();
@@ -270,7 +270,7 @@ mod tests {
 
     #[test]
     fn integers_have_two_bytes() {
-        let mut packer = Packer::<2>::new();
+        let mut packer = Packer::<2>::default();
         assert_eq!(packer.integer("sector", 40_000), Err(RangeError { field: "sector", found: 40_000 }));
         packer.saturated(-40_000);
         assert_eq!(packer.finish(), i16::MIN.to_le_bytes());

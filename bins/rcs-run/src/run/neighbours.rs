@@ -34,7 +34,7 @@ pub type Note = (Level, &'static str, String);
 /// Who commands Task.
 enum Chief {
     /// The emulator, with a job.
-    Emulator { hwsc: Box<Hwsc>, command_box: Mailbox },
+    Emulator { hwsc: Box<Hwsc>, command_box: Box<Mailbox> },
     /// Another process.
     Outside(Box<OutsideWorkstation>),
 }
@@ -53,7 +53,10 @@ impl Neighbours {
     /// The emulator plays a job.
     #[must_use]
     pub fn with_job(hwsc: Hwsc, data_system: DataSystem, listener: Option<Listener>) -> Self {
-        let chief = Chief::Emulator { hwsc: Box::new(hwsc), command_box: Mailbox::initialized(HWSC_COMMAND) };
+        let chief = Chief::Emulator {
+            hwsc: Box::new(hwsc),
+            command_box: Box::new(Mailbox::initialized(HWSC_COMMAND)),
+        };
         Self { gate: Gate::default(), chief, data_system, _listener: listener, notes: Vec::new() }
     }
 

@@ -197,7 +197,7 @@ mod tests {
         let length = said(&[0, 0x60, 0x0F, 0, 7, 0]);
         assert_eq!(length, "a length of 8 to 512 was expected behind the address F6000, found 7");
         assert_eq!(
-            said(&[&Frame::pulse(1).bytes()[..], &[0]].concat()),
+            said(&[Frame::pulse(1).bytes(), &[0]].concat()),
             "nothing was expected behind the frame, found 1 bytes"
         );
     }

@@ -53,7 +53,7 @@ pub struct CellStatus<'a> {
 /// The bytes of a line; what is longer than [`TEXT`] is cut off.
 #[must_use]
 pub fn encode_line(number: u16, line: &str) -> [u8; COMMAND] {
-    let mut fields = Packer::<COMMAND>::new();
+    let mut fields = Packer::<COMMAND>::default();
     fields.word(number);
     fields.text(TEXT, &line);
     fields.finish()
@@ -72,7 +72,7 @@ impl<'a> CellStatus<'a> {
     /// The bytes.
     #[must_use]
     pub fn encode(&self) -> [u8; STATUS] {
-        let mut fields = Packer::<STATUS>::new();
+        let mut fields = Packer::<STATUS>::default();
         fields.word(self.echo);
         fields.word(u16::from(self.busy));
         fields.word(u16::from(self.trouble.code()));

@@ -54,7 +54,7 @@ pub enum CommandError {
 /// # Errors
 /// [`RangeError`] for a grip or a sector that two bytes cannot hold.
 pub fn encode(command: &HwsCommand) -> Result<[u8; COMMAND], RangeError> {
-    let mut fields = Packer::<COMMAND>::new();
+    let mut fields = Packer::<COMMAND>::default();
     fields.text(4, &"");
     fields.word(u16::try_from(COMMAND).unwrap_or_default());
     fields.word(command_number(command.number));

@@ -81,7 +81,7 @@ pub fn encode(
     mailgram_echo: u16,
     refused: Option<&Refusal>,
 ) -> [u8; STATUS] {
-    let mut fields = Packer::<STATUS>::new();
+    let mut fields = Packer::<STATUS>::default();
     fields.text(4, &"");
     fields.text(16, &"");
     fields.word(u16::try_from(STATUS).unwrap_or_default());
