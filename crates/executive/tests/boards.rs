@@ -18,8 +18,10 @@ use std::{
 use executive::{
     alloc::Counting,
     boards::{
-        Board, Conductor, Fingerprint, Lost, Member, MemberError, SplitError, conductor::How,
-        member::MemberEnd, pulse::RunCard,
+        Board, Conductor, Fingerprint, Lost, Member, MemberError,
+        conductor::{How, News},
+        member::MemberEnd,
+        pulse::RunCard,
     },
     memory::{RunName, runs},
     runner::{Levels, Runner},
@@ -122,7 +124,7 @@ fn four_boards_compute_the_bits_of_one_and_allocate_nothing() {
         let mut conductor = Conductor::create(&name, &CARD).expect("this machine has shared memory");
         let boards: Vec<_> = Board::ALL.iter().map(|&b| board(scope, &name, b, &stop)).collect();
         let mut arrivals = 0;
-        conductor.gather(PATIENCE, &stop, |_, _, _| arrivals += 1).expect("all come");
+        conductor.gather(PATIENCE, &stop, |_, _| arrivals += 1).expect("all come");
         assert_eq!(arrivals, 4);
         let (split, lost) = play(conductor, TICKS);
         assert_eq!(lost, None);
@@ -158,7 +160,7 @@ fn a_board_that_leaves_stops_the_pulse_and_is_named() {
         for &b in Board::ALL {
             board(scope, &name, b, if b == Board::Eight { &leave } else { &stop });
         }
-        conductor.gather(PATIENCE, &stop, |_, _, _| ()).expect("all come");
+        conductor.gather(PATIENCE, &stop, |_, _| ()).expect("all come");
         let (runner, lost) =
             play_watched(conductor, 500, |tick| leave.store(tick == Tick(400), Ordering::Relaxed));
         let lost: Lost = lost.expect("a board left");
@@ -182,14 +184,19 @@ fn who_is_missing_is_said() {
         for &b in &[Board::Two, Board::Four, Board::Eight] {
             board(scope, &name, b, &stop);
         }
-        let error =
-            conductor.gather(Duration::from_millis(300), &stop, |_, _, _| ()).expect_err("one is missing");
-        // Nobody is ready without all neighbours.
-        assert!(
-            matches!(&error, SplitError::Missing { missing, .. } if missing.contains(&Board::Six)),
-            "{error}"
-        );
-        stop.store(true, Ordering::Relaxed);
+        let mut absent = Vec::new();
+        let error = conductor.gather(PATIENCE, &stop, |news, missing| {
+            assert!(matches!(news, News::Came { .. }), "{news:?}");
+            absent = missing.to_vec();
+            // Who waits knows who is missing; that is enough here.
+            stop.store(missing == [Board::Six], Ordering::Relaxed);
+        });
+        assert_eq!(absent, [Board::Six]);
+        let error = error.expect_err("one is missing");
+        assert_eq!(error.to_string(), "interrupted while waiting for board 6");
+        let error = conductor.gather(Duration::ZERO, &AtomicBool::new(false), |_, _| ());
+        let error = error.expect_err("it does not come");
+        assert_eq!(error.to_string(), "board 6 did not come within 0 s");
     });
 }
 
@@ -234,7 +241,7 @@ fn a_board_that_is_replaced_goes_on_as_one_whose_processes_were_restarted() {
         for &b in Board::ALL {
             board(scope, &name, b, if b == Board::Two { &leave } else { &stop });
         }
-        conductor.gather(PATIENCE, &stop, |_, _, _| ()).expect("all come");
+        conductor.gather(PATIENCE, &stop, |_, _| ()).expect("all come");
         let mut runner = Runner::new(conductor, None);
         let data = store().view();
         let mut restarted = None;
@@ -244,7 +251,7 @@ fn a_board_that_is_replaced_goes_on_as_one_whose_processes_were_restarted() {
                 assert_eq!((lost.board, lost.tick, restarted), (Board::Two, tick, None), "{lost}");
                 restarted = Some(tick);
                 board(scope, &name, Board::Two, &stop);
-                runner.levels_mut().await_successor(&lost, PATIENCE, &stop, |_, _, _| ()).expect("one comes");
+                runner.levels_mut().await_successor(&lost, PATIENCE, &stop, |_, _| ()).expect("one comes");
             }
         }
         let restarted = restarted.expect("a board left");

@@ -8,7 +8,7 @@ use std::{
 };
 
 use executive::{
-    boards::{Board, Conductor, Fingerprint, Lost, SplitError, pulse::RunCard},
+    boards::{Board, Conductor, Fingerprint, Lost, SplitError, conductor::News, pulse::RunCard},
     memory::RunName,
     runner::Levels,
 };
@@ -124,7 +124,7 @@ impl Controller {
                     spawn(arguments, name, board).map_err(|source| SplitError::Start { board, source })?;
                 conductor.adopt(board, child);
             }
-            conductor.gather(STARTING, stop, |_, _, _| ())?;
+            conductor.gather(STARTING, stop, |_, _| ())?;
         } else {
             eprintln!("rcs-run: {name} waits for its boards; start each with the same data and job:");
             for board in Board::ALL {
@@ -186,14 +186,17 @@ fn patience(arguments: &RunArguments) -> Duration {
     Duration::from_secs(arguments.wait.into())
 }
 
-/// Say who has come and who has not.
-fn announce(board: Board, pid: u32, missing: &[Board]) {
+/// Say who has come, who has left, and who is missing.
+fn announce(news: News, missing: &[Board]) {
     let missing: Vec<String> = missing.iter().map(|board| board.number().to_string()).collect();
     let rest = match missing.as_slice() {
         [] => "all are there".to_owned(),
         some => format!("missing: {}", some.join(", ")),
     };
-    eprintln!("rcs-run: {board} is there (process {pid}); {rest}");
+    match news {
+        News::Came { board, pid } => eprintln!("rcs-run: {board} is there (process {pid}); {rest}"),
+        News::Left { board, pid } => eprintln!("rcs-run: {board} is gone (process {pid}); {rest}"),
+    }
 }
 
 /// What a board must have in common with the run.

@@ -158,6 +158,25 @@ impl Lost {
     }
 }
 
+/// What is heard of the boards while they come together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum News {
+    /// One has come.
+    Came {
+        /// Which.
+        board: Board,
+        /// Its process.
+        pid: u32,
+    },
+    /// One that had come is gone.
+    Left {
+        /// Which.
+        board: Board,
+        /// Its process.
+        pid: u32,
+    },
+}
+
 /// What board 0 knows of another board.
 struct Seat {
     board: Board,
@@ -184,6 +203,11 @@ impl Seat {
             former_allocations: 0,
             times: Box::default(),
         }
+    }
+
+    /// A process has the place.
+    const fn has_come(&self) -> bool {
+        self.report.pid != 0
     }
 
     const fn allocations(&self) -> u64 {
@@ -271,7 +295,8 @@ impl Conductor {
         self.seats[board.index()].child = Some(child);
     }
 
-    /// Wait until all boards are there. `arrived` hears of each that comes, with its process and those that are still missing.
+    /// Wait until all boards are there and read each other. `heard` is told of each that comes or leaves again, and which are
+    /// missing then.
     ///
     /// # Errors
     /// [`SplitError`] if one does not come, or comes with other data.
@@ -279,23 +304,28 @@ impl Conductor {
         &mut self,
         patience: Duration,
         stop: &AtomicBool,
-        mut arrived: impl FnMut(Board, u32, &[Board]),
+        mut heard: impl FnMut(News, &[Board]),
     ) -> Result<(), SplitError> {
         let deadline = Instant::now() + patience;
         for look in 1_u32.. {
             for at in 0..self.seats.len() {
                 if self.look_for(at)? {
-                    let seat = &self.seats[at];
-                    arrived(seat.board, seat.report.pid, &self.missing());
+                    let Seat { board, report: Report { pid, .. }, .. } = self.seats[at];
+                    heard(News::Came { board, pid }, &self.boards_that(|seat| !seat.has_come()));
+                }
+                if look.is_multiple_of(LIFE)
+                    && let Some(news) = self.give_up_the_dead(at)
+                {
+                    heard(news, &self.boards_that(|seat| !seat.has_come()));
                 }
             }
-            let missing = self.missing();
-            if missing.is_empty() {
+            let unready = self.boards_that(|seat| !seat.report.ready);
+            if unready.is_empty() {
                 break;
             }
-            if look.is_multiple_of(LIFE) {
-                self.give_up_the_dead();
-            }
+            // A board that has come is ready as soon as all others have.
+            let absent = self.boards_that(|seat| !seat.has_come());
+            let missing = if absent.is_empty() { unready } else { absent };
             if stop.load(Ordering::Relaxed) {
                 return Err(SplitError::Interrupted(missing));
             }
@@ -314,9 +344,8 @@ impl Conductor {
         Ok(())
     }
 
-    fn missing(&self) -> Vec<Board> {
-        let missing = self.seats.iter().filter(|seat| !(seat.ports.is_some() && seat.report.ready));
-        missing.map(|seat| seat.board).collect()
+    fn boards_that(&self, are_so: impl Fn(&Seat) -> bool) -> Vec<Board> {
+        self.seats.iter().filter(|seat| are_so(seat)).map(|seat| seat.board).collect()
     }
 
     /// Look for a board; true if it has come since the last look.
@@ -334,26 +363,27 @@ impl Conductor {
             seat.ports = Some((readers, reports));
         }
         let Some((_, reports)) = &seat.ports else { return Ok(false) };
-        let was_ready = seat.report.ready;
+        let had_come = seat.has_come();
         let Ok((_, report)) = reports.read() else { return Ok(false) };
         seat.report = report;
-        if report.pid != 0
+        if seat.has_come()
             && let Some(difference) = report.fingerprint.difference(&self.fingerprint)
         {
             return Err(SplitError::Different { board, pid: report.pid, difference });
         }
-        Ok(report.ready && !was_ready)
+        Ok(seat.has_come() && !had_come)
     }
 
     /// A board that was there and lives no more, before all have come together, leaves its place to the next one.
-    fn give_up_the_dead(&mut self) {
-        for at in 0..self.seats.len() {
-            let seat = &self.seats[at];
-            let came = seat.child.is_none() && seat.ports.is_some();
-            if came && !runs::has_living(&self.name, seat.board.name()) {
-                self.vacate(at);
-            }
+    fn give_up_the_dead(&mut self, at: usize) -> Option<News> {
+        let seat = self.seats.get(at)?;
+        let came = seat.child.is_none() && seat.ports.is_some();
+        if !came || runs::has_living(&self.name, seat.board.name()) {
+            return None;
         }
+        let news = News::Left { board: seat.board, pid: seat.report.pid };
+        self.vacate(at);
+        Some(news)
     }
 
     /// Wait for a process that takes the place of a lost board. It comes under the next epoch: whatever the lost one still
@@ -367,10 +397,10 @@ impl Conductor {
         lost: &Lost,
         patience: Duration,
         stop: &AtomicBool,
-        arrived: impl FnMut(Board, u32, &[Board]),
+        heard: impl FnMut(News, &[Board]),
     ) -> Result<(), SplitError> {
         self.vacate(lost.board.index());
-        self.gather(patience, stop, arrived)
+        self.gather(patience, stop, heard)
     }
 
     /// Give a board's place to whoever comes next.
