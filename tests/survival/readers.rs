@@ -135,11 +135,26 @@ fn garbage_in_shared_memory_changes_no_bit() {
     scribbles.wait().expect("it is dead");
     drop(reader);
     assert!(refused > 0, "the garbage was not seen at all");
-    // A signal, as of a kill, has been seen to end the run (docs/shared-memory.md); no bit may ever differ.
-    if ended.status.is_some() {
-        assert_eq!(ended.status, Some(0), "{}", ended.said);
-        assert_eq!(ended.digest(), alone(&scratch.file("")).digest());
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert_eq!(ended.digest(), alone(&scratch.file("")).digest());
+    assert_cleaned(&scratch.file(""), &name);
+}
+
+/// Nothing can be done about that: the page under the next tick's buffers is gone. But it is said.
+#[test]
+fn objects_that_are_cut_short_end_the_run_and_it_says_why() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("cut");
+    let mut run = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
+    let name = run.name.clone();
+    drop(run.attach());
+    for path in values(&name) {
+        let file = fs::File::options().write(true).open(path).expect("it is ours");
+        file.set_len(0).expect("it can be cut");
     }
+    let ended = run.end();
+    assert_eq!(ended.status, Some(3), "{}", ended.said);
+    assert!(ended.last_words().contains("shared memory went away"), "{}", ended.said);
     assert_cleaned(&scratch.file(""), &name);
 }
 

@@ -51,6 +51,28 @@ fn without_shared_memory_nobody_looks_on_and_the_run_goes_on() {
 }
 
 #[test]
+fn memory_that_is_taken_while_a_run_begins_is_missed_in_words() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("race");
+    // Enough to begin with, and taken by somebody else as soon as the first object is there.
+    let fills = "mount -t tmpfs -o size=2200k tmpfs /dev/shm && \
+                 { (until ls /dev/shm/rcs-* > /dev/null 2>&1; do :; done; \
+                    head -c 4M /dev/zero > /dev/shm/filler 2> /dev/null) & }";
+    for _ in 0..5 {
+        let Some(ended) = apart(&scratch.file(""), fills, &["--ticks", "50", "--log", "none"]) else {
+            eprintln!("no right to mount: a full /dev/shm cannot be tried");
+            return;
+        };
+        // Who is first is left to chance, but no end is silent.
+        match ended.status {
+            Some(0) => assert_eq!(ended.number("ticks"), 50),
+            Some(3) => assert!(ended.last_words().contains("/dev/shm is full"), "{}", ended.said),
+            other => panic!("{other:?}: {}", ended.said),
+        }
+    }
+}
+
+#[test]
 fn a_directory_that_is_not_ours_is_not_used() {
     let scratch = Scratch::new("not-ours");
     let place = scratch.file(&format!("rcs-ii-{}", geteuid().as_raw()));

@@ -5,8 +5,11 @@
 //! [`link_test`] tries the line to a robot. The other subcommands look at task data and decision tables without
 //! running anything, or clean up after killed runs.
 
+#![deny(unsafe_code)]
+
 mod agreement;
 mod board;
+mod bus_error;
 mod check;
 mod clean;
 mod cli;
@@ -22,7 +25,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::cli::{Cli, Command};
+use crate::{
+    cli::{Cli, Command},
+    error::Error,
+};
 
 // Counts what the controller allocates; the count is in the result of every run.
 #[global_allocator]
@@ -30,7 +36,20 @@ static ALLOCATOR: executive::alloc::Counting = executive::alloc::Counting;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let outcome = match cli.command {
+    let outcome = bus_error::explain().and_then(|()| execute(cli));
+    match outcome {
+        Ok(code) => code,
+        Err(error) => {
+            // The reason is the last line on standard error, whatever stands before it.
+            eprint!("{}", error.details());
+            eprintln!("rcs-run: {error}");
+            ExitCode::from(error::UNUSABLE)
+        }
+    }
+}
+
+fn execute(cli: Cli) -> Result<ExitCode, Error> {
+    match cli.command {
         None => run::run(&cli.run),
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Board(arguments)) => board::board(&arguments),
@@ -40,14 +59,5 @@ fn main() -> ExitCode {
         Some(Command::Latency(arguments)) => latency::latency(&arguments),
         Some(Command::Status(arguments)) => status::status(&arguments),
         Some(Command::Clean) => clean::clean(),
-    };
-    match outcome {
-        Ok(code) => code,
-        Err(error) => {
-            // The reason is the last line on standard error, whatever stands before it.
-            eprint!("{}", error.details());
-            eprintln!("rcs-run: {error}");
-            ExitCode::from(error::UNUSABLE)
-        }
     }
 }

@@ -203,7 +203,7 @@ fn publisher(arguments: &RunArguments, name: &RunName) -> Option<Publisher> {
 
 /// So is the mirror of the status.
 fn mirror(publisher: &Publisher) -> Option<Mirror> {
-    let mirror = Mirror::start(publisher.name());
+    let mirror = Mirror::start(publisher);
     mirror.inspect_err(|error| eprintln!("rcs-run: the status is not mirrored: {error}")).ok()
 }
 

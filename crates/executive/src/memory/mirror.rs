@@ -1,9 +1,8 @@
 //! The status of a run for programs that know nothing of it: mirrored on publish-subscribe.
 //!
 //! `iox2`, the tool of iceoryx2 (`cargo install iceoryx2-cli`), lists nodes and services of a run, but shows
-//! no values of blackboards. So a thread of its own, far from the tick, attaches to the run as any reader
-//! would, sums it up ten times a second ([`Status`]) and publishes the sum as one JSON object, on the service
-//! [`SERVICE`]. `iox2` finds a run by the configuration file that the mirror writes into the run's directory:
+//! no values of blackboards. So a thread of its own, far from the tick, sums up ten times a second what was
+//! published last ([`Status`]) and publishes the sum as one JSON object, on the service [`SERVICE`]. `iox2` finds a run by the configuration file that the mirror writes into the run's directory:
 //!
 //! ```sh
 //! cd "$(rcs-run status --directory)"
@@ -12,9 +11,10 @@
 //! iox2 service subscribe rcs-ii/status
 //! ```
 //!
-//! The mirror is a convenience inside the program that moves a robot, so it must not be what ends it: its
-//! memory is laid out beforehand and never grows, and it is silent while there is so little shared memory that
-//! a new subscriber could not be given his.
+//! The mirror is a convenience inside the program that moves a robot, so it must not be what ends it: it reads
+//! what the tick left for it in this program's own memory, where nobody else can write; its shared memory is laid
+//! out beforehand and never grows, and it is silent while there is so little of it that a new subscriber could not
+//! be given his.
 
 use std::{
     fs,
@@ -36,7 +36,7 @@ use iceoryx2::{
 };
 
 use super::{
-    attach::Attached,
+    publish::{self, Published, Window},
     runs::{self, RunName, SharedMemoryError},
 };
 use crate::status::Status;
@@ -61,24 +61,27 @@ pub struct Mirror {
 }
 
 struct Ports {
-    reader: Attached,
+    run: RunName,
+    window: Arc<Window>,
     publisher: Publisher<ipc::Service, [u8], ()>,
     // After the publisher: the service is closed before its node.
     _node: Node<ipc::Service>,
 }
 
 impl Mirror {
-    /// Attach to a run of this program and begin to mirror it. The thread inherits the priority of its maker:
+    /// Begin to mirror a run of this program. The thread inherits the priority of its maker:
     /// start it before real time is asked for.
     ///
     /// # Errors
     /// [`SharedMemoryError`] with what iceoryx2 or the system says.
-    pub fn start(name: &RunName) -> Result<Self, SharedMemoryError> {
+    pub fn start(run: &publish::Publisher) -> Result<Self, SharedMemoryError> {
+        let name = run.name();
         write_configuration(name)?;
         let stop = Arc::new(AtomicBool::new(false));
-        let (run, seen, (say, opened)) = (name.clone(), Arc::clone(&stop), mpsc::channel());
+        let (seen, (say, opened)) = (Arc::clone(&stop), mpsc::channel());
+        let (run, window) = (name.clone(), run.window());
         // The ports belong to the thread that opens them.
-        let work = move || match Ports::open(&run) {
+        let work = move || match Ports::open(run, window) {
             Ok(ports) => {
                 let _ = say.send(Ok(()));
                 ports.mirror(&seen);
@@ -95,10 +98,9 @@ impl Mirror {
 }
 
 impl Ports {
-    fn open(name: &RunName) -> Result<Self, SharedMemoryError> {
+    fn open(run: RunName, window: Arc<Window>) -> Result<Self, SharedMemoryError> {
         let failed = |error: &dyn std::fmt::Debug| SharedMemoryError::service("status", error);
-        let reader = Attached::open(name)?;
-        let node = runs::node(name, "status")?;
+        let node = runs::node(&run, "status")?;
         let service_name = ServiceName::new(SERVICE).map_err(|error| failed(&error))?;
         let service = node
             .service_builder(&service_name)
@@ -114,16 +116,15 @@ impl Ports {
             .allocation_strategy(AllocationStrategy::Static)
             .create()
             .map_err(|error| failed(&error))?;
-        runs::reserve(name)?;
-        Ok(Self { reader, publisher, _node: node })
+        runs::reserve(&run)?;
+        Ok(Self { run, window, publisher, _node: node })
     }
 
     fn mirror(self, stop: &AtomicBool) {
         let mut due = Instant::now();
         while !stop.load(Ordering::Relaxed) {
-            if Instant::now() >= due {
+            if Instant::now() >= due && self.publish() {
                 due += PERIOD;
-                self.publish();
             }
             thread::sleep(LOOK);
         }
@@ -131,18 +132,19 @@ impl Ports {
         self.publish();
     }
 
-    /// What cannot be read or published now is left out: the next message comes soon.
-    fn publish(&self) {
-        if runs::have_room().is_err() {
-            return;
-        }
-        let (Ok(external), Ok(memory), Ok(pulse)) =
-            (self.reader.external(), self.reader.memory(), self.reader.pulse())
-        else {
-            return;
+    /// False if the tick is just being written. What cannot be published now is left out: the next message comes soon.
+    fn publish(&self) -> bool {
+        let Some(Published { external, memory, pulse }) = self.window.with(|published| *published) else {
+            return false;
         };
-        let status = Status::of(self.reader.name().as_str(), &external, &memory, &pulse);
-        let Ok(message) = serde_json::to_vec(&status) else { return };
+        if runs::have_room().is_ok() {
+            self.send(&Status::of(self.run.as_str(), &external, &memory, &pulse));
+        }
+        true
+    }
+
+    fn send(&self, status: &Status) {
+        let Ok(message) = serde_json::to_vec(status) else { return };
         if let Ok(sample) = self.publisher.loan_slice_uninit(message.len()) {
             let _ = sample.write_from_slice(&message).send();
         }

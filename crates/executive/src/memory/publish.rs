@@ -1,6 +1,8 @@
 //! The side of the run: creates all services before the first tick and writes them once a tick, without
 //! allocating.
 
+use std::sync::{Arc, Mutex, TryLockError};
+
 use iceoryx2::{node::Node, prelude::ipc};
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Header},
@@ -19,6 +21,31 @@ use super::{
 /// Epoch of a run whose writers were never restarted.
 pub const FIRST_EPOCH: Epoch = 1;
 
+/// What was published last.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Published {
+    pub external: ExternalInputs,
+    pub memory: CommonMemory,
+    pub pulse: Pulse,
+}
+
+/// What was published last, for other threads of this program: nothing that somebody else writes into shared memory gets in
+/// here. Neither side ever waits for the other, so that no tick is late because of a thread that looks.
+#[derive(Default)]
+pub(super) struct Window(Mutex<Published>);
+
+impl Window {
+    /// Do something with what stands here; `None` while the other side is at it.
+    pub(super) fn with<T>(&self, work: impl FnOnce(&mut Published) -> T) -> Option<T> {
+        match self.0.try_lock() {
+            Ok(mut published) => Some(work(&mut published)),
+            // Every value in it is whole whatever its owner was doing when it panicked.
+            Err(TryLockError::Poisoned(published)) => Some(work(&mut published.into_inner())),
+            Err(TryLockError::WouldBlock) => None,
+        }
+    }
+}
+
 /// The writers of all buffers of a run. Dropping it ends the run in shared memory: readers that are still
 /// attached see [`Pulse::over`], and whoever leaves last removes the files.
 pub struct Publisher {
@@ -26,6 +53,7 @@ pub struct Publisher {
     // Taken out before the files are removed: iceoryx2 must have let go of them by then.
     ports: Option<Ports>,
     pulse: Pulse,
+    window: Arc<Window>,
 }
 
 struct Ports {
@@ -88,7 +116,11 @@ impl Publisher {
             _node: node,
         };
         runs::reserve(name)?;
-        Ok(Self { name: name.clone(), ports: Some(ports), pulse: Pulse::default() })
+        Ok(Self { name: name.clone(), ports: Some(ports), pulse: Pulse::default(), window: Arc::default() })
+    }
+
+    pub(super) fn window(&self) -> Arc<Window> {
+        Arc::clone(&self.window)
     }
 
     /// The name under which readers find the run.
@@ -119,6 +151,8 @@ impl Publisher {
         ports.table.write(&memory.table);
         ports.executive.write(&ExecutiveOutputs { header, pulse });
         self.pulse = pulse;
+        // If it is being looked at, the next tick comes soon.
+        let _ = self.window.with(|seen| *seen = Published { external: *external, memory: *memory, pulse });
     }
 }
 

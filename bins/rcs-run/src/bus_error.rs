@@ -1,0 +1,34 @@
+//! The last words of a program under which memory goes away.
+//!
+//! Shared memory lies in files of a file system in memory. If that is full when a page is first touched, or if
+//! somebody cuts such a file short, the system can only end the program, by the signal SIGBUS, and nobody would know
+//! why. What can be asked beforehand is asked (`executive::memory::runs`), but others can fill `/dev/shm` between the
+//! question and the touch.
+
+use rustix::{io::write, stdio::stderr};
+use signal_hook::{
+    consts::SIGBUS,
+    low_level::{exit, register},
+};
+
+use crate::error::{Error, STOPPED};
+
+const WORDS: &[u8] =
+    b"\nrcs-run: shared memory went away under the program: /dev/shm is full, or somebody cut an object short; \
+      the robot gets no further point\n";
+
+/// Have this program say why when the system ends it for want of memory. The exit status is that of a robot that was stopped.
+///
+/// # Errors
+/// [`Error::Signals`] if the system does not take a handler.
+#[expect(unsafe_code, reason = "what a signal handler may do is for its author to see to")]
+pub fn explain() -> Result<(), Error> {
+    let last_words = || {
+        // If nobody can be told, there is nothing left to do about it.
+        let _ = write(stderr(), WORDS);
+        exit(i32::from(STOPPED));
+    };
+    // SAFETY: `write` and `_exit`, which `exit` is, are among the calls that a handler may make; nothing is allocated or locked,
+    // and the handler does not return to what cannot go on.
+    unsafe { register(SIGBUS, last_words) }.map(drop).map_err(Error::Signals)
+}
