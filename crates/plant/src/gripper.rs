@@ -26,6 +26,9 @@ use crate::{
 const FREE_GAP: f64 = 0.001;
 /// How long the seals hold free fingers before trapped air drives them on, s; a part that slides out is clear by then.
 const BREAKAWAY_TIME: f64 = 0.25;
+/// Fingers that can sleep do so when no point of them has moved faster than this for half a second, m/s (rad/s): what is left of
+/// their way then is less than 1e-11 m.
+const STILL: Real = 1e-9;
 /// Speed of fingers that trapped air drives, in/s: that of the coarse flow, which the same ports limit.
 pub const EXPANSION_SPEED: f64 = 4.0;
 
@@ -219,6 +222,47 @@ impl Gripper {
         Pads { x: [-length, 0.0], z: [-width / 2.0, width / 2.0], groove }
     }
 
+    /// From now on the fingers sleep while nothing moves them: nobody computes how springs hold what does not move. They wake
+    /// when the air moves them, when something touches them, and when the hand is led. See [`Gripper::stand`].
+    pub fn let_fingers_sleep(&self, world: &mut PhysicsWorld) {
+        for finger in &self.fingers {
+            let activation = world.bodies[finger.body].activation_mut();
+            *activation = RigidBodyActivation::active();
+            activation.normalized_linear_threshold = STILL;
+            activation.angular_threshold = STILL;
+        }
+    }
+
+    /// The hand stands where it is. A body that is led never sleeps, and keeps awake what hangs on it: that is wanted only for a
+    /// part, which may slide under the least change of its load.
+    pub fn stand(&self, world: &mut PhysicsWorld) {
+        let led = self.hold.is_some();
+        let kind = if led { RigidBodyType::KinematicPositionBased } else { RigidBodyType::Fixed };
+        self.become_type(world, kind);
+    }
+
+    /// The hand is led to a pose, metres, by the end of the next step.
+    pub fn lead(&self, world: &mut PhysicsWorld, tool: &Pose) {
+        self.become_type(world, RigidBodyType::KinematicPositionBased);
+        self.wake_fingers(world);
+        let hand = &mut world.bodies[self.hand];
+        let rotation = on_the_side_of(hand.rotation(), tool.rotation);
+        hand.set_next_kinematic_position(Pose { rotation, ..*tool });
+    }
+
+    fn become_type(&self, world: &mut PhysicsWorld, kind: RigidBodyType) {
+        let hand = &mut world.bodies[self.hand];
+        if hand.body_type() != kind {
+            hand.set_body_type(kind, true);
+        }
+    }
+
+    fn wake_fingers(&self, world: &mut PhysicsWorld) {
+        for finger in &self.fingers {
+            world.bodies[finger.body].wake_up(true);
+        }
+    }
+
     /// Let the springs of the fingers rest where the air wants the fingers.
     pub fn move_fingers(&mut self, world: &mut PhysicsWorld) {
         let now = (self.air.opening(), self.air.speed());
@@ -226,6 +270,7 @@ impl Gripper {
             return;
         }
         self.shown = now;
+        self.wake_fingers(world);
         for finger in &self.fingers {
             if let Some(joint) = world.impulse_joints.get_mut(finger.joint, false) {
                 joint.data.set_local_frame1(finger_rest(&self.description, finger.side, now.0));

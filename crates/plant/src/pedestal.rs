@@ -17,7 +17,7 @@ use rcs_core::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    convert::{on_the_side_of, to_pose},
+    convert::to_pose,
     description::{Pedestal as Description, RotaryTable},
     gripper::Gripper,
     noise::Noise,
@@ -164,6 +164,8 @@ impl Pedestal {
         let table = Table::new(&description.table);
         let tool = to_pose(&hand_frame(description, table.angle()));
         let hand = Gripper::new(world, &description.hand, description.stiffness, &tool, HAND);
+        // Most jobs never ask for it, and in the others it stands still most of the time.
+        hand.let_fingers_sleep(world);
         Self { hand, table, description: description.clone() }
     }
 
@@ -182,13 +184,11 @@ impl Pedestal {
     /// Let the table turn for `dt` seconds, and the hand with it.
     pub fn turn(&mut self, world: &mut PhysicsWorld, dt: f64) {
         if !self.table.moving() {
+            self.hand.stand(world);
             return;
         }
         self.table.advance(dt);
-        let mut next = to_pose(&self.frame());
-        let hand = &mut world.bodies[self.hand.hand()];
-        next.rotation = on_the_side_of(hand.rotation(), next.rotation);
-        hand.set_next_kinematic_position(next);
+        self.hand.lead(world, &to_pose(&self.frame()));
     }
 
     /// Read all sensors.
@@ -311,5 +311,43 @@ mod tests {
         let way = (at - table.motor_angle()).abs();
         let least = speed * speed / (2.0 * table.ramp()) / STEPS_PER_DEGREE;
         assert!(speed < 0.0 && (way - least).abs() < 0.1, "{way} degrees, {least} expected");
+    }
+
+    /// A world with the steps and stiffness of the cell, and its pedestal.
+    fn standing() -> (PhysicsWorld, Pedestal) {
+        let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();
+        let mut world = crate::cell::physics(&cell);
+        let pedestal = Pedestal::new(&mut world, &cell.pedestal);
+        (world, pedestal)
+    }
+
+    #[test]
+    fn fingers_that_nothing_moves_sleep_until_air_or_table_moves_them() {
+        let (mut world, mut pedestal) = standing();
+        let dt = world.integration_parameters.dt;
+        let asleep = |world: &PhysicsWorld, pedestal: &Pedestal| {
+            pedestal.hand.finger_bodies().map(|body| world.bodies[body].is_sleeping())
+        };
+        let rest = |world: &mut PhysicsWorld, pedestal: &mut Pedestal| {
+            for _ in 0..800 {
+                pedestal.turn(world, dt);
+                pedestal.hand.move_fingers(world);
+                world.step();
+            }
+        };
+        rest(&mut world, &mut pedestal);
+        assert_eq!(asleep(&world, &pedestal), [true; 2]);
+        pedestal.table.order(&MotorCommand { number: 1, order: MotorOrder::Turn, steps: 400 });
+        pedestal.turn(&mut world, dt);
+        world.step();
+        assert_eq!(asleep(&world, &pedestal), [false; 2], "the table turns");
+        rest(&mut world, &mut pedestal);
+        assert_eq!(asleep(&world, &pedestal), [true; 2]);
+        let before = crate::gripper::body_opening(&world, &pedestal.hand);
+        pedestal.hand.air.spread(2.0);
+        rest(&mut world, &mut pedestal);
+        assert_eq!(asleep(&world, &pedestal), [true; 2]);
+        let opened = crate::gripper::body_opening(&world, &pedestal.hand) - before;
+        assert!((opened - (2.0 - 0.1)).abs() < 1e-6, "{opened}");
     }
 }

@@ -118,9 +118,17 @@ fn what_is_no_saved_cell_is_refused() {
         damaged[at] ^= 0x10;
         assert!(matches!(refused(&damaged), RestoreError::Damaged { .. }), "byte {at}");
     }
-    let mut newer = bytes.clone();
-    newer[8] = 77;
-    assert_eq!(refused(&newer), RestoreError::Version { found: 77 });
+    // Magic, then the version: nothing of another one is looked at, however whole it is.
+    let written = u32::from_le_bytes(bytes[8..12].try_into().unwrap());
+    for other in (0..written).chain([written + 1, 77]) {
+        let mut bytes = bytes.clone();
+        bytes[8..12].copy_from_slice(&other.to_le_bytes());
+        let error = refused(&bytes);
+        assert_eq!(error, RestoreError::Version { found: other });
+        let said =
+            format!("this cell was saved in version {other} of the format, expected version {written}");
+        assert_eq!(error.to_string(), said);
+    }
     let other = scenes::with_tool_gripper();
     assert_eq!(Cell::restore(&other, &bytes).map(|_| ()).unwrap_err(), RestoreError::OtherDescription);
 }

@@ -607,7 +607,7 @@ fn place(points: &Points) -> Frame {
 }
 
 /// An empty world with the steps and stiffness of the description.
-fn physics(description: &CellDescription) -> PhysicsWorld {
+pub(crate) fn physics(description: &CellDescription) -> PhysicsWorld {
     let physics = &description.physics;
     let mut world = PhysicsWorld::new();
     world.gravity = Vector::new(0.0, 0.0, -GRAVITY);

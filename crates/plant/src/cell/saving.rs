@@ -18,7 +18,7 @@ use crate::{description::CellDescription, fingerprint, scene::furniture};
 /// What every saved cell begins with.
 const MAGIC: [u8; 8] = *b"RCSCELL\0";
 /// Version of the saved state: to be raised with every change of what a cell consists of.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Bytes before the state.
 const HEADER: usize = 28;
 
