@@ -188,7 +188,8 @@ impl Group {
 /// A reference in 32 bits, never 0; `None` if it is none, or of a record beyond any that a file can have.
 pub(crate) fn packed(at: Reference) -> Option<u32> {
     let kind = u32::from(at.kind.code());
-    (kind > 0 && kind < 16 && at.number < 1 << 28).then_some((kind << 28) | at.number)
+    let known = kind > 0 && kind < 16 && at.number < 1 << 28 && (at.number > 0 || at.kind == RefType::Any);
+    known.then_some((kind << 28) | at.number)
 }
 
 /// What is valid at locations, by a key without the location. Built by the loader.
@@ -205,27 +206,35 @@ pub struct PlaceIndex<'a> {
 }
 
 impl<'a> PlaceIndex<'a> {
-    /// The record number, and what look-ups ask of the record, of the first location for which there is an entry: that of the
-    /// location `exact` names first, of the next of them, of one of the `owners`, of the wild card. The key may name any
-    /// location.
+    /// The entry for the first location that has one: of the `exact` ones in turn, of the `owners`, of the wild card. The key may
+    /// name any location.
     pub(crate) fn first(
         &self,
         key: Key,
-        exact: impl Iterator<Item = Reference>,
-        owners: impl Iterator<Item = Reference>,
+        exact: [Reference; 2],
+        mut owners: impl Iterator<Item = Reference>,
     ) -> Option<EntryAt> {
         let key = key.without_place();
         let group = slot_at(self.pilots, self.groups, self.seed, key)?;
         if group.key != key || group.count == 0 {
             return None;
         }
-        let any = core::iter::once(Reference::ANY);
         if group.count == CROWDED {
-            return exact.chain(owners).chain(any).find_map(|at| self.crowded.entry(key.at(at)));
+            let any = core::iter::once(Reference::ANY);
+            return exact.into_iter().chain(owners).chain(any).find_map(|at| self.crowded.entry(key.at(at)));
+        }
+        for at in exact {
+            if let Some(entry) = group.entry(at) {
+                return Some(*entry);
+            }
         }
         // Most entries name a location point or the wild card: then it is no matter who owns the point.
-        let owners = group.names(RefType::Owner).then_some(owners).into_iter().flatten();
-        exact.chain(owners).chain(any).find_map(|at| group.entry(at)).copied()
+        if group.names(RefType::Owner)
+            && let Some(entry) = owners.find_map(|at| group.entry(at))
+        {
+            return Some(*entry);
+        }
+        group.entry(Reference::ANY).copied()
     }
 }
 

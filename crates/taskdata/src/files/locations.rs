@@ -319,13 +319,12 @@ impl<'a> TaskData<'a> {
     /// The names under which forms can mean a place, the most exact first: the location point, the array on it, and the
     /// owners of either (VII.5, VII.7.5).
     pub fn aliases(&self, place: &Place) -> impl Iterator<Item = Reference> + Clone + use<'a> {
-        Self::exact(place).chain(self.owners(place))
+        Self::exact(place).into_iter().filter(|r| r.number != 0).chain(self.owners(place))
     }
 
-    /// The location point of a place, and the array on it.
-    pub(super) fn exact(place: &Place) -> impl Iterator<Item = Reference> + Clone + use<> {
-        let both = [Reference::location_point(place.locpt), Reference::array(place.array)];
-        both.into_iter().filter(|r| r.number != 0)
+    /// The location point of a place, and the array on it; of number 0 if there is none.
+    pub(super) const fn exact(place: &Place) -> [Reference; 2] {
+        [Reference::location_point(place.locpt), Reference::array(place.array)]
     }
 
     /// The owners of a place: of its location point, of the pose of that, or of a static array.

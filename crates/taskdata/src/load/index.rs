@@ -393,7 +393,7 @@ mod tests {
             let mut asked = std::iter::once(at).chain(owners.iter().copied()).chain([8]);
             let expected = asked.find_map(|place| entries.iter().position(|e| *e == (object, grip, place)));
             let owners = owners.iter().map(|place| places[*place]);
-            let found = index.view().first(key(object, grip, 8), [places[at]].into_iter(), owners);
+            let found = index.view().first(key(object, grip, 8), [places[at], Reference::array(ArrayId::NULL)], owners);
             prop_assert_eq!(found.map(|e| e.number), expected.map(|i| short(i) + 1));
             prop_assert_eq!(found.map(|e| e.answer), expected.map(|i| short(i) + 8));
             prop_assert_eq!(index.shared().count(), 0);
@@ -426,7 +426,7 @@ mod tests {
         let key = name_at_key(&rcs_core::name::Name10::clipped("PART"), Reference::ANY);
         let index = OwnedPlaceIndex::new(&numbered(&[key, key]));
         assert_eq!(index.shared().collect::<Vec<_>>(), [[1, 2]]);
-        assert!(OwnedPlaceIndex::new(&[]).view().first(key, [].into_iter(), [].into_iter()).is_none());
+        assert!(OwnedPlaceIndex::new(&[]).view().first(key, [Reference::NONE; 2], [].into_iter()).is_none());
     }
 
     #[test]

@@ -23,6 +23,11 @@ pub(super) fn named<const N: usize>(index: &OwnedIndex, name: &Named<N>) -> Opti
     index.view().find(name_key(&name.name))
 }
 
+/// True for the name of the null movetable; the bytes are compared, since there are many names.
+fn is_null(name: &Named<10>) -> bool {
+    name.name.bytes().strip_prefix(NULL_NAME.as_bytes()).is_some_and(|rest| rest.starts_with(&[0]))
+}
+
 /// The files and indexes that are made already.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'l> {
@@ -32,7 +37,7 @@ pub(super) struct Known<'l> {
 
 impl Known<'_> {
     pub(super) fn movetable(&self, name: &Named<10>) -> Option<MovtabId> {
-        if name.name.as_str() == NULL_NAME {
+        if is_null(name) {
             return Some(MovtabId::NULL);
         }
         named(&self.indexes.movetables, name).map(MovtabId::new)
