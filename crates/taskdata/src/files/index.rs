@@ -259,7 +259,8 @@ impl Key {
     }
 
     /// The location in the key, packed.
-    pub(crate) fn place(self) -> Option<u32> {
+    #[must_use]
+    pub fn place(self) -> Option<u32> {
         let kind = u8::try_from((self.rest & PLACE_BITS) >> 32).ok().and_then(RefType::from_code)?;
         packed(Reference { kind, number: u32::try_from(self.rest & u64::from(u32::MAX)).ok()? })
     }
