@@ -223,7 +223,8 @@ fn a_board_with_other_data_or_in_a_taken_place_is_refused() {
         let second = Member::join(&name, Board::Two, FINGERPRINT);
         assert!(matches!(second, Err(MemberError::Taken { board: Board::Two, .. })));
         drop(conductor);
-        assert!(matches!(first.join().expect("no panic"), Ok(MemberEnd::Over)));
+        let end = first.join().expect("no panic");
+        assert!(matches!(end, Ok(MemberEnd::Over)), "{end:?}");
         let late = Member::join(&name, Board::Two, FINGERPRINT);
         assert!(matches!(late, Err(MemberError::SharedMemory(_))), "the run is over");
     });

@@ -246,7 +246,9 @@ impl Member {
             if silent >= LIFE {
                 silent = 0;
                 if !runs::has_living(&self.name, BOARD_0) {
-                    return Ok(MemberEnd::Orphaned);
+                    // It may have said good-bye since the pulse was read.
+                    let over = self.pulse()?.is_none_or(|pulse| pulse.over);
+                    return Ok(if over { MemberEnd::Over } else { MemberEnd::Orphaned });
                 }
             }
         }
