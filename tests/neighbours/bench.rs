@@ -9,11 +9,12 @@ use std::{
 };
 
 use neighbours::{
-    mailbox::{HWSC_COMMAND, HWSC_STATUS, Mailbox},
+    mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS, Mailbox},
     network::{Address, Peer, PeerError, Received, Role, Secret},
     workstation::{
-        Status, command,
-        status::{self},
+        Status,
+        cell::{self, CellStatus},
+        command, status,
     },
 };
 use rcs_core::{interface::HwsCommand, name::Name16};
@@ -27,7 +28,7 @@ pub const PATIENCE: Duration = Duration::from_secs(120);
 pub struct Controller {
     pub child: Child,
     pub address: Address,
-    pub scratch: Scratch,
+    pub scratch: Option<Scratch>,
     said: Option<JoinHandle<String>>,
 }
 
@@ -72,7 +73,12 @@ impl Controller {
             stderr.read_to_string(&mut said).expect("text");
             said
         });
-        Self { child, address, scratch, said: Some(said) }
+        Self { child, address, scratch: Some(scratch), said: Some(said) }
+    }
+
+    /// A file in its directory.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.scratch.as_ref().expect("it has one").file(name)
     }
 
     /// Connect to it.
@@ -80,12 +86,25 @@ impl Controller {
         Peer::connect_within(PATIENCE, &self.address, role, secret).expect("it waits")
     }
 
+    /// Kill it, so that it can do nothing more; what it leaves.
+    pub fn kill(mut self) -> Scratch {
+        self.child.kill().expect("it runs");
+        self.child.wait().expect("a child");
+        self.scratch.take().expect("it has one")
+    }
+
     /// Wait for its end.
-    pub fn end(mut self) -> Ended {
+    pub fn end(self) -> Ended {
+        self.end_with(|| {})
+    }
+
+    /// Wait for its end, and look at what it leaves.
+    pub fn end_with(mut self, look: impl FnOnce()) -> Ended {
         let mut page = String::new();
         self.child.stdout.take().expect("it is piped").read_to_string(&mut page).expect("text");
         let status = self.child.wait().expect("a child").code();
         let said = self.said.take().expect("once").join().expect("it reads");
+        look();
         Ended { status, result: serde_json::from_str(&page).unwrap_or(Value::Null), page, said }
     }
 }
@@ -103,12 +122,16 @@ pub struct Workstation {
     pub peer: Peer,
     pub tick: u64,
     command_box: Mailbox,
+    cell_box: Mailbox,
+    line: u16,
 }
 
 impl Workstation {
     pub fn connect(controller: &Controller) -> Self {
         let peer = controller.connect(Role::Workstation, None);
-        let mut workstation = Self { peer, tick: 0, command_box: Mailbox::initialized(HWSC_COMMAND) };
+        let command_box = Mailbox::initialized(HWSC_COMMAND);
+        let cell_box = Mailbox::initialized(CELL_COMMAND);
+        let mut workstation = Self { peer, tick: 0, command_box, cell_box, line: 0 };
         // Until the first status is there nothing is known of the controller.
         while workstation.peer.mailbox(HWSC_STATUS).mailgram() == 0 {
             workstation.tick();
@@ -145,6 +168,21 @@ impl Workstation {
 
     pub fn send(&mut self, command: &HwsCommand) {
         self.write(&command::encode(command).expect("it fits"));
+    }
+
+    /// Let the cell do what a line of a job says, and wait until it has.
+    pub fn in_cell(&mut self, line: &str) {
+        self.line += 1;
+        self.cell_box.write(&cell::encode_line(self.line, line)).expect("it fits");
+        self.peer.send(&self.cell_box).expect("the controller reads");
+        loop {
+            self.tick();
+            let status = CellStatus::decode(self.peer.mailbox(CELL_STATUS).data()).expect("a status");
+            assert_eq!(status.text, "", "{line}");
+            if status.echo == self.line && !status.busy {
+                return;
+            }
+        }
     }
 
     pub fn status(&self) -> Status<'_> {

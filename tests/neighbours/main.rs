@@ -3,5 +3,6 @@
 //! Nearly all of it in fast clock, where the tick waits for its neighbours: nothing depends on how fast the machine is.
 
 mod bench;
+mod data_system;
 mod strangers;
 mod workstation;

@@ -77,13 +77,13 @@ fn at_a_socket_only_the_same_user_is_let_in() {
     let controller = Controller::start("socket", "workstation", &["--clock", "real", "--ticks", "25"]);
     let Address::Unix(socket) = &controller.address else { panic!("a socket was asked for") };
     // The program where anybody can start it, and data that anybody can read.
-    let program = controller.scratch.file("rcs-neighbour");
+    let program = controller.file("rcs-neighbour");
     fs::copy(built, &program).expect("the program can be copied");
-    controller.scratch.copy_data();
+    controller.scratch.as_ref().expect("it has one").copy_data();
     let as_nobody = || {
         let output = Command::new(&program)
             .args(["workstation", "--wait", "0", "--network", &controller.address.to_string()])
-            .current_dir(controller.scratch.file(""))
+            .current_dir(controller.file(""))
             .uid(NOBODY)
             .gid(NOBODY)
             .output()

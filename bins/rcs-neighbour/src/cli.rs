@@ -17,6 +17,10 @@ Examples:
                                        a controller that waits for a workstation controller
   rcs-neighbour workstation --network unix:/tmp/rcs.sock linkbar
                                        and one that plays the linkbar
+  rcs-run shift --network unix:/tmp/rcs.sock --outside data-system
+                                       a run that keeps no items itself
+  rcs-neighbour data-system --network unix:/tmp/rcs.sock items.db
+                                       and who keeps them: sqlite3 items.db 'SELECT * FROM whereabouts'
 
 Exit status: 0 finished; 1 the job failed or the connection broke; 2 usage, configuration or data error."
 )]
@@ -31,6 +35,8 @@ pub struct Cli {
 pub enum Command {
     /// The workstation controller (HWSC): plays a job
     Workstation(WorkstationArguments),
+    /// The Data System: keeps items in an SQLite file, for one run after the other, until none has come for a while
+    DataSystem(DataSystemArguments),
 }
 
 /// Where the controller is.
@@ -59,6 +65,17 @@ pub struct WorkstationArguments {
     /// Task data, against which the job is checked, and jobs
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
+}
+
+/// Arguments of `data-system`.
+#[derive(Clone, Debug, Args)]
+pub struct DataSystemArguments {
+    /// Where the controller is.
+    #[command(flatten)]
+    pub controller: ControllerArguments,
+    /// The SQLite file, which is made if it is not there
+    #[arg(value_name = "FILE")]
+    pub data_base: PathBuf,
 }
 
 #[cfg(test)]

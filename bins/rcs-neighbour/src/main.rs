@@ -4,12 +4,16 @@
 //! process would do. Programs of others speak the same bytes: docs/neighbours.md.
 
 mod cli;
+mod data_system;
 mod workstation;
 
 use std::{process::ExitCode, time::Duration};
 
 use clap::Parser as _;
-use neighbours::network::{Peer, PeerError, Role, Secret, hello::SecretError};
+use neighbours::{
+    data_system::StoreError,
+    network::{Peer, PeerError, Role, Secret, hello::SecretError},
+};
 use taskdata::load::Report;
 
 use crate::cli::{Cli, Command, ControllerArguments};
@@ -28,6 +32,9 @@ enum Error {
     /// The secret cannot be used.
     #[error(transparent)]
     Secret(#[from] SecretError),
+    /// The data base cannot be had.
+    #[error("the items cannot be kept: {0}")]
+    DataBase(#[from] StoreError),
     /// Task data or the job have errors.
     #[error("{what} cannot be used")]
     Data {
@@ -45,7 +52,7 @@ impl Error {
     const fn status(&self) -> u8 {
         match self {
             Self::Peer(_) | Self::Job(_) => FAILED,
-            Self::Secret(_) | Self::Data { .. } => UNUSABLE,
+            Self::Secret(_) | Self::DataBase(_) | Self::Data { .. } => UNUSABLE,
         }
     }
 }
@@ -53,6 +60,7 @@ impl Error {
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Workstation(arguments) => workstation::play(&arguments),
+        Command::DataSystem(arguments) => data_system::serve(&arguments),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -117,9 +117,12 @@ pub struct RunArguments {
     /// Let neighbours in other processes connect here: unix:PATH, or tcp:IP:PORT with a secret (docs/neighbours.md)
     #[arg(long, value_name = "ADDRESS", requires = "outside")]
     pub network: Option<Address>,
-    /// Neighbours that are other processes, with commas between them: workstation
+    /// Neighbours that are other processes, with commas between them: workstation, data-system
     #[arg(long, value_name = "NEIGHBOURS", value_delimiter = ',', requires = "network")]
     pub outside: Vec<Role>,
+    /// File in which updates wait for a Data System in another process
+    #[arg(long, value_name = "FILE", default_value = "runs/data-system.outbox")]
+    pub outbox: PathBuf,
     /// File with the secret that proves neighbours to be ours, at least 16 bytes
     #[arg(long, value_name = "FILE", requires = "network")]
     pub secret: Option<PathBuf>,

@@ -8,7 +8,7 @@ use executive::{
     serial::OpenError,
 };
 use neighbours::{
-    data_system::StoreError,
+    data_system::{OutboxError, StoreError},
     network::{hello::SecretError, listener::ListenError},
 };
 use plant::{CellError, fault::text::FaultFileError};
@@ -84,6 +84,12 @@ pub enum Error {
     /// The data base of the Data System cannot be had.
     #[error("the Data System cannot keep its items: {0}")]
     DataBase(#[from] StoreError),
+    /// Another process keeps the items.
+    #[error("the Data System is another process: name the data base there, not here")]
+    DataBaseElsewhere,
+    /// Updates for the Data System cannot be kept.
+    #[error("{0}; --outbox names another file")]
+    Outbox(#[from] OutboxError),
     /// Neighbours cannot connect.
     #[error("neighbours cannot connect: {0}")]
     Network(#[from] ListenError),

@@ -120,7 +120,7 @@ impl Ending {
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let interrupted = interruption()?;
     let setup = Setup::load(arguments)?;
-    setup.neighbours.gather(arguments.wait, &interrupted)?;
+    setup.neighbours.gather(arguments, &interrupted)?;
     let name = arguments.run.clone().unwrap_or_else(|| RunName::unique(&setup.job.name));
     let controller = Controller::start(arguments, &name, &setup.store, &setup.job, &interrupted)?;
     let log = setup.log.as_deref().map(|path| Log::start(path, arguments, &setup)).transpose()?;

@@ -5,13 +5,14 @@
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
+    thread,
     time::{Duration, Instant},
 };
 
 use neighbours::{
     data_system::{DataSystem, Item},
     mailbox::{HWSC_COMMAND, Mailbox},
-    network::{Desk, Listener},
+    network::{Desk, Listener, Role, office::Counter},
     workstation::{
         Gate, TaskState,
         player::{Hwsc, JobFailure, Progress, Record},
@@ -26,17 +27,47 @@ use record::Level;
 use taskdata::load::Store;
 
 use super::{outside::OutsideWorkstation, workstation::SimulatedWorkstation};
-use crate::error::Error;
+use crate::{
+    cli::{ClockKind, RunArguments},
+    error::Error,
+};
 
 /// A line for the log: how grave it is, who says it, and the words.
 pub type Note = (Level, &'static str, String);
 
 /// Who commands Task.
-enum Chief {
+pub enum Chief {
     /// The emulator, with a job.
-    Emulator { hwsc: Box<Hwsc>, command_box: Box<Mailbox> },
+    Emulator {
+        /// The emulator.
+        hwsc: Box<Hwsc>,
+        /// The mailbox that it writes.
+        command_box: Box<Mailbox>,
+    },
     /// Another process.
     Outside(Box<OutsideWorkstation>),
+}
+
+impl Chief {
+    /// The emulator plays a job.
+    #[must_use]
+    pub fn emulator(hwsc: Hwsc) -> Self {
+        Self::Emulator { hwsc: Box::new(hwsc), command_box: Box::new(Mailbox::initialized(HWSC_COMMAND)) }
+    }
+
+    /// Another process commands.
+    #[must_use]
+    pub fn outside(desk: Desk) -> Self {
+        Self::Outside(Box::new(OutsideWorkstation::new(desk)))
+    }
+}
+
+/// Where neighbours of other processes connect.
+pub struct Network {
+    /// Who may come.
+    pub counters: Vec<Counter>,
+    /// Lets them in.
+    pub _listener: Listener,
 }
 
 /// The neighbours of a run.
@@ -44,46 +75,45 @@ pub struct Neighbours {
     gate: Gate,
     chief: Chief,
     data_system: DataSystem,
-    /// Lets neighbours in as long as the run lasts; nobody without a network.
-    _listener: Option<Listener>,
+    /// Lets neighbours in as long as the run lasts; nobody without it.
+    network: Option<Network>,
     notes: Vec<Note>,
 }
 
 impl Neighbours {
-    /// The emulator plays a job.
+    /// Whoever commands, and the Data System.
     #[must_use]
-    pub fn with_job(hwsc: Hwsc, data_system: DataSystem, listener: Option<Listener>) -> Self {
-        let chief = Chief::Emulator {
-            hwsc: Box::new(hwsc),
-            command_box: Box::new(Mailbox::initialized(HWSC_COMMAND)),
-        };
-        Self { gate: Gate::default(), chief, data_system, _listener: listener, notes: Vec::new() }
+    pub fn new(chief: Chief, data_system: DataSystem, network: Option<Network>) -> Self {
+        Self { gate: Gate::default(), chief, data_system, network, notes: Vec::new() }
     }
 
-    /// Another process commands.
-    #[must_use]
-    pub fn with_outside(desk: Desk, data_system: DataSystem, listener: Option<Listener>) -> Self {
-        let chief = Chief::Outside(Box::new(OutsideWorkstation::new(desk)));
-        Self { gate: Gate::default(), chief, data_system, _listener: listener, notes: Vec::new() }
-    }
-
-    /// Wait for the workstation controller, if it is another process: for so many seconds at most, and not beyond an interruption,
-    /// of which the run will see to it.
+    /// Wait for those who are other processes: for so many seconds at most, and not beyond an interruption, of which the run will
+    /// see to it. On the 40 ms grid the workstation controller is waited for alone: the others may come later.
     ///
     /// # Errors
     /// [`Error::NobodyCommands`].
-    pub fn gather(&self, seconds: u32, interrupted: &AtomicBool) -> Result<(), Error> {
-        let Chief::Outside(outside) = &self.chief else { return Ok(()) };
-        let started = Instant::now();
-        while !outside.desk().await_connection(Duration::from_millis(100)) {
-            if interrupted.load(Ordering::Relaxed) {
+    pub fn gather(&self, arguments: &RunArguments, interrupted: &AtomicBool) -> Result<(), Error> {
+        let Some(network) = &self.network else { return Ok(()) };
+        let (limit, started) = (Duration::from_secs(arguments.wait.into()), Instant::now());
+        let needed =
+            |counter: &&Counter| arguments.clock == ClockKind::Fast || counter.role() == Role::Workstation;
+        loop {
+            let missing: Vec<_> =
+                network.counters.iter().filter(needed).filter(|counter| !counter.is_connected()).collect();
+            if missing.is_empty() || interrupted.load(Ordering::Relaxed) {
                 return Ok(());
             }
-            if started.elapsed() >= Duration::from_secs(seconds.into()) {
-                return Err(Error::NobodyCommands(seconds));
+            if started.elapsed() >= limit {
+                if missing.iter().any(|counter| counter.role() == Role::Workstation) {
+                    return Err(Error::NobodyCommands(arguments.wait));
+                }
+                for counter in missing {
+                    eprintln!("rcs-run: {} has not come; the run begins without it", counter.role());
+                }
+                return Ok(());
             }
+            thread::sleep(Duration::from_millis(10));
         }
-        Ok(())
     }
 
     /// Another process commands.
@@ -126,6 +156,8 @@ impl Neighbours {
             let text = format!("the Data System refuses: {refusal}");
             self.notes.push((Level::Warning, "Data System", text));
         }
+        let news = self.data_system.news().into_iter();
+        self.notes.extend(news.map(|text| (Level::Info, "network", text)));
         self.gate.write(&memory.task, task_state(&memory.task.header, tick));
         match &mut self.chief {
             Chief::Emulator { hwsc, command_box } => {

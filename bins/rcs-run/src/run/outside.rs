@@ -55,12 +55,6 @@ impl OutsideWorkstation {
         }
     }
 
-    /// Its mailboxes.
-    #[must_use]
-    pub const fn desk(&self) -> &Desk {
-        &self.desk
-    }
-
     /// The commands that were taken, as far as they are remembered.
     #[must_use]
     pub fn records(&self) -> &[Record] {

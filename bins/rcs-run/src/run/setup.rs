@@ -8,7 +8,7 @@ use std::{
 use depc::fault::Injector;
 use executive::serial::SerialLine;
 use neighbours::{
-    data_system::{self, ANSWER_TICKS, DataSystem, Pace},
+    data_system::{self, ANSWER_TICKS, Agent, DataSystem, Outbox, Pace},
     network::{Desk, Listener, Role, Secret, hello},
     workstation::player::{Hwsc, TIME_LIMIT},
 };
@@ -19,7 +19,7 @@ use plant::{
 use taskdata::load::{Job, Report, Source, Store};
 
 use super::{
-    neighbours::Neighbours,
+    neighbours::{Chief, Neighbours, Network},
     robot::{Port, Robot},
 };
 use crate::{
@@ -150,24 +150,43 @@ fn neighbours(arguments: &RunArguments, job: &Job) -> Result<Neighbours, Error> 
         ClockKind::Fast => (hello::ClockKind::Fast, Pace::Wait),
         ClockKind::Real => (hello::ClockKind::Real, Pace::Poll),
     };
-    let items = arguments
-        .data_base
-        .as_deref()
-        .map_or_else(data_system::Store::in_memory, data_system::Store::open)?;
-    let data_system = DataSystem::new(items, ANSWER_TICKS, pace);
-    let desks: Vec<_> = arguments.outside.iter().map(|&role| Desk::new(role, clock)).collect();
+    let desk = |role: Role| arguments.outside.contains(&role).then(|| Desk::new(role, clock));
+    let (commands, items) = (desk(Role::Workstation), desk(Role::DataSystem));
     let secret = arguments.secret.as_deref().map(Secret::load).transpose()?;
-    let listener = match &arguments.network {
-        Some(address) => Some(Listener::start(address, secret, &desks)?),
+    let network = match &arguments.network {
+        Some(address) => {
+            let desks = || commands.iter().chain(&items);
+            let listener = Listener::start(address, secret, desks())?;
+            eprintln!("rcs-run: neighbours can connect at {}", listener.address());
+            Some(Network { counters: desks().map(Desk::counter).collect(), _listener: listener })
+        }
         None => None,
     };
-    if let Some(listener) = &listener {
-        eprintln!("rcs-run: neighbours can connect at {}", listener.address());
+    let data_system = match items {
+        Some(desk) => DataSystem::elsewhere(Agent::new(desk, outbox(arguments)?), pace),
+        None => {
+            let file = arguments.data_base.as_deref();
+            let items = file.map_or_else(data_system::Store::in_memory, data_system::Store::open)?;
+            DataSystem::new(items, ANSWER_TICKS, pace)
+        }
+    };
+    let chief = match commands {
+        Some(desk) => Chief::outside(desk),
+        None => Chief::emulator(Hwsc::new(job.steps.clone(), TIME_LIMIT)),
+    };
+    Ok(Neighbours::new(chief, data_system, network))
+}
+
+/// Where updates wait for a Data System in another process.
+fn outbox(arguments: &RunArguments) -> Result<Outbox, Error> {
+    if arguments.data_base.is_some() {
+        return Err(Error::DataBaseElsewhere);
     }
-    Ok(match desks.into_iter().next() {
-        Some(desk) => Neighbours::with_outside(desk, data_system, listener),
-        None => Neighbours::with_job(Hwsc::new(job.steps.clone(), TIME_LIMIT), data_system, listener),
-    })
+    let file = &arguments.outbox;
+    if let Some(directory) = file.parent().filter(|path| !path.as_os_str().is_empty()) {
+        fs::create_dir_all(directory).map_err(|source| Error::Read { path: directory.to_owned(), source })?;
+    }
+    Ok(Outbox::open(file)?)
 }
 
 /// The faults of `--faults`, none without it, with their text.

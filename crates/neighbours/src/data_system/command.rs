@@ -19,8 +19,9 @@
 //!
 //! The manual gives the values of the 28-byte command and says that DSClen, TRNSlen and TYPEindc are changed for a DML
 //! command: the lengths follow by counting. Of TYPEindc it gives 55 only, as what stands there first; CHOSEN: 55 is the
-//! first command of a connection (ABORT), 56 INITIATE, 57 STARTUP, 58 DML. Numbers are stored low byte first, lengths of
-//! the protocol high byte first, as the values in the figure show.
+//! first command of a connection (ABORT), 56 INITIATE, 57 STARTUP, 58 DML. CHOSEN too: trans-id# numbers an update that is to be
+//! carried out once, however often it is sent; 0 numbers nothing. Numbers are stored low byte first, lengths of the
+//! protocol high byte first, as the values in the figure show.
 
 use std::ops::Range;
 
@@ -190,7 +191,6 @@ pub fn encode(command: &DataBaseCommand) -> Result<([u8; DML], usize), EncodeErr
     }
     let id = low_word(command.number).to_le_bytes();
     bytes[COMMAND_ID..COMMAND_ID + 2].copy_from_slice(&id);
-    bytes[TRANSACTION_ID..TRANSACTION_ID + 2].copy_from_slice(&id);
     bytes[TYPE] = transaction as u8;
     put_length(&mut bytes, DSC_LENGTH, length);
     put_length(&mut bytes, TRANSACTION_LENGTH, length);
@@ -200,6 +200,12 @@ pub fn encode(command: &DataBaseCommand) -> Result<([u8; DML], usize), EncodeErr
         bytes[length..].fill(0);
     }
     Ok((bytes, length))
+}
+
+/// Give an update that is sent as the command `command_id` the number of its transaction.
+pub fn number(bytes: &mut [u8; DML], command_id: u16, transaction: u16) {
+    bytes[COMMAND_ID..COMMAND_ID + 2].copy_from_slice(&command_id.to_le_bytes());
+    bytes[TRANSACTION_ID..TRANSACTION_ID + 2].copy_from_slice(&transaction.to_le_bytes());
 }
 
 /// The sixteen bits of a command number that the buffer has room for.
@@ -388,7 +394,7 @@ mod tests {
             b"H_ROBOT ",
             &[0x30, 0x82, 0x00, 0x08, 0x55, 0x00, 0x50, 0x04],
             b"TR",
-            &[0x02, 0x00],
+            &[0x00, 0x00],
         ]
         .concat();
         assert_eq!(&bytes[..length], expected);
@@ -407,7 +413,11 @@ mod tests {
                         WHERE ITEM_NBR ='17              '";
         assert_eq!(str::from_utf8(&bytes[32..]), Ok(expected));
         let received = decode(&bytes).unwrap();
-        assert_eq!((received.command_id, received.transaction_id), (0x0203, 0x0203));
+        assert_eq!((received.command_id, received.transaction_id), (0x0203, 0));
+        let mut numbered = bytes;
+        number(&mut numbered, 9, 0x1234);
+        let again = decode(&numbered).unwrap();
+        assert_eq!((again.command_id, again.transaction_id, again.statement), (9, 0x1234, expected));
         assert_eq!((received.client, received.transaction), ("H_ROBOT", Transaction::Dml));
         assert_eq!(received.statement, expected);
     }

@@ -16,6 +16,7 @@ use rcs_core::{
 };
 
 use super::{
+    agent::Agent,
     command,
     server::{Answer, Server},
     status::{STATUS, Status, Summary},
@@ -27,6 +28,9 @@ use crate::mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxEr
 pub const ANSWER_TICKS: u64 = 25;
 /// A server that is silent for so long in a run that waits for it is taken for dead.
 const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Between two looks at who is there while nothing is asked.
+const IDLE: Duration = Duration::from_millis(500);
 
 /// Whether a run waits for the server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +50,40 @@ enum Request {
 /// What it answers.
 enum Response {
     Executed(Answer),
+    /// Nobody has answered the command of this number.
+    Silent(u16),
     Items(rusqlite::Result<Vec<Item>>),
+}
+
+/// Who keeps the items.
+enum Keeper {
+    /// A server on the thread.
+    Here(Box<Server>),
+    /// One in another process.
+    Elsewhere(Box<Agent>),
+}
+
+impl Keeper {
+    fn respond(&mut self, request: Request) -> Response {
+        match (self, request) {
+            (Self::Here(server), Request::Execute(bytes)) => Response::Executed(server.execute(&bytes)),
+            (Self::Here(server), Request::Items) => Response::Items(server.store().items()),
+            (Self::Elsewhere(agent), Request::Execute(bytes)) => {
+                let id = command::decode(&bytes).map_or(0, |received| received.command_id);
+                agent.execute(&bytes).map_or(Response::Silent(id), Response::Executed)
+            }
+            // They are to be asked for where they are kept.
+            (Self::Elsewhere(_), Request::Items) => Response::Items(Ok(Vec::new())),
+        }
+    }
+
+    /// Between requests; what there is to tell.
+    fn idle(&mut self) -> Vec<String> {
+        match self {
+            Self::Here(_) => Vec::new(),
+            Self::Elsewhere(agent) => agent.idle(),
+        }
+    }
 }
 
 /// Mailboxes, and the server behind them.
@@ -61,6 +98,7 @@ pub struct DataSystem {
     command_box: Mailbox,
     status_box: Mailbox,
     refusals: Vec<String>,
+    news: Receiver<String>,
     requests: Option<Sender<Request>>,
     responses: Receiver<Response>,
     thread: Option<JoinHandle<()>>,
@@ -70,16 +108,29 @@ impl DataSystem {
     /// A Data System that answers a command after so many ticks, or later.
     #[must_use]
     pub fn new(store: Store, answer_ticks: u64, pace: Pace) -> Self {
+        Self::with(Keeper::Here(Box::new(Server::new(store))), answer_ticks, pace)
+    }
+
+    /// A Data System in another process. Where a run waits its answers count after as many ticks as those of one here, so that
+    /// both runs are the same; on the grid they count when they are there.
+    #[must_use]
+    pub fn elsewhere(agent: Agent, pace: Pace) -> Self {
+        let ticks = if pace == Pace::Wait { ANSWER_TICKS } else { 0 };
+        Self::with(Keeper::Elsewhere(Box::new(agent)), ticks, pace)
+    }
+
+    fn with(mut keeper: Keeper, answer_ticks: u64, pace: Pace) -> Self {
         let (requests, incoming) = channel::<Request>();
         let (outgoing, responses) = channel();
+        let (tell, news) = channel();
         let thread = thread::spawn(move || {
-            let mut server = Server::new(store);
-            for request in incoming {
-                let response = match request {
-                    Request::Execute(bytes) => Response::Executed(server.execute(&bytes)),
-                    Request::Items => Response::Items(server.store().items()),
+            loop {
+                let over = match incoming.recv_timeout(IDLE) {
+                    Ok(request) => outgoing.send(keeper.respond(request)).is_err(),
+                    Err(RecvTimeoutError::Timeout) => false,
+                    Err(RecvTimeoutError::Disconnected) => true,
                 };
-                if outgoing.send(response).is_err() {
+                if over || keeper.idle().into_iter().any(|text| tell.send(text).is_err()) {
                     return;
                 }
             }
@@ -93,6 +144,7 @@ impl DataSystem {
             command_box: Mailbox::initialized(DATA_SYSTEM_COMMAND),
             status_box: Mailbox::initialized(DATA_SYSTEM_STATUS),
             refusals: Vec::new(),
+            news,
             requests: Some(requests),
             responses,
             thread: Some(thread),
@@ -120,6 +172,11 @@ impl DataSystem {
     /// Why commands were refused, since the last call.
     pub fn refusals(&mut self) -> Vec<String> {
         std::mem::take(&mut self.refusals)
+    }
+
+    /// What happened on the network, since the last call.
+    pub fn news(&self) -> Vec<String> {
+        self.news.try_iter().collect()
     }
 
     /// Once a tick, after the controller: read what Task wrote in `tick`.
@@ -168,7 +225,12 @@ impl DataSystem {
                     self.take(&answer);
                     return;
                 }
-                Ok(Response::Executed(_) | Response::Items(_)) => {}
+                Ok(Response::Silent(id)) if id == self.asked() => {
+                    // Task counts the ticks, and asks again.
+                    self.due = None;
+                    return;
+                }
+                Ok(Response::Executed(_) | Response::Silent(_) | Response::Items(_)) => {}
                 Err(RecvTimeoutError::Timeout) if self.pace == Pace::Poll => return,
                 Err(_) => {
                     self.due = None;
@@ -193,7 +255,12 @@ impl DataSystem {
             .map_err(|error| error.to_string())
             .and_then(|()| Status::decode(self.status_box.data()).map_err(|error| error.to_string()));
         match status {
-            Ok(Status { summary: Summary::Done, .. }) => self.status.report = DataBaseReport::Done,
+            Ok(Status { summary: Summary::Done, .. }) => {
+                self.status.report = DataBaseReport::Done;
+                if !answer.why.is_empty() {
+                    self.refusals.push(answer.why.clone());
+                }
+            }
             Ok(Status { summary: Summary::Refused(refusal), .. }) => {
                 self.refuse(format!("{refusal}: {}", answer.why));
             }
@@ -217,7 +284,7 @@ impl DataSystem {
         loop {
             match self.responses.recv_timeout(PATIENCE) {
                 Ok(Response::Items(items)) => return items.map_err(|error| error.to_string()),
-                Ok(Response::Executed(_)) => {}
+                Ok(Response::Executed(_) | Response::Silent(_)) => {}
                 Err(_) => return Err("the Data System does not answer".to_owned()),
             }
         }

@@ -7,16 +7,21 @@
 //!   DataBaseStatus  <--status::decode--     14 bytes     <--Server--  what became of it
 //! ```
 //!
-//! [`DataSystem`] is both ends for a run in one process. The server takes bytes and gives bytes, and is strict: about the
+//! [`DataSystem`] is the controller's end: with the server on a thread of its own, or in another process ([`Agent`]), where updates
+//! wait on the controller's disk until they are answered ([`Outbox`]). The server takes bytes and gives bytes, and is strict: about the
 //! bytes, about the statement, and about the order of a connection.
 
+mod agent;
 pub mod command;
 mod connection;
+mod outbox;
 mod server;
 pub mod statement;
 pub mod status;
 mod store;
 
+pub use agent::Agent;
 pub use connection::{ANSWER_TICKS, DataSystem, Pace};
-pub use server::Server;
-pub use store::{Item, Store, StoreError};
+pub use outbox::{Outbox, OutboxError};
+pub use server::{Answer, Server};
+pub use store::{Item, Said, Store, StoreError, Visit};

@@ -1,7 +1,8 @@
 //! The server: bytes of a command in, bytes of a status out.
 //!
 //! It is strict about the order of a connection: an item is taken only from a client that has made itself known and begun
-//! (IV.4.2: Abort, Initiate, Startup).
+//! (IV.4.2: Abort, Initiate, Startup). How far a client has come stands in the data base: a server that is restarted goes on as if
+//! it had only been slow.
 //!
 //! ```text
 //!            INITIATE              STARTUP
@@ -10,25 +11,33 @@
 //!     `------- ABORT -------+------- ABORT -----'  <---'
 //! ```
 
-use std::collections::HashMap;
-
 use super::{
     command::{self, Transaction},
     statement::{self, Column, Update},
     status::{Refusal, ServerStatus, Status, Summary},
-    store::{Item, Store},
+    store::{Item, Said, Store},
 };
 
 /// How far a client has come.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 enum Session {
     /// It is not known.
-    #[default]
-    Closed,
+    Closed = 0,
     /// It is known.
-    Initiated,
+    Initiated = 1,
     /// Its commands are taken.
-    Started,
+    Started = 2,
+}
+
+impl Session {
+    const fn from_code(code: u8) -> Self {
+        match code {
+            1 => Self::Initiated,
+            2 => Self::Started,
+            _ => Self::Closed,
+        }
+    }
 }
 
 /// What happened to a command, for the log.
@@ -44,14 +53,13 @@ pub struct Answer {
 #[derive(Debug)]
 pub struct Server {
     store: Store,
-    sessions: HashMap<String, Session>,
 }
 
 impl Server {
     /// A server without any client.
     #[must_use]
-    pub fn new(store: Store) -> Self {
-        Self { store, sessions: HashMap::new() }
+    pub const fn new(store: Store) -> Self {
+        Self { store }
     }
 
     /// The data base.
@@ -74,24 +82,28 @@ impl Server {
     }
 
     fn carry_out(&mut self, received: &command::Received<'_>) -> Result<(), (Refusal, String)> {
-        let session = self.sessions.entry(received.client.to_owned()).or_default();
-        match (received.transaction, *session) {
-            (Transaction::Abort, _) => *session = Session::Closed,
-            (Transaction::Initiate, Session::Closed) => *session = Session::Initiated,
-            (Transaction::Startup, Session::Initiated) => *session = Session::Started,
+        let kept = |error: rusqlite::Error| (Refusal::Store, error.to_string());
+        let session = Session::from_code(self.store.session(received.client).map_err(kept)?);
+        let session = match (received.transaction, session) {
+            (Transaction::Abort, _) => Session::Closed,
+            (Transaction::Initiate, Session::Closed) => Session::Initiated,
+            (Transaction::Startup, Session::Initiated) => Session::Started,
             (Transaction::Dml, Session::Started) => return self.update(received),
             (asked, state) => {
                 return Err((Refusal::Sequence, format!("{asked:?} from a client that is {state:?}")));
             }
-        }
-        Ok(())
+        };
+        self.store.set_session(received.client, session as u8).map_err(kept)
     }
 
     fn update(&mut self, received: &command::Received<'_>) -> Result<(), (Refusal, String)> {
         let update =
             statement::parse(received.statement).map_err(|error| (Refusal::Statement, error.to_string()))?;
         let item = item(&update).map_err(|why| (Refusal::Value, why))?;
-        self.store.report(received.client, &item).map_err(|error| (Refusal::Store, error.to_string()))?;
+        let said = Said { number: received.transaction_id, statement: received.statement };
+        self.store
+            .report(received.client, said, &item)
+            .map_err(|error| (Refusal::Store, error.to_string()))?;
         Ok(())
     }
 }
@@ -206,6 +218,32 @@ mod tests {
         assert_eq!(client.ask(DataBaseVerb::Abort), Summary::Done);
         assert_eq!(client.tell("LINKBAR1", "", "UNIT_2", 1).status.summary, SEQUENCE);
         assert_eq!(client.items(), ["LINKBAR1  HWS UNIT_1 4"]);
+    }
+
+    #[test]
+    fn a_server_that_is_restarted_knows_its_clients_and_what_they_said() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("items.db");
+        let mut client = Client { server: Server::new(Store::open(&file).unwrap()), number: 0 };
+        client.connect();
+        let update = DataBaseCommand {
+            number: 9,
+            command: DataBaseVerb::Update,
+            item: Name16::new("A").unwrap(),
+            position: Name10::new("UNIT_1").unwrap(),
+            ..DataBaseCommand::default()
+        };
+        let (mut bytes, _) = command::encode(&update).unwrap();
+        command::number(&mut bytes, 9, 3);
+        assert_eq!(client.server.execute(&bytes).status.summary, Summary::Done);
+        client.server = Server::new(Store::open(&file).unwrap());
+        command::number(&mut bytes, 10, 3);
+        assert_eq!(
+            client.server.execute(&bytes).status.summary,
+            Summary::Done,
+            "it was lost on the way, and is asked again"
+        );
+        assert_eq!(client.items(), ["A  HWS UNIT_1 0"]);
     }
 
     #[test]

@@ -18,7 +18,17 @@ use rusqlite::{Connection, OptionalExtension as _, Row, params};
 /// Marks a file as one of ours: "RCS2".
 const APPLICATION_ID: i32 = 0x5243_5332;
 /// Version of the tables.
-const VERSION: i32 = 1;
+const VERSION: i32 = 2;
+
+/// What came with version 2: who speaks with us, how far he has come, and what he said last under a number.
+const CLIENTS: &str = "
+    CREATE TABLE client (
+        name TEXT PRIMARY KEY,
+        session INTEGER NOT NULL,
+        last_number INTEGER NOT NULL DEFAULT 0,
+        last_statement TEXT NOT NULL DEFAULT ''
+    );
+";
 
 const TABLES: &str = "
     CREATE TABLE device (
@@ -81,6 +91,28 @@ pub struct Item {
     pub position: String,
     /// Number of the sector there; 0 for none.
     pub sector: u8,
+}
+
+/// A place where an item has been.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Visit {
+    /// When it was reported, in UTC.
+    pub at: String,
+    /// Who reported it.
+    pub client: String,
+    /// `STORAGE_POS`.
+    pub position: String,
+    /// Number of the sector there; 0 for none.
+    pub sector: u8,
+}
+
+/// A statement as a client has said it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Said<'a> {
+    /// trans-id#: 0 for a statement without a number.
+    pub number: u16,
+    /// The DML string.
+    pub statement: &'a str,
 }
 
 /// Why the data base cannot be had.
@@ -146,8 +178,15 @@ impl Store {
         let application = number(&connection, "application_id")?;
         if application == APPLICATION_ID {
             let found = number(&connection, "user_version")?;
-            if found != VERSION {
-                return Err(StoreError::Version { file: file.to_owned(), found });
+            match found {
+                VERSION => {}
+                1 => {
+                    let transaction = connection.transaction().map_err(failed)?;
+                    transaction.execute_batch(CLIENTS).map_err(failed)?;
+                    transaction.pragma_update(None, "user_version", VERSION).map_err(failed)?;
+                    transaction.commit().map_err(failed)?;
+                }
+                found => return Err(StoreError::Version { file: file.to_owned(), found }),
             }
         } else {
             let objects: i64 = connection
@@ -158,6 +197,7 @@ impl Store {
             }
             let transaction = connection.transaction().map_err(failed)?;
             transaction.execute_batch(TABLES).map_err(failed)?;
+            transaction.execute_batch(CLIENTS).map_err(failed)?;
             transaction.pragma_update(None, "application_id", APPLICATION_ID).map_err(failed)?;
             transaction.pragma_update(None, "user_version", VERSION).map_err(failed)?;
             transaction.commit().map_err(failed)?;
@@ -169,12 +209,49 @@ impl Store {
         Ok(Self { connection })
     }
 
+    /// How far a client has come; 0 if it is not known.
+    ///
+    /// # Errors
+    /// What SQLite says.
+    pub fn session(&self, client: &str) -> rusqlite::Result<u8> {
+        let mut rows = self.connection.prepare("SELECT session FROM client WHERE name = ?1")?;
+        Ok(rows.query_row(params![client], |row| row.get(0)).optional()?.unwrap_or(0))
+    }
+
+    /// A client has come so far.
+    ///
+    /// # Errors
+    /// What SQLite says.
+    pub fn set_session(&self, client: &str, session: u8) -> rusqlite::Result<()> {
+        self.connection
+            .execute(
+                "INSERT INTO client (name, session) VALUES (?1, ?2)
+                 ON CONFLICT (name) DO UPDATE SET session = excluded.session",
+                params![client, session],
+            )
+            .map(drop)
+    }
+
     /// An item is where a client says. True if that is news.
+    ///
+    /// With a number other than 0 a statement counts once: said again under the same number it changes nothing, whatever
+    /// has been said since by others.
     ///
     /// # Errors
     /// What SQLite says; nothing has changed then.
-    pub fn report(&mut self, client: &str, item: &Item) -> rusqlite::Result<bool> {
+    pub fn report(&mut self, client: &str, said: Said<'_>, item: &Item) -> rusqlite::Result<bool> {
         let transaction = self.connection.transaction()?;
+        if said.number != 0 {
+            let fresh = transaction.execute(
+                "INSERT INTO client (name, session, last_number, last_statement) VALUES (?1, 0, ?2, ?3)
+                 ON CONFLICT (name) DO UPDATE SET last_number = ?2, last_statement = ?3
+                 WHERE last_number <> ?2 OR last_statement <> ?3",
+                params![client, said.number, said.statement],
+            )?;
+            if fresh == 0 {
+                return Ok(false);
+            }
+        }
         transaction
             .execute("INSERT INTO device (name) VALUES (?1) ON CONFLICT DO NOTHING", params![item.device])?;
         transaction.execute(
@@ -198,7 +275,10 @@ impl Store {
             .optional()?;
         let now = (item.kind.clone(), item.name.clone(), place);
         let id = match known {
-            Some((_, before)) if before == now => return Ok(false),
+            Some((_, before)) if before == now => {
+                transaction.commit()?;
+                return Ok(false);
+            }
             Some((id, _)) => {
                 transaction.execute(
                     "UPDATE item SET type = ?2, name = ?3, storage_position = ?4 WHERE id = ?1",
@@ -220,6 +300,19 @@ impl Store {
         )?;
         transaction.commit()?;
         Ok(true)
+    }
+
+    /// Where the item of a number has been, the first place first.
+    ///
+    /// # Errors
+    /// What SQLite says.
+    pub fn history(&self, number: &str) -> rusqlite::Result<Vec<Visit>> {
+        let read = |row: &Row<'_>| {
+            Ok(Visit { at: row.get(0)?, client: row.get(1)?, position: row.get(2)?, sector: row.get(3)? })
+        };
+        let mut rows =
+            self.connection.prepare("SELECT at, client, position, sector FROM history WHERE number = ?1")?;
+        rows.query_map(params![number], read)?.collect()
     }
 
     /// All items, by name and number.
@@ -271,9 +364,9 @@ mod tests {
     #[test]
     fn an_item_keeps_its_number_and_its_past() {
         let mut store = Store::in_memory().unwrap();
-        assert!(store.report("H_ROBOT", &item("17", "LINKBAR1_BH", "UNIT_1", 4)).unwrap());
-        assert!(store.report("H_ROBOT", &item("17", "LINKBAR1", "PFIXTURE", 0)).unwrap());
-        assert!(store.report("H_ROBOT", &item("18", "LINKBAR1", "UNIT_1", 1)).unwrap());
+        assert!(store.report("H_ROBOT", Said::default(), &item("17", "LINKBAR1_BH", "UNIT_1", 4)).unwrap());
+        assert!(store.report("H_ROBOT", Said::default(), &item("17", "LINKBAR1", "PFIXTURE", 0)).unwrap());
+        assert!(store.report("H_ROBOT", Said::default(), &item("18", "LINKBAR1", "UNIT_1", 1)).unwrap());
         assert_eq!(
             store.items().unwrap(),
             [item("17", "LINKBAR1", "PFIXTURE", 0), item("18", "LINKBAR1", "UNIT_1", 1)]
@@ -282,36 +375,82 @@ mod tests {
             history(&store),
             ["17 LINKBAR1_BH UNIT_1 4", "17 LINKBAR1 PFIXTURE 0", "18 LINKBAR1 UNIT_1 1"]
         );
+        let visits: Vec<_> =
+            store.history("17").unwrap().into_iter().map(|v| (v.position, v.sector)).collect();
+        assert_eq!(visits, [("UNIT_1".to_owned(), 4), ("PFIXTURE".to_owned(), 0)]);
     }
 
     #[test]
     fn items_without_a_number_are_told_apart_by_name() {
         let mut store = Store::in_memory().unwrap();
-        store.report("H_ROBOT", &item("", "A", "UNIT_1", 1)).unwrap();
-        store.report("H_ROBOT", &item("", "B", "UNIT_1", 2)).unwrap();
-        store.report("H_ROBOT", &item("", "A", "UNIT_2", 3)).unwrap();
+        store.report("H_ROBOT", Said::default(), &item("", "A", "UNIT_1", 1)).unwrap();
+        store.report("H_ROBOT", Said::default(), &item("", "B", "UNIT_1", 2)).unwrap();
+        store.report("H_ROBOT", Said::default(), &item("", "A", "UNIT_2", 3)).unwrap();
         assert_eq!(store.items().unwrap(), [item("", "A", "UNIT_2", 3), item("", "B", "UNIT_1", 2)]);
     }
 
     #[test]
     fn a_report_that_is_sent_twice_counts_once() {
         let mut store = Store::in_memory().unwrap();
-        assert!(store.report("H_ROBOT", &item("17", "A", "UNIT_1", 1)).unwrap());
-        assert!(!store.report("H_ROBOT", &item("17", "A", "UNIT_1", 1)).unwrap());
+        assert!(store.report("H_ROBOT", Said::default(), &item("17", "A", "UNIT_1", 1)).unwrap());
+        assert!(!store.report("H_ROBOT", Said::default(), &item("17", "A", "UNIT_1", 1)).unwrap());
         assert_eq!(history(&store).len(), 1);
+    }
+
+    #[test]
+    fn what_is_said_under_a_number_counts_once_whatever_others_have_said_since() {
+        let mut store = Store::in_memory().unwrap();
+        let said = |number| Said { number, statement: "A is at UNIT_1" };
+        assert!(store.report("H_ROBOT", said(7), &item("17", "A", "UNIT_1", 1)).unwrap());
+        assert!(store.report("FOREMAN", Said::default(), &item("17", "A", "UNIT_2", 1)).unwrap());
+        assert!(!store.report("H_ROBOT", said(7), &item("17", "A", "UNIT_1", 1)).unwrap());
+        assert_eq!(store.items().unwrap(), [item("17", "A", "UNIT_2", 1)]);
+        assert!(
+            store.report("H_ROBOT", said(8), &item("17", "A", "UNIT_1", 1)).unwrap(),
+            "said anew it is news"
+        );
+        let other = Said { number: 8, statement: "A is at UNIT_2" };
+        assert!(
+            store.report("H_ROBOT", other, &item("17", "A", "UNIT_2", 1)).unwrap(),
+            "another text is another statement"
+        );
+    }
+
+    #[test]
+    fn a_file_of_the_first_version_is_taken_over() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("items.db");
+        let old = Connection::open(&file).unwrap();
+        old.execute_batch(TABLES).unwrap();
+        old.pragma_update(None, "application_id", APPLICATION_ID).unwrap();
+        old.pragma_update(None, "user_version", 1).unwrap();
+        drop(old);
+        let mut store = Store::open(&file).unwrap();
+        store.set_session("H_ROBOT", 2).unwrap();
+        assert!(
+            store
+                .report("H_ROBOT", Said { number: 1, statement: "" }, &item("17", "A", "UNIT_1", 1))
+                .unwrap()
+        );
+        drop(store);
+        let store = Store::open(&file).unwrap();
+        assert_eq!((store.session("H_ROBOT").unwrap(), store.session("FOREMAN").unwrap()), (2, 0));
     }
 
     #[test]
     fn a_file_is_there_again_and_other_files_are_refused() {
         let place = tempfile::tempdir().unwrap();
         let file = place.path().join("items.db");
-        Store::open(&file).unwrap().report("H_ROBOT", &item("17", "A", "UNIT_1", 1)).unwrap();
+        Store::open(&file)
+            .unwrap()
+            .report("H_ROBOT", Said::default(), &item("17", "A", "UNIT_1", 1))
+            .unwrap();
         assert_eq!(Store::open(&file).unwrap().items().unwrap(), [item("17", "A", "UNIT_1", 1)]);
 
         let newer = Connection::open(&file).unwrap();
-        newer.pragma_update(None, "user_version", 2).unwrap();
+        newer.pragma_update(None, "user_version", 3).unwrap();
         drop(newer);
-        assert!(matches!(Store::open(&file), Err(StoreError::Version { found: 2, .. })));
+        assert!(matches!(Store::open(&file), Err(StoreError::Version { found: 3, .. })));
 
         let other = place.path().join("other.db");
         Connection::open(&other).unwrap().execute_batch("CREATE TABLE mine (a)").unwrap();

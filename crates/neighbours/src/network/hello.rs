@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   controller -> neighbour   52 43 53 32  "RCS2"      neighbour -> controller   52 43 53 32  "RCS2"
-//!                             01 00        version                              rr 00        who: 1 workstation
+//!                             01 00        version                              rr 00        who: 1 workstation, 2 Data System
 //!                             cc 00        clock: 0 the 40 ms grid, 1 fast      00 00
 //!                             32 bytes     random                               32 bytes     proof
 //! ```

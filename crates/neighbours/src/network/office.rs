@@ -171,12 +171,6 @@ impl Desk {
         mailbox.unwrap_or_else(|| panic!("{place} does not come from {}", self.shared.role))
     }
 
-    /// The neighbour is there.
-    #[must_use]
-    pub fn is_connected(&self) -> bool {
-        self.shared.connection.load(Ordering::Acquire) != 0
-    }
-
     /// What happened since the last call, the oldest first.
     pub fn news(&self) -> Option<News> {
         self.news.1.try_recv().ok()
@@ -226,16 +220,6 @@ impl Desk {
             answered = self.shared.news_of_answer.wait(answered).unwrap_or_else(PoisonError::into_inner);
         }
         *answered >= tick
-    }
-
-    /// Wait until the neighbour is there, at most so long; true if he is.
-    #[must_use]
-    pub fn await_connection(&self, limit: Duration) -> bool {
-        let here = || self.is_connected();
-        let guard = locked(&self.shared.answered);
-        let waited = self.shared.news_of_answer.wait_timeout_while(guard, limit, |_| !here());
-        drop(waited.unwrap_or_else(PoisonError::into_inner));
-        here()
     }
 }
 
@@ -332,6 +316,12 @@ impl Counter {
     #[must_use]
     pub const fn clock(&self) -> ClockKind {
         self.clock
+    }
+
+    /// The neighbour is there.
+    #[must_use]
+    pub fn is_connected(&self) -> bool {
+        self.shared.connection.load(Ordering::Acquire) != 0
     }
 
     /// Tell the controller what happened.

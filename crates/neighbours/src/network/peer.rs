@@ -13,7 +13,7 @@ use super::{
     frame::{Frame, FrameError, LAST_WORDS},
     hello::{Challenge, ClockKind, HELLO, HelloError},
     office::Outlet as _,
-    stream::Stream,
+    stream::{Stream, is_timeout},
 };
 use crate::mailbox::{Mailbox, MailboxError, Place};
 
@@ -41,6 +41,9 @@ pub enum PeerError {
         /// Why.
         source: HelloError,
     },
+    /// The line is dead.
+    #[error("nothing has come from the controller for {} s", LIMIT.as_secs())]
+    Silent,
     /// What came is no frame.
     #[error(transparent)]
     Frame(#[from] FrameError),
@@ -57,7 +60,7 @@ impl PeerError {
     #[must_use]
     pub fn is_passing(&self) -> bool {
         match self {
-            Self::Line { .. } | Self::Frame(FrameError::Stream(_)) => true,
+            Self::Line { .. } | Self::Silent | Self::Frame(FrameError::Stream(_)) => true,
             Self::LastWords(text) => text == "the run is over",
             _ => false,
         }
@@ -98,8 +101,10 @@ impl Peer {
         let challenge = Challenge::from_bytes(bytes)
             .map_err(|source| PeerError::Hello { address: address.clone(), source })?;
         io::Write::write_all(&mut stream, &challenge.answer(role, secret)).map_err(failed)?;
-        // A run in fast clock may stand still for as long as it likes.
-        stream.unlimited().map_err(failed)?;
+        if challenge.clock() == ClockKind::Fast {
+            // Its time may stand still for as long as it likes; on the grid there is a pulse every 40 ms.
+            stream.unlimited().map_err(failed)?;
+        }
         let incoming = role.from_controller().iter().map(|&place| Mailbox::initialized(place)).collect();
         Ok(Self { stream, role, clock: challenge.clock(), incoming })
     }
@@ -144,7 +149,10 @@ impl Peer {
     /// # Errors
     /// [`PeerError`] if the connection ends.
     pub fn receive(&mut self) -> Result<Received, PeerError> {
-        let frame = Frame::read(&mut self.stream)?;
+        let frame = Frame::read(&mut self.stream).map_err(|error| match error {
+            FrameError::Stream(error) if is_timeout(&error) => PeerError::Silent,
+            error => error.into(),
+        })?;
         if let Some(tick) = frame.as_pulse() {
             return Ok(Received::Pulse(tick));
         }

@@ -2,7 +2,9 @@
 
 use std::{fmt, str::FromStr};
 
-use crate::mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS, Place};
+use crate::mailbox::{
+    CELL_COMMAND, CELL_STATUS, DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, HWSC_COMMAND, HWSC_STATUS, Place,
+};
 
 /// A neighbour of the controller. The number stands in the hello.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -10,17 +12,20 @@ use crate::mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS, Place
 pub enum Role {
     /// The workstation controller (HWSC).
     Workstation = 1,
+    /// The Data System.
+    DataSystem = 2,
 }
 
 impl Role {
     /// All neighbours.
-    pub const ALL: [Self; 1] = [Self::Workstation];
+    pub const ALL: [Self; 2] = [Self::Workstation, Self::DataSystem];
 
     /// The word on the command line.
     #[must_use]
     pub const fn text(self) -> &'static str {
         match self {
             Self::Workstation => "workstation",
+            Self::DataSystem => "data-system",
         }
     }
 
@@ -29,6 +34,7 @@ impl Role {
     pub const fn to_controller(self) -> &'static [Place] {
         match self {
             Self::Workstation => &[HWSC_COMMAND, CELL_COMMAND],
+            Self::DataSystem => &[DATA_SYSTEM_STATUS],
         }
     }
 
@@ -37,6 +43,7 @@ impl Role {
     pub const fn from_controller(self) -> &'static [Place] {
         match self {
             Self::Workstation => &[HWSC_STATUS, CELL_STATUS],
+            Self::DataSystem => &[DATA_SYSTEM_COMMAND],
         }
     }
 
@@ -84,7 +91,7 @@ mod tests {
         assert_eq!(Role::from_number(0), None);
         assert_eq!(
             "foreman".parse::<Role>().unwrap_err().to_string(),
-            "workstation was expected, found foreman"
+            "workstation or data-system was expected, found foreman"
         );
     }
 

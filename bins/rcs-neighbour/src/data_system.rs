@@ -1,0 +1,59 @@
+//! The Data System: a server with a data base of items, for one run after the other.
+
+use neighbours::{
+    data_system::{Server, Store, command},
+    mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox},
+    network::{Peer, PeerError, Received, Role},
+};
+
+use crate::{Error, cli::DataSystemArguments, connect};
+
+/// Serve until no run has come for a while.
+pub fn serve(arguments: &DataSystemArguments) -> Result<(), Error> {
+    let mut server = Server::new(Store::open(&arguments.data_base)?);
+    let mut peer = connect(&arguments.controller, Role::DataSystem)?;
+    loop {
+        match attend(&mut peer, &mut server) {
+            Err(Error::Peer(error)) if error.is_passing() => println!("{error}"),
+            other => return other,
+        }
+        peer = match connect(&arguments.controller, Role::DataSystem) {
+            Err(Error::Peer(PeerError::Line { .. })) => return Ok(()),
+            other => other?,
+        };
+    }
+}
+
+/// Carry out the commands of a run.
+fn attend(peer: &mut Peer, server: &mut Server) -> Result<(), Error> {
+    let mut status_box = Mailbox::initialized(DATA_SYSTEM_STATUS);
+    let mut read = 0;
+    loop {
+        let Received::Pulse(pulse) = peer.receive()? else { continue };
+        let mailbox = peer.mailbox(DATA_SYSTEM_COMMAND);
+        if mailbox.mailgram() != read {
+            read = mailbox.mailgram();
+            let answer = server.execute(mailbox.data());
+            tell(mailbox.data(), &answer.why);
+            status_box.write(&answer.status.encode()).map_err(PeerError::Mailbox)?;
+            peer.send(&status_box)?;
+        }
+        peer.pulse(pulse)?;
+    }
+}
+
+/// One line on standard output for every command.
+fn tell(bytes: &[u8], why: &str) {
+    let said = command::decode(bytes).map_or_else(
+        |_| "not a command".to_owned(),
+        |received| match received.transaction {
+            command::Transaction::Dml => format!("{} {}", received.client, received.statement),
+            other => format!("{} {other:?}", received.client),
+        },
+    );
+    if why.is_empty() {
+        println!("{said}");
+    } else {
+        println!("{said}: refused: {why}");
+    }
+}

@@ -1,0 +1,170 @@
+//! Updates that the Data System has not taken yet, on the controller's disk.
+//!
+//! An update is kept here before it is sent, under a number that no other one has had, and struck out when the Data System has
+//! answered it. Who is killed in between finds it again, and sends it with the same number: the Data System knows it by that number,
+//! and counts it once. The file is an SQLite data base, whose journal is flushed to the disk before anything is sent.
+
+use std::path::{Path, PathBuf};
+
+use rusqlite::{Connection, params};
+
+use super::command::{DML, STRING_AT};
+
+/// Marks a file as one of ours: "RCSO".
+const APPLICATION_ID: i32 = 0x5243_534F;
+
+const TABLES: &str = "
+    CREATE TABLE IF NOT EXISTS counter (last INTEGER NOT NULL);
+    INSERT INTO counter SELECT 0 WHERE NOT EXISTS (SELECT * FROM counter);
+    CREATE TABLE IF NOT EXISTS pending (
+        position INTEGER PRIMARY KEY,
+        number INTEGER NOT NULL UNIQUE,
+        command BLOB NOT NULL
+    );
+";
+
+/// Why updates cannot be kept.
+#[derive(Debug, thiserror::Error)]
+pub enum OutboxError {
+    /// SQLite says no.
+    #[error("updates cannot be kept in {}: {source}", .file.display())]
+    Sqlite {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: rusqlite::Error,
+    },
+    /// A data base of another program.
+    #[error("{}: updates for the Data System were expected, this file belongs to another program", .file.display())]
+    Foreign {
+        /// The file.
+        file: PathBuf,
+    },
+}
+
+/// The updates on the disk.
+#[derive(Debug)]
+pub struct Outbox {
+    connection: Connection,
+}
+
+/// An update with its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// trans-id#.
+    pub number: u16,
+    /// The command as it was given.
+    pub command: [u8; DML],
+}
+
+impl Outbox {
+    /// The outbox in a file, which is made if it is not there. Nobody else can have it at the same time.
+    ///
+    /// # Errors
+    /// [`OutboxError`].
+    pub fn open(file: &Path) -> Result<Self, OutboxError> {
+        let failed = |source| OutboxError::Sqlite { file: file.to_owned(), source };
+        let connection = Connection::open(file).map_err(failed)?;
+        connection.pragma_update(None, "locking_mode", "exclusive").map_err(failed)?;
+        connection.pragma_update(None, "synchronous", "full").map_err(failed)?;
+        let application: i32 =
+            connection.pragma_query_value(None, "application_id", |row| row.get(0)).map_err(failed)?;
+        let objects: i64 = connection
+            .query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0))
+            .map_err(failed)?;
+        if application != APPLICATION_ID && (application != 0 || objects != 0) {
+            return Err(OutboxError::Foreign { file: file.to_owned() });
+        }
+        connection.pragma_update(None, "application_id", APPLICATION_ID).map_err(failed)?;
+        connection.execute_batch(TABLES).map_err(failed)?;
+        Ok(Self { connection })
+    }
+
+    /// Keep an update; its number. One that says the same as the last one kept is that one, asked again.
+    ///
+    /// # Errors
+    /// What SQLite says; then it is not kept.
+    pub fn keep(&mut self, command: &[u8; DML]) -> rusqlite::Result<u16> {
+        if let Some(last) = self.pending()?.last()
+            && last.command[STRING_AT..] == command[STRING_AT..]
+        {
+            return Ok(last.number);
+        }
+        let transaction = self.connection.transaction()?;
+        let last: u16 = transaction.query_row("SELECT last FROM counter", [], |row| row.get(0))?;
+        let number = crate::fields::successor(last);
+        transaction.execute("UPDATE counter SET last = ?1", params![number])?;
+        transaction.execute(
+            "INSERT INTO pending (number, command) VALUES (?1, ?2)",
+            params![number, &command[..]],
+        )?;
+        transaction.commit()?;
+        Ok(number)
+    }
+
+    /// All that is kept, the oldest first.
+    ///
+    /// # Errors
+    /// What SQLite says.
+    pub fn pending(&self) -> rusqlite::Result<Vec<Kept>> {
+        let mut rows = self.connection.prepare("SELECT number, command FROM pending ORDER BY position")?;
+        let read = |row: &rusqlite::Row<'_>| Ok(Kept { number: row.get(0)?, command: row.get(1)? });
+        rows.query_map([], read)?.collect()
+    }
+
+    /// An update was answered.
+    ///
+    /// # Errors
+    /// What SQLite says.
+    pub fn strike_out(&self, number: u16) -> rusqlite::Result<()> {
+        self.connection.execute("DELETE FROM pending WHERE number = ?1", params![number]).map(drop)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn update(what: u8) -> [u8; DML] {
+        let mut command = [0; DML];
+        command[STRING_AT] = what;
+        command
+    }
+
+    #[test]
+    fn what_is_kept_is_there_again_in_its_order_until_it_is_answered() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("outbox");
+        let mut outbox = Outbox::open(&file).unwrap();
+        assert_eq!([outbox.keep(&update(1)).unwrap(), outbox.keep(&update(2)).unwrap()], [1, 2]);
+        assert!(matches!(Outbox::open(&file), Err(OutboxError::Sqlite { .. })), "it is another run's");
+        drop(outbox);
+        let mut outbox = Outbox::open(&file).unwrap();
+        let numbers =
+            |outbox: &Outbox| outbox.pending().unwrap().iter().map(|kept| kept.number).collect::<Vec<_>>();
+        assert_eq!(numbers(&outbox), [1, 2]);
+        outbox.strike_out(1).unwrap();
+        assert_eq!(numbers(&outbox), [2]);
+        outbox.strike_out(2).unwrap();
+        assert_eq!(outbox.keep(&update(1)).unwrap(), 3, "no number is given twice");
+        assert_eq!(outbox.pending().unwrap(), [Kept { number: 3, command: update(1) }]);
+    }
+
+    #[test]
+    fn an_update_that_is_asked_again_keeps_its_number() {
+        let place = tempfile::tempdir().unwrap();
+        let mut outbox = Outbox::open(&place.path().join("outbox")).unwrap();
+        let mut again = update(1);
+        again[6] = 9; // another command-id#
+        assert_eq!([outbox.keep(&update(1)).unwrap(), outbox.keep(&again).unwrap()], [1, 1]);
+        assert_eq!(outbox.pending().unwrap().len(), 1);
+    }
+
+    #[test]
+    fn files_of_others_are_left_alone() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("items.db");
+        drop(super::super::Store::open(&file).unwrap());
+        assert!(matches!(Outbox::open(&file), Err(OutboxError::Foreign { .. })));
+    }
+}

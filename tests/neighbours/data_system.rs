@@ -1,0 +1,219 @@
+//! The Data System in another process (IV.4.2, IX.2): whatever dies, every update counts once.
+//!
+//! The tests command the robot themselves, in fast clock: the controller's time stands still while they look.
+
+use std::{
+    path::{Path, PathBuf},
+    process::Command,
+    thread::{self, JoinHandle},
+};
+
+use neighbours::{
+    data_system::{Server, Store, command},
+    mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox},
+    network::{Peer, Received, Role},
+};
+use rcs_core::{interface::HwsCommand, name::Name16};
+use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
+
+use crate::bench::{Controller, Ended, Workstation, bare};
+
+/// What a Data System does with the first update.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fate {
+    /// It answers, as always.
+    Answers,
+    /// It is killed before it has heard of it.
+    DiesBefore,
+    /// It is killed when it has kept it and not yet answered.
+    DiesAfter,
+}
+
+/// A Data System on a thread, which ends when the line does.
+fn serve(mut peer: Peer, file: PathBuf, fate: Fate) -> JoinHandle<()> {
+    thread::spawn(move || {
+        let mut server = Server::new(Store::open(&file).expect("a data base"));
+        let mut status_box = Mailbox::initialized(DATA_SYSTEM_STATUS);
+        let mut read = 0;
+        while let Ok(received) = peer.receive() {
+            let Received::Pulse(pulse) = received else { continue };
+            let mailbox = peer.mailbox(DATA_SYSTEM_COMMAND);
+            if mailbox.mailgram() != read {
+                read = mailbox.mailgram();
+                let update = mailbox.data().len() == command::DML;
+                if update && fate == Fate::DiesBefore {
+                    return;
+                }
+                let answer = server.execute(mailbox.data());
+                if update && fate == Fate::DiesAfter {
+                    return;
+                }
+                status_box.write(&answer.status.encode()).expect("it fits");
+                if peer.send(&status_box).is_err() {
+                    return;
+                }
+            }
+            if peer.pulse(pulse).is_err() {
+                return;
+            }
+        }
+    })
+}
+
+/// A cell in which blank 17 lies in its tray, and a robot that is connected with the Data System.
+struct Shop {
+    controller: Controller,
+    workstation: Workstation,
+    data_system: JoinHandle<()>,
+}
+
+impl Shop {
+    fn open(scratch: Scratch, file: &Path, fate: Fate) -> Self {
+        let outbox = scratch.file("outbox").display().to_string();
+        let controller =
+            Controller::start_at(scratch, None, "workstation,data-system", &["--json", "--outbox", &outbox]);
+        let data_system = serve(controller.connect(Role::DataSystem, None), file.to_owned(), fate);
+        let mut workstation = Workstation::connect(&controller);
+        assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
+        Self { controller, workstation, data_system }
+    }
+
+    fn connect(&mut self, number: u32) -> (String, String) {
+        self.workstation.carry_out(&bare(number, "STARTUP"))
+    }
+
+    fn end(self) -> Ended {
+        drop(self.workstation);
+        let ended = self.controller.end();
+        // Its line has ended with the run.
+        self.data_system.join().expect("it has not panicked");
+        ended
+    }
+}
+
+/// Blank 17 is fetched from its tray: the robot has it then.
+fn fetch(number: u32) -> HwsCommand {
+    let name = |text| Name16::new(text).expect("a name");
+    HwsCommand {
+        object: name("LINKBAR1_BH"),
+        serial: name("17"),
+        source_grip: 2,
+        source: name("UNIT_1"),
+        source_sector: 4,
+        destination_grip: 2,
+        destination: name("PFIXTURE"),
+        ..bare(number, "MOVE")
+    }
+}
+
+/// Where 17 is, and how often that was news.
+fn books(file: &Path) -> (String, usize) {
+    let store = Store::open(file).expect("a data base");
+    let items = store.items().expect("it can be read");
+    let [item] = &items[..] else { panic!("{items:?}") };
+    let history = store.history(&item.number).expect("it can be read");
+    (format!("{} at {}", item.number, item.position), history.len())
+}
+
+#[test]
+fn items_are_kept_by_another_process_and_not_a_bit_of_the_run_changes() {
+    let program = rcs_neighbour();
+    let scratch = Scratch::new("items");
+    let job = scratch.file("fetch.job");
+    let text = "== STARTUP -- +0 -- 0 +0 -- 0 -- 0\n** tray UNIT_1 4 LINKBAR1_BH\n** vise partial PFIXTURE LINKBAR\n\
+                == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0 #17\n";
+    std::fs::write(&job, text).expect("a job can be written");
+    let (job, file) = (job.display().to_string(), scratch.file("items.db"));
+    let outbox = scratch.file("outbox").display().to_string();
+    let own = Command::new(rcs_run())
+        .args([job.as_str(), "--json", "--log", "none", "--shared-memory", "off"])
+        .current_dir(root())
+        .output()
+        .expect("rcs-run can be started");
+    let own: serde_json::Value = serde_json::from_slice(&own.stdout).expect("a result");
+    let more = [job.as_str(), "--json", "--outbox", outbox.as_str()];
+    let controller = Controller::start_at(scratch, None, "data-system", &more);
+    let mut server = Command::new(program)
+        .args(["data-system", "--wait", "1", "--network", &controller.address.to_string()])
+        .arg(&file)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("rcs-neighbour can be started");
+    // Its directory goes with the controller.
+    let digest = own["digest"].clone();
+    let ended = controller.end_with(|| assert_eq!(books(&file), ("17 at H_ROBOT".to_owned(), 1)));
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert_eq!(ended.result["digest"], digest);
+    assert!(server.wait().expect("a child").success(), "it ends when no run comes");
+}
+
+#[test]
+fn a_data_system_that_is_killed_and_started_again_hears_the_update_once() {
+    for fate in [Fate::DiesBefore, Fate::DiesAfter] {
+        let scratch = Scratch::new(&format!("{fate:?}"));
+        let file = scratch.file("items.db");
+        let mut shop = Shop::open(scratch, &file, fate);
+        assert_eq!(shop.connect(2).0, "finished");
+        shop.workstation.in_cell("tray UNIT_1 4 LINKBAR1_BH");
+        shop.workstation.in_cell("vise partial PFIXTURE LINKBAR");
+        shop.workstation.send(&fetch(3));
+        let mut killed = 0;
+        loop {
+            shop.workstation.tick();
+            let status = shop.workstation.status();
+            if status.echo == 3 && status.report.text() == "finished" {
+                break;
+            }
+            assert_ne!(status.report.text(), "error", "{fate:?}: {}", status.reason);
+            if shop.data_system.is_finished() {
+                killed += 1;
+                let peer = shop.controller.connect(Role::DataSystem, None);
+                shop.data_system = serve(peer, file.clone(), Fate::Answers);
+            }
+        }
+        assert_eq!(killed, 1, "{fate:?}");
+        assert_eq!(books(&file), ("17 at H_ROBOT".to_owned(), 1), "{fate:?}");
+        assert_eq!(shop.end().status, Some(0));
+    }
+}
+
+#[test]
+fn a_controller_that_is_killed_tells_after_its_next_startup() {
+    for fate in [Fate::DiesBefore, Fate::DiesAfter] {
+        let scratch = Scratch::new(&format!("killed-{fate:?}"));
+        let file = scratch.file("items.db");
+        let mut shop = Shop::open(scratch, &file, fate);
+        assert_eq!(shop.connect(2).0, "finished");
+        shop.workstation.in_cell("tray UNIT_1 4 LINKBAR1_BH");
+        shop.workstation.in_cell("vise partial PFIXTURE LINKBAR");
+        shop.workstation.send(&fetch(3));
+        while !shop.data_system.is_finished() {
+            shop.workstation.tick();
+        }
+        let scratch = shop.controller.kill();
+        let mut shop = Shop::open(scratch, &file, Fate::Answers);
+        let known = usize::from(fate == Fate::DiesAfter);
+        assert_eq!(
+            Store::open(&file).and_then(|store| Ok(store.items()?.len())).expect("a data base"),
+            known
+        );
+        assert_eq!(shop.connect(2).0, "finished");
+        assert_eq!(books(&file), ("17 at H_ROBOT".to_owned(), 1), "{fate:?}");
+        assert_eq!(shop.end().status, Some(0));
+    }
+}
+
+#[test]
+fn without_a_data_system_startup_fails_and_the_robot_works() {
+    let scratch = Scratch::new("absent");
+    let outbox = scratch.file("outbox").display().to_string();
+    let more = ["--json", "--outbox", outbox.as_str(), "--wait", "1"];
+    let controller = Controller::start_at(scratch, None, "workstation,data-system", &more);
+    let mut workstation = Workstation::connect(&controller);
+    let outcome = workstation.carry_out(&bare(1, "STARTUP"));
+    assert_eq!(outcome, ("error".to_owned(), "the Data System does not answer".to_owned()));
+    assert!(workstation.tick > 3 * 250, "it was asked three times, 10 s each");
+    assert_eq!(workstation.carry_out(&bare(2, "PAUSE")).0, "finished");
+    drop(workstation);
+    assert_eq!(controller.end().status, Some(0));
+}
