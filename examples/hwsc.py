@@ -37,7 +37,7 @@ class Controller:
         proof = hmac.new(secret, challenge + front, "sha256").digest() if secret else bytes(32)
         self.line.sendall(front + proof)
         self.mailgrams = {HWSC_COMMAND: 0, CELL_COMMAND: 0}
-        self.status = self.cell = None
+        self.status = self.cell = self.pulse = None
 
     def receive(self, count):
         data = b""
@@ -55,12 +55,14 @@ class Controller:
         self.line.sendall(head + data)
 
     def tick(self):
-        """Read mailgrams up to the end of a tick, and answer its pulse."""
+        """Answer the pulse of a tick, which lets the next one begin, and read mailgrams up to the end of that."""
+        if self.pulse:
+            self.line.sendall(self.pulse)
         while True:
             address, length = struct.unpack("<IH", self.receive(6))
             data = self.receive(length - 2)[6:]
             if address == PULSE:
-                self.line.sendall(struct.pack("<IHHHH", PULSE, 16, 0, 0, 0) + data)
+                self.pulse = struct.pack("<IHHHH", PULSE, 16, 0, 0, 0) + data
                 return
             if address == LAST_WORDS:
                 sys.exit("the controller says: " + data.decode())

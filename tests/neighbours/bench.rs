@@ -51,7 +51,7 @@ impl Controller {
         let socket = format!("unix:{}", scratch.file("rcs.sock").display());
         let mut child = Command::new(rcs_run())
             .args(["--network", address.unwrap_or(&socket), "--outside", outside])
-            .args(["--log", "none", "--shared-memory", "off", "--wait", "120"])
+            .args(["--log", "none", "--shared-memory", "off"])
             .args(more)
             .current_dir(root())
             .stdin(Stdio::null())
@@ -121,6 +121,8 @@ impl Drop for Controller {
 pub struct Workstation {
     pub peer: Peer,
     pub tick: u64,
+    /// The pulse is to be answered: what is sent before counts in its tick.
+    unanswered: bool,
     command_box: Mailbox,
     cell_box: Mailbox,
     line: u16,
@@ -131,7 +133,7 @@ impl Workstation {
         let peer = controller.connect(Role::Workstation, None);
         let command_box = Mailbox::initialized(HWSC_COMMAND);
         let cell_box = Mailbox::initialized(CELL_COMMAND);
-        let mut workstation = Self { peer, tick: 0, command_box, cell_box, line: 0 };
+        let mut workstation = Self { peer, tick: 0, unanswered: false, command_box, cell_box, line: 0 };
         // Until the first status is there nothing is known of the controller.
         while workstation.peer.mailbox(HWSC_STATUS).mailgram() == 0 {
             workstation.tick();
@@ -139,16 +141,19 @@ impl Workstation {
         workstation
     }
 
-    /// Read to the end of a tick, and let the next one begin.
+    /// Let the next tick begin, and read to its end.
     pub fn tick(&mut self) {
         self.read_tick().expect("the controller goes on");
     }
 
     fn read_tick(&mut self) -> Result<(), PeerError> {
+        if self.unanswered {
+            self.peer.pulse(self.tick)?;
+        }
         loop {
             if let Received::Pulse(tick) = self.peer.receive()? {
-                self.tick = tick;
-                return self.peer.pulse(tick);
+                (self.tick, self.unanswered) = (tick, true);
+                return Ok(());
             }
         }
     }

@@ -6,10 +6,14 @@ use std::{
     path::{Path, PathBuf},
     process::Command,
     thread::{self, JoinHandle},
+    time::Duration,
 };
 
 use neighbours::{
-    data_system::{Server, Store, command},
+    data_system::{
+        Server, Store, command,
+        status::{Refusal, ServerStatus, Status, Summary},
+    },
     mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox},
     network::{Peer, Received, Role},
 };
@@ -27,6 +31,10 @@ enum Fate {
     DiesBefore,
     /// It is killed when it has kept it and not yet answered.
     DiesAfter,
+    /// It has no room on its disk just then.
+    Refuses,
+    /// It takes half a second.
+    Dawdles,
 }
 
 /// A Data System on a thread, which ends when the line does.
@@ -44,11 +52,30 @@ fn serve(mut peer: Peer, file: PathBuf, fate: Fate) -> JoinHandle<()> {
                 if update && fate == Fate::DiesBefore {
                     return;
                 }
-                let answer = server.execute(mailbox.data());
-                if update && fate == Fate::DiesAfter {
-                    return;
+                let mut status = if update && fate == Fate::Refuses {
+                    let command_id = command::decode(mailbox.data()).expect("a command").command_id;
+                    Status {
+                        command_id,
+                        server: ServerStatus::Ready,
+                        summary: Summary::Refused(Refusal::Store),
+                    }
+                } else {
+                    server.execute(mailbox.data()).status
+                };
+                match (update, fate) {
+                    (true, Fate::DiesAfter) => return,
+                    (true, Fate::Dawdles) => {
+                        // First what it does, then what became of it.
+                        status.server = ServerStatus::Busy;
+                        let busy = Status { summary: Summary::None, ..status };
+                        status_box.write(&busy.encode()).expect("it fits");
+                        peer.send(&status_box).expect("the controller reads");
+                        thread::sleep(Duration::from_millis(500));
+                        status.server = ServerStatus::Ready;
+                    }
+                    _ => {}
                 }
-                status_box.write(&answer.status.encode()).expect("it fits");
+                status_box.write(&status.encode()).expect("it fits");
                 if peer.send(&status_box).is_err() {
                     return;
                 }
@@ -193,11 +220,35 @@ fn a_controller_that_is_killed_tells_after_its_next_startup() {
         let scratch = shop.controller.kill();
         let mut shop = Shop::open(scratch, &file, Fate::Answers);
         let known = usize::from(fate == Fate::DiesAfter);
-        assert_eq!(
-            Store::open(&file).and_then(|store| Ok(store.items()?.len())).expect("a data base"),
-            known
-        );
+        assert_eq!(Store::open(&file).expect("a data base").items().expect("it can be read").len(), known);
         assert_eq!(shop.connect(2).0, "finished");
+        assert_eq!(books(&file), ("17 at H_ROBOT".to_owned(), 1), "{fate:?}");
+        assert_eq!(shop.end().status, Some(0));
+    }
+}
+
+#[test]
+fn a_data_system_that_refuses_or_dawdles_hears_the_update_once() {
+    for fate in [Fate::Refuses, Fate::Dawdles] {
+        let scratch = Scratch::new(&format!("{fate:?}"));
+        let file = scratch.file("items.db");
+        let mut shop = Shop::open(scratch, &file, fate);
+        assert_eq!(shop.connect(2).0, "finished");
+        shop.workstation.in_cell("tray UNIT_1 4 LINKBAR1_BH");
+        shop.workstation.in_cell("vise partial PFIXTURE LINKBAR");
+        let (status, reason) = shop.workstation.carry_out(&fetch(3));
+        if fate == Fate::Refuses {
+            assert_eq!(
+                (status.as_str(), reason.as_str()),
+                ("error", "the data base does not accept the update")
+            );
+            let scratch = shop.controller.kill();
+            shop.data_system.join().expect("it ends with its line");
+            shop = Shop::open(scratch, &file, Fate::Answers);
+            assert_eq!(shop.connect(2).0, "finished");
+        } else {
+            assert_eq!(status, "finished", "{reason}");
+        }
         assert_eq!(books(&file), ("17 at H_ROBOT".to_owned(), 1), "{fate:?}");
         assert_eq!(shop.end().status, Some(0));
     }

@@ -73,7 +73,7 @@ fn digest_with(name: &str, what: impl FnOnce(&mut Workstation)) -> String {
     drop(workstation);
     let ended = controller.end();
     assert_eq!(ended.status, Some(0), "{}", ended.said);
-    assert_eq!(ended.result["ticks"], 201, "a run in fast clock ends when nobody commands");
+    assert_eq!(ended.result["ticks"], 200, "a run in fast clock ends when nobody commands");
     ended.result["digest"].as_str().expect("a digest").to_owned()
 }
 

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS},
-    network::Desk,
+    network::{Desk, office::Presence},
 };
 
 /// Between two looks at a server that has not answered yet.
@@ -33,12 +33,6 @@ impl Agent {
     #[must_use]
     pub const fn new(desk: Desk, outbox: Outbox) -> Self {
         Self { desk, outbox, exchanges: 0 }
-    }
-
-    /// The mailboxes.
-    #[must_use]
-    pub const fn desk(&self) -> &Desk {
-        &self.desk
     }
 
     /// Between commands: see who is there. What there is to tell of it.
@@ -109,19 +103,24 @@ impl Agent {
         Some(last)
     }
 
-    fn exchange(&mut self) -> bool {
+    fn exchange(&mut self) -> Presence {
         self.exchanges += 1;
-        self.desk.exchange(self.exchanges).here
+        self.desk.exchange(self.exchanges)
     }
 
     /// Write a command into the mailbox and wait for its status; `None` if nobody is there, or no longer.
     fn ask(&mut self, bytes: &[u8]) -> Option<Answer> {
         let id = u16::from_le_bytes([*bytes.get(6)?, *bytes.get(7)?]);
         self.desk.outgoing(DATA_SYSTEM_COMMAND).write(bytes).ok()?;
-        let before = self.desk.incoming(DATA_SYSTEM_STATUS).mailgram();
+        let mut before = self.desk.incoming(DATA_SYSTEM_STATUS).mailgram();
         loop {
-            if !self.exchange() {
+            let presence = self.exchange();
+            if !presence.here {
                 return None;
+            }
+            if presence.new {
+                // Another server counts its mailgrams from the beginning.
+                before = 0;
             }
             let mailbox = self.desk.incoming(DATA_SYSTEM_STATUS);
             if mailbox.mailgram() != before && mailbox.mailgram() != 0 {

@@ -7,7 +7,10 @@
 use std::{
     fs, io,
     net::TcpListener,
-    os::unix::{fs::PermissionsExt as _, net::UnixListener},
+    os::unix::{
+        fs::{FileTypeExt as _, PermissionsExt as _},
+        net::UnixListener,
+    },
     path::Path,
     sync::{
         Arc,
@@ -138,6 +141,9 @@ fn unix(path: &Path, address: &Address) -> Result<UnixListener, ListenError> {
             if std::os::unix::net::UnixStream::connect(path).is_ok() {
                 return Err(ListenError::InUse(address.clone()));
             }
+            if !fs::symlink_metadata(path).map_err(failed)?.file_type().is_socket() {
+                return Err(failed(error));
+            }
             fs::remove_file(path).map_err(failed)?;
             UnixListener::bind(path).map_err(failed)?
         }
@@ -247,5 +253,27 @@ fn read(stream: &mut Stream, counter: &Counter) -> String {
             }
             Err(error) => return error.to_string(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_socket_that_was_left_behind_is_taken_over_and_no_other_file_is() {
+        let place = tempfile::tempdir().unwrap();
+        let (socket, file) = (place.path().join("rcs.sock"), place.path().join("notes"));
+        let desk = Desk::new(super::super::Role::Workstation, ClockKind::Real);
+        drop(UnixListener::bind(&socket).unwrap());
+        let listener = Listener::start(&Address::Unix(socket.clone()), None, [&desk]).unwrap();
+        let second = Listener::start(&Address::Unix(socket.clone()), None, [&desk]);
+        assert!(matches!(second, Err(ListenError::InUse(_))));
+        drop(listener);
+        assert!(!socket.exists());
+        fs::write(&file, "not to be lost").unwrap();
+        let refused = Listener::start(&Address::Unix(file.clone()), None, [&desk]);
+        assert!(matches!(refused, Err(ListenError::Address { .. })));
+        assert_eq!(fs::read_to_string(file).unwrap(), "not to be lost");
     }
 }
