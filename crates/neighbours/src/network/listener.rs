@@ -31,7 +31,9 @@ use super::{
 };
 
 /// A neighbour that does not answer a pulse for so long is gone.
-pub const PATIENCE: Duration = Duration::from_secs(10);
+const PATIENCE: Duration = Duration::from_secs(10);
+/// In fast clock nothing stands still but the run, and a machine may be busy with other things.
+const FAST_PATIENCE: Duration = Duration::from_secs(60);
 /// Connections that have not said who they are, at most.
 const STRANGERS: usize = 8;
 
@@ -133,6 +135,13 @@ impl Drop for Listener {
     }
 }
 
+const fn patience(clock: ClockKind) -> Duration {
+    match clock {
+        ClockKind::Real => PATIENCE,
+        ClockKind::Fast => FAST_PATIENCE,
+    }
+}
+
 /// A socket that a killed run has left is taken over.
 fn unix(path: &Path, address: &Address) -> Result<UnixListener, ListenError> {
     let failed = |source| ListenError::Address { address: address.clone(), source };
@@ -187,7 +196,7 @@ impl Reception {
     /// Say hello; whose desk it is. Who is refused has said his hello before, so that he can hear why.
     fn greet(&self, stream: &mut Stream) -> Result<&Counter, String> {
         let said = |error: &dyn std::fmt::Display| error.to_string();
-        stream.prepare(PATIENCE).map_err(|error| said(&error))?;
+        stream.prepare(patience(self.clock)).map_err(|error| said(&error))?;
         let challenge = Challenge::new(self.clock).map_err(|error| said(&error))?;
         io::Write::write_all(stream, challenge.bytes()).map_err(|error| said(&error))?;
         let mut answer = [0; HELLO];
@@ -246,7 +255,7 @@ fn read(stream: &mut Stream, counter: &Counter) -> String {
             // Between two frames there may be silence as long as nobody waits for an answer.
             Err(FrameError::Stream(error)) if is_timeout(&error) && !counter.is_waited_for() => {}
             Err(FrameError::Stream(error)) if is_timeout(&error) => {
-                return format!("no answer for {} s", PATIENCE.as_secs());
+                return format!("no answer for {} s", patience(counter.clock()).as_secs());
             }
             Err(FrameError::Stream(error)) if error.kind() == io::ErrorKind::UnexpectedEof => {
                 return "the connection was closed".to_owned();

@@ -44,6 +44,9 @@ pub enum PeerError {
     /// The line is dead.
     #[error("nothing has come from the controller for {} s", LIMIT.as_secs())]
     Silent,
+    /// The controller has gone without a word.
+    #[error("the controller has closed the connection")]
+    Closed,
     /// What came is no frame.
     #[error(transparent)]
     Frame(#[from] FrameError),
@@ -60,7 +63,7 @@ impl PeerError {
     #[must_use]
     pub fn is_passing(&self) -> bool {
         match self {
-            Self::Line { .. } | Self::Silent | Self::Frame(FrameError::Stream(_)) => true,
+            Self::Line { .. } | Self::Silent | Self::Closed | Self::Frame(FrameError::Stream(_)) => true,
             Self::LastWords(text) => text == "the run is over",
             _ => false,
         }
@@ -151,6 +154,7 @@ impl Peer {
     pub fn receive(&mut self) -> Result<Received, PeerError> {
         let frame = Frame::read(&mut self.stream).map_err(|error| match error {
             FrameError::Stream(error) if is_timeout(&error) => PeerError::Silent,
+            FrameError::Stream(error) if error.kind() == io::ErrorKind::UnexpectedEof => PeerError::Closed,
             error => error.into(),
         })?;
         if let Some(tick) = frame.as_pulse() {
