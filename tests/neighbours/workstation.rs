@@ -41,6 +41,17 @@ fn a_job_from_another_process_has_the_same_bits() {
     assert_eq!(texts(&ended.result), texts(&own));
 }
 
+/// The control processes in processes of their own, and who commands them in another one.
+#[test]
+fn boards_are_commanded_from_another_process() {
+    let controller = Controller::start("boards", "workstation", &["--json", "--boards", "split"]);
+    let mut workstation = Workstation::connect(&controller);
+    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
+    drop(workstation);
+    let ended = controller.end();
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+}
+
 /// The client in another language that the documentation shows.
 #[test]
 fn the_python_example_transfers_a_part() {

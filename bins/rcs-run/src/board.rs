@@ -37,7 +37,7 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
             Arc::new(AtomicBool::new(false))
         }
     };
-    let TaskFiles { store, job, .. } = TaskFiles::load(&arguments.data, Some(&arguments.job))?;
+    let TaskFiles { store, job, .. } = TaskFiles::load(&arguments.data, arguments.played())?;
     let mut member = Member::join(&arguments.run, arguments.board, boards::fingerprint(&store, &job))?;
     let name = arguments.board;
     let real_time = member.is_real_time().then(|| realtime::acquire(arguments.cpu));

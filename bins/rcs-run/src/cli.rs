@@ -146,6 +146,9 @@ pub struct BoardArguments {
     /// The job of the run: name in the data directory, or a path
     #[arg(default_value = "linkbar")]
     pub job: String,
+    /// The run has no job: a workstation controller in another process commands
+    #[arg(long, conflicts_with = "job")]
+    pub commanded: bool,
     /// Name of the run, as rcs-run says it
     #[arg(long, value_name = "NAME")]
     pub run: RunName,
@@ -158,6 +161,22 @@ pub struct BoardArguments {
     /// End with this process, which has started the board
     #[arg(long, value_name = "PROCESS", hide = true)]
     pub parent: Option<u32>,
+}
+
+impl RunArguments {
+    /// The job that is played; `None` if another process commands.
+    #[must_use]
+    pub fn played(&self) -> Option<&str> {
+        (!self.outside.contains(&Role::Workstation)).then_some(self.job.as_str())
+    }
+}
+
+impl BoardArguments {
+    /// The job that is played; `None` if another process commands.
+    #[must_use]
+    pub fn played(&self) -> Option<&str> {
+        (!self.commanded).then_some(self.job.as_str())
+    }
 }
 
 /// Arguments of `link-test`.

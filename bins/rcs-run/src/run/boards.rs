@@ -217,7 +217,7 @@ fn spawn(arguments: &RunArguments, name: &RunName, board: Board) -> std::io::Res
         .args(["--parent", &std::process::id().to_string()])
         .arg("--data")
         .arg(&arguments.data)
-        .arg(&arguments.job)
+        .arg(arguments.played().unwrap_or("--commanded"))
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .spawn()
@@ -226,5 +226,9 @@ fn spawn(arguments: &RunArguments, name: &RunName, board: Board) -> std::io::Res
 /// The same for a person to type.
 fn command_line(arguments: &RunArguments, name: &RunName, board: Board) -> String {
     let data = arguments.data.display();
-    format!("rcs-run board {} --run {name} --data {data} {}", board.number(), arguments.job)
+    format!(
+        "rcs-run board {} --run {name} --data {data} {}",
+        board.number(),
+        arguments.played().unwrap_or("--commanded")
+    )
 }

@@ -67,9 +67,7 @@ impl Setup {
             return Err(Error::NotInRealTime);
         }
         let data = &arguments.data;
-        let commanded = arguments.outside.contains(&Role::Workstation);
-        let played = (!commanded).then_some(arguments.job.as_str());
-        let TaskFiles { store, job, job_path, warnings } = TaskFiles::load(data, played)?;
+        let TaskFiles { store, job, job_path, warnings } = TaskFiles::load(data, arguments.played())?;
         let path = data.join(CELL);
         let description_text =
             fs::read_to_string(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
