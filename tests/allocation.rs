@@ -1,7 +1,8 @@
 //! Nothing is allocated after the start, in as many ticks as are asked for: whole shifts with other seeds, jobs
 //! that fail, a line with faults.
 //!
-//! `RCS_TICKS` sets how many (30,000 if it is not set; the figure that is promised is 1,000,000).
+//! `RCS_TICKS` sets how many (30,000 if it is not set; the figure that is promised is 1,000,000), `RCS_BOARDS` how the
+//! processes are spread (`one` if it is not set).
 
 use std::{fs, process::Command};
 
@@ -34,6 +35,7 @@ const KINDS: [Kind; 4] = [
 fn nothing_is_allocated_after_the_start() {
     let wanted =
         std::env::var("RCS_TICKS").map_or(TICKS, |text| text.parse().expect("RCS_TICKS is a number"));
+    let boards = std::env::var("RCS_BOARDS").unwrap_or_else(|_| "one".to_owned());
     let scratch = Scratch::new("allocation");
     // Two ways of errors: what is to be found is not there, and a place is unknown to the workstation.
     scratch.job_with("clevis.job", "** tray UNIT_1 3 LCLEVIS_BH", "%");
@@ -46,7 +48,8 @@ fn nothing_is_allocated_after_the_start() {
         seed += 1;
         let mut command = Command::new(rcs_run());
         command
-            .args(["run", kind.job, "--json", "--log", "run.mcap", "--seed", &seed.to_string()])
+            .args(["run", kind.job, "--json", "--log", "run.mcap", "--boards", &boards])
+            .args(["--seed", &seed.to_string()])
             .args(["--ticks", &(wanted - ticks).to_string(), "--data"])
             .arg(root().join("data"))
             .current_dir(scratch.file(""));
@@ -62,5 +65,5 @@ fn nothing_is_allocated_after_the_start() {
         assert!(cut || output.status.code() == Some(kind.status), "{}, seed {seed}: {said}", kind.job);
         ticks += run;
     }
-    println!("{ticks} ticks in {seed} runs: 0 allocations");
+    println!("{ticks} ticks in {seed} runs, --boards {boards}: 0 allocations");
 }
