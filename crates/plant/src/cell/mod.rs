@@ -3,6 +3,7 @@
 mod changing;
 mod clearing;
 mod drumming;
+mod event;
 mod handling;
 mod machining;
 mod order;
@@ -11,24 +12,21 @@ mod picture;
 mod placing;
 mod sagging;
 mod saving;
+mod sensing;
 mod workstation;
 
-use std::fmt;
-
-use depc::{
-    Limits, Plate,
-    controller::{ControllerState, JointProblem},
-};
+use depc::{Limits, Plate, controller::ControllerState};
 use rapier3d_f64::prelude::*;
 use rcs_core::{
-    frame::{Frame, Vector as Inches},
-    interface::device::{DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, LinkBytes, Resolvers},
+    frame::Frame,
+    interface::device::{DeviceInputs, DeviceOutputs, LinkBytes},
     kinematics::Joints,
     tick::TICK_S,
 };
 use serde::{Deserialize, Serialize};
 
 use changing::Changer;
+pub use event::{CellError, CellEvent};
 use handling::Hand;
 pub use picture::{Link, part_link};
 pub use sagging::Droop;
@@ -36,13 +34,12 @@ pub use saving::{RestoreError, SaveError};
 pub use workstation::{Placement, WorkstationAction, WorkstationError};
 
 use crate::{
-    camera::{Camera, Face, Subject},
-    clearance::{Body, Clearance, Contact},
-    convert::{GRAVITY, to_frame, to_metres, to_pose},
-    description::{Actuators, CellDescription, DescriptionError, Points},
+    camera::Camera,
+    clearance::{Body, Clearance},
+    convert::{GRAVITY, to_frame, to_pose},
+    description::{Actuators, CellDescription, Points},
     drum::Drum,
     fault::{Change, FaultPlan, Injector, Struck},
-    force,
     gripper::Gripper,
     jaws::Supply,
     joystick::Joystick,
@@ -50,127 +47,10 @@ use crate::{
     part::{Part, PartState},
     pedestal::Pedestal,
     scene::{Block, FINGER, furniture},
-    sensor::{DeadTimes, resolver},
+    sensor::DeadTimes,
     t3::{DriveError, Key, Message, Refusal, StepInputs, StepOutputs, T3Controller},
     vise::Vise,
 };
-
-/// What of the arm can come between the camera on its wrist and a part.
-const ARM_IN_VIEW: [&str; 2] = ["upper_arm", "forearm"];
-
-/// Why a cell cannot be built.
-#[derive(Debug, thiserror::Error)]
-pub enum CellError {
-    /// The description has faults.
-    #[error(transparent)]
-    Description(#[from] DescriptionError),
-    /// The arm cannot begin where the description says.
-    #[error("robot.start: {0}")]
-    Start(#[from] DriveError),
-    /// Something stands where the robot is at the start.
-    #[error("robot.start: {0}")]
-    Blocked(CellEvent),
-}
-
-/// Something that should not happen, or that a person wants to know.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub enum CellEvent {
-    /// The robot, or what it carries, has begun to touch something that it may never touch, or deeper than it ever may. What it
-    /// may touch during some commands is for him to judge who knows them: [`Cell::contacts`].
-    Contact(Contact),
-    /// A part slides in a hand: more was asked of it than its force and friction give.
-    Slipped {
-        /// The part.
-        part: String,
-        /// Which hand.
-        hand: String,
-        /// How far it has slid since it was gripped, in.
-        distance: f64,
-    },
-    /// A hand has lost a part that it had.
-    Dropped {
-        /// The part.
-        part: String,
-        /// Which hand.
-        hand: String,
-    },
-    /// The gripper has forced a part out of the closed vise.
-    ForcedOut {
-        /// The part.
-        part: String,
-    },
-    /// The quick change has let go of a gripper that was not over an empty holster.
-    GripperFell {
-        /// Its link.
-        gripper: String,
-    },
-    /// The robot has lifted a gripper out of the seat of its holster, whose lips have torn it off the quick change.
-    GripperTorn {
-        /// Its link.
-        gripper: String,
-    },
-    /// A part lies on the floor.
-    Fell {
-        /// The part.
-        part: String,
-    },
-    /// The T3 controller shows a warning.
-    Warning(String),
-    /// An arm without pressure has come to rest.
-    Sagged(Droop),
-    /// Something that a person would see of the robot and its controller: pressure, lamps, jumps.
-    T3(String),
-    /// The simulated arm cannot take a position that the robot it follows has taken, and stays behind.
-    CannotFollow(JointProblem),
-    /// A body has left the realm of numbers and was taken out of the simulation.
-    Quarantined,
-    /// The jaw of the vise does not get on.
-    ViseStuck,
-    /// A fault of the plan begins.
-    FaultBegins {
-        /// Which one of its file, from 1.
-        number: usize,
-        /// In words.
-        text: String,
-    },
-    /// A fault of the plan is over.
-    FaultEnds {
-        /// Which one of its file, from 1.
-        number: usize,
-        /// In words.
-        text: String,
-    },
-}
-
-impl fmt::Display for CellEvent {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Contact(contact) => {
-                write!(f, "{} runs into {}, {:.3} in deep", contact.mover, contact.obstacle, contact.depth)
-            }
-            Self::Slipped { part, hand, distance } => {
-                write!(f, "{part} slides in {hand}, {distance:.3} in so far")
-            }
-            Self::Dropped { part, hand } => write!(f, "{part} is lost from {hand}"),
-            Self::ForcedOut { part } => write!(f, "{part} is forced out of the vise"),
-            Self::GripperFell { gripper } => write!(f, "{gripper} falls: it was let go over no holster"),
-            Self::GripperTorn { gripper } => {
-                write!(f, "{gripper} is torn off the quick change by its holster")
-            }
-            Self::Fell { part } => write!(f, "{part} lies on the floor"),
-            Self::Sagged(droop) => write!(f, "the arm {}", droop.end()),
-            Self::T3(text) => write!(f, "T3: {text}"),
-            Self::Warning(code) => write!(f, "the T3 controller shows {code}"),
-            Self::CannotFollow(problem) => {
-                write!(f, "the simulated arm cannot follow the robot: {problem:?}")
-            }
-            Self::Quarantined => f.write_str("a body is no longer anywhere: the simulation has failed"),
-            Self::ViseStuck => f.write_str("the jaw of the vise does not move"),
-            Self::FaultBegins { number, text } => write!(f, "fault {number} begins: {text}"),
-            Self::FaultEnds { number, text } => write!(f, "fault {number} is over: {text}"),
-        }
-    }
-}
 
 /// The simulated cell: everything outside the controller.
 #[derive(Deserialize, Serialize)]
@@ -412,86 +292,6 @@ impl Cell {
         }
         self.note_falls();
         self.note_jaw();
-    }
-
-    /// Take a picture if one is asked for.
-    fn look(&mut self, outputs: &DeviceOutputs) {
-        if !self.camera.wants_picture(&outputs.vision) {
-            return;
-        }
-        let frame = self.camera.frame(&self.tool());
-        let seen = if self.faults.camera_blind() { Vec::new() } else { self.subjects(&frame) };
-        let id = outputs.vision.object_id;
-        let expected = self.description.part.iter().find(|kind| kind.vision_id == id && id != 0);
-        self.camera.expose(&outputs.vision, &seen, expected);
-    }
-
-    /// What a camera at a frame (world, in) has before it: of each part what is in the field of view, and what nothing
-    /// hides.
-    fn subjects(&self, camera: &Frame) -> Vec<Subject> {
-        let lens = to_pose(camera).translation;
-        let arm: Vec<_> =
-            self.arm_bodies().into_iter().filter(|link| ARM_IN_VIEW.contains(&&*link.name)).collect();
-        let sees = |part: &Part, point: Inches| {
-            if !self.camera.has_in_view(&point) {
-                return false;
-            }
-            let ray = Ray::new(lens, to_pose(camera).transform_point(to_metres(&point)) - lens);
-            let nearest = self.world.cast_ray(&ray, 1.01, true, QueryFilter::default());
-            nearest.is_some_and(|(collider, _)| collider == part.collider)
-                && !arm.iter().any(|link| link.shape.intersects_ray(&link.pose, &ray, 1.0))
-        };
-        let near = self.parts.iter().map(|part| {
-            let here = camera.inverse().compose(&part.frame(&self.world));
-            let face = Face::of(&here, &Inches::from(part.kind.size));
-            Subject::new(face, part.kind.reflectance, |point| sees(part, point))
-        });
-        near.collect()
-    }
-
-    /// Read all sensors.
-    fn sense(&mut self, link_rx: LinkBytes, link_ready: bool) -> DeviceInputs {
-        let (grip, force) = self.sense_gripper();
-        let resolver_noise = self.description.sensors.resolver_noise;
-        let counts = self
-            .t3
-            .arm()
-            .joints()
-            .map(|angle| resolver::counts(angle, resolver_noise, &mut self.resolver_noise));
-        let mut inputs = DeviceInputs {
-            link_rx,
-            link_ready,
-            resolvers: Resolvers { counts, valid: true },
-            grip,
-            force,
-            quick_change: self.changer.sensors(self.description.sensors.ring_hysteresis),
-            holsters: self.holster_sensors(),
-            joystick: self.joystick.read(),
-            vision: self.camera.answer(),
-            pedestal: self.pedestal.sensors(&mut self.pedestal_noise),
-            ..DeviceInputs::default()
-        };
-        self.dead_times.hold_back(&mut inputs);
-        self.faults.inputs(&mut inputs);
-        inputs
-    }
-
-    /// Sensors of the gripper that is mated. All three have their potentiometer on the same connections; beam breaks and
-    /// strain gages only the parts gripper, force gages only the tool gripper has (III.3.6 to III.3.8).
-    fn sense_gripper(&mut self) -> (GripSensors, ForceSensor) {
-        let Some(hand) = self.changer.mated() else { return Default::default() };
-        let beams = if hand == Hand::Parts { self.broken_beams() } else { 0 };
-        let gripper = hand.slot().map_or(&self.pedestal.hand, |slot| &self.grippers[slot]);
-        let grip = gripper.sensors(&mut self.gripper_noise, beams);
-        let force = if hand == Hand::Tool {
-            let down = self.world.bodies[gripper.hand()].rotation().inverse() * -Vector::Z;
-            let load = gripper.load(&self.world);
-            let gages = &self.description.gripper.force;
-            force::read(gages, &load, &Inches::new(down.x, down.y, down.z), &mut self.force_noise)
-        } else {
-            ForceSensor::default()
-        };
-        (grip, force)
     }
 
     /// True joint angles, radians: base, shoulder, elbow, pitch, yaw, roll.

@@ -1,0 +1,123 @@
+//! What is said of a cell: why it cannot be built, and what happens in it.
+
+use std::fmt;
+
+use depc::controller::JointProblem;
+use serde::{Deserialize, Serialize};
+
+use super::Droop;
+use crate::{clearance::Contact, description::DescriptionError, t3::DriveError};
+
+/// Why a cell cannot be built.
+#[derive(Debug, thiserror::Error)]
+pub enum CellError {
+    /// The description has faults.
+    #[error(transparent)]
+    Description(#[from] DescriptionError),
+    /// The arm cannot begin where the description says.
+    #[error("robot.start: {0}")]
+    Start(#[from] DriveError),
+    /// Something stands where the robot is at the start.
+    #[error("robot.start: {0}")]
+    Blocked(CellEvent),
+}
+
+/// Something that should not happen, or that a person wants to know.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub enum CellEvent {
+    /// The robot, or what it carries, has begun to touch something that it may never touch, or deeper than it ever may. What it
+    /// may touch during some commands is for him to judge who knows them: [`Cell::contacts`].
+    Contact(Contact),
+    /// A part slides in a hand: more was asked of it than its force and friction give.
+    Slipped {
+        /// The part.
+        part: String,
+        /// Which hand.
+        hand: String,
+        /// How far it has slid since it was gripped, in.
+        distance: f64,
+    },
+    /// A hand has lost a part that it had.
+    Dropped {
+        /// The part.
+        part: String,
+        /// Which hand.
+        hand: String,
+    },
+    /// The gripper has forced a part out of the closed vise.
+    ForcedOut {
+        /// The part.
+        part: String,
+    },
+    /// The quick change has let go of a gripper that was not over an empty holster.
+    GripperFell {
+        /// Its link.
+        gripper: String,
+    },
+    /// The robot has lifted a gripper out of the seat of its holster, whose lips have torn it off the quick change.
+    GripperTorn {
+        /// Its link.
+        gripper: String,
+    },
+    /// A part lies on the floor.
+    Fell {
+        /// The part.
+        part: String,
+    },
+    /// The T3 controller shows a warning.
+    Warning(String),
+    /// An arm without pressure has come to rest.
+    Sagged(Droop),
+    /// Something that a person would see of the robot and its controller: pressure, lamps, jumps.
+    T3(String),
+    /// The simulated arm cannot take a position that the robot it follows has taken, and stays behind.
+    CannotFollow(JointProblem),
+    /// A body has left the realm of numbers and was taken out of the simulation.
+    Quarantined,
+    /// The jaw of the vise does not get on.
+    ViseStuck,
+    /// A fault of the plan begins.
+    FaultBegins {
+        /// Which one of its file, from 1.
+        number: usize,
+        /// In words.
+        text: String,
+    },
+    /// A fault of the plan is over.
+    FaultEnds {
+        /// Which one of its file, from 1.
+        number: usize,
+        /// In words.
+        text: String,
+    },
+}
+
+impl fmt::Display for CellEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Contact(contact) => {
+                write!(f, "{} runs into {}, {:.3} in deep", contact.mover, contact.obstacle, contact.depth)
+            }
+            Self::Slipped { part, hand, distance } => {
+                write!(f, "{part} slides in {hand}, {distance:.3} in so far")
+            }
+            Self::Dropped { part, hand } => write!(f, "{part} is lost from {hand}"),
+            Self::ForcedOut { part } => write!(f, "{part} is forced out of the vise"),
+            Self::GripperFell { gripper } => write!(f, "{gripper} falls: it was let go over no holster"),
+            Self::GripperTorn { gripper } => {
+                write!(f, "{gripper} is torn off the quick change by its holster")
+            }
+            Self::Fell { part } => write!(f, "{part} lies on the floor"),
+            Self::Sagged(droop) => write!(f, "the arm {}", droop.end()),
+            Self::T3(text) => write!(f, "T3: {text}"),
+            Self::Warning(code) => write!(f, "the T3 controller shows {code}"),
+            Self::CannotFollow(problem) => {
+                write!(f, "the simulated arm cannot follow the robot: {problem:?}")
+            }
+            Self::Quarantined => f.write_str("a body is no longer anywhere: the simulation has failed"),
+            Self::ViseStuck => f.write_str("the jaw of the vise does not move"),
+            Self::FaultBegins { number, text } => write!(f, "fault {number} begins: {text}"),
+            Self::FaultEnds { number, text } => write!(f, "fault {number} is over: {text}"),
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! What the sensors of the cell show: the camera's pictures, and once a tick everything else.
+
+use rapier3d_f64::prelude::*;
+use rcs_core::{
+    frame::{Frame, Vector as Inches},
+    interface::device::{DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, LinkBytes, Resolvers},
+};
+
+use super::{Cell, handling::Hand};
+use crate::{
+    camera::{Face, Subject},
+    convert::{to_metres, to_pose},
+    force,
+    part::Part,
+    sensor::resolver,
+};
+
+/// What of the arm can come between the camera on its wrist and a part.
+const ARM_IN_VIEW: [&str; 2] = ["upper_arm", "forearm"];
+
+impl Cell {
+    /// Take a picture if one is asked for.
+    pub(super) fn look(&mut self, outputs: &DeviceOutputs) {
+        if !self.camera.wants_picture(&outputs.vision) {
+            return;
+        }
+        let frame = self.camera.frame(&self.tool());
+        let seen = if self.faults.camera_blind() { Vec::new() } else { self.subjects(&frame) };
+        let id = outputs.vision.object_id;
+        let expected = self.description.part.iter().find(|kind| kind.vision_id == id && id != 0);
+        self.camera.expose(&outputs.vision, &seen, expected);
+    }
+
+    /// What a camera at a frame (world, in) has before it: of each part what is in the field of view, and what nothing
+    /// hides.
+    fn subjects(&self, camera: &Frame) -> Vec<Subject> {
+        let lens = to_pose(camera).translation;
+        let arm: Vec<_> =
+            self.arm_bodies().into_iter().filter(|link| ARM_IN_VIEW.contains(&&*link.name)).collect();
+        let sees = |part: &Part, point: Inches| {
+            if !self.camera.has_in_view(&point) {
+                return false;
+            }
+            let ray = Ray::new(lens, to_pose(camera).transform_point(to_metres(&point)) - lens);
+            let nearest = self.world.cast_ray(&ray, 1.01, true, QueryFilter::default());
+            nearest.is_some_and(|(collider, _)| collider == part.collider)
+                && !arm.iter().any(|link| link.shape.intersects_ray(&link.pose, &ray, 1.0))
+        };
+        let near = self.parts.iter().map(|part| {
+            let here = camera.inverse().compose(&part.frame(&self.world));
+            let face = Face::of(&here, &Inches::from(part.kind.size));
+            Subject::new(face, part.kind.reflectance, |point| sees(part, point))
+        });
+        near.collect()
+    }
+
+    /// Read all sensors.
+    pub(super) fn sense(&mut self, link_rx: LinkBytes, link_ready: bool) -> DeviceInputs {
+        let (grip, force) = self.sense_gripper();
+        let resolver_noise = self.description.sensors.resolver_noise;
+        let counts = self
+            .t3
+            .arm()
+            .joints()
+            .map(|angle| resolver::counts(angle, resolver_noise, &mut self.resolver_noise));
+        let mut inputs = DeviceInputs {
+            link_rx,
+            link_ready,
+            resolvers: Resolvers { counts, valid: true },
+            grip,
+            force,
+            quick_change: self.changer.sensors(self.description.sensors.ring_hysteresis),
+            holsters: self.holster_sensors(),
+            joystick: self.joystick.read(),
+            vision: self.camera.answer(),
+            pedestal: self.pedestal.sensors(&mut self.pedestal_noise),
+            ..DeviceInputs::default()
+        };
+        self.dead_times.hold_back(&mut inputs);
+        self.faults.inputs(&mut inputs);
+        inputs
+    }
+
+    /// Sensors of the gripper that is mated. All three have their potentiometer on the same connections; beam breaks and
+    /// strain gages only the parts gripper, force gages only the tool gripper has (III.3.6 to III.3.8).
+    fn sense_gripper(&mut self) -> (GripSensors, ForceSensor) {
+        let Some(hand) = self.changer.mated() else { return Default::default() };
+        let beams = if hand == Hand::Parts { self.broken_beams() } else { 0 };
+        let gripper = hand.slot().map_or(&self.pedestal.hand, |slot| &self.grippers[slot]);
+        let grip = gripper.sensors(&mut self.gripper_noise, beams);
+        let force = if hand == Hand::Tool {
+            let down = self.world.bodies[gripper.hand()].rotation().inverse() * -Vector::Z;
+            let load = gripper.load(&self.world);
+            let gages = &self.description.gripper.force;
+            force::read(gages, &load, &Inches::new(down.x, down.y, down.z), &mut self.force_noise)
+        } else {
+            ForceSensor::default()
+        };
+        (grip, force)
+    }
+}
