@@ -1,8 +1,10 @@
 //! What the robot runs into: a job with a collision has not finished, and says what touched what, how deep, where, and during
 //! which command.
 
+use std::fs;
+
 use serde_json::Value;
-use whole_system_tests::{Outcome, Scratch, run};
+use whole_system_tests::{Outcome, Scratch, root, run};
 
 /// Run a job in which `prepare` has put something into the robot's way, or the robot into the way of something.
 fn run_into(job: &str, name: &str, prepare: impl FnOnce(&Scratch)) -> Outcome {
@@ -77,6 +79,57 @@ fn a_vise_that_was_taught_a_fifth_of_an_inch_beside_its_place_is_run_into() {
         (67.0..69.0).contains(&x) && (-45.0..-43.0).contains(&y) && (-8.0..-3.0).contains(&z),
         "{contact}"
     );
+}
+
+/// An entry `[[contact]]` by its reason, a job that needs it, and what is different in the cell then.
+type Need = (&'static str, &'static str, Option<[&'static str; 2]>);
+
+/// Without its entry a thing that lies against another is the nearest miss of the run, in.
+const NO_MISS: f64 = 0.005;
+
+const NEEDS: [Need; 7] = [
+    (
+        "they close on it and open from it",
+        "linkbar",
+        Some(["size = [0.625, 0.625, 4.00]", "size = [0.625, 0.640, 4.00]"]),
+    ),
+    ("they hold it against the vise", "linkbar", None),
+    ("it moves a little while the fingers close on it, and lies there", "linkbar", None),
+    ("the same where the vise has it", "clevis", None),
+    ("it changes hands", "clevis", None),
+    ("its ears rest on them", "turned-part", None),
+    ("they feel for it", "tool-change", None),
+];
+
+#[test]
+fn no_contact_is_permitted_that_no_job_needs() {
+    let cell = fs::read_to_string(root().join("data/cell.toml")).expect("the cell is described");
+    let entry = |at: usize| {
+        let end = cell[at..].find("\nwhy = ").map(|why| at + why + 1).expect("an entry has a reason");
+        let line = cell[end..].find('\n').map_or(cell.len(), |length| end + length + 1);
+        &cell[at..line]
+    };
+    let entries: Vec<&str> = cell.match_indices("[[contact]]\n").map(|(at, _)| entry(at)).collect();
+    assert_eq!(entries.len(), NEEDS.len(), "each entry needs a job that needs it");
+    for (number, (entry, (why, job, change))) in entries.iter().zip(NEEDS).enumerate() {
+        assert!(entry.contains(why), "{entry}");
+        let [from, to] = change.unwrap_or_default();
+        let cell = cell.replacen(from, to, 1);
+        let in_a_cell = |cell: String| {
+            move |scratch: &Scratch| {
+                scratch.copy_data();
+                fs::write(scratch.file("data/cell.toml"), cell).expect("a cell can be described");
+            }
+        };
+        if change.is_some() {
+            let outcome = run(job, 1, &format!("permitted-{number}"), in_a_cell(cell.clone()));
+            assert_eq!(outcome.status, Some(0), "{}", outcome.last_words);
+        }
+        let outcome = run(job, 1, &format!("forbidden-{number}"), in_a_cell(cell.replacen(entry, "", 1)));
+        let nearest = outcome.result["clearance"]["distance_in"].as_f64();
+        let lies_on_it = nearest.is_some_and(|distance| distance < NO_MISS);
+        assert!(!contacts(&outcome).is_empty() || lies_on_it, "nobody needs {entry}");
+    }
 }
 
 #[test]
