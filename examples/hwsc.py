@@ -113,7 +113,7 @@ class Controller:
 
 
 def main():
-    if len(sys.argv) not in (2, 3):
+    if len(sys.argv) not in (2, 3) or not sys.argv[1].startswith(("unix:", "tcp:")):
         sys.exit(__doc__)
     secret = open(sys.argv[2], "rb").read().rstrip() if len(sys.argv) == 3 else b""
     controller = Controller(sys.argv[1], secret)
