@@ -1,9 +1,15 @@
 //! Whatever a run met, its log replays: jobs with random seeds and random faults on the line, cut off after random ticks.
 //!
-//! An ordinary test run tries a few; `RCS_REPLAYS=1000` tries so many, `RCS_REPLAYS_FROM=N` begins with seed N. A failure names
-//! its seed, with which it happens again.
+//! An ordinary test run tries a few; `RCS_REPLAYS=1000` tries so many, as `.ci/run` does, and `RCS_REPLAYS_FROM=N` begins with
+//! seed N. A failure names its seed, with which it happens again.
 
-use std::{env, fmt::Write as _, fs};
+use std::{
+    env,
+    fmt::Write as _,
+    fs,
+    sync::atomic::{AtomicU64, Ordering},
+    thread,
+};
 
 use record::{Log, golden, replay};
 use whole_system_tests::{Outcome, run_with};
@@ -84,6 +90,19 @@ fn check(seed: u64) {
 
 #[test]
 fn runs_with_random_seeds_and_faults_replay() {
-    let from = number("RCS_REPLAYS_FROM").unwrap_or(1);
-    (from..from + number("RCS_REPLAYS").unwrap_or(FEW)).for_each(check);
+    let next = AtomicU64::new(number("RCS_REPLAYS_FROM").unwrap_or(1));
+    let end = next.load(Ordering::Relaxed) + number("RCS_REPLAYS").unwrap_or(FEW);
+    let check_in_turn = || {
+        loop {
+            match next.fetch_add(1, Ordering::Relaxed) {
+                seed if seed < end => check(seed),
+                _ => return,
+            }
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(check_in_turn);
+        }
+    });
 }
