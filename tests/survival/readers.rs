@@ -45,7 +45,7 @@ fn at_work(child: &mut Child) {
 }
 
 #[test]
-#[ignore = "a process of other tests"]
+#[ignore = "not a test but a process that tests of this file start, and kill"]
 fn reads_on_and_on() {
     let name = env::var(RUN).expect("started by another test").parse().expect("a name");
     let reader = Attached::open(&name).expect("the run lives");
@@ -64,7 +64,7 @@ fn values(run: &executive::memory::RunName) -> Vec<PathBuf> {
 }
 
 #[test]
-#[ignore = "a process of other tests"]
+#[ignore = "not a test but a process that tests of this file start, and kill"]
 fn scribbles_on_and_on() {
     let name = env::var(RUN).expect("started by another test").parse().expect("a name");
     let mut files: Vec<_> = values(&name)

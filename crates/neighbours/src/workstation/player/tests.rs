@@ -1,0 +1,352 @@
+//! The emulator against a Task that answers as the test says.
+
+use super::*;
+use rcs_core::{
+    frame::Frame,
+    handshake::{Arrival, Receiver},
+    interface::hws::HwsStatus,
+    name::Name10,
+};
+use taskdata::{
+    files::{Location, Place},
+    load::job::{TASK_COMMANDS, ViseOpening},
+};
+
+/// A Task that executes each command for some ticks.
+#[derive(Default)]
+struct Task {
+    receiver: Receiver,
+    left: u64,
+    received: Vec<String>,
+    fails_at: Option<usize>,
+    silent: bool,
+    joystick: bool,
+    /// Mailgrams that do not arrive.
+    losing: u32,
+    /// Numbers of all mailgrams.
+    sent: Vec<u32>,
+    command: HwsCommand,
+}
+
+impl Task {
+    /// What the emulator has sent reaches Task in the next tick, unless it is lost.
+    fn step(&mut self, hwsc: &mut Hwsc) -> Status<'static> {
+        let mut status = HwsStatus::default();
+        if let Some(command) = hwsc.mailgram() {
+            self.sent.push(command.number);
+            if self.losing == 0 {
+                self.command = *command;
+            }
+            self.losing = self.losing.saturating_sub(1);
+        }
+        if self.silent {
+            return answer(&status);
+        }
+        match self.receiver.observe(self.command.number) {
+            Arrival::New => {
+                self.received.push(self.command.command.to_string());
+                self.left = 4;
+            }
+            _ => self.left = self.left.saturating_sub(1),
+        }
+        status.echo = self.receiver.echo;
+        status.report = match self.left {
+            0 if self.receiver.echo == 0 => HwsReport::Idle,
+            0 if self.fails_at == Some(self.received.len()) => HwsReport::Error,
+            0 => HwsReport::Finished,
+            _ => HwsReport::Executing,
+        };
+        if self.joystick {
+            status.report = HwsReport::JoystickOn;
+        }
+        if status.report == HwsReport::Error {
+            status.reason = Reason::GraspMissed;
+        }
+        answer(&status)
+    }
+}
+
+/// What the emulator reads when Task runs and nothing was refused.
+fn answer(status: &HwsStatus) -> Status<'static> {
+    Status {
+        command: status.command,
+        report: status.report,
+        echo: command_number(status.echo),
+        mailgram_echo: 0,
+        verdict: 0,
+        code: status.reason,
+        task: TaskState::Runs,
+        reason: status.reason.text(),
+    }
+}
+
+/// A vise that takes six looks, and what it was told.
+#[derive(Default)]
+struct Vise {
+    busy: std::cell::Cell<u32>,
+    told: Vec<ViseOpening>,
+    lines: Vec<String>,
+    fault: Option<&'static str>,
+    emergency: Option<&'static str>,
+}
+
+impl Workstation for Vise {
+    fn begin(&mut self, action: &Action, line: &str) -> Result<(), String> {
+        self.lines.push(line.to_owned());
+        if *action == RESET {
+            self.emergency = None;
+            return Ok(());
+        }
+        let Action::Vise { opening, location, .. } = action else { return Err("this is a vise".into()) };
+        if location.name.as_str() != "PFIXTURE" {
+            return Err(format!("there is no vise at {}", location.name));
+        }
+        self.told.push(*opening);
+        self.busy.set(6);
+        Ok(())
+    }
+
+    fn busy(&self) -> bool {
+        self.busy.set(self.busy.get().saturating_sub(1));
+        self.busy.get() > 0
+    }
+
+    fn fault(&self) -> Option<String> {
+        self.fault.map(str::to_owned)
+    }
+
+    fn emergency(&self) -> Option<String> {
+        self.emergency.map(str::to_owned)
+    }
+}
+
+/// What ends the emergency of a [`Vise`].
+const RESET: Action = Action::Panel(Panel::FaultReset);
+
+fn command(verb: &str) -> JobLine {
+    let command = HwsCommand { command: Name16::clipped(verb), ..HwsCommand::default() };
+    JobLine { step: Step::Command(command), text: format!("== {verb}"), line: 1 }
+}
+
+fn action(opening: ViseOpening, name: &str) -> JobLine {
+    let name = Name10::new(name).unwrap();
+    let location = Location { name, place: Place::default(), sector: 0, frame: Frame::identity() };
+    let text = format!("** vise {opening:?} {name}");
+    JobLine { step: Step::Workstation(Action::Vise { opening, location, program: None }), text, line: 1 }
+}
+
+fn later(ticks: u32, opening: ViseOpening) -> JobLine {
+    let JobLine { step: Step::Workstation(action), text, .. } = vise(opening) else { unreachable!() };
+    JobLine { step: Step::After { ticks, action }, text, line: 1 }
+}
+
+fn vise(opening: ViseOpening) -> JobLine {
+    action(opening, "PFIXTURE")
+}
+
+/// Plays a job for at most 200 ticks; the last tick comes back.
+fn play(hwsc: &mut Hwsc, task: &mut Task, vise: &mut Vise) -> u64 {
+    play_on(hwsc, task, vise, 1)
+}
+
+fn play_on(hwsc: &mut Hwsc, task: &mut Task, vise: &mut Vise, from: u64) -> u64 {
+    for tick in from..200 {
+        let outputs = task.step(hwsc);
+        if *hwsc.step(Tick(tick), &outputs, vise) != Progress::Running {
+            return tick;
+        }
+    }
+    200
+}
+
+#[test]
+fn a_job_is_played_in_order_and_pause_comes_first() {
+    let (partial, close) = (ViseOpening::Partial, ViseOpening::Close);
+    let steps = vec![vise(partial), command("MOVE"), vise(close), command("MOVE")];
+    let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
+    play(&mut hwsc, &mut task, &mut jaws);
+    assert_eq!(*hwsc.progress(), Progress::Over);
+    assert_eq!(task.received, ["PAUSE", "MOVE", "MOVE"]);
+    assert_eq!(jaws.told, [partial, close]);
+    let texts: Vec<_> = hwsc.records().iter().map(|r| (r.text.as_str(), r.is_command, r.outcome)).collect();
+    let finished = Outcome::Finished;
+    assert_eq!(
+        texts,
+        [
+            ("PAUSE", true, finished),
+            ("** vise Partial PFIXTURE", false, finished),
+            ("== MOVE", true, finished),
+            ("** vise Close PFIXTURE", false, finished),
+            ("== MOVE", true, finished)
+        ]
+    );
+    // A command is written in one tick, read in the next, executed for four, and its end is seen in the
+    // tick that writes it.
+    assert!(hwsc.records().iter().filter(|r| r.is_command).all(|r| r.ticks == 5), "{:?}", hwsc.records());
+    assert!(hwsc.records().iter().filter(|r| !r.is_command).all(|r| r.ticks == 6), "{:?}", hwsc.records());
+}
+
+#[test]
+fn every_command_of_task_is_sent_as_the_job_has_it() {
+    let steps: Vec<_> = TASK_COMMANDS.iter().map(|verb| command(verb)).collect();
+    let (mut hwsc, mut task) = (Hwsc::new(steps, 100), Task::default());
+    play(&mut hwsc, &mut task, &mut Vise::default());
+    assert_eq!(*hwsc.progress(), Progress::Over);
+    assert_eq!(task.received[1..], *TASK_COMMANDS);
+}
+
+#[test]
+fn an_error_of_task_ends_the_job_with_its_reason_and_nothing_more_is_sent() {
+    let steps = vec![command("MOVE"), command("ACQUIRE")];
+    let mut task = Task { fails_at: Some(2), ..Task::default() };
+    let mut hwsc = Hwsc::new(steps, 100);
+    let last = play(&mut hwsc, &mut task, &mut Vise::default());
+    assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Command(Reason::GraspMissed)));
+    assert_eq!(task.received, ["PAUSE", "MOVE"]);
+    assert_eq!(hwsc.records().last().map(|r| r.outcome), Some(Outcome::Failed));
+    let number = hwsc.command().number;
+    let outputs = task.step(&mut hwsc);
+    hwsc.step(Tick(last + 1), &outputs, &mut Vise::default());
+    assert_eq!(hwsc.command().number, number);
+}
+
+#[test]
+fn a_task_that_does_not_answer_is_asked_twice_and_then_lost() {
+    for (ticks, limit) in [(ECHO_LIMIT, 10), (20, 45)] {
+        let mut task = Task { silent: true, ..Task::default() };
+        let mut hwsc = Hwsc::new(vec![command("MOVE")], 100).with_answer_ticks(ticks);
+        let last = play(&mut hwsc, &mut task, &mut Vise::default());
+        assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Lost));
+        assert!((2 * ticks..limit).contains(&last), "{last}");
+        assert_eq!(task.sent, [4, 4], "the same number");
+    }
+}
+
+#[test]
+fn a_command_that_was_lost_on_the_way_is_sent_again_and_executed_once() {
+    let mut task = Task { losing: 1, ..Task::default() };
+    let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
+    play(&mut hwsc, &mut task, &mut Vise::default());
+    assert_eq!(*hwsc.progress(), Progress::Over);
+    assert_eq!((task.received, task.sent), (vec!["PAUSE".to_owned(), "MOVE".to_owned()], vec![4, 4, 5]));
+}
+
+#[test]
+fn a_command_that_the_mailbox_refuses_ends_the_job_with_what_it_says() {
+    let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
+    let refused =
+        Status { verdict: 3, reason: "command 8 comes next, found 4", ..answer(&HwsStatus::default()) };
+    for tick in 1..4 {
+        hwsc.step(Tick(tick), &refused, &mut Vise::default());
+    }
+    let failure = JobFailure::Refused("command 8 comes next, found 4".into());
+    assert_eq!(*hwsc.progress(), Progress::Failed(failure));
+}
+
+#[test]
+fn a_workstation_is_told_the_line_without_what_says_when() {
+    let mut later = later(2, ViseOpening::Open);
+    later.text = "**  after 2   vise open  PFIXTURE".into();
+    let mut jaws = Vise::default();
+    let mut hwsc = Hwsc::new(vec![vise(ViseOpening::Close), later, command("MOVE")], 100);
+    play(&mut hwsc, &mut Task::default(), &mut jaws);
+    assert_eq!(jaws.lines, ["vise Close PFIXTURE", "vise open  PFIXTURE"]);
+}
+
+#[test]
+fn time_runs_out_for_a_command_and_for_an_action() {
+    let mut hwsc = Hwsc::new(vec![command("MOVE")], 3);
+    play(&mut hwsc, &mut Task::default(), &mut Vise::default());
+    assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::TimeLimit(3)));
+    let mut hwsc = Hwsc::new(vec![vise(ViseOpening::Close)], 5);
+    play(&mut hwsc, &mut Task::default(), &mut Vise::default());
+    assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::TimeLimit(5)));
+    assert_eq!(hwsc.records().len(), 2, "PAUSE is finished within five ticks");
+}
+
+#[test]
+fn a_wait_takes_its_ticks_and_no_more() {
+    let step = Step::Workstation(Action::Wait { ticks: 30 });
+    let wait = JobLine { step, text: "** wait 30".into(), line: 1 };
+    let mut hwsc = Hwsc::new(vec![wait, command("MOVE")], 10);
+    play(&mut hwsc, &mut Task::default(), &mut Vise::default());
+    assert_eq!(*hwsc.progress(), Progress::Over, "the time limit is not for waiting");
+    assert_eq!(hwsc.records()[1].ticks, 30);
+}
+
+#[test]
+fn what_is_to_happen_later_happens_while_the_command_goes_on() {
+    let steps = vec![later(2, ViseOpening::Open), command("MOVE")];
+    let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
+    let mut tick = 0;
+    while jaws.told.is_empty() {
+        tick += 1;
+        let outputs = task.step(&mut hwsc);
+        assert_eq!(*hwsc.step(Tick(tick), &outputs, &mut jaws), Progress::Running);
+    }
+    assert_eq!(task.received, ["PAUSE", "MOVE"]);
+    assert_eq!(hwsc.records().last().map(|r| (r.outcome, r.ticks)), Some((Outcome::Executing, 2)));
+    play_on(&mut hwsc, &mut task, &mut jaws, tick + 1);
+    assert_eq!(*hwsc.progress(), Progress::Over);
+}
+
+#[test]
+fn a_job_waits_for_what_is_to_happen_later() {
+    let steps = vec![later(90, ViseOpening::Open), command("MOVE")];
+    let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
+    let last = play(&mut hwsc, &mut task, &mut jaws);
+    assert_eq!((hwsc.progress(), jaws.told.as_slice()), (&Progress::Over, &[ViseOpening::Open][..]));
+    assert!(last > 90, "{last}");
+}
+
+#[test]
+fn the_operator_may_have_the_robot_between_commands_but_not_in_one() {
+    let mut task = Task { joystick: true, ..Task::default() };
+    let mut hwsc = Hwsc::new(vec![vise(ViseOpening::Open)], 100);
+    hwsc.current = 1;
+    hwsc.began = Some(Tick(0));
+    play(&mut hwsc, &mut task, &mut Vise::default());
+    assert_eq!(*hwsc.progress(), Progress::Over);
+    let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
+    play(&mut hwsc, &mut task, &mut Vise::default());
+    assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Joystick));
+}
+
+#[test]
+fn what_the_workstation_cannot_do_ends_the_job() {
+    let mut hwsc = Hwsc::new(vec![action(ViseOpening::Open, "TABLE")], 100);
+    play(&mut hwsc, &mut Task::default(), &mut Vise::default());
+    assert_eq!(
+        *hwsc.progress(),
+        Progress::Failed(JobFailure::Workstation("there is no vise at TABLE".into()))
+    );
+    let mut jaws = Vise { fault: Some("no oil pressure"), ..Vise::default() };
+    let mut hwsc = Hwsc::new(vec![command("MOVE")], 100);
+    play(&mut hwsc, &mut Task::default(), &mut jaws);
+    assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Workstation("no oil pressure".into())));
+}
+#[test]
+fn an_emergency_ends_the_job_at_once_whatever_goes_on() {
+    for steps in [vec![command("MOVE")], vec![vise(ViseOpening::Open)], vec![]] {
+        let mut jaws = Vise { emergency: Some("the hand is caught"), ..Vise::default() };
+        let mut hwsc = Hwsc::new(steps, 100);
+        assert_eq!(play(&mut hwsc, &mut Task::default(), &mut jaws), 1);
+        let stopped = JobFailure::Emergency("the hand is caught".into());
+        assert_eq!(*hwsc.progress(), Progress::Failed(stopped));
+    }
+}
+
+#[test]
+fn a_job_that_resets_an_emergency_goes_on_without_what_failed() {
+    let reset = JobLine { step: Step::Workstation(RESET), text: "** reset".into(), line: 1 };
+    let steps = vec![command("MOVE"), reset, command("ACQUIRE")];
+    let mut jaws = Vise { emergency: Some("the hand is caught"), ..Vise::default() };
+    let mut task = Task { fails_at: Some(2), ..Task::default() };
+    let mut hwsc = Hwsc::new(steps, 100);
+    play(&mut hwsc, &mut task, &mut jaws);
+    assert_eq!(*hwsc.progress(), Progress::Over);
+    assert_eq!(task.received, ["PAUSE", "MOVE", "ACQUIRE"]);
+    let outcomes: Vec<_> = hwsc.records().iter().map(|record| record.outcome).collect();
+    let (finished, failed) = (Outcome::Finished, Outcome::Failed);
+    assert_eq!(outcomes, [finished, failed, finished, finished]);
+}
