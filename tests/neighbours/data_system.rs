@@ -105,6 +105,15 @@ impl Shop {
         Self { controller, workstation, data_system }
     }
 
+    /// Open, the Data System connected by command 2, and a blank there to be fetched.
+    fn with_blank(scratch: Scratch, file: &Path, fate: Fate) -> Self {
+        let mut shop = Self::open(scratch, file, fate);
+        assert_eq!(shop.connect(2).0, "finished");
+        shop.workstation.in_cell("tray UNIT_1 4 LINKBAR1_BH");
+        shop.workstation.in_cell("vise partial PFIXTURE LINKBAR");
+        shop
+    }
+
     fn connect(&mut self, number: u32) -> (String, String) {
         self.workstation.carry_out(&bare(number, "STARTUP"))
     }
@@ -179,10 +188,7 @@ fn a_data_system_that_is_killed_and_started_again_hears_the_update_once() {
     for fate in [Fate::DiesBefore, Fate::DiesAfter] {
         let scratch = Scratch::new(&format!("{fate:?}"));
         let file = scratch.file("items.db");
-        let mut shop = Shop::open(scratch, &file, fate);
-        assert_eq!(shop.connect(2).0, "finished");
-        shop.workstation.in_cell("tray UNIT_1 4 LINKBAR1_BH");
-        shop.workstation.in_cell("vise partial PFIXTURE LINKBAR");
+        let mut shop = Shop::with_blank(scratch, &file, fate);
         shop.workstation.send(&fetch(3));
         let mut killed = 0;
         loop {
@@ -209,10 +215,7 @@ fn a_controller_that_is_killed_tells_after_its_next_startup() {
     for fate in [Fate::DiesBefore, Fate::DiesAfter] {
         let scratch = Scratch::new(&format!("killed-{fate:?}"));
         let file = scratch.file("items.db");
-        let mut shop = Shop::open(scratch, &file, fate);
-        assert_eq!(shop.connect(2).0, "finished");
-        shop.workstation.in_cell("tray UNIT_1 4 LINKBAR1_BH");
-        shop.workstation.in_cell("vise partial PFIXTURE LINKBAR");
+        let mut shop = Shop::with_blank(scratch, &file, fate);
         shop.workstation.send(&fetch(3));
         while !shop.data_system.is_finished() {
             shop.workstation.tick();
@@ -232,10 +235,7 @@ fn a_data_system_that_refuses_or_dawdles_hears_the_update_once() {
     for fate in [Fate::Refuses, Fate::Dawdles] {
         let scratch = Scratch::new(&format!("{fate:?}"));
         let file = scratch.file("items.db");
-        let mut shop = Shop::open(scratch, &file, fate);
-        assert_eq!(shop.connect(2).0, "finished");
-        shop.workstation.in_cell("tray UNIT_1 4 LINKBAR1_BH");
-        shop.workstation.in_cell("vise partial PFIXTURE LINKBAR");
+        let mut shop = Shop::with_blank(scratch, &file, fate);
         let (status, reason) = shop.workstation.carry_out(&fetch(3));
         if fate == Fate::Refuses {
             assert_eq!(
