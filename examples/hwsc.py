@@ -9,13 +9,14 @@ bytes are those of docs/neighbours.md; with tcp:IP:PORT a file with the secret f
 """
 
 import hmac
+import os
 import socket
 import struct
 import sys
 
 HWSC_COMMAND, HWSC_STATUS = 0xF6000, 0xF6200  # Table IX.1
 CELL_COMMAND, CELL_STATUS = 0xF6400, 0xF6600  # the simulated cell's
-PULSE, LAST_WORDS = 0, 1
+PULSE, LAST_WORDS, WELCOME = 0, 1, 2
 WORKSTATION = 1
 COMMAND = struct.Struct("<4sHH12s16s16s16sh16shh16sh16sh")
 STATUS = struct.Struct("<4s16sH12s16s16sHHHHH160s")
@@ -32,12 +33,44 @@ class Controller:
         else:
             host, _, port = place.rpartition(":")
             self.line = socket.create_connection((host.strip("[]"), int(port)))
-        challenge = self.receive(40)
-        front = struct.pack("<4sHH", b"RCS2", WORKSTATION, 0)
-        proof = hmac.new(secret, challenge + front, "sha256").digest() if secret else bytes(32)
-        self.line.sendall(front + proof)
+        self.seals = None
+        self.greet(secret)
         self.mailgrams = {HWSC_COMMAND: 0, CELL_COMMAND: 0}
         self.status = self.cell = self.pulse = None
+
+    def greet(self, secret):
+        """Prove that both know the secret, and agree upon the seals of frames: {out or in: [key, frames so far]}."""
+        said = self.receive(40) + struct.pack("<4sHH", b"RCS2", WORKSTATION, 0) + os.urandom(32)
+        mac = lambda word: hmac.digest(secret, said + word, "sha256") if secret else bytes(32)
+        self.line.sendall(said[40:] + mac(b"neighbour"))
+        address, proof = self.read_frame()
+        if address != WELCOME or not hmac.compare_digest(proof, mac(b"controller")):
+            sys.exit("the controller does not know the secret")
+        if secret:
+            self.seals = {"out": [mac(b"up"), 0], "in": [mac(b"down"), 0]}
+
+    def seal(self, way, frame):
+        """What stands behind a frame: who knows the secret has sent it, as the next one."""
+        if not self.seals:
+            return b""
+        self.seals[way][1] += 1
+        key, number = self.seals[way]
+        return hmac.digest(key, struct.pack("<Q", number) + frame, "sha256")[:16]
+
+    def send_frame(self, frame):
+        self.line.sendall(frame + self.seal("out", frame))
+
+    def read_frame(self):
+        """Address and data of the next frame."""
+        head = self.receive(6)
+        address, length = struct.unpack("<IH", head)
+        rest = self.receive(length - 2)
+        seal = self.seal("in", head + rest)
+        if not hmac.compare_digest(self.receive(len(seal)), seal):
+            sys.exit("a frame does not come from the controller")
+        if address == LAST_WORDS:
+            sys.exit("the controller says: " + rest[6:].decode())
+        return address, rest[6:]
 
     def receive(self, count):
         data = b""
@@ -52,20 +85,17 @@ class Controller:
         """Write data into a mailbox: its length, mailgram number, two locks, data."""
         self.mailgrams[address] = self.mailgrams[address] % 65535 + 1
         head = struct.pack("<IHHHH", address, 8 + len(data), self.mailgrams[address], 0, 0)
-        self.line.sendall(head + data)
+        self.send_frame(head + data)
 
     def tick(self):
         """Answer the pulse of a tick, which lets the next one begin, and read mailgrams up to the end of that."""
         if self.pulse:
-            self.line.sendall(self.pulse)
+            self.send_frame(self.pulse)
         while True:
-            address, length = struct.unpack("<IH", self.receive(6))
-            data = self.receive(length - 2)[6:]
+            address, data = self.read_frame()
             if address == PULSE:
                 self.pulse = struct.pack("<IHHHH", PULSE, 16, 0, 0, 0) + data
                 return
-            if address == LAST_WORDS:
-                sys.exit("the controller says: " + data.decode())
             if address == HWSC_STATUS:
                 self.status = STATUS.unpack(data)
             elif address == CELL_STATUS:

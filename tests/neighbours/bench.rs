@@ -1,7 +1,9 @@
 //! A controller that waits for neighbours, and a workstation controller that says whatever a test wants.
 
 use std::{
+    fs,
     io::{BufRead as _, BufReader, Read as _},
+    os::unix::fs::PermissionsExt as _,
     path::PathBuf,
     process::{Child, Command, Stdio},
     thread::{self, JoinHandle},
@@ -83,7 +85,12 @@ impl Controller {
 
     /// Connect to it.
     pub fn connect(&self, role: Role, secret: Option<&Secret>) -> Peer {
-        Peer::connect_within(PATIENCE, &self.address, role, secret).expect("it waits")
+        self.try_connect(role, secret).expect("it waits")
+    }
+
+    /// Connect to it, or hear why not.
+    pub fn try_connect(&self, role: Role, secret: Option<&Secret>) -> Result<Peer, PeerError> {
+        Peer::connect_within(PATIENCE, &self.address, role, secret)
     }
 
     /// Kill it, so that it can do nothing more; what it leaves.
@@ -217,4 +224,12 @@ pub fn bare(number: u32, verb: &str) -> HwsCommand {
 /// A program of the examples.
 pub fn example(name: &str) -> PathBuf {
     root().join("examples").join(name)
+}
+
+/// A secret in a file of its owner's, and the file.
+pub fn secret(scratch: &Scratch, name: &str, text: &str) -> (Secret, String) {
+    let file = scratch.file(name);
+    fs::write(&file, text).expect("a file can be written");
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o600)).expect("its mode can be set");
+    (Secret::load(&file).expect("it is long enough"), file.display().to_string())
 }

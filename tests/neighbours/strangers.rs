@@ -1,22 +1,31 @@
 //! Who may not command the robot does not.
 
-use std::{fs, os::unix::fs::PermissionsExt as _, os::unix::process::CommandExt as _, process::Command};
+use std::{
+    fs,
+    io::{Read as _, Write as _},
+    net::{TcpListener, TcpStream},
+    os::unix::fs::PermissionsExt as _,
+    os::unix::process::CommandExt as _,
+    process::Command,
+    thread,
+};
 
-use neighbours::network::{Address, Peer, Role, Secret};
+use neighbours::{
+    mailbox::{HWSC_COMMAND, Mailbox},
+    network::{
+        Address, Peer, Role,
+        frame::{Frame, LAST_WORDS},
+        hello::{ANSWER, Challenge, ClockKind, HELLO, check_welcome},
+        seal::SEAL,
+    },
+};
 use rustix::process::geteuid;
 use whole_system_tests::{Scratch, rcs_neighbour};
 
-use crate::bench::{Controller, PATIENCE};
+use crate::bench::{Controller, PATIENCE, bare, secret};
 
 /// A user who owns nothing, on every system.
 const NOBODY: u32 = 65_534;
-
-fn secret(scratch: &Scratch, name: &str, text: &str) -> (Secret, String) {
-    let file = scratch.file(name);
-    fs::write(&file, text).expect("a file can be written");
-    fs::set_permissions(&file, fs::Permissions::from_mode(0o600)).expect("its mode can be set");
-    (Secret::load(&file).expect("it is long enough"), file.display().to_string())
-}
 
 #[test]
 fn at_a_port_only_who_knows_the_secret_is_let_in() {
@@ -26,15 +35,72 @@ fn at_a_port_only_who_knows_the_secret_is_let_in() {
     let more = ["--clock", "real", "--secret", file.as_str(), "--ticks", "25"];
     let controller = Controller::start_at(scratch, Some("tcp:127.0.0.1:0"), "workstation", &more);
     for wrong in [None, Some(&guessed)] {
-        let mut stranger = controller.connect(Role::Workstation, wrong);
-        let told = stranger.receive().expect_err("he is not let in").to_string();
-        assert_eq!(told, "the controller says: the proof of the secret is wrong");
+        let told = controller.try_connect(Role::Workstation, wrong).err().expect("he is not let in");
+        assert_eq!(told.to_string(), "the controller says: the proof of the secret is wrong");
     }
     let _friend = controller.connect(Role::Workstation, Some(&ours));
     let ended = controller.end();
     assert_eq!(ended.status, Some(0), "{}", ended.said);
     let refused = ended.page.matches("a connection was refused: the proof of the secret is wrong").count();
     assert_eq!(refused, 2, "{}", ended.page);
+}
+
+/// Who sits on the line and knows no secret can listen, but not speak.
+#[test]
+fn a_frame_that_another_has_put_on_the_line_moves_nothing() {
+    let scratch = Scratch::new("forged");
+    let (ours, file) = secret(&scratch, "ours", "the key under the third flower pot");
+    let more = ["--clock", "real", "--secret", file.as_str(), "--ticks", "50"];
+    let controller = Controller::start_at(scratch, Some("tcp:127.0.0.1:0"), "workstation", &more);
+    let Address::Tcp(port) = controller.address else { panic!("a port was asked for") };
+    let mut line = TcpStream::connect(port).expect("it waits");
+    let mut hello = [0; HELLO];
+    line.read_exact(&mut hello).expect("a hello");
+    let challenge = Challenge::from_bytes(hello).expect("a hello");
+    let (answer, agreement) = challenge.answer(Role::Workstation, Some(&ours)).expect("random bytes");
+    line.write_all(&answer).expect("it listens");
+    let welcome = Frame::read(&mut line).expect("a welcome");
+    check_welcome(welcome.data(), agreement.as_ref()).expect("it is the controller");
+    let command = neighbours::workstation::command::encode(&bare(1, "PAUSE")).expect("it fits");
+    let mut mailbox = Mailbox::initialized(HWSC_COMMAND);
+    mailbox.write(&command).expect("it fits");
+    let (mut theirs, guessed) = (agreement.expect("there is a secret").down(), [0x5A; SEAL]);
+    line.write_all(&[Frame::of(&mailbox).bytes(), &guessed].concat()).expect("it listens");
+    let last = loop {
+        let frame = Frame::read(&mut line).expect("last words");
+        let mut seal = [0; SEAL];
+        line.read_exact(&mut seal).expect("a seal");
+        theirs.open(frame.bytes(), &seal).expect("it is the controller's");
+        if frame.address() == LAST_WORDS {
+            break String::from_utf8_lossy(frame.data()).into_owned();
+        }
+    };
+    assert_eq!(last, "the seal of frame 1 is wrong: it was forged, damaged, or is not the next");
+    let _friend = controller.connect(Role::Workstation, Some(&ours));
+    let ended = controller.end();
+    assert!(ended.page.contains(&format!("workstation has gone: {last}")), "{}", ended.page);
+    assert!(!ended.page.contains("PAUSE"), "{}", ended.page);
+}
+
+#[test]
+fn who_poses_as_the_controller_is_given_nothing() {
+    let scratch = Scratch::new("impostor");
+    let (ours, _) = secret(&scratch, "ours", "the key under the third flower pot");
+    let trap = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = Address::Tcp(trap.local_addr().expect("it is bound"));
+    let impostor = thread::spawn(move || {
+        let (mut line, _) = trap.accept().expect("somebody comes");
+        line.write_all(Challenge::new(ClockKind::Real).expect("random bytes").bytes()).expect("he listens");
+        let mut answer = [0; ANSWER];
+        line.read_exact(&mut answer).expect("he believes it");
+        line.write_all(Frame::welcome(&answer[HELLO..]).bytes()).expect("he listens");
+    });
+    let told = Peer::connect(&address, Role::Workstation, Some(&ours)).err().expect("he is not taken in");
+    impostor.join().expect("it ends");
+    assert_eq!(
+        told.to_string(),
+        format!("{address}: the controller does not know the secret: somebody else answers in its place")
+    );
 }
 
 #[test]
@@ -55,7 +121,7 @@ fn there_is_one_workstation_controller() {
     let mut first = controller.connect(Role::Workstation, None);
     first.receive().expect("he is let in");
     let mut second = controller.connect(Role::Workstation, None);
-    let told = second.receive().expect_err("he is not let in").to_string();
+    let told = second.receive().expect_err("he is sent away").to_string();
     assert_eq!(told, "the controller says: workstation is connected already");
 }
 

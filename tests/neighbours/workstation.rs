@@ -5,9 +5,9 @@ use std::process::{Command, Stdio};
 use neighbours::{mailbox::HWSC_COMMAND, workstation::command};
 use rcs_core::interface::HwsCommand;
 use rustix::process::{Pid, Signal, kill_process};
-use whole_system_tests::{rcs_neighbour, rcs_run, root};
+use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 
-use crate::bench::{Controller, Workstation, bare, example};
+use crate::bench::{Controller, Workstation, bare, example, secret};
 
 /// The job of the controller's own emulator and that of one in another process are the same to the bit.
 #[test]
@@ -52,7 +52,7 @@ fn boards_are_commanded_from_another_process() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
 }
 
-/// The client in another language that the documentation shows.
+/// The client in another language that the documentation shows, with proofs and seals.
 #[test]
 fn the_python_example_transfers_a_part() {
     let python =
@@ -61,10 +61,13 @@ fn the_python_example_transfers_a_part() {
         eprintln!("no python3 here: its example is not tried");
         return;
     }
-    let controller = Controller::start("python", "workstation", &["--json"]);
+    let scratch = Scratch::new("python");
+    let (_, file) = secret(&scratch, "secret", "the key under the third flower pot");
+    let more = ["--json", "--secret", file.as_str()];
+    let controller = Controller::start_at(scratch, Some("tcp:127.0.0.1:0"), "workstation", &more);
     let output = Command::new("python3")
         .arg(example("hwsc.py"))
-        .arg(controller.address.to_string())
+        .args([&controller.address.to_string(), &file])
         .output()
         .expect("python3 can be started");
     let said = String::from_utf8_lossy(&output.stdout).into_owned();

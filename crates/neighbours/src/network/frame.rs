@@ -7,14 +7,17 @@
 //! ```
 //!
 //! All low byte first. The address is that of Table IX.1; `length` is that of the mailbox, from its own first byte to the last of
-//! its data: a frame has 4 bytes more. Two addresses are no mailboxes:
+//! its data: a frame has 4 bytes more, and 16 of a [seal](super::seal) behind it where a secret was agreed upon. Three addresses
+//! are no mailboxes:
 //!
 //! * 0, the **pulse**: its data are the number of a tick, 64 bits. The controller sends it behind the mailgrams of every tick, the
 //!   neighbour sends it back behind his own.
-//! * 1, **last words**: its data are a text; the controller closes the connection after it, and the text says why.
+//! * 1, **last words**: its data are a text; the controller closes the connection after it, and the text says why;
+//! * 2, the **welcome**: its data are the controller's proof ([`hello`](super::hello)). It is the first frame, and has no seal.
 
 use std::io::{self, Read};
 
+use super::seal::BrokenSeal;
 use crate::mailbox::{HEAD, MAX_SIZE, Mailbox, Place};
 
 /// Bytes in front of a mailbox.
@@ -23,6 +26,8 @@ pub const ADDRESS: usize = 4;
 pub const PULSE: u32 = 0;
 /// The address of last words.
 pub const LAST_WORDS: u32 = 1;
+/// The address of a welcome.
+pub const WELCOME: u32 = 2;
 /// Bytes of a frame at most.
 pub const MAX_FRAME: usize = ADDRESS + MAX_SIZE;
 
@@ -67,6 +72,12 @@ impl Frame {
     #[must_use]
     pub fn last_words(text: &str) -> Self {
         Self::other(LAST_WORDS, text.as_bytes())
+    }
+
+    /// The neighbour is let in, by whoever can prove that he may.
+    #[must_use]
+    pub fn welcome(proof: &[u8]) -> Self {
+        Self::other(WELCOME, proof)
     }
 
     /// All bytes.
@@ -151,6 +162,9 @@ pub enum FrameError {
         /// The address.
         found: u32,
     },
+    /// It does not come from whom it should.
+    #[error(transparent)]
+    Seal(#[from] BrokenSeal),
     /// Bytes behind the frame.
     #[error("nothing was expected behind the frame, found {0} bytes")]
     Rest(usize),

@@ -1,17 +1,25 @@
-//! How a connection begins: who is there, and does he know the secret?
+//! How a connection begins: who is there, and do both know the secret?
 //!
 //! ```text
-//!   controller -> neighbour   52 43 53 32  "RCS2"      neighbour -> controller   52 43 53 32  "RCS2"
-//!                             01 00        version                              rr 00        who: 1 workstation, 2 Data System
-//!                             cc 00        clock: 0 the 40 ms grid, 1 fast      00 00
-//!                             32 bytes     random                               32 bytes     proof
+//!   controller -> neighbour   52 43 53 32  "RCS2"
+//!                             02 00        version
+//!                             cc 00        clock: 0 the 40 ms grid, 1 fast
+//!                             32 bytes     random
+//!   neighbour -> controller   52 43 53 32  "RCS2"
+//!                             rr 00        who: the number of a [`Role`]
+//!                             00 00
+//!                             32 bytes     random
+//!                             32 bytes     proof
+//!   controller -> neighbour   a frame with the address [`WELCOME`](super::frame::WELCOME): 32 bytes, proof
 //! ```
 //!
-//! The proof is the HMAC-SHA256, with the secret as its key, of all 40 bytes of the controller and the first 8 of the neighbour; zeros
-//! where no secret was agreed upon. The secret does not travel, and an answer that was overheard opens nothing: the random
-//! bytes are new each time. What follows is not encrypted; on a network that others can listen to TLS has to do that.
+//! Both proofs are HMAC-SHA256 with the secret as key: of a word, `neighbour` or `controller`, and the 80 bytes in front of the
+//! first proof. Neither side gets anything from a stranger that it would take: the secret does not travel, the random bytes of
+//! both are new each time, and the words tell the sides apart. The keys by which the frames that follow are sealed
+//! ([`Seal`]) come from the same 80 bytes with the words `down` (from the controller) and `up`. Where no secret was agreed upon,
+//! proofs are zeros and frames have no seal. Nothing is encrypted.
 //!
-//! The controller answers by its first mailgrams, or by last words.
+//! Who is refused hears why by last words in the place of the welcome.
 
 use std::{
     fs, io,
@@ -22,16 +30,20 @@ use std::{
 use hmac::{Hmac, KeyInit as _, Mac as _};
 use sha2::Sha256;
 
-use super::Role;
+use super::{Role, seal::Seal};
 
-/// Bytes of either side.
+/// Bytes of the controller's hello.
 pub const HELLO: usize = 40;
-/// Bytes in front of random bytes or proof.
+/// Bytes of the neighbour's.
+pub const ANSWER: usize = HELLO + PROOF;
+/// Bytes of a proof.
+pub const PROOF: usize = 32;
+/// Bytes in front of random bytes.
 const FRONT: usize = 8;
 /// What both begin with.
 const MARK: &[u8; 4] = b"RCS2";
 /// Of the line.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 /// Bytes that a secret must have.
 const MIN_SECRET: usize = 16;
 
@@ -114,6 +126,9 @@ pub enum HelloError {
     /// He does not know the secret.
     #[error("the proof of the secret is wrong")]
     Proof,
+    /// The controller does not know it.
+    #[error("the controller does not know the secret: somebody else answers in its place")]
+    Impostor,
 }
 
 impl Challenge {
@@ -148,39 +163,100 @@ impl Challenge {
         if self.0[6] == 0 { ClockKind::Real } else { ClockKind::Fast }
     }
 
-    /// The answer of a neighbour.
-    #[must_use]
-    pub fn answer(&self, role: Role, secret: Option<&Secret>) -> [u8; HELLO] {
-        let mut bytes = front(role as u16, 0);
-        if let Some(mac) = self.proof(&bytes, secret) {
-            bytes[FRONT..].copy_from_slice(&mac.finalize().into_bytes());
+    /// The answer of a neighbour, and what follows from it.
+    ///
+    /// # Errors
+    /// If the system has no random bytes.
+    pub fn answer(
+        &self,
+        role: Role,
+        secret: Option<&Secret>,
+    ) -> io::Result<([u8; ANSWER], Option<Agreement>)> {
+        let mut hello = front(role as u16, 0);
+        getrandom::fill(&mut hello[FRONT..]).map_err(io::Error::other)?;
+        let agreement = secret.map(|secret| Agreement::new(secret, &self.0, &hello));
+        let mut bytes = [0; ANSWER];
+        bytes[..HELLO].copy_from_slice(&hello);
+        if let Some(agreement) = &agreement {
+            bytes[HELLO..].copy_from_slice(&agreement.mac(b"neighbour").finalize().into_bytes());
         }
-        bytes
+        Ok((bytes, agreement))
     }
 
-    /// Who answers.
+    /// Who answers, and what follows from it.
     ///
     /// # Errors
     /// [`HelloError`] if it is nobody who may.
-    pub fn judge(&self, answer: &[u8; HELLO], secret: Option<&Secret>) -> Result<Role, HelloError> {
-        let (number, _) = words(answer)?;
-        // Compared in a time that does not depend on the bytes.
-        let proven = match self.proof(answer, secret) {
-            Some(mac) => mac.verify_slice(&answer[FRONT..]).is_ok(),
-            None => answer[FRONT..] == [0; HELLO - FRONT],
-        };
-        if !proven {
+    pub fn judge(
+        &self,
+        answer: &[u8; ANSWER],
+        secret: Option<&Secret>,
+    ) -> Result<(Role, Option<Agreement>), HelloError> {
+        let (hello, proof) = answer.split_first_chunk().expect("an answer is longer than a hello");
+        let (number, _) = words(hello)?;
+        let agreement = secret.map(|secret| Agreement::new(secret, &self.0, hello));
+        if !is_proven(agreement.as_ref(), b"neighbour", proof) {
             return Err(HelloError::Proof);
         }
-        Role::from_number(number).ok_or(HelloError::Role(number))
+        let role = Role::from_number(number).ok_or(HelloError::Role(number))?;
+        Ok((role, agreement))
+    }
+}
+
+/// What two who know the secret have in common in one connection.
+pub struct Agreement {
+    /// The secret and what both have said.
+    base: Hmac<Sha256>,
+}
+
+impl Agreement {
+    fn new(secret: &Secret, controller: &[u8; HELLO], neighbour: &[u8; HELLO]) -> Self {
+        let mut base = Hmac::<Sha256>::new_from_slice(&secret.0).expect("any length will do");
+        base.update(controller);
+        base.update(neighbour);
+        Self { base }
     }
 
-    fn proof(&self, answer: &[u8; HELLO], secret: Option<&Secret>) -> Option<Hmac<Sha256>> {
-        let mut mac = Hmac::<Sha256>::new_from_slice(&secret?.0).ok()?;
-        mac.update(&self.0);
-        mac.update(&answer[..FRONT]);
-        Some(mac)
+    fn mac(&self, word: &[u8]) -> Hmac<Sha256> {
+        let mut mac = self.base.clone();
+        mac.update(word);
+        mac
     }
+
+    fn seal(&self, word: &[u8]) -> Seal {
+        Seal::new(self.mac(word).finalize().into_bytes().into())
+    }
+
+    /// Of frames from the controller.
+    #[must_use]
+    pub fn down(&self) -> Seal {
+        self.seal(b"down")
+    }
+
+    /// Of frames to the controller.
+    #[must_use]
+    pub fn up(&self) -> Seal {
+        self.seal(b"up")
+    }
+}
+
+/// The controller's proof.
+#[must_use]
+pub fn welcome(agreement: Option<&Agreement>) -> [u8; PROOF] {
+    agreement.map_or([0; PROOF], |agreement| agreement.mac(b"controller").finalize().into_bytes().into())
+}
+
+/// Whether it is the controller that welcomes.
+///
+/// # Errors
+/// [`HelloError::Impostor`].
+pub fn check_welcome(proof: &[u8], agreement: Option<&Agreement>) -> Result<(), HelloError> {
+    if is_proven(agreement, b"controller", proof) { Ok(()) } else { Err(HelloError::Impostor) }
+}
+
+/// Compared in a time that does not depend on the bytes.
+fn is_proven(agreement: Option<&Agreement>, word: &[u8], proof: &[u8]) -> bool {
+    agreement.map_or_else(|| proof == [0; PROOF], |agreement| agreement.mac(word).verify_slice(proof).is_ok())
 }
 
 fn front(first: u16, second: u16) -> [u8; HELLO] {
@@ -209,35 +285,63 @@ mod tests {
         Secret(text.as_bytes().to_vec())
     }
 
+    fn judged(
+        challenge: &Challenge,
+        answer: &[u8; ANSWER],
+        secret: Option<&Secret>,
+    ) -> Result<Role, HelloError> {
+        challenge.judge(answer, secret).map(|(role, _)| role)
+    }
+
     #[test]
     fn only_who_knows_the_secret_is_let_in() {
         let challenge = Challenge::new(ClockKind::Real).unwrap();
         let (ours, other) = (secret("correct horse battery"), secret("incorrect horse battery"));
-        let answer = challenge.answer(Role::Workstation, Some(&ours));
-        assert_eq!(challenge.judge(&answer, Some(&ours)), Ok(Role::Workstation));
-        assert_eq!(challenge.judge(&answer, Some(&other)), Err(HelloError::Proof));
-        assert_eq!(challenge.judge(&answer, None), Err(HelloError::Proof));
-        let bare = challenge.answer(Role::Workstation, None);
-        assert_eq!(challenge.judge(&bare, Some(&ours)), Err(HelloError::Proof));
-        assert_eq!(challenge.judge(&bare, None), Ok(Role::Workstation));
+        let (answer, _) = challenge.answer(Role::Workstation, Some(&ours)).unwrap();
+        assert_eq!(judged(&challenge, &answer, Some(&ours)), Ok(Role::Workstation));
+        assert_eq!(judged(&challenge, &answer, Some(&other)), Err(HelloError::Proof));
+        assert_eq!(judged(&challenge, &answer, None), Err(HelloError::Proof));
+        let (bare, _) = challenge.answer(Role::Workstation, None).unwrap();
+        assert_eq!(judged(&challenge, &bare, Some(&ours)), Err(HelloError::Proof));
+        assert_eq!(judged(&challenge, &bare, None), Ok(Role::Workstation));
         let later = Challenge::new(ClockKind::Real).unwrap();
-        assert_eq!(
-            later.judge(&answer, Some(&ours)),
-            Err(HelloError::Proof),
-            "an overheard answer is worth nothing"
-        );
+        let overheard = judged(&later, &answer, Some(&ours));
+        assert_eq!(overheard, Err(HelloError::Proof), "an overheard answer is worth nothing");
         let mut posing = answer;
         posing[4] = 2;
-        assert_eq!(challenge.judge(&posing, Some(&ours)), Err(HelloError::Proof), "who is proven too");
+        let posing = judged(&challenge, &posing, Some(&ours));
+        assert_eq!(posing, Err(HelloError::Proof), "who is proven too");
     }
 
-    /// The same with the tools of another language: `hmac.new(key, challenge + front, "sha256")` of Python.
     #[test]
-    fn the_proof_is_hmac_sha256() {
-        let challenge = Challenge(*b"RCS2\x01\x00\x00\x000123456789abcdef0123456789abcdef");
-        let answer = challenge.answer(Role::Workstation, Some(&secret("correct horse battery")));
-        let hex: String = answer[FRONT..].iter().map(|byte| format!("{byte:02x}")).collect();
-        assert_eq!(hex, "4274f0fbe94181232c8d897b4735c999b02d9e02e0c9ada7bd4667393aa931c9");
+    fn only_the_controller_is_believed() {
+        let challenge = Challenge::new(ClockKind::Real).unwrap();
+        let (ours, other) = (secret("correct horse battery"), secret("incorrect horse battery"));
+        let (answer, theirs) = challenge.answer(Role::Workstation, Some(&ours)).unwrap();
+        let (_, agreement) = challenge.judge(&answer, Some(&ours)).unwrap();
+        let welcome = welcome(agreement.as_ref());
+        assert_eq!(check_welcome(&welcome, theirs.as_ref()), Ok(()));
+        assert_eq!(check_welcome(&[0; PROOF], theirs.as_ref()), Err(HelloError::Impostor));
+        assert_eq!(check_welcome(&answer[HELLO..], theirs.as_ref()), Err(HelloError::Impostor), "echoed");
+        let (_, guessed) = challenge.answer(Role::Workstation, Some(&other)).unwrap();
+        assert_eq!(check_welcome(&welcome, guessed.as_ref()), Err(HelloError::Impostor));
+        assert_eq!(check_welcome(&welcome, None), Err(HelloError::Impostor));
+        assert_eq!(check_welcome(&[0; PROOF], None), Ok(()));
+    }
+
+    /// The same with the tools of another language: `hmac.new(key, hellos + word, "sha256")` of Python.
+    #[test]
+    fn proofs_are_hmac_sha256() {
+        let agreement = Agreement::new(
+            &secret("correct horse battery"),
+            b"RCS2\x02\x00\x00\x000123456789abcdef0123456789abcdef",
+            b"RCS2\x01\x00\x00\x00fedcba9876543210fedcba9876543210",
+        );
+        let hex = |word: &[u8]| -> String {
+            agreement.mac(word).finalize().into_bytes().iter().map(|byte| format!("{byte:02x}")).collect()
+        };
+        assert_eq!(hex(b"neighbour"), "9bc62a856b40a30e3fe988c93876d8aca34a9d59f1ebf94469fcaa0d604b8b93");
+        assert_eq!(hex(b"controller"), "6db0330c0c926ed383dc8d8af4ca9e46e50d7d2f6c813c0917e1cfb3a68b8e81");
     }
 
     #[test]
@@ -247,13 +351,12 @@ mod tests {
         let mut bytes = *challenge.bytes();
         bytes[4] = 9;
         assert_eq!(Challenge::from_bytes(bytes), Err(HelloError::Version(9)));
-        assert_eq!(
-            challenge.judge(b"GET / HTTP/1.1\r\nHost: robot\r\n\r\n         ", None),
-            Err(HelloError::Mark(*b"GET "))
-        );
-        let mut nobody = challenge.answer(Role::Workstation, None);
+        let mut browser = [b' '; ANSWER];
+        browser[..16].copy_from_slice(b"GET / HTTP/1.1\r\n");
+        assert_eq!(judged(&challenge, &browser, None), Err(HelloError::Mark(*b"GET ")));
+        let (mut nobody, _) = challenge.answer(Role::Workstation, None).unwrap();
         nobody[4] = 77;
-        assert_eq!(challenge.judge(&nobody, None), Err(HelloError::Role(77)));
+        assert_eq!(judged(&challenge, &nobody, None), Err(HelloError::Role(77)));
     }
 
     #[test]

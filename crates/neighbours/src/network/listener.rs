@@ -25,9 +25,9 @@ use rustix::{net::sockopt, process::geteuid};
 use super::{
     Address, Desk, News, Secret,
     frame::{Frame, FrameError},
-    hello::{Challenge, ClockKind, HELLO},
+    hello::{ANSWER, Agreement, Challenge, ClockKind, welcome},
     office::{Counter, Outlet as _},
-    stream::{Stream, is_timeout},
+    stream::{Receiver, Sender, Stream, is_timeout},
 };
 
 /// A neighbour that does not answer a pulse for so long is gone.
@@ -193,13 +193,13 @@ impl Reception {
         }
     }
 
-    /// Say hello; whose desk it is. Who is refused has said his hello before, so that he can hear why.
-    fn greet(&self, stream: &mut Stream) -> Result<&Counter, String> {
+    /// Say hello; whose desk it is, and what was agreed upon. Who is refused has said his hello before, so that he can hear why.
+    fn greet(&self, stream: &mut Stream) -> Result<(&Counter, Option<Agreement>), String> {
         let said = |error: &dyn std::fmt::Display| error.to_string();
         stream.prepare(patience(self.clock)).map_err(|error| said(&error))?;
         let challenge = Challenge::new(self.clock).map_err(|error| said(&error))?;
         io::Write::write_all(stream, challenge.bytes()).map_err(|error| said(&error))?;
-        let mut answer = [0; HELLO];
+        let mut answer = [0; ANSWER];
         io::Read::read_exact(stream, &mut answer).map_err(|error| format!("no hello: {error}"))?;
         if let Stream::Unix(socket) = stream {
             let peer = sockopt::socket_peercred(socket).map_err(|error| said(&error))?;
@@ -211,42 +211,56 @@ impl Reception {
                 ));
             }
         }
-        let role = challenge.judge(&answer, self.secret.as_ref()).map_err(|error| said(&error))?;
-        self.counters
-            .iter()
-            .find(|counter| counter.role() == role)
+        let (role, agreement) =
+            challenge.judge(&answer, self.secret.as_ref()).map_err(|error| said(&error))?;
+        let counter = self.counters.iter().find(|counter| counter.role() == role);
+        counter
+            .map(|counter| (counter, agreement))
             .ok_or_else(|| format!("no {role} was expected in another process"))
     }
 }
 
 /// A connection, from the hello to its end.
 fn receive(mut stream: Stream, reception: &Reception) {
-    let greeted = reception.greet(&mut stream).and_then(|counter| {
-        let outlet = stream.try_clone().map_err(|error| error.to_string())?;
-        counter.attach(Box::new(outlet)).map_err(|error| error.to_string())?;
-        Ok(counter)
-    });
+    let admitted = admit(&mut stream, reception);
     reception.strangers.fetch_sub(1, Ordering::AcqRel);
-    match greeted {
-        Ok(counter) => {
-            let why = read(&mut stream, counter);
-            // He may be gone already.
-            let _ = stream.send(&Frame::last_words(&why));
-            stream.shut_down();
-            counter.detach(why);
+    match admitted {
+        Ok((counter, agreement)) => {
+            let mut receiver = Receiver::new(stream);
+            receiver.seal(agreement.as_ref().map(Agreement::up));
+            counter.detach(read(&mut receiver, counter));
+        }
+        Err(why) => reception.tell(News::Refused(why)),
+    }
+}
+
+/// Let a neighbour in, or tell him why not.
+fn admit<'a>(
+    stream: &mut Stream,
+    reception: &'a Reception,
+) -> Result<(&'a Counter, Option<Agreement>), String> {
+    let mut sender = Sender::new(stream.try_clone().map_err(|error| error.to_string())?);
+    match reception.greet(stream) {
+        Ok((counter, agreement)) => {
+            let proof = welcome(agreement.as_ref());
+            sender.send(&Frame::welcome(&proof)).map_err(|error| error.to_string())?;
+            sender.seal(agreement.as_ref().map(Agreement::down));
+            counter.attach(Box::new(sender)).map_err(|error| error.to_string())?;
+            Ok((counter, agreement))
         }
         Err(why) => {
-            let _ = stream.send(&Frame::last_words(&why));
-            stream.shut_down();
-            reception.tell(News::Refused(why));
+            // He may be gone already.
+            let _ = sender.send(&Frame::last_words(&why));
+            sender.close();
+            Err(why)
         }
     }
 }
 
 /// Read until the connection ends; why it did.
-fn read(stream: &mut Stream, counter: &Counter) -> String {
+fn read(receiver: &mut Receiver, counter: &Counter) -> String {
     loop {
-        match Frame::read(stream) {
+        match receiver.receive() {
             Ok(frame) => {
                 if let Err(error) = counter.deliver(&frame) {
                     return error.to_string();

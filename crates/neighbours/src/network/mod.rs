@@ -10,7 +10,7 @@
 //!
 //! * [`role`]: who a neighbour is, and which mailboxes are his;
 //! * [`frame`]: a mailgram on the line, and the pulse that tells of ticks;
-//! * [`hello`]: how a connection begins, and who is let in;
+//! * [`hello`]: how a connection begins, and who is let in; [`seal`]: that a frame comes from him;
 //! * [`office`]: the mailboxes between tick and threads;
 //! * [`listener`]: the controller's end of the line, [`peer`]: the neighbour's.
 //!
@@ -24,6 +24,7 @@ pub mod listener;
 pub mod office;
 pub mod peer;
 pub mod role;
+pub mod seal;
 mod stream;
 
 pub use address::Address;

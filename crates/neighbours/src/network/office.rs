@@ -28,7 +28,7 @@ use crate::mailbox::{Mailbox, Place};
 
 /// Where frames go out to a neighbour.
 pub trait Outlet: Send {
-    /// Send a frame.
+    /// Send a frame, and its seal behind it where a secret was agreed upon.
     ///
     /// # Errors
     /// If it cannot be sent: then the neighbour is gone.
@@ -330,14 +330,18 @@ impl Counter {
         let _ = self.news.send(news);
     }
 
-    /// The neighbour comes. His mailboxes are initialized.
+    /// The neighbour comes. His mailboxes are initialized. A second one is told that there is one.
     ///
     /// # Errors
     /// [`Occupied`].
-    pub fn attach(&self, outlet: Box<dyn Outlet>) -> Result<(), Occupied> {
+    pub fn attach(&self, mut outlet: Box<dyn Outlet>) -> Result<(), Occupied> {
         let mut line = locked(&self.shared.outlet);
         if line.is_some() {
-            return Err(Occupied(self.shared.role));
+            let occupied = Occupied(self.shared.role);
+            // He may be gone already.
+            let _ = outlet.send(&Frame::last_words(&occupied.to_string()));
+            outlet.close();
+            return Err(occupied);
         }
         for mailbox in &self.shared.incoming {
             locked(mailbox).initialize();
@@ -353,10 +357,13 @@ impl Counter {
         Ok(())
     }
 
-    /// The neighbour goes.
+    /// The neighbour goes; he is told why, if he still hears it.
     pub fn detach(&self, why: String) {
         let mut line = locked(&self.shared.outlet);
-        *line = None;
+        if let Some(mut outlet) = line.take() {
+            let _ = outlet.send(&Frame::last_words(&why));
+            outlet.close();
+        }
         let answered = locked(&self.shared.answered);
         self.shared.connection.store(0, Ordering::Release);
         self.shared.news_of_answer.notify_all();

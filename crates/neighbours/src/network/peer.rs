@@ -10,10 +10,10 @@ use std::{
 
 use super::{
     Address, Role, Secret,
-    frame::{Frame, FrameError, LAST_WORDS},
-    hello::{Challenge, ClockKind, HELLO, HelloError},
+    frame::{Frame, FrameError, LAST_WORDS, WELCOME},
+    hello::{Agreement, Challenge, ClockKind, HELLO, HelloError, check_welcome},
     office::Outlet as _,
-    stream::{Stream, is_timeout},
+    stream::{Receiver, Sender, Stream, is_timeout},
 };
 use crate::mailbox::{Mailbox, MailboxError, Place};
 
@@ -81,7 +81,8 @@ pub enum Received {
 
 /// A connection to the controller.
 pub struct Peer {
-    stream: Stream,
+    sender: Sender,
+    receiver: Receiver,
     role: Role,
     clock: ClockKind,
     incoming: Vec<Mailbox>,
@@ -91,7 +92,7 @@ impl Peer {
     /// Connect as a neighbour.
     ///
     /// # Errors
-    /// [`PeerError`]. Whether one is let in shows at the first [`receive`](Self::receive).
+    /// [`PeerError`]; [`PeerError::LastWords`] if one is not let in.
     pub fn connect(address: &Address, role: Role, secret: Option<&Secret>) -> Result<Self, PeerError> {
         let failed = |source| PeerError::Line { address: address.clone(), source };
         let mut stream = match address {
@@ -101,15 +102,25 @@ impl Peer {
         stream.prepare(LIMIT).map_err(failed)?;
         let mut bytes = [0; HELLO];
         io::Read::read_exact(&mut stream, &mut bytes).map_err(failed)?;
-        let challenge = Challenge::from_bytes(bytes)
-            .map_err(|source| PeerError::Hello { address: address.clone(), source })?;
-        io::Write::write_all(&mut stream, &challenge.answer(role, secret)).map_err(failed)?;
+        let mistrusted = |source| PeerError::Hello { address: address.clone(), source };
+        let challenge = Challenge::from_bytes(bytes).map_err(mistrusted)?;
+        let (answer, agreement) = challenge.answer(role, secret).map_err(failed)?;
+        io::Write::write_all(&mut stream, &answer).map_err(failed)?;
+        let mut sender = Sender::new(stream.try_clone().map_err(failed)?);
+        let mut receiver = Receiver::new(stream.try_clone().map_err(failed)?);
+        let welcome = receive(&mut receiver)?;
+        if welcome.address() != WELCOME {
+            return Err(mistrusted(HelloError::Impostor));
+        }
+        check_welcome(welcome.data(), agreement.as_ref()).map_err(mistrusted)?;
+        sender.seal(agreement.as_ref().map(Agreement::up));
+        receiver.seal(agreement.as_ref().map(Agreement::down));
         if challenge.clock() == ClockKind::Fast {
             // Its time may stand still for as long as it likes; on the grid there is a pulse every 40 ms.
             stream.unlimited().map_err(failed)?;
         }
         let incoming = role.from_controller().iter().map(|&place| Mailbox::initialized(place)).collect();
-        Ok(Self { stream, role, clock: challenge.clock(), incoming })
+        Ok(Self { sender, receiver, role, clock: challenge.clock(), incoming })
     }
 
     /// Connect, and try again for a while as long as nobody is there.
@@ -152,16 +163,9 @@ impl Peer {
     /// # Errors
     /// [`PeerError`] if the connection ends.
     pub fn receive(&mut self) -> Result<Received, PeerError> {
-        let frame = Frame::read(&mut self.stream).map_err(|error| match error {
-            FrameError::Stream(error) if is_timeout(&error) => PeerError::Silent,
-            FrameError::Stream(error) if error.kind() == io::ErrorKind::UnexpectedEof => PeerError::Closed,
-            error => error.into(),
-        })?;
+        let frame = receive(&mut self.receiver)?;
         if let Some(tick) = frame.as_pulse() {
             return Ok(Received::Pulse(tick));
-        }
-        if frame.address() == LAST_WORDS {
-            return Err(PeerError::LastWords(String::from_utf8_lossy(frame.data()).into_owned()));
         }
         let expected = self.role.from_controller();
         let mailbox = self.incoming.iter_mut().find(|mailbox| mailbox.place().address == frame.address());
@@ -187,6 +191,19 @@ impl Peer {
     }
 
     fn frame(&mut self, frame: &Frame) -> Result<(), PeerError> {
-        self.stream.send(frame).map_err(|error| FrameError::Stream(error).into())
+        self.sender.send(frame).map_err(|error| FrameError::Stream(error).into())
     }
+}
+
+/// The next frame, if it is not the last.
+fn receive(receiver: &mut Receiver) -> Result<Frame, PeerError> {
+    let frame = receiver.receive().map_err(|error| match error {
+        FrameError::Stream(error) if is_timeout(&error) => PeerError::Silent,
+        FrameError::Stream(error) if error.kind() == io::ErrorKind::UnexpectedEof => PeerError::Closed,
+        error => error.into(),
+    })?;
+    if frame.address() == LAST_WORDS {
+        return Err(PeerError::LastWords(String::from_utf8_lossy(frame.data()).into_owned()));
+    }
+    Ok(frame)
 }

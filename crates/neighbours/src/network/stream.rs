@@ -1,4 +1,4 @@
-//! A connected socket of either kind.
+//! A connected socket of either kind, and the frames that go over it.
 
 use std::{
     io::{self, Read, Write},
@@ -7,7 +7,11 @@ use std::{
     time::Duration,
 };
 
-use super::{frame::Frame, office::Outlet};
+use super::{
+    frame::{Frame, FrameError, MAX_FRAME},
+    office::Outlet,
+    seal::{SEAL, Seal},
+};
 
 /// A connected socket.
 pub(super) enum Stream {
@@ -80,13 +84,66 @@ impl Write for Stream {
     }
 }
 
-impl Outlet for Stream {
+/// Frames that go out.
+pub(super) struct Sender {
+    stream: Stream,
+    seal: Option<Seal>,
+}
+
+impl Sender {
+    /// Frames without a seal, until there is one.
+    pub const fn new(stream: Stream) -> Self {
+        Self { stream, seal: None }
+    }
+
+    /// From here on frames have a seal.
+    pub fn seal(&mut self, seal: Option<Seal>) {
+        self.seal = seal;
+    }
+}
+
+impl Outlet for Sender {
     fn send(&mut self, frame: &Frame) -> io::Result<()> {
-        self.write_all(frame.bytes())
+        let Some(seal) = &mut self.seal else { return self.stream.write_all(frame.bytes()) };
+        // In one piece: a frame without its seal is not worth a packet.
+        let mut bytes = [0; MAX_FRAME + SEAL];
+        let length = frame.bytes().len();
+        bytes[..length].copy_from_slice(frame.bytes());
+        bytes[length..length + SEAL].copy_from_slice(&seal.close(frame.bytes()));
+        self.stream.write_all(&bytes[..length + SEAL])
     }
 
     fn close(&mut self) {
-        self.shut_down();
+        self.stream.shut_down();
+    }
+}
+
+/// Frames that come in.
+pub(super) struct Receiver {
+    stream: Stream,
+    seal: Option<Seal>,
+}
+
+impl Receiver {
+    /// Frames without a seal, until there is one.
+    pub const fn new(stream: Stream) -> Self {
+        Self { stream, seal: None }
+    }
+
+    /// From here on frames have a seal.
+    pub fn seal(&mut self, seal: Option<Seal>) {
+        self.seal = seal;
+    }
+
+    /// The next one.
+    pub fn receive(&mut self) -> Result<Frame, FrameError> {
+        let frame = Frame::read(&mut self.stream)?;
+        if let Some(seal) = &mut self.seal {
+            let mut bytes = [0; SEAL];
+            self.stream.read_exact(&mut bytes)?;
+            seal.open(frame.bytes(), &bytes)?;
+        }
+        Ok(frame)
     }
 }
 
