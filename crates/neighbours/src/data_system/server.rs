@@ -1,8 +1,8 @@
 //! The server: bytes of a command in, bytes of a status out.
 //!
 //! It is strict about the order of a connection: an item is taken only from a client that has made itself known and begun
-//! (IV.4.2: Abort, Initiate, Startup). How far a client has come stands in the data base: a server that is restarted goes on as if
-//! it had only been slow.
+//! (IV.4.2: Abort, Initiate, Startup). A step that is asked for once more, since its answer was lost, is done already. How far
+//! a client has come stands in the data base: a server that is restarted goes on as if it had only been slow.
 //!
 //! ```text
 //!            INITIATE              STARTUP
@@ -86,8 +86,9 @@ impl Server {
         let session = Session::from_code(self.store.session(received.client).map_err(kept)?);
         let session = match (received.transaction, session) {
             (Transaction::Abort, _) => Session::Closed,
-            (Transaction::Initiate, Session::Closed) => Session::Initiated,
-            (Transaction::Startup, Session::Initiated) => Session::Started,
+            // Who asks again has not heard the answer.
+            (Transaction::Initiate, Session::Closed | Session::Initiated) => Session::Initiated,
+            (Transaction::Startup, Session::Initiated | Session::Started) => Session::Started,
             (Transaction::Dml, Session::Started) => return self.update(received),
             (asked, state) => {
                 return Err((Refusal::Sequence, format!("{asked:?} from a client that is {state:?}")));
@@ -211,13 +212,20 @@ mod tests {
         assert_eq!(client.ask(DataBaseVerb::Startup), SEQUENCE);
         assert_eq!(client.ask(DataBaseVerb::Initiate), Summary::Done);
         assert_eq!(client.tell("LINKBAR1", "", "UNIT_1", 4).status.summary, SEQUENCE);
-        assert_eq!(client.ask(DataBaseVerb::Initiate), SEQUENCE);
         assert_eq!(client.ask(DataBaseVerb::Startup), Summary::Done);
-        assert_eq!(client.ask(DataBaseVerb::Startup), SEQUENCE);
+        assert_eq!(client.ask(DataBaseVerb::Initiate), SEQUENCE);
         assert_eq!(client.tell("LINKBAR1", "", "UNIT_1", 4).status.summary, Summary::Done);
         assert_eq!(client.ask(DataBaseVerb::Abort), Summary::Done);
         assert_eq!(client.tell("LINKBAR1", "", "UNIT_2", 1).status.summary, SEQUENCE);
         assert_eq!(client.items(), ["LINKBAR1  HWS UNIT_1 4"]);
+    }
+
+    #[test]
+    fn a_step_whose_answer_was_lost_can_be_asked_for_again() {
+        let mut client = Client::new();
+        for verb in [DataBaseVerb::Initiate, DataBaseVerb::Startup, DataBaseVerb::Abort] {
+            assert_eq!((client.ask(verb), client.ask(verb)), (Summary::Done, Summary::Done), "{verb}");
+        }
     }
 
     #[test]
