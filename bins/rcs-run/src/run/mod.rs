@@ -55,7 +55,8 @@ use self::{
     pace::Pace,
     progress::Progress,
     result::{
-        CommandResult, EmergencyResult, FailureResult, FaultsResult, ItemResult, Page, PortResult, RunResult,
+        CommandResult, EmergencyResult, Events, FailureResult, FaultsResult, ItemResult, Page, PortResult,
+        RunResult,
     },
     robot::{Port, Robot},
     setup::Setup,
@@ -84,8 +85,8 @@ struct Run {
     judge: Judge,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<(Level, &'static str, String)>,
-    /// All events, with their ticks.
-    events: Vec<String>,
+    /// What has happened, for the page.
+    events: Events,
 }
 
 /// How a run ended.
@@ -139,7 +140,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         pace: Pace::fast(arguments.overrun),
         judge: Judge::new(description.contact),
         fresh: Vec::new(),
-        events: Vec::new(),
+        events: Events::default(),
     };
     // Ends before the run does: it looks on as any reader.
     let mirror = run.runner.publisher().and_then(mirror);
@@ -374,7 +375,9 @@ impl Run {
         let lines = self.judge.look(tick, self.workstation.cell.contacts(), commands);
         self.fresh.extend(lines.into_iter().map(|line| (Level::Error, "cell", line)));
         self.workstation.cell.watch_clearance(self.judge.margin());
-        self.events.extend(self.fresh.iter().map(|(_, _, event)| format!("tick {tick}: {event}")));
+        for (_, _, event) in &self.fresh {
+            self.events.push(tick, event);
+        }
     }
 
     /// What neighbours say beside their mailboxes is an event of the run; Task learns no more than their statuses tell.
@@ -383,7 +386,7 @@ impl Run {
             if let Some(log) = &mut self.log {
                 log.note(tick, level, source, &text);
             }
-            self.events.push(format!("tick {tick}: {text}"));
+            self.events.push(tick, &text);
         }
     }
 

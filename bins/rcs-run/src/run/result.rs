@@ -13,7 +13,7 @@ use neighbours::workstation::player::Record;
 use plant::{PartState, fault::Struck};
 use rcs_core::{
     interface::t3i::LinkCounters,
-    tick::{TICK_MS, TICK_S},
+    tick::{TICK_MS, TICK_S, Tick},
 };
 use serde::Serialize;
 
@@ -420,7 +420,7 @@ pub struct Page<'a> {
     /// All steps, those of the workstation included.
     pub steps: &'a [Record],
     /// What happened in the cell that should not.
-    pub events: &'a [String],
+    pub events: &'a Events,
     /// Lines about the log.
     pub log: &'a str,
     /// The processes that took longest.
@@ -431,6 +431,23 @@ pub struct Page<'a> {
 
 /// Events that are printed; the rest is in the log.
 const EVENTS_SHOWN: usize = 10;
+
+/// What has happened in a run, as far as it is printed: a run of a year must not fill the memory.
+#[derive(Default)]
+pub struct Events {
+    first: Vec<String>,
+    count: usize,
+}
+
+impl Events {
+    /// Something has happened in a tick.
+    pub fn push(&mut self, tick: Tick, what: &str) {
+        self.count += 1;
+        if self.first.len() < EVENTS_SHOWN {
+            self.first.push(format!("tick {tick}: {what}"));
+        }
+    }
+}
 
 impl fmt::Display for Page<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -460,11 +477,12 @@ impl fmt::Display for Page<'_> {
         if let Some(nearest) = &result.clearance {
             writeln!(f, "clearance  {nearest}")?;
         }
-        for event in self.events.iter().take(EVENTS_SHOWN) {
+        for event in &self.events.first {
             writeln!(f, "event      {event}")?;
         }
-        if self.events.len() > EVENTS_SHOWN {
-            writeln!(f, "           and {} more, all in the log", self.events.len() - EVENTS_SHOWN)?;
+        let more = self.events.count - self.events.first.len();
+        if more > 0 {
+            writeln!(f, "           and {more} more, all in the log")?;
         }
         if let Some(EmergencyResult { tick, cause, touched, .. }) = &result.emergency_stop {
             let into = match touched.len() {

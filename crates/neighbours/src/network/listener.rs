@@ -17,7 +17,7 @@ use std::{
         atomic::{AtomicBool, AtomicUsize, Ordering},
     },
     thread::{self, JoinHandle},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use rustix::{net::sockopt, process::geteuid};
@@ -36,6 +36,8 @@ const PATIENCE: Duration = Duration::from_secs(10);
 const FAST_PATIENCE: Duration = Duration::from_secs(60);
 /// Connections that have not said who they are, at most.
 const STRANGERS: usize = 8;
+/// For so long a place among them is not given to another after a refusal: nobody can guess as fast as he likes, or fill the log.
+const PENALTY: Duration = Duration::from_secs(1);
 
 /// Why nobody can connect.
 #[derive(Debug, thiserror::Error)]
@@ -163,6 +165,7 @@ fn unix(path: &Path, address: &Address) -> Result<UnixListener, ListenError> {
 }
 
 fn listen(socket: &Socket, over: &AtomicBool, reception: &Arc<Reception>) {
+    let mut crowded: Option<Instant> = None;
     while !over.load(Ordering::Acquire) {
         let accepted = match socket {
             Socket::Unix(listener) => listener.accept().map(|(stream, _)| Stream::Unix(stream)),
@@ -181,7 +184,10 @@ fn listen(socket: &Socket, over: &AtomicBool, reception: &Arc<Reception>) {
             thread::spawn(move || receive(stream, &reception));
         } else {
             reception.strangers.fetch_sub(1, Ordering::AcqRel);
-            reception.tell(News::Refused("too many connect at once".to_owned()));
+            if crowded.is_none_or(|since| since.elapsed() >= PENALTY) {
+                crowded = Some(Instant::now());
+                reception.tell(News::Refused("too many connect at once".to_owned()));
+            }
         }
     }
 }
@@ -222,15 +228,18 @@ impl Reception {
 
 /// A connection, from the hello to its end.
 fn receive(mut stream: Stream, reception: &Reception) {
-    let admitted = admit(&mut stream, reception);
-    reception.strangers.fetch_sub(1, Ordering::AcqRel);
-    match admitted {
+    match admit(&mut stream, reception) {
         Ok((counter, agreement)) => {
+            reception.strangers.fetch_sub(1, Ordering::AcqRel);
             let mut receiver = Receiver::new(stream);
             receiver.seal(agreement.as_ref().map(Agreement::up));
             counter.detach(read(&mut receiver, counter));
         }
-        Err(why) => reception.tell(News::Refused(why)),
+        Err(why) => {
+            reception.tell(News::Refused(why));
+            thread::sleep(PENALTY);
+            reception.strangers.fetch_sub(1, Ordering::AcqRel);
+        }
     }
 }
 
@@ -282,12 +291,13 @@ fn read(receiver: &mut Receiver, counter: &Counter) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::network::{Peer, Role};
 
     #[test]
     fn a_socket_that_was_left_behind_is_taken_over_and_no_other_file_is() {
         let place = tempfile::tempdir().unwrap();
         let (socket, file) = (place.path().join("rcs.sock"), place.path().join("notes"));
-        let desk = Desk::new(super::super::Role::Workstation, ClockKind::Real);
+        let desk = Desk::new(Role::Workstation, ClockKind::Real);
         drop(UnixListener::bind(&socket).unwrap());
         let listener = Listener::start(&Address::Unix(socket.clone()), None, [&desk]).unwrap();
         let second = Listener::start(&Address::Unix(socket.clone()), None, [&desk]);
@@ -298,5 +308,26 @@ mod tests {
         let refused = Listener::start(&Address::Unix(file.clone()), None, [&desk]);
         assert!(matches!(refused, Err(ListenError::Address { .. })));
         assert_eq!(fs::read_to_string(file).unwrap(), "not to be lost");
+    }
+
+    /// Everybody gets the same answer, but the run hears of no more than it can take, and is open again soon.
+    #[test]
+    fn who_tries_again_and_again_fills_no_log_and_locks_nobody_out() {
+        let place = tempfile::tempdir().unwrap();
+        let address = Address::Unix(place.path().join("rcs.sock"));
+        let desk = Desk::new(Role::Workstation, ClockKind::Real);
+        let _listener = Listener::start(&address, None, [&desk]).unwrap();
+        let started = Instant::now();
+        let mut tried = 0_u32;
+        while started.elapsed() < PENALTY * 3 {
+            assert!(Peer::connect(&address, Role::DataSystem, None).is_err(), "nobody expects one");
+            tried += 1;
+        }
+        Peer::connect_within(FAST_PATIENCE, &address, Role::Workstation, None).unwrap();
+        let heard = std::iter::from_fn(|| desk.news()).filter(|news| matches!(news, News::Refused(_)));
+        let heard = u32::try_from(heard.count()).unwrap();
+        // A place among the strangers once in a penalty, and a word about the crowd; time goes on behind the loop as well.
+        let most = (started.elapsed().as_secs_f64() / PENALTY.as_secs_f64()).ceil() as u32 + 1;
+        assert!(heard <= most * (STRANGERS as u32 + 1), "{heard} of {tried} in {most} s");
     }
 }
