@@ -8,6 +8,7 @@ use std::{
 };
 
 use levels::task::plan::TaskVerb;
+use neighbours::{mailbox::TABLE, network::Role};
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs},
     record::{EnumSchema, Field, RecordSchema, Schema},
@@ -29,6 +30,8 @@ struct Page {
     lines: Vec<Line>,
     /// What the interfaces have beyond the manual: code and reason. A star means all of a type.
     beyond: Vec<(String, String)>,
+    /// The mailboxes of chapter IX: description, address, bytes, section, test.
+    mailboxes: Vec<[String; 5]>,
     /// The figures at the top: kind, total, in the code, tested.
     figures: Vec<(String, [usize; 3])>,
 }
@@ -41,7 +44,7 @@ fn cells(line: &str) -> Option<Vec<String>> {
 
 fn page() -> Page {
     let text = fs::read_to_string(root().join("docs/traceability.md")).expect("the page is there");
-    let mut page = Page { lines: Vec::new(), beyond: Vec::new(), figures: Vec::new() };
+    let mut page = Page { lines: Vec::new(), beyond: Vec::new(), mailboxes: Vec::new(), figures: Vec::new() };
     let mut heading = "";
     for line in text.lines() {
         if let Some(title) = line.strip_prefix("## ") {
@@ -49,12 +52,17 @@ fn page() -> Page {
         }
         let Some(cells) = cells(line) else { continue };
         match (heading, cells.as_slice()) {
-            (_, [first, ..]) if first.is_empty() || first == "name" || first == "code" => {}
+            (_, [first, ..])
+                if first.is_empty() || first == "name" || first == "code" || first == "mailbox" => {}
             ("", [kind, numbers @ ..]) => {
                 let numbers: Vec<usize> = numbers.iter().map(|n| n.parse().expect("a figure")).collect();
                 page.figures.push((kind.clone(), numbers.try_into().expect("three figures")));
             }
             ("Beyond the manual", [code, why]) => page.beyond.push((code.clone(), why.clone())),
+            ("Mailboxes", [mailbox, address, bytes, section, test]) => {
+                let line = [mailbox, address, bytes, section, test];
+                page.mailboxes.push(line.map(Clone::clone));
+            }
             (_, [name, of, section, code, test]) => page.lines.push(Line {
                 kind: match heading {
                     "Commands" => "commands",
@@ -226,6 +234,28 @@ fn a_command_or_a_status_is_named_as_the_code_has_it() {
     }
 }
 
+/// Every mailbox of every neighbour, and nothing else, is on the page, at its address and with its size.
+#[test]
+fn the_mailboxes_are_those_of_the_neighbours() {
+    let of = |role: &Role| role.to_controller().iter().chain(role.from_controller());
+    let all: BTreeSet<_> = Role::ALL
+        .iter()
+        .flat_map(of)
+        .map(|place| (place.name.to_owned(), format!("{:05X}", place.address), place.size.to_string()))
+        .collect();
+    let page = page();
+    let named: BTreeSet<_> = page
+        .mailboxes
+        .iter()
+        .map(|[name, address, bytes, _, _]| (name.clone(), address.clone(), bytes.clone()))
+        .collect();
+    assert_eq!(named, all);
+    let in_table = |name: &str| TABLE.iter().any(|place| place.name == name);
+    for [name, _, _, section, _] in &page.mailboxes {
+        assert_eq!(section.starts_with("IX, Table IX.1"), in_table(name), "{name}: {section}");
+    }
+}
+
 #[test]
 fn every_test_that_the_page_names_is_there() {
     let sources = text_of(&["crates", "bins", "tests"]);
@@ -239,7 +269,11 @@ fn every_test_that_the_page_names_is_there() {
             })
         })
     };
-    for line in page().lines {
+    let page = page();
+    for [name, .., test] in page.mailboxes {
+        assert!(is_test(&test), "{name}: no test {test}");
+    }
+    for line in page.lines {
         match line.code {
             Some(_) => assert!(is_test(&line.test), "{} of {}: no test {}", line.name, line.of, line.test),
             None => assert!(line.test.contains(' '), "{} of {} is left out for a reason", line.name, line.of),
