@@ -21,6 +21,10 @@ Examples:
                                        a run that keeps no items itself
   rcs-neighbour data-system --network unix:/tmp/rcs.sock items.db
                                        and who keeps them: sqlite3 items.db 'SELECT * FROM whereabouts'
+  rcs-run clevis --network unix:/tmp/rcs.sock --outside pedestal
+                                       a run whose pedestal is a system of its own
+  rcs-neighbour pedestal --network unix:/tmp/rcs.sock
+                                       and the pedestal
 
 Exit status: 0 finished; 1 the job failed or the connection broke; 2 usage, configuration or data error."
 )]
@@ -37,6 +41,8 @@ pub enum Command {
     Workstation(WorkstationArguments),
     /// The Data System: keeps items in an SQLite file, for one run after the other, until none has come for a while
     DataSystem(DataSystemArguments),
+    /// The Active Pedestal, with its devices in the simulated cell: for one run after the other, until none has come for a while
+    Pedestal(PedestalArguments),
 }
 
 /// Where the controller is.
@@ -76,6 +82,14 @@ pub struct DataSystemArguments {
     /// The SQLite file, which is made if it is not there
     #[arg(value_name = "FILE")]
     pub data_base: PathBuf,
+}
+
+/// Arguments of `pedestal`.
+#[derive(Clone, Debug, Args)]
+pub struct PedestalArguments {
+    /// Where the controller is.
+    #[command(flatten)]
+    pub controller: ControllerArguments,
 }
 
 #[cfg(test)]

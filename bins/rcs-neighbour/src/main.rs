@@ -5,6 +5,7 @@
 
 mod cli;
 mod data_system;
+mod pedestal;
 mod workstation;
 
 use std::{process::ExitCode, time::Duration};
@@ -61,6 +62,7 @@ fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Workstation(arguments) => workstation::play(&arguments),
         Command::DataSystem(arguments) => data_system::serve(&arguments),
+        Command::Pedestal(arguments) => pedestal::serve(&arguments),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -31,6 +31,10 @@ pub struct ProcessStatus {
     pub row: u8,
     /// It was not stepped: dormant or held.
     pub suspended: bool,
+    /// It runs in another system.
+    pub elsewhere: bool,
+    /// Nothing has come from it in this tick.
+    pub lost: bool,
 }
 
 /// A run.
@@ -69,6 +73,8 @@ impl Status {
                 table: info.table(header.table).map(|table| table.name),
                 row: header.row,
                 suspended: header.republished,
+                elsewhere: of_pedestal(id) && external.pedestal.elsewhere,
+                lost: header.stamp != pulse.tick,
             }
         });
         Self {
@@ -82,6 +88,11 @@ impl Status {
             processes: processes.collect(),
         }
     }
+}
+
+/// A process that can run in another system.
+const fn of_pedestal(process: ProcessId) -> bool {
+    matches!(process, ProcessId::Pedestal | ProcessId::Hand | ProcessId::RotaryTable)
 }
 
 /// The word of a process's status report.
@@ -118,9 +129,15 @@ impl fmt::Display for Status {
         for process in &self.processes {
             let row = process.table.map_or_else(String::new, |table| format!("{table} row {}", process.row));
             let suspended = if process.suspended { " (suspended)" } else { "" };
+            let elsewhere = match (process.elsewhere, process.lost) {
+                (true, true) => " (another system, which does not answer)",
+                (true, false) => " (another system)",
+                (false, true) => " (lost)",
+                (false, false) => "",
+            };
             writeln!(
                 f,
-                "  {:<15} {:<14} {:<28} {}{suspended}",
+                "  {:<15} {:<14} {:<28} {}{suspended}{elsewhere}",
                 process.process, process.status, row, process.command
             )?;
         }
@@ -143,7 +160,9 @@ mod tests {
         external.hws.command = Name16::clipped("PAUSE");
         memory.subtask.emove.command = EmoveVerb::Pause;
         memory.grip.status.report = GripReport::ALL[1];
-        memory.grip.header.republished = true;
+        (memory.grip.header.stamp, memory.grip.header.republished) = (Tick(50), true);
+        external.pedestal.elsewhere = true;
+        memory.hand.header.stamp = Tick(50);
         (memory.task.header.table, memory.task.header.row) = (1, 2);
         let pulse = Pulse { tick: Tick(50), skipped: 3, controller_ns: 2500, ..Pulse::default() };
         let status = Status::of("linkbar-1", &external, &memory, &pulse);
@@ -155,6 +174,12 @@ mod tests {
         assert_eq!((grip.status, grip.suspended, grip.table), (GripReport::ALL[1].text(), true, None));
         let text = status.to_string();
         assert!(text.starts_with("linkbar-1: tick 50 (2.0 s), 3 slots skipped, 0 allocations"), "{text}");
-        assert!(text.lines().any(|line| line.contains("Grip") && line.ends_with("(suspended)")), "{text}");
+        let ends = |process: &str, end: &str| {
+            text.lines().any(|l| l.contains(process) && l.trim_end().ends_with(end))
+        };
+        assert!(ends("Grip", "(suspended)"), "{text}");
+        assert!(ends("Pedestal Hand", "(another system)"), "{text}");
+        assert!(ends("Rotary Table", "(another system, which does not answer)"), "{text}");
+        assert!(ends("V-Grip", "(lost)"), "{text}");
     }
 }

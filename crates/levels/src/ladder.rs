@@ -2,11 +2,13 @@
 //!
 //! Every process reads common memory as the tick before left it and writes only its own part of the next one, so the order in
 //! which they are stepped cannot change a bit of the result ([`Ladder::step_in_order`] lets a test try).
+//!
+//! The processes of an Active Pedestal that is a system of its own are not stepped: what they sent is adopted in their place.
 
 use rcs_core::{
     coded_enum,
     interface::{
-        CommonMemory, ExternalInputs, Header,
+        CommonMemory, ExternalInputs, Header, OutsidePedestal,
         device::{JoystickBox, single_step},
     },
     process::{Inputs, Process},
@@ -214,6 +216,20 @@ const fn republish(header: &mut Header, tick: Tick) {
     header.republished = true;
 }
 
+/// A process of the pedestal that runs in another system: take over what it has sent, as if it had run here in this tick. Of one
+/// that does not answer everything stays, the old stamp too, so that its readers know it for lost (DESIGN 16).
+const fn adopt(process: ProcessId, sent: &OutsidePedestal, tick: Tick, memory: &mut CommonMemory) {
+    if !sent.answers {
+        return;
+    }
+    match process {
+        ProcessId::Hand => memory.hand = sent.hand,
+        ProcessId::RotaryTable => memory.table = sent.table,
+        _ => memory.pedestal = sent.pedestal,
+    }
+    header_of(process, memory).stamp = tick;
+}
+
 impl Ladder {
     /// The processes and their tables, in the order of [`ProcessId`].
     #[must_use]
@@ -281,6 +297,11 @@ impl Ladder {
                 ProcessId::Grip => self.grip.step(&inputs, &mut after.grip),
                 ProcessId::VGrip => self.v_grip.step(&inputs, &mut after.v_grip),
                 ProcessId::ToolGrip => self.tool_grip.step(&inputs, &mut after.tool_grip),
+                ProcessId::Pedestal | ProcessId::Hand | ProcessId::RotaryTable
+                    if external.pedestal.elsewhere =>
+                {
+                    adopt(process, &external.pedestal, tick, after);
+                }
                 ProcessId::Pedestal => self.pedestal.step(&inputs, &mut after.pedestal),
                 ProcessId::Hand => self.hand.step(&inputs, &mut after.hand),
                 ProcessId::RotaryTable => self.table.step(&inputs, &mut after.table),

@@ -1,5 +1,5 @@
 //! Fixed fields of a mailbox's data, as fixed-field interfaces have them (V.4.2, VI.7.2): texts with blanks behind them,
-//! integers of two bytes, low byte first. Nothing here allocates.
+//! integers of two, four or eight bytes, low byte first. Nothing here allocates.
 
 use std::fmt::{self, Write as _};
 
@@ -119,6 +119,26 @@ impl<const N: usize> Packer<N> {
         self.put(&value.to_le_bytes());
     }
 
+    /// An unsigned integer of four bytes.
+    pub fn long(&mut self, value: u32) {
+        self.put(&value.to_le_bytes());
+    }
+
+    /// A signed integer of four bytes.
+    pub fn long_integer(&mut self, value: i32) {
+        self.put(&value.to_le_bytes());
+    }
+
+    /// An unsigned integer of eight bytes.
+    pub fn quad(&mut self, value: u64) {
+        self.put(&value.to_le_bytes());
+    }
+
+    /// A flag: 1 or 0, in two bytes.
+    pub fn flag(&mut self, value: bool) {
+        self.word(u16::from(value));
+    }
+
     /// Bytes as they are.
     pub fn raw(&mut self, bytes: &[u8]) {
         self.put(bytes);
@@ -221,6 +241,56 @@ impl<'a> Unpacker<'a> {
         let bytes = self.raw(field, 2)?;
         Ok(i32::from(i16::from_le_bytes([bytes[0], bytes[1]])))
     }
+
+    /// The next `N` bytes as they are.
+    fn chunk<const N: usize>(&mut self, field: &'static str) -> Result<[u8; N], FieldError> {
+        self.raw(field, N)?.try_into().map_err(|_| FieldError::End { field })
+    }
+
+    /// An unsigned integer of four bytes.
+    ///
+    /// # Errors
+    /// [`FieldError::End`].
+    pub fn long(&mut self, field: &'static str) -> Result<u32, FieldError> {
+        self.chunk(field).map(u32::from_le_bytes)
+    }
+
+    /// A signed integer of four bytes.
+    ///
+    /// # Errors
+    /// [`FieldError::End`].
+    pub fn long_integer(&mut self, field: &'static str) -> Result<i32, FieldError> {
+        self.chunk(field).map(i32::from_le_bytes)
+    }
+
+    /// An unsigned integer of eight bytes.
+    ///
+    /// # Errors
+    /// [`FieldError::End`].
+    pub fn quad(&mut self, field: &'static str) -> Result<u64, FieldError> {
+        self.chunk(field).map(u64::from_le_bytes)
+    }
+
+    /// An unsigned integer of two bytes that is at most 255.
+    ///
+    /// # Errors
+    /// [`FieldError`] if it is more, or the data end.
+    pub fn byte(&mut self, field: &'static str) -> Result<u8, FieldError> {
+        let found = self.word(field)?;
+        u8::try_from(found).map_err(|_| FieldError::Code { field, found })
+    }
+
+    /// A flag of two bytes: 1 or 0.
+    ///
+    /// # Errors
+    /// [`FieldError`] if it is neither, or the data end.
+    pub fn flag(&mut self, field: &'static str) -> Result<bool, FieldError> {
+        match self.word(field)? {
+            0 => Ok(false),
+            1 => Ok(true),
+            found => Err(FieldError::Code { field, found }),
+        }
+    }
 }
 
 /// The command number of a mailbox: the manual's integers have two bytes, the controller counts with four. From 65535 it goes to
@@ -266,6 +336,29 @@ mod tests {
         assert_eq!(name(b"A B "), Err(FieldError::Character { field: "obj", at: 1, found: b' ' }));
         let error = name(b"AB\x07C").unwrap_err();
         assert!(error.to_string().ends_with("for obj, found 07 at byte 2"), "{error}");
+    }
+
+    #[test]
+    fn longer_integers_and_flags_come_back() {
+        let mut packer = Packer::<20>::default();
+        packer.long(0x0102_0304);
+        packer.long_integer(-2);
+        packer.quad(0x0102_0304_0506_0708);
+        packer.flag(true);
+        packer.word(256);
+        let bytes = packer.finish();
+        assert_eq!(
+            bytes,
+            *b"\x04\x03\x02\x01\xFE\xFF\xFF\xFF\x08\x07\x06\x05\x04\x03\x02\x01\x01\x00\x00\x01"
+        );
+        let mut fields = Unpacker::new(&bytes);
+        assert_eq!((fields.long("a"), fields.long_integer("b")), (Ok(0x0102_0304), Ok(-2)));
+        assert_eq!((fields.quad("c"), fields.flag("d")), (Ok(0x0102_0304_0506_0708), Ok(true)));
+        let rest = fields;
+        assert_eq!(fields.byte("e"), Err(FieldError::Code { field: "e", found: 256 }));
+        fields = rest;
+        assert_eq!(fields.flag("e"), Err(FieldError::Code { field: "e", found: 256 }));
+        assert_eq!(fields.long("f"), Err(FieldError::End { field: "f" }));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! * [`workstation`]: the command and the status of V.4.2 to the byte, and what refuses commands that cannot be;
 //! * [`data_system`]: the command of Figure IX.2 to the byte, the status that answers it, and a server that keeps the items
 //!   of the workstation in SQLite.
+//! * [`pedestal`]: the Active Pedestal as a system of its own, its mailboxes to the byte and both ends of them.
 //! * [`network`]: how mailboxes travel to other processes.
 //!
 //! A level never sees a mailbox: what Task asks of the Data System is a record of common memory
@@ -16,4 +17,5 @@ pub mod data_system;
 pub mod fields;
 pub mod mailbox;
 pub mod network;
+pub mod pedestal;
 pub mod workstation;

@@ -51,6 +51,12 @@ pub const CELL_COMMAND: Place = Place { name: "Workstation to Cell Command", add
 /// Workstation from Cell Status: not in the table.
 pub const CELL_STATUS: Place = Place { name: "Workstation from Cell Status", address: 0xF_6600, size: 256 };
 
+/// Pedestal from Cell Sensors: not in the table. What the devices of the pedestal read, in the simulated cell.
+pub const PEDESTAL_SENSORS: Place =
+    Place { name: "Pedestal from Cell Sensors", address: 0xF_5C00, size: 256 };
+/// Pedestal to Cell Orders: not in the table.
+pub const PEDESTAL_ORDERS: Place = Place { name: "Pedestal to Cell Orders", address: 0xF_5E00, size: 256 };
+
 /// All of Table IX.1, in its order.
 pub const TABLE: [Place; 8] = [
     HWSC_COMMAND,
@@ -225,7 +231,8 @@ mod tests {
 
     #[test]
     fn no_two_mailboxes_overlap() {
-        let mut places = [&TABLE[..], &[CELL_COMMAND, CELL_STATUS]].concat();
+        let mut places =
+            [&TABLE[..], &[CELL_COMMAND, CELL_STATUS, PEDESTAL_SENSORS, PEDESTAL_ORDERS]].concat();
         places.sort_by_key(|place| place.address);
         for pair in places.windows(2) {
             assert!(pair[0].address as usize + pair[0].size <= pair[1].address as usize, "{}", pair[1]);

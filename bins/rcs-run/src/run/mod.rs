@@ -253,6 +253,7 @@ impl Run {
             devices: self.pace.inputs(self.inputs),
             data_base: self.neighbours.data_base(),
             generation: generations.number(),
+            pedestal: *self.neighbours.pedestal(),
         }
     }
 
@@ -277,6 +278,8 @@ impl Run {
         interrupted: &AtomicBool,
     ) -> Ending {
         self.show_cell();
+        self.neighbours.begin(self.runner.memory(), &self.inputs);
+        self.note_neighbours(self.runner.tick().next());
         loop {
             self.wait(&generations);
             self.robot.receive(&mut self.inputs);
@@ -305,7 +308,13 @@ impl Run {
             self.observe(tick, Commands::from(&memory));
             self.runner.laps_mut().lap(Part::Cell);
             self.progress.show(self.neighbours.records(), &external.hws, &memory);
-            let progress = self.neighbours.step(tick, &memory, &mut self.workstation, generations.current());
+            let progress = self.neighbours.step(
+                tick,
+                &memory,
+                &self.inputs,
+                &mut self.workstation,
+                generations.current(),
+            );
             self.note_neighbours(tick);
             match progress {
                 player::Progress::Over => return Ending::Finished,

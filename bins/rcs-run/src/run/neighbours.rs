@@ -1,4 +1,4 @@
-//! The neighbours of a run: who commands Task, and the Data System.
+//! The neighbours of a run: who commands Task, the Data System, and an Active Pedestal that is a system of its own.
 //!
 //! A neighbour lives in this process, or in another one behind the network. Either way he is reached through his mailboxes, and
 //! a run cannot tell the difference: with the clock in lock step not a bit of it changes.
@@ -12,7 +12,8 @@ use std::{
 use neighbours::{
     data_system::{DataSystem, Item},
     mailbox::{HWSC_COMMAND, Mailbox},
-    network::{Desk, Listener, Role, office::Counter},
+    network::{Desk, Listener, News, Role, office::Counter},
+    pedestal::{self, Remark},
     workstation::{
         Gate, TaskState,
         player::{Hwsc, JobFailure, Progress, Record},
@@ -20,7 +21,8 @@ use neighbours::{
     },
 };
 use rcs_core::{
-    interface::{CommonMemory, DataBaseStatus, Header, HwsCommand},
+    interface::{CommonMemory, DataBaseStatus, DeviceInputs, Header, HwsCommand, OutsidePedestal},
+    record::Field as _,
     tick::Tick,
 };
 use record::Level;
@@ -75,16 +77,23 @@ pub struct Neighbours {
     gate: Gate,
     chief: Chief,
     data_system: DataSystem,
+    /// None: the pedestal's processes are among the controller's.
+    pedestal: Option<Box<pedestal::Agent>>,
     /// Lets neighbours in as long as the run lasts; nobody without it.
     network: Option<Network>,
     notes: Vec<Note>,
 }
 
 impl Neighbours {
-    /// Whoever commands, and the Data System.
+    /// Whoever commands, the Data System, and the pedestal if it is a system of its own.
     #[must_use]
-    pub fn new(chief: Chief, data_system: DataSystem, network: Option<Network>) -> Self {
-        Self { gate: Gate::default(), chief, data_system, network, notes: Vec::new() }
+    pub fn new(
+        chief: Chief,
+        data_system: DataSystem,
+        pedestal: Option<Box<pedestal::Agent>>,
+        network: Option<Network>,
+    ) -> Self {
+        Self { gate: Gate::default(), chief, data_system, pedestal, network, notes: Vec::new() }
     }
 
     /// Wait for those who are other processes: for so many seconds at most, and not beyond an interruption, of which the run will
@@ -134,6 +143,31 @@ impl Neighbours {
         self.data_system.status()
     }
 
+    /// What has come from a pedestal that is a system of its own.
+    #[must_use]
+    pub fn pedestal(&self) -> &OutsidePedestal {
+        self.pedestal.as_deref().map_or(&OutsidePedestal::ZERO, pedestal::Agent::sent)
+    }
+
+    /// Before the first tick: the pedestal steps with the controller from its first tick on.
+    pub fn begin(&mut self, memory: &CommonMemory, inputs: &DeviceInputs) {
+        self.step_pedestal(Tick::BEFORE_START, memory, inputs);
+    }
+
+    /// The pedestal reads what a tick has written, and what its devices read in the next one.
+    fn step_pedestal(&mut self, tick: Tick, memory: &CommonMemory, inputs: &DeviceInputs) {
+        let Some(agent) = &mut self.pedestal else { return };
+        agent.exchange(tick.next(), &memory.subtask.pedestal, &inputs.pedestal);
+        self.notes.extend(agent.remarks().into_iter().map(|remark| {
+            let (level, source) = match remark {
+                Remark::News(News::Came(_)) => (Level::Info, "network"),
+                Remark::News(_) => (Level::Warning, "network"),
+                _ => (Level::Warning, "Active Pedestal"),
+            };
+            (level, source, remark.to_string())
+        }));
+    }
+
     /// Steps of the job so far, or commands of whoever commands.
     #[must_use]
     pub fn records(&self) -> &[Record] {
@@ -143,11 +177,12 @@ impl Neighbours {
         }
     }
 
-    /// Once a tick, after controller and cell: all read what the tick has written.
+    /// Once a tick, after controller and cell: all read what the tick has written. `inputs` are the device words of the next tick.
     pub fn step(
         &mut self,
         tick: Tick,
         memory: &CommonMemory,
+        inputs: &DeviceInputs,
         workstation: &mut SimulatedWorkstation,
         store: &Store,
     ) -> Progress {
@@ -159,7 +194,7 @@ impl Neighbours {
         let news = self.data_system.news().into_iter();
         self.notes.extend(news.map(|text| (Level::Info, "network", text)));
         self.gate.write(&memory.task, task_state(&memory.task.header, tick));
-        match &mut self.chief {
+        let progress = match &mut self.chief {
             Chief::Emulator { hwsc, command_box } => {
                 let progress = emulate(hwsc, command_box, &mut self.gate, tick, workstation);
                 // What the gate refuses comes back to the emulator by its status.
@@ -169,7 +204,9 @@ impl Neighbours {
             Chief::Outside(outside) => {
                 outside.step(tick, &mut self.gate, &memory.task, workstation, store, &mut self.notes)
             }
-        }
+        };
+        self.step_pedestal(tick, memory, inputs);
+        progress
     }
 
     /// What is to be said, since the last call.

@@ -10,6 +10,7 @@ use executive::serial::SerialLine;
 use neighbours::{
     data_system::{self, ANSWER_TICKS, Agent, DataSystem, Outbox, Pace},
     network::{Desk, Listener, Role, Secret, hello},
+    pedestal,
     workstation::player::{Hwsc, TIME_LIMIT},
 };
 use plant::{
@@ -149,11 +150,11 @@ fn neighbours(arguments: &RunArguments, job: &Job) -> Result<Neighbours, Error> 
         ClockKind::Real => (hello::ClockKind::Real, Pace::Poll),
     };
     let desk = |role: Role| arguments.outside.contains(&role).then(|| Desk::new(role, clock));
-    let (commands, items) = (desk(Role::Workstation), desk(Role::DataSystem));
+    let (commands, items, regrips) = (desk(Role::Workstation), desk(Role::DataSystem), desk(Role::Pedestal));
     let secret = arguments.secret.as_deref().map(Secret::load).transpose()?;
     let network = match &arguments.network {
         Some(address) => {
-            let desks = || commands.iter().chain(&items);
+            let desks = || commands.iter().chain(&items).chain(&regrips);
             let listener = Listener::start(address, secret, desks())?;
             eprintln!("rcs-run: neighbours can connect at {}", listener.address());
             Some(Network { counters: desks().map(Desk::counter).collect(), _listener: listener })
@@ -172,7 +173,8 @@ fn neighbours(arguments: &RunArguments, job: &Job) -> Result<Neighbours, Error> 
         Some(desk) => Chief::outside(desk),
         None => Chief::emulator(Hwsc::new(job.steps.clone(), TIME_LIMIT)),
     };
-    Ok(Neighbours::new(chief, data_system, network))
+    let pedestal = regrips.map(|desk| Box::new(pedestal::Agent::new(desk)));
+    Ok(Neighbours::new(chief, data_system, pedestal, network))
 }
 
 /// Where updates wait for a Data System in another process.

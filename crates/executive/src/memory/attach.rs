@@ -9,8 +9,8 @@ use rcs_core::{
 use super::{
     buffers::{
         DataBaseReader, DevicesReader, EmoveReader, ExecutiveReader, GripReader, HandReader, HwscReader,
-        PedestalReader, PrimReader, Pulse, QuickChangeReader, SubtaskReader, T3iReader, TableReader,
-        TaskReader, ToolGripReader, VGripReader,
+        OutsidePedestalReader, PedestalReader, PrimReader, Pulse, QuickChangeReader, SubtaskReader,
+        T3iReader, TableReader, TaskReader, ToolGripReader, VGripReader,
     },
     publish::FIRST_EPOCH,
     runs::{self, RunName, SharedMemoryError},
@@ -52,6 +52,7 @@ struct Ports {
     table: TableReader,
     hwsc: HwscReader,
     data_base: DataBaseReader,
+    outside_pedestal: OutsidePedestalReader,
     devices: DevicesReader,
     executive: ExecutiveReader,
     _node: Node<ipc::Service>,
@@ -82,6 +83,7 @@ impl Attached {
             table: TableReader::open(&node, epoch)?,
             hwsc: HwscReader::open(&node, epoch)?,
             data_base: DataBaseReader::open(&node, epoch)?,
+            outside_pedestal: OutsidePedestalReader::open(&node, epoch)?,
             devices: DevicesReader::open(&node, epoch)?,
             executive: ExecutiveReader::open(&node, epoch)?,
             _node: node,
@@ -95,28 +97,32 @@ impl Attached {
         &self.name
     }
 
-    /// Common memory as one tick left it: all processes bear the same stamp.
+    /// Common memory as one tick left it: all processes bear its stamp, but for those of a pedestal in another system that does
+    /// not answer, which bear an older one.
     ///
     /// # Errors
     /// [`ReadError`].
     pub fn memory(&self) -> Result<CommonMemory, ReadError> {
         self.settled(|ports| {
+            // What is written last is read first, and what is written first is read last: if both are of one tick, so is all
+            // between them, whatever stamps it bears.
+            let tick = unfinished(ports.executive.read()?)?.header.stamp;
             let memory = CommonMemory {
-                task: unfinished(ports.task.read()?)?,
-                subtask: unfinished(ports.subtask.read()?)?,
-                emove: unfinished(ports.emove.read()?)?,
-                prim: unfinished(ports.prim.read()?)?,
-                t3i: unfinished(ports.t3i.read()?)?,
-                quick_change: unfinished(ports.quick_change.read()?)?,
-                grip: unfinished(ports.grip.read()?)?,
-                v_grip: unfinished(ports.v_grip.read()?)?,
-                tool_grip: unfinished(ports.tool_grip.read()?)?,
-                pedestal: unfinished(ports.pedestal.read()?)?,
-                hand: unfinished(ports.hand.read()?)?,
                 table: unfinished(ports.table.read()?)?,
+                hand: unfinished(ports.hand.read()?)?,
+                pedestal: unfinished(ports.pedestal.read()?)?,
+                tool_grip: unfinished(ports.tool_grip.read()?)?,
+                v_grip: unfinished(ports.v_grip.read()?)?,
+                grip: unfinished(ports.grip.read()?)?,
+                quick_change: unfinished(ports.quick_change.read()?)?,
+                t3i: unfinished(ports.t3i.read()?)?,
+                prim: unfinished(ports.prim.read()?)?,
+                emove: unfinished(ports.emove.read()?)?,
+                subtask: unfinished(ports.subtask.read()?)?,
+                task: unfinished(ports.task.read()?)?,
             };
-            let stamp = memory.task.header.stamp;
-            let others = [
+            let own = [
+                &memory.task.header,
                 &memory.subtask.header,
                 &memory.emove.header,
                 &memory.prim.header,
@@ -125,11 +131,11 @@ impl Attached {
                 &memory.grip.header,
                 &memory.v_grip.header,
                 &memory.tool_grip.header,
-                &memory.pedestal.header,
-                &memory.hand.header,
-                &memory.table.header,
             ];
-            if others.iter().all(|header| header.stamp == stamp) { Ok(memory) } else { Err(ReadError::Busy) }
+            let of_pedestal = [&memory.pedestal.header, &memory.hand.header, &memory.table.header];
+            let settled = own.iter().all(|header| header.stamp == tick)
+                && of_pedestal.iter().all(|header| header.stamp <= tick);
+            if settled { Ok(memory) } else { Err(ReadError::Busy) }
         })
     }
 
@@ -141,15 +147,17 @@ impl Attached {
         self.settled(|ports| {
             let (hwsc, devices) = (unfinished(ports.hwsc.read()?)?, unfinished(ports.devices.read()?)?);
             let data_base = unfinished(ports.data_base.read()?)?;
+            let pedestal = unfinished(ports.outside_pedestal.read()?)?;
             let executive = unfinished(ports.executive.read()?)?;
             let stamp = hwsc.header.stamp;
-            let others = [&devices.header, &data_base.header, &executive.header];
+            let others = [&devices.header, &data_base.header, &pedestal.header, &executive.header];
             if others.iter().all(|header| header.stamp == stamp) {
                 Ok(ExternalInputs {
                     hws: hwsc.command,
                     devices: devices.inputs,
                     data_base: data_base.status,
                     generation: executive.pulse.generation,
+                    pedestal: pedestal.sent,
                 })
             } else {
                 Err(ReadError::Busy)

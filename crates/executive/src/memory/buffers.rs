@@ -16,8 +16,8 @@ use rcs_core::{
     digest::Digest,
     interface::{
         ChangingPose, DataBaseCommand, DataBaseStatus, EmoveOutputs, GripOutputs, Header, HwsCommand,
-        JawsOutputs, PedestalOutputs, PrimOutputs, QuickChangeOutputs, SubtaskOutputs, T3iOutputs,
-        TableOutputs, TaskOutputs,
+        JawsOutputs, OutsidePedestal, PedestalOutputs, PrimOutputs, QuickChangeOutputs, SubtaskOutputs,
+        T3iOutputs, TableOutputs, TaskOutputs,
         device::{
             DeviceInputs, GripValves, JawValves, LinkBytes, MotorCommand, QuickChangeValves, VisionRequest,
         },
@@ -79,6 +79,16 @@ record! {
         pub header: Header,
         /// To Task.
         pub status: DataBaseStatus,
+    }
+}
+
+record! {
+    /// Buffers of an Active Pedestal that is a system of its own.
+    pub struct OutsidePedestalOutputs {
+        /// Stamp: the tick that reads the buffers.
+        pub header: Header,
+        /// For the buffers of the pedestal's processes.
+        pub sent: OutsidePedestal,
     }
 }
 
@@ -318,6 +328,10 @@ services! {
     /// The Data System.
     data_base(DataBaseWriter, DataBaseReader) = DataBaseOutputs {
         0 status: DataBaseStatus,
+    }
+    /// An Active Pedestal that is a system of its own.
+    outside_pedestal(OutsidePedestalWriter, OutsidePedestalReader) = OutsidePedestalOutputs {
+        0 sent: OutsidePedestal,
     }
     /// The devices of the cell.
     devices(DevicesWriter, DevicesReader) = DevicesOutputs {

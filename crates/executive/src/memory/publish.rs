@@ -12,8 +12,9 @@ use rcs_core::{
 use super::{
     buffers::{
         DataBaseOutputs, DataBaseWriter, DevicesOutputs, DevicesWriter, EmoveWriter, Epoch, ExecutiveOutputs,
-        ExecutiveWriter, GripWriter, HandWriter, HwscOutputs, HwscWriter, PedestalWriter, PrimWriter, Pulse,
-        QuickChangeWriter, SubtaskWriter, T3iWriter, TableWriter, TaskWriter, ToolGripWriter, VGripWriter,
+        ExecutiveWriter, GripWriter, HandWriter, HwscOutputs, HwscWriter, OutsidePedestalOutputs,
+        OutsidePedestalWriter, PedestalWriter, PrimWriter, Pulse, QuickChangeWriter, SubtaskWriter,
+        T3iWriter, TableWriter, TaskWriter, ToolGripWriter, VGripWriter,
     },
     runs::{self, RunName, SharedMemoryError},
 };
@@ -71,6 +72,7 @@ struct Ports {
     table: TableWriter,
     hwsc: HwscWriter,
     data_base: DataBaseWriter,
+    outside_pedestal: OutsidePedestalWriter,
     devices: DevicesWriter,
     executive: ExecutiveWriter,
     // Last: the services are closed before their node.
@@ -111,6 +113,7 @@ impl Publisher {
             table: TableWriter::create(&node, epoch)?,
             hwsc: HwscWriter::create(&node, epoch)?,
             data_base: DataBaseWriter::create(&node, epoch)?,
+            outside_pedestal: OutsidePedestalWriter::create(&node, epoch)?,
             devices: DevicesWriter::create(&node, epoch)?,
             executive: ExecutiveWriter::create(&node, epoch)?,
             _node: node,
@@ -136,6 +139,7 @@ impl Publisher {
         let header = stamp(pulse.tick);
         ports.hwsc.write(&HwscOutputs { header, command: external.hws });
         ports.data_base.write(&DataBaseOutputs { header, status: external.data_base });
+        ports.outside_pedestal.write(&OutsidePedestalOutputs { header, sent: external.pedestal });
         ports.devices.write(&DevicesOutputs { header, inputs: external.devices });
         ports.task.write(&memory.task);
         ports.subtask.write(&memory.subtask);

@@ -3,7 +3,9 @@
 use std::{fmt, str::FromStr};
 
 use crate::mailbox::{
-    CELL_COMMAND, CELL_STATUS, DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, HWSC_COMMAND, HWSC_STATUS, Place,
+    CELL_COMMAND, CELL_STATUS, DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, HWSC_COMMAND, HWSC_STATUS,
+    PEDESTAL_COMMAND, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_SENSORS, PEDESTAL_STATUS,
+    PEDESTAL_TABLE_STATUS, Place,
 };
 
 /// A neighbour of the controller. The number stands in the hello.
@@ -14,11 +16,13 @@ pub enum Role {
     Workstation = 1,
     /// The Data System.
     DataSystem = 2,
+    /// The Active Pedestal.
+    Pedestal = 3,
 }
 
 impl Role {
     /// All neighbours.
-    pub const ALL: [Self; 2] = [Self::Workstation, Self::DataSystem];
+    pub const ALL: [Self; 3] = [Self::Workstation, Self::DataSystem, Self::Pedestal];
 
     /// The word on the command line.
     #[must_use]
@@ -26,6 +30,7 @@ impl Role {
         match self {
             Self::Workstation => "workstation",
             Self::DataSystem => "data-system",
+            Self::Pedestal => "pedestal",
         }
     }
 
@@ -35,6 +40,9 @@ impl Role {
         match self {
             Self::Workstation => &[HWSC_COMMAND, CELL_COMMAND],
             Self::DataSystem => &[DATA_SYSTEM_STATUS],
+            Self::Pedestal => {
+                &[PEDESTAL_STATUS, PEDESTAL_GRIPPER_STATUS, PEDESTAL_TABLE_STATUS, PEDESTAL_ORDERS]
+            }
         }
     }
 
@@ -44,6 +52,7 @@ impl Role {
         match self {
             Self::Workstation => &[HWSC_STATUS, CELL_STATUS],
             Self::DataSystem => &[DATA_SYSTEM_COMMAND],
+            Self::Pedestal => &[PEDESTAL_COMMAND, PEDESTAL_SENSORS],
         }
     }
 
@@ -91,7 +100,7 @@ mod tests {
         assert_eq!(Role::from_number(0), None);
         assert_eq!(
             "foreman".parse::<Role>().unwrap_err().to_string(),
-            "workstation or data-system was expected, found foreman"
+            "workstation or data-system or pedestal was expected, found foreman"
         );
     }
 

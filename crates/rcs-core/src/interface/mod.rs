@@ -26,7 +26,7 @@ pub use self::{
     grip::GripOutputs,
     hws::{HwsCommand, TaskOutputs},
     jaws::JawsOutputs,
-    pedestal::{PedestalOutputs, TableOutputs},
+    pedestal::{OutsidePedestal, PedestalOutputs, TableOutputs},
     prim::PrimOutputs,
     quick_change::QuickChangeOutputs,
     subtask::SubtaskOutputs,
@@ -305,5 +305,7 @@ record! {
         pub data_base: DataBaseStatus,
         /// Generation of the task data that the tick uses: 0 as loaded before the first tick, one more after each reload.
         pub generation: u32,
+        /// From an Active Pedestal that is a system of its own.
+        pub pedestal: OutsidePedestal,
     }
 }

@@ -6,7 +6,7 @@
 use crate::{
     coded_enum,
     handshake::Lower,
-    interface::{Header, Reason, device::MotorCommand, grip::GripCommand},
+    interface::{GripOutputs, Header, Reason, device::MotorCommand, grip::GripCommand},
     record,
     tick::Tick,
 };
@@ -160,5 +160,23 @@ record! {
         pub status: TableStatus,
         /// To the rotary table controller.
         pub motor: MotorCommand,
+    }
+}
+
+record! {
+    /// What an Active Pedestal that is a system of its own has sent over the network (II.2, IX.3). Its three processes run there, and
+    /// what they wrote is adopted into common memory here.
+    pub struct OutsidePedestal {
+        /// It is another system: the processes of the pedestal are not stepped here.
+        pub elsewhere: bool,
+        /// It answers. While it does not, its buffers keep what it wrote last and the stamp of that tick, by which their readers know
+        /// it for lost.
+        pub answers: bool,
+        /// Output buffers of its pedestal process; the stamp does not count.
+        pub pedestal: PedestalOutputs,
+        /// Output buffers of its hand process; the stamp does not count.
+        pub hand: GripOutputs,
+        /// Output buffers of its table process; the stamp does not count.
+        pub table: TableOutputs,
     }
 }

@@ -1,0 +1,87 @@
+//! The Active Pedestal: its three processes, behind their mailboxes, for one run after the other.
+//!
+//! A line that was cut is mended: the pedestal goes on as it is. Another run has another cell, in which the pedestal was switched on
+//! just now.
+
+use neighbours::{
+    mailbox::{PEDESTAL_COMMAND, PEDESTAL_SENSORS},
+    network::{Peer, PeerError, Received, Role},
+    pedestal::Station,
+};
+use rcs_core::interface::pedestal::PedestalReport;
+
+use crate::{Error, cli::PedestalArguments, connect};
+
+/// Serve until no run has come for a while.
+pub fn serve(arguments: &PedestalArguments) -> Result<(), Error> {
+    let mut served = Served::default();
+    let mut peer = connect(&arguments.controller, Role::Pedestal)?;
+    loop {
+        match served.attend(&mut peer) {
+            Err(Error::Peer(error)) if error.is_passing() => {
+                println!("{error}");
+                if matches!(error, PeerError::LastWords(_)) {
+                    served = Served::default();
+                }
+            }
+            other => return other,
+        }
+        peer = match connect(&arguments.controller, Role::Pedestal) {
+            Err(Error::Peer(PeerError::Line { .. })) => return Ok(()),
+            other => other?,
+        };
+    }
+}
+
+/// The pedestal, and what it was told last.
+#[derive(Default)]
+struct Served {
+    station: Station,
+    /// The last pulse.
+    pulse: u64,
+    /// What was said last: number, report, and why the command was refused.
+    said: (u32, PedestalReport, String),
+}
+
+impl Served {
+    /// Carry out the commands of a run.
+    fn attend(&mut self, peer: &mut Peer) -> Result<(), Error> {
+        self.station.join();
+        let mut sent = [0; 4];
+        loop {
+            let Received::Pulse(pulse) = peer.receive()? else { continue };
+            if pulse <= self.pulse {
+                // Ticks begin anew with a run.
+                *self = Self::default();
+            }
+            self.pulse = pulse;
+            self.station.step(peer.mailbox(PEDESTAL_COMMAND), peer.mailbox(PEDESTAL_SENSORS));
+            for (mailbox, sent) in self.station.outgoing().iter().zip(&mut sent) {
+                if mailbox.mailgram() != *sent {
+                    *sent = mailbox.mailgram();
+                    peer.send(mailbox)?;
+                }
+            }
+            self.tell();
+            peer.pulse(pulse)?;
+        }
+    }
+
+    /// One line on standard output for everything that becomes of a command.
+    fn tell(&mut self) {
+        let status = &self.station.memory().pedestal.status;
+        let refused = self.station.refusal().map(ToString::to_string).unwrap_or_default();
+        let says = (status.echo, status.report, refused);
+        if says == self.said || (status.echo == 0 && says.2.is_empty()) {
+            return;
+        }
+        let command = self.station.command();
+        let verb = if command.number == status.echo { command.command.text() } else { "" };
+        match (says.2.as_str(), status.reason.text()) {
+            ("", "") => println!("{verb} {}: {}", says.0, says.1),
+            ("", why) => println!("{verb} {}: {}, {why}", says.0, says.1),
+            (refused, _) => println!("refused: {refused}"),
+        }
+        self.said = says;
+    }
+}

@@ -1,0 +1,193 @@
+//! The controller's side of a pedestal in another process: the mailboxes of Subtask and Diagnostics (IX.3).
+//!
+//! Once a tick the command of Subtask goes out, and what the pedestal has written comes in, as an input of the next tick. The
+//! processes of the controller see common memory, and in it a pedestal that answers or one that is lost:
+//!
+//! | what happens                                       | common memory                                                   |
+//! |----------------------------------------------------|-----------------------------------------------------------------|
+//! | it is connected and has written a status           | its buffers, with the stamp of the tick                         |
+//! | on the 40 ms grid its status is not there yet      | its last buffers, republished until the echo comes, 2 s at most |
+//! | it has gone, has not come, or writes what is none  | its last buffers with their old stamp: it is lost               |
+
+use rcs_core::{
+    interface::{OutsidePedestal, device::PedestalSensors, pedestal::PedestalCommand},
+    tick::Tick,
+};
+
+use super::{
+    LayoutError, cell, command, gripper,
+    status::{Status, Verdict},
+    table,
+};
+use crate::{
+    mailbox::{
+        MailboxError, PEDESTAL_COMMAND, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_SENSORS,
+        PEDESTAL_STATUS, PEDESTAL_TABLE_STATUS, Place,
+    },
+    network::{Desk, News, hello::ClockKind},
+};
+
+/// Ticks in which a command must be echoed over a network on the 40 ms grid: 2 s. In fast clock nothing is late.
+const ECHO_TICKS: u64 = 50;
+
+/// What there is to say of the pedestal.
+#[derive(Debug)]
+pub enum Remark {
+    /// It has come or gone, or somebody was refused.
+    News(News),
+    /// It refuses what was sent to it.
+    Refuses(String),
+    /// What it wrote cannot be read: it counts as not answering.
+    Garbled(Place, LayoutError),
+    /// It is there and does not echo a command.
+    Silent(u32),
+    /// What is to be sent does not fit its mailbox.
+    Unsent(MailboxError),
+}
+
+impl std::fmt::Display for Remark {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::News(news) => news.fmt(f),
+            Self::Refuses(why) => write!(f, "the Active Pedestal refuses what was sent to it: {why}"),
+            Self::Garbled(place, why) => {
+                write!(f, "{place} cannot be read, the Active Pedestal counts as not answering: {why}")
+            }
+            Self::Silent(number) => {
+                write!(f, "the Active Pedestal has not echoed command {number} for {ECHO_TICKS} ticks")
+            }
+            Self::Unsent(why) => write!(f, "the Active Pedestal cannot be told: {why}"),
+        }
+    }
+}
+
+/// The controller's side. Does not allocate but for remarks.
+pub struct Agent {
+    desk: Desk,
+    sent: OutsidePedestal,
+    /// What it refuses: its verdict, and the mailgram number that it names.
+    refused: (Verdict, u16),
+    /// The mailbox that cannot be read, if there is one.
+    garbled: Option<Place>,
+    /// Since when the last command has not been echoed.
+    waiting: Option<Tick>,
+    /// It was remarked that it does not echo.
+    silent: bool,
+    remarks: Vec<Remark>,
+}
+
+impl Agent {
+    /// Speaks at a desk.
+    #[must_use]
+    pub fn new(desk: Desk) -> Self {
+        Self {
+            desk,
+            sent: OutsidePedestal { elsewhere: true, ..OutsidePedestal::default() },
+            refused: (Verdict::Taken, 0),
+            garbled: None,
+            waiting: None,
+            silent: false,
+            remarks: Vec::new(),
+        }
+    }
+
+    /// What the next tick reads of the pedestal.
+    #[must_use]
+    pub const fn sent(&self) -> &OutsidePedestal {
+        &self.sent
+    }
+
+    /// What there is to say, since the last call.
+    pub fn remarks(&mut self) -> Vec<Remark> {
+        std::mem::take(&mut self.remarks)
+    }
+
+    /// Between two ticks: send the command that stands in common memory and the sensor words that the tick `next` reads, and
+    /// receive what it reads of the pedestal.
+    pub fn exchange(&mut self, next: Tick, command: &PedestalCommand, sensors: &PedestalSensors) {
+        self.put(PEDESTAL_COMMAND, &command::encode(command));
+        self.put(PEDESTAL_SENSORS, &cell::encode_sensors(sensors));
+        let presence = self.desk.exchange(next.0);
+        self.remarks.extend(std::iter::from_fn(|| self.desk.news()).map(Remark::News));
+        if presence.new {
+            (self.refused, self.garbled) = ((Verdict::Taken, 0), None);
+            (self.waiting, self.silent) = (None, false);
+        }
+        if !presence.here {
+            self.sent.answers = false;
+            return;
+        }
+        self.sent.answers = match self.receive() {
+            Ok(written) => {
+                self.garbled = None;
+                written && self.is_heard(next, command.number)
+            }
+            Err((place, why)) => {
+                if self.garbled != Some(place) {
+                    self.garbled = Some(place);
+                    self.remarks.push(Remark::Garbled(place, why));
+                }
+                false
+            }
+        };
+    }
+
+    fn put(&mut self, place: Place, data: &[u8]) {
+        let mailbox = self.desk.outgoing(place);
+        if mailbox.data() != data
+            && let Err(error) = mailbox.write(data)
+        {
+            self.remarks.push(Remark::Unsent(error));
+        }
+    }
+
+    /// Take over what stands in its four mailboxes, all of it or nothing. False if it has not written a status yet; what it does not
+    /// write otherwise it has not.
+    fn receive(&mut self) -> Result<bool, (Place, LayoutError)> {
+        let desk = &self.desk;
+        let Some(status) = read(desk, PEDESTAL_STATUS, Status::decode)? else { return Ok(false) };
+        let of_gripper = read(desk, PEDESTAL_GRIPPER_STATUS, gripper::decode)?;
+        let of_table = read(desk, PEDESTAL_TABLE_STATUS, table::decode)?;
+        let orders = read(desk, PEDESTAL_ORDERS, cell::decode_orders)?;
+        let refused = (status.verdict, status.mailgram_echo);
+        if refused != self.refused && status.verdict != Verdict::Taken {
+            self.remarks.push(Remark::Refuses(status.reason.to_owned()));
+        }
+        self.refused = refused;
+        let OutsidePedestal { pedestal, hand, table, .. } = &mut self.sent;
+        (pedestal.header, pedestal.status) = (status.header, status.status);
+        (*hand, pedestal.hand) = of_gripper.unwrap_or_default();
+        (*table, pedestal.table) = of_table.unwrap_or_default();
+        (hand.valves, table.motor) = orders.unwrap_or_default();
+        Ok(true)
+    }
+
+    /// It echoes the last command, or there is still time for that. Until then its status belongs to another command.
+    fn is_heard(&mut self, next: Tick, number: u32) -> bool {
+        if number == 0 || self.sent.pedestal.status.echo == number || self.desk.clock() == ClockKind::Fast {
+            (self.waiting, self.silent) = (None, false);
+            return true;
+        }
+        let since = *self.waiting.get_or_insert(next);
+        let patient = next.since(since) <= ECHO_TICKS;
+        self.sent.pedestal.header.republished = patient;
+        if !patient && !self.silent {
+            self.silent = true;
+            self.remarks.push(Remark::Silent(number));
+        }
+        patient
+    }
+}
+
+/// What stands in a mailbox; nothing if nothing was written since it was initialized.
+fn read<'a, T>(
+    desk: &'a Desk,
+    place: Place,
+    decode: impl FnOnce(&'a [u8]) -> Result<T, LayoutError>,
+) -> Result<Option<T>, (Place, LayoutError)> {
+    let mailbox = desk.incoming(place);
+    if mailbox.mailgram() == 0 {
+        return Ok(None);
+    }
+    decode(mailbox.data()).map(Some).map_err(|why| (place, why))
+}

@@ -1,0 +1,67 @@
+//! The status of the pedestal's rotary table for Diagnostics (IX.3), byte by byte. CHOSEN: the manual gives no layout, and nothing of
+//! the table process but that it is there.
+//!
+//! ```text
+//!   at  bytes  variable           holds
+//!    0    4    incr-cmnd#-echo    the number that `status` belongs to
+//!    4   10    status             executing, done, can't-do, error; idle
+//!   14    4    status-code        code of why the command failed, 0 if it did not
+//!   18    2    calibrated         1 if the counter was set at the + limit
+//!   20    4    table-position     0.1 degree, signed
+//!   24    2    table#             decision table of the table process that was used last, 0 for none
+//!   26    2    row#               its row that fired
+//!   28    4    incr-cmnd#         number of the command from the pedestal process, 0 for none
+//!   32   10    command            PAUSE, CALIBRATE, TURN; blank for none
+//!   42    4    table-angle        0.1 degree, absolute, signed
+//! ```
+
+use rcs_core::interface::{
+    TableOutputs,
+    device::MotorCommand,
+    pedestal::{PedestalReport, TableCommand, TableStatus, TableVerb},
+};
+
+use super::{LayoutError, WORD, fields, put_row, reason, take_row, word};
+use crate::fields::Packer;
+
+/// Bytes of a status.
+pub const STATUS: usize = 46;
+
+/// The bytes of the table's status and command.
+#[must_use]
+pub fn encode(table: &TableOutputs, command: &TableCommand) -> [u8; STATUS] {
+    let status = &table.status;
+    let mut fields = Packer::<STATUS>::default();
+    fields.long(status.echo);
+    fields.text(WORD, &status.report.text());
+    fields.long(status.reason.code().into());
+    fields.flag(status.calibrated);
+    fields.long_integer(status.position);
+    put_row(&mut fields, &table.header);
+    fields.long(command.number);
+    fields.text(WORD, &command.command.text());
+    fields.long_integer(command.angle);
+    fields.finish()
+}
+
+/// Read the bytes: what the table process has written, without an order to its motor, and its command.
+///
+/// # Errors
+/// [`LayoutError`] for the first thing that cannot be.
+pub fn decode(data: &[u8]) -> Result<(TableOutputs, TableCommand), LayoutError> {
+    let mut fields = fields("a status of the table", STATUS, data)?;
+    let status = TableStatus {
+        echo: fields.long("incr-cmnd#-echo")?,
+        report: word::<WORD, _>(&mut fields, "status", PedestalReport::from_text)?,
+        reason: reason(&mut fields, "status-code")?,
+        calibrated: fields.flag("calibrated")?,
+        position: fields.long_integer("table-position")?,
+    };
+    let table = TableOutputs { header: take_row(&mut fields)?, status, motor: MotorCommand::default() };
+    let command = TableCommand {
+        number: fields.long("incr-cmnd#")?,
+        command: word::<WORD, _>(&mut fields, "command", TableVerb::from_text)?,
+        angle: fields.long_integer("table-angle")?,
+    };
+    Ok((table, command))
+}

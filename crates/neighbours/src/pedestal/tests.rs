@@ -1,0 +1,370 @@
+//! Layouts to the byte, and the pedestal's system behind them.
+
+use proptest::prelude::*;
+use rcs_core::{
+    interface::{
+        GripOutputs, Header, Reason, TableOutputs,
+        device::{GripValves, MotorCommand, MotorOrder, PedestalSensors},
+        grip::{GripCommand, GripReport, GripStatus, GripVerb},
+        pedestal::{
+            PedestalCommand, PedestalReport, PedestalStatus, PedestalVerb, TableCommand, TableStatus,
+            TableVerb,
+        },
+    },
+    tick::Tick,
+};
+
+use super::{
+    Station, cell, command, gripper,
+    status::{Status, Verdict},
+    table,
+};
+use crate::mailbox::{
+    HEAD, Mailbox, PEDESTAL_COMMAND, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_SENSORS,
+    PEDESTAL_STATUS, PEDESTAL_TABLE_STATUS,
+};
+
+fn flip(number: u32) -> PedestalCommand {
+    PedestalCommand {
+        cycle: Tick(0x0102),
+        number,
+        command: PedestalVerb::Flip,
+        grasp_size: 60,
+        grasp_force: 30,
+        table_angle: -1835,
+    }
+}
+
+const ROW: Header = Header { stamp: Tick(0), republished: false, table: 3, row: 9 };
+
+#[test]
+fn a_command_stands_at_its_bytes() {
+    let expected = [
+        &b"\x02\x01\x00\x00\x00\x00\x00\x00"[..],
+        b"\x07\x00\x00\x00FLIP      ",
+        b"\x3C\x00\x00\x00\x1E\x00\x00\x00\xD5\xF8\xFF\xFF",
+    ]
+    .concat();
+    assert_eq!(command::encode(&flip(7)), &expected[..]);
+    assert_eq!(command::decode(&expected), Ok(flip(7)));
+    assert_eq!(command::number(&expected[..12]), Some(7));
+    assert_eq!(command::number(&expected[..11]), None);
+}
+
+#[test]
+fn a_status_stands_at_its_bytes() {
+    let status = PedestalStatus {
+        cycle_echo: Tick(0x0102),
+        echo: 7,
+        report: PedestalReport::CannotDo,
+        reason: Reason::TableLimit,
+        grip_size: 250,
+        grip_force: -1,
+        table_position: -200,
+    };
+    let sent = Status { status, header: ROW, mailgram_echo: 4, verdict: Verdict::NoCommand, reason: "why" };
+    let expected = [
+        &b"\x02\x01\x00\x00\x00\x00\x00\x00\x07\x00\x00\x00can't-do  "[..],
+        &[Reason::TableLimit.code(), 0, 0, 0],
+        b"\xFA\x00\x00\x00\xFF\xFF\xFF\xFF\x38\xFF\xFF\xFF",
+        b"\x03\x00\x09\x00\x04\x00\x01\x00",
+        format!("{:160}", "why").as_bytes(),
+    ]
+    .concat();
+    assert_eq!(sent.encode(), &expected[..]);
+    assert_eq!(Status::decode(&expected), Ok(sent));
+}
+
+#[test]
+fn the_statuses_for_diagnostics_stand_at_their_bytes() {
+    let hand = GripOutputs {
+        header: ROW,
+        status: GripStatus {
+            echo: 2,
+            report: GripReport::Serror,
+            reason: Reason::GripTimeout,
+            initialized: true,
+            position: 1,
+            left_force: 2,
+            right_force: 3,
+            velocity: -4,
+            finger_height: 5,
+            valves: 0x81,
+        },
+        valves: GripValves::default(),
+    };
+    let order = GripCommand {
+        number: 3,
+        command: GripVerb::CloseGrip,
+        force: 30,
+        position: 60,
+        velocity: 0,
+        end_effector_id: 0,
+    };
+    let expected = [
+        &b"\x02\x00\x00\x00serror    "[..],
+        &[Reason::GripTimeout.code(), 0, 0, 0, 1, 0],
+        b"\x01\x00\x00\x00\x02\x00\x00\x00\x03\x00\x00\x00\xFC\xFF\xFF\xFF\x05\x00\x00\x00\x81\x00",
+        b"\x03\x00\x09\x00\x03\x00\x00\x00CLOSE-GRIP",
+        b"\x1E\x00\x00\x00\x3C\x00\x00\x00\x00\x00\x00\x00\x00\x00",
+    ]
+    .concat();
+    assert_eq!(gripper::encode(&hand, &order), &expected[..]);
+    assert_eq!(gripper::decode(&expected), Ok((hand, order)));
+    let turned = TableOutputs {
+        header: ROW,
+        status: TableStatus {
+            echo: 5,
+            report: PedestalReport::Executing,
+            reason: Reason::None,
+            calibrated: true,
+            position: -200,
+        },
+        motor: MotorCommand::default(),
+    };
+    let turn = TableCommand { number: 5, command: TableVerb::Turn, angle: -2035 };
+    let expected = [
+        &b"\x05\x00\x00\x00executing \x00\x00\x00\x00\x01\x00\x38\xFF\xFF\xFF\x03\x00\x09\x00"[..],
+        b"\x05\x00\x00\x00TURN      \x0D\xF8\xFF\xFF",
+    ]
+    .concat();
+    assert_eq!(table::encode(&turned, &turn), &expected[..]);
+    assert_eq!(table::decode(&expected), Ok((turned, turn)));
+}
+
+#[test]
+fn the_words_of_the_devices_stand_at_their_bytes() {
+    let sensors = PedestalSensors {
+        potentiometer: 0x0102,
+        strain_left: 3,
+        strain_right: 4,
+        table_potentiometer: 5,
+        limit_plus: true,
+        limit_minus: false,
+        motor_echo: 6,
+        motor_moving: true,
+        motor_counter: -7,
+    };
+    let expected =
+        b"\x02\x01\x03\x00\x04\x00\x05\x00\x01\x00\x00\x00\x06\x00\x00\x00\x01\x00\xF9\xFF\xFF\xFF";
+    assert_eq!(&cell::encode_sensors(&sensors), expected);
+    assert_eq!(cell::decode_sensors(expected), Ok(sensors));
+    let (valves, motor) =
+        (GripValves { bits: 0x42 }, MotorCommand { number: 6, order: MotorOrder::SetCounter, steps: -2000 });
+    let expected = b"\x42\x00\x06\x00\x00\x00set-counter \x30\xF8\xFF\xFF";
+    assert_eq!(&cell::encode_orders(valves, &motor), expected);
+    assert_eq!(cell::decode_orders(expected), Ok((valves, motor)));
+}
+
+#[test]
+fn what_is_no_layout_is_said() {
+    let said = |error: super::LayoutError| error.to_string();
+    assert_eq!(said(command::decode(&[0; 33]).unwrap_err()), "a command of 34 bytes was expected, found 33");
+    let mut bytes = command::encode(&flip(7));
+    bytes[12..16].copy_from_slice(b"FLOP");
+    assert_eq!(said(command::decode(&bytes).unwrap_err()), "FLOP is no word of command");
+    bytes[13] = 0x9C;
+    assert!(said(command::decode(&bytes).unwrap_err()).ends_with("for command, found 9C at byte 13"));
+    let mut bytes = Status::default().encode();
+    bytes[22..24].copy_from_slice(&[0xFF, 1]);
+    assert_eq!(said(Status::decode(&bytes).unwrap_err()), "511 is no code of status-code");
+    let mut bytes = cell::encode_sensors(&PedestalSensors::default());
+    bytes[8] = 2;
+    assert_eq!(said(cell::decode_sensors(&bytes).unwrap_err()), "2 is no code of the + limit");
+}
+
+#[test]
+fn every_layout_fits_its_mailbox() {
+    let layouts = [
+        (PEDESTAL_COMMAND, command::COMMAND),
+        (PEDESTAL_STATUS, super::status::STATUS),
+        (PEDESTAL_GRIPPER_STATUS, gripper::STATUS),
+        (PEDESTAL_TABLE_STATUS, table::STATUS),
+        (PEDESTAL_SENSORS, cell::SENSORS),
+        (PEDESTAL_ORDERS, cell::ORDERS),
+    ];
+    for (place, bytes) in layouts {
+        assert!(HEAD + bytes <= place.size, "{place}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_panic(bytes in prop::collection::vec(any::<u8>(), 0..260)) {
+        let _ = command::decode(&bytes);
+        let _ = command::number(&bytes);
+        let _ = Status::decode(&bytes);
+        let _ = gripper::decode(&bytes);
+        let _ = table::decode(&bytes);
+        let _ = cell::decode_sensors(&bytes);
+        let _ = cell::decode_orders(&bytes);
+    }
+
+    /// Nearly right bytes: one of a good layout is another one. What is taken for good says what the bytes say.
+    #[test]
+    fn what_is_taken_is_what_stands_there(at in any::<prop::sample::Index>(), byte in any::<u8>()) {
+        let mut bytes = command::encode(&flip(7));
+        let at = at.index(bytes.len());
+        bytes[at] = byte;
+        if let Ok(taken) = command::decode(&bytes) {
+            // A zero behind a text does as well as a blank.
+            let blank = bytes.map(|byte| if byte == 0 { b' ' } else { byte });
+            prop_assert_eq!(command::encode(&taken).map(|byte| if byte == 0 { b' ' } else { byte }), blank);
+        }
+    }
+
+    /// Whatever is written into its mailboxes, and whoever joins when: the pedestal goes on, and what it sends can be read.
+    #[test]
+    fn no_mailgram_stops_the_pedestal(
+        events in prop::collection::vec((0_u8..6, prop::collection::vec(any::<u8>(), 0..40)), 1..60),
+    ) {
+        let mut bench = Bench::default();
+        for (kind, bytes) in events {
+            match kind {
+                0 => bench.command_box.write(&bytes).unwrap(),
+                1 => bench.sensors_box.write(&bytes).unwrap(),
+                2 => bench.sense(&PedestalSensors::default()),
+                3 => bench.command(&flip(u32::from(bytes.len() as u8))),
+                4 => bench.station.join(),
+                _ => {}
+            }
+            bench.tick();
+            if bench.station.outgoing()[0].mailgram() != 0 {
+                prop_assert!(Status::decode(bench.station.outgoing()[0].data()).is_ok());
+                prop_assert!(gripper::decode(bench.station.outgoing()[1].data()).is_ok());
+                prop_assert!(table::decode(bench.station.outgoing()[2].data()).is_ok());
+                prop_assert!(cell::decode_orders(bench.station.outgoing()[3].data()).is_ok());
+            }
+        }
+    }
+}
+
+/// A pedestal, and somebody who writes its mailboxes.
+struct Bench {
+    station: Station,
+    command_box: Mailbox,
+    sensors_box: Mailbox,
+}
+
+impl Default for Bench {
+    fn default() -> Self {
+        Self {
+            station: Station::default(),
+            command_box: Mailbox::initialized(PEDESTAL_COMMAND),
+            sensors_box: Mailbox::initialized(PEDESTAL_SENSORS),
+        }
+    }
+}
+
+impl Bench {
+    /// One that finds a command and has sensor words.
+    fn joining(number: u32) -> Self {
+        let mut bench = Self::default();
+        bench.command(&PedestalCommand { number, ..flip(number) });
+        bench.sense(&PedestalSensors { potentiometer: 2000, ..PedestalSensors::default() });
+        bench
+    }
+
+    fn command(&mut self, command: &PedestalCommand) {
+        self.command_box.write(&command::encode(command)).unwrap();
+    }
+
+    fn sense(&mut self, sensors: &PedestalSensors) {
+        self.sensors_box.write(&cell::encode_sensors(sensors)).unwrap();
+    }
+
+    fn tick(&mut self) {
+        self.station.step(&self.command_box, &self.sensors_box);
+    }
+
+    fn status(&self) -> Status<'_> {
+        Status::decode(self.station.outgoing()[0].data()).unwrap()
+    }
+
+    /// Bits to the valves, and the order to the motor.
+    fn orders(&self) -> (GripValves, MotorCommand) {
+        cell::decode_orders(self.station.outgoing()[3].data()).unwrap()
+    }
+}
+
+#[test]
+fn a_pedestal_that_is_booted_calibrates_and_one_that_replaces_another_moves_nothing() {
+    let mut booted = Bench::joining(0);
+    (0..3).for_each(|_| booted.tick());
+    let (valves, motor) = booted.orders();
+    assert!(valves.bits != 0 && motor.order == MotorOrder::Turn, "{valves:?} {motor:?}");
+    let mut replaced = Bench::joining(7);
+    for _ in 0..100 {
+        replaced.tick();
+        assert_eq!(replaced.orders(), Default::default());
+    }
+    let PedestalStatus { echo, report, reason, .. } = replaced.status().status;
+    assert_eq!((echo, report, reason), (7, PedestalReport::Error, Reason::Restarted));
+    // FLIP needs to know where the table is, PRE-GRIP finds out.
+    replaced.command(&flip(8));
+    replaced.tick();
+    assert_eq!(replaced.status().status.reason, Reason::NotPrepared);
+    replaced.command(&PedestalCommand {
+        command: PedestalVerb::PreGrip,
+        grasp_size: 250,
+        table_angle: -200,
+        ..flip(9)
+    });
+    (0..3).for_each(|_| replaced.tick());
+    assert_eq!(
+        (replaced.status().status.echo, replaced.status().status.report),
+        (9, PedestalReport::Executing)
+    );
+    assert_eq!(replaced.orders().1.order, MotorOrder::Turn, "it looks for its limit");
+}
+
+#[test]
+fn what_stands_in_the_mailbox_when_a_line_is_mended_is_not_made_up_for() {
+    let mut bench = Bench::joining(0);
+    bench.tick();
+    bench.command(&PedestalCommand { command: PedestalVerb::Release, grasp_size: 250, ..flip(5) });
+    bench.station.join();
+    bench.tick();
+    let PedestalStatus { echo, report, reason, .. } = bench.status().status;
+    assert_eq!((echo, report, reason), (5, PedestalReport::Error, Reason::Restarted));
+    bench.command(&PedestalCommand { command: PedestalVerb::Pause, ..flip(6) });
+    bench.tick();
+    assert_eq!((bench.status().status.echo, bench.status().status.report), (6, PedestalReport::Executing));
+}
+
+#[test]
+fn a_garbled_command_is_refused_by_its_number_and_the_next_one_is_taken() {
+    let mut bench = Bench::joining(0);
+    bench.tick();
+    let mut bytes = command::encode(&flip(5));
+    bytes[12] = 0x07;
+    bench.command_box.write(&bytes).unwrap();
+    bench.tick();
+    let status = bench.status();
+    assert_eq!((status.status.echo, status.status.report), (5, PedestalReport::CannotDo));
+    assert_eq!((status.verdict, status.mailgram_echo), (Verdict::NoCommand, 2));
+    assert!(status.reason.ends_with("for command, found 07 at byte 12"), "{}", status.reason);
+    bench.command_box.write(&bytes[..9]).unwrap();
+    bench.tick();
+    let status = bench.status();
+    assert_eq!((status.status.echo, status.reason), (5, "a command of 34 bytes was expected, found 9"));
+    bench.command(&PedestalCommand { command: PedestalVerb::Pause, ..flip(6) });
+    bench.tick();
+    let status = bench.status();
+    assert_eq!((status.status.echo, status.verdict, status.reason), (6, Verdict::Taken, ""));
+}
+
+#[test]
+fn without_sensor_words_nothing_is_stepped_and_the_status_says_why() {
+    let mut bench = Bench::joining(0);
+    (0..3).for_each(|_| bench.tick());
+    let before = bench.orders();
+    bench.sensors_box.write(b"nonsense").unwrap();
+    (0..3).for_each(|_| bench.tick());
+    assert_eq!(bench.orders(), before);
+    assert_eq!(bench.status().verdict, Verdict::NoSensors);
+    assert_eq!(bench.status().reason, "a set of sensor words of 22 bytes was expected, found 8");
+    bench.sense(&PedestalSensors::default());
+    bench.tick();
+    assert_eq!((bench.status().verdict, bench.status().reason), (Verdict::Taken, ""));
+}
