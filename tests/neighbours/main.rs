@@ -4,5 +4,6 @@
 
 mod bench;
 mod data_system;
+mod pedestal;
 mod strangers;
 mod workstation;

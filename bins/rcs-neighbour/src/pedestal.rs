@@ -47,9 +47,13 @@ impl Served {
     /// Carry out the commands of a run.
     fn attend(&mut self, peer: &mut Peer) -> Result<(), Error> {
         self.station.join();
-        let mut sent = [0; 4];
+        let (mut sent, mut is_there) = ([0; 4], false);
         loop {
             let Received::Pulse(pulse) = peer.receive()? else { continue };
+            if !is_there {
+                println!("at work from tick {pulse} on");
+                is_there = true;
+            }
             if pulse <= self.pulse {
                 // Ticks begin anew with a run.
                 *self = Self::default();

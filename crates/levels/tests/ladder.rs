@@ -15,7 +15,7 @@ use rcs_core::{
     digest::Digest,
     frame::Frame,
     interface::{
-        CommonMemory, ExternalInputs, Header, HwsCommand, Reason,
+        CommonMemory, ExternalInputs, Header, HwsCommand, OutsidePedestal, Reason,
         device::{LinkBytes, RESOLVER_COUNTS, single_step},
         hws::HwsReport,
     },
@@ -547,4 +547,45 @@ fn a_lost_process_below_is_an_error() {
     }
     let without_emove: Vec<_> = ProcessId::ALL.iter().copied().filter(|p| *p != ProcessId::Emove).collect();
     assert_eq!(rig.finish(&without_emove, 100), (HwsReport::Error, Reason::NeighbourLost));
+}
+
+/// Its processes are those of another ladder, in lock step: the outputs are the same to the bit as with the pedestal inside.
+#[test]
+fn a_pedestal_of_another_system_is_adopted_and_lost_when_it_does_not_answer() {
+    let pedestal = [ProcessId::Pedestal, ProcessId::Hand, ProcessId::RotaryTable];
+    let (mut inside, mut outside, mut station) = (Rig::new(), Rig::new(), Ladder::default());
+    let mut station_before = CommonMemory::default();
+    let mut step = |rig: &mut Rig, answers: bool| {
+        let mut sent = CommonMemory::default();
+        let before = CommonMemory { subtask: rig.before.subtask, ..station_before };
+        let data = store().view();
+        let tick = rig.tick.next();
+        station.step_in_order(&pedestal, tick, &before, &ExternalInputs::default(), &data, &mut sent);
+        station_before = sent;
+        let CommonMemory { mut pedestal, mut hand, mut table, .. } = sent;
+        for header in [&mut pedestal.header, &mut hand.header, &mut table.header] {
+            header.stamp = Tick::BEFORE_START;
+        }
+        rig.external.pedestal = OutsidePedestal { elsewhere: true, answers, pedestal, hand, table };
+        rig.step(ProcessId::ALL);
+    };
+    // The first tick of both was without it.
+    inside.ladder.restart(ProcessId::Pedestal);
+    inside.ladder.restart(ProcessId::Hand);
+    inside.ladder.restart(ProcessId::RotaryTable);
+    (inside.before, outside.before) = (CommonMemory::default(), CommonMemory::default());
+    for _ in 0..100 {
+        inside.step(ProcessId::ALL);
+        step(&mut outside, true);
+        assert_eq!(outside.before, inside.before);
+    }
+    let last = outside.before;
+    for _ in 0..3 {
+        step(&mut outside, false);
+        let now = &outside.before;
+        assert_eq!((now.pedestal, now.hand, now.table), (last.pedestal, last.hand, last.table));
+        assert_eq!(now.task.header.stamp, outside.tick);
+    }
+    step(&mut outside, true);
+    assert_eq!(outside.before.hand.header.stamp, outside.tick);
 }

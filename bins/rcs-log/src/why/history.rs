@@ -28,7 +28,7 @@ pub struct Wiring {
 /// The wiring of all processes, in the order of common memory (DESIGN 6, III.1).
 pub const WIRING: [Wiring; PROCESSES] = [
     Wiring { commander: None, below: &[1], devices: &["data_base"] },
-    Wiring { commander: Some(0), below: &[2, 9], devices: &["devices.quick_change"] },
+    Wiring { commander: Some(0), below: &[2, 9], devices: &["devices.quick_change", "pedestal.answers"] },
     Wiring {
         commander: Some(1),
         below: &[3, 5, 6, 7, 8],

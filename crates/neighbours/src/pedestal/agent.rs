@@ -191,3 +191,153 @@ fn read<'a, T>(
     }
     decode(mailbox.data()).map(Some).map_err(|why| (place, why))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::{io, sync::mpsc};
+
+    use rcs_core::interface::{
+        GripOutputs,
+        device::{GripValves, MotorCommand},
+        pedestal::{PedestalReport, PedestalStatus, PedestalVerb},
+    };
+
+    use super::*;
+    use crate::{
+        mailbox::Mailbox,
+        network::{
+            Role,
+            frame::Frame,
+            office::{Counter, Outlet},
+        },
+    };
+
+    /// A line that ends in a channel.
+    struct Wire(mpsc::Sender<Frame>);
+
+    impl Outlet for Wire {
+        fn send(&mut self, frame: &Frame) -> io::Result<()> {
+            self.0.send(frame.clone()).map_err(|_| io::ErrorKind::BrokenPipe.into())
+        }
+
+        fn close(&mut self) {}
+    }
+
+    /// The controller's side on the 40 ms grid, and a pedestal that writes what a test wants.
+    struct Bench {
+        agent: Agent,
+        counter: Counter,
+        tick: u64,
+        status_box: Mailbox,
+        _line: mpsc::Receiver<Frame>,
+    }
+
+    impl Bench {
+        fn connected() -> Self {
+            let agent = Agent::new(Desk::new(Role::Pedestal, ClockKind::Real));
+            let (send, line) = mpsc::channel();
+            let counter = agent.desk.counter();
+            counter.attach(Box::new(Wire(send))).unwrap();
+            let status_box = Mailbox::initialized(PEDESTAL_STATUS);
+            Self { agent, counter, tick: 0, status_box, _line: line }
+        }
+
+        fn write(&mut self, data: &[u8]) {
+            self.status_box.write(data).unwrap();
+            self.counter.deliver(&Frame::of(&self.status_box)).unwrap();
+        }
+
+        fn report(&mut self, echo: u32, report: PedestalReport) {
+            let status = PedestalStatus { echo, report, ..PedestalStatus::default() };
+            self.write(&Status { status, ..Status::default() }.encode());
+        }
+
+        /// The next tick with command `number`: does it answer, and is what it has sent republished?
+        fn tick(&mut self, number: u32) -> (bool, bool) {
+            self.tick += 1;
+            let command =
+                PedestalCommand { number, command: PedestalVerb::Flip, ..PedestalCommand::default() };
+            self.agent.exchange(Tick(self.tick), &command, &PedestalSensors::default());
+            (self.agent.sent().answers, self.agent.sent().pedestal.header.republished)
+        }
+
+        fn remarks(&mut self) -> Vec<String> {
+            let remarks = self.agent.remarks().into_iter();
+            remarks.filter(|remark| !matches!(remark, Remark::News(_))).map(|r| r.to_string()).collect()
+        }
+    }
+
+    #[test]
+    fn a_late_status_leaves_the_last_one_standing_for_a_while() {
+        let mut bench = Bench::connected();
+        assert_eq!(bench.tick(0), (false, false), "it has written nothing yet");
+        bench.report(0, PedestalReport::Idle);
+        assert_eq!(bench.tick(0), (true, false));
+        for waited in 0..=ECHO_TICKS {
+            assert_eq!(bench.tick(4), (true, true), "after {waited} ticks");
+        }
+        assert_eq!(bench.remarks(), [""; 0]);
+        assert!(!bench.tick(4).0);
+        assert!(!bench.tick(4).0);
+        assert_eq!(bench.remarks(), ["the Active Pedestal has not echoed command 4 for 50 ticks"]);
+        bench.report(4, PedestalReport::Executing);
+        assert_eq!(bench.tick(4), (true, false));
+        assert_eq!(bench.agent.sent().pedestal.status.report, PedestalReport::Executing);
+        assert_eq!(bench.tick(5), (true, true), "the time of the next command begins anew");
+    }
+
+    #[test]
+    fn nothing_of_what_is_garbled_is_taken() {
+        let mut bench = Bench::connected();
+        let hand = GripOutputs::default();
+        let mut orders = Mailbox::initialized(PEDESTAL_ORDERS);
+        let valves = GripValves { bits: 0x81 };
+        orders.write(&cell::encode_orders(valves, &MotorCommand::default())).unwrap();
+        let mut of_gripper = Mailbox::initialized(PEDESTAL_GRIPPER_STATUS);
+        of_gripper.write(&gripper::encode(&hand, &Default::default())).unwrap();
+        bench.counter.deliver(&Frame::of(&orders)).unwrap();
+        bench.counter.deliver(&Frame::of(&of_gripper)).unwrap();
+        bench.report(4, PedestalReport::Executing);
+        assert_eq!(bench.tick(4), (true, false));
+        of_gripper.write(b"closed").unwrap();
+        bench.counter.deliver(&Frame::of(&of_gripper)).unwrap();
+        bench.report(4, PedestalReport::Done);
+        assert!(!bench.tick(4).0 && !bench.tick(4).0);
+        let sent = *bench.agent.sent();
+        assert_eq!((sent.pedestal.status.report, sent.hand.valves), (PedestalReport::Executing, valves));
+        assert_eq!(
+            bench.remarks(),
+            [
+                "mailbox Pedestal Gripper to RCS Status at F5600 cannot be read, the Active Pedestal counts as not \
+              answering: a status of the gripper of 74 bytes was expected, found 6"
+            ]
+        );
+        of_gripper.write(&gripper::encode(&hand, &Default::default())).unwrap();
+        bench.counter.deliver(&Frame::of(&of_gripper)).unwrap();
+        assert_eq!(bench.tick(4), (true, false));
+        assert_eq!(bench.agent.sent().pedestal.status.report, PedestalReport::Done);
+    }
+
+    #[test]
+    fn what_the_pedestal_refuses_is_said_once() {
+        let mut bench = Bench::connected();
+        for grip_size in 0..3 {
+            let status = PedestalStatus { grip_size, ..PedestalStatus::default() };
+            let (verdict, reason) = (Verdict::NoCommand, "no command at all");
+            bench.write(&Status { status, verdict, mailgram_echo: 3, reason, ..Status::default() }.encode());
+            assert!(bench.tick(0).0);
+        }
+        assert_eq!(bench.remarks(), ["the Active Pedestal refuses what was sent to it: no command at all"]);
+    }
+
+    #[test]
+    fn one_that_goes_is_lost_and_its_orders_stand() {
+        let mut bench = Bench::connected();
+        bench.report(4, PedestalReport::Executing);
+        assert_eq!(bench.tick(4), (true, false));
+        bench.counter.detach("the cable was cut".to_owned());
+        assert!(!bench.tick(4).0);
+        assert_eq!(bench.agent.sent().pedestal.status.echo, 4);
+        assert!(bench.agent.sent().elsewhere);
+    }
+}

@@ -1,0 +1,336 @@
+//! The Active Pedestal in another process (VI.7, IX.3): not a bit of a run changes by it, and whatever becomes of it, the robot keeps
+//! what it holds, its hand keeps what it holds, and the command ends with words that name it.
+//!
+//! All in fast clock: the controller's time stands still while its workstation controller, which is the test, does not answer.
+
+use std::{
+    fs,
+    io::{BufRead as _, BufReader},
+    path::Path,
+    process::{Child, Command, Stdio},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread::{self, JoinHandle},
+};
+
+use neighbours::{
+    mailbox::{Mailbox, PEDESTAL_COMMAND, PEDESTAL_SENSORS, PEDESTAL_STATUS},
+    network::{Peer, Received, Role},
+    pedestal::{Station, cell, command as bytes, status::Status},
+};
+use rcs_core::{
+    interface::{
+        HwsCommand, Reason,
+        pedestal::{PedestalReport, PedestalVerb},
+    },
+    name::Name16,
+};
+use whole_system_tests::{Scratch, rcs_log, rcs_neighbour, rcs_run, root};
+
+use crate::bench::{Controller, Ended, Workstation, bare};
+
+const SILENT: &str = "the Active Pedestal does not answer";
+
+/// The first fixturing of the clevis: then the robot holds it, and it is to be turned round on the pedestal.
+const UNTIL_IT_IS_HELD: [&str; 10] = [
+    "== PAUSE -- +0 -- 0 +0 -- 0 -- 0",
+    "** tray UNIT_1 3 LCLEVIS_BH",
+    "** vise partial PFIXTURE CLEVIS",
+    "== MOVE LCLEVIS_BH +2 UNIT_1 3 +2 PFIXTURE 0 -- 0",
+    "== POSITION S-LCLEVIS_BH +1 PFIXTURE 0 +0 -- 0 -- 0",
+    "** vise close PFIXTURE",
+    "== MOVE -- +0 -- 0 +0 HOME 0 -- 0",
+    "** machine LCLEVIS_BH LCLEVIS_IH PFIXTURE",
+    "== ACQUIRE LCLEVIS_IH +1 PFIXTURE 0 +0 -- 0 -- 0",
+    "** vise partial PFIXTURE",
+];
+const REFIXTURE: &str = "== REFIXTURE LCLEVIS_IH +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0";
+
+/// A command as a job has it.
+fn command(number: u32, line: &str) -> HwsCommand {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let [_, verb, object, source_grip, source, source_sector, grip, destination, sector, end_at, end_sector] =
+        words[..]
+    else {
+        panic!("{line}")
+    };
+    let name = |word: &str| if word == "--" { Name16::EMPTY } else { Name16::new(word).expect("a name") };
+    let integer = |word: &str| word.parse().expect("an integer");
+    HwsCommand {
+        object: name(object),
+        source_grip: integer(source_grip),
+        source: name(source),
+        source_sector: integer(source_sector),
+        destination_grip: integer(grip),
+        destination: name(destination),
+        destination_sector: integer(sector),
+        end_at: name(end_at),
+        end_at_sector: integer(end_sector),
+        ..bare(number, verb)
+    }
+}
+
+/// A controller, a workstation controller, and the number of its last command.
+struct Shop {
+    controller: Controller,
+    workstation: Workstation,
+    number: u32,
+}
+
+impl Shop {
+    /// The robot holds the clevis.
+    fn with_clevis(controller: Controller) -> Self {
+        let workstation = Workstation::connect(&controller);
+        let mut shop = Self { controller, workstation, number: 0 };
+        for line in UNTIL_IT_IS_HELD {
+            match line.strip_prefix("** ") {
+                Some(line) => shop.workstation.in_cell(line),
+                None => assert_eq!(shop.carry_out(line), ("finished".to_owned(), String::new()), "{line}"),
+            }
+        }
+        shop
+    }
+
+    fn carry_out(&mut self, line: &str) -> (String, String) {
+        self.number += 1;
+        self.workstation.carry_out(&command(self.number, line))
+    }
+
+    /// The clevis is not turned round, and why.
+    fn fails(&mut self) -> String {
+        let (status, reason) = self.carry_out(REFIXTURE);
+        assert_eq!(status, "error");
+        assert_eq!(self.carry_out("== PAUSE -- +0 -- 0 +0 -- 0 -- 0").0, "finished", "after: {reason}");
+        reason
+    }
+
+    /// Let a pedestal in.
+    fn admit(&mut self, fate: Fate) -> Guest {
+        let guest = Guest::new(self.controller.connect(Role::Pedestal, None), fate);
+        while !guest.is_there.load(Ordering::Acquire) {
+            self.workstation.tick();
+        }
+        guest
+    }
+
+    /// Let a pedestal come to its end; what it was then.
+    fn see_off(&mut self, guest: Guest) -> Remains {
+        while !guest.serving.is_finished() {
+            self.workstation.tick();
+        }
+        guest.serving.join().expect("it has not panicked")
+    }
+
+    fn end(self) -> Ended {
+        drop(self.workstation);
+        self.controller.end()
+    }
+}
+
+/// What a pedestal does with its commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fate {
+    /// It executes them, until so many ticks after the first FLIP.
+    DiesTurning(u32),
+    /// It answers for another command, and goes some ticks after the second one.
+    AnswersForAnother,
+    /// Its status is nonsense from the first command on; it goes some ticks after the second one.
+    Babbles,
+    /// It executes them, for so many ticks.
+    Serves(u32),
+}
+
+/// A pedestal when it has ended, and the counts of its finger potentiometer.
+type Remains = (Station, u16);
+
+/// A pedestal on a thread, which ends when its fate or the line does.
+struct Guest {
+    serving: JoinHandle<Remains>,
+    /// It has got a pulse.
+    is_there: Arc<AtomicBool>,
+}
+
+impl Guest {
+    fn new(peer: Peer, fate: Fate) -> Self {
+        let is_there = Arc::new(AtomicBool::new(false));
+        let theirs = Arc::clone(&is_there);
+        Self { serving: thread::spawn(move || serve(peer, fate, &theirs)), is_there }
+    }
+}
+
+fn serve(mut peer: Peer, fate: Fate, is_there: &AtomicBool) -> Remains {
+    let (mut station, mut opening) = (Station::default(), 0);
+    let mut forged = Mailbox::initialized(PEDESTAL_STATUS);
+    let (mut sent, mut numbers, mut ticks, mut turning) = ([0; 4], Vec::new(), 0, 0);
+    while let Ok(received) = peer.receive() {
+        let Received::Pulse(pulse) = received else { continue };
+        is_there.store(true, Ordering::Release);
+        let command_box = peer.mailbox(PEDESTAL_COMMAND);
+        let number = bytes::decode(command_box.data()).expect("the controller commands").number;
+        if !numbers.contains(&number) {
+            (numbers, ticks) = ([numbers, vec![number]].concat(), 0);
+        }
+        ticks += 1;
+        // The first one stood there when it came.
+        let commanded = numbers.len() > 1;
+        let sensors_box = peer.mailbox(PEDESTAL_SENSORS);
+        opening = cell::decode_sensors(sensors_box.data()).expect("its devices are there").potentiometer;
+        station.step(command_box, sensors_box);
+        turning += u32::from(station.command().command == PedestalVerb::Flip);
+        let over = match fate {
+            Fate::DiesTurning(limit) => turning > limit,
+            Fate::Serves(limit) => ticks > limit,
+            Fate::AnswersForAnother | Fate::Babbles => numbers.len() > 2 && ticks > 5,
+        };
+        if over {
+            return (station, opening);
+        }
+        for (mailbox, sent) in station.outgoing().iter().zip(&mut sent) {
+            if mailbox.mailgram() == *sent {
+                continue;
+            }
+            *sent = mailbox.mailgram();
+            let mut own = mailbox.clone();
+            if commanded && mailbox.place() == PEDESTAL_STATUS {
+                let mut status = Status::decode(mailbox.data()).expect("a status");
+                match fate {
+                    Fate::AnswersForAnother => {
+                        status.status.echo += 77;
+                        forged.write(&status.encode()).expect("it fits");
+                        own = forged.clone();
+                    }
+                    Fate::Babbles => {
+                        forged.write(b"DONE").expect("it fits");
+                        own = forged.clone();
+                    }
+                    Fate::DiesTurning(_) | Fate::Serves(_) => {}
+                }
+            }
+            if peer.send(&own).is_err() {
+                return (station, opening);
+            }
+        }
+        if peer.pulse(pulse).is_err() {
+            return (station, opening);
+        }
+    }
+    (station, opening)
+}
+
+/// The digest of a shipped job, whose pedestal is in the controller's own process.
+fn digest_of(job: &str) -> String {
+    let text = fs::read_to_string(root().join(format!("tests/goldens/{job}.txt"))).expect("a golden run");
+    let line = text.lines().find_map(|line| line.strip_prefix("digest")).expect("it has a digest");
+    line.trim().to_owned()
+}
+
+/// A pedestal in another process, and whether it has said that it has got a pulse.
+fn start_pedestal(program: &Path, controller: &Controller) -> (Child, Arc<AtomicBool>) {
+    let mut child = Command::new(program)
+        .args(["pedestal", "--wait", "1", "--network", &controller.address.to_string()])
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("rcs-neighbour can be started");
+    let mut stdout = BufReader::new(child.stdout.take().expect("it is piped"));
+    let is_there = Arc::new(AtomicBool::new(false));
+    let ours = Arc::clone(&is_there);
+    // Reads until it ends.
+    thread::spawn(move || {
+        let mut line = String::new();
+        while stdout.read_line(&mut line).is_ok_and(|bytes| bytes > 0) {
+            ours.fetch_or(line.starts_with("at work from tick "), Ordering::Release);
+            line.clear();
+        }
+    });
+    (child, is_there)
+}
+
+#[test]
+fn a_pedestal_in_another_process_changes_not_a_bit() {
+    // Brought up to date before the controller waits for it.
+    let program = rcs_neighbour();
+    for boards in ["one", "split"] {
+        let more = ["clevis", "--json", "--boards", boards];
+        let controller = Controller::start(&format!("turned-{boards}"), "pedestal", &more);
+        let (mut pedestal, _) = start_pedestal(program, &controller);
+        let ended = controller.end();
+        assert_eq!(ended.status, Some(0), "{}", ended.said);
+        assert_eq!(ended.result["digest"], digest_of("clevis"), "--boards {boards}");
+        assert_eq!(ended.result["allocations_after_start"], 0);
+        assert!(pedestal.wait().expect("a child").success(), "it ends when no run comes");
+    }
+}
+
+#[test]
+fn whatever_becomes_of_the_pedestal_the_command_ends_and_nothing_is_dropped() {
+    let controller = Controller::start("fates", "workstation,pedestal", &["--json", "--wait", "1"]);
+    let mut shop = Shop::with_clevis(controller);
+    // It was never there.
+    assert_eq!(shop.fails(), SILENT);
+    for fate in [Fate::AnswersForAnother, Fate::Babbles] {
+        let guest = shop.admit(fate);
+        assert_eq!(shop.fails(), SILENT, "{fate:?}");
+        shop.see_off(guest);
+    }
+    // The part stands in its hand when it dies.
+    let guest = shop.admit(Fate::DiesTurning(25));
+    assert_eq!(shop.fails(), SILENT);
+    let (dead, held) = shop.see_off(guest);
+    assert!(dead.memory().hand.status.position > 240, "it held the clevis");
+    // Its successor leaves the hand as it is as long as nobody commands otherwise.
+    let guest = shop.admit(Fate::Serves(300));
+    let (successor, opening) = shop.see_off(guest);
+    let status = successor.memory().pedestal.status;
+    assert_eq!((status.report, status.reason), (PedestalReport::Error, Reason::Restarted));
+    assert_eq!(successor.memory().hand.valves.bits, 0);
+    assert!(opening.abs_diff(held) < 10, "the fingers stood at {held} counts, and stand at {opening}");
+    let ended = shop.end();
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    let [part] = &ended.result["parts"].as_array().expect("parts")[..] else { panic!("{}", ended.result) };
+    assert_eq!(part["location"], "PEDESTAL", "{part}");
+}
+
+/// One is killed with SIGKILL, and another one takes its place.
+#[test]
+fn a_pedestal_that_is_killed_and_started_again_turns_the_next_part() {
+    let program = rcs_neighbour();
+    let controller = Controller::start("killed-pedestal", "workstation,pedestal", &["--json"]);
+    let (mut killed, _) = start_pedestal(program, &controller);
+    let mut shop = Shop::with_clevis(controller);
+    killed.kill().expect("it runs");
+    killed.wait().expect("a child");
+    assert_eq!(shop.fails(), SILENT);
+    let (mut second, is_there) = start_pedestal(program, &shop.controller);
+    while !is_there.load(Ordering::Acquire) {
+        shop.workstation.tick();
+    }
+    assert_eq!(shop.carry_out(REFIXTURE), ("finished".to_owned(), String::new()));
+    let ended = shop.end();
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert!(second.wait().expect("a child").success());
+}
+
+/// What whoever runs a job reads when its pedestal is not there.
+#[test]
+fn a_job_without_its_pedestal_says_so() {
+    let scratch = Scratch::new("no-pedestal");
+    let (socket, log) = (scratch.file("rcs.sock"), scratch.file("run.mcap"));
+    let output = Command::new(rcs_run())
+        .args(["clevis", "--json", "--shared-memory", "off", "--outside", "pedestal", "--wait", "1"])
+        .args(["--network", &format!("unix:{}", socket.display()), "--log", &log.display().to_string()])
+        .current_dir(root())
+        .output()
+        .expect("rcs-run can be started");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("pedestal has not come; the run begins without it"), "{said}");
+    let last = said.lines().last().unwrap_or_default();
+    assert!(last.contains(&format!("Subtask: {SILENT}, while it executed FIX-GRIP LCLEVIS_IH")), "{last}");
+    let why = Command::new(rcs_log()).arg("why").arg(&log).output().expect("rcs-log can be started");
+    let why = String::from_utf8_lossy(&why.stdout).into_owned();
+    assert!(why.contains(SILENT) && why.contains("pedestal is Silent"), "{why}");
+    let replayed = Command::new(rcs_log()).arg("replay").arg(&log).output().expect("rcs-log can be started");
+    assert!(replayed.status.success(), "{}", String::from_utf8_lossy(&replayed.stdout));
+}
