@@ -10,6 +10,7 @@ use neighbours::{
     data_system::{command as das_command, statement, status as das_status},
     mailbox::{HWSC_COMMAND, Mailbox},
     network::{Role, frame::Frame},
+    pedestal::{cell as pedestal_cell, command as pedestal_command, gripper, status as pedestal_status, table},
     workstation::{
         Gate,
         cell::{self, CellStatus},
@@ -37,6 +38,32 @@ fn layouts(data: &[u8]) {
         let _ = statement::parse(read.statement).map_err(|error| error.to_string());
     }
     let _ = status::decode(data).map_err(|error| error.to_string());
+    pedestal(data);
+}
+
+/// Those of the Active Pedestal.
+fn pedestal(data: &[u8]) {
+    if let Ok(read) = pedestal_command::decode(data) {
+        assert_eq!(pedestal_command::decode(&pedestal_command::encode(&read)), Ok(read));
+    }
+    if let Ok(read) = pedestal_status::Status::decode(data) {
+        assert_eq!(pedestal_status::Status::decode(&read.encode()), Ok(read));
+    }
+    if let Ok((hand, command)) = gripper::decode(data) {
+        assert_eq!(gripper::decode(&gripper::encode(&hand, &command)), Ok((hand, command)));
+    }
+    if let Ok((turned, command)) = table::decode(data) {
+        assert_eq!(table::decode(&table::encode(&turned, &command)), Ok((turned, command)));
+    }
+    if let Ok(read) = pedestal_cell::decode_sensors(data) {
+        assert_eq!(pedestal_cell::decode_sensors(&pedestal_cell::encode_sensors(&read)), Ok(read));
+    }
+    if let Ok((valves, motor)) = pedestal_cell::decode_orders(data) {
+        assert_eq!(
+            pedestal_cell::decode_orders(&pedestal_cell::encode_orders(valves, &motor)),
+            Ok((valves, motor))
+        );
+    }
 }
 
 fuzz_target!(|data: &[u8]| {
