@@ -263,6 +263,31 @@ fn a_pedestal_in_another_process_changes_not_a_bit() {
     }
 }
 
+/// Who commands, who keeps the books and who turns the parts: each in a process of its own.
+#[test]
+fn a_shift_with_everybody_elsewhere_has_the_same_bits() {
+    let program = rcs_neighbour();
+    let scratch = Scratch::new("everybody");
+    let (outbox, items) = (scratch.file("outbox").display().to_string(), scratch.file("items.db"));
+    let everybody = "workstation,data-system,pedestal";
+    let controller = Controller::start_at(scratch, None, everybody, &["--json", "--outbox", &outbox]);
+    let (mut pedestal, _) = start_pedestal(program, &controller);
+    let neighbour = |words: &[&str]| {
+        let mut command = Command::new(program);
+        command.args(words).args(["--wait", "1", "--network", &controller.address.to_string()]);
+        command.current_dir(root()).stdout(Stdio::null());
+        command.spawn().expect("rcs-neighbour can be started")
+    };
+    let mut books = neighbour(&["data-system", &items.display().to_string()]);
+    let mut chief = neighbour(&["workstation", "shift"]);
+    assert!(chief.wait().expect("a child").success());
+    let ended = controller.end();
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert_eq!(ended.result["digest"], digest_of("shift"));
+    assert_eq!(ended.result["allocations_after_start"], 0);
+    assert!(pedestal.wait().expect("a child").success() && books.wait().expect("a child").success());
+}
+
 #[test]
 fn whatever_becomes_of_the_pedestal_the_command_ends_and_nothing_is_dropped() {
     let controller = Controller::start("fates", "workstation,pedestal", &["--json", "--wait", "1"]);
