@@ -11,7 +11,9 @@ use std::{
     },
 };
 
-use executive::memory::{Attached, Publisher, RunName, SharedMemoryError, buffers::Pulse, list, runs};
+use executive::memory::{
+    Attached, Publisher, ReadError, RunName, SharedMemoryError, buffers::Pulse, list, runs,
+};
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport},
     name::Name16,
@@ -102,6 +104,24 @@ fn a_reader_meets_no_torn_tick() {
         stop.store(true, Ordering::Release);
         assert_eq!(reader.join().expect("no tick was torn"), 19_999);
     });
+}
+
+#[test]
+fn a_pedestal_of_another_system_that_does_not_answer_keeps_no_reader_from_the_rest() {
+    let name = name("absent");
+    let mut publisher = Publisher::create(&name).expect("shared memory");
+    let reader = Attached::open(&name).expect("the run lives");
+    let (mut external, mut memory, pulse) = with_stamp(9);
+    external.pedestal.elsewhere = true;
+    for header in [&mut memory.pedestal.header, &mut memory.hand.header, &mut memory.table.header] {
+        header.stamp = Tick(4);
+    }
+    publisher.publish(&external, &memory, pulse);
+    assert_eq!((reader.memory(), reader.external()), (Ok(memory), Ok(external)));
+    // Whoever belongs to the controller itself has always the stamp of the tick.
+    memory.grip.header.stamp = Tick(4);
+    publisher.publish(&external, &memory, pulse);
+    assert_eq!(reader.memory(), Err(ReadError::Busy));
 }
 
 #[test]
