@@ -518,6 +518,12 @@ impl CellDescription {
         self.part.iter().find(|part| part.name == name)
     }
 
+    /// The part that vision knows by an id (VII.7.6).
+    #[must_use]
+    pub fn seen_as(&self, vision_id: u16) -> Option<&PartType> {
+        self.part.iter().find(|part| part.vision_id == vision_id && vision_id != 0)
+    }
+
     /// The tray at a unit.
     #[must_use]
     pub fn tray(&self, unit: &str) -> Option<&Tray> {

@@ -55,6 +55,19 @@ impl Subject {
         Self { face, reflectance, seen: face.points().map(sees).collect() }
     }
 
+    /// A face of which those points are seen whose bits are set: bit n for the nth point of the raster, row by row.
+    #[must_use]
+    pub fn from_raster(face: Face, reflectance: f64, raster: u128) -> Self {
+        let seen = (0..RASTER * RASTER).map(|point| raster >> point & 1 == 1).collect();
+        Self { face, reflectance, seen }
+    }
+
+    /// The points that are seen, as the bits of [`Subject::from_raster`].
+    #[must_use]
+    pub fn raster(&self) -> u128 {
+        self.seen.iter().rev().fold(0, |bits, seen| bits << 1 | u128::from(*seen))
+    }
+
     /// The face.
     #[must_use]
     pub const fn face(&self) -> &Face {
@@ -154,6 +167,15 @@ mod tests {
         assert!((subject.share() - 6.0 / 9.0).abs() < 1e-12);
         let hidden = plate(0.0, 0.0, |_| false);
         assert_eq!((hidden.share(), hidden.lengths()), (0.0, [0.0, 0.0]));
+    }
+
+    #[test]
+    fn a_subject_comes_back_from_its_raster() {
+        let subject = plate(1.0, -2.0, |point| point.y + 2.0 * point.z < -3.0);
+        assert!((0.2..0.8).contains(&subject.share()), "{}", subject.share());
+        let again = Subject::from_raster(*subject.face(), subject.reflectance(), subject.raster());
+        assert_eq!(again, subject);
+        assert_eq!(plate(0.0, 0.0, |_| true).raster(), (1 << 81) - 1);
     }
 
     #[test]

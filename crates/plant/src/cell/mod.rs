@@ -34,7 +34,7 @@ pub use saving::{RestoreError, SaveError};
 pub use workstation::{Placement, WorkstationAction, WorkstationError};
 
 use crate::{
-    camera::Camera,
+    camera::{Analysis, Optics},
     clearance::{Body, Clearance},
     convert::{GRAVITY, to_frame, to_pose},
     description::{Actuators, CellDescription, Points},
@@ -66,7 +66,10 @@ pub struct Cell {
     drum: Drum,
     pedestal: Pedestal,
     vise: Vise,
-    camera: Camera,
+    optics: Optics,
+    analysis: Analysis,
+    /// Another process analyses the pictures.
+    vision_elsewhere: bool,
     joystick: Joystick,
     parts: Vec<Part>,
     next_part: u32,
@@ -133,7 +136,9 @@ impl Cell {
         let mut cell = Self {
             t3,
             host_ready: true,
-            camera: Camera::new(&description.camera, Noise::new(seed, Stream::Camera)),
+            optics: Optics::new(&description.camera),
+            analysis: Analysis::new(&description.camera, seed),
+            vision_elsewhere: false,
             obstacles: clearing::standing(description, &furniture),
             joystick: Joystick::default(),
             description: description.clone(),

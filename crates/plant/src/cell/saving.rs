@@ -18,7 +18,7 @@ use crate::{description::CellDescription, fingerprint, scene::furniture};
 /// What every saved cell begins with.
 const MAGIC: [u8; 8] = *b"RCSCELL\0";
 /// Version of the saved state: to be raised with every change of what a cell consists of.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 /// Bytes before the state.
 const HEADER: usize = 28;
 
@@ -111,7 +111,8 @@ impl Cell {
                 bytes.extend_from_slice(&number.to_le_bytes());
             }
         }
-        let robot = (&self.t3, &self.droop, &self.changer, &self.grippers, &self.camera, &self.joystick);
+        let camera = (&self.optics, &self.analysis);
+        let robot = (&self.t3, &self.droop, &self.changer, &self.grippers, camera, &self.joystick);
         let beside = (&self.drum, &self.pedestal, &self.vise, &self.parts, self.next_part, &self.clearance);
         let noise = (&self.gripper_noise, &self.pedestal_noise, &self.force_noise, &self.placement_noise);
         let sensors = (&self.resolver_noise, &self.dead_times, &self.faults, self.jaw_waits);

@@ -3,7 +3,9 @@
 use rapier3d_f64::prelude::*;
 use rcs_core::{
     frame::{Frame, Vector as Inches},
-    interface::device::{DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, LinkBytes, Resolvers},
+    interface::device::{
+        DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, LinkBytes, Resolvers, VisionResponse,
+    },
 };
 
 use super::{Cell, handling::Hand};
@@ -19,16 +21,38 @@ use crate::{
 const ARM_IN_VIEW: [&str; 2] = ["upper_arm", "forearm"];
 
 impl Cell {
+    /// From now on another process analyses the camera's pictures: the caller asks for them ([`Cell::picture`]), and says what has
+    /// come of them ([`Cell::hear_vision`]).
+    #[must_use]
+    pub fn with_vision_elsewhere(mut self) -> Self {
+        self.vision_elsewhere = true;
+        self
+    }
+
     /// Take a picture if one is asked for.
     pub(super) fn look(&mut self, outputs: &DeviceOutputs) {
-        if !self.camera.wants_picture(&outputs.vision) {
+        if self.vision_elsewhere || !self.analysis.wants_picture(&outputs.vision) {
             return;
         }
-        let frame = self.camera.frame(&self.tool());
-        let seen = if self.faults.camera_blind() { Vec::new() } else { self.subjects(&frame) };
-        let id = outputs.vision.object_id;
-        let expected = self.description.part.iter().find(|kind| kind.vision_id == id && id != 0);
-        self.camera.expose(&outputs.vision, &seen, expected);
+        let seen = self.picture();
+        let expected = self.description.seen_as(outputs.vision.object_id);
+        self.analysis.expose(&outputs.vision, &seen, expected);
+    }
+
+    /// What the camera sees now: the parts of which it sees anything.
+    #[must_use]
+    pub fn picture(&self) -> Vec<Subject> {
+        if self.faults.camera_blind() {
+            return Vec::new();
+        }
+        let frame = self.optics.frame(&self.tool());
+        self.subjects(&frame).into_iter().filter(|subject| subject.raster() != 0).collect()
+    }
+
+    /// What a vision system in another process answers, if the cable to it is on.
+    pub fn hear_vision(&mut self, response: &VisionResponse) {
+        self.inputs.vision = *response;
+        self.faults.vision(&mut self.inputs);
     }
 
     /// What a camera at a frame (world, in) has before it: of each part what is in the field of view, and what nothing
@@ -38,7 +62,7 @@ impl Cell {
         let arm: Vec<_> =
             self.arm_bodies().into_iter().filter(|link| ARM_IN_VIEW.contains(&&*link.name)).collect();
         let sees = |part: &Part, point: Inches| {
-            if !self.camera.has_in_view(&point) {
+            if !self.optics.has_in_view(&point) {
                 return false;
             }
             let ray = Ray::new(lens, to_pose(camera).transform_point(to_metres(&point)) - lens);
@@ -72,7 +96,7 @@ impl Cell {
             quick_change: self.changer.sensors(self.description.sensors.ring_hysteresis),
             holsters: self.holster_sensors(),
             joystick: self.joystick.read(),
-            vision: self.camera.answer(),
+            vision: if self.vision_elsewhere { VisionResponse::default() } else { self.analysis.answer() },
             pedestal: self.pedestal.sensors(&mut self.pedestal_noise),
             ..DeviceInputs::default()
         };

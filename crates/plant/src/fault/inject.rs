@@ -150,6 +150,18 @@ impl Injector {
         }
     }
 
+    /// Change what the vision system shows, where it comes later than the sensors.
+    pub(crate) fn vision(&mut self, inputs: &mut DeviceInputs) {
+        let tick = self.tick;
+        for running in self.faults.iter_mut().filter(|running| running.active) {
+            if let What::Sensor(sensor, disorder) = running.fault.what
+                && sensor.is_camera()
+            {
+                running.disturb(sensor, disorder, tick, inputs);
+            }
+        }
+    }
+
     /// The hydraulics have failed.
     #[must_use]
     pub fn hydraulics_lost(&self) -> bool {

@@ -1,0 +1,382 @@
+//! What vision makes of a picture (V.2.1 LOCATE-OBJ): centroid, and with the second picture angle and recognition.
+//!
+//! It works on what is seen of each part ([`Subject`]), and on nothing else of the cell: so it can be done in the cell or in
+//! another process, with the same bits. From the points that are seen it takes centroid and lengths, so that a part which is cut by
+//! the edge of the picture, or half hidden, is found beside its middle and is not recognised; parts that touch in the
+//! picture are one blob.
+//!
+//! Positions are what a pinhole camera makes of them: a part that is nearer than the expected range looks larger and farther
+//! from the axis. The second picture also measures the outline, and by that recognises the part. `variation` chooses the
+//! exposure: a part that throws back too little light for it is not in the picture at all, one that throws back too much
+//! blooms, and its outline grows. LOCATE-OBJ tries one after the other.
+
+use rcs_core::{
+    digest::Digest,
+    frame::Vector,
+    interface::device::{Picture, VisionRequest, VisionResponse, VisionStatus},
+    units::{hundredths, hundredths_of_degree},
+};
+use serde::{Deserialize, Serialize};
+
+use super::Subject;
+use crate::{
+    convert::METRES_PER_INCH,
+    description::{Camera as Description, CellDescription, PartType},
+    fingerprint,
+    noise::{Noise, Stream},
+};
+
+/// An answer that is being worked out.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+struct Pending {
+    #[serde(with = "crate::image::record")]
+    answer: VisionResponse,
+    /// Until it is there.
+    ticks: u32,
+}
+
+/// The analysis of the camera's pictures.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub struct Analysis {
+    description: Description,
+    noise: Noise,
+    pending: Option<Pending>,
+    #[serde(with = "crate::image::record")]
+    response: VisionResponse,
+    last: u32,
+}
+
+impl Analysis {
+    /// One that was not asked anything, in a run with a seed.
+    #[must_use]
+    pub fn new(description: &Description, seed: u64) -> Self {
+        Self {
+            description: description.clone(),
+            noise: Noise::new(seed, Stream::Camera),
+            pending: None,
+            response: VisionResponse::default(),
+            last: 0,
+        }
+    }
+
+    /// What of a cell the answers depend on, besides seed and pictures: camera and parts that vision knows. Two analyses of equal
+    /// fingerprint answer the same.
+    ///
+    /// # Panics
+    /// If a description refuses to be serialised, which is a fault of this crate.
+    #[must_use]
+    pub fn fingerprint(cell: &CellDescription) -> u64 {
+        let known = cell.part.iter().filter(|part| part.vision_id != 0);
+        let known: Vec<_> = known.map(|part| (part.vision_id, part.size)).collect();
+        let mut bytes = Vec::new();
+        fingerprint::append(&(&cell.camera, known), &mut bytes)
+            .expect("a description is plain values, which can be written down");
+        let mut digest = Digest::new();
+        digest.add(&bytes);
+        digest.value()
+    }
+
+    /// True if `request` is a new one, for which a picture must be taken.
+    #[must_use]
+    pub fn wants_picture(&self, request: &VisionRequest) -> bool {
+        request.number != 0 && request.number != self.last && request.picture != Picture::None
+    }
+
+    /// Begin with the picture of a new request; `subjects` are the parts of which something is seen.
+    pub fn expose(&mut self, request: &VisionRequest, subjects: &[Subject], expected: Option<&PartType>) {
+        self.last = request.number;
+        let answer = self.analyse(request, subjects, expected);
+        let ticks = match request.picture {
+            Picture::Precise => self.description.precise_ticks,
+            Picture::FastFlood | Picture::None => self.description.flood_ticks,
+        };
+        self.pending = Some(Pending { answer, ticks });
+        self.response =
+            VisionResponse { echo: request.number, status: VisionStatus::Busy, ..VisionResponse::default() };
+    }
+
+    /// The answer as it stands at the end of a tick.
+    pub fn answer(&mut self) -> VisionResponse {
+        match &mut self.pending {
+            Some(Pending { answer, ticks }) if *ticks <= 1 => {
+                self.response = *answer;
+                self.pending = None;
+            }
+            Some(Pending { ticks, .. }) => *ticks -= 1,
+            None => {}
+        }
+        self.response
+    }
+
+    fn analyse(
+        &mut self,
+        request: &VisionRequest,
+        subjects: &[Subject],
+        expected: Option<&PartType>,
+    ) -> VisionResponse {
+        let mut answer = VisionResponse { echo: request.number, ..VisionResponse::default() };
+        let exposure = self.exposure(request.variation);
+        let [darkest, _] = exposure;
+        let least = self.description.least_share;
+        let lit = |subject: &&Subject| subject.reflectance() >= darkest && subject.share() >= least;
+        let bright: Vec<&Subject> = subjects.iter().filter(lit).collect();
+        let Some(blob) = self.nearest(&bright) else {
+            answer.status = VisionStatus::NothingSeen;
+            return answer;
+        };
+        let centre = blob.iter().map(|subject| subject.centroid()).sum::<Vector>() / blob.len() as f64;
+        let expected_range = f64::from(request.range_mm) / 1000.0 / METRES_PER_INCH;
+        let scale = if expected_range > 0.0 { expected_range / centre.x } else { 1.0 };
+        let precise = request.picture == Picture::Precise;
+        let error = if precise { self.description.precise_noise } else { self.description.flood_noise };
+        answer.y = hundredths(centre.y * scale + self.noise.within(error));
+        answer.z = hundredths(centre.z * scale + self.noise.within(error));
+        answer.status = VisionStatus::Done;
+        if precise {
+            self.recognise(&blob, exposure, scale, request.grip, expected, &mut answer);
+        }
+        answer
+    }
+
+    /// What a second picture says beyond the centroid: angle, and whether it is the part.
+    fn recognise(
+        &mut self,
+        blob: &[&Subject],
+        [_, brightest]: [f64; 2],
+        scale: f64,
+        grip: i16,
+        expected: Option<&PartType>,
+        answer: &mut VisionResponse,
+    ) {
+        let Some(subject) = blob.first() else { return };
+        let bloom = if subject.reflectance() > brightest { self.description.bloom } else { 0.0 };
+        let noise = self.description.shape_noise;
+        let measured = subject.lengths().map(|length| length * scale + bloom + self.noise.within(noise));
+        let turn = self.noise.within(self.description.angle_noise.to_radians());
+        answer.angle = grip_angle(&subject.face().edges, grip, turn);
+        let missed = self.fails();
+        let known = expected.filter(|part| looks_like(part, measured, self.description.shape_tolerance));
+        match known {
+            Some(part) if blob.len() == 1 && !missed => answer.recognised = part.vision_id,
+            _ => answer.status = VisionStatus::NotRecognised,
+        }
+    }
+
+    /// The analysis fails although all is well; a number is drawn only where that can be.
+    fn fails(&mut self) -> bool {
+        let chance = self.description.failure;
+        chance > 0.0 && (self.noise.within(1.0) + 1.0) / 2.0 < chance
+    }
+
+    /// Least and greatest reflectance that a variation shows as it should; after the last one it begins again.
+    fn exposure(&self, variation: u8) -> [f64; 2] {
+        let exposures = &self.description.exposures;
+        exposures.get(usize::from(variation) % exposures.len().max(1)).copied().unwrap_or([0.0, 1.0])
+    }
+
+    /// What is seen nearest to the optical axis, and what it is one blob with.
+    fn nearest<'s>(&self, subjects: &[&'s Subject]) -> Option<Vec<&'s Subject>> {
+        let away = |subject: &Subject| {
+            let centre = subject.centroid();
+            libm::hypot(centre.y, centre.z)
+        };
+        let first = subjects.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;
+        let gap = self.description.resolution;
+        let others =
+            subjects.iter().filter(|other| !std::ptr::eq(**other, *first) && first.touches(other, gap));
+        Some([first].into_iter().chain(others).copied().collect())
+    }
+}
+
+/// Right-hand roll about X, 0.01 degree, that brings Y onto the edge to grip across: the longer for grip 1, else the
+/// shorter (VII.7.6).
+fn grip_angle(edges: &[(Vector, f64); 2], grip: i16, noise: f64) -> i32 {
+    let [first, second] = edges;
+    let widest = grip.unsigned_abs() == 1;
+    let (across, _) = if (first.1 > second.1) == widest { first } else { second };
+    let angle = hundredths_of_degree(libm::atan2(across.z, across.y) + noise);
+    // An edge has no direction: the roll of less than a quarter turn is wanted.
+    let folded = angle.rem_euclid(18_000);
+    if folded > 9_000 { folded - 18_000 } else { folded }
+}
+
+/// True if the two measured lengths are those of a face of the part.
+fn looks_like(part: &PartType, measured: [f64; 2], tolerance: f64) -> bool {
+    let [x, y, z] = part.size;
+    let near = |a: f64, b: f64| (a - b).abs() <= tolerance;
+    let [first, second] = measured;
+    [(x, y), (y, z), (x, z)]
+        .iter()
+        .any(|(a, b)| (near(first, *a) && near(second, *b)) || (near(first, *b) && near(second, *a)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{Face, Optics};
+    use rcs_core::{
+        frame::{Frame, rotation_by},
+        movetable::{Line, Movetable, System, straight_down},
+    };
+
+    fn cell() -> CellDescription {
+        CellDescription::from_toml(include_str!("../../../../data/cell.toml")).unwrap()
+    }
+
+    fn optics() -> Optics {
+        Optics::new(&cell().camera)
+    }
+
+    /// GR-PIC of the cell proposal.
+    fn gr_pic() -> Movetable {
+        let line = |system, values| Line { system, values };
+        Movetable::from_lines(&[line(System::Tool, [-1468, 0, -252]), line(System::ToolOrigin, [-300, 0, 0])])
+            .unwrap()
+    }
+
+    /// A bar on the place, seen from the view point above it.
+    fn bar(y: f64, z: f64, roll: f64) -> Subject {
+        let place = straight_down(Vector::new(-50.75, 10.25, -16.55));
+        let part =
+            place.shifted(Vector::new(-0.3125, y, z)).turned(&rotation_by(&Vector::new(roll, 0.0, 0.0)));
+        let view = optics().frame(&gr_pic().apply(&place));
+        seen(&view.inverse().compose(&part), Vector::new(0.625, 0.625, 4.0), 0.5)
+    }
+
+    /// A part in camera axes of which everything in the field of view is seen.
+    fn seen(frame: &Frame, size: Vector, reflectance: f64) -> Subject {
+        let optics = optics();
+        Subject::new(Face::of(frame, &size), reflectance, |point| optics.has_in_view(&point))
+    }
+
+    fn ask(picture: Picture, grip: i16, subjects: &[Subject]) -> VisionResponse {
+        vary(picture, grip, subjects, 0)
+    }
+
+    fn vary(picture: Picture, grip: i16, subjects: &[Subject], variation: u8) -> VisionResponse {
+        let mut analysis = Analysis::new(&cell().camera, 1);
+        let request = VisionRequest { number: 3, picture, object_id: 17, grip, range_mm: 590, variation };
+        assert!(analysis.wants_picture(&request));
+        analysis.expose(&request, subjects, cell().part("LINKBAR1_BH"));
+        assert!(!analysis.wants_picture(&request));
+        for _ in 0..40 {
+            let answer = analysis.answer();
+            assert_eq!(answer.echo, 3);
+            if answer.status != VisionStatus::Busy {
+                return answer;
+            }
+        }
+        panic!("no answer");
+    }
+
+    #[test]
+    fn the_optical_axis_points_at_the_place() {
+        let place = straight_down(Vector::new(-50.75, 10.25, -16.55));
+        let camera = optics().frame(&gr_pic().apply(&place));
+        let seen = camera.inverse().compose(&place);
+        assert!((seen.position.x * 25.4 - 605.0).abs() < 0.2, "range {} mm", seen.position.x * 25.4);
+        assert!(seen.position.y.abs() < 1e-9 && seen.position.z.abs() < 0.01, "{seen:?}");
+        assert!((seen.x() - Vector::x()).norm() < 1e-9, "straight down");
+    }
+
+    #[test]
+    fn the_flood_is_coarse_and_the_second_picture_exact() {
+        let flood = ask(Picture::FastFlood, 2, &[bar(1.5, -0.75, 0.6)]);
+        assert_eq!((flood.status, flood.recognised), (VisionStatus::Done, 0));
+        assert!((flood.y - 150).abs() <= 6 && (flood.z + 75).abs() <= 6, "{flood:?}");
+        let precise = ask(Picture::Precise, 2, &[bar(0.03, -0.02, 0.6)]);
+        assert_eq!((precise.status, precise.recognised), (VisionStatus::Done, 17));
+        assert!((precise.y - 3).abs() <= 1 && (precise.z + 2).abs() <= 1, "{precise:?}");
+        assert!((precise.angle - 3438).abs() <= 12, "across the width: {precise:?}");
+        let along = ask(Picture::Precise, 1, &[bar(0.0, 0.0, 0.6)]);
+        assert!((along.angle - (3438 - 9000)).abs() <= 12, "across the length: {along:?}");
+    }
+
+    #[test]
+    fn nothing_and_strangers_are_told_apart() {
+        assert_eq!(ask(Picture::FastFlood, 2, &[]).status, VisionStatus::NothingSeen);
+        assert_eq!(ask(Picture::FastFlood, 2, &[bar(7.0, 0.0, 0.0)]).status, VisionStatus::NothingSeen);
+        let stranger = seen(&before(), Vector::new(0.625, 2.0, 2.0), 0.5);
+        assert_eq!(ask(Picture::Precise, 2, &[stranger]).status, VisionStatus::NotRecognised);
+    }
+
+    #[test]
+    fn the_part_nearest_to_the_axis_is_meant() {
+        let near = ask(Picture::FastFlood, 2, &[bar(3.0, 0.0, 0.0), bar(-1.0, 0.0, 0.0)]);
+        assert!((near.y + 100).abs() <= 6, "{near:?}");
+    }
+
+    /// A frame 590 mm before the camera, turned as parts lie there.
+    fn before() -> Frame {
+        Frame { position: Vector::new(23.54, 0.0, 0.0), ..Frame::identity() }
+    }
+
+    #[test]
+    fn a_bar_that_is_cut_by_the_edge_is_found_beside_its_middle_and_not_recognised() {
+        // Its far third is out of the picture.
+        let cut = bar(0.0, 4.6, 0.0);
+        let flood = ask(Picture::FastFlood, 2, &[bar(0.0, 4.6, 0.0)]);
+        assert_eq!(flood.status, VisionStatus::Done);
+        assert!((350..=430).contains(&flood.z), "{flood:?}");
+        assert_eq!(ask(Picture::Precise, 2, &[cut]).status, VisionStatus::NotRecognised);
+        assert_eq!(ask(Picture::FastFlood, 2, &[bar(0.0, 6.9, 0.0)]).status, VisionStatus::NothingSeen);
+    }
+
+    #[test]
+    fn parts_that_touch_are_one_blob_and_apart_they_are_two() {
+        let pair = |gap: f64| {
+            let half = (0.625 + gap) / 2.0;
+            [bar(half, 0.0, 0.0), bar(-half, 0.0, 0.0)]
+        };
+        let together = ask(Picture::Precise, 2, &pair(0.02));
+        assert_eq!(together.status, VisionStatus::NotRecognised);
+        assert!(together.y.abs() <= 1, "in the middle of both: {together:?}");
+        assert_eq!(ask(Picture::Precise, 2, &pair(0.5)).recognised, 17);
+    }
+
+    #[test]
+    fn each_variation_shows_its_own_range_of_light() {
+        let bar = |reflectance| seen(&before(), Vector::new(0.625, 0.625, 4.0), reflectance);
+        let ask = |picture, reflectance, variation| vary(picture, 2, &[bar(reflectance)], variation).status;
+        let (flood, precise) = (Picture::FastFlood, Picture::Precise);
+        use VisionStatus::{Done, NotRecognised, NothingSeen};
+        assert_eq!([0, 1, 2].map(|v| ask(flood, 0.08, v)), [NothingSeen, Done, NothingSeen], "dark");
+        assert_eq!([0, 1, 2].map(|v| ask(precise, 0.08, v)), [NothingSeen, Done, NothingSeen]);
+        assert_eq!([0, 1, 2].map(|v| ask(flood, 0.95, v)), [Done; 3], "shiny");
+        assert_eq!([0, 1, 2].map(|v| ask(precise, 0.95, v)), [NotRecognised, NotRecognised, Done]);
+        assert_eq!([0, 3].map(|v| ask(precise, 0.5, v)), [Done; 2]);
+        assert_eq!(ask(precise, 0.01, 1), NothingSeen, "too dark for all");
+    }
+
+    #[test]
+    fn recognition_fails_as_often_as_its_chance_says() {
+        let mut description = cell().camera;
+        description.failure = 0.25;
+        let mut analysis = Analysis::new(&description, 1);
+        let bar = [seen(&before(), Vector::new(0.625, 0.625, 4.0), 0.5)];
+        let (cell, mut failed) = (cell(), 0);
+        for number in 1..=400 {
+            let picture = Picture::Precise;
+            let request =
+                VisionRequest { number, picture, object_id: 17, grip: 2, range_mm: 590, variation: 0 };
+            let answer = analysis.analyse(&request, &bar, cell.part("LINKBAR1_BH"));
+            failed += u32::from(answer.status == VisionStatus::NotRecognised);
+        }
+        assert!((70..130).contains(&failed), "{failed} of 400");
+    }
+
+    #[test]
+    fn what_changes_an_answer_changes_the_fingerprint_and_nothing_else_does() {
+        let known = Analysis::fingerprint(&cell());
+        let changed = |change: fn(&mut CellDescription)| {
+            let mut cell = cell();
+            change(&mut cell);
+            Analysis::fingerprint(&cell) != known
+        };
+        assert!(changed(|cell| cell.camera.failure = 0.5));
+        assert!(changed(|cell| cell.camera.exposures.truncate(1)));
+        assert!(changed(|cell| cell.part[0].size[1] += 0.001));
+        assert!(!changed(|cell| cell.part[0].weight += 1.0));
+        assert!(!changed(|cell| cell.vise.speed += 1.0));
+    }
+}
