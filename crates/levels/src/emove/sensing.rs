@@ -20,6 +20,7 @@ use taskdata::files::{LocptId, TaskData};
 use super::{
     Emove,
     gripper::Gripper,
+    locate::{is_another, is_plausible},
     route::{near, same_location},
     state::{Sort, Stance},
     tables::{
@@ -231,8 +232,11 @@ impl Emove {
 
     fn sight(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Sight {
         let answer = &inputs.external.devices.vision;
+        let request = &inputs.memory.emove.vision;
         let answered = answer.echo == self.state.vision.number;
         match answer.status {
+            VisionStatus::Done if answered && !is_plausible(request, answer) => Sight::Implausible,
+            VisionStatus::Done if answered && is_another(request, answer) => Sight::Unrecognised,
             VisionStatus::Done if answered => Sight::Seen,
             VisionStatus::NothingSeen if answered => Sight::Missing,
             VisionStatus::NotRecognised if answered => Sight::Unrecognised,

@@ -199,6 +199,8 @@ coded_enum! {
         Missing = "missing",
         /// It sees something else.
         Unrecognised = "unrecognised",
+        /// It says what cannot be.
+        Implausible = "implausible",
         /// It does not answer.
         Silent = "silent",
     }

@@ -122,6 +122,7 @@ impl Bench {
                 mishaps: Vec::new(),
                 log: Vec::new(),
                 answers: Vec::new(),
+                claims: Vec::new(),
             },
             prim: Prim::default(),
             ring: Ring::default(),

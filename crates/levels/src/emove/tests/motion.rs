@@ -37,6 +37,7 @@ pub const SCENARIOS: &[fn()] = &[
     a_release_of_nothing_opens_or_is_done,
     an_object_is_located,
     vision_that_fails_is_asked_again_and_given_up,
+    what_no_picture_can_show_moves_nothing,
     the_robot_withdraws,
     missing_data_are_named,
 ];
@@ -354,6 +355,29 @@ fn vision_that_fails_is_asked_again_and_given_up() {
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("GOTO-PT", Mishap::Prim(PrimReport::Error, Reason::NotAtGoal));
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::NotAtGoal));
+}
+
+#[test]
+fn what_no_picture_can_show_moves_nothing() {
+    // BLOCK is looked at from 590 mm: the picture ends before 11.61 in.
+    const TRUTH: (i32, i32, i32, u16) = (20, -10, 1000, 17);
+    for (claims, end, log) in [
+        (vec![(1_162, 0, 0, 0), (0, -1_162, 0, 0), (0, 0, 9_001, 0)], error(Reason::SensorError), 3),
+        (vec![(i32::MIN, 0, 0, 0), TRUTH, (0, i32::MAX, 0, 17), TRUTH], DONE, 6),
+        (
+            vec![TRUTH, (0, 0, i32::MIN, 17), (0, 0, -9_001, 17), (0, 0, 27_000, 17)],
+            error(Reason::SensorError),
+            5,
+        ),
+        (vec![TRUTH, (0, 0, 0, 18), (0, 0, 0, 0), (0, 0, 0, 18)], error(Reason::NotRecognised), 5),
+        (vec![(300, -300, -9_000, 0), TRUTH], DONE, 4),
+    ] {
+        let mut bench = Bench::ready("HOME", 1);
+        assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
+        bench.world.claims.clone_from(&claims);
+        assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), end, "{claims:?}");
+        assert_eq!(bench.log().len(), log, "{:?}", bench.log());
+    }
 }
 
 #[test]
