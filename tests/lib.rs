@@ -61,8 +61,9 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
         let profile = profile.expect("a test lies two directories deep");
         let target = profile.parent().expect("a profile lies in the target directory");
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        // As a part of the workspace it has the features of the tests, and most of it is built already.
         let built = Command::new(cargo)
-            .args(["build", "--quiet", "--release", "--package", name, "--target-dir"])
+            .args(["build", "--quiet", "--release", "--workspace", "--bin", name, "--target-dir"])
             .arg(target)
             .current_dir(root())
             .status()
