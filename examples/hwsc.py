@@ -23,7 +23,9 @@ STATUS = struct.Struct("<4s16sH12s16s16sHHHHH160s")
 
 
 class Controller:
-    """The mailboxes of a controller."""
+    """The mailboxes of a controller, seen by a neighbour: its number, and the mailboxes that it writes."""
+
+    role, writes = WORKSTATION, (HWSC_COMMAND, CELL_COMMAND)
 
     def __init__(self, address, secret=b""):
         kind, _, place = address.partition(":")
@@ -35,12 +37,12 @@ class Controller:
             self.line = socket.create_connection((host.strip("[]"), int(port)))
         self.seals = None
         self.greet(secret)
-        self.mailgrams = {HWSC_COMMAND: 0, CELL_COMMAND: 0}
+        self.mailgrams = dict.fromkeys(self.writes, 0)
         self.status = self.cell = self.pulse = None
 
     def greet(self, secret):
         """Prove that both know the secret, and agree upon the seals of frames: {out or in: [key, frames so far]}."""
-        said = self.receive(40) + struct.pack("<4sHH", b"RCS2", WORKSTATION, 0) + os.urandom(32)
+        said = self.receive(40) + struct.pack("<4sHH", b"RCS2", self.role, 0) + os.urandom(32)
         mac = lambda word: hmac.digest(secret, said + word, "sha256") if secret else bytes(32)
         self.line.sendall(said[40:] + mac(b"neighbour"))
         address, proof = self.read_frame()
@@ -96,10 +98,14 @@ class Controller:
             if address == PULSE:
                 self.pulse = struct.pack("<IHHHH", PULSE, 16, 0, 0, 0) + data
                 return
-            if address == HWSC_STATUS:
-                self.status = STATUS.unpack(data)
-            elif address == CELL_STATUS:
-                self.cell = struct.unpack("<HHH240s", data)
+            self.take(address, data)
+
+    def take(self, address, data):
+        """A mailgram has come."""
+        if address == HWSC_STATUS:
+            self.status = STATUS.unpack(data)
+        elif address == CELL_STATUS:
+            self.cell = struct.unpack("<HHH240s", data)
 
     def command(self, verb, obj="", grip=0, source="", sector=0, to_grip=0, to="", to_sector=0, end_at="", serial=""):
         """Send a command to Task and wait for its end."""

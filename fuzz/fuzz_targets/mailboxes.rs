@@ -11,6 +11,7 @@ use neighbours::{
     mailbox::{HWSC_COMMAND, Mailbox},
     network::{Role, frame::Frame},
     pedestal::{cell as pedestal_cell, command as pedestal_command, gripper, status as pedestal_status, table},
+    vision::{Areas, Picture, request},
     workstation::{
         Gate,
         cell::{self, CellStatus},
@@ -36,6 +37,15 @@ fn layouts(data: &[u8]) {
     if let Ok(read) = das_command::decode(data) {
         // Why a statement is none is for people.
         let _ = statement::parse(read.statement).map_err(|error| error.to_string());
+    }
+    if let Ok(read) = request::decode(data) {
+        assert_eq!(request::encode(&read), data);
+    }
+    if let Ok(read) = Areas::decode(data) {
+        assert_eq!(read.encode().expect("what was read can be written"), data);
+    }
+    if let Ok(read) = Picture::decode(data) {
+        assert_eq!(read.encode(), data);
     }
     let _ = status::decode(data).map_err(|error| error.to_string());
     pedestal(data);

@@ -6,4 +6,5 @@ mod bench;
 mod data_system;
 mod pedestal;
 mod strangers;
+mod vision;
 mod workstation;

@@ -263,13 +263,13 @@ fn a_pedestal_in_another_process_changes_not_a_bit() {
     }
 }
 
-/// Who commands, who keeps the books and who turns the parts: each in a process of its own.
+/// Who commands, who keeps the books, who turns the parts and who sees them: each in a process of its own.
 #[test]
 fn a_shift_with_everybody_elsewhere_has_the_same_bits() {
     let program = rcs_neighbour();
     let scratch = Scratch::new("everybody");
     let (outbox, items) = (scratch.file("outbox").display().to_string(), scratch.file("items.db"));
-    let everybody = "workstation,data-system,pedestal";
+    let everybody = "workstation,data-system,pedestal,vision";
     let controller = Controller::start_at(scratch, None, everybody, &["--json", "--outbox", &outbox]);
     let (mut pedestal, _) = start_pedestal(program, &controller);
     let neighbour = |words: &[&str]| {
@@ -279,6 +279,7 @@ fn a_shift_with_everybody_elsewhere_has_the_same_bits() {
         command.spawn().expect("rcs-neighbour can be started")
     };
     let mut books = neighbour(&["data-system", &items.display().to_string()]);
+    let mut eyes = neighbour(&["vision"]);
     let mut chief = neighbour(&["workstation", "shift"]);
     assert!(chief.wait().expect("a child").success());
     let ended = controller.end();
@@ -286,6 +287,7 @@ fn a_shift_with_everybody_elsewhere_has_the_same_bits() {
     assert_eq!(ended.result["digest"], digest_of("shift"));
     assert_eq!(ended.result["allocations_after_start"], 0);
     assert!(pedestal.wait().expect("a child").success() && books.wait().expect("a child").success());
+    assert!(eyes.wait().expect("a child").success());
 }
 
 #[test]

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 use neighbours::network::Address;
 
+use crate::vision::Fault;
+
 /// Neighbours of the RCS-II/T3 controller as processes of their own.
 #[derive(Debug, Parser)]
 #[command(
@@ -25,6 +27,10 @@ Examples:
                                        a run whose pedestal is a system of its own
   rcs-neighbour pedestal --network unix:/tmp/rcs.sock
                                        and the pedestal
+  rcs-run clevis --network unix:/tmp/rcs.sock --outside vision
+                                       a run whose pictures are analysed elsewhere
+  rcs-neighbour vision --network unix:/tmp/rcs.sock --fault 2:not-recognised
+                                       and who does that, and fails at the second one
 
 Exit status: 0 finished; 1 the job failed or the connection broke; 2 usage, configuration or data error."
 )]
@@ -43,6 +49,8 @@ pub enum Command {
     DataSystem(DataSystemArguments),
     /// The Active Pedestal, with its devices in the simulated cell: for one run after the other, until none has come for a while
     Pedestal(PedestalArguments),
+    /// The vision system: analyses what the camera of the cell sees, for one run after the other, until none has come for a while
+    Vision(VisionArguments),
 }
 
 /// Where the controller is.
@@ -90,6 +98,25 @@ pub struct PedestalArguments {
     /// Where the controller is.
     #[command(flatten)]
     pub controller: ControllerArguments,
+}
+
+/// Arguments of `vision`.
+#[derive(Clone, Debug, Args)]
+pub struct VisionArguments {
+    /// Where the controller is.
+    #[command(flatten)]
+    pub controller: ControllerArguments,
+    /// Where the cell description of the run is: cell.toml
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
+    /// Let pictures go wrong, counted from 1 over all runs: N:KIND or N-M:KIND, with commas between them
+    ///
+    /// off: no answer; camera-blind: nothing is seen; not-recognised; another-object: that is recognised; another-echo:
+    /// the answer is to another request; input-not-ready: it stands where vision-ready-input is 1; output-not-ready:
+    /// vision-ready-output is 1 from then on; garbled: a status that there is not; truncated; outside: the centroid is 300 in
+    /// away; turned: by 270 degrees; gone: the line is cut in the middle, and made again.
+    #[arg(long, value_name = "FAULTS", value_delimiter = ',')]
+    pub fault: Vec<Fault>,
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 mod cli;
 mod data_system;
 mod pedestal;
+mod vision;
 mod workstation;
 
 use std::{process::ExitCode, time::Duration};
@@ -14,7 +15,9 @@ use clap::Parser as _;
 use neighbours::{
     data_system::StoreError,
     network::{Peer, PeerError, Role, Secret, hello::SecretError},
+    vision::VisionError,
 };
+use plant::description::DescriptionError;
 use taskdata::load::Report;
 
 use crate::cli::{Cli, Command, ControllerArguments};
@@ -36,6 +39,23 @@ enum Error {
     /// The data base cannot be had.
     #[error("the items cannot be kept: {0}")]
     DataBase(#[from] StoreError),
+    /// The cell description cannot be used.
+    #[error("the cell description cannot be used: {0}")]
+    Cell(#[from] DescriptionError),
+    /// The run has another cell than this process.
+    #[error(
+        "the cell description of the run was expected: camera and parts have the fingerprint {found:016x} there, and here \
+         {expected:016x}; name its directory with --data"
+    )]
+    AnotherCell {
+        /// Of the description here.
+        expected: u64,
+        /// Of the run's.
+        found: u64,
+    },
+    /// What the controller has written cannot be read.
+    #[error("what the controller has written cannot be read: {0}")]
+    Vision(#[from] VisionError),
     /// Task data or the job have errors.
     #[error("{what} cannot be used")]
     Data {
@@ -52,8 +72,12 @@ enum Error {
 impl Error {
     const fn status(&self) -> u8 {
         match self {
-            Self::Peer(_) | Self::Job(_) => FAILED,
-            Self::Secret(_) | Self::DataBase(_) | Self::Data { .. } => UNUSABLE,
+            Self::Peer(_) | Self::Job(_) | Self::Vision(_) => FAILED,
+            Self::Secret(_)
+            | Self::DataBase(_)
+            | Self::Cell(_)
+            | Self::AnotherCell { .. }
+            | Self::Data { .. } => UNUSABLE,
         }
     }
 }
@@ -63,6 +87,7 @@ fn main() -> ExitCode {
         Command::Workstation(arguments) => workstation::play(&arguments),
         Command::DataSystem(arguments) => data_system::serve(&arguments),
         Command::Pedestal(arguments) => pedestal::serve(&arguments),
+        Command::Vision(arguments) => vision::serve(&arguments),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

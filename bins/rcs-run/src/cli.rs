@@ -117,7 +117,7 @@ pub struct RunArguments {
     /// Let neighbours in other processes connect here: unix:PATH, or tcp:IP:PORT with a secret (docs/neighbours.md)
     #[arg(long, value_name = "ADDRESS", requires = "outside")]
     pub network: Option<Address>,
-    /// Neighbours that are other processes, with commas between them: workstation, data-system, pedestal
+    /// Neighbours that are other processes, with commas between them: workstation, data-system, pedestal, vision
     #[arg(long, value_name = "NEIGHBOURS", value_delimiter = ',', requires = "network")]
     pub outside: Vec<Role>,
     /// File in which updates wait for a Data System in another process

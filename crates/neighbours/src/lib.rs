@@ -5,6 +5,7 @@
 //! * [`data_system`]: the command of Figure IX.2 to the byte, the status that answers it, and a server that keeps the items
 //!   of the workstation in SQLite.
 //! * [`pedestal`]: the Active Pedestal as a system of its own, its mailboxes to the byte and both ends of them.
+//! * [`vision`]: the areas of the vision mailbox (IX.4), and what E-move reads and writes there;
 //! * [`network`]: how mailboxes travel to other processes.
 //!
 //! A level never sees a mailbox: what Task asks of the Data System is a record of common memory
@@ -18,4 +19,5 @@ pub mod fields;
 pub mod mailbox;
 pub mod network;
 pub mod pedestal;
+pub mod vision;
 pub mod workstation;

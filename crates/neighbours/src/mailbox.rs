@@ -56,6 +56,13 @@ pub const PEDESTAL_SENSORS: Place =
     Place { name: "Pedestal from Cell Sensors", address: 0xF_5C00, size: 256 };
 /// Pedestal to Cell Orders: not in the table.
 pub const PEDESTAL_ORDERS: Place = Place { name: "Pedestal to Cell Orders", address: 0xF_5E00, size: 256 };
+/// Vision from RCS Request: the request areas of the vision mailbox (IX.4). Figure IX.3 is lost; address and size CHOSEN.
+pub const VISION_REQUEST: Place = Place { name: "Vision from RCS Request", address: 0xF_8000, size: 256 };
+/// Vision to RCS Response: the ready words and the response areas of the vision mailbox. Address and size CHOSEN.
+pub const VISION_RESPONSE: Place = Place { name: "Vision to RCS Response", address: 0xF_8200, size: 256 };
+/// Vision from Cell Picture: not in the manual. What the camera of the simulated cell sees.
+pub const VISION_PICTURE: Place =
+    Place { name: "Vision from Cell Picture", address: 0xF_8400, size: MAX_SIZE };
 
 /// All of Table IX.1, in its order.
 pub const TABLE: [Place; 8] = [
@@ -107,15 +114,39 @@ impl fmt::Display for Place {
 }
 
 /// Size of the largest mailbox, bytes.
-pub const MAX_SIZE: usize = 512;
+pub const MAX_SIZE: usize = 4096;
 
 /// A mailbox: what a process writes into it, or has read from it. Writing and copying do not allocate.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub struct Mailbox {
     place: Place,
     /// Zero behind the size of the mailbox.
     bytes: [u8; MAX_SIZE],
 }
+
+/// Most mailboxes are far smaller than the largest, and are copied and compared in every tick.
+impl Clone for Mailbox {
+    fn clone(&self) -> Self {
+        Self { place: self.place, bytes: self.bytes }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        if self.place.size == source.place.size {
+            self.place = source.place;
+            self.bytes[..self.place.size].copy_from_slice(source.image());
+        } else {
+            *self = source.clone();
+        }
+    }
+}
+
+impl PartialEq for Mailbox {
+    fn eq(&self, other: &Self) -> bool {
+        self.place == other.place && self.image() == other.image()
+    }
+}
+
+impl Eq for Mailbox {}
 
 impl Mailbox {
     /// A mailbox as initialization leaves it (IX): its length, zeros, and no data.
@@ -231,8 +262,9 @@ mod tests {
 
     #[test]
     fn no_two_mailboxes_overlap() {
-        let mut places =
-            [&TABLE[..], &[CELL_COMMAND, CELL_STATUS, PEDESTAL_SENSORS, PEDESTAL_ORDERS]].concat();
+        let pedestal = [PEDESTAL_SENSORS, PEDESTAL_ORDERS];
+        let vision = [VISION_REQUEST, VISION_RESPONSE, VISION_PICTURE];
+        let mut places = [&TABLE[..], &[CELL_COMMAND, CELL_STATUS], &pedestal, &vision].concat();
         places.sort_by_key(|place| place.address);
         for pair in places.windows(2) {
             assert!(pair[0].address as usize + pair[0].size <= pair[1].address as usize, "{}", pair[1]);
@@ -248,6 +280,23 @@ mod tests {
         assert_eq!((mailbox.mailgram(), mailbox.data()), (2, &[4][..]));
         assert_eq!(&mailbox.image()[..12], &[9, 0, 2, 0, 0, 0, 0, 0, 4, 0, 0, 0]);
         assert_eq!(Mailbox::from_image(HWSC_STATUS, mailbox.image()), Ok(mailbox));
+    }
+
+    #[test]
+    fn a_copy_is_the_same_whatever_stood_there_before() {
+        let mut small = Mailbox::initialized(HWSC_STATUS);
+        small.write(&[7; 248]).unwrap();
+        for place in [HWSC_STATUS, HWSC_COMMAND, VISION_PICTURE] {
+            let mut other = Mailbox::initialized(place);
+            other.write(&vec![9; place.size - HEAD]).unwrap();
+            assert_ne!(other, small);
+            let large = other.clone();
+            other.clone_from(&small);
+            assert_eq!(other, small);
+            assert_eq!(other.bytes, small.bytes, "to the last byte");
+            other.clone_from(&large);
+            assert_eq!((other.bytes, other.place), (large.bytes, place));
+        }
     }
 
     #[test]

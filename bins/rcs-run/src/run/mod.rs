@@ -316,6 +316,8 @@ impl Run {
                 generations.current(),
             );
             self.note_neighbours(tick);
+            // Vision in another process has answered the tick that is over.
+            self.inputs.vision = self.workstation.cell.inputs().vision;
             match progress {
                 player::Progress::Over => return Ending::Finished,
                 // Whatever the arm runs into belongs to the run.

@@ -1,4 +1,5 @@
-//! The neighbours of a run: who commands Task, the Data System, and an Active Pedestal that is a system of its own.
+//! The neighbours of a run: who commands Task, the Data System, an Active Pedestal that is a system of its own, and vision if it
+//! is another process.
 //!
 //! A neighbour lives in this process, or in another one behind the network. Either way he is reached through his mailboxes, and
 //! a run cannot tell the difference: with the clock in lock step not a bit of it changes.
@@ -13,13 +14,15 @@ use neighbours::{
     data_system::{DataSystem, Item},
     mailbox::{HWSC_COMMAND, Mailbox},
     network::{Desk, Listener, News, Role, office::Counter},
-    pedestal::{self, Remark},
+    pedestal,
+    vision::{self, picture::Part},
     workstation::{
         Gate, TaskState,
         player::{Hwsc, JobFailure, Progress, Record},
         status,
     },
 };
+use plant::camera::Subject;
 use rcs_core::{
     interface::{CommonMemory, DataBaseStatus, DeviceInputs, Header, HwsCommand, OutsidePedestal},
     record::Field as _,
@@ -79,21 +82,24 @@ pub struct Neighbours {
     data_system: DataSystem,
     /// None: the pedestal's processes are among the controller's.
     pedestal: Option<Box<pedestal::Agent>>,
+    /// Vision; without it the cell analyses its pictures itself.
+    vision: Option<vision::Port>,
     /// Lets neighbours in as long as the run lasts; nobody without it.
     network: Option<Network>,
     notes: Vec<Note>,
 }
 
 impl Neighbours {
-    /// Whoever commands, the Data System, and the pedestal if it is a system of its own.
+    /// Whoever commands, the Data System, and pedestal and vision if they are other processes.
     #[must_use]
     pub fn new(
         chief: Chief,
         data_system: DataSystem,
         pedestal: Option<Box<pedestal::Agent>>,
+        vision: Option<vision::Port>,
         network: Option<Network>,
     ) -> Self {
-        Self { gate: Gate::default(), chief, data_system, pedestal, network, notes: Vec::new() }
+        Self { gate: Gate::default(), chief, data_system, pedestal, vision, network, notes: Vec::new() }
     }
 
     /// Wait for those who are other processes: for so many seconds at most, and not beyond an interruption, of which the run will
@@ -160,9 +166,25 @@ impl Neighbours {
         agent.exchange(tick.next(), &memory.subtask.pedestal, &inputs.pedestal);
         self.notes.extend(agent.remarks().into_iter().map(|remark| {
             let (level, source) = match remark {
-                Remark::News(News::Came(_)) => (Level::Info, "network"),
-                Remark::News(_) => (Level::Warning, "network"),
+                pedestal::Remark::News(News::Came(_)) => (Level::Info, "network"),
+                pedestal::Remark::News(_) => (Level::Warning, "network"),
                 _ => (Level::Warning, "Active Pedestal"),
+            };
+            (level, source, remark.to_string())
+        }));
+    }
+
+    /// Vision reads what E-move asks for, with what the camera sees, and what it answers is among the devices of the next tick.
+    fn step_vision(&mut self, tick: Tick, memory: &CommonMemory, workstation: &mut SimulatedWorkstation) {
+        let Some(port) = &mut self.vision else { return };
+        let cell = &mut workstation.cell;
+        port.step(tick.0, &memory.emove.vision, || cell.picture().iter().map(pictured).collect());
+        cell.hear_vision(port.response());
+        self.notes.extend(port.remarks().iter().map(|remark| {
+            let (level, source) = match remark {
+                vision::Remark::Network(News::Came(_)) => (Level::Info, "network"),
+                vision::Remark::Network(_) => (Level::Warning, "network"),
+                _ => (Level::Warning, "vision"),
             };
             (level, source, remark.to_string())
         }));
@@ -193,6 +215,7 @@ impl Neighbours {
         }
         let news = self.data_system.news().into_iter();
         self.notes.extend(news.map(|text| (Level::Info, "network", text)));
+        self.step_vision(tick, memory, workstation);
         self.gate.write(&memory.task, task_state(&memory.task.header, tick));
         let progress = match &mut self.chief {
             Chief::Emulator { hwsc, command_box } => {
@@ -241,6 +264,17 @@ fn emulate(
         .map_err(|error| error.to_string())
         .and_then(|bytes| command_box.write(&bytes).map_err(|error| error.to_string()));
     written.map_or_else(unreadable, |()| progress)
+}
+
+/// What the camera sees of a part, as its mailbox has it.
+fn pictured(subject: &Subject) -> Part {
+    let face = subject.face();
+    Part {
+        centre: face.centre.into(),
+        edges: face.edges.map(|(direction, length)| (direction.into(), length)),
+        reflectance: subject.reflectance(),
+        seen: subject.raster(),
+    }
 }
 
 /// Whether Task has run in a tick.

@@ -10,11 +10,12 @@ use executive::serial::SerialLine;
 use neighbours::{
     data_system::{self, ANSWER_TICKS, Agent, DataSystem, Outbox, Pace},
     network::{Desk, Listener, Role, Secret, hello},
-    pedestal,
+    pedestal, vision,
     workstation::player::{Hwsc, TIME_LIMIT},
 };
 use plant::{
     Cell, CellDescription,
+    camera::Analysis,
     fault::text::{self, FaultFile},
 };
 use taskdata::load::{Job, Report, Source, Store};
@@ -90,12 +91,14 @@ impl Setup {
         warnings.for_each(|line| eprintln!("rcs-run: {line}"));
         let (faults, faults_text) = faults(arguments, &description)?;
         let cell = Cell::with_faults(&description, arguments.seed, &faults.cell)?;
+        let sees_elsewhere = arguments.outside.contains(&Role::Vision);
+        let cell = if sees_elsewhere { cell.with_vision_elsewhere() } else { cell };
         let log = match &arguments.log {
             Some(LogTarget::None) => None,
             Some(LogTarget::File(path)) => Some(path.clone()),
             None => Some(Path::new("runs").join(&job.name).with_added_extension("mcap")),
         };
-        let neighbours = neighbours(arguments, &job)?;
+        let neighbours = neighbours(arguments, &job, &description)?;
         // The last of all: a robot hears nothing of a run that cannot begin.
         let robot = match &arguments.robot {
             cli::Robot::Sim => Robot::Simulated(faults.line.map(|plan| Box::new(Injector::new(&plan)))),
@@ -144,17 +147,22 @@ impl TaskFiles {
 }
 
 /// Who is in this process, and where the others can connect.
-fn neighbours(arguments: &RunArguments, job: &Job) -> Result<Neighbours, Error> {
+fn neighbours(
+    arguments: &RunArguments,
+    job: &Job,
+    description: &CellDescription,
+) -> Result<Neighbours, Error> {
     let (clock, pace) = match arguments.clock {
         ClockKind::Fast => (hello::ClockKind::Fast, Pace::Wait),
         ClockKind::Real => (hello::ClockKind::Real, Pace::Poll),
     };
     let desk = |role: Role| arguments.outside.contains(&role).then(|| Desk::new(role, clock));
-    let (commands, items, regrips) = (desk(Role::Workstation), desk(Role::DataSystem), desk(Role::Pedestal));
+    let (commands, items) = (desk(Role::Workstation), desk(Role::DataSystem));
+    let (regrips, sees) = (desk(Role::Pedestal), desk(Role::Vision));
     let secret = arguments.secret.as_deref().map(Secret::load).transpose()?;
     let network = match &arguments.network {
         Some(address) => {
-            let desks = || commands.iter().chain(&items).chain(&regrips);
+            let desks = || commands.iter().chain(&items).chain(&regrips).chain(&sees);
             let listener = Listener::start(address, secret, desks())?;
             eprintln!("rcs-run: neighbours can connect at {}", listener.address());
             Some(Network { counters: desks().map(Desk::counter).collect(), _listener: listener })
@@ -174,7 +182,8 @@ fn neighbours(arguments: &RunArguments, job: &Job) -> Result<Neighbours, Error> 
         None => Chief::emulator(Hwsc::new(job.steps.clone(), TIME_LIMIT)),
     };
     let pedestal = regrips.map(|desk| Box::new(pedestal::Agent::new(desk)));
-    Ok(Neighbours::new(chief, data_system, pedestal, network))
+    let vision = sees.map(|desk| vision::Port::new(desk, arguments.seed, Analysis::fingerprint(description)));
+    Ok(Neighbours::new(chief, data_system, pedestal, vision, network))
 }
 
 /// Where updates wait for a Data System in another process.

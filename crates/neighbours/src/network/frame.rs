@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn last_words_are_cut_to_what_a_frame_holds() {
-        let frame = Frame::last_words(&"x".repeat(1000));
+        let frame = Frame::last_words(&"x".repeat(MAX_SIZE));
         assert_eq!((frame.bytes().len(), frame.data().len()), (MAX_FRAME, MAX_SIZE - HEAD));
     }
 
@@ -209,7 +209,7 @@ mod tests {
         let said = |bytes: &[u8]| Frame::from_bytes(bytes).unwrap_err().to_string();
         assert!(said(&[0, 0x60]).contains("fill"), "{}", said(&[0, 0x60]));
         let length = said(&[0, 0x60, 0x0F, 0, 7, 0]);
-        assert_eq!(length, "a length of 8 to 512 was expected behind the address F6000, found 7");
+        assert_eq!(length, "a length of 8 to 4096 was expected behind the address F6000, found 7");
         assert_eq!(
             said(&[Frame::pulse(1).bytes(), &[0]].concat()),
             "nothing was expected behind the frame, found 1 bytes"

@@ -5,7 +5,7 @@ use std::{fmt, str::FromStr};
 use crate::mailbox::{
     CELL_COMMAND, CELL_STATUS, DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, HWSC_COMMAND, HWSC_STATUS,
     PEDESTAL_COMMAND, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_SENSORS, PEDESTAL_STATUS,
-    PEDESTAL_TABLE_STATUS, Place,
+    PEDESTAL_TABLE_STATUS, Place, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE,
 };
 
 /// A neighbour of the controller. The number stands in the hello.
@@ -18,11 +18,13 @@ pub enum Role {
     DataSystem = 2,
     /// The Active Pedestal.
     Pedestal = 3,
+    /// The vision system.
+    Vision = 4,
 }
 
 impl Role {
     /// All neighbours.
-    pub const ALL: [Self; 3] = [Self::Workstation, Self::DataSystem, Self::Pedestal];
+    pub const ALL: [Self; 4] = [Self::Workstation, Self::DataSystem, Self::Pedestal, Self::Vision];
 
     /// The word on the command line.
     #[must_use]
@@ -31,6 +33,7 @@ impl Role {
             Self::Workstation => "workstation",
             Self::DataSystem => "data-system",
             Self::Pedestal => "pedestal",
+            Self::Vision => "vision",
         }
     }
 
@@ -43,6 +46,7 @@ impl Role {
             Self::Pedestal => {
                 &[PEDESTAL_STATUS, PEDESTAL_GRIPPER_STATUS, PEDESTAL_TABLE_STATUS, PEDESTAL_ORDERS]
             }
+            Self::Vision => &[VISION_RESPONSE],
         }
     }
 
@@ -53,6 +57,8 @@ impl Role {
             Self::Workstation => &[HWSC_STATUS, CELL_STATUS],
             Self::DataSystem => &[DATA_SYSTEM_COMMAND],
             Self::Pedestal => &[PEDESTAL_COMMAND, PEDESTAL_SENSORS],
+            // The picture first: who reads the request has it.
+            Self::Vision => &[VISION_PICTURE, VISION_REQUEST],
         }
     }
 
@@ -100,7 +106,7 @@ mod tests {
         assert_eq!(Role::from_number(0), None);
         assert_eq!(
             "foreman".parse::<Role>().unwrap_err().to_string(),
-            "workstation or data-system or pedestal was expected, found foreman"
+            "workstation or data-system or pedestal or vision was expected, found foreman"
         );
     }
 

@@ -1,0 +1,218 @@
+//! The vision system: the picture analysis of the simulated cell, behind the vision mailbox, for one run after the other.
+
+mod fault;
+
+use std::{path::Path, thread, time::Duration};
+
+use neighbours::{
+    mailbox::{Mailbox, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE},
+    network::{Peer, PeerError, Received, Role, office::Occupied},
+    vision::{Areas, Picture, Ready, picture::Part, request},
+};
+use plant::{
+    CellDescription,
+    camera::{Analysis, Face, Subject},
+};
+use rcs_core::{
+    frame::Vector,
+    interface::device::{VisionRequest, VisionStatus},
+};
+
+pub use self::fault::{Fault, Kind};
+use crate::{
+    Error,
+    cli::{ControllerArguments, VisionArguments},
+    connect,
+};
+
+/// The cell description in the data directory.
+const CELL: &str = "cell.toml";
+/// Before another attempt, when the controller has not yet noticed that the line was cut.
+const PAUSE: Duration = Duration::from_millis(50);
+/// Such attempts: 5 s, more than it needs.
+const ATTEMPTS: u32 = 100;
+
+/// Serve until no run has come for a while.
+pub fn serve(arguments: &VisionArguments) -> Result<(), Error> {
+    let mut vision = Vision::new(&arguments.data.join(CELL), arguments.fault.clone())?;
+    let mut peer = connect(&arguments.controller, Role::Vision)?;
+    loop {
+        match attend(&mut peer, &mut vision) {
+            Ok(()) => {}
+            Err(Error::Peer(error)) if error.is_passing() => println!("{error}"),
+            other => return other,
+        }
+        // The line is cut before the next one is made: there is one neighbour of a kind.
+        drop(peer);
+        peer = match connect_again(&arguments.controller) {
+            Err(Error::Peer(PeerError::Line { .. })) => return Ok(()),
+            other => other?,
+        };
+        vision.forget();
+    }
+}
+
+/// Connect; the controller may not have noticed yet that the line was cut.
+fn connect_again(arguments: &ControllerArguments) -> Result<Peer, Error> {
+    let occupied = Occupied(Role::Vision).to_string();
+    for _ in 0..ATTEMPTS {
+        match connect(arguments, Role::Vision) {
+            Err(Error::Peer(PeerError::LastWords(why))) if why == occupied => thread::sleep(PAUSE),
+            other => return other,
+        }
+    }
+    connect(arguments, Role::Vision)
+}
+
+/// Answer the requests of a run, until a fault cuts the line.
+fn attend(peer: &mut Peer, vision: &mut Vision) -> Result<(), Error> {
+    let mut response_box = Mailbox::initialized(VISION_RESPONSE);
+    loop {
+        let Received::Pulse(pulse) = peer.receive()? else { continue };
+        vision.look(peer.mailbox(VISION_REQUEST), peer.mailbox(VISION_PICTURE))?;
+        if vision.leaves() {
+            return Ok(());
+        }
+        if let Some(bytes) = vision.work()?
+            && response_box.data() != bytes
+        {
+            response_box.write(&bytes).map_err(PeerError::Mailbox)?;
+            peer.send(&response_box)?;
+        }
+        peer.pulse(pulse)?;
+    }
+}
+
+/// The vision system, between its mailboxes.
+struct Vision {
+    cell: CellDescription,
+    faults: Vec<Fault>,
+    /// Mailgram number of the request that was read last.
+    read: u16,
+    /// A request whose picture has not come yet.
+    request: Option<VisionRequest>,
+    /// The present run's, from its first picture on: that knows the seed.
+    analysis: Option<(u64, Analysis)>,
+    /// Pictures of all runs.
+    pictures: u32,
+    /// What is wrong with the present one.
+    fault: Option<Kind>,
+    /// What was said of it: the answer is said once.
+    said: VisionStatus,
+}
+
+impl Vision {
+    fn new(cell: &Path, faults: Vec<Fault>) -> Result<Self, Error> {
+        let cell = CellDescription::load(cell)?;
+        Ok(Self {
+            cell,
+            faults,
+            read: 0,
+            request: None,
+            analysis: None,
+            pictures: 0,
+            fault: None,
+            said: VisionStatus::Idle,
+        })
+    }
+
+    /// Another run, or another connection.
+    fn forget(&mut self) {
+        (self.read, self.request, self.analysis, self.fault) = (0, None, None, None);
+        self.said = VisionStatus::Idle;
+    }
+
+    /// Read what the controller has written, and begin with a new request when its picture is there.
+    fn look(&mut self, requests: &Mailbox, pictures: &Mailbox) -> Result<(), Error> {
+        if requests.mailgram() != self.read {
+            self.read = requests.mailgram();
+            // An initialized mailbox holds no request.
+            self.request = if self.read == 0 { None } else { Some(request::decode(requests.data())?) };
+        }
+        let Some(request) = self.request else { return Ok(()) };
+        if pictures.data().is_empty() {
+            return Ok(());
+        }
+        let picture = Picture::decode(pictures.data())?;
+        if u32::from(picture.number) != request.number {
+            return Ok(());
+        }
+        self.request = None;
+        self.begin(&request, &picture)
+    }
+
+    fn begin(&mut self, request: &VisionRequest, picture: &Picture) -> Result<(), Error> {
+        let expected = Analysis::fingerprint(&self.cell);
+        if picture.cell != expected {
+            return Err(Error::AnotherCell { expected, found: picture.cell });
+        }
+        self.pictures = self.pictures.saturating_add(1);
+        self.said = VisionStatus::Busy;
+        let fault = self.faults.iter().find(|fault| fault.pictures.contains(&self.pictures));
+        self.fault = fault.map(|fault| fault.kind);
+        let mut seen: Vec<Subject> = picture.parts.iter().map(subject).collect();
+        if self.fault == Some(Kind::CameraBlind) {
+            seen.clear();
+        }
+        if self.analysis.as_ref().is_none_or(|(seed, _)| *seed != picture.seed) {
+            self.analysis = Some((picture.seed, Analysis::new(&self.cell.camera, picture.seed)));
+        }
+        if let Some((_, analysis)) = &mut self.analysis {
+            analysis.expose(request, &seen, self.cell.seen_as(request.object_id));
+        }
+        Ok(())
+    }
+
+    /// A fault cuts the line now.
+    fn leaves(&self) -> bool {
+        let leaves = self.fault == Some(Kind::Gone);
+        if leaves {
+            println!("picture {}: the line is cut", self.pictures);
+        }
+        leaves
+    }
+
+    /// A tick of work; what is to stand in the mailbox, `None` if it stays as it is.
+    fn work(&mut self) -> Result<Option<Vec<u8>>, Error> {
+        let mut areas = Areas { output: Ready::Ready, ..Areas::INITIALIZED };
+        if let Some((_, analysis)) = &mut self.analysis {
+            areas.response = analysis.answer();
+        }
+        if areas.response.status != self.said && self.said == VisionStatus::Busy {
+            self.said = areas.response.status;
+            self.tell(&areas);
+        }
+        let spoiled = self.fault.map_or(Some(areas), |fault| fault.spoil(areas));
+        let Some(areas) = spoiled else { return Ok(None) };
+        let mut bytes = areas.encode().map_err(|error| Error::Job(error.to_string()))?.to_vec();
+        if let Some(fault) = self.fault.filter(|_| areas.response.status != VisionStatus::Busy) {
+            fault.garble(&mut bytes);
+        }
+        Ok(Some(bytes))
+    }
+
+    /// One line on standard output for every picture.
+    fn tell(&self, areas: &Areas) {
+        let response = &areas.response;
+        let at = |hundredths: i32| f64::from(hundredths) / 100.0;
+        let mut text = format!("picture {}: {}", self.pictures, response.status.text());
+        if response.status == VisionStatus::Done {
+            text += &format!(
+                " at ({:.2} {:.2}) in, turned {:.2}",
+                at(response.y),
+                at(response.z),
+                at(response.angle)
+            );
+        }
+        if let Some((word, _)) = Kind::ALL.into_iter().find(|(_, kind)| Some(*kind) == self.fault) {
+            text += &format!("; fault: {word}");
+        }
+        println!("{text}");
+    }
+}
+
+/// What the camera sees of a part.
+fn subject(part: &Part) -> Subject {
+    let edges = part.edges.map(|(direction, length)| (Vector::from(direction), length));
+    Subject::from_raster(Face { centre: Vector::from(part.centre), edges }, part.reflectance, part.seen)
+}

@@ -1,0 +1,471 @@
+//! READ-VISION-DATA and WRITE-VISION-REQUEST (IV.4.4, IX.4): the handshake with vision, once a tick.
+//!
+//! | what comes                                      | what becomes of it                                                        |
+//! |-------------------------------------------------|---------------------------------------------------------------------------|
+//! | E-move has a new request                        | written if `vision-ready-output` is 2, else as soon as it is              |
+//! | nobody is connected, or a new vision system is  | "not ready" until it writes; the request is written again if it is unanswered |
+//! | a response while `vision-ready-input` is 2      | E-move reads it if it echoes the present request                          |
+//! | a response to another request                   | not read: E-move would take it for the present one's                      |
+//! | a response while `vision-ready-input` is 1      | not read                                                                  |
+//! | what is no response                             | not read; the ready words stay as they were                               |
+//!
+//! What E-move does not read leaves it with what it had: at worst it waits until vision counts as silent. A mailbox that is read is
+//! read every cycle (IX), and what is not to be understood is said once.
+
+use std::fmt;
+
+use rcs_core::interface::device::{Picture as Kind, VisionRequest, VisionResponse, VisionStatus};
+
+use super::{Areas, Picture, Ready, VisionError, picture::Part, request};
+use crate::{
+    fields::command_number,
+    mailbox::{MailboxError, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE},
+    network::{Desk, News},
+};
+
+/// What is worth a word in the log.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Remark {
+    /// Vision has come, or gone.
+    Network(News),
+    /// What it wrote cannot be read.
+    Refused(VisionError),
+    /// It has answered another request than the present one.
+    Stranger {
+        /// The one that it has answered.
+        echo: u16,
+        /// The present one; 0 if there is none.
+        expected: u16,
+    },
+    /// It has written an answer that may not be read.
+    Unread {
+        /// The request that it answers.
+        echo: u16,
+    },
+    /// A request cannot be written yet.
+    Waits {
+        /// Its number.
+        number: u16,
+        /// Vision is connected, and not ready.
+        connected: bool,
+    },
+    /// More parts are in the picture than its mailbox holds.
+    Cropped(usize),
+    /// A mailbox does not hold what is to be written.
+    Mailbox(MailboxError),
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Network(news) => news.fmt(f),
+            Self::Refused(error) => write!(f, "what vision has written is refused: {error}"),
+            Self::Stranger { echo, expected: 0 } => {
+                write!(
+                    f,
+                    "an answer of vision is refused: no request was expected to be answered, found {echo}"
+                )
+            }
+            Self::Stranger { echo, expected } => {
+                write!(f, "an answer of vision is refused: request {expected} was expected, found {echo}")
+            }
+            Self::Unread { echo } => write!(
+                f,
+                "vision's answer to request {echo} is not read: vision-ready-input 2 (ready) was expected, found 1"
+            ),
+            Self::Waits { number, connected: true } => write!(
+                f,
+                "request {number} to vision waits: vision-ready-output 2 (ready) was expected, found 1"
+            ),
+            Self::Waits { number, connected: false } => {
+                write!(f, "request {number} to vision waits: no vision system is connected")
+            }
+            Self::Cropped(count) => {
+                write!(f, "the {count} parts farthest from the optical axis are left out of the picture")
+            }
+            Self::Mailbox(error) => error.fmt(f),
+        }
+    }
+}
+
+/// E-move's end of the interface to a vision system in another process.
+pub struct Port {
+    desk: Desk,
+    /// Seed of the run, and fingerprint of what in its cell description vision depends on.
+    run: (u64, u64),
+    /// E-move's present request; number 0 for none.
+    wanted: VisionRequest,
+    /// It stands in the mailbox.
+    written: bool,
+    /// `vision-ready-output`.
+    output: Ready,
+    /// What E-move reads.
+    response: VisionResponse,
+    /// What was found in the response area last.
+    found: VisionResponse,
+    /// Why the mailbox cannot be read, as it was said last.
+    refused: Option<VisionError>,
+    /// It was said that the request waits.
+    waits: bool,
+    remarks: Vec<Remark>,
+}
+
+impl Port {
+    /// At a desk, in a run with a seed and a fingerprint of what its vision depends on.
+    #[must_use]
+    pub const fn new(desk: Desk, seed: u64, cell: u64) -> Self {
+        Self {
+            desk,
+            run: (seed, cell),
+            wanted: VisionRequest {
+                number: 0,
+                picture: Kind::None,
+                object_id: 0,
+                grip: 0,
+                range_mm: 0,
+                variation: 0,
+            },
+            written: false,
+            output: Areas::INITIALIZED.output,
+            response: Areas::INITIALIZED.response,
+            found: Areas::INITIALIZED.response,
+            refused: None,
+            waits: false,
+            remarks: Vec::new(),
+        }
+    }
+
+    /// What E-move reads.
+    #[must_use]
+    pub const fn response(&self) -> &VisionResponse {
+        &self.response
+    }
+
+    /// What is worth a word since the last call.
+    pub fn remarks(&mut self) -> Vec<Remark> {
+        std::mem::take(&mut self.remarks)
+    }
+
+    /// Once a tick, after E-move and the cell: `wanted` is what E-move asks for, `picture` what the camera of the simulated cell sees
+    /// in the tick in which the request is written.
+    pub fn step(&mut self, tick: u64, wanted: &VisionRequest, picture: impl FnOnce() -> Vec<Part>) {
+        if wanted.number != self.wanted.number {
+            (self.wanted, self.written, self.waits) = (*wanted, false, false);
+        }
+        if self.is_open() && self.output == Ready::Ready {
+            self.write(picture());
+        }
+        let presence = self.desk.exchange(tick);
+        let news = std::iter::from_fn(|| self.desk.news());
+        self.remarks.extend(news.map(Remark::Network));
+        if presence.new || !presence.here {
+            self.initialize();
+        }
+        if presence.here {
+            self.read();
+        } else {
+            // Who comes next finds no request that was meant for somebody else.
+            self.desk.outgoing(VISION_PICTURE).initialize();
+            self.desk.outgoing(VISION_REQUEST).initialize();
+        }
+        if self.is_open() && self.output == Ready::NotReady && !self.waits {
+            self.waits = true;
+            let number = command_number(self.wanted.number);
+            self.remarks.push(Remark::Waits { number, connected: presence.here });
+        }
+    }
+
+    /// There is a request that was not written, and not answered by somebody who has gone since.
+    fn is_open(&self) -> bool {
+        let answered = self.response.echo == self.wanted.number && is_final(&self.response);
+        self.wanted.number != 0 && self.wanted.picture != Kind::None && !self.written && !answered
+    }
+
+    /// As blocks 984-986 leave the ready words and the response area. What E-move has read it has read.
+    fn initialize(&mut self) {
+        self.output = Areas::INITIALIZED.output;
+        self.found = Areas::INITIALIZED.response;
+        (self.written, self.refused) = (false, None);
+    }
+
+    fn write(&mut self, parts: Vec<Part>) {
+        let (seed, cell) = self.run;
+        let mut picture = Picture { number: command_number(self.wanted.number), seed, cell, parts };
+        let cropped = picture.crop();
+        if cropped > 0 {
+            self.remarks.push(Remark::Cropped(cropped));
+        }
+        let picture = self.desk.outgoing(VISION_PICTURE).write(&picture.encode());
+        let request = self.desk.outgoing(VISION_REQUEST).write(&request::encode(&self.wanted));
+        self.remarks.extend([picture, request].into_iter().filter_map(Result::err).map(Remark::Mailbox));
+        self.written = true;
+    }
+
+    fn read(&mut self) {
+        let mailbox = self.desk.incoming(VISION_RESPONSE);
+        if mailbox.data().is_empty() {
+            return;
+        }
+        match Areas::decode(mailbox.data()) {
+            Ok(areas) => {
+                self.refused = None;
+                self.output = areas.output;
+                self.take(&areas);
+            }
+            Err(error) if self.refused == Some(error) => {}
+            Err(error) => {
+                self.refused = Some(error);
+                self.remarks.push(Remark::Refused(error));
+            }
+        }
+    }
+
+    fn take(&mut self, areas: &Areas) {
+        let expected = if self.written { command_number(self.wanted.number) } else { 0 };
+        let echo = command_number(areas.response.echo);
+        // What stands there from before is nothing new.
+        let news = areas.response != self.found && is_final(&areas.response);
+        self.found = areas.response;
+        if echo != expected || echo == 0 {
+            if news {
+                self.remarks.push(Remark::Stranger { echo, expected });
+            }
+        } else if areas.input == Ready::Ready {
+            self.response = VisionResponse { echo: self.wanted.number, ..areas.response };
+        } else if news {
+            self.remarks.push(Remark::Unread { echo });
+        }
+    }
+}
+
+/// True if vision has done with a request.
+fn is_final(response: &VisionResponse) -> bool {
+    !matches!(response.status, VisionStatus::Idle | VisionStatus::Busy)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{io, sync::mpsc};
+
+    use super::*;
+    use crate::{
+        mailbox::{Mailbox, Place},
+        network::{
+            Role,
+            frame::Frame,
+            hello::ClockKind,
+            office::{Counter, Outlet},
+        },
+    };
+
+    /// A line that ends in a channel.
+    struct Wire(mpsc::Sender<Frame>);
+
+    impl Outlet for Wire {
+        fn send(&mut self, frame: &Frame) -> io::Result<()> {
+            self.0.send(frame.clone()).map_err(|_| io::ErrorKind::BrokenPipe.into())
+        }
+
+        fn close(&mut self) {}
+    }
+
+    /// A port, and the other end of its line.
+    struct Bench {
+        port: Port,
+        counter: Counter,
+        /// Keeps the line open.
+        line: Option<mpsc::Receiver<Frame>>,
+        response_box: Mailbox,
+        tick: u64,
+        wanted: VisionRequest,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            let port = Port::new(Desk::new(Role::Vision, ClockKind::Real), 7, 9);
+            let counter = port.desk.counter();
+            let response_box = Mailbox::initialized(VISION_RESPONSE);
+            Self { port, counter, line: None, response_box, tick: 0, wanted: VisionRequest::default() }
+        }
+
+        /// One at which vision has established communications.
+        fn connected() -> Self {
+            let mut bench = Self::new();
+            bench.come();
+            bench.say(&Areas { output: Ready::Ready, ..Areas::INITIALIZED });
+            bench.step();
+            bench.port.remarks();
+            bench
+        }
+
+        fn come(&mut self) {
+            let (send, receive) = mpsc::channel();
+            self.counter.attach(Box::new(Wire(send))).unwrap();
+            self.line = Some(receive);
+        }
+
+        fn go(&mut self) {
+            self.counter.detach("the cable was cut".to_owned());
+            self.line = None;
+        }
+
+        fn step(&mut self) {
+            self.tick += 1;
+            self.port.step(self.tick, &self.wanted, || vec![Part { reflectance: 0.5, ..Part::default() }]);
+        }
+
+        fn ask(&mut self, number: u32) {
+            let picture = Kind::Precise;
+            self.wanted =
+                VisionRequest { number, picture, object_id: 17, grip: 2, range_mm: 605, variation: 0 };
+            self.step();
+        }
+
+        fn write(&mut self, data: &[u8]) {
+            self.response_box.write(data).unwrap();
+            self.counter.deliver(&Frame::of(&self.response_box)).unwrap();
+        }
+
+        fn say(&mut self, areas: &Areas) {
+            self.write(&areas.encode().unwrap());
+        }
+
+        fn outgoing(&mut self, place: Place) -> Vec<u8> {
+            self.port.desk.outgoing(place).data().to_vec()
+        }
+
+        fn said(&mut self) -> Vec<String> {
+            self.port.remarks().iter().map(ToString::to_string).collect()
+        }
+    }
+
+    fn answer(echo: u32) -> Areas {
+        let status = VisionStatus::Done;
+        let response = VisionResponse { echo, status, y: 10, z: -5, angle: 300, recognised: 17 };
+        Areas { input: Ready::Ready, output: Ready::Ready, response }
+    }
+
+    #[test]
+    fn a_request_goes_out_with_its_picture_and_its_answer_comes_in() {
+        let mut bench = Bench::connected();
+        bench.ask(65_539);
+        let request = request::decode(&bench.outgoing(VISION_REQUEST)).unwrap();
+        assert_eq!((request.number, request.object_id), (4, 17));
+        let picture = Picture::decode(&bench.outgoing(VISION_PICTURE)).unwrap();
+        assert_eq!((picture.number, picture.seed, picture.cell, picture.parts.len()), (4, 7, 9, 1));
+        bench.say(&answer(4));
+        bench.step();
+        assert_eq!(*bench.port.response(), VisionResponse { echo: 65_539, ..answer(4).response });
+        assert!(bench.said().is_empty());
+        let mailgram = bench.port.desk.outgoing(VISION_REQUEST).mailgram();
+        bench.step();
+        assert_eq!(bench.port.desk.outgoing(VISION_REQUEST).mailgram(), mailgram, "written once");
+    }
+
+    #[test]
+    fn a_request_waits_until_vision_is_ready_for_it() {
+        let mut bench = Bench::new();
+        bench.ask(4);
+        bench.step();
+        assert_eq!(bench.said(), ["request 4 to vision waits: no vision system is connected"]);
+        bench.come();
+        bench.step();
+        assert_eq!(bench.outgoing(VISION_REQUEST), b"", "it has not established communications");
+        bench.say(&Areas::INITIALIZED);
+        bench.step();
+        assert_eq!(bench.outgoing(VISION_REQUEST), b"");
+        bench.say(&Areas { output: Ready::Ready, ..Areas::INITIALIZED });
+        bench.step();
+        bench.step();
+        assert_eq!(request::decode(&bench.outgoing(VISION_REQUEST)).unwrap().number, 4);
+        bench.said();
+        bench.say(&Areas { output: Ready::NotReady, ..answer(4) });
+        bench.step();
+        bench.ask(5);
+        bench.step();
+        let waits = "request 5 to vision waits: vision-ready-output 2 (ready) was expected, found 1";
+        assert_eq!(bench.said(), [waits]);
+        assert_eq!(request::decode(&bench.outgoing(VISION_REQUEST)).unwrap().number, 4);
+    }
+
+    #[test]
+    fn an_answer_is_read_only_if_vision_ready_input_says_so() {
+        let mut bench = Bench::connected();
+        bench.ask(4);
+        bench.say(&Areas { input: Ready::NotReady, ..answer(4) });
+        for _ in 0..3 {
+            bench.step();
+            assert_eq!(*bench.port.response(), VisionResponse::default());
+        }
+        let unread =
+            "vision's answer to request 4 is not read: vision-ready-input 2 (ready) was expected, found 1";
+        assert_eq!(bench.said(), [unread]);
+        bench.say(&answer(4));
+        bench.step();
+        assert_eq!(*bench.port.response(), answer(4).response);
+    }
+
+    #[test]
+    fn answers_to_other_requests_and_garbled_ones_are_said_once_and_not_read() {
+        let mut bench = Bench::connected();
+        bench.ask(4);
+        bench.say(&answer(9));
+        bench.step();
+        bench.step();
+        let stranger = "an answer of vision is refused: request 4 was expected, found 9";
+        assert_eq!(bench.said(), [stranger]);
+        let good = answer(4).encode().unwrap();
+        for _ in 0..3 {
+            bench.write(&good[..14]);
+            bench.step();
+        }
+        let short = "what vision has written is refused: a response of 18 bytes was expected, found 14";
+        assert_eq!(bench.said(), [short]);
+        assert_eq!(*bench.port.response(), VisionResponse::default());
+        bench.say(&answer(4));
+        bench.step();
+        // The answer to the last one stands there still when the next one is asked.
+        bench.ask(5);
+        bench.step();
+        assert_eq!(bench.port.response().echo, 4);
+        bench.say(&Areas { response: VisionResponse { y: 11, ..answer(4).response }, ..answer(4) });
+        bench.step();
+        assert_eq!((bench.port.response().echo, bench.port.response().y), (4, 10));
+        assert_eq!(bench.said(), ["an answer of vision is refused: request 5 was expected, found 4"]);
+    }
+
+    #[test]
+    fn who_comes_after_another_gets_the_request_that_is_not_answered() {
+        let mut bench = Bench::connected();
+        bench.ask(4);
+        bench.go();
+        bench.step();
+        assert_eq!(bench.outgoing(VISION_REQUEST), b"", "nobody finds what was meant for another");
+        bench.come();
+        bench.say(&Areas { output: Ready::Ready, ..Areas::INITIALIZED });
+        bench.step();
+        bench.step();
+        assert_eq!(request::decode(&bench.outgoing(VISION_REQUEST)).unwrap().number, 4);
+        bench.say(&answer(4));
+        bench.step();
+        assert_eq!(bench.port.response().echo, 4);
+        bench.go();
+        bench.step();
+        bench.come();
+        bench.say(&Areas { output: Ready::Ready, ..Areas::INITIALIZED });
+        bench.step();
+        bench.step();
+        assert_eq!(bench.outgoing(VISION_REQUEST), b"", "it has been answered");
+        assert_eq!(*bench.port.response(), answer(4).response, "what was read was read");
+    }
+
+    #[test]
+    fn an_answer_that_nobody_asked_for_is_refused() {
+        let mut bench = Bench::connected();
+        bench.say(&answer(4));
+        bench.step();
+        assert_eq!(*bench.port.response(), VisionResponse::default());
+        let refused = "an answer of vision is refused: no request was expected to be answered, found 4";
+        assert_eq!(bench.said(), [refused]);
+    }
+}
