@@ -233,3 +233,10 @@ pub fn secret(scratch: &Scratch, name: &str, text: &str) -> (Secret, String) {
     fs::set_permissions(&file, fs::Permissions::from_mode(0o600)).expect("its mode can be set");
     (Secret::load(&file).expect("it is long enough"), file.display().to_string())
 }
+
+/// The digest of a shipped job, whose pedestal is in the controller's own process.
+pub fn digest_of(job: &str) -> String {
+    let text = fs::read_to_string(root().join(format!("tests/goldens/{job}.txt"))).expect("a golden run");
+    let line = text.lines().find_map(|line| line.strip_prefix("digest")).expect("it has a digest");
+    line.trim().to_owned()
+}

@@ -6,5 +6,6 @@ mod bench;
 mod data_system;
 mod pedestal;
 mod strangers;
+mod together;
 mod vision;
 mod workstation;

@@ -4,7 +4,6 @@
 //! All in fast clock: the controller's time stands still while its workstation controller, which is the test, does not answer.
 
 use std::{
-    fs,
     io::{BufRead as _, BufReader},
     path::Path,
     process::{Child, Command, Stdio},
@@ -29,7 +28,7 @@ use rcs_core::{
 };
 use whole_system_tests::{Scratch, rcs_log, rcs_neighbour, rcs_run, root};
 
-use crate::bench::{Controller, Ended, Workstation, bare};
+use crate::bench::{Controller, Ended, Workstation, bare, digest_of};
 
 const SILENT: &str = "the Active Pedestal does not answer";
 
@@ -219,13 +218,6 @@ fn serve(mut peer: Peer, fate: Fate, is_there: &AtomicBool) -> Remains {
     (station, opening)
 }
 
-/// The digest of a shipped job, whose pedestal is in the controller's own process.
-fn digest_of(job: &str) -> String {
-    let text = fs::read_to_string(root().join(format!("tests/goldens/{job}.txt"))).expect("a golden run");
-    let line = text.lines().find_map(|line| line.strip_prefix("digest")).expect("it has a digest");
-    line.trim().to_owned()
-}
-
 /// A pedestal in another process, and whether it has said that it has got a pulse.
 fn start_pedestal(program: &Path, controller: &Controller) -> (Child, Arc<AtomicBool>) {
     let mut child = Command::new(program)
@@ -261,33 +253,6 @@ fn a_pedestal_in_another_process_changes_not_a_bit() {
         assert_eq!(ended.result["allocations_after_start"], 0);
         assert!(pedestal.wait().expect("a child").success(), "it ends when no run comes");
     }
-}
-
-/// Who commands, who keeps the books, who turns the parts and who sees them: each in a process of its own.
-#[test]
-fn a_shift_with_everybody_elsewhere_has_the_same_bits() {
-    let program = rcs_neighbour();
-    let scratch = Scratch::new("everybody");
-    let (outbox, items) = (scratch.file("outbox").display().to_string(), scratch.file("items.db"));
-    let everybody = "workstation,data-system,pedestal,vision";
-    let controller = Controller::start_at(scratch, None, everybody, &["--json", "--outbox", &outbox]);
-    let (mut pedestal, _) = start_pedestal(program, &controller);
-    let neighbour = |words: &[&str]| {
-        let mut command = Command::new(program);
-        command.args(words).args(["--wait", "1", "--network", &controller.address.to_string()]);
-        command.current_dir(root()).stdout(Stdio::null());
-        command.spawn().expect("rcs-neighbour can be started")
-    };
-    let mut books = neighbour(&["data-system", &items.display().to_string()]);
-    let mut eyes = neighbour(&["vision"]);
-    let mut chief = neighbour(&["workstation", "shift"]);
-    assert!(chief.wait().expect("a child").success());
-    let ended = controller.end();
-    assert_eq!(ended.status, Some(0), "{}", ended.said);
-    assert_eq!(ended.result["digest"], digest_of("shift"));
-    assert_eq!(ended.result["allocations_after_start"], 0);
-    assert!(pedestal.wait().expect("a child").success() && books.wait().expect("a child").success());
-    assert!(eyes.wait().expect("a child").success());
 }
 
 #[test]

@@ -65,7 +65,7 @@ fn after<'t>(text: &'t str, word: &str) -> &'t str {
 }
 
 /// Jobs that LOCATE-OBJ is part of, another seed, and the faults of the camera: each as its golden has it. One process
-/// analyses the pictures of all of them, one run after the other. (The shift has everybody elsewhere, in `pedestal`.)
+/// analyses the pictures of all of them, one run after the other. (The shift has everybody elsewhere, in `together`.)
 #[test]
 fn jobs_have_the_same_bits_with_vision_in_another_process() {
     let program = rcs_neighbour();

@@ -1,0 +1,67 @@
+//! Every neighbour in a process of its own, for a whole shift: not a bit of the run changes, and the Data System knows where
+//! every item lies.
+
+use std::{
+    path::Path,
+    process::{Child, Command, Stdio},
+};
+
+use neighbours::data_system::{Item, Store};
+use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
+
+use crate::bench::{Controller, digest_of};
+
+/// The items in a data base.
+fn items(file: &Path) -> Vec<Item> {
+    Store::open(file).expect("a data base").items().expect("items")
+}
+
+/// What the Data System in the controller's own process knows after a shift.
+fn known_after_a_shift() -> Vec<Item> {
+    let scratch = Scratch::new("inside");
+    let file = scratch.file("items.db");
+    let own = Command::new(rcs_run())
+        .args(["shift", "--json", "--log", "none", "--shared-memory", "off", "--data-base"])
+        .arg(&file)
+        .current_dir(root())
+        .output()
+        .expect("rcs-run can be started");
+    assert!(own.status.success(), "{}", String::from_utf8_lossy(&own.stderr));
+    items(&file)
+}
+
+fn start(program: &Path, address: &str, words: &[&str]) -> Child {
+    Command::new(program)
+        .args(words)
+        .args(["--wait", "1", "--network", address])
+        .current_dir(root())
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("rcs-neighbour can be started")
+}
+
+#[test]
+fn a_shift_with_everybody_elsewhere_has_the_same_bits_and_items() {
+    let (known, program) = (known_after_a_shift(), rcs_neighbour());
+    assert!(!known.is_empty(), "a shift has items");
+    let scratch = Scratch::new("everybody");
+    let (outbox, file) = (scratch.file("outbox").display().to_string(), scratch.file("items.db"));
+    let everybody = "workstation,data-system,pedestal,vision";
+    let controller = Controller::start_at(scratch, None, everybody, &["--json", "--outbox", &outbox]);
+    let (address, data_base) = (controller.address.to_string(), file.display().to_string());
+    let servants = [&["data-system", &data_base][..], &["pedestal"], &["vision"]];
+    let mut servants = servants.map(|words| start(program, &address, words));
+    let mut chief = start(program, &address, &["workstation", "shift"]);
+    assert!(chief.wait().expect("a child").success());
+    let mut told = Vec::new();
+    let ended = controller.end_with(|| {
+        for servant in &mut servants {
+            assert!(servant.wait().expect("a child").success(), "it ends when no run comes");
+        }
+        told = items(&file);
+    });
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert_eq!(ended.result["digest"], digest_of("shift"));
+    assert_eq!(ended.result["allocations_after_start"], 0);
+    assert_eq!(told, known);
+}
