@@ -56,12 +56,15 @@ pub enum Command {
 /// Where the controller is.
 #[derive(Clone, Debug, Args)]
 pub struct ControllerArguments {
-    /// Where the run waits for its neighbours: unix:PATH or tcp:IP:PORT
+    /// Where the run waits for its neighbours: unix:PATH, tcp:IP:PORT or zenoh:NAME[@ENDPOINT]
     #[arg(long, value_name = "ADDRESS")]
     pub network: Address,
     /// File with the secret that the run knows
     #[arg(long, value_name = "FILE")]
     pub secret: Option<PathBuf>,
+    /// File with Zenoh's own configuration (JSON5): TLS, access control, routers
+    #[arg(long, value_name = "FILE")]
+    pub zenoh_config: Option<PathBuf>,
     /// How long to wait for the run
     #[arg(long, value_name = "SECONDS", default_value_t = 60)]
     pub wait: u64,

@@ -14,7 +14,7 @@ use std::{process::ExitCode, time::Duration};
 use clap::Parser as _;
 use neighbours::{
     data_system::StoreError,
-    network::{Peer, PeerError, Role, Secret, hello::SecretError},
+    network::{Peer, PeerError, Role, Secret, address::AddressError, hello::SecretError},
     vision::VisionError,
 };
 use plant::description::DescriptionError;
@@ -36,6 +36,9 @@ enum Error {
     /// The secret cannot be used.
     #[error(transparent)]
     Secret(#[from] SecretError),
+    /// Options of the network do not fit together.
+    #[error(transparent)]
+    Address(#[from] AddressError),
     /// The data base cannot be had.
     #[error("the items cannot be kept: {0}")]
     DataBase(#[from] StoreError),
@@ -72,8 +75,10 @@ enum Error {
 impl Error {
     const fn status(&self) -> u8 {
         match self {
+            Self::Peer(error) if error.is_usage() => UNUSABLE,
             Self::Peer(_) | Self::Job(_) | Self::Vision(_) => FAILED,
-            Self::Secret(_)
+            Self::Address(_)
+            | Self::Secret(_)
             | Self::DataBase(_)
             | Self::Cell(_)
             | Self::AnotherCell { .. }
@@ -105,5 +110,6 @@ fn main() -> ExitCode {
 fn connect(arguments: &ControllerArguments, role: Role) -> Result<Peer, Error> {
     let secret = arguments.secret.as_deref().map(Secret::load).transpose()?;
     let wait = Duration::from_secs(arguments.wait);
-    Ok(Peer::connect_within(wait, &arguments.network, role, secret.as_ref())?)
+    let address = arguments.network.clone().configured(arguments.zenoh_config.clone())?;
+    Ok(Peer::connect_within(wait, &address, role, secret.as_ref())?)
 }

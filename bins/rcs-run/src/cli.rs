@@ -114,7 +114,8 @@ pub struct RunArguments {
     /// Keep the items of the Data System in this SQLite file, which is made if it is not there [default: forget them]
     #[arg(long, value_name = "FILE")]
     pub data_base: Option<PathBuf>,
-    /// Let neighbours in other processes connect here: unix:PATH, or tcp:IP:PORT with a secret (docs/neighbours.md)
+    /// Let neighbours in other processes connect here: unix:PATH, or with a secret tcp:IP:PORT or zenoh:NAME[@ENDPOINT]
+    /// (docs/neighbours.md)
     #[arg(long, value_name = "ADDRESS", requires = "outside")]
     pub network: Option<Address>,
     /// Neighbours that are other processes, with commas between them: workstation, data-system, pedestal, vision
@@ -126,6 +127,9 @@ pub struct RunArguments {
     /// File with the secret that proves neighbours to be ours, at least 16 bytes
     #[arg(long, value_name = "FILE", requires = "network")]
     pub secret: Option<PathBuf>,
+    /// File with Zenoh's own configuration (JSON5): TLS, access control, routers
+    #[arg(long, value_name = "FILE", requires = "network")]
+    pub zenoh_config: Option<PathBuf>,
     /// Stop after so many ticks if the job is not over before
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub ticks: Option<u64>,

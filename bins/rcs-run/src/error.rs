@@ -9,7 +9,7 @@ use executive::{
 };
 use neighbours::{
     data_system::{OutboxError, StoreError},
-    network::{hello::SecretError, listener::ListenError},
+    network::{address::AddressError, hello::SecretError, listener::ListenError},
 };
 use plant::{CellError, fault::text::FaultFileError};
 use record::RecordError;
@@ -93,6 +93,9 @@ pub enum Error {
     /// Neighbours cannot connect.
     #[error("neighbours cannot connect: {0}")]
     Network(#[from] ListenError),
+    /// Options of the network do not fit together.
+    #[error("neighbours cannot connect: {0}")]
+    Address(#[from] AddressError),
     /// The secret cannot be used.
     #[error(transparent)]
     Secret(#[from] SecretError),

@@ -163,7 +163,8 @@ fn neighbours(
     let network = match &arguments.network {
         Some(address) => {
             let desks = || commands.iter().chain(&items).chain(&regrips).chain(&sees);
-            let listener = Listener::start(address, secret, desks())?;
+            let address = address.clone().configured(arguments.zenoh_config.clone())?;
+            let listener = Listener::start(&address, secret, desks())?;
             eprintln!("rcs-run: neighbours can connect at {}", listener.address());
             Some(Network { counters: desks().map(Desk::counter).collect(), _listener: listener })
         }

@@ -2,24 +2,48 @@
 
 use std::{fmt, net::SocketAddr, path::PathBuf, str::FromStr};
 
-/// An address: `unix:PATH` or `tcp:HOST:PORT`.
+use super::station::{Station, StationError};
+
+/// An address: `unix:PATH`, `tcp:HOST:PORT` or `zenoh:NAME[@ENDPOINT]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Address {
     /// A socket in the file system, for processes of the same user on this machine.
     Unix(PathBuf),
     /// A TCP port, for whoever knows the secret.
     Tcp(SocketAddr),
+    /// A Zenoh network, for whoever knows the secret.
+    Zenoh(Station),
 }
 
 /// Why a text is no address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
     /// No scheme that is known.
-    #[error("unix:PATH or tcp:HOST:PORT was expected, found {0}")]
+    #[error("unix:PATH, tcp:HOST:PORT or zenoh:NAME was expected, found {0}")]
     Scheme(String),
     /// No numbers.
     #[error("an IP address and a port were expected behind tcp:, as in tcp:127.0.0.1:7400, found {0}")]
     Socket(String),
+    /// No station.
+    #[error(transparent)]
+    Station(#[from] StationError),
+    /// A configuration for something else.
+    #[error("a configuration of Zenoh is for an address that begins with zenoh:, found {0}")]
+    NotZenoh(Address),
+}
+
+impl Address {
+    /// With a file of Zenoh's configuration, if there is one.
+    ///
+    /// # Errors
+    /// [`AddressError::NotZenoh`].
+    pub fn configured(self, file: Option<PathBuf>) -> Result<Self, AddressError> {
+        match (self, file) {
+            (Self::Zenoh(station), Some(file)) => Ok(Self::Zenoh(station.configured(file))),
+            (other, None) => Ok(other),
+            (other, Some(_)) => Err(AddressError::NotZenoh(other)),
+        }
+    }
 }
 
 impl FromStr for Address {
@@ -31,6 +55,7 @@ impl FromStr for Address {
             Some(("tcp", socket)) => {
                 socket.parse().map(Self::Tcp).map_err(|_| AddressError::Socket(socket.to_owned()))
             }
+            Some(("zenoh", station)) => Ok(Self::Zenoh(station.parse()?)),
             _ => Err(AddressError::Scheme(text.to_owned())),
         }
     }
@@ -41,6 +66,7 @@ impl fmt::Display for Address {
         match self {
             Self::Unix(path) => write!(f, "unix:{}", path.display()),
             Self::Tcp(socket) => write!(f, "tcp:{socket}"),
+            Self::Zenoh(station) => write!(f, "zenoh:{station}"),
         }
     }
 }
@@ -51,7 +77,7 @@ mod tests {
 
     #[test]
     fn addresses_come_back() {
-        for text in ["unix:/run/rcs.sock", "unix:here", "tcp:127.0.0.1:7400", "tcp:[::1]:7400"] {
+        for text in ["unix:/run/rcs.sock", "unix:here", "tcp:127.0.0.1:7400", "tcp:[::1]:7400", "zenoh:t3"] {
             assert_eq!(text.parse::<Address>().unwrap().to_string(), text);
         }
         for text in ["", "unix:", "/run/rcs.sock", "udp:1.2.3.4:5"] {
@@ -60,5 +86,17 @@ mod tests {
         for text in ["tcp:", "tcp:localhost", "tcp:127.0.0.1"] {
             assert!(matches!(text.parse::<Address>(), Err(AddressError::Socket(_))), "{text}");
         }
+        assert!(matches!("zenoh:".parse::<Address>(), Err(AddressError::Station(_))));
+    }
+
+    #[test]
+    fn a_configuration_of_zenoh_is_for_zenoh() {
+        let of = |text: &str, file: Option<&str>| {
+            text.parse::<Address>().unwrap().configured(file.map(PathBuf::from))
+        };
+        let Address::Zenoh(station) = of("zenoh:t3", Some("tls.json5")).unwrap() else { panic!("it is") };
+        assert_eq!(station.configuration(), Some(std::path::Path::new("tls.json5")));
+        assert!(of("unix:here", None).is_ok());
+        assert!(matches!(of("unix:here", Some("tls.json5")), Err(AddressError::NotZenoh(_))));
     }
 }

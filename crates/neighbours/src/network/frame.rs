@@ -17,7 +17,7 @@
 
 use std::io::{self, Read};
 
-use super::seal::BrokenSeal;
+use super::seal::{BrokenSeal, SealError};
 use crate::mailbox::{HEAD, MAX_SIZE, Mailbox, Place};
 
 /// Bytes in front of a mailbox.
@@ -165,6 +165,17 @@ pub enum FrameError {
     /// It does not come from whom it should.
     #[error(transparent)]
     Seal(#[from] BrokenSeal),
+    /// Frames in front of it are lost.
+    #[error(transparent)]
+    Number(#[from] SealError),
+    /// It was published under the key of another address.
+    #[error("a frame of {expected:05X} was expected under this key, found one of {found:05X}")]
+    Key {
+        /// The address that has the key.
+        expected: u32,
+        /// That of the frame.
+        found: u32,
+    },
     /// Bytes behind the frame.
     #[error("nothing was expected behind the frame, found {0} bytes")]
     Rest(usize),

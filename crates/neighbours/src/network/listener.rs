@@ -1,6 +1,6 @@
 //! The controller's end of the line: waits for neighbours, lets in who may, and reads what they send.
 //!
-//! One thread waits for connections; each connection has a thread that says hello and then reads. Who is let in: at a socket in
+//! Over sockets one thread waits for connections; each connection has a thread that says hello and then reads. Who is let in: at a socket in
 //! the file system, processes of the same user; at a TCP port, who knows the secret. Everybody else is told why and
 //! refused, and the controller is told.
 
@@ -22,11 +22,14 @@ use std::{
 
 use rustix::{net::sockopt, process::geteuid};
 
+#[cfg(feature = "zenoh")]
+use super::over_zenoh;
 use super::{
     Address, Desk, News, Secret,
     frame::{Frame, FrameError},
     hello::{ANSWER, Agreement, Challenge, ClockKind, welcome},
     office::{Counter, Outlet as _},
+    peer::Inlet as _,
     stream::{Receiver, Sender, Stream, is_timeout},
 };
 
@@ -54,9 +57,18 @@ pub enum ListenError {
     #[error("{0}: another run waits for its neighbours there")]
     InUse(Address),
     /// Anybody on the network could command the robot.
-    #[error("{0}: a TCP port needs a secret that the neighbours know; name a file with --secret")]
+    #[error("{0}: a network needs a secret that the neighbours know; name a file with --secret")]
     NoSecret(Address),
+    /// Zenoh is left out of this program.
+    #[cfg(not(feature = "zenoh"))]
+    #[error("{0}: {NO_ZENOH}")]
+    NoZenoh(Address),
 }
+
+/// What a program without Zenoh says.
+#[cfg(not(feature = "zenoh"))]
+pub(super) const NO_ZENOH: &str = "this program was built without Zenoh; cargo build --release --workspace --features zenoh \
+                                   builds it with Zenoh";
 
 enum Socket {
     Unix(UnixListener),
@@ -66,6 +78,23 @@ enum Socket {
 /// Waits for neighbours.
 pub struct Listener {
     /// Where they can connect: with the port that the system has chosen, if it was to.
+    address: Address,
+    _line: Line,
+}
+
+/// What it waits at.
+enum Line {
+    Sockets {
+        _sockets: Sockets,
+    },
+    #[cfg(feature = "zenoh")]
+    Zenoh {
+        _reception: over_zenoh::controller::Reception,
+    },
+}
+
+/// Waits at a socket.
+struct Sockets {
     address: Address,
     over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -92,23 +121,33 @@ impl Listener {
         secret: Option<Secret>,
         desks: impl IntoIterator<Item = &'a Desk>,
     ) -> Result<Self, ListenError> {
-        let failed = |source| ListenError::Address { address: address.clone(), source };
-        let (socket, bound) = match address {
-            Address::Unix(path) => (Socket::Unix(unix(path, address)?), address.clone()),
-            Address::Tcp(_) if secret.is_none() => return Err(ListenError::NoSecret(address.clone())),
-            Address::Tcp(place) => {
-                let listener = TcpListener::bind(place).map_err(failed)?;
-                let bound = listener.local_addr().map_err(failed)?;
-                (Socket::Tcp(listener), Address::Tcp(bound))
-            }
-        };
         let counters: Vec<_> = desks.into_iter().map(Desk::counter).collect();
         let clock = counters.first().expect("a network has neighbours").clock();
+        let failed = |source| ListenError::Address { address: address.clone(), source };
+        let (socket, bound) =
+            match (address, secret.clone()) {
+                (Address::Unix(path), _) => (Socket::Unix(unix(path, address)?), address.clone()),
+                (_, None) => return Err(ListenError::NoSecret(address.clone())),
+                (Address::Tcp(place), Some(_)) => {
+                    let listener = TcpListener::bind(place).map_err(failed)?;
+                    let bound = listener.local_addr().map_err(failed)?;
+                    (Socket::Tcp(listener), Address::Tcp(bound))
+                }
+                #[cfg(not(feature = "zenoh"))]
+                (Address::Zenoh(_), Some(_)) => return Err(ListenError::NoZenoh(address.clone())),
+                #[cfg(feature = "zenoh")]
+                (Address::Zenoh(station), Some(secret)) => {
+                    let _reception = over_zenoh::controller::Reception::open(station, secret, counters)
+                        .map_err(|error| match error.kind() {
+                            io::ErrorKind::AddrInUse => ListenError::InUse(address.clone()),
+                            _ => failed(error),
+                        })?;
+                    return Ok(Self { address: address.clone(), _line: Line::Zenoh { _reception } });
+                }
+            };
         let reception = Arc::new(Reception { counters, secret, clock, strangers: AtomicUsize::new(0) });
-        let over = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&over);
-        let thread = Some(thread::spawn(move || listen(&socket, &flag, &reception)));
-        Ok(Self { address: bound, over, thread })
+        let _sockets = Sockets::listen(socket, bound.clone(), reception);
+        Ok(Self { address: bound, _line: Line::Sockets { _sockets } })
     }
 
     /// Where neighbours can connect.
@@ -118,13 +157,23 @@ impl Listener {
     }
 }
 
-impl Drop for Listener {
+impl Sockets {
+    fn listen(socket: Socket, address: Address, reception: Arc<Reception>) -> Self {
+        let over = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&over);
+        let thread = Some(thread::spawn(move || listen(&socket, &flag, &reception)));
+        Self { address, over, thread }
+    }
+}
+
+impl Drop for Sockets {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Release);
         // Wakes the thread that waits for a connection.
         let woken = match &self.address {
             Address::Unix(path) => std::os::unix::net::UnixStream::connect(path).is_ok(),
             Address::Tcp(place) => std::net::TcpStream::connect(place).is_ok(),
+            Address::Zenoh(_) => false,
         };
         if let Some(thread) = self.thread.take().filter(|_| woken) {
             // It has nothing to return, and a panic in it was reported.
@@ -137,7 +186,8 @@ impl Drop for Listener {
     }
 }
 
-const fn patience(clock: ClockKind) -> Duration {
+/// How long a neighbour may take to answer a pulse.
+pub(super) const fn patience(clock: ClockKind) -> Duration {
     match clock {
         ClockKind::Real => PATIENCE,
         ClockKind::Fast => FAST_PATIENCE,

@@ -12,7 +12,8 @@
 //! * [`frame`]: a mailgram on the line, and the pulse that tells of ticks;
 //! * [`hello`]: how a connection begins, and who is let in; [`seal`]: that a frame comes from him;
 //! * [`office`]: the mailboxes between tick and threads;
-//! * [`listener`]: the controller's end of the line, [`peer`]: the neighbour's.
+//! * [`listener`]: the controller's end of the line, [`peer`]: the neighbour's;
+//! * [`station`]: a controller in a Zenoh network, between machines (with the feature `zenoh`).
 //!
 //! In fast clock the tick waits for the pulse of every neighbour that is there, so that runs with neighbours in other processes
 //! have the same bits every time.
@@ -22,9 +23,12 @@ pub mod frame;
 pub mod hello;
 pub mod listener;
 pub mod office;
+#[cfg(feature = "zenoh")]
+mod over_zenoh;
 pub mod peer;
 pub mod role;
 pub mod seal;
+pub mod station;
 mod stream;
 
 pub use address::Address;

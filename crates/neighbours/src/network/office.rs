@@ -47,6 +47,8 @@ pub enum News {
     Gone(Role, String),
     /// Somebody was not let in, and why.
     Refused(String),
+    /// What came was from nobody who is connected, and what.
+    Stray(String),
 }
 
 impl std::fmt::Display for News {
@@ -55,6 +57,7 @@ impl std::fmt::Display for News {
             Self::Came(role) => write!(f, "{role} has connected"),
             Self::Gone(role, why) => write!(f, "{role} has gone: {why}"),
             Self::Refused(why) => write!(f, "a connection was refused: {why}"),
+            Self::Stray(what) => write!(f, "a frame was refused: {what}"),
         }
     }
 }

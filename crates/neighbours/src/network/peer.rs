@@ -8,19 +8,23 @@ use std::{
     time::{Duration, Instant},
 };
 
+#[cfg(not(feature = "zenoh"))]
+use super::listener::NO_ZENOH;
+#[cfg(feature = "zenoh")]
+use super::over_zenoh;
 use super::{
     Address, Role, Secret,
     frame::{Frame, FrameError, LAST_WORDS, WELCOME},
     hello::{Agreement, Challenge, ClockKind, HELLO, HelloError, check_welcome},
-    office::Outlet as _,
+    office::Outlet,
     stream::{Receiver, Sender, Stream, is_timeout},
 };
 use crate::mailbox::{Mailbox, MailboxError, Place};
 
 /// How long the other side may take for a hello or a frame.
-const LIMIT: Duration = Duration::from_secs(10);
+pub(super) const LIMIT: Duration = Duration::from_secs(10);
 /// Between two attempts to connect.
-const PAUSE: Duration = Duration::from_millis(50);
+pub(super) const PAUSE: Duration = Duration::from_millis(50);
 
 /// Why a connection does not come about, or ends.
 #[derive(Debug, thiserror::Error)]
@@ -56,6 +60,13 @@ pub enum PeerError {
     /// The controller has closed the connection, and said why.
     #[error("the controller says: {0}")]
     LastWords(String),
+    /// Anybody on the network could pose as the controller.
+    #[error("{0}: a network needs the secret that the controller knows; name a file with --secret")]
+    NoSecret(Address),
+    /// Zenoh is left out of this program.
+    #[cfg(not(feature = "zenoh"))]
+    #[error("{0}: {NO_ZENOH}")]
+    NoZenoh(Address),
 }
 
 impl PeerError {
@@ -63,8 +74,20 @@ impl PeerError {
     #[must_use]
     pub fn is_passing(&self) -> bool {
         match self {
-            Self::Line { .. } | Self::Silent | Self::Closed | Self::Frame(FrameError::Stream(_)) => true,
+            Self::Line { .. } | Self::Silent | Self::Closed => true,
+            Self::Frame(FrameError::Stream(_) | FrameError::Number(_)) => true,
             Self::LastWords(text) => text == "the run is over",
+            _ => false,
+        }
+    }
+
+    /// True if the neighbour was started in a way in which it can never connect.
+    #[must_use]
+    pub const fn is_usage(&self) -> bool {
+        match self {
+            Self::NoSecret(_) => true,
+            #[cfg(not(feature = "zenoh"))]
+            Self::NoZenoh(_) => true,
             _ => false,
         }
     }
@@ -79,10 +102,27 @@ pub enum Received {
     Pulse(u64),
 }
 
+/// Where frames come in from the controller.
+pub(super) trait Inlet: Send {
+    /// The next one.
+    ///
+    /// # Errors
+    /// [`FrameError`]; [`io::ErrorKind::TimedOut`] or [`io::ErrorKind::WouldBlock`] if nothing comes for too long,
+    /// [`io::ErrorKind::UnexpectedEof`] if the controller has gone.
+    fn receive(&mut self) -> Result<Frame, FrameError>;
+}
+
+/// A connection, whatever it goes over.
+pub(super) struct Line {
+    pub sender: Box<dyn Outlet>,
+    pub receiver: Box<dyn Inlet>,
+    pub clock: ClockKind,
+}
+
 /// A connection to the controller.
 pub struct Peer {
-    sender: Sender,
-    receiver: Receiver,
+    sender: Box<dyn Outlet>,
+    receiver: Box<dyn Inlet>,
     role: Role,
     clock: ClockKind,
     incoming: Vec<Mailbox>,
@@ -94,33 +134,7 @@ impl Peer {
     /// # Errors
     /// [`PeerError`]; [`PeerError::LastWords`] if one is not let in.
     pub fn connect(address: &Address, role: Role, secret: Option<&Secret>) -> Result<Self, PeerError> {
-        let failed = |source| PeerError::Line { address: address.clone(), source };
-        let mut stream = match address {
-            Address::Unix(path) => Stream::Unix(UnixStream::connect(path).map_err(failed)?),
-            Address::Tcp(place) => Stream::Tcp(TcpStream::connect_timeout(place, LIMIT).map_err(failed)?),
-        };
-        stream.prepare(LIMIT).map_err(failed)?;
-        let mut bytes = [0; HELLO];
-        io::Read::read_exact(&mut stream, &mut bytes).map_err(failed)?;
-        let mistrusted = |source| PeerError::Hello { address: address.clone(), source };
-        let challenge = Challenge::from_bytes(bytes).map_err(mistrusted)?;
-        let (answer, agreement) = challenge.answer(role, secret).map_err(failed)?;
-        io::Write::write_all(&mut stream, &answer).map_err(failed)?;
-        let mut sender = Sender::new(stream.try_clone().map_err(failed)?);
-        let mut receiver = Receiver::new(stream.try_clone().map_err(failed)?);
-        let welcome = receive(&mut receiver)?;
-        if welcome.address() != WELCOME {
-            return Err(mistrusted(HelloError::Impostor));
-        }
-        check_welcome(welcome.data(), agreement.as_ref()).map_err(mistrusted)?;
-        sender.seal(agreement.as_ref().map(Agreement::up));
-        receiver.seal(agreement.as_ref().map(Agreement::down));
-        if challenge.clock() == ClockKind::Fast {
-            // Its time may stand still for as long as it likes; on the grid there is a pulse every 40 ms.
-            stream.unlimited().map_err(failed)?;
-        }
-        let incoming = role.from_controller().iter().map(|&place| Mailbox::initialized(place)).collect();
-        Ok(Self { sender, receiver, role, clock: challenge.clock(), incoming })
+        Self::connect_within(Duration::ZERO, address, role, secret)
     }
 
     /// Connect, and try again for a while as long as nobody is there.
@@ -133,13 +147,24 @@ impl Peer {
         role: Role,
         secret: Option<&Secret>,
     ) -> Result<Self, PeerError> {
-        let started = Instant::now();
-        loop {
-            match Self::connect(address, role, secret) {
-                Err(error) if error.is_passing() && started.elapsed() < limit => thread::sleep(PAUSE),
-                other => return other,
+        let until = Instant::now() + limit;
+        let Line { sender, receiver, clock } = match address {
+            Address::Unix(_) | Address::Tcp(_) => loop {
+                match over_socket(address, role, secret) {
+                    Err(error) if error.is_passing() && Instant::now() < until => thread::sleep(PAUSE),
+                    other => break other?,
+                }
+            },
+            #[cfg(not(feature = "zenoh"))]
+            Address::Zenoh(_) => return Err(PeerError::NoZenoh(address.clone())),
+            #[cfg(feature = "zenoh")]
+            Address::Zenoh(station) => {
+                let secret = secret.ok_or_else(|| PeerError::NoSecret(address.clone()))?;
+                over_zenoh::neighbour::connect(address, station, role, secret, until)?
             }
-        }
+        };
+        let incoming = role.from_controller().iter().map(|&place| Mailbox::initialized(place)).collect();
+        Ok(Self { sender, receiver, role, clock, incoming })
     }
 
     /// The clock of the controller.
@@ -163,7 +188,7 @@ impl Peer {
     /// # Errors
     /// [`PeerError`] if the connection ends.
     pub fn receive(&mut self) -> Result<Received, PeerError> {
-        let frame = receive(&mut self.receiver)?;
+        let frame = receive(self.receiver.as_mut())?;
         if let Some(tick) = frame.as_pulse() {
             return Ok(Received::Pulse(tick));
         }
@@ -195,15 +220,49 @@ impl Peer {
     }
 }
 
+/// Connect at a socket.
+fn over_socket(address: &Address, role: Role, secret: Option<&Secret>) -> Result<Line, PeerError> {
+    let failed = |source| PeerError::Line { address: address.clone(), source };
+    let mistrusted = |source| PeerError::Hello { address: address.clone(), source };
+    let mut stream = match address {
+        Address::Unix(path) => UnixStream::connect(path).map(Stream::Unix),
+        Address::Tcp(place) => TcpStream::connect_timeout(place, LIMIT).map(Stream::Tcp),
+        Address::Zenoh(_) => Err(io::ErrorKind::Unsupported.into()),
+    }
+    .map_err(failed)?;
+    stream.prepare(LIMIT).map_err(failed)?;
+    let mut bytes = [0; HELLO];
+    io::Read::read_exact(&mut stream, &mut bytes).map_err(failed)?;
+    let challenge = Challenge::from_bytes(bytes).map_err(mistrusted)?;
+    let (answer, agreement) = challenge.answer(role, secret).map_err(failed)?;
+    io::Write::write_all(&mut stream, &answer).map_err(failed)?;
+    let mut sender = Sender::new(stream.try_clone().map_err(failed)?);
+    let mut receiver = Receiver::new(stream.try_clone().map_err(failed)?);
+    let welcome = receive(&mut receiver)?;
+    if welcome.address() != WELCOME {
+        return Err(mistrusted(HelloError::Impostor));
+    }
+    check_welcome(welcome.data(), agreement.as_ref()).map_err(mistrusted)?;
+    sender.seal(agreement.as_ref().map(Agreement::up));
+    receiver.seal(agreement.as_ref().map(Agreement::down));
+    if challenge.clock() == ClockKind::Fast {
+        // Its time may stand still for as long as it likes; on the grid there is a pulse every 40 ms.
+        stream.unlimited().map_err(failed)?;
+    }
+    Ok(Line { sender: Box::new(sender), receiver: Box::new(receiver), clock: challenge.clock() })
+}
+
 /// The next frame, if it is not the last.
-fn receive(receiver: &mut Receiver) -> Result<Frame, PeerError> {
+fn receive(receiver: &mut dyn Inlet) -> Result<Frame, PeerError> {
     let frame = receiver.receive().map_err(|error| match error {
         FrameError::Stream(error) if is_timeout(&error) => PeerError::Silent,
         FrameError::Stream(error) if error.kind() == io::ErrorKind::UnexpectedEof => PeerError::Closed,
         error => error.into(),
     })?;
-    if frame.address() == LAST_WORDS {
-        return Err(PeerError::LastWords(String::from_utf8_lossy(frame.data()).into_owned()));
-    }
-    Ok(frame)
+    if frame.address() == LAST_WORDS { Err(last_words(&frame)) } else { Ok(frame) }
+}
+
+/// Why the controller ends the connection.
+pub(super) fn last_words(frame: &Frame) -> PeerError {
+    PeerError::LastWords(String::from_utf8_lossy(frame.data()).into_owned())
 }

@@ -10,6 +10,7 @@ use std::{
 use super::{
     frame::{Frame, FrameError, MAX_FRAME},
     office::Outlet,
+    peer::Inlet,
     seal::{SEAL, Seal},
 };
 
@@ -134,9 +135,10 @@ impl Receiver {
     pub fn seal(&mut self, seal: Option<Seal>) {
         self.seal = seal;
     }
+}
 
-    /// The next one.
-    pub fn receive(&mut self) -> Result<Frame, FrameError> {
+impl Inlet for Receiver {
+    fn receive(&mut self) -> Result<Frame, FrameError> {
         let frame = Frame::read(&mut self.stream)?;
         if let Some(seal) = &mut self.seal {
             let mut bytes = [0; SEAL];
