@@ -61,16 +61,30 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
         let profile = profile.expect("a test lies two directories deep");
         let target = profile.parent().expect("a profile lies in the target directory");
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        // As a part of the workspace it has the features of the tests, and most of it is built already.
-        let built = Command::new(cargo)
-            .args(["build", "--quiet", "--release", "--workspace", "--bin", name, "--target-dir"])
-            .arg(target)
-            .current_dir(root())
-            .status()
-            .expect("cargo can be started");
+        let mut build = Command::new(cargo);
+        build.args(["build", "--quiet", "--release", "--workspace", "--target-dir"]).arg(target);
+        build.args(selection(name));
+        // What cargo tells a test about its package: crates that read it would be built anew, and all above them.
+        let told = env::vars_os().map(|(variable, _)| variable).filter(|variable| {
+            let variable = variable.to_string_lossy();
+            ["CARGO_PKG_", "CARGO_MANIFEST_", "CARGO_CRATE_"].iter().any(|front| variable.starts_with(front))
+        });
+        told.for_each(|variable| {
+            build.env_remove(variable);
+        });
+        let built = build.current_dir(root()).status().expect("cargo can be started");
         assert!(built.success(), "{name} does not build");
         target.join("release").join(name)
     })
+}
+
+/// What cargo is to build of the workspace: as a part of it a program has the features of the tests, and most of it is built
+/// already. With Zenoh it is built beside a test, so that Zenoh is not built twice: what tests want of the crates below it is a
+/// part of what they are.
+fn selection(name: &str) -> Vec<&str> {
+    let program = ["--bin", name];
+    let with_zenoh = ["--features", "zenoh", "--test", "neighbours"];
+    program.into_iter().chain(with_zenoh.into_iter().filter(|_| cfg!(feature = "zenoh"))).collect()
 }
 
 /// A directory for the files of one test, removed with it.

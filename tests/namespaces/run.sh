@@ -1,78 +1,116 @@
 #!/usr/bin/env bash
-# The controller in one network namespace, its workstation controller in another, and a bad line between them: delay, loss, a short
-# cut that heals, and a long one. Takes two minutes in real time; needs root, ip and tc.
+# The controller in one network namespace, its workstation controller in another, and a bad line between them (relay.py, in a
+# third): delay, loss, a short cut, and a long one that heals; over TCP, and over Zenoh if the programs were built with it.
+# Takes five minutes in real time, loads nothing, and needs root, ip and python3.
 #
 #   tests/namespaces/run.sh [DIRECTORY WITH rcs-run AND rcs-neighbour]     default: target/release
 #
-# Prints how many ticks of 40 ms a command takes from one end of the line to the other and back.
+# Prints how long a command takes from one end of the line to the other and back, against one in the controller's own process.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-programs=${1:-target/release}
+programs=$(cd "${1:-target/release}" && pwd)
+commands=20
 
 skip() { echo "skipped: $1"; exit 0; }
+fail() { echo "FAILED: $1"; cat "$work/said" 2>/dev/null || true; exit 1; }
 [ "$(id -u)" = 0 ] || skip "not root"
-command -v ip >/dev/null && command -v tc >/dev/null || skip "no ip or tc here"
-ip netns add rcs-a 2>/dev/null || skip "network namespaces are not permitted"
+command -v ip >/dev/null && command -v python3 >/dev/null || skip "no ip or python3 here"
 work=$(mktemp -d)
+here=$$
+a=rcs-a-$here b=rcs-b-$here line=rcs-line-$here
 # Only what was started here.
 cleanup() {
+    exec 9>&- || true
     jobs -p | xargs -r kill 2>/dev/null || true
     wait 2>/dev/null || true
-    ip netns del rcs-a 2>/dev/null || true
-    ip netns del rcs-b 2>/dev/null || true
+    for space in "$a" "$b" "$line"; do ip netns del "$space" 2>/dev/null || true; done
     rm -rf "$work"
 }
 trap cleanup EXIT
-ip netns add rcs-b
-ip link add rcs-va netns rcs-a type veth peer name rcs-vb netns rcs-b
-ip -n rcs-a addr add 10.99.0.1/24 dev rcs-va
-ip -n rcs-b addr add 10.99.0.2/24 dev rcs-vb
-ip -n rcs-a link set rcs-va up
-ip -n rcs-b link set rcs-vb up
+ip netns add "$a" 2>/dev/null || skip "network namespaces are not permitted"
+ip netns add "$b"
+ip netns add "$line"
+end() { # NAMESPACE ADDRESS INTERFACE: its end of the line
+    ip link add "rcs-$3" netns "$1" type veth peer name "rcs-$3" netns "$line"
+    ip netns exec "$1" python3 tests/namespaces/relay.py plain "rcs-$3"
+    ip -n "$1" addr add "$2/24" dev "rcs-$3"
+    ip -n "$1" link set "rcs-$3" up
+    ip -n "$1" link set lo up
+    ip -n "$line" link set "rcs-$3" up
+}
+end "$a" 10.99.0.1 va
+end "$b" 10.99.0.2 vb
+mkfifo "$work/orders"
+ip netns exec "$line" python3 tests/namespaces/relay.py rcs-va rcs-vb 1 < "$work/orders" &
+exec 9> "$work/orders"
+order() { echo "$*" >&9; }
 
 (umask 077; head -c 24 /dev/urandom | base64 > "$work/secret")
-{ for _ in 1 2 3 4 5; do echo "== PAUSE -- +0 -- 0 +0 -- 0 -- 0"; done; } > "$work/short.job"
-{ for _ in $(seq 40); do echo "== PAUSE -- +0 -- 0 +0 -- 0 -- 0"; echo "** wait 5"; done; } > "$work/long.job"
+for _ in $(seq $((commands + 1))); do echo "== PAUSE -- +0 -- 0 +0 -- 0 -- 0"; done > "$work/short.job"
+for _ in $(seq 40); do echo "== PAUSE -- +0 -- 0 +0 -- 0 -- 0"; echo "** wait 5"; done > "$work/long.job"
 
-ip netns exec rcs-a "$programs/rcs-run" --clock real --network tcp:10.99.0.1:7400 --outside workstation \
-    --secret "$work/secret" --log none --shared-memory off > "$work/page" 2> "$work/said" &
-controller=$!
-
-# Plays a job from the other namespace; the ticks of its commands but the first, which waits for the robot, on one line.
+# Plays a job from the other namespace.
 play() {
-    ip netns exec rcs-b "$programs/rcs-neighbour" workstation --network tcp:10.99.0.1:7400 \
+    timeout 120 ip netns exec "$b" "$programs/rcs-neighbour" workstation --network "$address" \
         --secret "$work/secret" "$work/$1.job" > "$work/$1.out" 2> "$work/$1.err"
 }
-ticks() { grep '^==' "$work/$1.out" | tail -n +2 | sed 's/.* after \([0-9]*\) ticks/\1/' | xargs; }
+# Ticks of the commands but the first, which waits for the robot: the mean, and the longest.
+ticks() {
+    grep '^==' "$1" | tail -n +2 | sed 's/.* after \([0-9]*\) ticks/\1/' |
+        awk '{ sum += $1; if ($1 > most) most = $1 } END { printf "%.1f %d", sum / NR, most }'
+}
+row() { # TRANSPORT CONDITION MEAN LONGEST
+    printf '%-6s  %-32s  %7s  %7s  %s\n' "$1" "$2" "$3" "$4" "$(awk "BEGIN { printf \"%+.0f ms\", ($3 - $own) * 40 }")"
+}
 
-play short
-echo "clean line:                      ticks a command took: $(ticks short)"
+"$programs/rcs-run" "$work/short.job" --clock real --log none --shared-memory off --json > "$work/own.json"
+own=$(python3 -c "import json, sys
+done = [command['ticks'] for command in json.load(open(sys.argv[1]))['commands'][1:]]
+print(sum(done) / len(done))" "$work/own.json")
+printf '%-6s  %-32s  %7s  %7s  %s\n' over line "ticks" longest "added to a command (mean)"
+printf '%-6s  %-32s  %7.1f\n' - "none: in the controller's process" "$own"
 
-netem=(root netem delay 25ms 5ms loss 5%)
-if tc -n rcs-a qdisc add dev rcs-va "${netem[@]}" 2>/dev/null && tc -n rcs-b qdisc add dev rcs-vb "${netem[@]}"; then
-    play short
-    echo "50 ms there and back, 5 % lost:  ticks a command took: $(ticks short)"
+try() { # TRANSPORT ADDRESS
+    local transport=$1
+    address=$2
+    order 0 0 0
+    ip netns exec "$a" "$programs/rcs-run" --clock real --network "$address" --outside workstation \
+        --secret "$work/secret" --log none --shared-memory off > "$work/page" 2> "$work/said" &
+    controller=$!
+    while read -r what condition; do
+        order $condition
+        play short || fail "$transport, $what: $(tail -1 "$work/short.err")"
+        row "$transport" "$what" $(ticks "$work/short.out")
+    done <<'CONDITIONS'
+clean 0 0 0
+20±5_ms_each_way 20 5 0
+5_%_lost_each_way 0 0 5
+20±5_ms_and_5_% 20 5 5
+CONDITIONS
+    order 0 0 0
+    (sleep 3; order cut; sleep 1; order 0 0 0) &
+    cutter=$!
+    play long || fail "$transport, cut for 1 s: $(tail -1 "$work/long.err")"
+    wait "$cutter"
+    row "$transport" "cut for 1 s" $(ticks "$work/long.out")
+    (sleep 3; order cut; sleep 15; order 0 0 0) &
+    cutter=$!
+    if play long; then fail "a job over a line that was cut for 15 s has finished"; fi
+    printf '%-6s  %-32s  %s\n' "$transport" "cut for 15 s" "$(tail -1 "$work/long.err")"
+    wait "$cutter"
+    kill -0 "$controller" || fail "the controller has ended"
+    play short || fail "$transport, healed: $(tail -1 "$work/short.err")"
+    row "$transport" "healed" $(ticks "$work/short.out")
+    kill -TERM "$(pgrep -P "$controller" -x rcs-run || echo "$controller")"
+    wait "$controller" || fail "the controller ended with $?"
+    echo "        the controller's events: $(grep -oE 'has gone: [^"]*' "$work/page" | sort | uniq -c | sort -rn | tr -s ' ' | paste -sd ';')"
+}
+
+try tcp tcp:10.99.0.1:7400
+if "$programs/rcs-neighbour" workstation --network zenoh:t3@tcp/127.0.0.1:1 --secret "$work/secret" --wait 0 \
+    "$work/short.job" 2>&1 | grep -q 'built without Zenoh'; then
+    echo "not tried: Zenoh, without which these programs were built"
 else
-    echo "not tried: delay and loss, this kernel has no netem"
+    try zenoh zenoh:t3@tcp/10.99.0.1:7447
 fi
-
-(sleep 3; ip -n rcs-b link set rcs-vb down; sleep 1; ip -n rcs-b link set rcs-vb up) &
-cutter=$!
-play long
-wait "$cutter"
-echo "cut for 1 s, healed:             finished; the longest command took $(ticks long | tr ' ' '\n' | sort -n | tail -1) ticks"
-
-(sleep 3; ip -n rcs-b link set rcs-vb down) &
-cutter=$!
-if play long; then echo "FAILED: a job over a cut line has finished"; exit 1; fi
-wait "$cutter"
-echo "cut for good:                    $(tail -1 "$work/long.err")"
-kill -0 "$controller" || { echo "FAILED: the controller has ended"; cat "$work/said"; exit 1; }
-ip -n rcs-b link set rcs-vb up
-play short
-echo "healed later:                    ticks a command took: $(ticks short)"
-
-kill -TERM "$controller"
-wait "$controller" || { echo "FAILED: the controller ended with $?"; cat "$work/said"; exit 1; }
-grep -E 'has (connected|gone)|refused' "$work/page" || true
 echo "passed"

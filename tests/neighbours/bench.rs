@@ -137,7 +137,11 @@ pub struct Workstation {
 
 impl Workstation {
     pub fn connect(controller: &Controller) -> Self {
-        let peer = controller.connect(Role::Workstation, None);
+        Self::connect_with(controller, None)
+    }
+
+    pub fn connect_with(controller: &Controller, secret: Option<&Secret>) -> Self {
+        let peer = controller.connect(Role::Workstation, secret);
         let command_box = Mailbox::initialized(HWSC_COMMAND);
         let cell_box = Mailbox::initialized(CELL_COMMAND);
         let mut workstation = Self { peer, tick: 0, unanswered: false, command_box, cell_box, line: 0 };
