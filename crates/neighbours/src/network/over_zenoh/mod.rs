@@ -10,8 +10,8 @@
 //! connection changes nothing but a line of the log. The number tells as well whether frames were lost or overtaken; Zenoh
 //! keeps the order of what one side publishes with one priority, and a connection in which it does not is over.
 //!
-//! * [`controller`]: asks who comes, as a queryable of Zenoh, and lets him in;
-//! * [`neighbour`]: comes.
+//! * [`controller`] asks who comes, as a queryable of Zenoh, and lets him in;
+//! * [`neighbour`] comes.
 //!
 //! A connection ends when its liveliness token goes, which is at once if a process dies, or when a pulse is not answered in
 //! time, whatever is first.
