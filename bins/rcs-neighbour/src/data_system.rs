@@ -6,7 +6,7 @@ use neighbours::{
     network::{Peer, PeerError, Received, Role},
 };
 
-use crate::{Error, cli::DataSystemArguments, connect};
+use crate::{Error, cli::DataSystemArguments, connect, connect_again};
 
 /// Serve until no run has come for a while.
 pub fn serve(arguments: &DataSystemArguments) -> Result<(), Error> {
@@ -17,10 +17,10 @@ pub fn serve(arguments: &DataSystemArguments) -> Result<(), Error> {
             Err(Error::Peer(error)) if error.is_passing() => println!("{error}"),
             other => return other,
         }
-        peer = match connect(&arguments.controller, Role::DataSystem) {
-            Err(Error::Peer(PeerError::Line { .. })) => return Ok(()),
-            other => other?,
-        };
+        // The line is cut before the next one is made: there is one neighbour of a kind.
+        drop(peer);
+        let Some(next) = connect_again(&arguments.controller, Role::DataSystem)? else { return Ok(()) };
+        peer = next;
     }
 }
 

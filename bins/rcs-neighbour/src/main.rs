@@ -9,12 +9,14 @@ mod pedestal;
 mod vision;
 mod workstation;
 
-use std::{process::ExitCode, time::Duration};
+use std::{process::ExitCode, thread, time::Duration};
 
 use clap::Parser as _;
 use neighbours::{
     data_system::StoreError,
-    network::{Peer, PeerError, Role, Secret, address::AddressError, hello::SecretError},
+    network::{
+        Peer, PeerError, Role, Secret, address::AddressError, hello::SecretError, office::AttachError,
+    },
     vision::VisionError,
 };
 use plant::description::DescriptionError;
@@ -104,6 +106,24 @@ fn main() -> ExitCode {
             ExitCode::from(error.status())
         }
     }
+}
+
+/// Between two attempts while the controller has not yet noticed that the line was cut.
+const PAUSE: Duration = Duration::from_millis(50);
+/// Such attempts: 5 s, more than it needs.
+const ATTEMPTS: u32 = 100;
+
+/// Connect for another run, or since the line was cut; `None` if no run has come for a while.
+fn connect_again(arguments: &ControllerArguments, role: Role) -> Result<Option<Peer>, Error> {
+    let occupied = AttachError::Occupied(role).to_string();
+    for _ in 0..ATTEMPTS {
+        match connect(arguments, role) {
+            Err(Error::Peer(PeerError::LastWords(why))) if why == occupied => thread::sleep(PAUSE),
+            Err(Error::Peer(error)) if error.is_passing() => return Ok(None),
+            other => return other.map(Some),
+        }
+    }
+    connect(arguments, role).map(Some)
 }
 
 /// Connect to the controller.

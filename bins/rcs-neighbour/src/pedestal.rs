@@ -10,7 +10,7 @@ use neighbours::{
 };
 use rcs_core::interface::pedestal::PedestalReport;
 
-use crate::{Error, cli::PedestalArguments, connect};
+use crate::{Error, cli::PedestalArguments, connect, connect_again};
 
 /// Serve until no run has come for a while.
 pub fn serve(arguments: &PedestalArguments) -> Result<(), Error> {
@@ -26,10 +26,10 @@ pub fn serve(arguments: &PedestalArguments) -> Result<(), Error> {
             }
             other => return other,
         }
-        peer = match connect(&arguments.controller, Role::Pedestal) {
-            Err(Error::Peer(PeerError::Line { .. })) => return Ok(()),
-            other => other?,
-        };
+        // The line is cut before the next one is made: there is one neighbour of a kind.
+        drop(peer);
+        let Some(next) = connect_again(&arguments.controller, Role::Pedestal)? else { return Ok(()) };
+        peer = next;
     }
 }
 

@@ -2,11 +2,11 @@
 
 mod fault;
 
-use std::{path::Path, thread, time::Duration};
+use std::path::Path;
 
 use neighbours::{
     mailbox::{Mailbox, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE},
-    network::{Peer, PeerError, Received, Role, office::Occupied},
+    network::{Peer, PeerError, Received, Role},
     vision::{Areas, Picture, Ready, picture::Part, request},
 };
 use plant::{
@@ -19,18 +19,10 @@ use rcs_core::{
 };
 
 pub use self::fault::{Fault, Kind};
-use crate::{
-    Error,
-    cli::{ControllerArguments, VisionArguments},
-    connect,
-};
+use crate::{Error, cli::VisionArguments, connect, connect_again};
 
 /// The cell description in the data directory.
 const CELL: &str = "cell.toml";
-/// Before another attempt, when the controller has not yet noticed that the line was cut.
-const PAUSE: Duration = Duration::from_millis(50);
-/// Such attempts: 5 s, more than it needs.
-const ATTEMPTS: u32 = 100;
 
 /// Serve until no run has come for a while.
 pub fn serve(arguments: &VisionArguments) -> Result<(), Error> {
@@ -44,24 +36,10 @@ pub fn serve(arguments: &VisionArguments) -> Result<(), Error> {
         }
         // The line is cut before the next one is made: there is one neighbour of a kind.
         drop(peer);
-        peer = match connect_again(&arguments.controller) {
-            Err(Error::Peer(PeerError::Line { .. })) => return Ok(()),
-            other => other?,
-        };
+        let Some(next) = connect_again(&arguments.controller, Role::Vision)? else { return Ok(()) };
+        peer = next;
         vision.forget();
     }
-}
-
-/// Connect; the controller may not have noticed yet that the line was cut.
-fn connect_again(arguments: &ControllerArguments) -> Result<Peer, Error> {
-    let occupied = Occupied(Role::Vision).to_string();
-    for _ in 0..ATTEMPTS {
-        match connect(arguments, Role::Vision) {
-            Err(Error::Peer(PeerError::LastWords(why))) if why == occupied => thread::sleep(PAUSE),
-            other => return other,
-        }
-    }
-    connect(arguments, Role::Vision)
 }
 
 /// Answer the requests of a run, until a fault cuts the line.

@@ -4,7 +4,7 @@ use std::{fmt, net::SocketAddr, path::PathBuf, str::FromStr};
 
 use super::station::{Station, StationError};
 
-/// An address: `unix:PATH`, `tcp:HOST:PORT` or `zenoh:NAME[@ENDPOINT]`.
+/// An address: `unix:PATH`, `tcp:IP:PORT` or `zenoh:NAME[@ENDPOINT]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Address {
     /// A socket in the file system, for processes of the same user on this machine.
@@ -19,7 +19,7 @@ pub enum Address {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
     /// No scheme that is known.
-    #[error("unix:PATH, tcp:HOST:PORT or zenoh:NAME was expected, found {0}")]
+    #[error("unix:PATH, tcp:IP:PORT or zenoh:NAME was expected, found {0}")]
     Scheme(String),
     /// No numbers.
     #[error("an IP address and a port were expected behind tcp:, as in tcp:127.0.0.1:7400, found {0}")]

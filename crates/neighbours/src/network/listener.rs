@@ -301,10 +301,9 @@ fn admit<'a>(
     let mut sender = Sender::new(stream.try_clone().map_err(|error| error.to_string())?);
     match reception.greet(stream) {
         Ok((counter, agreement)) => {
-            let proof = welcome(agreement.as_ref());
-            sender.send(&Frame::welcome(&proof)).map_err(|error| error.to_string())?;
-            sender.seal(agreement.as_ref().map(Agreement::down));
-            counter.attach(Box::new(sender)).map_err(|error| error.to_string())?;
+            let welcome = Frame::welcome(&welcome(agreement.as_ref()));
+            sender.seal_behind_first(agreement.as_ref().map(Agreement::down));
+            counter.attach(Box::new(sender), Some(&welcome)).map_err(|error| error.to_string())?;
             Ok((counter, agreement))
         }
         Err(why) => {

@@ -26,6 +26,9 @@ use super::{
 };
 use crate::mailbox::{Mailbox, Place};
 
+/// Last words of a run that has ended.
+pub const OVER: &str = "the run is over";
+
 /// Where frames go out to a neighbour.
 pub trait Outlet: Send {
     /// Send a frame, and its seal behind it where a secret was agreed upon.
@@ -278,7 +281,7 @@ fn carry(shared: &Shared) {
     }
     if let Some(line) = locked(&shared.outlet).as_mut() {
         // He may be gone already.
-        let _ = line.send(&Frame::last_words("the run is over"));
+        let _ = line.send(&Frame::last_words(OVER));
         line.close();
     }
 }
@@ -303,10 +306,19 @@ pub struct Counter {
     numbers: Arc<AtomicU32>,
 }
 
-/// The neighbour is there already.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0} is connected already")]
-pub struct Occupied(pub Role);
+/// Why a neighbour does not come to his desk.
+#[derive(Debug, thiserror::Error)]
+pub enum AttachError {
+    /// He is there already.
+    #[error("{0} is connected already")]
+    Occupied(Role),
+    /// He has come too late.
+    #[error("{OVER}")]
+    Over,
+    /// He is gone again.
+    #[error(transparent)]
+    Line(#[from] io::Error),
+}
 
 impl Counter {
     /// Whose it is.
@@ -333,18 +345,27 @@ impl Counter {
         let _ = self.news.send(news);
     }
 
-    /// The neighbour comes. His mailboxes are initialized. A second one is told that there is one.
+    /// The neighbour comes: he is welcomed, if the outlet is where he waits for it, and his mailboxes are initialized. Whoever comes
+    /// too late, or second, is told so instead.
     ///
     /// # Errors
-    /// [`Occupied`].
-    pub fn attach(&self, mut outlet: Box<dyn Outlet>) -> Result<(), Occupied> {
+    /// [`AttachError`].
+    pub fn attach(&self, mut outlet: Box<dyn Outlet>, welcome: Option<&Frame>) -> Result<(), AttachError> {
         let mut line = locked(&self.shared.outlet);
-        if line.is_some() {
-            let occupied = Occupied(self.shared.role);
+        // First whether the run is over: then what is still there is on its way out.
+        let refusal = if self.shared.over.load(Ordering::Acquire) {
+            Some(AttachError::Over)
+        } else {
+            line.is_some().then_some(AttachError::Occupied(self.shared.role))
+        };
+        if let Some(refusal) = refusal {
             // He may be gone already.
-            let _ = outlet.send(&Frame::last_words(&occupied.to_string()));
+            let _ = outlet.send(&Frame::last_words(&refusal.to_string()));
             outlet.close();
-            return Err(occupied);
+            return Err(refusal);
+        }
+        if let Some(welcome) = welcome {
+            outlet.send(welcome)?;
         }
         for mailbox in &self.shared.incoming {
             locked(mailbox).initialize();
@@ -431,7 +452,7 @@ mod tests {
     fn came(desk: &Desk) -> (Counter, mpsc::Receiver<Frame>) {
         let (send, receive) = mpsc::channel();
         let counter = desk.counter();
-        counter.attach(Box::new(Wire(send))).unwrap();
+        counter.attach(Box::new(Wire(send)), None).unwrap();
         (counter, receive)
     }
 
@@ -500,8 +521,10 @@ mod tests {
         counter.deliver(&mailgram(HWSC_COMMAND, b"go")).unwrap();
         desk.outgoing(HWSC_STATUS).write(b"status").unwrap();
         desk.exchange(1);
-        let occupied = desk.counter().attach(Box::new(Wire(mpsc::channel().0)));
-        assert_eq!(occupied, Err(Occupied(Role::Workstation)));
+        let (send, second) = mpsc::channel();
+        let occupied = desk.counter().attach(Box::new(Wire(send)), Some(&Frame::welcome(&[])));
+        assert!(matches!(occupied, Err(AttachError::Occupied(Role::Workstation))));
+        assert_eq!(second.recv().unwrap(), Frame::last_words("workstation is connected already"));
         counter.detach("the cable was cut".to_owned());
         assert!(!desk.exchange(2).here);
         let (_, line) = came(&desk);
@@ -513,6 +536,19 @@ mod tests {
         let (came, gone) =
             (News::Came(Role::Workstation), News::Gone(Role::Workstation, "the cable was cut".into()));
         assert_eq!(news, [came.clone(), gone, came]);
+    }
+
+    /// As long as the network of a run that has ended is still there.
+    #[test]
+    fn who_comes_too_late_hears_that_the_run_is_over() {
+        let desk = Desk::new(Role::Workstation, ClockKind::Fast);
+        let (counter, first) = came(&desk);
+        drop(desk);
+        assert_eq!(first.iter().last(), Some(Frame::last_words(OVER)));
+        let (send, line) = mpsc::channel();
+        let late = counter.attach(Box::new(Wire(send)), Some(&Frame::welcome(&[])));
+        assert!(matches!(late, Err(AttachError::Over)));
+        assert_eq!(line.iter().collect::<Vec<_>>(), [Frame::last_words(OVER)]);
     }
 
     #[test]

@@ -16,7 +16,7 @@ use super::{
     Address, Role, Secret,
     frame::{Frame, FrameError, LAST_WORDS, WELCOME},
     hello::{Agreement, Challenge, ClockKind, HELLO, HelloError, check_welcome},
-    office::Outlet,
+    office::{OVER, Outlet},
     stream::{Receiver, Sender, Stream, is_timeout},
 };
 use crate::mailbox::{Mailbox, MailboxError, Place};
@@ -76,7 +76,7 @@ impl PeerError {
         match self {
             Self::Line { .. } | Self::Silent | Self::Closed => true,
             Self::Frame(FrameError::Stream(_) | FrameError::Number(_)) => true,
-            Self::LastWords(text) => text == "the run is over",
+            Self::LastWords(text) => text == OVER,
             _ => false,
         }
     }

@@ -89,23 +89,33 @@ impl Write for Stream {
 pub(super) struct Sender {
     stream: Stream,
     seal: Option<Seal>,
+    /// The next frame has no seal even so.
+    is_first: bool,
 }
 
 impl Sender {
     /// Frames without a seal, until there is one.
     pub const fn new(stream: Stream) -> Self {
-        Self { stream, seal: None }
+        Self { stream, seal: None, is_first: false }
     }
 
     /// From here on frames have a seal.
     pub fn seal(&mut self, seal: Option<Seal>) {
         self.seal = seal;
     }
+
+    /// Behind the next frame all have a seal. That one is a welcome or last words: who reads it has no key yet.
+    pub fn seal_behind_first(&mut self, seal: Option<Seal>) {
+        (self.seal, self.is_first) = (seal, true);
+    }
 }
 
 impl Outlet for Sender {
     fn send(&mut self, frame: &Frame) -> io::Result<()> {
-        let Some(seal) = &mut self.seal else { return self.stream.write_all(frame.bytes()) };
+        let is_first = std::mem::take(&mut self.is_first);
+        let Some(seal) = self.seal.as_mut().filter(|_| !is_first) else {
+            return self.stream.write_all(frame.bytes());
+        };
         // In one piece: a frame without its seal is not worth a packet.
         let mut bytes = [0; MAX_FRAME + SEAL];
         let length = frame.bytes().len();

@@ -237,7 +237,7 @@ mod tests {
             let agent = Agent::new(Desk::new(Role::Pedestal, ClockKind::Real));
             let (send, line) = mpsc::channel();
             let counter = agent.desk.counter();
-            counter.attach(Box::new(Wire(send))).unwrap();
+            counter.attach(Box::new(Wire(send)), None).unwrap();
             let status_box = Mailbox::initialized(PEDESTAL_STATUS);
             Self { agent, counter, tick: 0, status_box, _line: line }
         }

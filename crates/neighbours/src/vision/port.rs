@@ -300,7 +300,7 @@ mod tests {
 
         fn come(&mut self) {
             let (send, receive) = mpsc::channel();
-            self.counter.attach(Box::new(Wire(send))).unwrap();
+            self.counter.attach(Box::new(Wire(send)), None).unwrap();
             self.line = Some(receive);
         }
 

@@ -371,7 +371,7 @@ impl Receptionist {
         let _here = here.map_err(failed)?;
         let shared = Arc::clone(&self.shared);
         let outlet = Publishing { shared, number, id: id.clone(), seal: agreement.down() };
-        booth.counter.attach(Box::new(outlet)).map_err(io::Error::other)?;
+        booth.counter.attach(Box::new(outlet), None).map_err(io::Error::other)?;
         let (seal, heard) = (agreement.up(), Instant::now());
         *locked(&booth.connection) = Some(Connection { id, seal, heard, state: State::Lives, _here });
         Ok(())
