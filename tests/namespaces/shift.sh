@@ -42,11 +42,11 @@ expected=$(digest "$work/inside.json")
 echo "everybody in one process: digest $expected"
 
 shift_over() { # ADDRESS
-    local address=$1 items=$work/items.db servants=()
-    rm -f "$items" "$work/outbox"
+    local address=$1 servants=()
+    items=$work/items-${address%%:*}.db
     neighbour() { ip netns exec "$b" "$programs/rcs-neighbour" "$1" --network "$address" --secret "$work/secret" --wait 20 "${@:2}"; }
     ip netns exec "$a" "$programs/rcs-run" shift --json --log none --shared-memory off --network "$address" --secret "$work/secret" \
-        --outside workstation,data-system,pedestal,vision --outbox "$work/outbox" > "$work/run.json" 2> "$work/run.err" &
+        --outside workstation,data-system,pedestal,vision --outbox "$items.outbox" > "$work/run.json" 2> "$work/run.err" &
     local run=$!
     neighbour data-system "$items" > /dev/null 2> "$work/data-system.err" & servants+=($!)
     neighbour pedestal > /dev/null 2> "$work/pedestal.err" & servants+=($!)
@@ -62,8 +62,8 @@ shift_over() { # ADDRESS
     echo "over $address: digest $found, $took ms"
 }
 
-items() {
-    python3 - "$work/items.db" <<'PYTHON'
+where() {
+    python3 - "$items" <<'PYTHON'
 import sqlite3, sys
 rows = sqlite3.connect(sys.argv[1]).execute("SELECT * FROM whereabouts")
 print("  ".join(f"{column[0]:12}" for column in rows.description))
@@ -73,10 +73,10 @@ PYTHON
 }
 
 shift_over tcp:10.99.1.1:7400
-items
+where
 if "$programs/rcs-run" --network zenoh:t3 --outside workstation --wait 1 --log none --shared-memory off 2>&1 | grep -q "features zenoh"; then
     echo "over zenoh: not tried, these programs are built without it"
 else
     shift_over zenoh:t3@tcp/10.99.1.1:7447
-    items
+    where
 fi

@@ -544,11 +544,11 @@ mod tests {
         let desk = Desk::new(Role::Workstation, ClockKind::Fast);
         let (counter, first) = came(&desk);
         drop(desk);
-        assert_eq!(first.iter().last(), Some(Frame::last_words(OVER)));
+        assert_eq!(first.try_iter().last(), Some(Frame::last_words(OVER)));
         let (send, line) = mpsc::channel();
         let late = counter.attach(Box::new(Wire(send)), Some(&Frame::welcome(&[])));
         assert!(matches!(late, Err(AttachError::Over)));
-        assert_eq!(line.iter().collect::<Vec<_>>(), [Frame::last_words(OVER)]);
+        assert_eq!(line.try_iter().collect::<Vec<_>>(), [Frame::last_words(OVER)]);
     }
 
     #[test]
