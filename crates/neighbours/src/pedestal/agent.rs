@@ -194,7 +194,7 @@ fn read<'a, T>(
 
 #[cfg(test)]
 mod tests {
-    use std::{io, sync::mpsc};
+    use std::sync::mpsc;
 
     use rcs_core::interface::{
         GripOutputs,
@@ -205,23 +205,8 @@ mod tests {
     use super::*;
     use crate::{
         mailbox::Mailbox,
-        network::{
-            Role,
-            frame::Frame,
-            office::{Counter, Outlet},
-        },
+        network::{Role, frame::Frame, office::Counter},
     };
-
-    /// A line that ends in a channel.
-    struct Wire(mpsc::Sender<Frame>);
-
-    impl Outlet for Wire {
-        fn send(&mut self, frame: &Frame) -> io::Result<()> {
-            self.0.send(frame.clone()).map_err(|_| io::ErrorKind::BrokenPipe.into())
-        }
-
-        fn close(&mut self) {}
-    }
 
     /// The controller's side on the 40 ms grid, and a pedestal that writes what a test wants.
     struct Bench {
@@ -235,9 +220,8 @@ mod tests {
     impl Bench {
         fn connected() -> Self {
             let agent = Agent::new(Desk::new(Role::Pedestal, ClockKind::Real));
-            let (send, line) = mpsc::channel();
             let counter = agent.desk.counter();
-            counter.attach(Box::new(Wire(send)), None).unwrap();
+            let line = counter.come();
             let status_box = Mailbox::initialized(PEDESTAL_STATUS);
             Self { agent, counter, tick: 0, status_box, _line: line }
         }

@@ -245,29 +245,13 @@ fn is_final(response: &VisionResponse) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::{io, sync::mpsc};
+    use std::sync::mpsc;
 
     use super::*;
     use crate::{
         mailbox::{Mailbox, Place},
-        network::{
-            Role,
-            frame::Frame,
-            hello::ClockKind,
-            office::{Counter, Outlet},
-        },
+        network::{Role, frame::Frame, hello::ClockKind, office::Counter},
     };
-
-    /// A line that ends in a channel.
-    struct Wire(mpsc::Sender<Frame>);
-
-    impl Outlet for Wire {
-        fn send(&mut self, frame: &Frame) -> io::Result<()> {
-            self.0.send(frame.clone()).map_err(|_| io::ErrorKind::BrokenPipe.into())
-        }
-
-        fn close(&mut self) {}
-    }
 
     /// A port, and the other end of its line.
     struct Bench {
@@ -299,9 +283,7 @@ mod tests {
         }
 
         fn come(&mut self) {
-            let (send, receive) = mpsc::channel();
-            self.counter.attach(Box::new(Wire(send)), None).unwrap();
-            self.line = Some(receive);
+            self.line = Some(self.counter.come());
         }
 
         fn go(&mut self) {

@@ -1,0 +1,148 @@
+//! Desk and counter without a network: the line ends in a channel.
+
+use std::sync::mpsc;
+
+use super::*;
+use crate::mailbox::{HWSC_COMMAND, HWSC_STATUS};
+
+/// A line that ends in a channel.
+struct Wire(mpsc::Sender<Frame>);
+
+impl Outlet for Wire {
+    fn send(&mut self, frame: &Frame) -> io::Result<()> {
+        self.0.send(frame.clone()).map_err(|_| io::ErrorKind::BrokenPipe.into())
+    }
+
+    fn close(&mut self) {}
+}
+
+impl Counter {
+    /// For tests: a neighbour comes; what is sent to him.
+    pub(crate) fn come(&self) -> mpsc::Receiver<Frame> {
+        let (send, receive) = mpsc::channel();
+        self.attach(Box::new(Wire(send)), None).unwrap();
+        receive
+    }
+}
+
+fn came(desk: &Desk) -> (Counter, mpsc::Receiver<Frame>) {
+    let counter = desk.counter();
+    let line = counter.come();
+    (counter, line)
+}
+
+fn mailgram(place: Place, data: &[u8]) -> Frame {
+    let mut mailbox = Mailbox::initialized(place);
+    mailbox.write(data).unwrap();
+    Frame::of(&mailbox)
+}
+
+#[test]
+fn in_fast_clock_the_tick_waits_for_what_answers_it() {
+    let mut desk = Desk::new(Role::Workstation, ClockKind::Fast);
+    let (counter, line) = came(&desk);
+    let echo = thread::spawn(move || {
+        // Answers each pulse by a command that says its number.
+        for frame in line.iter() {
+            if let Some(tick) = frame.as_pulse() {
+                counter.deliver(&mailgram(HWSC_COMMAND, &tick.to_le_bytes())).unwrap();
+                counter.deliver(&frame).unwrap();
+                if tick == 100 {
+                    return;
+                }
+            }
+        }
+    });
+    for tick in 1..=100_u64 {
+        desk.outgoing(HWSC_STATUS).write(&[1]).unwrap();
+        let presence = desk.exchange(tick);
+        assert_eq!(presence, Presence { here: true, new: tick == 1 });
+        assert_eq!(desk.incoming(HWSC_COMMAND).data(), tick.to_le_bytes());
+    }
+    echo.join().unwrap();
+}
+
+#[test]
+fn on_the_grid_nobody_is_waited_for() {
+    let mut desk = Desk::new(Role::Workstation, ClockKind::Real);
+    let (counter, line) = came(&desk);
+    assert_eq!(desk.exchange(1), Presence { here: true, new: true });
+    assert_eq!(desk.exchange(2), Presence { here: true, new: false });
+    counter.deliver(&mailgram(HWSC_COMMAND, b"go")).unwrap();
+    desk.exchange(3);
+    assert_eq!(desk.incoming(HWSC_COMMAND).data(), b"go");
+    drop(line);
+}
+
+#[test]
+fn a_mailbox_that_somebody_has_is_left_for_the_next_tick() {
+    let mut desk = Desk::new(Role::Workstation, ClockKind::Real);
+    let (counter, _line) = came(&desk);
+    desk.exchange(1);
+    counter.deliver(&mailgram(HWSC_COMMAND, b"go")).unwrap();
+    let shared = Arc::clone(&desk.shared);
+    let held = locked(&shared.incoming[0]);
+    desk.exchange(2);
+    assert_eq!(desk.incoming(HWSC_COMMAND).data(), b"");
+    drop(held);
+    desk.exchange(3);
+    assert_eq!(desk.incoming(HWSC_COMMAND).data(), b"go");
+}
+
+#[test]
+fn who_comes_again_finds_his_mailboxes_initialized_and_gets_all_that_is_for_him() {
+    let mut desk = Desk::new(Role::Workstation, ClockKind::Real);
+    let (counter, _line) = came(&desk);
+    counter.deliver(&mailgram(HWSC_COMMAND, b"go")).unwrap();
+    desk.outgoing(HWSC_STATUS).write(b"status").unwrap();
+    desk.exchange(1);
+    let (send, second) = mpsc::channel();
+    let occupied = desk.counter().attach(Box::new(Wire(send)), Some(&Frame::welcome(&[])));
+    assert!(matches!(occupied, Err(AttachError::Occupied(Role::Workstation))));
+    assert_eq!(second.recv().unwrap(), Frame::last_words("workstation is connected already"));
+    counter.detach("the cable was cut".to_owned());
+    assert!(!desk.exchange(2).here);
+    let (_, line) = came(&desk);
+    assert_eq!(desk.exchange(3), Presence { here: true, new: true });
+    assert_eq!(desk.incoming(HWSC_COMMAND).mailgram(), 0);
+    let first = line.recv_timeout(Duration::from_secs(60)).unwrap();
+    assert_eq!((first.address(), first.data()), (HWSC_STATUS.address, &b"status"[..]));
+    let news: Vec<_> = std::iter::from_fn(|| desk.news()).collect();
+    let (came, gone) =
+        (News::Came(Role::Workstation), News::Gone(Role::Workstation, "the cable was cut".into()));
+    assert_eq!(news, [came.clone(), gone, came]);
+}
+
+/// As long as the network of a run that has ended is still there.
+#[test]
+fn who_comes_too_late_hears_that_the_run_is_over() {
+    let desk = Desk::new(Role::Workstation, ClockKind::Fast);
+    let (counter, first) = came(&desk);
+    drop(desk);
+    assert_eq!(first.try_iter().last(), Some(Frame::last_words(OVER)));
+    let (send, line) = mpsc::channel();
+    let late = counter.attach(Box::new(Wire(send)), Some(&Frame::welcome(&[])));
+    assert!(matches!(late, Err(AttachError::Over)));
+    assert_eq!(line.try_iter().collect::<Vec<_>>(), [Frame::last_words(OVER)]);
+}
+
+#[test]
+fn a_tick_that_waits_goes_on_when_the_neighbour_is_gone() {
+    let mut desk = Desk::new(Role::Workstation, ClockKind::Fast);
+    let (counter, line) = came(&desk);
+    let leaver = thread::spawn(move || {
+        while line.recv().unwrap().as_pulse().is_none() {}
+        counter.detach("enough".to_owned());
+    });
+    assert_eq!(desk.exchange(1), Presence { here: false, new: true });
+    leaver.join().unwrap();
+    assert!(!desk.exchange(2).here);
+}
+
+#[test]
+fn frames_for_others_mailboxes_are_refused() {
+    let desk = Desk::new(Role::Workstation, ClockKind::Real);
+    let error = desk.counter().deliver(&mailgram(HWSC_STATUS, b"all is well")).unwrap_err().to_string();
+    assert!(error.starts_with("the address of mailbox HWSC to RCS Command at F6000 or "), "{error}");
+    assert!(error.ends_with("found F6200"), "{error}");
+}
