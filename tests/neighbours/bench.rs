@@ -244,3 +244,15 @@ pub fn digest_of(job: &str) -> String {
     let line = text.lines().find_map(|line| line.strip_prefix("digest")).expect("it has a digest");
     line.trim().to_owned()
 }
+
+/// The result of a run with everybody in the controller's own process.
+pub fn run_alone(arguments: &[&str]) -> Value {
+    let output = Command::new(rcs_run())
+        .args(arguments)
+        .args(["--json", "--log", "none", "--shared-memory", "off"])
+        .current_dir(root())
+        .output()
+        .expect("rcs-run can be started");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("a result")
+}

@@ -20,7 +20,7 @@ use neighbours::{
 use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 use zenoh::{Config, Session, Wait as _, qos::CongestionControl};
 
-use crate::bench::{Controller, Workstation, bare, secret};
+use crate::bench::{Controller, Workstation, bare, run_alone, secret};
 
 /// The key of the workstation controller's commands.
 const COMMANDS: &str = "rcs2/t3/F6000";
@@ -77,12 +77,7 @@ fn neighbour(controller: &Controller, arguments: &[&str], secret: &str) -> Comma
 
 #[test]
 fn a_job_from_another_machine_has_the_same_bits() {
-    let own = Command::new(rcs_run())
-        .args(["linkbar", "--json", "--log", "none", "--shared-memory", "off"])
-        .current_dir(root())
-        .output()
-        .expect("rcs-run can be started");
-    let own: serde_json::Value = serde_json::from_slice(&own.stdout).expect("a result");
+    let own = run_alone(&["linkbar"]);
     // Brought up to date before the controller waits for it.
     let _ = rcs_neighbour();
     let (controller, _, file) = controller(1, "workstation", &["--json"]);

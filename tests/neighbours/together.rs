@@ -7,9 +7,9 @@ use std::{
 };
 
 use neighbours::data_system::{Item, Store};
-use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
+use whole_system_tests::{Scratch, rcs_neighbour, root};
 
-use crate::bench::{Controller, digest_of};
+use crate::bench::{Controller, digest_of, run_alone};
 
 /// The items in a data base.
 fn items(file: &Path) -> Vec<Item> {
@@ -20,13 +20,7 @@ fn items(file: &Path) -> Vec<Item> {
 fn known_after_a_shift() -> Vec<Item> {
     let scratch = Scratch::new("inside");
     let file = scratch.file("items.db");
-    let own = Command::new(rcs_run())
-        .args(["shift", "--json", "--log", "none", "--shared-memory", "off", "--data-base"])
-        .arg(&file)
-        .current_dir(root())
-        .output()
-        .expect("rcs-run can be started");
-    assert!(own.status.success(), "{}", String::from_utf8_lossy(&own.stderr));
+    run_alone(&["shift", "--data-base", &file.display().to_string()]);
     items(&file)
 }
 

@@ -5,19 +5,14 @@ use std::process::{Command, Stdio};
 use neighbours::{mailbox::HWSC_COMMAND, workstation::command};
 use rcs_core::interface::HwsCommand;
 use rustix::process::{Pid, Signal, kill_process};
-use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
+use whole_system_tests::{Scratch, rcs_neighbour, root};
 
-use crate::bench::{Controller, Workstation, bare, example, secret};
+use crate::bench::{Controller, Workstation, bare, example, run_alone, secret};
 
 /// The job of the controller's own emulator and that of one in another process are the same to the bit.
 #[test]
 fn a_job_from_another_process_has_the_same_bits() {
-    let own = Command::new(rcs_run())
-        .args(["linkbar", "--json", "--log", "none", "--shared-memory", "off"])
-        .current_dir(root())
-        .output()
-        .expect("rcs-run can be started");
-    let own: serde_json::Value = serde_json::from_slice(&own.stdout).expect("a result");
+    let own = run_alone(&["linkbar"]);
     // Brought up to date before the controller waits for it.
     let program = rcs_neighbour();
     let controller = Controller::start("bits", "workstation", &["--json"]);

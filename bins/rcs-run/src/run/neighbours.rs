@@ -40,6 +40,12 @@ use crate::{
 /// A line for the log: how grave it is, who says it, and the words.
 pub type Note = (Level, &'static str, String);
 
+/// What is said of the network: that somebody comes is as it should be.
+pub fn network_note(news: &News) -> Note {
+    let level = if matches!(news, News::Came(_)) { Level::Info } else { Level::Warning };
+    (level, "network", news.to_string())
+}
+
 /// Who commands Task.
 pub enum Chief {
     /// The emulator, with a job.
@@ -164,13 +170,9 @@ impl Neighbours {
     fn step_pedestal(&mut self, tick: Tick, memory: &CommonMemory, inputs: &DeviceInputs) {
         let Some(agent) = &mut self.pedestal else { return };
         agent.exchange(tick.next(), &memory.subtask.pedestal, &inputs.pedestal);
-        self.notes.extend(agent.remarks().into_iter().map(|remark| {
-            let (level, source) = match remark {
-                pedestal::Remark::News(News::Came(_)) => (Level::Info, "network"),
-                pedestal::Remark::News(_) => (Level::Warning, "network"),
-                _ => (Level::Warning, "Active Pedestal"),
-            };
-            (level, source, remark.to_string())
+        self.notes.extend(agent.remarks().into_iter().map(|remark| match remark {
+            pedestal::Remark::News(news) => network_note(&news),
+            own => (Level::Warning, "Active Pedestal", own.to_string()),
         }));
     }
 
@@ -180,13 +182,9 @@ impl Neighbours {
         let cell = &mut workstation.cell;
         port.step(tick.0, &memory.emove.vision, || cell.picture().iter().map(pictured).collect());
         cell.hear_vision(port.response());
-        self.notes.extend(port.remarks().iter().map(|remark| {
-            let (level, source) = match remark {
-                vision::Remark::Network(News::Came(_)) => (Level::Info, "network"),
-                vision::Remark::Network(_) => (Level::Warning, "network"),
-                _ => (Level::Warning, "vision"),
-            };
-            (level, source, remark.to_string())
+        self.notes.extend(port.remarks().iter().map(|remark| match remark {
+            vision::Remark::News(news) => network_note(news),
+            own => (Level::Warning, "vision", own.to_string()),
         }));
     }
 
@@ -213,8 +211,7 @@ impl Neighbours {
             let text = format!("the Data System refuses: {refusal}");
             self.notes.push((Level::Warning, "Data System", text));
         }
-        let news = self.data_system.news().into_iter();
-        self.notes.extend(news.map(|text| (Level::Info, "network", text)));
+        self.notes.extend(self.data_system.news().iter().map(network_note));
         self.step_vision(tick, memory, workstation);
         self.gate.write(&memory.task, task_state(&memory.task.header, tick));
         let progress = match &mut self.chief {

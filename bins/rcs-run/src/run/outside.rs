@@ -20,7 +20,10 @@ use rcs_core::{
 use record::Level;
 use taskdata::load::{Job, Source, Step, Store, job::Workstation as Action};
 
-use super::{neighbours::Note, workstation::SimulatedWorkstation};
+use super::{
+    neighbours::{Note, network_note},
+    workstation::SimulatedWorkstation,
+};
 
 /// Commands that a run remembers; a run of a year must not fill the memory.
 const REMEMBERED: usize = 10_000;
@@ -76,9 +79,7 @@ impl OutsideWorkstation {
         self.write_cell(workstation, notes);
         let presence = self.desk.exchange(tick.0);
         while let Some(news) = self.desk.news() {
-            let level =
-                if matches!(news, neighbours::network::News::Came(_)) { Level::Info } else { Level::Warning };
-            notes.push((level, "network", news.to_string()));
+            notes.push(network_note(&news));
         }
         if presence.new {
             gate.initialize();

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS},
-    network::{Desk, office::Presence},
+    network::{Desk, News, office::Presence},
 };
 
 /// Between two looks at a server that has not answered yet.
@@ -36,9 +36,9 @@ impl Agent {
     }
 
     /// Between commands: see who is there. What there is to tell of it.
-    pub fn idle(&mut self) -> Vec<String> {
+    pub fn idle(&mut self) -> Vec<News> {
         self.exchange();
-        std::iter::from_fn(|| self.desk.news()).map(|news| news.to_string()).collect()
+        std::iter::from_fn(|| self.desk.news()).collect()
     }
 
     /// Have a command carried out; `None` if nobody answers.

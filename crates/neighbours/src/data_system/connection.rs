@@ -22,7 +22,10 @@ use super::{
     status::{STATUS, Status, Summary},
     store::{Item, Store},
 };
-use crate::mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxError};
+use crate::{
+    mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxError},
+    network::News,
+};
 
 /// Ticks for an answer unless a run asks for others: 1 s.
 pub const ANSWER_TICKS: u64 = 25;
@@ -78,7 +81,7 @@ impl Keeper {
     }
 
     /// Between requests; what there is to tell.
-    fn idle(&mut self) -> Vec<String> {
+    fn idle(&mut self) -> Vec<News> {
         match self {
             Self::Here(_) => Vec::new(),
             Self::Elsewhere(agent) => agent.idle(),
@@ -98,7 +101,7 @@ pub struct DataSystem {
     command_box: Mailbox,
     status_box: Mailbox,
     refusals: Vec<String>,
-    news: Receiver<String>,
+    news: Receiver<News>,
     requests: Option<Sender<Request>>,
     responses: Receiver<Response>,
     thread: Option<JoinHandle<()>>,
@@ -175,7 +178,7 @@ impl DataSystem {
     }
 
     /// What happened on the network, since the last call.
-    pub fn news(&self) -> Vec<String> {
+    pub fn news(&self) -> Vec<News> {
         self.news.try_iter().collect()
     }
 

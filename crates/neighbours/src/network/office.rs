@@ -83,8 +83,8 @@ struct Shared {
     over: AtomicBool,
 }
 
-/// A panic in another thread is reported where it happened; mailboxes hold plain bytes, which are whole whatever happens.
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+/// A panic in another thread is reported where it happened; what is behind the locks of the network is whole whatever happens.
+pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -27,7 +27,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 pub enum Remark {
     /// Vision has come, or gone.
-    Network(News),
+    News(News),
     /// What it wrote cannot be read.
     Refused(VisionError),
     /// It has answered another request than the present one.
@@ -58,7 +58,7 @@ pub enum Remark {
 impl fmt::Display for Remark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Network(news) => news.fmt(f),
+            Self::News(news) => news.fmt(f),
             Self::Refused(error) => write!(f, "what vision has written is refused: {error}"),
             Self::Stranger { echo, expected: 0 } => {
                 write!(
@@ -157,7 +157,7 @@ impl Port {
         }
         let presence = self.desk.exchange(tick);
         let news = std::iter::from_fn(|| self.desk.news());
-        self.remarks.extend(news.map(Remark::Network));
+        self.remarks.extend(news.map(Remark::News));
         if presence.new || !presence.here {
             self.initialize();
         }

@@ -15,7 +15,7 @@
 use std::{
     io,
     sync::{
-        Arc, Mutex, PoisonError,
+        Arc, Mutex,
         mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel},
     },
     thread::{self, JoinHandle},
@@ -40,7 +40,7 @@ use crate::network::{
     frame::{Frame, PULSE},
     hello::{ANSWER, Agreement, Challenge, HELLO, HelloError, welcome},
     listener::patience,
-    office::{Counter, Outlet},
+    office::{Counter, Outlet, locked},
     seal::Seal,
     station::Station,
 };
@@ -129,11 +129,6 @@ struct Shared {
     booths: Vec<Booth>,
     strangers: Mutex<Strangers>,
     calls: SyncSender<Call>,
-}
-
-fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    // A panic in another thread is reported where it happened; what is behind these locks is whole at any time.
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Reception {
