@@ -14,6 +14,7 @@ use std::{
 };
 
 use serde_json::Value;
+use tempfile::TempDir;
 
 /// Root of the repository.
 #[must_use]
@@ -87,8 +88,8 @@ fn selection(name: &str) -> Vec<&str> {
     program.into_iter().chain(with_zenoh.into_iter().filter(|_| cfg!(feature = "zenoh"))).collect()
 }
 
-/// A directory for the files of one test, removed with it.
-pub struct Scratch(PathBuf);
+/// A directory for the files of one run, removed with it. Two of one name are two directories: tests run beside each other.
+pub struct Scratch(TempDir);
 
 impl Scratch {
     /// A new, empty directory.
@@ -97,17 +98,14 @@ impl Scratch {
     /// If it cannot be made.
     #[must_use]
     pub fn new(name: &str) -> Self {
-        let path = env::temp_dir().join(format!("rcs-{name}-{}", std::process::id()));
-        // It may be there from a run that was killed.
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).expect("a directory can be made");
-        Self(path)
+        let directory = tempfile::Builder::new().prefix(&format!("rcs-{name}-")).tempdir();
+        Self(directory.expect("a directory can be made"))
     }
 
     /// A file in it.
     #[must_use]
     pub fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
+        self.0.path().join(name)
     }
 }
 
@@ -175,12 +173,6 @@ pub fn copy(from: &Path, to: &Path) {
         } else {
             fs::copy(&path, &target).expect("a file can be copied");
         }
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
     }
 }
 

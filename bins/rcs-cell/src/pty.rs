@@ -218,31 +218,14 @@ mod tests {
         io::{Read, Write},
     };
 
-    /// A directory of its own for a test, removed at the end.
-    struct Place(PathBuf);
-
-    impl Place {
-        fn new(name: &str) -> Self {
-            let place = std::env::temp_dir().join(format!("rcs-cell-pty-{name}-{}", std::process::id()));
-            fs::create_dir_all(&place).unwrap();
-            Self(place)
-        }
-    }
-
-    impl Drop for Place {
-        fn drop(&mut self) {
-            let _ = fs::remove_dir_all(&self.0);
-        }
-    }
-
     fn host(path: &Path) -> File {
         OpenOptions::new().read(true).write(true).open(path).unwrap()
     }
 
     #[test]
     fn all_bytes_pass_and_a_host_comes_and_goes() {
-        let place = Place::new("pass");
-        let path = place.0.join("t3");
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("t3");
         let mut pty = Pty::open(&path).unwrap();
         assert!(!pty.has_host());
         let mut bytes = [0; 512];
@@ -268,8 +251,8 @@ mod tests {
 
     #[test]
     fn the_link_is_removed_and_a_dead_one_is_replaced() {
-        let place = Place::new("link");
-        let path = place.0.join("t3");
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("t3");
         let first = Pty::open(&path).unwrap();
         assert_eq!(path.read_link().unwrap(), first.slave());
         assert!(matches!(Pty::open(&path), Err(PtyError::Alive(_))));
@@ -283,13 +266,13 @@ mod tests {
 
     #[test]
     fn what_is_not_ours_is_left_alone() {
-        let place = Place::new("alien");
-        let path = place.0.join("t3");
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("t3");
         fs::write(&path, "precious").unwrap();
         assert!(matches!(Pty::open(&path), Err(PtyError::Occupied(_))));
         assert_eq!(fs::read_to_string(&path).unwrap(), "precious");
-        assert!(matches!(Pty::open(&place.0.join("none/t3")), Err(PtyError::NoDirectory(_))));
-        let link = place.0.join("link");
+        assert!(matches!(Pty::open(&place.path().join("none/t3")), Err(PtyError::NoDirectory(_))));
+        let link = place.path().join("link");
         std::os::unix::fs::symlink(&path, &link).unwrap();
         assert!(matches!(Pty::open(&link), Err(PtyError::Occupied(_))));
     }

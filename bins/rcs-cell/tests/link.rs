@@ -15,6 +15,7 @@ use rustix::{
     event::{PollFd, PollFlags, Timespec, poll},
     process::{Pid, Signal, kill_process},
 };
+use tempfile::TempDir;
 
 /// Longer than anything takes on a machine that does something else as well.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -30,26 +31,17 @@ const BESIDE_REPORT: [u8; 16] =
     [0xFF, 0xFF, 0x03, 0x00, 0x0A, 0xE7, 0x6B, 0xFD, 0x84, 0xDC, 0xD8, 0x34, 0xBC, 0x00, 0x00, 0x70];
 
 /// A directory for one test, removed at the end.
-struct Place(PathBuf);
+struct Place(TempDir);
 
 impl Place {
-    fn new(name: &str) -> Self {
-        let place = std::env::temp_dir().join(format!("rcs-cell-{name}-{}", std::process::id()));
-        fs::create_dir_all(&place).unwrap();
-        Self(place)
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
     }
 
     fn link(&self) -> PathBuf {
-        self.0.join("t3")
+        self.0.path().join("t3")
     }
 }
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 /// The program, its console and its screen.
 struct Cell {
     child: Child,
@@ -154,7 +146,7 @@ impl Host {
 
 #[test]
 fn the_host_finds_the_robot_at_home_and_comes_back_where_it_left_it() {
-    let place = Place::new("host");
+    let place = Place::new();
     let mut cell = Cell::start(&place.link(), &["--auto"]);
     cell.wait_for("waits for a host");
     let mut host = Host::open(&place.link());
@@ -184,7 +176,7 @@ fn the_host_finds_the_robot_at_home_and_comes_back_where_it_left_it() {
 
 #[test]
 fn a_person_starts_the_robot_step_by_step_and_recovers_from_a_wd_error() {
-    let place = Place::new("person");
+    let place = Place::new();
     let mut cell = Cell::start(&place.link(), &["--seed", "3"]);
     cell.wait_for("waits for a host");
     cell.enter("cycle start");
@@ -222,7 +214,7 @@ fn a_person_starts_the_robot_step_by_step_and_recovers_from_a_wd_error() {
 
 #[test]
 fn a_path_is_taken_over_from_the_dead_but_not_from_the_living() {
-    let place = Place::new("path");
+    let place = Place::new();
     let mut first = Cell::start(&place.link(), &[]);
     first.wait_for("waits for a host");
     let refused = |link: &Path| {
@@ -238,7 +230,7 @@ fn a_path_is_taken_over_from_the_dead_but_not_from_the_living() {
     let second = Cell::start(&place.link(), &[]);
     second.wait_for("waits for a host");
 
-    let file = place.0.join("file");
+    let file = place.0.path().join("file");
     fs::write(&file, "precious").unwrap();
     let (status, reason) = refused(&file);
     assert_eq!(status, Some(2));
@@ -248,8 +240,8 @@ fn a_path_is_taken_over_from_the_dead_but_not_from_the_living() {
 
 #[test]
 fn faults_spoil_the_line_and_a_useless_plan_is_refused() {
-    let place = Place::new("faults");
-    let plan = place.0.join("faults.toml");
+    let place = Place::new();
+    let plan = place.0.path().join("faults.toml");
     fs::write(&plan, "[[fault]]\nkind = \"flip\"\ndirection = \"to-controller\"\nrate = 1.0\n").unwrap();
     let option = format!("--faults={}", plan.display());
     let mut cell = Cell::start(&place.link(), &["--auto", &option]);

@@ -16,19 +16,17 @@ use rcs_core::{
 };
 use record::{CellFrame, CellModel, End, Epoch, Pace, Recorder, Setup};
 use taskdata::files::TaskData;
+use tempfile::TempDir;
 
 const TICKS: u64 = 120;
 /// Tick in which the workstation commands something that cannot be done.
 const COMMANDED: u64 = 50;
 
-struct Scratch(PathBuf);
+struct Scratch(TempDir);
 
 impl Scratch {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("rcs-log-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).expect("a directory for scratch files");
-        Self(path)
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a directory for scratch files"))
     }
 
     /// A run without task data, in which TRANSFER fails; `speed` is the velocity knob.
@@ -38,7 +36,7 @@ impl Scratch {
 
     /// The same with a cell that has the given digests.
     fn log_of_cell(&self, name: &str, speed: u16, digest_of_cell: impl Fn(Tick) -> u64) -> PathBuf {
-        let path = self.0.join(name);
+        let path = self.0.path().join(name);
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
         let run = [text("program", "test"), text("job", "nothing"), text("seed", "7")].into();
         let cell = Some(CellModel::default());
@@ -63,13 +61,6 @@ impl Scratch {
         path
     }
 }
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 fn rcs_log(arguments: &[&str], files: &[&Path]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_rcs-log")).args(arguments).args(files).output().expect("rcs-log runs")
 }
@@ -80,7 +71,7 @@ fn stdout(output: &Output) -> String {
 
 #[test]
 fn info_tells_commands_and_failure() {
-    let scratch = Scratch::new("info");
+    let scratch = Scratch::new();
     let log = scratch.log("run.mcap", 1000);
     let output = rcs_log(&["info"], &[&log]);
     let text = stdout(&output);
@@ -99,7 +90,7 @@ fn info_tells_commands_and_failure() {
 
 #[test]
 fn why_finds_the_tick_of_the_failure_and_names_the_row() {
-    let scratch = Scratch::new("why");
+    let scratch = Scratch::new();
     let log = scratch.log("run.mcap", 1000);
     let text = stdout(&rcs_log(&["why"], &[&log]));
     assert!(
@@ -127,14 +118,14 @@ fn why_finds_the_tick_of_the_failure_and_names_the_row() {
 
 #[test]
 fn replay_takes_several_logs_and_says_which_cannot_be_used() {
-    let scratch = Scratch::new("replay");
+    let scratch = Scratch::new();
     let (one, two) = (scratch.log("one.mcap", 1000), scratch.log("two.mcap", 500));
     let output = rcs_log(&["replay"], &[&one, &two]);
     let text = stdout(&output);
     assert!(output.status.success(), "{text}");
     assert_eq!(text.matches(": same, 120 ticks").count(), 2, "{text}");
 
-    let broken = scratch.0.join("broken.mcap");
+    let broken = scratch.0.path().join("broken.mcap");
     fs::write(&broken, b"no log").expect("a file");
     let output = rcs_log(&["replay"], &[&one, &broken]);
     assert_eq!(output.status.code(), Some(2));
@@ -143,7 +134,7 @@ fn replay_takes_several_logs_and_says_which_cannot_be_used() {
 
 #[test]
 fn diff_names_the_first_field_and_counts_the_others() {
-    let scratch = Scratch::new("diff");
+    let scratch = Scratch::new();
     let (one, two) = (scratch.log("one.mcap", 1000), scratch.log("two.mcap", 500));
     assert_eq!(rcs_log(&["diff"], &[&one, &one]).status.code(), Some(0));
     for align in ["tick", "command"] {
@@ -160,7 +151,7 @@ fn diff_names_the_first_field_and_counts_the_others() {
 
 #[test]
 fn diff_tells_when_two_cells_begin_to_differ() {
-    let scratch = Scratch::new("cells");
+    let scratch = Scratch::new();
     let one = scratch.log("one.mcap", 1000);
     let two = scratch.log_of_cell("two.mcap", 1000, |tick| u64::from(tick.0 >= 60) * 0xAB);
     let output = rcs_log(&["diff"], &[&one, &two]);
@@ -173,7 +164,7 @@ fn diff_tells_when_two_cells_begin_to_differ() {
 
 #[test]
 fn a_report_is_one_page_with_the_failure_on_it() {
-    let scratch = Scratch::new("report");
+    let scratch = Scratch::new();
     let log = scratch.log("run.mcap", 1000);
     let output = rcs_log(&["report"], &[&log]);
     assert!(output.status.success());

@@ -9,6 +9,7 @@ use std::{
 
 use executive::memory::{Attached, RunName};
 use serde_json::Value;
+use tempfile::TempDir;
 
 /// The data directory of the repository.
 fn data() -> PathBuf {
@@ -16,36 +17,27 @@ fn data() -> PathBuf {
 }
 
 /// An empty directory that is removed at the end of a test.
-struct Place(PathBuf);
+struct Place(TempDir);
 
 impl Place {
-    fn new(test: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("rcs-run-{}-{test}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
     }
 
     /// A job file.
     fn job(&self, name: &str, text: &str) -> String {
-        let path = self.0.join(name).with_extension("job");
+        let path = self.0.path().join(name).with_extension("job");
         fs::write(&path, text).unwrap();
         path.display().to_string()
     }
 
     /// A copy of the data directory.
     fn data(&self) -> PathBuf {
-        let to = self.0.join("data");
+        let to = self.0.path().join("data");
         copy(&data(), &to);
         to
     }
 }
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
     for entry in fs::read_dir(from).unwrap().flatten() {
@@ -124,7 +116,7 @@ fn the_data_of_the_repository_is_good() {
 
 #[test]
 fn a_data_error_is_shown_with_its_place_and_nothing_runs() {
-    let place = Place::new("data-error");
+    let place = Place::new();
     let data = place.data();
     let poses = data.join("poses.blk");
     let text = fs::read_to_string(&poses).unwrap().replace("PFIX-P", "PFIX-Q");
@@ -158,7 +150,7 @@ fn said_of(place: &Place, file: &str, from: &str, to: &str) -> [String; 2] {
 
 #[test]
 fn a_name_that_only_the_cell_has_is_told_before_the_first_tick() {
-    let place = Place::new("only-in-the-cell");
+    let place = Place::new();
     let unknown = |from: &str, to: &str, sentences: &[&str]| {
         for said in said_of(&place, "cell.toml", from, to) {
             for sentence in sentences {
@@ -188,7 +180,7 @@ fn a_name_that_only_the_cell_has_is_told_before_the_first_tick() {
 
 #[test]
 fn a_name_that_only_the_job_has_is_told_before_the_first_tick() {
-    let place = Place::new("only-in-the-job");
+    let place = Place::new();
     let said = said_of(&place, "jobs/linkbar.job", "vise partial PFIXTURE", "vise partial PFIXTURE CLEVISS");
     for said in said {
         assert!(said.contains("linkbar.job: line 7, column 26: the vise has no program CLEVISS;"), "{said}");
@@ -198,7 +190,7 @@ fn a_name_that_only_the_job_has_is_told_before_the_first_tick() {
 
 #[test]
 fn a_finding_can_be_shown_in_an_editor() {
-    let place = Place::new("finding");
+    let place = Place::new();
     let data = place.data();
     let poses = data.join("poses.blk");
     let text = fs::read_to_string(&poses).unwrap().replace("PFIX-P", "PFIX-Q");
@@ -274,7 +266,7 @@ fn real_time_runs_as_many_ticks_as_there_were_slots() {
 
 #[test]
 fn a_blank_that_is_missing_fails_the_job_with_the_row_that_knows() {
-    let place = Place::new("no-blank");
+    let place = Place::new();
     let job = place
         .job("no-blank", "** vise partial PFIXTURE\n== MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n");
     let output = rcs_run(&[&job, "--json", "--log", "none"]);
@@ -290,7 +282,7 @@ fn a_blank_that_is_missing_fails_the_job_with_the_row_that_knows() {
 
 #[test]
 fn a_place_that_is_taken_fails_the_job_in_words() {
-    let place = Place::new("taken");
+    let place = Place::new();
     let twice = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0\n";
     let job = place.job("taken", &format!("{twice}{twice}== PAUSE -- 0 -- 0 0 -- 0 -- 0\n"));
     let output = rcs_run(&[&job, "--json", "--log", "none"]);
@@ -301,8 +293,8 @@ fn a_place_that_is_taken_fails_the_job_in_words() {
 
 #[test]
 fn an_interrupt_ends_the_run_in_order() {
-    let place = Place::new("interrupt");
-    let log = place.0.join("cut.mcap").display().to_string();
+    let place = Place::new();
+    let log = place.0.path().join("cut.mcap").display().to_string();
     let mut child = command(&["--clock", "real", "--json", "--log", &log])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

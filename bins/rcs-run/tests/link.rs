@@ -27,35 +27,25 @@ use rustix::{
     pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},
 };
 use serde_json::Value;
+use tempfile::TempDir;
 
 /// A directory of one test, removed with it.
-struct Place(PathBuf);
+struct Place(TempDir);
 
 impl Place {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("rcs-run-{name}-{}", std::process::id()));
-        // It may be there from a run that was killed.
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
     }
 
     /// Where the port is linked.
     fn port(&self) -> PathBuf {
-        self.0.join("port")
+        self.0.path().join("port")
     }
 
     fn robot(&self) -> String {
         format!("serial:{}", self.port().display())
     }
 }
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 /// A robot that is where it is told to be.
 struct Exact {
     joints: Joints,
@@ -195,7 +185,7 @@ const PROMPT: Option<Duration> = Some(Duration::from_millis(2));
 
 #[test]
 fn a_link_that_answers_is_good() {
-    let place = Place::new("good");
+    let place = Place::new();
     let peer = Peer::plug(&place.port(), PROMPT);
     let (output, tally) = link_test(&place, "3");
     assert_eq!(output.status.code(), Some(0), "{tally} {}", last_words(&output));
@@ -210,7 +200,7 @@ fn a_link_that_answers_is_good() {
 
 #[test]
 fn the_dump_shows_every_frame() {
-    let place = Place::new("dump");
+    let place = Place::new();
     let _peer = Peer::plug(&place.port(), PROMPT);
     let output = rcs_run(&["link-test", "--robot", &place.robot(), "--seconds", "1", "--dump"]);
     let text = String::from_utf8(output.stdout).unwrap();
@@ -222,7 +212,7 @@ fn the_dump_shows_every_frame() {
 
 #[test]
 fn a_link_that_is_late_is_not_usable() {
-    let place = Place::new("late");
+    let place = Place::new();
     let _peer = Peer::plug(&place.port(), Some(Duration::from_millis(60)));
     let (output, tally) = link_test(&place, "2");
     assert_eq!((output.status.code(), &tally["verdict"]), (Some(1), &"not-usable".into()), "{tally}");
@@ -232,7 +222,7 @@ fn a_link_that_is_late_is_not_usable() {
 
 #[test]
 fn nobody_at_the_port_is_no_link() {
-    let place = Place::new("mute");
+    let place = Place::new();
     let _peer = Peer::plug(&place.port(), None);
     let (output, tally) = link_test(&place, "1");
     assert_eq!((output.status.code(), &tally["verdict"]), (Some(3), &"no-link".into()), "{tally}");
@@ -244,7 +234,7 @@ fn nobody_at_the_port_is_no_link() {
 
 #[test]
 fn a_port_that_is_unplugged_comes_back() {
-    let place = Place::new("back");
+    let place = Place::new();
     let first = Peer::plug(&place.port(), PROMPT);
     let link = place.port();
     let hands = thread::spawn(move || {
@@ -263,7 +253,7 @@ fn a_port_that_is_unplugged_comes_back() {
 
 #[test]
 fn the_linkbar_begins_over_a_port_in_real_time() {
-    let place = Place::new("linkbar");
+    let place = Place::new();
     let peer = Peer::plug(&place.port(), PROMPT);
     let (output, result) = linkbar(&place, "250");
     assert_eq!(output.status.code(), Some(0), "{}", last_words(&output));
@@ -278,7 +268,7 @@ fn the_linkbar_begins_over_a_port_in_real_time() {
 
 #[test]
 fn a_pulled_cable_ends_the_run_with_its_reason() {
-    let place = Place::new("pulled");
+    let place = Place::new();
     let peer = Peer::plug(&place.port(), PROMPT);
     let hands = thread::spawn(move || {
         thread::sleep(Duration::from_secs(4));
@@ -312,8 +302,8 @@ fn what_does_not_go_together_is_refused_at_once() {
 
 #[test]
 fn injected_faults_are_counted_and_survived() {
-    let place = Place::new("faults");
-    let plan = place.0.join("plan.toml");
+    let place = Place::new();
+    let plan = place.0.path().join("plan.toml");
     fs::write(
         &plan,
         "seed = 3\n[[fault]]\nkind = \"flip\"\ndirection = \"to-controller\"\nat = 100\n\

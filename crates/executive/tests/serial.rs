@@ -134,9 +134,8 @@ fn a_line_that_takes_nothing_more_is_reported_and_rests_for_a_tick() {
 
 #[test]
 fn a_port_that_comes_back_is_taken_over_and_begins_clean() {
-    let directory = std::env::temp_dir().join(format!("rcs-serial-{}", std::process::id()));
-    fs::create_dir_all(&directory).unwrap();
-    let path = directory.join("port");
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("port");
     let plug = |peer: &Peer| {
         let _ = fs::remove_file(&path);
         symlink(&peer.path, &path).unwrap();
@@ -162,7 +161,6 @@ fn a_port_that_comes_back_is_taken_over_and_begins_clean() {
     (&second.master).write_all(&[6]).unwrap();
     assert_eq!(received(&mut line, 1).as_slice(), &[6]);
     assert_eq!((line.counts().losses, line.counts().reopened), (1, 1));
-    let _ = fs::remove_dir_all(&directory);
 }
 
 #[test]

@@ -8,7 +8,7 @@
 //! `cargo test --release -p record --test kill` prints the ten moments, and what was left.
 
 use std::{
-    env, fs,
+    env,
     io::{BufRead, BufReader, Write},
     path::Path,
     process::{Command, ExitCode, Stdio},
@@ -63,19 +63,17 @@ fn record_until_killed(path: &Path) -> ExitCode {
 }
 
 fn kill_ten() -> ExitCode {
-    let directory = env::temp_dir().join(format!("record-kill-{}", std::process::id()));
-    fs::create_dir_all(&directory).expect("a directory for the logs");
+    let directory = tempfile::tempdir().expect("a directory for the logs");
     let mut seed = u64::from(std::process::id());
     let runs: Vec<thread::JoinHandle<bool>> = (0..RUNS)
         .map(|run| {
-            let path = directory.join(format!("{run}.mcap"));
+            let path = directory.path().join(format!("{run}.mcap"));
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             let moment = Duration::from_millis(500 + (seed >> 33) % 3000);
             thread::spawn(move || survives(&path, moment))
         })
         .collect();
     let survived = runs.into_iter().map(|run| u64::from(run.join().expect("nothing panics"))).sum::<u64>();
-    fs::remove_dir_all(directory).expect("the logs can be removed");
     println!("{survived} of {RUNS} killed runs can be read and replayed");
     ExitCode::from(u8::from(survived < RUNS))
 }

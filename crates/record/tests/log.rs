@@ -22,29 +22,20 @@ use record::{
     writer::{LogWriter, TickRecord},
 };
 use taskdata::{files::TaskData, load::Source};
+use tempfile::TempDir;
 
 /// A directory that is removed at the end of a test.
-struct Scratch(PathBuf);
+struct Scratch(TempDir);
 
 impl Scratch {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("record-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
     }
 
     fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
+        self.0.path().join(name)
     }
 }
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 fn setup() -> Setup {
     let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
     let link = |name: &str, parent: &str| Link { name: name.into(), parent: parent.into() };
@@ -113,7 +104,7 @@ fn record_run(path: &Path, ticks: u64) -> record::Summary {
 
 #[test]
 fn a_recorded_run_is_replayed_bit_for_bit() {
-    let scratch = Scratch::new("replay");
+    let scratch = Scratch::new();
     let path = scratch.file("deep/down/run.mcap");
     let summary = record_run(&path, 1000);
     assert_eq!((summary.ticks, summary.lost), (1000, Lost::default()));
@@ -151,7 +142,7 @@ fn a_recorded_run_is_replayed_bit_for_bit() {
 
 #[test]
 fn the_same_run_writes_the_same_bytes() {
-    let scratch = Scratch::new("bytes");
+    let scratch = Scratch::new();
     let (first, second) = (scratch.file("1.mcap"), scratch.file("2.mcap"));
     record_run(&first, 200);
     record_run(&second, 200);
@@ -160,7 +151,7 @@ fn the_same_run_writes_the_same_bytes() {
 
 #[test]
 fn a_log_that_was_cut_off_is_read_up_to_the_cut() {
-    let scratch = Scratch::new("cut");
+    let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     record_run(&path, 300);
     let whole = fs::read(&path).unwrap();
@@ -206,7 +197,7 @@ fn changed(ticks: u64, mut change: impl FnMut(&mut TickRecord) -> bool) -> Vec<u
 
 #[test]
 fn a_difference_is_named() {
-    let scratch = Scratch::new("difference");
+    let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let bytes = changed(100, |record| {
         if record.tick.0 == 42 {
@@ -228,7 +219,7 @@ fn a_difference_is_named() {
 
 #[test]
 fn an_input_that_was_not_recorded_shows_as_a_difference() {
-    let scratch = Scratch::new("input");
+    let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let bytes = changed(300, |record| {
         if record.tick.0 >= 100 {
@@ -243,7 +234,7 @@ fn an_input_that_was_not_recorded_shows_as_a_difference() {
 
 #[test]
 fn a_replay_goes_on_after_a_gap() {
-    let scratch = Scratch::new("gap");
+    let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     fs::write(&path, changed(200, |record| !(60..=64).contains(&record.tick.0))).unwrap();
     let log = Log::open(&path).unwrap();
@@ -262,7 +253,7 @@ fn a_replay_goes_on_after_a_gap() {
 
 #[test]
 fn a_log_of_another_layout_is_refused() {
-    let scratch = Scratch::new("layout");
+    let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let mut file = Cursor::new(Vec::new());
     let mut writer = mcap::Writer::new(&mut file).unwrap();
@@ -278,7 +269,7 @@ fn a_log_of_another_layout_is_refused() {
 
 #[test]
 fn files_that_are_no_logs_are_refused() {
-    let scratch = Scratch::new("foreign");
+    let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     assert!(matches!(Log::open(&path), Err(ReadError::Unreadable { .. })));
     for bytes in [&b""[..], b"PK\x03\x04 this is no MCAP file at all", &[0x89, b'M', b'C']] {
@@ -341,7 +332,7 @@ fn a_disk_that_fills_up_ends_the_log_wherever_it_happens() {
 
 #[test]
 fn a_removed_log_ends_the_log_and_not_the_run() {
-    let scratch = Scratch::new("removed");
+    let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let mut recorder = Recorder::start(&path, Pace::Wait, setup()).unwrap();
     let mut ticks = 0;
@@ -359,7 +350,7 @@ fn a_removed_log_ends_the_log_and_not_the_run() {
 
 #[test]
 fn a_directory_that_vanishes_ends_the_log_and_not_the_run() {
-    let scratch = Scratch::new("vanish");
+    let scratch = Scratch::new();
     let path = scratch.file("deep/down/run.mcap");
     let mut recorder = Recorder::start(&path, Pace::Wait, setup()).unwrap();
     let mut ticks = 0;
@@ -394,7 +385,7 @@ fn a_directory_in_which_nothing_can_be_made_is_told_before_the_run() {
 
 #[test]
 fn times_and_the_fingerprint_of_the_cell_are_kept_beside_the_digest() {
-    let scratch = Scratch::new("timing");
+    let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let mut recorder = Recorder::start(&path, Pace::Wait, setup()).unwrap();
     let digest = run(60, |tick, external, memory, state| {
@@ -418,7 +409,7 @@ fn times_and_the_fingerprint_of_the_cell_are_kept_beside_the_digest() {
 
 #[test]
 fn a_replay_can_begin_and_end_in_the_middle() {
-    let scratch = Scratch::new("part");
+    let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     fs::write(&path, changed(200, |_| true)).unwrap();
     let part = |from: Option<u64>, until: Option<u64>| {
@@ -450,7 +441,7 @@ fn a_replay_can_begin_and_end_in_the_middle() {
 
 #[test]
 fn a_golden_is_the_run_again() {
-    let scratch = Scratch::new("golden");
+    let scratch = Scratch::new();
     let (path, file) = (scratch.file("run.mcap"), scratch.file("run.golden"));
     fs::write(&path, changed(230, |_| true)).unwrap();
     let log = Log::open(&path).unwrap();
@@ -485,7 +476,7 @@ fn a_golden_is_the_run_again() {
 
 #[test]
 fn a_golden_of_a_part_of_a_run_or_of_another_format_is_refused() {
-    let scratch = Scratch::new("no-golden");
+    let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     fs::write(&path, changed(100, |record| record.tick.0 != 50)).unwrap();
     let error = golden::from_log(&Log::open(&path).unwrap()).err().unwrap();
@@ -502,7 +493,7 @@ fn a_golden_of_a_part_of_a_run_or_of_another_format_is_refused() {
 
 #[test]
 fn a_file_that_cannot_be_made_is_told_before_the_run() {
-    let scratch = Scratch::new("create");
+    let scratch = Scratch::new();
     let in_the_way = scratch.file("file");
     fs::write(&in_the_way, "").unwrap();
     let error = Recorder::start(&in_the_way.join("run.mcap"), Pace::Drop, setup()).err().unwrap();
@@ -511,7 +502,7 @@ fn a_file_that_cannot_be_made_is_told_before_the_run() {
 
 #[test]
 fn a_run_in_real_time_never_waits_and_counts_what_it_lost() {
-    let scratch = Scratch::new("drop");
+    let scratch = Scratch::new();
     let path = scratch.file("run.mcap");
     let mut recorder = Recorder::start(&path, Pace::Drop, setup()).unwrap();
     // Far faster than any writer: most ticks find the ring full.

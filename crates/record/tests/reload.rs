@@ -1,6 +1,6 @@
 //! A run into which task data were loaded while it went on: its log replays across the reload.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use levels::ladder::Ladder;
 use rcs_core::{
@@ -67,9 +67,8 @@ fn record_run(path: &Path, attach: bool) -> Vec<(HwsReport, Reason)> {
 
 #[test]
 fn a_log_replays_across_a_reload() {
-    let directory = std::env::temp_dir().join(format!("record-reload-{}", std::process::id()));
-    fs::create_dir_all(&directory).unwrap();
-    let (with, without) = (directory.join("with.mcap"), directory.join("without.mcap"));
+    let directory = tempfile::tempdir().unwrap();
+    let (with, without) = (directory.path().join("with.mcap"), directory.path().join("without.mcap"));
 
     let reports = record_run(&with, true);
     assert!(reports.contains(&(HwsReport::Error, Reason::UnknownLocation)), "before it HOME is unknown");
@@ -81,5 +80,4 @@ fn a_log_replays_across_a_reload() {
     record_run(&without, false);
     let error = replay(&without).expect_err("the second generation is missing");
     assert!(matches!(error, ReplayError::Generation { tick: RELOADED, generation: 1 }), "{error}");
-    fs::remove_dir_all(directory).unwrap();
 }

@@ -13,16 +13,15 @@ use serde_json::Value;
 
 /// A log of one tick: it has all channels.
 fn log() -> Vec<u8> {
-    let path = std::env::temp_dir().join(format!("record-viewers-{}.mcap", std::process::id()));
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("run.mcap");
     let setup = Setup { epoch: Epoch::Fixed, cell: Some(CellModel::default()), ..Setup::default() };
     let mut recorder = Recorder::start(&path, Pace::Wait, setup).unwrap();
     recorder.cell(&CellFrame::new(Tick(1)));
     let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
     recorder.tick(Tick(1), &external, &memory, Default::default);
     recorder.finish(End::default()).unwrap();
-    let bytes = fs::read(&path).unwrap();
-    fs::remove_file(path).unwrap();
-    bytes
+    fs::read(path).unwrap()
 }
 
 /// All message types of a set, by their names without the package.
