@@ -14,7 +14,7 @@ use std::{
     path::Path,
     sync::{
         Arc,
-        atomic::{AtomicBool, AtomicUsize, Ordering},
+        atomic::{AtomicBool, Ordering},
     },
     thread::{self, JoinHandle},
     time::{Duration, Instant},
@@ -26,6 +26,7 @@ use rustix::{net::sockopt, process::geteuid};
 use super::over_zenoh;
 use super::{
     Address, Desk, News, Secret,
+    door::{self, Door},
     frame::{Frame, FrameError},
     hello::{ANSWER, Agreement, Challenge, ClockKind, welcome},
     office::{Counter, Outlet as _},
@@ -37,10 +38,6 @@ use super::{
 const PATIENCE: Duration = Duration::from_secs(10);
 /// In fast clock nothing stands still but the run, and a machine may be busy with other things.
 const FAST_PATIENCE: Duration = Duration::from_secs(60);
-/// Connections that have not said who they are, at most.
-const STRANGERS: usize = 8;
-/// For so long a place among them is not given to another after a refusal: nobody can guess as fast as he likes, or fill the log.
-const PENALTY: Duration = Duration::from_secs(1);
 
 /// Why nobody can connect.
 #[derive(Debug, thiserror::Error)]
@@ -105,7 +102,7 @@ struct Reception {
     counters: Vec<Counter>,
     secret: Option<Secret>,
     clock: ClockKind,
-    strangers: AtomicUsize,
+    door: Door,
 }
 
 impl Listener {
@@ -145,7 +142,7 @@ impl Listener {
                     return Ok(Self { address: address.clone(), _line: Line::Zenoh { _reception } });
                 }
             };
-        let reception = Arc::new(Reception { counters, secret, clock, strangers: AtomicUsize::new(0) });
+        let reception = Arc::new(Reception { counters, secret, clock, door: Door::default() });
         let _sockets = Sockets::listen(socket, bound.clone(), reception);
         Ok(Self { address: bound, _line: Line::Sockets { _sockets } })
     }
@@ -230,14 +227,11 @@ fn listen(socket: &Socket, over: &AtomicBool, reception: &Arc<Reception>) {
             return;
         }
         let reception = Arc::clone(reception);
-        if reception.strangers.fetch_add(1, Ordering::AcqRel) < STRANGERS {
-            thread::spawn(move || receive(stream, &reception));
-        } else {
-            reception.strangers.fetch_sub(1, Ordering::AcqRel);
-            if crowded.is_none_or(|since| since.elapsed() >= PENALTY) {
-                crowded = Some(Instant::now());
-                reception.tell(News::Refused("too many connect at once".to_owned()));
-            }
+        if let Ok(Some(ticket)) = reception.door.enter(&stream) {
+            thread::spawn(move || receive(stream, &reception, ticket));
+        } else if crowded.is_none_or(|since| since.elapsed() >= door::SAFE) {
+            crowded = Some(Instant::now());
+            reception.tell(News::Refused("too many connect at once".to_owned()));
         }
     }
 }
@@ -277,18 +271,18 @@ impl Reception {
 }
 
 /// A connection, from the hello to its end.
-fn receive(mut stream: Stream, reception: &Reception) {
+fn receive(mut stream: Stream, reception: &Reception, ticket: u64) {
+    let place = reception.door.place(ticket);
     match admit(&mut stream, reception) {
         Ok((counter, agreement)) => {
-            reception.strangers.fetch_sub(1, Ordering::AcqRel);
+            drop(place);
             let mut receiver = Receiver::new(stream);
             receiver.seal(agreement.as_ref().map(Agreement::up));
             counter.detach(read(&mut receiver, counter));
         }
         Err(why) => {
             reception.tell(News::Refused(why));
-            thread::sleep(PENALTY);
-            reception.strangers.fetch_sub(1, Ordering::AcqRel);
+            thread::sleep(door::SAFE);
         }
     }
 }
@@ -359,6 +353,19 @@ mod tests {
         assert_eq!(fs::read_to_string(file).unwrap(), "not to be lost");
     }
 
+    #[test]
+    fn strangers_that_say_nothing_keep_nobody_out() {
+        let place = tempfile::tempdir().unwrap();
+        let socket = place.path().join("rcs.sock");
+        let address = Address::Unix(socket.clone());
+        let desk = Desk::new(Role::Workstation, ClockKind::Fast);
+        let _listener = Listener::start(&address, None, [&desk]).unwrap();
+        let _silent: Vec<_> = (0..door::PLACES * 2)
+            .map(|_| std::os::unix::net::UnixStream::connect(&socket).unwrap())
+            .collect();
+        Peer::connect_within(FAST_PATIENCE / 2, &address, Role::Workstation, None).unwrap();
+    }
+
     /// Everybody gets the same answer, but the run hears of no more than it can take, and is open again soon.
     #[test]
     fn who_tries_again_and_again_fills_no_log_and_locks_nobody_out() {
@@ -368,15 +375,15 @@ mod tests {
         let _listener = Listener::start(&address, None, [&desk]).unwrap();
         let started = Instant::now();
         let mut tried = 0_u32;
-        while started.elapsed() < PENALTY * 3 {
+        while started.elapsed() < door::SAFE * 3 {
             assert!(Peer::connect(&address, Role::DataSystem, None).is_err(), "nobody expects one");
             tried += 1;
         }
         Peer::connect_within(FAST_PATIENCE, &address, Role::Workstation, None).unwrap();
         let heard = std::iter::from_fn(|| desk.news()).filter(|news| matches!(news, News::Refused(_)));
         let heard = u32::try_from(heard.count()).unwrap();
-        // A place among the strangers once in a penalty, and a word about the crowd; time goes on behind the loop as well.
-        let most = (started.elapsed().as_secs_f64() / PENALTY.as_secs_f64()).ceil() as u32 + 1;
-        assert!(heard <= most * (STRANGERS as u32 + 1), "{heard} of {tried} in {most} s");
+        // A place at the door once in a penalty, and a word about the crowd; time goes on behind the loop as well.
+        let most = (started.elapsed().as_secs_f64() / door::SAFE.as_secs_f64()).ceil() as u32 + 1;
+        assert!(heard <= most * (door::PLACES as u32 + 1), "{heard} of {tried} in {most} s");
     }
 }

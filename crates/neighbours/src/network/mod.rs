@@ -10,7 +10,7 @@
 //!
 //! * [`role`]: who a neighbour is, and which mailboxes are his;
 //! * [`frame`]: a mailgram on the line, and the pulse that tells of ticks;
-//! * [`hello`]: how a connection begins, and who is let in; [`seal`]: that a frame comes from him;
+//! * [`hello`]: how a connection begins, and who is let in, `door`: who waits for it; [`seal`]: that a frame comes from him;
 //! * [`office`]: the mailboxes between tick and threads;
 //! * [`listener`]: the controller's end of the line, [`peer`]: the neighbour's;
 //! * [`station`]: a controller in a Zenoh network, between machines (with the feature `zenoh`).
@@ -19,6 +19,7 @@
 //! have the same bits every time.
 
 pub mod address;
+mod door;
 pub mod frame;
 pub mod hello;
 pub mod listener;

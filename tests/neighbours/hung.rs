@@ -1,0 +1,56 @@
+//! Neighbours that hang: connected, but without an answer to any pulse. On the 40 ms grid the robot goes on without them.
+
+use std::thread;
+
+use neighbours::network::{Peer, Role};
+use rustix::process::{Pid, Signal, kill_process};
+use whole_system_tests::Scratch;
+
+use crate::bench::{Controller, Workstation, bare};
+
+/// What whoever hangs hears at last.
+const TOLD: &str = "the controller says: no answer for 10 s";
+
+/// Read, as the system does behind a program that stands still, and answer nothing; what is heard last.
+fn hang(mut peer: Peer) -> String {
+    loop {
+        if let Err(error) = peer.receive() {
+            return error.to_string();
+        }
+    }
+}
+
+#[test]
+fn who_hangs_is_disconnected_and_the_robot_goes_on() {
+    const HUNG: [Role; 3] = [Role::DataSystem, Role::Pedestal, Role::Vision];
+    let outside = "workstation,data-system,pedestal,vision";
+    let scratch = Scratch::new("hung");
+    let outbox = scratch.file("outbox").display().to_string();
+    let more = ["--clock", "real", "--outbox", &outbox];
+    let controller = Controller::start_at(scratch, None, outside, &more);
+    let mut workstation = Workstation::connect(&controller);
+    let hung = HUNG.map(|role| {
+        let peer = controller.connect(role, None);
+        thread::spawn(move || hang(peer))
+    });
+    // It waits for the Data System, which is asked for nothing before.
+    workstation.send(&bare(1, "STARTUP"));
+    while !hung.iter().all(thread::JoinHandle::is_finished) {
+        workstation.tick();
+    }
+    for (role, told) in HUNG.into_iter().zip(hung) {
+        assert_eq!(told.join().expect("it has not panicked"), TOLD, "{role}");
+        // Its place is another's.
+        drop(controller.connect(role, None));
+    }
+    assert_eq!(workstation.carry_out(&bare(2, "PAUSE")).0, "finished");
+    assert_eq!(hang(workstation.peer), TOLD);
+    drop(Workstation::connect(&controller));
+    kill_process(Pid::from_child(&controller.child), Signal::TERM).expect("it runs");
+    let ended = controller.end();
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    for role in HUNG {
+        let gone = format!("{role} has gone: no answer for 10 s");
+        assert!(ended.page.contains(&gone), "{gone}: {}", ended.page);
+    }
+}
