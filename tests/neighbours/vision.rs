@@ -105,9 +105,9 @@ fn pictures_that_fail_are_taken_again_and_given_up() {
         ("2-4:camera-blind", "vision sees no object"),
         ("2-4:not-recognised", "vision does not recognise the object"),
         ("2-4:another-object", "vision does not recognise the object"),
-        ("1-3:outside", "a sensor is overloaded or fails"),
-        ("2-4:outside", "a sensor is overloaded or fails"),
-        ("2-4:turned", "a sensor is overloaded or fails"),
+        ("1-3:outside", "vision answers what its camera cannot have seen"),
+        ("2-4:outside", "vision answers what its camera cannot have seen"),
+        ("2-4:turned", "vision answers what its camera cannot have seen"),
         ("2:off", "vision does not answer"),
     ] {
         let ended = linkbar("gives-up", faults);
@@ -228,7 +228,7 @@ fn the_log_says_why_and_replays_without_vision() {
         (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
     };
     let (_, why) = read("why", &log);
-    assert!(why.contains("a sensor is overloaded or fails"), "{why}");
+    assert!(why.contains("vision answers what its camera cannot have seen"), "{why}");
     let (status, replayed) = read("replay", &log);
     assert_eq!(status, Some(0), "{replayed}");
 }

@@ -197,6 +197,8 @@ coded_enum! {
         TableLimit = "the angle is beyond a limit of the rotary table",
         /// The gripper that held the object is no longer seen on the robot.
         GripperGone = "the gripper with the object is off the robot, or its id pins or the sensors of the ring say so",
+        /// Vision measured a place or an angle that its camera does not see.
+        VisionImplausible = "vision answers what its camera cannot have seen",
     }
 }
 

@@ -24,24 +24,24 @@ decision_table! {
     /// LOCATE-OBJ (V.2.1): a fast flood picture, centre the camera over it, a second picture with recognition
     /// and angle, align.
     pub LOCATE_OBJ: fn locate_obj(step: Step, sight: Sight, tries: Tries, prim: Lower) -> (Action, Step) {
-        //     step                   sight                                  tries   Prim                         action                        next
-        1:  ( Start                , _                                    , _     , _                       ) => Flood                       , Flooding  ;
-        2:  ( Flooding             , Waiting                              , _     , _                       ) => Wait                        , Flooding  ;
-        3:  ( Flooding             , Seen                                 , _     , _                       ) => Centre                      , Centring  ;
-        4:  ( Flooding             , Missing | Unrecognised | Implausible , Left  , _                       ) => FloodAgain                  , Flooding  ;
-        5:  ( Flooding             , Missing | Unrecognised               , Spent , _                       ) => Fail(Reason::NothingSeen)   , Start     ;
-        6:  ( Flooding | Measuring , Silent                               , _     , _                       ) => Fail(Reason::VisionSilent)  , Start     ;
-        7:  ( Centring             , _                                    , _     , Pending | Executing     ) => Wait                        , Centring  ;
-        8:  ( Centring             , _                                    , _     , Done                    ) => Precise                     , Measuring ;
-        9:  ( Measuring            , Waiting                              , _     , _                       ) => Wait                        , Measuring ;
-        10: ( Measuring            , Seen                                 , _     , _                       ) => Align                       , Aligning  ;
-        11: ( Measuring            , Missing | Unrecognised | Implausible , Left  , _                       ) => PreciseAgain                , Measuring ;
-        12: ( Measuring            , Missing                              , Spent , _                       ) => Fail(Reason::NothingSeen)   , Start     ;
-        13: ( Measuring            , Unrecognised                         , Spent , _                       ) => Fail(Reason::NotRecognised) , Start     ;
-        14: ( Aligning             , _                                    , _     , Pending | Executing     ) => Wait                        , Aligning  ;
-        15: ( Aligning             , _                                    , _     , Done                    ) => Located                     , Start     ;
-        16: ( Centring | Aligning  , _                                    , _     , Error | Joystick | Lost ) => PassUp                      , Start     ;
-        17: ( Flooding | Measuring , Implausible                          , Spent , _                       ) => Fail(Reason::SensorError)   , Start     ;
+        //     step                   sight                                  tries   Prim                         action                          next
+        1:  ( Start                , _                                    , _     , _                       ) => Flood                          , Flooding  ;
+        2:  ( Flooding             , Waiting                              , _     , _                       ) => Wait                           , Flooding  ;
+        3:  ( Flooding             , Seen                                 , _     , _                       ) => Centre                         , Centring  ;
+        4:  ( Flooding             , Missing | Unrecognised | Implausible , Left  , _                       ) => FloodAgain                     , Flooding  ;
+        5:  ( Flooding             , Missing | Unrecognised               , Spent , _                       ) => Fail(Reason::NothingSeen)      , Start     ;
+        6:  ( Flooding | Measuring , Silent                               , _     , _                       ) => Fail(Reason::VisionSilent)     , Start     ;
+        7:  ( Centring             , _                                    , _     , Pending | Executing     ) => Wait                           , Centring  ;
+        8:  ( Centring             , _                                    , _     , Done                    ) => Precise                        , Measuring ;
+        9:  ( Measuring            , Waiting                              , _     , _                       ) => Wait                           , Measuring ;
+        10: ( Measuring            , Seen                                 , _     , _                       ) => Align                          , Aligning  ;
+        11: ( Measuring            , Missing | Unrecognised | Implausible , Left  , _                       ) => PreciseAgain                   , Measuring ;
+        12: ( Measuring            , Missing                              , Spent , _                       ) => Fail(Reason::NothingSeen)      , Start     ;
+        13: ( Measuring            , Unrecognised                         , Spent , _                       ) => Fail(Reason::NotRecognised)    , Start     ;
+        14: ( Aligning             , _                                    , _     , Pending | Executing     ) => Wait                           , Aligning  ;
+        15: ( Aligning             , _                                    , _     , Done                    ) => Located                        , Start     ;
+        16: ( Centring | Aligning  , _                                    , _     , Error | Joystick | Lost ) => PassUp                         , Start     ;
+        17: ( Flooding | Measuring , Implausible                          , Spent , _                       ) => Fail(Reason::VisionImplausible), Start     ;
     }
 }
 

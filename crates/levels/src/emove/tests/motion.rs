@@ -362,11 +362,11 @@ fn what_no_picture_can_show_moves_nothing() {
     // BLOCK is looked at from 590 mm: the picture ends before 11.61 in.
     const TRUTH: (i32, i32, i32, u16) = (20, -10, 1000, 17);
     for (claims, end, log) in [
-        (vec![(1_162, 0, 0, 0), (0, -1_162, 0, 0), (0, 0, 9_001, 0)], error(Reason::SensorError), 3),
+        (vec![(1_162, 0, 0, 0), (0, -1_162, 0, 0), (0, 0, 9_001, 0)], error(Reason::VisionImplausible), 3),
         (vec![(i32::MIN, 0, 0, 0), TRUTH, (0, i32::MAX, 0, 17), TRUTH], DONE, 6),
         (
             vec![TRUTH, (0, 0, i32::MIN, 17), (0, 0, -9_001, 17), (0, 0, 27_000, 17)],
-            error(Reason::SensorError),
+            error(Reason::VisionImplausible),
             5,
         ),
         (vec![TRUTH, (0, 0, 0, 18), (0, 0, 0, 0), (0, 0, 0, 18)], error(Reason::NotRecognised), 5),
