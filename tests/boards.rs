@@ -229,8 +229,10 @@ fn strike(
     panic!("never caught in {ATTEMPTS} attempts; the last one said: {said}");
 }
 
+/// It has not ended: one that nobody has waited for yet, as under a first process that does not, has.
 fn is_alive(pid: Pid) -> bool {
-    Path::new("/proc").join(pid.as_raw_nonzero().to_string()).exists()
+    let stat = fs::read_to_string(format!("/proc/{}/stat", pid.as_raw_nonzero())).unwrap_or_default();
+    stat.rsplit_once(") ").is_some_and(|(_, state)| !state.starts_with(['Z', 'X']))
 }
 
 #[test]

@@ -8,6 +8,7 @@ pub mod golden;
 
 use std::{
     env, fs,
+    os::unix::process::CommandExt as _,
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     sync::OnceLock,
@@ -157,6 +158,17 @@ impl Scratch {
     pub fn copy_data(&self) {
         copy(&root().join("data"), &self.file("data"));
     }
+}
+
+/// A user who owns nothing, on every system.
+pub const NOBODY: u32 = 65_534;
+
+/// Whether this user may start programs as [`NOBODY`], in a directory.
+#[must_use]
+pub fn may_become_nobody(directory: &Path) -> bool {
+    let mut command = Command::new("true");
+    command.uid(NOBODY).gid(NOBODY).current_dir(directory);
+    command.status().is_ok_and(|status| status.success())
 }
 
 /// Copy a directory with everything in it.

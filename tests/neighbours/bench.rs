@@ -7,7 +7,7 @@ use std::{
     path::PathBuf,
     process::{Child, Command, Stdio},
     thread::{self, JoinHandle},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use neighbours::{
@@ -83,9 +83,18 @@ impl Controller {
         self.scratch.as_ref().expect("it has one").file(name)
     }
 
-    /// Connect to it.
+    /// Connect to it, if need be as soon as it has noticed that another one has gone.
     pub fn connect(&self, role: Role, secret: Option<&Secret>) -> Peer {
-        self.try_connect(role, secret).expect("it waits")
+        let started = Instant::now();
+        loop {
+            match self.try_connect(role, secret) {
+                Err(PeerError::LastWords(words)) if words.ends_with("is connected already") => {
+                    assert!(started.elapsed() < PATIENCE, "{words}");
+                    thread::sleep(Duration::from_millis(10));
+                }
+                peer => return peer.expect("it waits"),
+            }
+        }
     }
 
     /// Connect to it, or hear why not.

@@ -4,7 +4,9 @@
 
 use std::{
     fs,
-    process::{self, Child, Command, Stdio},
+    hash::{BuildHasher as _, RandomState},
+    process::{Child, Command, Stdio},
+    sync::OnceLock,
 };
 
 use neighbours::{
@@ -27,17 +29,19 @@ const COMMANDS: &str = "rcs2/t3/F6000";
 /// Where he says hello.
 const HELLOS: &str = "rcs2/t3/workstation/hello";
 
-/// An endpoint that no other test has.
+/// An endpoint that no other test has, nor another run of them on this machine.
 fn endpoint(test: u8) -> String {
-    let pid = process::id();
-    format!("tcp/127.{}.{}.{test}:7447", (pid >> 8) & 0xFF, pid & 0xFF)
+    static RUN: OnceLock<u64> = OnceLock::new();
+    let [high, low, ..] = RUN.get_or_init(|| RandomState::new().hash_one(0)).to_le_bytes();
+    format!("tcp/127.{high}.{low}.{test}:7447")
 }
 
 /// A controller in a Zenoh network, and the secret.
 fn controller(test: u8, outside: &str, more: &[&str]) -> (Controller, Secret, String) {
     let scratch = Scratch::new(&format!("zenoh-{test}"));
     let (ours, file) = secret(&scratch, "ours", "the key under the third flower pot");
-    let more = [more, &["--secret", file.as_str()]].concat();
+    let outbox = scratch.file("outbox").display().to_string();
+    let more = [more, &["--secret", &file, "--outbox", &outbox]].concat();
     let address = format!("zenoh:t3@{}", endpoint(test));
     (Controller::start_at(scratch, Some(&address), outside, &more), ours, file)
 }
@@ -139,7 +143,7 @@ fn what_a_stranger_publishes_moves_nothing_and_stands_among_the_events() {
 
 #[test]
 fn who_does_not_know_the_secret_is_not_let_in_and_is_logged() {
-    let (controller, ours, _) = controller(4, "workstation", &["--clock", "real", "--ticks", "75"]);
+    let (controller, ours, _) = controller(4, "workstation", &["--clock", "real", "--ticks", "250"]);
     let scratch = controller.scratch.as_ref().expect("it has one");
     let (guessed, _) = secret(scratch, "guessed", "the key under the second flower pot");
     let told = controller.try_connect(Role::Workstation, Some(&guessed)).err().expect("he is not let in");
@@ -172,7 +176,7 @@ fn who_does_not_know_the_secret_is_not_let_in_and_is_logged() {
 /// A neighbour with nothing but Zenoh: what it says once more is refused, and what it leaves out ends its connection.
 #[test]
 fn frames_count_once_and_none_is_left_out() {
-    let (controller, ours, _) = controller(10, "workstation", &["--clock", "real", "--ticks", "75"]);
+    let (controller, ours, _) = controller(10, "workstation", &["--clock", "real", "--ticks", "250"]);
     let session = stranger(10);
     let bytes: [u8; HELLO] = ask(&session, Vec::new()).try_into().expect("a challenge");
     let challenge = Challenge::from_bytes(bytes).expect("a challenge");

@@ -258,7 +258,7 @@ fn a_data_system_that_refuses_or_dawdles_hears_the_update_once() {
 fn without_a_data_system_startup_fails_and_the_robot_works() {
     let scratch = Scratch::new("absent");
     let outbox = scratch.file("outbox").display().to_string();
-    let more = ["--json", "--outbox", outbox.as_str(), "--wait", "1"];
+    let more = ["--json", "--outbox", outbox.as_str(), "--wait", "5"];
     let controller = Controller::start_at(scratch, None, "workstation,data-system", &more);
     let mut workstation = Workstation::connect(&controller);
     let outcome = workstation.carry_out(&bare(1, "STARTUP"));

@@ -257,7 +257,7 @@ fn a_pedestal_in_another_process_changes_not_a_bit() {
 
 #[test]
 fn whatever_becomes_of_the_pedestal_the_command_ends_and_nothing_is_dropped() {
-    let controller = Controller::start("fates", "workstation,pedestal", &["--json", "--wait", "1"]);
+    let controller = Controller::start("fates", "workstation,pedestal", &["--json", "--wait", "5"]);
     let mut shop = Shop::with_clevis(controller);
     // It was never there.
     assert_eq!(shop.fails(), SILENT);

@@ -19,13 +19,9 @@ use neighbours::{
         seal::SEAL,
     },
 };
-use rustix::process::geteuid;
-use whole_system_tests::{Scratch, rcs_neighbour};
+use whole_system_tests::{NOBODY, Scratch, may_become_nobody, rcs_neighbour};
 
 use crate::bench::{Controller, PATIENCE, bare, secret};
-
-/// A user who owns nothing, on every system.
-const NOBODY: u32 = 65_534;
 
 #[test]
 fn at_a_port_only_who_knows_the_secret_is_let_in() {
@@ -50,7 +46,7 @@ fn at_a_port_only_who_knows_the_secret_is_let_in() {
 fn a_frame_that_another_has_put_on_the_line_moves_nothing() {
     let scratch = Scratch::new("forged");
     let (ours, file) = secret(&scratch, "ours", "the key under the third flower pot");
-    let more = ["--clock", "real", "--secret", file.as_str(), "--ticks", "50"];
+    let more = ["--clock", "real", "--secret", file.as_str(), "--ticks", "250"];
     let controller = Controller::start_at(scratch, Some("tcp:127.0.0.1:0"), "workstation", &more);
     let Address::Tcp(port) = controller.address else { panic!("a port was asked for") };
     let mut line = TcpStream::connect(port).expect("it waits");
@@ -127,12 +123,14 @@ fn there_is_one_workstation_controller() {
 /// Needs the right to become another user; without it nothing can be tried.
 #[test]
 fn at_a_socket_only_the_same_user_is_let_in() {
-    if !geteuid().is_root() {
-        eprintln!("not root: no other user to try");
+    let scratch = Scratch::new("socket");
+    if !may_become_nobody(&scratch.file("")) {
+        eprintln!("no right to become another user: none to try");
         return;
     }
     let built = rcs_neighbour();
-    let controller = Controller::start("socket", "workstation", &["--clock", "real", "--ticks", "25"]);
+    let more = ["--clock", "real", "--ticks", "25"];
+    let controller = Controller::start_at(scratch, None, "workstation", &more);
     let Address::Unix(socket) = &controller.address else { panic!("a socket was asked for") };
     // The program where anybody can start it, and data that anybody can read.
     let program = controller.file("rcs-neighbour");

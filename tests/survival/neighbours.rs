@@ -2,13 +2,9 @@
 
 use std::{fs, os::unix::process::CommandExt, process::Stdio};
 
-use rustix::process::geteuid;
-use whole_system_tests::{Scratch, rcs_run};
+use whole_system_tests::{NOBODY, Scratch, may_become_nobody, rcs_run};
 
 use crate::bench::{Ended, ONE_AT_A_TIME, Running, assert_cleaned, rcs, traces, wait_for};
-
-/// A user who owns nothing, on every system.
-const NOBODY: u32 = 65_534;
 
 #[test]
 fn two_runs_side_by_side_do_not_meet() {
@@ -31,12 +27,12 @@ fn two_runs_side_by_side_do_not_meet() {
 /// Needs the right to become another user; without it nothing can be tried.
 #[test]
 fn another_user_runs_beside_and_after_the_first() {
-    if !geteuid().is_root() {
-        eprintln!("not root: no other user to try");
+    let scratch = Scratch::new("users");
+    if !may_become_nobody(&scratch.file("")) {
+        eprintln!("no right to become another user: none to try");
         return;
     }
     let _alone = ONE_AT_A_TIME.lock();
-    let scratch = Scratch::new("users");
     let mut first = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(first.attach());
     // The program where anybody can start it: the target directory may be the owner's alone.

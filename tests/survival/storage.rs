@@ -42,12 +42,12 @@ fn without_shared_memory_nobody_looks_on_and_the_run_goes_on() {
     assert_goes_on(&ended, "nobody can look on, shared memory cannot be had: /dev/shm has 65536 bytes left");
     // Enough to begin with, and then taken by somebody else while the run goes on.
     let fills = "mount -t tmpfs -o size=8m tmpfs /dev/shm && \
-                 { (until ls /dev/shm/rcs-*data > /dev/null 2>&1; do sleep 0.1; done; sleep 1; \
-                    head -c 16M /dev/zero > /dev/shm/filler 2> /dev/null) & }";
-    let more = ["--clock", "real", "--ticks", "100", "--log", "none"];
+                 { (until ls /dev/shm/rcs-*data; do sleep 0.1; done; sleep 2; \
+                    head -c 16M /dev/zero > /dev/shm/filler) > /dev/null 2>&1 & }";
+    let more = ["--clock", "real", "--ticks", "150", "--log", "none"];
     let ended = apart(&scratch.file(""), fills, &more).expect("as before");
     ended.assert_shared();
-    assert_eq!((ended.number("ticks"), ended.number("allocations_after_start")), (100, 0));
+    assert_eq!((ended.number("ticks"), ended.number("allocations_after_start")), (150, 0));
 }
 
 #[test]
@@ -56,8 +56,8 @@ fn memory_that_is_taken_while_a_run_begins_is_missed_in_words() {
     let scratch = Scratch::new("race");
     // Enough to begin with, and taken by somebody else as soon as the first object is there.
     let fills = "mount -t tmpfs -o size=2200k tmpfs /dev/shm && \
-                 { (until ls /dev/shm/rcs-* > /dev/null 2>&1; do :; done; \
-                    head -c 4M /dev/zero > /dev/shm/filler 2> /dev/null) & }";
+                 { (i=0; until ls /dev/shm/rcs-* || [ $((i += 1)) -gt 3000 ]; do :; done; \
+                    head -c 4M /dev/zero > /dev/shm/filler) > /dev/null 2>&1 & }";
     for _ in 0..5 {
         let Some(ended) = apart(&scratch.file(""), fills, &["--ticks", "50", "--log", "none"]) else {
             eprintln!("no right to mount: a full /dev/shm cannot be tried");

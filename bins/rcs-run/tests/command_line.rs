@@ -8,6 +8,7 @@ use std::{
 };
 
 use executive::memory::{Attached, RunName};
+use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -301,8 +302,7 @@ fn an_interrupt_ends_the_run_in_order() {
         .spawn()
         .expect("the program starts");
     wait_for(|| executive_runs(child.id()) == 1);
-    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(killed.success());
+    kill_process(Pid::from_child(&child), Signal::INT).unwrap();
     let mut output = Output { status: child.wait().unwrap(), stdout: Vec::new(), stderr: Vec::new() };
     std::io::Read::read_to_end(&mut child.stdout.take().unwrap(), &mut output.stdout).unwrap();
     std::io::Read::read_to_end(&mut child.stderr.take().unwrap(), &mut output.stderr).unwrap();

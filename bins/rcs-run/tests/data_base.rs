@@ -88,8 +88,8 @@ fn what_was_told_survives_a_run_that_is_killed() {
     let mut run = place.command(&job, &[]).stdout(Stdio::null()).spawn().unwrap();
     for _ in 0..600 {
         thread::sleep(Duration::from_millis(100));
-        // The file is made by the run; until then there is nothing to ask.
-        if place.file("items.db").exists()
+        // The run makes the file and its tables, and then the journal; until then there is nothing to ask.
+        if place.file("items.db-wal").exists()
             && Store::open(&place.file("items.db"))
                 .is_ok_and(|store| !store.items().unwrap_or_default().is_empty())
         {

@@ -4,10 +4,11 @@ use std::{
     fs::{self, File},
     io::{ErrorKind, Read as _, Write as _},
     os::unix::fs::symlink,
+    panic::{self, AssertUnwindSafe},
     path::{Path, PathBuf},
     process::{Command, Output},
     sync::{
-        Arc,
+        Arc, Mutex,
         atomic::{AtomicBool, Ordering},
     },
     thread::{self, JoinHandle},
@@ -25,6 +26,7 @@ use rcs_core::{
 use rustix::{
     fs::OFlags,
     pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},
+    termios::{OptionalActions, tcgetattr, tcsetattr},
 };
 use serde_json::Value;
 use tempfile::TempDir;
@@ -46,6 +48,7 @@ impl Place {
         format!("serial:{}", self.port().display())
     }
 }
+
 /// A robot that is where it is told to be.
 struct Exact {
     joints: Joints,
@@ -82,6 +85,10 @@ impl Peer {
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
         grantpt(&master).unwrap();
         unlockpt(&master).unwrap();
+        // A cable has no echo: what is said before anybody opens the port would come back.
+        let mut settings = tcgetattr(&master).unwrap();
+        settings.make_raw();
+        tcsetattr(&master, OptionalActions::Now, &settings).unwrap();
         rustix::fs::fcntl_setfl(&master, OFlags::RDWR | OFlags::NONBLOCK).unwrap();
         let _ = fs::remove_file(link);
         symlink(ptsname(&master, Vec::new()).unwrap().into_string().unwrap(), link).unwrap();
@@ -182,105 +189,140 @@ fn linkbar(place: &Place, ticks: &str) -> (Output, Value) {
 }
 
 const PROMPT: Option<Duration> = Some(Duration::from_millis(2));
+/// How often a test on the 40 ms grid is begun. A machine that has other things to do may hold up a frame; what is wrong is wrong
+/// every time.
+const ATTEMPTS: u32 = 5;
+
+/// Try something on the 40 ms grid, with nothing else of this file beside it.
+fn on_the_grid(attempt: impl Fn()) {
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _alone = ONE_AT_A_TIME.lock();
+    let held_up = (1..ATTEMPTS).all(|_| panic::catch_unwind(AssertUnwindSafe(&attempt)).is_err());
+    if held_up {
+        attempt();
+    }
+}
 
 #[test]
 fn a_link_that_answers_is_good() {
-    let place = Place::new();
-    let peer = Peer::plug(&place.port(), PROMPT);
-    let (output, tally) = link_test(&place, "3");
-    assert_eq!(output.status.code(), Some(0), "{tally} {}", last_words(&output));
-    assert!(tally["sent"].as_u64().unwrap() > 40, "{tally}");
-    // A loaded machine may hold up a frame now and then; a link that loses more than a twentieth is not good.
-    let count = |what: &str| tally[what].as_u64().unwrap();
-    assert!(20 * (count("refused") + count("lost")) <= count("sent"), "{tally}");
-    assert!((1..=1 + count("lost")).contains(&count("starts")), "{tally}");
-    assert!(tally["ack_ms"]["min"].as_f64().unwrap() >= 2.0, "{tally}");
-    assert_eq!(peer.pull(), ControllerState::Running, "nothing was asked that the controller complains of");
+    on_the_grid(|| {
+        let place = Place::new();
+        let peer = Peer::plug(&place.port(), PROMPT);
+        let (output, tally) = link_test(&place, "3");
+        assert_eq!(output.status.code(), Some(0), "{tally} {}", last_words(&output));
+        assert!(tally["sent"].as_u64().unwrap() > 40, "{tally}");
+        assert_eq!(
+            (&tally["refused"], &tally["lost"], &tally["starts"]),
+            (&0.into(), &0.into(), &1.into()),
+            "{tally}"
+        );
+        assert!(tally["ack_ms"]["min"].as_f64().unwrap() >= 2.0, "{tally}");
+        assert_eq!(
+            peer.pull(),
+            ControllerState::Running,
+            "nothing was asked that the controller complains of"
+        );
+    });
 }
 
 #[test]
 fn the_dump_shows_every_frame() {
-    let place = Place::new();
-    let _peer = Peer::plug(&place.port(), PROMPT);
-    let output = rcs_run(&["link-test", "--robot", &place.robot(), "--seconds", "1", "--dump"]);
-    let text = String::from_utf8(output.stdout).unwrap();
-    let lines = |end: &str| text.lines().filter(|line| line.ends_with(end)).count();
-    assert!(text.contains("< FF FF 03 00 00 E7 6B") && lines("report") >= 1, "{text}");
-    assert!(text.contains("> 03 00 00 00 00 E7 6B"), "the reported position is held: {text}");
-    assert!(lines("data") > 10 && lines("ACK") >= lines("data") - 1, "{text}");
+    on_the_grid(|| {
+        let place = Place::new();
+        let _peer = Peer::plug(&place.port(), PROMPT);
+        let output = rcs_run(&["link-test", "--robot", &place.robot(), "--seconds", "2", "--dump"]);
+        let text = String::from_utf8(output.stdout).unwrap();
+        let lines = |end: &str| text.lines().filter(|line| line.ends_with(end)).count();
+        assert!(text.contains("< FF FF 03 00 00 E7 6B") && lines("report") >= 1, "{text}");
+        assert!(text.contains("> 03 00 00 00 00 E7 6B"), "the reported position is held: {text}");
+        assert!(lines("data") > 10 && lines("ACK") >= lines("data") - 1, "{text}");
+    });
 }
 
 #[test]
 fn a_link_that_is_late_is_not_usable() {
-    let place = Place::new();
-    let _peer = Peer::plug(&place.port(), Some(Duration::from_millis(60)));
-    let (output, tally) = link_test(&place, "2");
-    assert_eq!((output.status.code(), &tally["verdict"]), (Some(1), &"not-usable".into()), "{tally}");
-    assert!(tally["acknowledged"].as_u64().unwrap() > 5 && tally["in_time"] == 0, "{tally}");
-    assert!(last_words(&output).contains("not usable"), "{}", last_words(&output));
+    on_the_grid(|| {
+        let place = Place::new();
+        let _peer = Peer::plug(&place.port(), Some(Duration::from_millis(60)));
+        let (output, tally) = link_test(&place, "2");
+        assert_eq!((output.status.code(), &tally["verdict"]), (Some(1), &"not-usable".into()), "{tally}");
+        assert!(tally["acknowledged"].as_u64().unwrap() > 5 && tally["in_time"] == 0, "{tally}");
+        assert!(last_words(&output).contains("not usable"), "{}", last_words(&output));
+    });
 }
 
 #[test]
 fn nobody_at_the_port_is_no_link() {
-    let place = Place::new();
-    let _peer = Peer::plug(&place.port(), None);
-    let (output, tally) = link_test(&place, "1");
-    assert_eq!((output.status.code(), &tally["verdict"]), (Some(3), &"no-link".into()), "{tally}");
-    assert!(last_words(&output).contains("has not reported"), "{}", last_words(&output));
-    let absent = rcs_run(&["link-test", "--robot", "serial:/dev/none"]);
-    assert_eq!(absent.status.code(), Some(3));
-    assert!(last_words(&absent).contains("no serial port /dev/none"), "{}", last_words(&absent));
+    on_the_grid(|| {
+        let place = Place::new();
+        let _peer = Peer::plug(&place.port(), None);
+        let (output, tally) = link_test(&place, "1");
+        assert_eq!((output.status.code(), &tally["verdict"]), (Some(3), &"no-link".into()), "{tally}");
+        assert!(last_words(&output).contains("has not reported"), "{}", last_words(&output));
+        let absent = rcs_run(&["link-test", "--robot", "serial:/dev/none"]);
+        assert_eq!(absent.status.code(), Some(3));
+        assert!(last_words(&absent).contains("no serial port /dev/none"), "{}", last_words(&absent));
+    });
 }
 
 #[test]
 fn a_port_that_is_unplugged_comes_back() {
-    let place = Place::new();
-    let first = Peer::plug(&place.port(), PROMPT);
-    let link = place.port();
-    let hands = thread::spawn(move || {
-        thread::sleep(Duration::from_millis(1500));
-        first.pull();
-        thread::sleep(Duration::from_millis(300));
-        // Meanwhile the arm was led elsewhere: the old position would be a leap of 2 in, and a warning.
-        Peer::plug_raised(&link, PROMPT, 200)
+    on_the_grid(|| {
+        let place = Place::new();
+        let first = Peer::plug(&place.port(), PROMPT);
+        let link = place.port();
+        let hands = thread::spawn(move || {
+            thread::sleep(Duration::from_millis(1500));
+            first.pull();
+            thread::sleep(Duration::from_millis(300));
+            // Meanwhile the arm was led elsewhere: the old position would be a leap of 2 in, and a warning.
+            Peer::plug_raised(&link, PROMPT, 200)
+        });
+        let (output, tally) = link_test(&place, "6");
+        assert_eq!(output.status.code(), Some(0), "{tally} {}", last_words(&output));
+        assert_eq!((&tally["port_lost"], &tally["starts"]), (&1.into(), &2.into()), "{tally}");
+        assert!(tally["lost"].as_u64().unwrap() <= 1, "{tally}");
+        assert_eq!(hands.join().unwrap().pull(), ControllerState::Running, "it was not asked to jump back");
     });
-    let (output, tally) = link_test(&place, "6");
-    assert_eq!(output.status.code(), Some(0), "{tally} {}", last_words(&output));
-    assert_eq!((&tally["port_lost"], &tally["starts"]), (&1.into(), &2.into()), "{tally}");
-    assert!(tally["lost"].as_u64().unwrap() <= 1, "{tally}");
-    assert_eq!(hands.join().unwrap().pull(), ControllerState::Running, "it was not asked to jump back");
 }
 
 #[test]
 fn the_linkbar_begins_over_a_port_in_real_time() {
-    let place = Place::new();
-    let peer = Peer::plug(&place.port(), PROMPT);
-    let (output, result) = linkbar(&place, "250");
-    assert_eq!(output.status.code(), Some(0), "{}", last_words(&output));
-    let link = &result["link"];
-    assert!(link["frames"].as_u64().unwrap() > 200, "{link}");
-    assert_eq!((&link["naks"], &link["checksum_errors"]), (&0.into(), &0.into()), "{link}");
-    assert_eq!(result["allocations_after_start"], 0);
-    assert_eq!(result["commands"][0]["status"], "finished", "{result}");
-    assert!(result["port"]["sent"].as_u64().unwrap() > 200 * 16, "{result}");
-    assert_eq!(peer.pull(), ControllerState::Running, "no velocity or joint limit was touched");
+    on_the_grid(|| {
+        let place = Place::new();
+        let peer = Peer::plug(&place.port(), PROMPT);
+        let (output, result) = linkbar(&place, "250");
+        assert_eq!(output.status.code(), Some(0), "{}", last_words(&output));
+        let link = &result["link"];
+        assert!(link["frames"].as_u64().unwrap() > 200, "{link}");
+        assert_eq!((&link["naks"], &link["checksum_errors"]), (&0.into(), &0.into()), "{link}");
+        assert_eq!(result["allocations_after_start"], 0);
+        assert_eq!(result["commands"][0]["status"], "finished", "{result}");
+        assert!(result["port"]["sent"].as_u64().unwrap() > 200 * 16, "{result}");
+        assert_eq!(peer.pull(), ControllerState::Running, "no velocity or joint limit was touched");
+    });
 }
 
 #[test]
 fn a_pulled_cable_ends_the_run_with_its_reason() {
-    let place = Place::new();
-    let peer = Peer::plug(&place.port(), PROMPT);
-    let hands = thread::spawn(move || {
-        thread::sleep(Duration::from_secs(4));
-        peer.pull()
+    on_the_grid(|| {
+        let place = Place::new();
+        let peer = Peer::plug(&place.port(), PROMPT);
+        let hands = thread::spawn(move || {
+            thread::sleep(Duration::from_secs(6));
+            peer.pull()
+        });
+        let (output, result) = linkbar(&place, "400");
+        assert_eq!(hands.join().unwrap(), ControllerState::Running);
+        assert_eq!(output.status.code(), Some(3), "{result}");
+        let words = last_words(&output);
+        assert!(
+            words.contains("has disappeared; T3 Interface") && words.contains("not responding"),
+            "{words}"
+        );
+        assert_eq!(result["port"]["losses"], 1, "{result}");
+        assert_eq!(result["allocations_after_start"], 0);
     });
-    let (output, result) = linkbar(&place, "400");
-    assert_eq!(hands.join().unwrap(), ControllerState::Running);
-    assert_eq!(output.status.code(), Some(3), "{result}");
-    let words = last_words(&output);
-    assert!(words.contains("has disappeared; T3 Interface") && words.contains("not responding"), "{words}");
-    assert_eq!(result["port"]["losses"], 1, "{result}");
-    assert_eq!(result["allocations_after_start"], 0);
 }
 
 #[test]

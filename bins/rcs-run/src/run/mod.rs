@@ -144,10 +144,11 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     };
     // Ends before the run does: it looks on as any reader.
     let mirror = run.runner.publisher().and_then(mirror);
+    // The 40 ms grid begins with the clock: what comes before the first tick counts.
+    let started = Instant::now();
     if arguments.clock == ClockKind::Real {
         run.ask_for_real_time(arguments.cpu);
     }
-    let started = Instant::now();
     let ending = run.play(Generations::new(store), &job.reloads, arguments, &interrupted);
     let wall_s = started.elapsed().as_secs_f64();
     let ending = ending.judged(&run.judge);

@@ -13,7 +13,7 @@
 
 use std::path::{Path, PathBuf};
 
-use rusqlite::{Connection, OptionalExtension as _, Row, params};
+use rusqlite::{Connection, OptionalExtension as _, Row, TransactionBehavior, params};
 
 /// Marks a file as one of ours: "RCS2".
 const APPLICATION_ID: i32 = 0x5243_5332;
@@ -195,7 +195,13 @@ impl Store {
             if application != 0 || objects != 0 {
                 return Err(StoreError::Foreign { file: file.to_owned() });
             }
-            let transaction = connection.transaction().map_err(failed)?;
+            let transaction =
+                connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(failed)?;
+            if number(&transaction, "application_id")? == APPLICATION_ID {
+                // Somebody else who found it empty was faster.
+                transaction.commit().map_err(failed)?;
+                return Self::with_tables(connection, file);
+            }
             transaction.execute_batch(TABLES).map_err(failed)?;
             transaction.execute_batch(CLIENTS).map_err(failed)?;
             transaction.pragma_update(None, "application_id", APPLICATION_ID).map_err(failed)?;
@@ -203,9 +209,9 @@ impl Store {
             transaction.commit().map_err(failed)?;
         }
         connection.pragma_update(None, "foreign_keys", true).map_err(failed)?;
-        // With a journal ahead of the file nobody who reads holds up a report, and a killed program loses none.
+        // With a journal ahead of the file nobody who reads holds up a report; what was answered survives a power cut.
         connection.pragma_update(None, "journal_mode", "wal").map_err(failed)?;
-        connection.pragma_update(None, "synchronous", "normal").map_err(failed)?;
+        connection.pragma_update(None, "synchronous", "full").map_err(failed)?;
         Ok(Self { connection })
     }
 
