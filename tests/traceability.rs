@@ -3,6 +3,7 @@
 
 use std::{
     collections::{BTreeMap, BTreeSet},
+    fmt::Write as _,
     fs,
     path::{Path, PathBuf},
 };
@@ -10,7 +11,7 @@ use std::{
 use levels::task::plan::TaskVerb;
 use neighbours::{mailbox::TABLE, network::Role};
 use rcs_core::{
-    interface::{CommonMemory, ExternalInputs},
+    interface::{CommonMemory, ExternalInputs, Reason},
     record::{EnumSchema, Field, RecordSchema, Schema},
 };
 use whole_system_tests::root;
@@ -297,4 +298,16 @@ fn the_figures_are_right_and_the_sections_are_those_of_the_interfaces() {
         let chapters = ["V.", "VI.", "IX.2"];
         assert!(chapters.iter().any(|c| line.section.starts_with(c)), "{}: {}", line.name, line.section);
     }
+}
+
+/// docs/reasons.md: whoever reads a code from a mailbox finds there what it means.
+#[test]
+fn every_reason_is_on_its_page() {
+    let mut rows = String::new();
+    for reason in Reason::ALL.iter().filter(|reason| **reason != Reason::None) {
+        writeln!(rows, "| {} | {} |", reason.code(), reason.text()).expect("a string has room");
+    }
+    let page = fs::read_to_string(root().join("docs/reasons.md")).expect("the page is there");
+    let found = page.split_once("|---|---|\n").expect("it has a table").1;
+    assert!(found == rows, "docs/reasons.md must have these rows:\n{rows}");
 }

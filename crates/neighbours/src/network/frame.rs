@@ -105,10 +105,15 @@ impl Frame {
     }
 
     /// The tick of a pulse; `None` if it is none.
-    #[must_use]
-    pub fn as_pulse(&self) -> Option<u64> {
-        let tick = self.data().try_into().map(u64::from_le_bytes).ok();
-        tick.filter(|_| self.address() == PULSE)
+    ///
+    /// # Errors
+    /// [`FrameError::Pulse`] if its data are no number of a tick.
+    pub fn as_pulse(&self) -> Result<Option<u64>, FrameError> {
+        if self.address() != PULSE {
+            return Ok(None);
+        }
+        let number = self.data().try_into().map_err(|_| FrameError::Pulse(self.data().len()))?;
+        Ok(Some(u64::from_le_bytes(number)))
     }
 
     /// Read a frame from bytes that hold one and nothing else.
@@ -154,6 +159,9 @@ pub enum FrameError {
         /// The length.
         found: u16,
     },
+    /// A pulse without the number of a tick.
+    #[error("the number of a tick was expected in a pulse, 8 bytes, found {0}")]
+    Pulse(usize),
     /// An address that is none of the sender's mailboxes.
     #[error("the address of {} was expected, found {found:05X}", names(.expected))]
     Address {
@@ -205,8 +213,10 @@ mod tests {
     fn a_pulse_has_the_number_of_its_tick() {
         let frame = Frame::pulse(0x0102);
         assert_eq!(frame.bytes(), [0, 0, 0, 0, 16, 0, 0, 0, 0, 0, 0, 0, 2, 1, 0, 0, 0, 0, 0, 0]);
-        assert_eq!(frame.as_pulse(), Some(0x0102));
-        assert_eq!(Frame::last_words("12345678").as_pulse(), None);
+        assert_eq!(frame.as_pulse().unwrap(), Some(0x0102));
+        assert_eq!(Frame::last_words("12345678").as_pulse().unwrap(), None);
+        let short = Frame::other(PULSE, &[1; 5]).as_pulse().unwrap_err();
+        assert_eq!(short.to_string(), "the number of a tick was expected in a pulse, 8 bytes, found 5");
     }
 
     #[test]

@@ -39,6 +39,9 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// In fast clock nothing stands still but the run, and a machine may be busy with other things.
 const FAST_PATIENCE: Duration = Duration::from_secs(60);
 
+/// What is said to those for whom there is no place at the door.
+pub(super) const CROWDED: &str = "too many connect at once";
+
 /// Why nobody can connect.
 #[derive(Debug, thiserror::Error)]
 pub enum ListenError {
@@ -229,10 +232,24 @@ fn listen(socket: &Socket, over: &AtomicBool, reception: &Arc<Reception>) {
         let reception = Arc::clone(reception);
         if let Ok(Some(ticket)) = reception.door.enter(&stream) {
             thread::spawn(move || receive(stream, &reception, ticket));
-        } else if crowded.is_none_or(|since| since.elapsed() >= door::SAFE) {
-            crowded = Some(Instant::now());
-            reception.tell(News::Refused("too many connect at once".to_owned()));
+        } else {
+            send_away(stream, reception.clock);
+            if crowded.is_none_or(|since| since.elapsed() >= door::SAFE) {
+                crowded = Some(Instant::now());
+                reception.tell(News::Refused(CROWDED.to_owned()));
+            }
         }
+    }
+}
+
+/// Say that there is no place. What is new holds so many bytes, so nobody is waited for.
+fn send_away(mut stream: Stream, clock: ClockKind) {
+    if let Ok(challenge) = Challenge::new(clock)
+        && io::Write::write_all(&mut stream, challenge.bytes()).is_ok()
+    {
+        let mut sender = Sender::new(stream);
+        // He may be gone already.
+        let _ = sender.send(&Frame::last_words(CROWDED));
     }
 }
 
@@ -250,7 +267,10 @@ impl Reception {
         let challenge = Challenge::new(self.clock).map_err(|error| said(&error))?;
         io::Write::write_all(stream, challenge.bytes()).map_err(|error| said(&error))?;
         let mut answer = [0; ANSWER];
-        io::Read::read_exact(stream, &mut answer).map_err(|error| format!("no hello: {error}"))?;
+        io::Read::read_exact(stream, &mut answer).map_err(|error| match error {
+            error if is_timeout(&error) => format!("no hello within {} s", patience(self.clock).as_secs()),
+            error => format!("no hello: {error}"),
+        })?;
         if let Stream::Unix(socket) = stream {
             let peer = sockopt::socket_peercred(socket).map_err(|error| said(&error))?;
             if peer.uid != geteuid() {
@@ -278,7 +298,11 @@ fn receive(mut stream: Stream, reception: &Reception, ticket: u64) {
             drop(place);
             let mut receiver = Receiver::new(stream);
             receiver.seal(agreement.as_ref().map(Agreement::up));
-            counter.detach(read(&mut receiver, counter));
+            let (limit, clerk) = (patience(reception.clock), counter.clone());
+            counter.detach(match receiver.wait_until(move || clerk.is_late(limit)) {
+                Ok(()) => read(&mut receiver, counter, limit),
+                Err(error) => error.to_string(),
+            });
         }
         Err(why) => {
             reception.tell(News::Refused(why));
@@ -310,19 +334,20 @@ fn admit<'a>(
 }
 
 /// Read until the connection ends; why it did.
-fn read(receiver: &mut Receiver, counter: &Counter) -> String {
+fn read(receiver: &mut Receiver, counter: &Counter, limit: Duration) -> String {
+    let silent = || format!("no answer for {} s", limit.as_secs());
     loop {
         match receiver.receive() {
             Ok(frame) => {
                 if let Err(error) = counter.deliver(&frame) {
                     return error.to_string();
                 }
+                // He may talk without end, and answer nothing.
+                if counter.is_late(limit) {
+                    return silent();
+                }
             }
-            // Between two frames there may be silence as long as nobody waits for an answer.
-            Err(FrameError::Stream(error)) if is_timeout(&error) && !counter.is_waited_for() => {}
-            Err(FrameError::Stream(error)) if is_timeout(&error) => {
-                return format!("no answer for {} s", patience(counter.clock()).as_secs());
-            }
+            Err(FrameError::Stream(error)) if is_timeout(&error) => return silent(),
             Err(FrameError::Stream(error)) if error.kind() == io::ErrorKind::UnexpectedEof => {
                 return "the connection was closed".to_owned();
             }
@@ -334,7 +359,7 @@ fn read(receiver: &mut Receiver, counter: &Counter) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::{Peer, Role};
+    use crate::network::{Peer, Role, hello::HELLO};
 
     #[test]
     fn a_socket_that_was_left_behind_is_taken_over_and_no_other_file_is() {
@@ -351,6 +376,16 @@ mod tests {
         let refused = Listener::start(&Address::Unix(file.clone()), None, [&desk]);
         assert!(matches!(refused, Err(ListenError::Address { .. })));
         assert_eq!(fs::read_to_string(file).unwrap(), "not to be lost");
+    }
+
+    #[test]
+    fn for_whom_there_is_no_place_is_told_so() {
+        let (ours, mut theirs) = std::os::unix::net::UnixStream::pair().unwrap();
+        send_away(Stream::Unix(ours), ClockKind::Real);
+        let mut bytes = [0; HELLO];
+        io::Read::read_exact(&mut theirs, &mut bytes).unwrap();
+        assert!(Challenge::from_bytes(bytes).is_ok());
+        assert_eq!(Frame::read(&mut theirs).unwrap(), Frame::last_words(CROWDED));
     }
 
     #[test]

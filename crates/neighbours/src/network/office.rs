@@ -16,7 +16,7 @@ use std::{
         mpsc::{Receiver, Sender, channel},
     },
     thread::{self, JoinHandle},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use super::{
@@ -76,11 +76,20 @@ struct Shared {
     connection: AtomicU32,
     /// The last tick that was run.
     pulse: AtomicU64,
-    /// The last pulse that came back. Behind a lock, since a tick may wait for it.
-    answered: Mutex<u64>,
+    /// What came back of the pulses. Behind a lock, since a tick may wait for it.
+    answered: Mutex<Answered>,
     news_of_answer: Condvar,
     outlet: Mutex<Option<Box<dyn Outlet>>>,
     over: AtomicBool,
+}
+
+/// What came back of the pulses.
+#[derive(Clone, Copy)]
+struct Answered {
+    /// The last one.
+    tick: u64,
+    /// When it came, or when the one behind it was sent: since then an answer has been due.
+    due: Instant,
 }
 
 /// A panic in another thread is reported where it happened; what is behind the locks of the network is whole whatever happens.
@@ -124,7 +133,7 @@ impl Desk {
             incoming: incoming.iter().cloned().map(Mutex::new).collect(),
             connection: AtomicU32::new(0),
             pulse: AtomicU64::new(0),
-            answered: Mutex::new(0),
+            answered: Mutex::new(Answered { tick: 0, due: Instant::now() }),
             news_of_answer: Condvar::new(),
             outlet: Mutex::new(None),
             over: AtomicBool::new(false),
@@ -222,10 +231,10 @@ impl Desk {
     /// silent.
     fn wait(&self, tick: u64, connection: u32) -> bool {
         let mut answered = locked(&self.shared.answered);
-        while *answered < tick && self.shared.connection.load(Ordering::Acquire) == connection {
+        while answered.tick < tick && self.shared.connection.load(Ordering::Acquire) == connection {
             answered = self.shared.news_of_answer.wait(answered).unwrap_or_else(PoisonError::into_inner);
         }
-        *answered >= tick
+        answered.tick >= tick
     }
 }
 
@@ -272,8 +281,9 @@ fn carry(shared: &Shared) {
         let tick = shared.pulse.load(Ordering::Acquire);
         let mut outlet = locked(&shared.outlet);
         let Some(line) = outlet.as_mut() else { continue };
-        let sending = send_new(shared, &mut sent, line.as_mut())
-            .and_then(|()| if tick == pulse { Ok(()) } else { line.send(&Frame::pulse(tick)) });
+        let sending = send_new(shared, &mut sent, line.as_mut()).and_then(|()| {
+            if tick == pulse { Ok(()) } else { send_pulse(shared, pulse, tick, line.as_mut()) }
+        });
         pulse = tick;
         if sending.is_err() {
             line.close();
@@ -284,6 +294,16 @@ fn carry(shared: &Shared) {
         let _ = line.send(&Frame::last_words(OVER));
         line.close();
     }
+}
+
+/// Send a pulse behind the one before. Whoever has answered that one has his whole time for this one.
+fn send_pulse(shared: &Shared, before: u64, tick: u64, line: &mut dyn Outlet) -> io::Result<()> {
+    let mut answered = locked(&shared.answered);
+    if answered.tick >= before {
+        answered.due = Instant::now();
+    }
+    drop(answered);
+    line.send(&Frame::pulse(tick))
 }
 
 fn send_new(shared: &Shared, sent: &mut [Mailbox], line: &mut dyn Outlet) -> io::Result<()> {
@@ -373,7 +393,7 @@ impl Counter {
         *line = Some(outlet);
         let number = self.numbers.fetch_add(1, Ordering::Relaxed).wrapping_add(1).max(1);
         let mut answered = locked(&self.shared.answered);
-        *answered = 0;
+        *answered = Answered { tick: 0, due: Instant::now() };
         self.shared.connection.store(number, Ordering::Release);
         self.shared.news_of_answer.notify_all();
         drop(answered);
@@ -395,10 +415,11 @@ impl Counter {
         self.tell(News::Gone(self.shared.role, why));
     }
 
-    /// A pulse was sent and has not come back.
+    /// Pulses were sent, and for so long none has come back.
     #[must_use]
-    pub fn is_waited_for(&self) -> bool {
-        *locked(&self.shared.answered) < self.shared.pulse.load(Ordering::Acquire)
+    pub fn is_late(&self, limit: Duration) -> bool {
+        let Answered { tick, due } = *locked(&self.shared.answered);
+        tick < self.shared.pulse.load(Ordering::Acquire) && due.elapsed() >= limit
     }
 
     /// A frame has come from the neighbour.
@@ -406,8 +427,16 @@ impl Counter {
     /// # Errors
     /// [`DeliveryError`] if it is none of his.
     pub fn deliver(&self, frame: &Frame) -> Result<(), DeliveryError> {
-        if let Some(tick) = frame.as_pulse() {
-            *locked(&self.shared.answered) = tick;
+        if let Some(tick) = frame.as_pulse()? {
+            let sent = self.shared.pulse.load(Ordering::Acquire);
+            if tick > sent {
+                return Err(DeliveryError::Early { sent, found: tick });
+            }
+            let mut answered = locked(&self.shared.answered);
+            if tick > answered.tick {
+                *answered = Answered { tick, due: Instant::now() };
+            }
+            drop(answered);
             self.shared.news_of_answer.notify_all();
             return Ok(());
         }
@@ -426,6 +455,14 @@ pub enum DeliveryError {
     /// It is for no mailbox of his.
     #[error(transparent)]
     Frame(#[from] FrameError),
+    /// It answers a pulse that was never sent.
+    #[error("an answer to a pulse up to {sent} was expected, found one to {found}")]
+    Early {
+        /// The last one that was sent.
+        sent: u64,
+        /// The number of the answer.
+        found: u64,
+    },
     /// The mailbox cannot hold it.
     #[error(transparent)]
     Mailbox(#[from] crate::mailbox::MailboxError),

@@ -16,6 +16,7 @@ use super::{
     Address, Role, Secret,
     frame::{Frame, FrameError, LAST_WORDS, WELCOME},
     hello::{Agreement, Challenge, ClockKind, HELLO, HelloError, check_welcome},
+    listener::CROWDED,
     office::{OVER, Outlet},
     stream::{Receiver, Sender, Stream, is_timeout},
 };
@@ -76,7 +77,7 @@ impl PeerError {
         match self {
             Self::Line { .. } | Self::Silent | Self::Closed => true,
             Self::Frame(FrameError::Stream(_) | FrameError::Number(_)) => true,
-            Self::LastWords(text) => text == OVER,
+            Self::LastWords(text) => [OVER, CROWDED].contains(&text.as_str()),
             _ => false,
         }
     }
@@ -189,7 +190,7 @@ impl Peer {
     /// [`PeerError`] if the connection ends.
     pub fn receive(&mut self) -> Result<Received, PeerError> {
         let frame = receive(self.receiver.as_mut())?;
-        if let Some(tick) = frame.as_pulse() {
+        if let Some(tick) = frame.as_pulse()? {
             return Ok(Received::Pulse(tick));
         }
         let expected = self.role.from_controller();
@@ -235,10 +236,15 @@ fn over_socket(address: &Address, role: Role, secret: Option<&Secret>) -> Result
     io::Read::read_exact(&mut stream, &mut bytes).map_err(failed)?;
     let challenge = Challenge::from_bytes(bytes).map_err(mistrusted)?;
     let (answer, agreement) = challenge.answer(role, secret).map_err(failed)?;
-    io::Write::write_all(&mut stream, &answer).map_err(failed)?;
+    let answered = io::Write::write_all(&mut stream, &answer);
     let mut sender = Sender::new(stream.try_clone().map_err(failed)?);
     let mut receiver = Receiver::new(stream.try_clone().map_err(failed)?);
-    let welcome = receive(&mut receiver)?;
+    // Who is not let in may be told why before he has answered.
+    let welcome = match (receive(&mut receiver), answered) {
+        (Err(PeerError::LastWords(why)), _) => return Err(PeerError::LastWords(why)),
+        (_, Err(error)) => return Err(failed(error)),
+        (welcome, Ok(())) => welcome?,
+    };
     if welcome.address() != WELCOME {
         return Err(mistrusted(HelloError::Impostor));
     }
@@ -264,5 +270,7 @@ fn receive(receiver: &mut dyn Inlet) -> Result<Frame, PeerError> {
 
 /// Why the controller ends the connection.
 pub(super) fn last_words(frame: &Frame) -> PeerError {
-    PeerError::LastWords(String::from_utf8_lossy(frame.data()).into_owned())
+    let text = String::from_utf8_lossy(frame.data());
+    // They may end on a terminal, which obeys some characters.
+    PeerError::LastWords(text.replace(char::is_control, "?"))
 }

@@ -14,6 +14,9 @@ use super::{
     seal::{SEAL, Seal},
 };
 
+/// How often whoever reads asks whether the silence is too long.
+const ROUND: Duration = Duration::from_secs(1);
+
 /// A connected socket.
 pub(super) enum Stream {
     Unix(UnixStream),
@@ -30,16 +33,21 @@ impl Stream {
 
     /// How long reading and writing may take. Mailgrams are short, and are not kept back to be sent together.
     pub fn prepare(&self, limit: Duration) -> io::Result<()> {
+        self.read_within(limit)?;
         match self {
-            Self::Unix(stream) => {
-                stream.set_read_timeout(Some(limit))?;
-                stream.set_write_timeout(Some(limit))
-            }
+            Self::Unix(stream) => stream.set_write_timeout(Some(limit)),
             Self::Tcp(stream) => {
                 stream.set_nodelay(true)?;
-                stream.set_read_timeout(Some(limit))?;
                 stream.set_write_timeout(Some(limit))
             }
+        }
+    }
+
+    /// How long reading may take.
+    fn read_within(&self, limit: Duration) -> io::Result<()> {
+        match self {
+            Self::Unix(stream) => stream.set_read_timeout(Some(limit)),
+            Self::Tcp(stream) => stream.set_read_timeout(Some(limit)),
         }
     }
 
@@ -133,26 +141,52 @@ impl Outlet for Sender {
 pub(super) struct Receiver {
     stream: Stream,
     seal: Option<Seal>,
+    /// Asked when nothing has come within the time that reading may take: whether that is too long.
+    is_late: Box<dyn Fn() -> bool + Send>,
+}
+
+/// A stream that is read as long as its silence is not too long. What has come of a frame is not lost meanwhile.
+struct Patient<'a> {
+    stream: &'a mut Stream,
+    is_late: &'a dyn Fn() -> bool,
+}
+
+impl Read for Patient<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        loop {
+            match self.stream.read(bytes) {
+                Err(error) if is_timeout(&error) && !(self.is_late)() => {}
+                read => return read,
+            }
+        }
+    }
 }
 
 impl Receiver {
-    /// Frames without a seal, until there is one.
-    pub const fn new(stream: Stream) -> Self {
-        Self { stream, seal: None }
+    /// Frames without a seal, until there is one; any silence is too long.
+    pub fn new(stream: Stream) -> Self {
+        Self { stream, seal: None, is_late: Box::new(|| true) }
     }
 
     /// From here on frames have a seal.
     pub fn seal(&mut self, seal: Option<Seal>) {
         self.seal = seal;
     }
+
+    /// From here on silence is too long if somebody says so, who is asked now and then.
+    pub fn wait_until(&mut self, is_late: impl Fn() -> bool + Send + 'static) -> io::Result<()> {
+        self.is_late = Box::new(is_late);
+        self.stream.read_within(ROUND)
+    }
 }
 
 impl Inlet for Receiver {
     fn receive(&mut self) -> Result<Frame, FrameError> {
-        let frame = Frame::read(&mut self.stream)?;
+        let mut stream = Patient { stream: &mut self.stream, is_late: &self.is_late };
+        let frame = Frame::read(&mut stream)?;
         if let Some(seal) = &mut self.seal {
             let mut bytes = [0; SEAL];
-            self.stream.read_exact(&mut bytes)?;
+            stream.read_exact(&mut bytes)?;
             seal.open(frame.bytes(), &bytes)?;
         }
         Ok(frame)

@@ -53,6 +53,9 @@ pub enum LayoutError {
         /// Bytes found.
         found: usize,
     },
+    /// Somebody has a command and none.
+    #[error("executing, done, can't-do or error was expected for the command {0}, found idle")]
+    Idle(u32),
     /// A field that cannot be.
     #[error(transparent)]
     Field(#[from] FieldError),

@@ -4,7 +4,7 @@
 //!   at  bytes  variable          holds
 //!    0    8    cycle-cnt-echo    cycle-cnt of the command that is echoed
 //!    8    4    incr-cmnd#-echo   the number that `status` belongs to
-//!   12   10    status            executing, done, can't-do, error; extension: idle
+//!   12   10    status            executing, done, can't-do, error; extension: idle, for the number 0 alone
 //!   22    4    status-code       extension: code of why the command failed, 0 if it did not
 //!   26    4    grip-size         0.01 in
 //!   30    4    grip-force        lb
@@ -99,6 +99,9 @@ impl<'a> Status<'a> {
             grip_force: fields.long_integer("grip-force")?,
             table_position: fields.long_integer("table-position")?,
         };
+        if status.report == PedestalReport::Idle && status.echo != 0 {
+            return Err(LayoutError::Idle(status.echo));
+        }
         let header = take_row(&mut fields)?;
         let (mailgram_echo, verdict) = (fields.word("mailgram-echo")?, fields.byte("verdict")?);
         Ok(Self {

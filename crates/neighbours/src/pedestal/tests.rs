@@ -168,6 +168,12 @@ fn what_is_no_layout_is_said() {
     let mut bytes = Status::default().encode();
     bytes[22..24].copy_from_slice(&[0xFF, 1]);
     assert_eq!(said(Status::decode(&bytes).unwrap_err()), "511 is no code of status-code");
+    let idle = PedestalStatus { echo: 7, ..PedestalStatus::default() };
+    let idle = Status { status: idle, ..Status::default() }.encode();
+    assert_eq!(
+        said(Status::decode(&idle).unwrap_err()),
+        "executing, done, can't-do or error was expected for the command 7, found idle"
+    );
     let mut bytes = cell::encode_sensors(&PedestalSensors::default());
     bytes[8] = 2;
     assert_eq!(said(cell::decode_sensors(&bytes).unwrap_err()), "2 is no code of the + limit");

@@ -44,7 +44,7 @@ fn in_fast_clock_the_tick_waits_for_what_answers_it() {
     let echo = thread::spawn(move || {
         // Answers each pulse by a command that says its number.
         for frame in line.iter() {
-            if let Some(tick) = frame.as_pulse() {
+            if let Some(tick) = frame.as_pulse().unwrap() {
                 counter.deliver(&mailgram(HWSC_COMMAND, &tick.to_le_bytes())).unwrap();
                 counter.deliver(&frame).unwrap();
                 if tick == 100 {
@@ -131,7 +131,7 @@ fn a_tick_that_waits_goes_on_when_the_neighbour_is_gone() {
     let mut desk = Desk::new(Role::Workstation, ClockKind::Fast);
     let (counter, line) = came(&desk);
     let leaver = thread::spawn(move || {
-        while line.recv().unwrap().as_pulse().is_none() {}
+        while line.recv().unwrap().as_pulse().unwrap().is_none() {}
         counter.detach("enough".to_owned());
     });
     assert_eq!(desk.exchange(1), Presence { here: false, new: true });
@@ -145,4 +145,24 @@ fn frames_for_others_mailboxes_are_refused() {
     let error = desk.counter().deliver(&mailgram(HWSC_STATUS, b"all is well")).unwrap_err().to_string();
     assert!(error.starts_with("the address of mailbox HWSC to RCS Command at F6000 or "), "{error}");
     assert!(error.ends_with("found F6200"), "{error}");
+}
+
+#[test]
+fn who_answers_no_pulse_is_late_and_nobody_answers_before_he_is_asked() {
+    let mut desk = Desk::new(Role::Workstation, ClockKind::Real);
+    let (counter, line) = came(&desk);
+    assert!(!counter.is_late(Duration::ZERO), "nothing was asked");
+    let pulse = || line.iter().find_map(|frame| frame.as_pulse().unwrap()).unwrap();
+    desk.exchange(7);
+    assert_eq!(pulse(), 7);
+    assert!(counter.is_late(Duration::ZERO) && !counter.is_late(Duration::from_secs(60)));
+    let early = counter.deliver(&Frame::pulse(8)).unwrap_err().to_string();
+    assert_eq!(early, "an answer to a pulse up to 7 was expected, found one to 8");
+    counter.deliver(&Frame::pulse(7)).unwrap();
+    assert!(!counter.is_late(Duration::ZERO));
+    // An answer that was given before answers nothing.
+    desk.exchange(8);
+    assert_eq!(pulse(), 8);
+    counter.deliver(&Frame::pulse(7)).unwrap();
+    assert!(counter.is_late(Duration::ZERO));
 }

@@ -84,8 +84,6 @@ struct Booth {
 struct Connection {
     id: String,
     seal: Seal,
-    /// When something has come last.
-    heard: Instant,
     state: State,
     /// Tells the neighbour that the controller lives. It stays until the next connection: it would be gone before last words
     /// have come.
@@ -221,10 +219,7 @@ impl Shared {
             SampleKind::Delete => Err(EnvelopeError::Short(0)),
         };
         let over = match opened {
-            Ok(frame) => {
-                connection.heard = Instant::now();
-                booth.counter.deliver(&frame).err().map(|error| error.to_string())
-            }
+            Ok(frame) => booth.counter.deliver(&frame).err().map(|error| error.to_string()),
             Err(EnvelopeError::Broken(error)) => Some(error.to_string()),
             Err(error) => return self.stray(number, format!("{key}: {error}")),
         };
@@ -367,8 +362,8 @@ impl Receptionist {
         let shared = Arc::clone(&self.shared);
         let outlet = Publishing { shared, number, id: id.clone(), seal: agreement.down() };
         booth.counter.attach(Box::new(outlet), None).map_err(io::Error::other)?;
-        let (seal, heard) = (agreement.up(), Instant::now());
-        *locked(&booth.connection) = Some(Connection { id, seal, heard, state: State::Lives, _here });
+        *locked(&booth.connection) =
+            Some(Connection { id, seal: agreement.up(), state: State::Lives, _here });
         Ok(())
     }
 }
@@ -378,7 +373,7 @@ fn look_after(booth: &Booth) {
     let mut locked = locked(&booth.connection);
     let Some(connection) = locked.as_mut() else { return };
     let limit = patience(booth.counter.clock());
-    if booth.counter.is_waited_for() && connection.heard.elapsed() >= limit {
+    if booth.counter.is_late(limit) {
         connection.end(format!("no answer for {} s", limit.as_secs()));
     }
     match std::mem::replace(&mut connection.state, State::Parted) {
