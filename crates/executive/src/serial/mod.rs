@@ -33,7 +33,7 @@ use rcs_core::interface::device::LinkBytes;
 use rustix::{
     event::{PollFd, PollFlags, Timespec, poll},
     fs::{Mode, OFlags},
-    io::Errno,
+    io::{Errno, ioctl_fionread},
 };
 use serialport::{ClearBuffer, SerialPort as _, TTYPort};
 
@@ -283,7 +283,10 @@ impl Port {
 
     fn receive(&mut self, rx: &mut LinkBytes) -> Result<bool, Gone> {
         let room = rx.bytes.get_mut(usize::from(rx.length)..).unwrap_or_default();
-        if !room.is_empty() {
+        // A read that finds nothing waits for the kernel's worker that carries bytes to the terminal, whatever has the processor
+        // meanwhile: for half a second where others take all of it. What the worker has not brought has not arrived.
+        let arrived = ioctl_fionread(&self.bytes).map_err(|_| Gone)?;
+        if arrived > 0 && !room.is_empty() {
             match self.bytes.read(room) {
                 // The end of a terminal is its hang-up.
                 Ok(0) => return Err(Gone),
