@@ -120,7 +120,7 @@ impl Ending {
 /// [`Error`] if the run could not begin. A job that fails is no error here, but an exit status.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let interrupted = interruption()?;
-    let setup = Setup::load(arguments)?;
+    let setup = Setup::load(arguments, &interrupted)?;
     setup.neighbours.gather(arguments, &interrupted)?;
     let name = arguments.run.clone().unwrap_or_else(|| RunName::unique(&setup.job.name));
     let controller = Controller::start(arguments, &name, &setup.store, &setup.job, &interrupted)?;

@@ -11,7 +11,7 @@ use std::{
 };
 
 use neighbours::{
-    data_system::{DataSystem, Item},
+    data_system::{self, DataSystem, Item},
     mailbox::{HWSC_COMMAND, Mailbox},
     network::{Desk, Listener, News, Role, office::Counter},
     pedestal,
@@ -211,7 +211,10 @@ impl Neighbours {
             let text = format!("the Data System refuses: {refusal}");
             self.notes.push((Level::Warning, "Data System", text));
         }
-        self.notes.extend(self.data_system.news().iter().map(network_note));
+        self.notes.extend(self.data_system.remarks().iter().map(|remark| match remark {
+            data_system::Remark::News(news) => network_note(news),
+            own => (Level::Warning, "Data System", own.to_string()),
+        }));
         self.step_vision(tick, memory, workstation);
         self.gate.write(&memory.task, task_state(&memory.task.header, tick));
         let progress = match &mut self.chief {

@@ -3,6 +3,7 @@
 use std::{
     fs,
     path::{Path, PathBuf},
+    sync::{Arc, atomic::AtomicBool},
 };
 
 use depc::fault::Injector;
@@ -60,11 +61,11 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Read, check and build everything.
+    /// Read, check and build everything. Once `interrupted` is set the run ends.
     ///
     /// # Errors
     /// [`Error`], with all errors of the data.
-    pub fn load(arguments: &RunArguments) -> Result<Self, Error> {
+    pub fn load(arguments: &RunArguments, interrupted: &Arc<AtomicBool>) -> Result<Self, Error> {
         if arguments.robot != cli::Robot::Sim && arguments.clock != ClockKind::Real {
             return Err(Error::NotInRealTime);
         }
@@ -98,7 +99,7 @@ impl Setup {
             Some(LogTarget::File(path)) => Some(path.clone()),
             None => Some(Path::new("runs").join(&job.name).with_added_extension("mcap")),
         };
-        let neighbours = neighbours(arguments, &job, &description)?;
+        let neighbours = neighbours(arguments, &job, &description, interrupted)?;
         // The last of all: a robot hears nothing of a run that cannot begin.
         let robot = match &arguments.robot {
             cli::Robot::Sim => Robot::Simulated(faults.line.map(|plan| Box::new(Injector::new(&plan)))),
@@ -151,6 +152,7 @@ fn neighbours(
     arguments: &RunArguments,
     job: &Job,
     description: &CellDescription,
+    interrupted: &Arc<AtomicBool>,
 ) -> Result<Neighbours, Error> {
     let (clock, pace) = match arguments.clock {
         ClockKind::Fast => (hello::ClockKind::Fast, Pace::Wait),
@@ -171,7 +173,10 @@ fn neighbours(
         None => None,
     };
     let data_system = match items {
-        Some(desk) => DataSystem::elsewhere(Agent::new(desk, outbox(arguments)?), pace),
+        Some(desk) => {
+            let agent = Agent::new(desk, outbox(arguments)?);
+            DataSystem::elsewhere(agent, pace, Arc::clone(interrupted))
+        }
         None => {
             let file = arguments.data_base.as_deref();
             let items = file.map_or_else(data_system::Store::in_memory, data_system::Store::open)?;

@@ -4,88 +4,183 @@
 //! answers it comes back with the pulse of the same exchange, or of a later one. Updates are kept on the disk until they are answered
 //! ([`Outbox`]). Those that an earlier run could not tell follow the next STARTUP, before Task learns that it is done: the data
 //! base hears everything in the order in which it happened.
+//!
+//! On the line the agent numbers the commands itself, since what is told after STARTUP has no number of Task's:
+//!
+//! | what is sent                                  | command-id#     | which status answers it                                     |
+//! |-----------------------------------------------|-----------------|-------------------------------------------------------------|
+//! | another command than before                   | the next number | one of this number that is written afterwards               |
+//! | the same again, since nobody has answered it  | the same        | one to any of its sendings: they are one command            |
+//! | the same again, since it is asked for anew    | the next number | one of this number: an answer that comes twice counts once  |
+//!
+//! Who does not answer for the patience of the clock is silent, and so is who answers with bytes that are no status. Task hears nothing
+//! then, and asks again (V.4.1).
 
-use std::{thread, time::Duration};
+use std::{
+    fmt, thread,
+    time::{Duration, Instant},
+};
 
 use super::{
     command::{self, DML, Transaction},
     outbox::Outbox,
     server::Answer,
-    status::{Refusal, ServerStatus, Status, Summary},
+    status::{Refusal, ServerStatus, Status, StatusError, Summary},
 };
 use crate::{
-    mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS},
-    network::{Desk, News, office::Presence},
+    fields::successor,
+    mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, MailboxError},
+    network::{
+        Desk, News,
+        listener::patience,
+        office::{Closer, Presence},
+    },
 };
 
 /// Between two looks at a server that has not answered yet.
 const PAUSE: Duration = Duration::from_millis(5);
 
+/// What there is to say of the Data System.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Remark {
+    /// It has come or gone, or somebody was refused.
+    News(News),
+    /// What it wrote cannot be read; said once for every sending of a command.
+    Garbled(StatusError),
+    /// It is connected, and does not answer.
+    Silent {
+        /// command-id# of what it was asked.
+        command_id: u16,
+        /// For so long it was waited for.
+        patience: Duration,
+    },
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::News(news) => news.fmt(f),
+            Self::Garbled(why) => {
+                write!(
+                    f,
+                    "{DATA_SYSTEM_STATUS} cannot be read, the Data System counts as not answering: {why}"
+                )
+            }
+            Self::Silent { command_id, patience } => write!(
+                f,
+                "the Data System has not answered command {command_id} for {} s",
+                patience.as_secs_f64()
+            ),
+        }
+    }
+}
+
 /// The controller's side.
 pub struct Agent {
     desk: Desk,
     outbox: Outbox,
+    /// How long an answer is waited for.
+    patience: Duration,
     exchanges: u64,
+    /// command-id# of the command that was sent last; 0 before the first.
+    command_id: u16,
+    /// That command has not been answered.
+    open: bool,
+    /// Mailgram number of the status that stood there when it was sent for the first time: it answers something else.
+    before: u16,
+    remarks: Vec<Remark>,
 }
 
 impl Agent {
-    /// Speaks at a desk, and keeps updates in an outbox.
+    /// Speaks at a desk, and keeps updates in an outbox. An answer is waited for as long as the network waits for a pulse: 10 s on the
+    /// 40 ms grid, 60 s in fast clock.
     #[must_use]
     pub const fn new(desk: Desk, outbox: Outbox) -> Self {
-        Self { desk, outbox, exchanges: 0 }
-    }
-
-    /// Between commands: see who is there. What there is to tell of it.
-    pub fn idle(&mut self) -> Vec<News> {
-        self.exchange();
-        std::iter::from_fn(|| self.desk.news()).collect()
-    }
-
-    /// Have a command carried out; `None` if nobody answers.
-    pub fn execute(&mut self, bytes: &[u8]) -> Option<Answer> {
-        let command_id =
-            command::decode(bytes).ok().map(|received| (received.command_id, received.transaction));
-        let Some((id, transaction)) = command_id else { return self.ask(bytes) };
-        match transaction {
-            Transaction::Abort | Transaction::Initiate => self.ask(bytes),
-            Transaction::Startup => {
-                let answer = self.ask(bytes)?;
-                if answer.status.summary != Summary::Done {
-                    return Some(answer);
-                }
-                // What the server refuses of an earlier run is told, and does not keep this one from beginning.
-                let told = self.tell_all(id)?;
-                Some(Answer {
-                    why: told
-                        .filter(|told| told.status.summary != Summary::Done)
-                        .map_or(String::new(), |told| told.why),
-                    ..answer
-                })
-            }
-            Transaction::Dml => {
-                let kept = bytes.try_into().map_err(|_| "not 240 bytes".to_owned());
-                let kept: Result<_, String> = kept
-                    .and_then(|bytes: &[u8; DML]| self.outbox.keep(bytes).map_err(|error| error.to_string()));
-                match kept {
-                    Ok(_) => self.tell_all(id)?,
-                    Err(why) => Some(refused(id, format!("the update cannot be kept: {why}"))),
-                }
-            }
+        let patience = patience(desk.clock());
+        Self {
+            desk,
+            outbox,
+            patience,
+            exchanges: 0,
+            command_id: 0,
+            open: false,
+            before: 0,
+            remarks: Vec::new(),
         }
     }
 
-    /// Tell all that is kept, the oldest first, each as an answer to the command `id`; the last answer, if there was anything to
-    /// tell, or `None` if nobody answers.
+    /// With another patience.
+    #[must_use]
+    pub const fn with_patience(mut self, patience: Duration) -> Self {
+        self.patience = patience;
+        self
+    }
+
+    /// Ends all waiting from another thread, for the rest of the run: then nobody answers.
+    #[must_use]
+    pub fn closer(&self) -> Closer {
+        self.desk.closer()
+    }
+
+    /// What there is to say, since the last call.
+    pub fn remarks(&mut self) -> Vec<Remark> {
+        std::mem::take(&mut self.remarks)
+    }
+
+    /// Between commands: see who is there.
+    pub fn idle(&mut self) {
+        self.exchange();
+    }
+
+    /// Have a command carried out; `None` if nobody answers. The answer has the number that Task has given to the command.
+    pub fn execute(&mut self, bytes: &[u8]) -> Option<Answer> {
+        let (command_id, transaction) = match command::decode(bytes) {
+            Ok(received) => (received.command_id, received.transaction),
+            Err(error) => return Some(refused(error.to_string())),
+        };
+        let answer = match transaction {
+            Transaction::Abort | Transaction::Initiate => self.ask(bytes)?,
+            Transaction::Startup => self.start_up(bytes)?,
+            Transaction::Dml => self.update(bytes)?,
+        };
+        Some(Answer { status: Status { command_id, ..answer.status }, ..answer })
+    }
+
+    /// STARTUP, and what is kept behind it.
+    fn start_up(&mut self, bytes: &[u8]) -> Option<Answer> {
+        let answer = self.ask(bytes)?;
+        if answer.status.summary != Summary::Done {
+            return Some(answer);
+        }
+        // What the server refuses of an earlier run is told, and does not keep this one from beginning.
+        let told = self.tell_all()?;
+        let why =
+            told.filter(|told| told.status.summary != Summary::Done).map_or(String::new(), |told| told.why);
+        Some(Answer { why, ..answer })
+    }
+
+    /// Keep an update, and tell all that is kept.
+    fn update(&mut self, bytes: &[u8]) -> Option<Answer> {
+        let kept = bytes.try_into().map_err(|_| format!("{DML} bytes were expected, found {}", bytes.len()));
+        let kept: Result<_, String> =
+            kept.and_then(|bytes: &[u8; DML]| self.outbox.keep(bytes).map_err(|error| error.to_string()));
+        match kept {
+            Ok(_) => self.tell_all()?,
+            Err(why) => Some(refused(format!("the update cannot be kept: {why}"))),
+        }
+    }
+
+    /// Tell all that is kept, the oldest first; the last answer, if there was anything to tell, or `None` if nobody answers.
     #[expect(clippy::option_option, reason = "nobody there is not nothing to tell")]
-    fn tell_all(&mut self, id: u16) -> Option<Option<Answer>> {
+    fn tell_all(&mut self) -> Option<Option<Answer>> {
         let pending = match self.outbox.pending() {
             Ok(pending) => pending,
-            Err(error) => return Some(Some(refused(id, error.to_string()))),
+            Err(error) => return Some(Some(refused(error.to_string()))),
         };
         let mut last = None;
         for kept in pending {
             let mut bytes = kept.command;
-            command::number(&mut bytes, id, kept.number);
+            command::number(&mut bytes, kept.number);
             let answer = self.ask(&bytes)?;
             match answer.status.summary {
                 // It may be taken later.
@@ -94,7 +189,7 @@ impl Agent {
                 }
                 Summary::Done | Summary::Refused(_) => {
                     if let Err(error) = self.outbox.strike_out(kept.number) {
-                        return Some(Some(refused(id, error.to_string())));
+                        return Some(Some(refused(error.to_string())));
                     }
                 }
             }
@@ -105,40 +200,74 @@ impl Agent {
 
     fn exchange(&mut self) -> Presence {
         self.exchanges += 1;
-        self.desk.exchange(self.exchanges)
+        let presence = self.desk.exchange(self.exchanges);
+        if presence.new {
+            // Another server counts its mailgrams from the beginning.
+            self.before = 0;
+        }
+        self.remarks.extend(std::iter::from_fn(|| self.desk.news()).map(Remark::News));
+        presence
     }
 
-    /// Write a command into the mailbox and wait for its status; `None` if nobody is there, or no longer.
+    /// Send a command and wait for its status; `None` if nobody is there, or nobody answers.
     fn ask(&mut self, bytes: &[u8]) -> Option<Answer> {
-        let id = u16::from_le_bytes([*bytes.get(6)?, *bytes.get(7)?]);
-        self.desk.outgoing(DATA_SYSTEM_COMMAND).write(bytes).ok()?;
-        let mut before = self.desk.incoming(DATA_SYSTEM_STATUS).mailgram();
+        if let Err(error) = self.send(bytes) {
+            return Some(refused(error.to_string()));
+        }
+        let (sent, mut garbled) = (Instant::now(), false);
         loop {
-            let presence = self.exchange();
-            if !presence.here {
+            if !self.exchange().here {
                 return None;
             }
-            if presence.new {
-                // Another server counts its mailgrams from the beginning.
-                before = 0;
-            }
-            let mailbox = self.desk.incoming(DATA_SYSTEM_STATUS);
-            if mailbox.mailgram() != before && mailbox.mailgram() != 0 {
-                match Status::decode(mailbox.data()) {
-                    Ok(status) if status.command_id == id && status.summary != Summary::None => {
-                        return Some(Answer { status, why: String::new() });
-                    }
-                    Ok(_) => {}
-                    Err(error) => return Some(refused(id, error.to_string())),
+            match self.written() {
+                Some(Ok(status))
+                    if status.command_id == self.command_id && status.summary != Summary::None =>
+                {
+                    self.open = false;
+                    return Some(Answer { status, why: String::new() });
                 }
+                Some(Err(why)) if !garbled => {
+                    garbled = true;
+                    self.remarks.push(Remark::Garbled(why));
+                }
+                _ => {}
+            }
+            if sent.elapsed() >= self.patience {
+                let (command_id, patience) = (self.command_id, self.patience);
+                self.remarks.push(Remark::Silent { command_id, patience });
+                return None;
             }
             thread::sleep(PAUSE);
         }
     }
+
+    /// Write a command into the mailbox, under the next number; the last one under its own if it has not been answered.
+    fn send(&mut self, bytes: &[u8]) -> Result<(), MailboxError> {
+        let mut bytes = bytes.to_vec();
+        command::identify(&mut bytes, self.command_id);
+        if !self.open || self.desk.outgoing(DATA_SYSTEM_COMMAND).data() != bytes {
+            self.command_id = successor(self.command_id);
+            command::identify(&mut bytes, self.command_id);
+            self.before = self.desk.incoming(DATA_SYSTEM_STATUS).mailgram();
+        }
+        self.desk.outgoing(DATA_SYSTEM_COMMAND).write(&bytes)?;
+        self.open = true;
+        Ok(())
+    }
+
+    /// The status that has been written since the command was sent.
+    fn written(&self) -> Option<Result<Status, StatusError>> {
+        let mailbox = self.desk.incoming(DATA_SYSTEM_STATUS);
+        let fresh = mailbox.mailgram() != 0 && mailbox.mailgram() != self.before;
+        fresh.then(|| Status::decode(mailbox.data()))
+    }
 }
 
 /// What the controller itself cannot do for a command.
-fn refused(command_id: u16, why: String) -> Answer {
+fn refused(why: String) -> Answer {
     let summary = Summary::Refused(Refusal::Store);
-    Answer { status: Status { command_id, server: ServerStatus::Idle, summary }, why }
+    Answer { status: Status { command_id: 0, server: ServerStatus::Idle, summary }, why }
 }
+
+#[cfg(test)]
+mod tests;

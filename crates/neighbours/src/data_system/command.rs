@@ -202,9 +202,13 @@ pub fn encode(command: &DataBaseCommand) -> Result<([u8; DML], usize), EncodeErr
     Ok((bytes, length))
 }
 
-/// Give an update that is sent as the command `command_id` the number of its transaction.
-pub fn number(bytes: &mut [u8; DML], command_id: u16, transaction: u16) {
+/// Give a command, of either length, its command-id#.
+pub fn identify(bytes: &mut [u8], command_id: u16) {
     bytes[COMMAND_ID..COMMAND_ID + 2].copy_from_slice(&command_id.to_le_bytes());
+}
+
+/// Give an update the number of its transaction.
+pub fn number(bytes: &mut [u8; DML], transaction: u16) {
     bytes[TRANSACTION_ID..TRANSACTION_ID + 2].copy_from_slice(&transaction.to_le_bytes());
 }
 
@@ -415,7 +419,8 @@ mod tests {
         let received = decode(&bytes).unwrap();
         assert_eq!((received.command_id, received.transaction_id), (0x0203, 0));
         let mut numbered = bytes;
-        number(&mut numbered, 9, 0x1234);
+        identify(&mut numbered, 9);
+        number(&mut numbered, 0x1234);
         let again = decode(&numbered).unwrap();
         assert_eq!((again.command_id, again.transaction_id, again.statement), (9, 0x1234, expected));
         assert_eq!((received.client, received.transaction), ("H_ROBOT", Transaction::Dml));

@@ -1,12 +1,17 @@
 //! The Data System as a run has it: mailboxes at one end, a server on a thread of its own at the other.
 //!
 //! A disk takes its time and must not take the tick's. A run in fast clock waits for the server where an answer is due, so
-//! that its ticks are the same in every run; a run on the 40 ms grid takes the answer when it is there.
+//! that its ticks are the same in every run; a run on the 40 ms grid takes the answer when it is there. Neither waits beyond its own
+//! end: a server in another process may be silent for long.
 
 use std::{
-    sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
+    },
     thread::{self, JoinHandle},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use rcs_core::{
@@ -16,7 +21,7 @@ use rcs_core::{
 };
 
 use super::{
-    agent::Agent,
+    agent::{Agent, Remark},
     command,
     server::{Answer, Server},
     status::{STATUS, Status, Summary},
@@ -24,16 +29,19 @@ use super::{
 };
 use crate::{
     mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxError},
-    network::News,
+    network::office::Closer,
 };
 
 /// Ticks for an answer unless a run asks for others: 1 s.
 pub const ANSWER_TICKS: u64 = 25;
-/// A server that is silent for so long in a run that waits for it is taken for dead.
+/// A thread that is silent for so long in a run that waits for it is taken for dead: for a disk it is long. An agent has a patience of
+/// its own, and gives up by itself.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Between two looks at who is there while nothing is asked.
 const IDLE: Duration = Duration::from_millis(500);
+/// Between two looks at whether the run is interrupted while it waits for an answer.
+const LOOK: Duration = Duration::from_millis(50);
 
 /// Whether a run waits for the server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,13 +54,15 @@ pub enum Pace {
 
 /// What the server's thread is asked for.
 enum Request {
-    Execute(Vec<u8>),
+    /// The command of this number.
+    Execute(u16, Vec<u8>),
     Items,
 }
 
 /// What it answers.
 enum Response {
-    Executed(Answer),
+    /// What became of the command of this number.
+    Executed(u16, Answer),
     /// Nobody has answered the command of this number.
     Silent(u16),
     Items(rusqlite::Result<Vec<Item>>),
@@ -69,11 +79,12 @@ enum Keeper {
 impl Keeper {
     fn respond(&mut self, request: Request) -> Response {
         match (self, request) {
-            (Self::Here(server), Request::Execute(bytes)) => Response::Executed(server.execute(&bytes)),
+            (Self::Here(server), Request::Execute(id, bytes)) => {
+                Response::Executed(id, server.execute(&bytes))
+            }
             (Self::Here(server), Request::Items) => Response::Items(server.store().items()),
-            (Self::Elsewhere(agent), Request::Execute(bytes)) => {
-                let id = command::decode(&bytes).map_or(0, |received| received.command_id);
-                agent.execute(&bytes).map_or(Response::Silent(id), Response::Executed)
+            (Self::Elsewhere(agent), Request::Execute(id, bytes)) => {
+                agent.execute(&bytes).map_or(Response::Silent(id), |answer| Response::Executed(id, answer))
             }
             // They are to be asked for where they are kept.
             (Self::Elsewhere(_), Request::Items) => Response::Items(Ok(Vec::new())),
@@ -81,13 +92,19 @@ impl Keeper {
     }
 
     /// Between requests; what there is to tell.
-    fn idle(&mut self) -> Vec<News> {
+    fn idle(&mut self) -> Vec<Remark> {
         match self {
             Self::Here(_) => Vec::new(),
-            Self::Elsewhere(agent) => agent.idle(),
+            Self::Elsewhere(agent) => {
+                agent.idle();
+                agent.remarks()
+            }
         }
     }
 }
+
+/// The thread does not answer, and will not.
+struct Dead;
 
 /// Mailboxes, and the server behind them.
 #[derive(Debug)]
@@ -101,7 +118,11 @@ pub struct DataSystem {
     command_box: Mailbox,
     status_box: Mailbox,
     refusals: Vec<String>,
-    news: Receiver<News>,
+    remarks: Receiver<Remark>,
+    /// Ends the waiting for a server in another process; none if it is in this one.
+    closer: Option<Closer>,
+    /// The run is to end: no answer is waited for any longer.
+    interrupted: Arc<AtomicBool>,
     requests: Option<Sender<Request>>,
     responses: Receiver<Response>,
     thread: Option<JoinHandle<()>>,
@@ -115,17 +136,20 @@ impl DataSystem {
     }
 
     /// A Data System in another process. Where a run waits its answers count after as many ticks as those of one here, so that
-    /// both runs are the same; on the grid they count when they are there.
+    /// both runs are the same; on the grid they count when they are there. Once the run is `interrupted` nobody is waited for.
     #[must_use]
-    pub fn elsewhere(agent: Agent, pace: Pace) -> Self {
+    pub fn elsewhere(agent: Agent, pace: Pace, interrupted: Arc<AtomicBool>) -> Self {
         let ticks = if pace == Pace::Wait { ANSWER_TICKS } else { 0 };
-        Self::with(Keeper::Elsewhere(Box::new(agent)), ticks, pace)
+        let closer = Some(agent.closer());
+        let mut system = Self::with(Keeper::Elsewhere(Box::new(agent)), ticks, pace);
+        (system.closer, system.interrupted) = (closer, interrupted);
+        system
     }
 
     fn with(mut keeper: Keeper, answer_ticks: u64, pace: Pace) -> Self {
         let (requests, incoming) = channel::<Request>();
         let (outgoing, responses) = channel();
-        let (tell, news) = channel();
+        let (tell, remarks) = channel();
         let thread = thread::spawn(move || {
             loop {
                 let over = match incoming.recv_timeout(IDLE) {
@@ -133,7 +157,7 @@ impl DataSystem {
                     Err(RecvTimeoutError::Timeout) => false,
                     Err(RecvTimeoutError::Disconnected) => true,
                 };
-                if over || keeper.idle().into_iter().any(|text| tell.send(text).is_err()) {
+                if over || keeper.idle().into_iter().any(|remark| tell.send(remark).is_err()) {
                     return;
                 }
             }
@@ -147,7 +171,9 @@ impl DataSystem {
             command_box: Mailbox::initialized(DATA_SYSTEM_COMMAND),
             status_box: Mailbox::initialized(DATA_SYSTEM_STATUS),
             refusals: Vec::new(),
-            news,
+            remarks,
+            closer: None,
+            interrupted: Arc::default(),
             requests: Some(requests),
             responses,
             thread: Some(thread),
@@ -177,9 +203,9 @@ impl DataSystem {
         std::mem::take(&mut self.refusals)
     }
 
-    /// What happened on the network, since the last call.
-    pub fn news(&self) -> Vec<News> {
-        self.news.try_iter().collect()
+    /// What there is to say of a server in another process, since the last call.
+    pub fn remarks(&self) -> Vec<Remark> {
+        self.remarks.try_iter().collect()
     }
 
     /// Once a tick, after the controller: read what Task wrote in `tick`.
@@ -204,8 +230,8 @@ impl DataSystem {
             self.refuse(why);
             return;
         }
-        let data = self.command_box.data().to_vec();
-        if self.requests.as_ref().is_some_and(|requests| requests.send(Request::Execute(data)).is_ok()) {
+        let request = Request::Execute(self.asked(), self.command_box.data().to_vec());
+        if self.requests.as_ref().is_some_and(|requests| requests.send(request).is_ok()) {
             self.due = Some(Tick(tick.0.saturating_add(self.answer_ticks)));
         } else {
             self.refuse("the Data System has ended".to_owned());
@@ -215,31 +241,48 @@ impl DataSystem {
     /// Take the answer to the command under way, if it is there; one to a command before it comes too late and is nobody's.
     fn receive(&mut self) {
         loop {
-            let response = match self.pace {
-                Pace::Wait => self.responses.recv_timeout(PATIENCE),
-                Pace::Poll => self.responses.try_recv().map_err(|error| match error {
-                    TryRecvError::Empty => RecvTimeoutError::Timeout,
-                    TryRecvError::Disconnected => RecvTimeoutError::Disconnected,
-                }),
-            };
-            match response {
-                Ok(Response::Executed(answer)) if answer.status.command_id == self.asked() => {
+            match self.response() {
+                Ok(Some(Response::Executed(id, answer))) if id == self.asked() => {
                     self.due = None;
                     self.take(&answer);
                     return;
                 }
-                Ok(Response::Silent(id)) if id == self.asked() => {
+                Ok(Some(Response::Silent(id))) if id == self.asked() => {
                     // Task counts the ticks, and asks again.
                     self.due = None;
                     return;
                 }
-                Ok(Response::Executed(_) | Response::Silent(_) | Response::Items(_)) => {}
-                Err(RecvTimeoutError::Timeout) if self.pace == Pace::Poll => return,
-                Err(_) => {
+                Ok(Some(_)) => {}
+                Ok(None) => return,
+                Err(Dead) => {
                     self.due = None;
                     self.refuse("the Data System does not answer".to_owned());
                     return;
                 }
+            }
+        }
+    }
+
+    /// What the thread has answered; `None` if nothing yet, or if the run is to end.
+    fn response(&self) -> Result<Option<Response>, Dead> {
+        if self.pace == Pace::Poll {
+            return match self.responses.try_recv() {
+                Ok(response) => Ok(Some(response)),
+                Err(TryRecvError::Empty) => Ok(None),
+                Err(TryRecvError::Disconnected) => Err(Dead),
+            };
+        }
+        let asked = Instant::now();
+        loop {
+            match self.responses.recv_timeout(LOOK) {
+                Ok(response) => return Ok(Some(response)),
+                Err(RecvTimeoutError::Disconnected) => return Err(Dead),
+                Err(RecvTimeoutError::Timeout) if self.interrupted.load(Ordering::Relaxed) => {
+                    return Ok(None);
+                }
+                Err(RecvTimeoutError::Timeout) if self.closer.is_some() => {}
+                Err(RecvTimeoutError::Timeout) if asked.elapsed() < PATIENCE => {}
+                Err(RecvTimeoutError::Timeout) => return Err(Dead),
             }
         }
     }
@@ -277,17 +320,21 @@ impl DataSystem {
         self.refusals.push(why);
     }
 
-    /// The items that were reported, by name and number.
+    /// The items that were reported, by name and number; none of a server in another process, which is to be asked where it keeps them.
     ///
     /// # Errors
     /// Why the data base does not give them.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
+        if self.closer.is_some() {
+            // The agent may be waiting for it.
+            return Ok(Vec::new());
+        }
         let gone = || "the Data System has ended".to_owned();
         self.requests.as_ref().ok_or_else(gone)?.send(Request::Items).map_err(|_| gone())?;
         loop {
             match self.responses.recv_timeout(PATIENCE) {
                 Ok(Response::Items(items)) => return items.map_err(|error| error.to_string()),
-                Ok(Response::Executed(_) | Response::Silent(_)) => {}
+                Ok(Response::Executed(..) | Response::Silent(_)) => {}
                 Err(_) => return Err("the Data System does not answer".to_owned()),
             }
         }
@@ -296,9 +343,20 @@ impl DataSystem {
 
 impl Drop for DataSystem {
     fn drop(&mut self) {
+        if let Some(closer) = &self.closer {
+            // What is not answered yet stands in the outbox.
+            closer.close();
+        }
         // Without requests to come the thread ends; it closes the data base, and no journal is left behind.
         self.requests = None;
-        if let Some(thread) = self.thread.take() {
+        let Some(thread) = self.thread.take() else { return };
+        let ended = Instant::now();
+        // A disk could keep the thread for ever; the end of a run does not depend on it.
+        while !thread.is_finished() && ended.elapsed() < PATIENCE {
+            thread::sleep(Duration::from_millis(1));
+        }
+        if thread.is_finished() {
+            // It has nothing to return, and a panic in it was reported.
             let _ = thread.join();
         }
     }

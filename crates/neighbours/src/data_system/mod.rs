@@ -20,7 +20,7 @@ pub mod statement;
 pub mod status;
 mod store;
 
-pub use agent::Agent;
+pub use agent::{Agent, Remark};
 pub use connection::{ANSWER_TICKS, DataSystem, Pace};
 pub use outbox::{Outbox, OutboxError};
 pub use server::{Answer, Server};

@@ -242,10 +242,10 @@ mod tests {
             ..DataBaseCommand::default()
         };
         let (mut bytes, _) = command::encode(&update).unwrap();
-        command::number(&mut bytes, 9, 3);
+        command::number(&mut bytes, 3);
         assert_eq!(client.server.execute(&bytes).status.summary, Summary::Done);
         client.server = Server::new(Store::open(&file).unwrap());
-        command::number(&mut bytes, 10, 3);
+        command::identify(&mut bytes, 10);
         assert_eq!(
             client.server.execute(&bytes).status.summary,
             Summary::Done,

@@ -4,16 +4,20 @@
 //! in the manner of the command:
 //!
 //! ```text
-//!   A1 82 00 0A   what follows
+//!   A1 82 00 0A   what follows, high byte first
 //!   B0 02 nn nn   command-id# that is answered, low byte first
-//!   51 01 ss      server status: 0 idle, 1 busy, 2 ready
-//!   52 01 ss      summary status of that command: 0 none, 1 done, 80 and more refused
+//!   51 01 ss      server status: 00 idle, 01 busy, 02 ready
+//!   52 01 ss      summary status of that command: 00 none, 01 done, 80 to 84 refused, all in hexadecimal
 //! ```
 
 use std::fmt;
 
 /// Bytes of a status.
 pub const STATUS: usize = 14;
+/// Where the server status stands.
+const SERVER: usize = 10;
+/// Where the summary status stands.
+const SUMMARY: usize = 13;
 
 /// What the server is doing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,12 +73,26 @@ pub struct Status {
 
 /// Why bytes are no status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a status of the Data System was expected, found {found:02X} at {at}")]
-pub struct StatusError {
-    /// Where the first byte that cannot be stands, from 0; [`STATUS`] if there are more or less bytes.
-    pub at: usize,
-    /// That byte, or 0.
-    pub found: u8,
+pub enum StatusError {
+    /// More or less bytes.
+    #[error("a status of {STATUS} bytes was expected, found {0}")]
+    Size(usize),
+    /// Another byte than the protocol has at this place.
+    #[error("byte {expected:02X} was expected at {at}, found {found:02X}")]
+    Protocol {
+        /// Where, from 0.
+        at: usize,
+        /// What the protocol has there.
+        expected: u8,
+        /// What stands there.
+        found: u8,
+    },
+    /// A server status that does not exist.
+    #[error("a server status from 00 to 02 was expected at {SERVER}, found {0:02X}")]
+    Server(u8),
+    /// A summary status that does not exist.
+    #[error("a summary status 00, 01 or 80 to 84 was expected at {SUMMARY}, found {0:02X}")]
+    Summary(u8),
 }
 
 impl Refusal {
@@ -111,29 +129,27 @@ impl Status {
     /// # Errors
     /// [`StatusError`] with the first byte that cannot be.
     pub fn decode(bytes: &[u8]) -> Result<Self, StatusError> {
-        let Ok(bytes) = <&[u8; STATUS]>::try_from(bytes) else {
-            return Err(StatusError { at: STATUS, found: 0 });
-        };
+        let bytes: &[u8; STATUS] = bytes.try_into().map_err(|_| StatusError::Size(bytes.len()))?;
         let blank = Self::default().encode();
         for at in [0, 1, 2, 3, 4, 5, 8, 9, 11, 12] {
             if bytes[at] != blank[at] {
-                return Err(StatusError { at, found: bytes[at] });
+                return Err(StatusError::Protocol { at, expected: blank[at], found: bytes[at] });
             }
         }
-        let server = match bytes[10] {
+        let server = match bytes[SERVER] {
             0 => ServerStatus::Idle,
             1 => ServerStatus::Busy,
             2 => ServerStatus::Ready,
-            found => return Err(StatusError { at: 10, found }),
+            found => return Err(StatusError::Server(found)),
         };
-        let summary = match bytes[13] {
+        let summary = match bytes[SUMMARY] {
             0 => Summary::None,
             1 => Summary::Done,
             found => Refusal::ALL
                 .into_iter()
                 .find(|&refusal| refusal as u8 == found)
                 .map(Summary::Refused)
-                .ok_or(StatusError { at: 13, found })?,
+                .ok_or(StatusError::Summary(found))?,
         };
         Ok(Self { command_id: u16::from_le_bytes([bytes[6], bytes[7]]), server, summary })
     }
@@ -158,11 +174,28 @@ mod tests {
     #[test]
     fn every_byte_that_cannot_be_is_named() {
         let good = Status { command_id: 7, server: ServerStatus::Ready, summary: Summary::Done }.encode();
-        for at in (0..STATUS).filter(|at| !(6..8).contains(at)) {
+        let spoilt = |at: usize, byte: u8| {
             let mut bytes = good;
-            bytes[at] = 0x7F;
-            assert_eq!(Status::decode(&bytes), Err(StatusError { at, found: 0x7F }));
+            bytes[at] = byte;
+            Status::decode(&bytes)
+        };
+        for at in (0..STATUS).filter(|at| !(6..8).contains(at)) {
+            let expected = match at {
+                SERVER => StatusError::Server(0x7F),
+                SUMMARY => StatusError::Summary(0x7F),
+                _ => StatusError::Protocol { at, expected: good[at], found: 0x7F },
+            };
+            assert_eq!(spoilt(at, 0x7F), Err(expected));
         }
-        assert_eq!(Status::decode(&good[..13]), Err(StatusError { at: STATUS, found: 0 }));
+        let said = |result: Result<Status, StatusError>| result.unwrap_err().to_string();
+        assert_eq!(said(spoilt(8, 0)), "byte 51 was expected at 8, found 00");
+        assert_eq!(said(spoilt(SERVER, 9)), "a server status from 00 to 02 was expected at 10, found 09");
+        let decimal = said(spoilt(SUMMARY, 80));
+        assert_eq!(decimal, "a summary status 00, 01 or 80 to 84 was expected at 13, found 50");
+        for size in [0, STATUS - 1, STATUS + 1] {
+            let bytes = [0xA1; STATUS + 1];
+            let text = format!("a status of 14 bytes was expected, found {size}");
+            assert_eq!(said(Status::decode(&bytes[..size])), text);
+        }
     }
 }

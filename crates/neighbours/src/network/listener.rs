@@ -187,7 +187,7 @@ impl Drop for Sockets {
 }
 
 /// How long a neighbour may take to answer a pulse.
-pub(super) const fn patience(clock: ClockKind) -> Duration {
+pub(crate) const fn patience(clock: ClockKind) -> Duration {
     match clock {
         ClockKind::Real => PATIENCE,
         ClockKind::Fast => FAST_PATIENCE,

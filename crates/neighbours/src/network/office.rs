@@ -155,6 +155,12 @@ impl Desk {
         }
     }
 
+    /// Ends the desk from another thread.
+    #[must_use]
+    pub fn closer(&self) -> Closer {
+        Closer { shared: Arc::clone(&self.shared) }
+    }
+
     /// The clock of the run.
     #[must_use]
     pub const fn clock(&self) -> ClockKind {
@@ -224,14 +230,17 @@ impl Desk {
         }
         // Who has answered was there, even if he has gone since: so a run ends in the same tick every time.
         let here = if waits { answered } else { connection != 0 && now == connection };
-        Presence { here, new }
+        Presence { here: here && !self.shared.over.load(Ordering::Acquire), new }
     }
 
-    /// Until the neighbour has answered the pulse, or is gone; true if he has answered. Whoever reads from him notices if he is
-    /// silent.
+    /// Until the neighbour has answered the pulse, or is gone, or the desk is closed; true if he has answered. Whoever reads from him
+    /// notices if he is silent.
     fn wait(&self, tick: u64, connection: u32) -> bool {
         let mut answered = locked(&self.shared.answered);
-        while answered.tick < tick && self.shared.connection.load(Ordering::Acquire) == connection {
+        while answered.tick < tick
+            && self.shared.connection.load(Ordering::Acquire) == connection
+            && !self.shared.over.load(Ordering::Acquire)
+        {
             answered = self.shared.news_of_answer.wait(answered).unwrap_or_else(PoisonError::into_inner);
         }
         answered.tick >= tick
@@ -259,6 +268,29 @@ impl Drop for Desk {
             // It has nothing to return, and a panic in it was reported.
             let _ = carrier.join();
         }
+    }
+}
+
+/// Ends a desk while somebody may be waiting at it: nobody is there any more, and nobody is let in.
+#[derive(Clone)]
+pub struct Closer {
+    shared: Arc<Shared>,
+}
+
+impl Closer {
+    /// End it.
+    pub fn close(&self) {
+        // Whoever waits looks at the flag behind this lock.
+        let answered = locked(&self.shared.answered);
+        self.shared.over.store(true, Ordering::Release);
+        self.shared.news_of_answer.notify_all();
+        drop(answered);
+    }
+}
+
+impl std::fmt::Debug for Closer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Closer").field("role", &self.shared.role).finish_non_exhaustive()
     }
 }
 

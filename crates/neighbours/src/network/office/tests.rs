@@ -140,6 +140,25 @@ fn a_tick_that_waits_goes_on_when_the_neighbour_is_gone() {
 }
 
 #[test]
+fn at_a_desk_that_is_closed_nobody_is_there_and_nobody_is_waited_for() {
+    for clock in [ClockKind::Fast, ClockKind::Real] {
+        let mut desk = Desk::new(Role::DataSystem, clock);
+        let (_counter, line) = came(&desk);
+        let closer = desk.closer();
+        let porter = thread::spawn(move || {
+            // He never answers.
+            while line.recv().unwrap().as_pulse().is_none() {}
+            closer.close();
+            line
+        });
+        let tick = (1..).find(|&tick| !desk.exchange(tick).here).unwrap();
+        assert!(clock == ClockKind::Real || tick == 1);
+        assert!(!desk.exchange(tick + 1).here);
+        drop(porter.join().unwrap());
+    }
+}
+
+#[test]
 fn frames_for_others_mailboxes_are_refused() {
     let desk = Desk::new(Role::Workstation, ClockKind::Real);
     let error = desk.counter().deliver(&mailgram(HWSC_STATUS, b"all is well")).unwrap_err().to_string();

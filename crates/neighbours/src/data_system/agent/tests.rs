@@ -1,0 +1,325 @@
+//! An agent and a Data System that does as a test wants, without a network between them.
+//!
+//! In fast clock an exchange is over when the server has answered its pulse: what it wrote before is there then. With a patience of
+//! nothing an agent looks once, and the clock of the machine has no part in what happens.
+
+use std::{
+    path::Path,
+    sync::{Arc, atomic::AtomicBool, mpsc},
+    thread::JoinHandle,
+};
+
+use rcs_core::{
+    interface::{
+        DataBaseCommand,
+        data_base::{DataBaseReport, DataBaseVerb},
+    },
+    name::{Name10, Name16},
+    tick::Tick,
+};
+
+use super::*;
+use crate::{
+    data_system::{DataSystem, Pace},
+    mailbox::Mailbox,
+    network::{Role, frame::Frame, hello::ClockKind, office::Counter},
+};
+
+/// What a server writes, one mailgram after the other.
+type Written = Vec<Vec<u8>>;
+/// What becomes of a status.
+type Garble = fn(&mut Vec<u8>);
+
+/// A server on a thread, until the run is over or the connection ends; `answer` gets the number of the mailgram that it has read, from 1,
+/// and the command in it.
+fn serve(
+    counter: Counter,
+    mut answer: impl FnMut(usize, &[u8]) -> Written + Send + 'static,
+) -> JoinHandle<()> {
+    let line = counter.come();
+    thread::spawn(move || {
+        let (mut status_box, mut read) = (Mailbox::initialized(DATA_SYSTEM_STATUS), 0);
+        for frame in &line {
+            if frame.as_pulse().is_some() {
+                counter.deliver(&frame).unwrap();
+            } else if frame.address() == DATA_SYSTEM_COMMAND.address {
+                read += 1;
+                for status in answer(read, frame.data()) {
+                    status_box.write(&status).unwrap();
+                    counter.deliver(&Frame::of(&status_box)).unwrap();
+                }
+            } else {
+                // Last words.
+                return;
+            }
+        }
+    })
+}
+
+fn agent(place: &Path, clock: ClockKind) -> (Agent, Counter) {
+    let desk = Desk::new(Role::DataSystem, clock);
+    let counter = desk.counter();
+    (Agent::new(desk, Outbox::open(&place.join("outbox")).unwrap()).with_patience(Duration::ZERO), counter)
+}
+
+fn command(number: u32, command: DataBaseVerb, position: &str) -> DataBaseCommand {
+    DataBaseCommand {
+        number,
+        command,
+        item: Name16::new("LINKBAR1").unwrap(),
+        serial: Name16::new("17").unwrap(),
+        position: Name10::new(position).unwrap(),
+        sector: 4,
+    }
+}
+
+fn bytes(number: u32, verb: DataBaseVerb, position: &str) -> Vec<u8> {
+    let (bytes, length) = command::encode(&command(number, verb, position)).unwrap();
+    bytes[..length].to_vec()
+}
+
+fn update(number: u32, position: &str) -> Vec<u8> {
+    bytes(number, DataBaseVerb::Update, position)
+}
+
+fn id(bytes: &[u8]) -> u16 {
+    command::decode(bytes).unwrap().command_id
+}
+
+fn status(command_id: u16, summary: Summary) -> Vec<u8> {
+    Status { command_id, server: ServerStatus::Ready, summary }.encode().to_vec()
+}
+
+fn done(bytes: &[u8]) -> Written {
+    vec![status(id(bytes), Summary::Done)]
+}
+
+fn is_done(answer: Option<Answer>, number: u16) {
+    let answer = answer.expect("somebody answers");
+    assert_eq!((answer.status.command_id, answer.status.summary), (number, Summary::Done), "{}", answer.why);
+}
+
+fn pending(agent: &Agent) -> usize {
+    agent.outbox.pending().unwrap().len()
+}
+
+#[test]
+fn a_command_that_is_lost_is_sent_again_under_its_number() {
+    let place = tempfile::tempdir().unwrap();
+    let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
+    let (tell, heard) = mpsc::channel();
+    let server = serve(counter, move |read, bytes| {
+        tell.send(bytes.to_vec()).unwrap();
+        if read == 1 { Vec::new() } else { done(bytes) }
+    });
+    assert_eq!(agent.execute(&update(70, "UNIT_1")), None);
+    let silent = Remark::Silent { command_id: 1, patience: Duration::ZERO };
+    assert_eq!(agent.remarks(), [Remark::News(News::Came(Role::DataSystem)), silent]);
+    assert_eq!(pending(&agent), 1);
+    is_done(agent.execute(&update(71, "UNIT_1")), 71);
+    assert_eq!(pending(&agent), 0);
+    is_done(agent.execute(&update(72, "UNIT_1")), 72);
+    drop(agent);
+    server.join().unwrap();
+    let [first, again, anew] = &heard.iter().collect::<Vec<_>>()[..] else { panic!("three were sent") };
+    assert_eq!(first, again);
+    assert_eq!([id(first), id(anew)], [1, 2], "what was answered and is asked anew is another command");
+}
+
+#[test]
+fn a_late_answer_to_the_first_sending_counts_and_counts_once() {
+    let place = tempfile::tempdir().unwrap();
+    let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
+    let server = serve(counter.clone(), |_, _| Vec::new());
+    assert_eq!(agent.execute(&update(1, "UNIT_1")), None);
+    let mut status_box = Mailbox::initialized(DATA_SYSTEM_STATUS);
+    status_box.write(&status(1, Summary::Done)).unwrap();
+    counter.deliver(&Frame::of(&status_box)).unwrap();
+    agent.idle();
+    is_done(agent.execute(&update(2, "UNIT_1")), 2);
+    assert_eq!(agent.execute(&update(3, "UNIT_2")), None);
+    assert_eq!(pending(&agent), 1);
+    drop(agent);
+    server.join().unwrap();
+}
+
+/// The update that is told after STARTUP was taken for done when STARTUP was answered twice.
+#[test]
+fn an_answer_that_comes_twice_is_no_answer_to_what_follows() {
+    let place = tempfile::tempdir().unwrap();
+    let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
+    let kept = update(1, "UNIT_1");
+    agent.outbox.keep(kept[..].try_into().unwrap()).unwrap();
+    let (mut answered, mut deaf) = (Vec::new(), true);
+    let server = serve(counter, move |_, bytes| {
+        if bytes.len() == DML && std::mem::take(&mut deaf) {
+            return answered.clone();
+        }
+        answered = done(bytes);
+        answered.clone()
+    });
+    assert_eq!(agent.execute(&bytes(6, DataBaseVerb::Startup, "")), None);
+    assert_eq!(pending(&agent), 1);
+    is_done(agent.execute(&bytes(7, DataBaseVerb::Startup, "")), 7);
+    assert_eq!(pending(&agent), 0);
+    drop(agent);
+    server.join().unwrap();
+}
+
+#[test]
+fn answers_to_other_commands_and_half_answers_count_for_nothing() {
+    for (offset, summary) in [
+        (1, Summary::Done),
+        (u16::MAX, Summary::Done),
+        (1, Summary::Refused(Refusal::Value)),
+        (0, Summary::None),
+    ] {
+        let place = tempfile::tempdir().unwrap();
+        let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
+        let server = serve(counter, move |_, bytes| vec![status(id(bytes).wrapping_add(offset), summary)]);
+        for number in 1..5 {
+            // The second half: another command each time, so that the number that was answered before its time comes up.
+            let position = if number < 3 { "UNIT_1" } else { "UNIT_2" };
+            assert_eq!(agent.execute(&update(number, position)), None);
+        }
+        assert_eq!(pending(&agent), 2);
+        drop(agent);
+        server.join().unwrap();
+    }
+}
+
+#[test]
+fn of_a_garbled_status_nothing_is_taken_and_it_is_told_what_was_found() {
+    let right = |bytes: &[u8]| done(bytes).remove(0);
+    let garbles: [(&str, Garble); 6] = [
+        ("a status of 14 bytes was expected, found 13", |status| status.truncate(13)),
+        ("a status of 14 bytes was expected, found 0", Vec::clear),
+        ("a status of 14 bytes was expected, found 248", |status| *status = vec![0xFF; 248]),
+        ("byte A1 was expected at 0, found A0", |status| status[0] = 0xA0),
+        ("a server status from 00 to 02 was expected at 10, found 09", |status| status[10] = 9),
+        ("a summary status 00, 01 or 80 to 84 was expected at 13, found 53", |status| status[13] = 83),
+    ];
+    for (text, garble) in garbles {
+        let place = tempfile::tempdir().unwrap();
+        let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
+        let server = serve(counter, move |read, bytes| {
+            let mut status = right(bytes);
+            if read == 1 {
+                garble(&mut status);
+            }
+            vec![status]
+        });
+        assert_eq!(agent.execute(&update(1, "UNIT_1")), None, "{text}");
+        assert_eq!(pending(&agent), 1, "{text}");
+        let said: Vec<_> = agent.remarks().iter().skip(1).map(ToString::to_string).collect();
+        let garbled =
+            format!("{DATA_SYSTEM_STATUS} cannot be read, the Data System counts as not answering: {text}");
+        assert_eq!(said, [garbled, "the Data System has not answered command 1 for 0 s".to_owned()]);
+        is_done(agent.execute(&update(2, "UNIT_1")), 2);
+        assert_eq!(pending(&agent), 0, "{text}");
+        drop(agent);
+        server.join().unwrap();
+    }
+}
+
+#[test]
+fn a_garbled_status_is_told_once_and_the_wait_goes_on() {
+    let place = tempfile::tempdir().unwrap();
+    let (agent, counter) = agent(place.path(), ClockKind::Fast);
+    let mut agent = agent.with_patience(Duration::MAX);
+    let line = counter.come();
+    let server = thread::spawn(move || {
+        let (mut status_box, mut pulses) = (Mailbox::initialized(DATA_SYSTEM_STATUS), 0);
+        for frame in line.iter().filter(|frame| frame.as_pulse().is_some()).take(5) {
+            pulses += 1;
+            let bytes = if pulses < 5 { vec![pulses] } else { status(1, Summary::Done) };
+            status_box.write(&bytes).unwrap();
+            counter.deliver(&Frame::of(&status_box)).unwrap();
+            counter.deliver(&frame).unwrap();
+        }
+    });
+    is_done(agent.execute(&update(9, "UNIT_1")), 9);
+    let garbled = Remark::Garbled(StatusError::Size(1));
+    assert_eq!(agent.remarks(), [Remark::News(News::Came(Role::DataSystem)), garbled]);
+    server.join().unwrap();
+}
+
+#[test]
+fn another_server_is_heard_though_it_counts_its_mailgrams_from_the_beginning() {
+    let place = tempfile::tempdir().unwrap();
+    let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
+    for number in 1..4 {
+        // Its statuses have the same mailgram numbers as those of the server before.
+        let server = serve(counter.clone(), |_, bytes| done(bytes));
+        is_done(agent.execute(&update(number, "UNIT_1")), number.try_into().unwrap());
+        counter.detach("it was killed".to_owned());
+        server.join().unwrap();
+    }
+}
+
+#[test]
+fn whoever_waits_for_a_silent_server_stops_when_the_desk_is_closed() {
+    for clock in [ClockKind::Fast, ClockKind::Real] {
+        let place = tempfile::tempdir().unwrap();
+        let (agent, counter) = agent(place.path(), clock);
+        let mut agent = agent.with_patience(Duration::MAX);
+        let closer = agent.closer();
+        let server = serve(counter, move |_, _| {
+            closer.close();
+            Vec::new()
+        });
+        assert_eq!(agent.execute(&update(1, "UNIT_1")), None);
+        assert_eq!(agent.execute(&update(2, "UNIT_2")), None);
+        assert_eq!(pending(&agent), 2, "the next run tells them");
+        drop(agent);
+        server.join().unwrap();
+    }
+}
+
+/// Its patience is for ever: without the end of the run nothing would end it.
+#[test]
+fn a_run_that_is_interrupted_waits_for_no_silent_server() {
+    for (clock, pace) in [(ClockKind::Fast, Pace::Wait), (ClockKind::Real, Pace::Poll)] {
+        let place = tempfile::tempdir().unwrap();
+        let (agent, counter) = agent(place.path(), clock);
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let (flag, (tell, heard)) = (Arc::clone(&interrupted), mpsc::channel());
+        let server = serve(counter, move |_, _| {
+            flag.store(true, std::sync::atomic::Ordering::Relaxed);
+            tell.send(()).unwrap();
+            Vec::new()
+        });
+        let mut system = DataSystem::elsewhere(agent.with_patience(Duration::MAX), pace, interrupted);
+        system.step(Tick(1), &DataBaseCommand::default());
+        let abort = command(1, DataBaseVerb::Abort, "");
+        system.step(Tick(2), &abort);
+        heard.recv().unwrap();
+        for tick in 3..50 {
+            system.step(Tick(tick), &abort);
+            assert_eq!(system.status().report, DataBaseReport::Executing);
+        }
+        assert_eq!(system.items().unwrap(), []);
+        drop(system);
+        server.join().unwrap();
+    }
+}
+
+#[test]
+fn task_hears_nothing_of_a_silent_server_and_is_heard_when_it_asks_again() {
+    let place = tempfile::tempdir().unwrap();
+    let (agent, counter) = agent(place.path(), ClockKind::Fast);
+    let server = serve(counter, |read, bytes| if read == 1 { Vec::new() } else { done(bytes) });
+    let mut system = DataSystem::elsewhere(agent, Pace::Wait, Arc::default());
+    system.step(Tick(1), &DataBaseCommand::default());
+    let reports = [1, 2].map(|number| {
+        let first = u64::from(number) * 250;
+        let abort = command(number, DataBaseVerb::Abort, "");
+        (first..first + 250).for_each(|tick| system.step(Tick(tick), &abort));
+        assert_eq!(system.status().echo, number);
+        system.status().report
+    });
+    assert_eq!(reports, [DataBaseReport::Executing, DataBaseReport::Done]);
+    assert_eq!(system.refusals(), Vec::<String>::new());
+    drop(system);
+    server.join().unwrap();
+}
