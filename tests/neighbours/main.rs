@@ -8,6 +8,7 @@ mod between_machines;
 mod data_system;
 mod hung;
 mod pedestal;
+mod silent;
 mod strangers;
 mod together;
 mod vision;

@@ -18,8 +18,8 @@
 //! ```
 //!
 //! The manual gives the values of the 28-byte command and says that DSClen, TRNSlen and TYPEindc are changed for a DML
-//! command: the lengths follow by counting. Of TYPEindc it gives 55 only, as what stands there first; CHOSEN: 55 is the
-//! first command of a connection (ABORT), 56 INITIATE, 57 STARTUP, 58 DML. CHOSEN too: trans-id# numbers an update that is to be
+//! command: the lengths follow by counting. Of TYPEindc it gives 0x55 only, as what stands there first; CHOSEN: 0x55 is the
+//! first command of a connection (ABORT), 0x56 INITIATE, 0x57 STARTUP, 0x58 DML. CHOSEN too: trans-id# numbers an update that is to be
 //! carried out once, however often it is sent; 0 numbers nothing. Numbers are stored low byte first, lengths of the
 //! protocol high byte first, as the values in the figure show.
 

@@ -40,7 +40,7 @@ fn serve(
     thread::spawn(move || {
         let (mut status_box, mut read) = (Mailbox::initialized(DATA_SYSTEM_STATUS), 0);
         for frame in &line {
-            if frame.as_pulse().is_some() {
+            if frame.as_pulse().unwrap().is_some() {
                 counter.deliver(&frame).unwrap();
             } else if frame.address() == DATA_SYSTEM_COMMAND.address {
                 read += 1;
@@ -230,7 +230,7 @@ fn a_garbled_status_is_told_once_and_the_wait_goes_on() {
     let line = counter.come();
     let server = thread::spawn(move || {
         let (mut status_box, mut pulses) = (Mailbox::initialized(DATA_SYSTEM_STATUS), 0);
-        for frame in line.iter().filter(|frame| frame.as_pulse().is_some()).take(5) {
+        for frame in line.iter().filter(|frame| frame.as_pulse().unwrap().is_some()).take(5) {
             pulses += 1;
             let bytes = if pulses < 5 { vec![pulses] } else { status(1, Summary::Done) };
             status_box.write(&bytes).unwrap();

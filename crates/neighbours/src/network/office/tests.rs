@@ -147,7 +147,7 @@ fn at_a_desk_that_is_closed_nobody_is_there_and_nobody_is_waited_for() {
         let closer = desk.closer();
         let porter = thread::spawn(move || {
             // He never answers.
-            while line.recv().unwrap().as_pulse().is_none() {}
+            while line.recv().unwrap().as_pulse().unwrap().is_none() {}
             closer.close();
             line
         });

@@ -1,0 +1,141 @@
+//! A Data System that answers every pulse, and not what it is asked: it is asked again, and no run waits for it beyond its own end.
+
+use std::{
+    sync::mpsc::{Receiver, channel},
+    thread::{self, JoinHandle},
+    time::{Duration, Instant},
+};
+
+use neighbours::{
+    data_system::{
+        command,
+        status::{ServerStatus, Status, Summary},
+    },
+    mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox},
+    network::{Peer, Received, Role},
+};
+use rustix::process::{Pid, Signal, kill_process};
+use whole_system_tests::Scratch;
+
+use crate::bench::{Controller, Ended, PATIENCE, Workstation, bare};
+
+/// Exchanges after which nobody can say that he was not given time.
+const LONG: usize = 50;
+
+/// Start a controller that is commanded from outside, and a Data System that does as it is told here.
+fn start(
+    clock: &str,
+    serve: impl FnOnce(Peer) + Send + 'static,
+) -> (Controller, Workstation, JoinHandle<()>) {
+    let scratch = Scratch::new("silent");
+    let outbox = scratch.file("outbox").display().to_string();
+    let more = ["--clock", clock, "--outbox", &outbox];
+    let controller = Controller::start_at(scratch, None, "workstation,data-system", &more);
+    let peer = controller.connect(Role::DataSystem, None);
+    let data_system = thread::spawn(move || serve(peer));
+    let workstation = Workstation::connect(&controller);
+    (controller, workstation, data_system)
+}
+
+/// Ask it to end, and see that it does.
+fn terminate(mut controller: Controller) -> Ended {
+    kill_process(Pid::from_child(&controller.child), Signal::TERM).expect("it runs");
+    let asked = Instant::now();
+    while controller.child.try_wait().expect("a child").is_none() {
+        assert!(asked.elapsed() < PATIENCE, "it does not end");
+        thread::sleep(Duration::from_millis(10));
+    }
+    controller.end()
+}
+
+/// Answer pulses as a workstation controller without any more wishes.
+fn follow(mut workstation: Workstation) {
+    let mut answered = workstation.peer.pulse(workstation.tick);
+    while answered.is_ok() {
+        answered = match workstation.peer.receive() {
+            Ok(Received::Pulse(tick)) => workstation.peer.pulse(tick),
+            Ok(_) => Ok(()),
+            Err(error) => Err(error),
+        };
+    }
+}
+
+#[test]
+fn a_run_ends_as_asked_for_while_it_waits_for_an_answer() {
+    for clock in ["fast", "real"] {
+        let (tell, heard) = channel();
+        let (controller, mut workstation, data_system) = start(clock, move |mut peer| {
+            let mut waited = 0;
+            while let Ok(received) = peer.receive() {
+                let Received::Pulse(pulse) = received else { continue };
+                waited += usize::from(peer.mailbox(DATA_SYSTEM_COMMAND).mailgram() != 0);
+                if waited == LONG {
+                    tell.send(()).expect("the test listens");
+                }
+                if peer.pulse(pulse).is_err() {
+                    return;
+                }
+            }
+        });
+        workstation.send(&bare(1, "STARTUP"));
+        let workstation = thread::spawn(move || follow(workstation));
+        heard.recv_timeout(PATIENCE).expect("it is asked, and waited for");
+        let ended = terminate(controller);
+        assert_eq!(ended.status, Some(0), "{clock}: {}", ended.said);
+        assert!(!ended.said.contains("cannot be listed"), "{clock}: {}", ended.said);
+        for thread in [workstation, data_system] {
+            thread.join().expect("it has not panicked");
+        }
+    }
+}
+
+/// A Data System that answers its first command so, if at all, and all others as it should; all that it hears.
+fn connect_after(first: Option<&'static [u8]>) -> (Ended, Receiver<Vec<u8>>) {
+    let (tell, heard) = channel();
+    let (controller, mut workstation, data_system) = start("real", move |mut peer| {
+        let (mut status_box, mut read) = (Mailbox::initialized(DATA_SYSTEM_STATUS), 0);
+        while let Ok(received) = peer.receive() {
+            let Received::Pulse(pulse) = received else { continue };
+            let mailbox = peer.mailbox(DATA_SYSTEM_COMMAND);
+            if mailbox.mailgram() != read {
+                let command_id = command::decode(mailbox.data()).expect("a command").command_id;
+                tell.send(mailbox.data().to_vec()).expect("the test listens");
+                let done =
+                    Status { command_id, server: ServerStatus::Ready, summary: Summary::Done }.encode();
+                let answer = if read == 0 { first } else { Some(&done[..]) };
+                read = mailbox.mailgram();
+                if let Some(answer) = answer {
+                    status_box.write(answer).expect("it fits");
+                    peer.send(&status_box).expect("the controller reads");
+                }
+            }
+            if peer.pulse(pulse).is_err() {
+                return;
+            }
+        }
+    });
+    assert_eq!(workstation.carry_out(&bare(1, "STARTUP")).0, "finished");
+    let ended = terminate(controller);
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    data_system.join().expect("it has not panicked");
+    (ended, heard)
+}
+
+#[test]
+fn a_command_that_is_lost_is_heard_again() {
+    let (ended, heard) = connect_after(None);
+    let silent = "the Data System has not answered command 1 for 10 s";
+    assert!(ended.page.contains(silent), "{}", ended.page);
+    let [first, again] = [heard.recv(), heard.recv()];
+    assert_eq!(first, again);
+}
+
+#[test]
+fn a_garbled_answer_stands_among_the_events_and_the_command_is_asked_again() {
+    let (ended, heard) = connect_after(Some(b"what?"));
+    let found = "a status of 14 bytes was expected, found 5";
+    assert!(ended.page.contains(found), "{}", ended.page);
+    assert!(!ended.page.contains("refuses"), "{}", ended.page);
+    let [first, again] = [heard.recv(), heard.recv()];
+    assert_eq!(first, again);
+}
