@@ -217,7 +217,19 @@ impl Peer {
     }
 
     fn frame(&mut self, frame: &Frame) -> Result<(), PeerError> {
-        self.sender.send(frame).map_err(|error| FrameError::Stream(error).into())
+        match self.sender.send(frame) {
+            Err(error) if is_end(&error) => Err(self.last()),
+            sent => sent.map_err(|error| FrameError::Stream(error).into()),
+        }
+    }
+
+    /// Why the controller has closed the connection: what it said last stands behind what was not read yet.
+    fn last(&mut self) -> PeerError {
+        loop {
+            if let Err(error) = receive(self.receiver.as_mut()) {
+                return error;
+            }
+        }
     }
 }
 
@@ -262,10 +274,16 @@ fn over_socket(address: &Address, role: Role, secret: Option<&Secret>) -> Result
 fn receive(receiver: &mut dyn Inlet) -> Result<Frame, PeerError> {
     let frame = receiver.receive().map_err(|error| match error {
         FrameError::Stream(error) if is_timeout(&error) => PeerError::Silent,
-        FrameError::Stream(error) if error.kind() == io::ErrorKind::UnexpectedEof => PeerError::Closed,
+        FrameError::Stream(error) if is_end(&error) => PeerError::Closed,
         error => error.into(),
     })?;
     if frame.address() == LAST_WORDS { Err(last_words(&frame)) } else { Ok(frame) }
+}
+
+/// The other side has closed the connection, with or without what was still on its way.
+fn is_end(error: &io::Error) -> bool {
+    use io::ErrorKind::{BrokenPipe, ConnectionReset, UnexpectedEof};
+    matches!(error.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)
 }
 
 /// Why the controller ends the connection.
