@@ -91,14 +91,18 @@ impl Keeper {
         }
     }
 
-    /// Between requests; what there is to tell.
-    fn idle(&mut self) -> Vec<Remark> {
+    /// Between requests.
+    fn idle(&mut self) {
+        if let Self::Elsewhere(agent) = self {
+            agent.idle();
+        }
+    }
+
+    /// What there is to tell.
+    fn remarks(&mut self) -> Vec<Remark> {
         match self {
             Self::Here(_) => Vec::new(),
-            Self::Elsewhere(agent) => {
-                agent.idle();
-                agent.remarks()
-            }
+            Self::Elsewhere(agent) => agent.remarks(),
         }
     }
 }
@@ -152,12 +156,17 @@ impl DataSystem {
         let (tell, remarks) = channel();
         let thread = thread::spawn(move || {
             loop {
-                let over = match incoming.recv_timeout(IDLE) {
-                    Ok(request) => outgoing.send(keeper.respond(request)).is_err(),
-                    Err(RecvTimeoutError::Timeout) => false,
-                    Err(RecvTimeoutError::Disconnected) => true,
+                let response = match incoming.recv_timeout(IDLE) {
+                    Ok(request) => Some(keeper.respond(request)),
+                    Err(RecvTimeoutError::Timeout) => {
+                        keeper.idle();
+                        None
+                    }
+                    Err(RecvTimeoutError::Disconnected) => return,
                 };
-                if over || keeper.idle().into_iter().any(|remark| tell.send(remark).is_err()) {
+                // Before the answer: a tick that has waited for that has these too.
+                let told = keeper.remarks().into_iter().all(|remark| tell.send(remark).is_ok());
+                if !told || response.is_some_and(|response| outgoing.send(response).is_err()) {
                     return;
                 }
             }

@@ -316,6 +316,8 @@ fn task_hears_nothing_of_a_silent_server_and_is_heard_when_it_asks_again() {
         let abort = command(number, DataBaseVerb::Abort, "");
         (first..first + 250).for_each(|tick| system.step(Tick(tick), &abort));
         assert_eq!(system.status().echo, number);
+        let silent = Remark::Silent { command_id: 1, patience: Duration::ZERO };
+        assert_eq!(system.remarks().contains(&silent), number == 1);
         system.status().report
     });
     assert_eq!(reports, [DataBaseReport::Executing, DataBaseReport::Done]);
