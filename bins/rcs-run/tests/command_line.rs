@@ -77,6 +77,20 @@ fn json(output: &Output) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text:?}; {}", last_line(output)))
 }
 
+/// Whoever opens a pipe waits until somebody writes into it, and no device is a file of blocks.
+#[test]
+fn blocks_are_loaded_from_regular_files_only() {
+    let place = Place::new();
+    let job = place.job("device", "** load /dev/null\n** vise open PFIXTURE\n");
+    let output = command(&["run", &job, "--log", "none"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr);
+    let why = "/dev/null cannot be read: a regular file was expected";
+    // The words may be broken into lines, for a person.
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains(why), "{said}");
+}
+
 #[test]
 fn help_and_version_are_given() {
     let help = rcs_run(&["--help"]);

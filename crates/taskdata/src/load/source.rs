@@ -102,11 +102,17 @@ pub enum BlockFault {
     Duplicate,
 }
 
-/// Read one file.
+/// Read one file. Only a regular one: whoever opens a pipe waits until somebody writes into it.
 ///
 /// # Errors
-/// What the operating system says.
+/// What the operating system says, or that it is no regular file.
 pub fn read(path: &Path, shown: &str) -> io::Result<Source> {
+    let kind = fs::metadata(path)?.file_type();
+    if !kind.is_file() {
+        let found = if kind.is_dir() { "a directory" } else { "a pipe, a socket or a device" };
+        let why = format!("a regular file was expected, found {found}");
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
+    }
     Ok(Source { name: shown.to_owned(), text: fs::read_to_string(path)?.into() })
 }
 

@@ -34,6 +34,7 @@
 //! before the first tick.
 
 mod action;
+mod own_line;
 mod read;
 mod reload;
 mod walk;
@@ -43,6 +44,7 @@ use std::path::Path;
 
 use rcs_core::interface::hws::HwsCommand;
 
+pub use own_line::{OwnLineError, own_line};
 pub use reload::Reload;
 
 pub use action::{

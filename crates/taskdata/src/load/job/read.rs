@@ -22,7 +22,12 @@ pub(super) struct Fields<'a, 'w> {
     next: usize,
 }
 
-impl<'a> Fields<'a, '_> {
+impl<'a, 'w> Fields<'a, 'w> {
+    /// All words of a line.
+    pub(super) const fn new(words: &'w [Word<'a>]) -> Self {
+        Self { words, next: 0 }
+    }
+
     /// True if a word is left.
     pub(super) const fn more(&self) -> bool {
         self.next < self.words.len()
@@ -117,14 +122,18 @@ impl Reader<'_, '_> {
                 None
             }
         }?;
-        if let Some(extra) = fields.take() {
-            self.problems.error("job.fields", extra.at, format!("the line should end before {}", extra.text));
-            return None;
-        }
+        self.end_of_line(&mut fields)?;
         let end = words.last().map_or(0, |w| w.at.start.saturating_add(w.at.length));
         let length = usize::try_from(end.saturating_sub(line.at.start)).unwrap_or(0);
         let text = line.text.get(..length).unwrap_or(line.text);
         Some(JobLine { step, text: text.trim().to_owned(), line: number })
+    }
+
+    /// `None` if a word is left, which is noted.
+    pub(super) fn end_of_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<()> {
+        let Some(extra) = fields.take() else { return Some(()) };
+        self.problems.error("job.fields", extra.at, format!("the line should end before {}", extra.text));
+        None
     }
 
     pub(super) fn missing(&mut self, what: &str, at: At) {

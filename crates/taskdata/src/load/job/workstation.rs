@@ -39,6 +39,9 @@ const VERBS: &[(&str, Verb)] = &[
     ("after", Verb::After),
 ];
 
+/// Those that have to do with the job they stand in, the last of all: its ticks, its files, its next command.
+const OF_A_JOB: usize = 3;
+
 #[derive(Clone, Copy)]
 enum BoxVerb {
     Frame,
@@ -164,6 +167,15 @@ impl Reader<'_, '_> {
             }
             verb => self.action(verb, fields).map(Step::Workstation),
         }
+    }
+
+    /// A line that stands in no job.
+    pub(super) fn own_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<Workstation> {
+        let (known, _) = VERBS.split_at(VERBS.len().saturating_sub(OF_A_JOB));
+        let verb = self.choice(fields, "line for the cell", known)?;
+        let action = self.action(verb, fields)?;
+        self.end_of_line(fields)?;
+        Some(action)
     }
 
     fn action(&mut self, verb: Verb, fields: &mut Fields<'_, '_>) -> Option<Workstation> {
