@@ -197,17 +197,35 @@ impl Workstation {
 
     /// Let the cell do what a line of a job says, and wait until it has.
     pub fn in_cell(&mut self, line: &str) {
-        self.line += 1;
-        self.cell_box.write(&cell::encode_line(self.line, line)).expect("it fits");
-        self.peer.send(&self.cell_box).expect("the controller reads");
+        self.begin_in_cell(line);
         loop {
             self.tick();
-            let status = CellStatus::decode(self.peer.mailbox(CELL_STATUS).data()).expect("a status");
-            assert_eq!(status.text, "", "{line}");
-            if status.echo == self.line && !status.busy {
+            assert_eq!(self.cell().text, "", "{line}");
+            if self.cell_is_idle() {
                 return;
             }
         }
+    }
+
+    /// Let the cell begin what a line of a job says.
+    pub fn begin_in_cell(&mut self, line: &str) {
+        self.line += 1;
+        self.write_cell(&cell::encode_line(self.line, line));
+    }
+
+    /// The last line has been read, and the cell is not busy with it.
+    pub fn cell_is_idle(&self) -> bool {
+        self.cell().echo == self.line && !self.cell().busy
+    }
+
+    /// Write into the mailbox of lines for the cell, whatever it is.
+    pub fn write_cell(&mut self, data: &[u8]) {
+        self.cell_box.write(data).expect("it fits");
+        self.peer.send(&self.cell_box).expect("the controller reads");
+    }
+
+    pub fn cell(&self) -> CellStatus<'_> {
+        CellStatus::decode(self.peer.mailbox(CELL_STATUS).data()).expect("a status")
     }
 
     pub fn status(&self) -> Status<'_> {

@@ -6,6 +6,7 @@ mod bench;
 #[cfg(feature = "zenoh")]
 mod between_machines;
 mod data_system;
+mod ends;
 mod hung;
 mod pedestal;
 mod silent;

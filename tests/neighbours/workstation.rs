@@ -2,7 +2,13 @@
 
 use std::process::{Command, Stdio};
 
-use neighbours::{mailbox::HWSC_COMMAND, workstation::command};
+use neighbours::{
+    mailbox::HWSC_COMMAND,
+    workstation::{
+        cell::{self, Trouble},
+        command,
+    },
+};
 use rcs_core::interface::HwsCommand;
 use rustix::process::{Pid, Signal, kill_process};
 use whole_system_tests::{Scratch, rcs_neighbour, root};
@@ -121,6 +127,61 @@ fn refused_commands_say_why_and_nothing_moves() {
         assert_eq!((workstation.status().verdict, workstation.status().report.text()), (0, "finished"));
     });
     assert_eq!(disturbed, quiet);
+}
+
+/// Every mailgram with a line for the cell is answered: with its number, and a sentence if it is refused. Nothing is opened for one.
+#[test]
+fn lines_for_the_cell_are_refused_by_their_number_and_their_words() {
+    const LOAD: &str =
+        "load stands in the controller's own jobs only, whose blocks are read before the first tick";
+    const END: &str = "the data end before line does";
+    let controller = Controller::start("lines", "workstation", &[]);
+    let mut workstation = Workstation::connect(&controller);
+    let line = |number, text| cell::encode_line(number, text).to_vec();
+    let mut garbled = line(20, "vise close PFIXTURE");
+    garbled[9] = 0xC3;
+    let cases: [(Vec<u8>, u16, &str); 14] = [
+        (line(0, "vise close PFIXTURE"), 0, "a number from 1 on was expected, found 0"),
+        (line(9, "load README.md"), 9, LOAD),
+        (line(10, "load data/no-such-file.blk"), 10, LOAD),
+        (line(11, "( aside ) load /dev"), 11, LOAD),
+        (line(12, "load"), 12, LOAD),
+        (
+            line(13, "after 5 load README.md"),
+            13,
+            "after stands in jobs only: the workstation controller counts the ticks, and sends the line then",
+        ),
+        (
+            line(14, "wait 30"),
+            14,
+            "wait stands in jobs only: the workstation controller counts the ticks by itself",
+        ),
+        (line(15, "dance"), 15, "no line for the cell is named dance"),
+        (line(16, ""), 16, "a line for the cell was expected, such as vise close PFIXTURE; found none"),
+        (
+            garbled,
+            20,
+            "printable characters and blanks behind them were expected for line, found C3 at byte 9",
+        ),
+        (line(21, "vise close PFIXTURE")[..100].to_vec(), 21, END),
+        (vec![22, 0], 22, END),
+        (vec![7], 22, "the data end before number does"),
+        (Vec::new(), 22, "the data end before number does"),
+    ];
+    for (data, number, why) in cases {
+        workstation.write_cell(&data);
+        workstation.tick();
+        workstation.tick();
+        let status = workstation.cell();
+        assert_eq!((status.echo, status.trouble, status.text), (number, Trouble::Refused, why));
+        assert!(!status.busy);
+    }
+    workstation.write_cell(&line(23, "vise close PFIXTURE"));
+    workstation.tick();
+    workstation.tick();
+    assert_eq!((workstation.cell().echo, workstation.cell().trouble), (23, Trouble::None));
+    drop(workstation);
+    assert_eq!(controller.end().status, Some(0));
 }
 
 #[test]

@@ -15,6 +15,7 @@ mod progress;
 mod result;
 mod robot;
 pub mod setup;
+mod verdict;
 pub mod workstation;
 
 use std::{
@@ -27,17 +28,17 @@ use std::{
     time::Instant,
 };
 
-use ::neighbours::workstation::player::{self, JobFailure};
+use ::neighbours::workstation::player;
 use depc::Plate;
 use executive::{
     boards::Lost,
-    failure::{self, Failure},
+    failure::Failure,
     generations::Generations,
     laps::Part,
     memory::{Mirror, Publisher, RunName},
     runner::Runner,
 };
-use levels::ladder::{Ladder, LadderState};
+use levels::ladder::LadderState;
 use plant::CellEvent;
 use rcs_core::{
     interface::{DeviceInputs, DeviceOutputs, ExternalInputs, device::LinkBytes},
@@ -58,8 +59,9 @@ use self::{
         CommandResult, EmergencyResult, Events, FailureResult, FaultsResult, ItemResult, Page, PortResult,
         RunResult,
     },
-    robot::{Port, Robot},
+    robot::Robot,
     setup::Setup,
+    verdict::{Ending, outside},
     workstation::SimulatedWorkstation,
 };
 use crate::{
@@ -87,31 +89,6 @@ struct Run {
     fresh: Vec<(Level, &'static str, String)>,
     /// What has happened, for the page.
     events: Events,
-}
-
-/// How a run ended.
-enum Ending {
-    /// The job is over.
-    Finished,
-    /// `--ticks` were run.
-    Stopped,
-    /// Something went wrong.
-    Failed(Failure),
-}
-
-impl Ending {
-    /// A job in which the robot ran into something has not finished; one that failed may have failed because of it.
-    fn judged(self, judge: &Judge) -> Self {
-        let Some(verdict) = judge.verdict() else { return self };
-        match self {
-            Self::Finished | Self::Stopped => Self::Failed(verdict),
-            Self::Failed(failure) if failure.text == verdict.text => Self::Failed(failure),
-            Self::Failed(failure) => {
-                let text = format!("{}; before, {}", failure.text, verdict.text);
-                Self::Failed(Failure { text, ..failure })
-            }
-        }
-    }
 }
 
 /// Run a job and print its result.
@@ -164,7 +141,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         stopped: matches!(ending, Ending::Stopped),
     };
     print(&page, arguments.json)?;
-    let run_line = run.neighbours.records().last().map(|record| record.text.clone());
+    let run_line = run.neighbours.last_line().map(ToOwned::to_owned);
     // What is shared goes before the last word: whoever reads it may start the next run at once.
     drop(mirror);
     drop(run);
@@ -320,7 +297,7 @@ impl Run {
             // Vision in another process has answered the tick that is over.
             self.inputs.vision = self.workstation.cell.inputs().vision;
             match progress {
-                player::Progress::Over => return Ending::Finished,
+                player::Progress::Over => return self.left(Ending::Finished),
                 // Whatever the arm runs into belongs to the run.
                 player::Progress::Failed(_) if self.workstation.is_settling(tick) => {}
                 player::Progress::Failed(failure) => {
@@ -341,12 +318,12 @@ impl Run {
             if interrupted.load(Ordering::Relaxed) {
                 if self.neighbours.are_commanding() {
                     // There is no job that ends by itself.
-                    return Ending::Stopped;
+                    return self.left(Ending::Stopped);
                 }
                 return Ending::Failed(outside(tick, "rcs-run", "interrupted".to_owned()));
             }
             if arguments.ticks.is_some_and(|ticks| tick.0 >= ticks) {
-                return Ending::Stopped;
+                return self.left(Ending::Stopped);
             }
             self.reload(&mut generations, reloads);
             self.show_cell();
@@ -417,34 +394,6 @@ impl Run {
         if let (Some(log), Some(reload)) = (&mut self.log, reload(number)) {
             log.reload(tick, number, &reload.source);
         }
-    }
-
-    /// Why the job failed: the explanation of the process that knows, or what the workstation controller saw.
-    fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Failure {
-        if let (JobFailure::Emergency(what), Some(emergency)) = (failure, self.workstation.last_emergency()) {
-            let text = format!("{what}; the arm {}", emergency.droop.end());
-            return Failure { stopped: true, ..outside(emergency.tick, "T3", text) };
-        }
-        let processes = Ladder::processes();
-        let known = match failure {
-            JobFailure::Command(_) => self.runner.watch().failure(processes),
-            _ => None,
-        };
-        let trouble = self.robot.port().and_then(Port::trouble);
-        let known = known.map(|known| match trouble {
-            Some(trouble) if known.stopped => Failure { text: format!("{trouble}; {}", known.text), ..known },
-            _ => known,
-        });
-        known.unwrap_or_else(|| {
-            let text = match failure {
-                JobFailure::TimeLimit(_) => {
-                    let doing = failure::present_commands(processes, &external.hws, self.runner.memory());
-                    format!("HWSC: {failure}; {doing}")
-                }
-                _ => format!("HWSC: {failure}"),
-            };
-            outside(self.runner.tick(), "HWSC", text)
-        })
     }
 
     fn result(&mut self, job: &Job, ending: &Ending, wall_s: f64) -> RunResult {
@@ -543,9 +492,4 @@ const fn source(event: &CellEvent) -> &'static str {
         CellEvent::FaultBegins { .. } | CellEvent::FaultEnds { .. } => "fault",
         _ => "cell",
     }
-}
-
-/// A failure that no control process reports.
-fn outside(tick: Tick, process: &str, text: String) -> Failure {
-    Failure { tick, process: process.to_owned(), table: None, row: None, text, stopped: false }
 }

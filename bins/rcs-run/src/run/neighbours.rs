@@ -18,7 +18,7 @@ use neighbours::{
     vision::{self, picture::Part},
     workstation::{
         Gate, TaskState,
-        player::{Hwsc, JobFailure, Progress, Record},
+        player::{Hwsc, JobFailure, Outcome, Progress, Record},
         status,
     },
 };
@@ -195,6 +195,14 @@ impl Neighbours {
             Chief::Emulator { hwsc, .. } => hwsc.records(),
             Chief::Outside(outside) => outside.records(),
         }
+    }
+
+    /// The line that a failure is of: the last step of a job, or the command that whoever commands waits for.
+    #[must_use]
+    pub fn last_line(&self) -> Option<&str> {
+        let last = self.records().last()?;
+        let is_meant = !self.are_commanding() || last.outcome == Outcome::Executing;
+        is_meant.then_some(last.text.as_str())
     }
 
     /// Once a tick, after controller and cell: all read what the tick has written. `inputs` are the device words of the next tick.

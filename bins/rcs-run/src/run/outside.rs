@@ -1,15 +1,16 @@
 //! A workstation controller in another process: its mailboxes, and what of its commands a run remembers.
 //!
 //! Besides Task it commands the simulated cell: what a workstation does itself are lines of a job, in a mailbox of their own. A
-//! run in fast clock is over when its workstation controller has gone; on the 40 ms grid the robot waits for it to come back.
+//! run in fast clock is over when its workstation controller has gone, and has failed if that was in the middle of a command; on
+//! the 40 ms grid the robot waits for it to come back.
 
 use neighbours::{
     mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS},
-    network::{Desk, hello::ClockKind},
+    network::{Desk, News, Parting, hello::ClockKind, office::Presence},
     workstation::{
         Gate,
-        cell::{self, CellStatus, Trouble},
-        player::{Outcome, Progress, Record, Workstation as _},
+        cell::{self, CellStatus, Line, Trouble},
+        player::{JobFailure, Outcome, Progress, Record, Workstation as _},
     },
 };
 use rcs_core::{
@@ -18,7 +19,7 @@ use rcs_core::{
     tick::Tick,
 };
 use record::Level;
-use taskdata::load::{Job, Source, Step, Store, job::Workstation as Action};
+use taskdata::load::{Store, job};
 
 use super::{
     neighbours::{Note, network_note},
@@ -39,8 +40,10 @@ pub struct OutsideWorkstation {
     refused: Option<String>,
     records: Vec<Record>,
     began: Tick,
-    /// It has been there.
+    /// It has been there in a tick.
     came: bool,
+    /// Why the last one that was there is there no longer.
+    parting: Option<Parting>,
 }
 
 impl OutsideWorkstation {
@@ -55,6 +58,7 @@ impl OutsideWorkstation {
             records: Vec::new(),
             began: Tick::BEFORE_START,
             came: false,
+            parting: None,
         }
     }
 
@@ -80,12 +84,15 @@ impl OutsideWorkstation {
         let presence = self.desk.exchange(tick.0);
         while let Some(news) = self.desk.news() {
             notes.push(network_note(&news));
+            if let News::Gone(_, parting) = news {
+                self.parting = Some(parting);
+            }
         }
+        let gone = self.has_gone(presence);
         if presence.new {
             gate.initialize();
             (self.line_read, self.line, self.refused) = (0, 0, None);
         }
-        self.came |= presence.here;
         let before = gate.command().number;
         if let Some(refusal) = gate.read(self.desk.incoming(HWSC_COMMAND)) {
             notes.push((Level::Warning, "HWSC", format!("a command is refused: {refusal}")));
@@ -94,11 +101,36 @@ impl OutsideWorkstation {
             self.begin(tick, gate.command());
         }
         self.read_cell(workstation, store, notes);
-        if self.came && !presence.here && self.desk.clock() == ClockKind::Fast {
-            Progress::Over
-        } else {
-            Progress::Running
+        if gone { self.end(gate.command(), task, workstation) } else { Progress::Running }
+    }
+
+    /// Whoever was there has gone, and the run is over. Another one in his place is too late.
+    fn has_gone(&mut self, presence: Presence) -> bool {
+        let gone = presence.came && (!presence.here || presence.new && self.came);
+        self.came |= presence.here;
+        gone && self.desk.clock() == ClockKind::Fast
+    }
+
+    /// How a run ends whose workstation controller has gone.
+    fn end(&self, command: &HwsCommand, task: &TaskOutputs, workstation: &SimulatedWorkstation) -> Progress {
+        if let Some(emergency) = workstation.emergency() {
+            return Progress::Failed(JobFailure::Emergency(emergency));
         }
+        let status = &task.status;
+        let executes = status.echo != command.number || status.report == HwsReport::Executing;
+        let amid =
+            if executes { format!(" while {} was not finished", command.command) } else { String::new() };
+        let what = match &self.parting {
+            Some(Parting::Dismissed(why)) => {
+                format!("the workstation controller was disconnected{amid}: {why}")
+            }
+            Some(Parting::Left(why)) if executes => {
+                format!("the workstation controller has gone{amid}: {why}")
+            }
+            None if executes => format!("the workstation controller has gone{amid}"),
+            Some(Parting::Left(_)) | None => return Progress::Over,
+        };
+        Progress::Failed(JobFailure::Commander(what))
     }
 
     fn begin(&mut self, tick: Tick, command: &HwsCommand) {
@@ -149,34 +181,21 @@ impl OutsideWorkstation {
         }
         self.line_read = mailbox.mailgram();
         let begun = match cell::decode_line(mailbox.data()) {
-            Ok((number, _)) if number == self.line => return,
-            Ok((number, line)) => {
-                self.line = number;
-                action(line, store).and_then(|action| workstation.begin(&action, line))
-            }
             Err(error) => Err(error.to_string()),
+            Ok(Line { number: 0, .. }) => Err("a number from 1 on was expected, found 0".to_owned()),
+            Ok(Line { number, text: Ok(_) }) if number == self.line => return,
+            Ok(Line { number, text }) => {
+                self.line = number;
+                text.map_err(|error| error.to_string()).and_then(|line| {
+                    let action = job::own_line(line, store).map_err(|error| error.to_string())?;
+                    workstation.begin(&action, line)
+                })
+            }
         };
         self.refused = begun.err();
         if let Some(why) = &self.refused {
             notes.push((Level::Warning, "cell", format!("a line of the workstation is refused: {why}")));
         }
-    }
-}
-
-/// What a line wants of the cell.
-fn action(line: &str, store: &Store) -> Result<Action, String> {
-    let source = Source { name: "workstation".into(), text: format!("** {line}").into() };
-    let (job, _) = Job::from_source(source, store).map_err(|report| {
-        let errors: Vec<_> = report.errors().map(ToString::to_string).collect();
-        errors.join("; ")
-    })?;
-    match job.steps.first().map(|line| line.step) {
-        Some(Step::Workstation(Action::Load { .. } | Action::Wait { .. })) => {
-            Err("the workstation waits by itself, and only a job of the controller's own loads blocks"
-                .to_owned())
-        }
-        Some(Step::Workstation(action)) => Ok(action),
-        _ => Err("a line for the cell was expected, such as vise close PFIXTURE".to_owned()),
     }
 }
 

@@ -29,7 +29,7 @@ use super::{
     door::{self, Door},
     frame::{Frame, FrameError},
     hello::{ANSWER, Agreement, Challenge, ClockKind, welcome},
-    office::{Counter, Outlet as _},
+    office::{Counter, Outlet as _, Parting},
     peer::Inlet as _,
     stream::{Receiver, Sender, Stream, is_timeout},
 };
@@ -301,7 +301,7 @@ fn receive(mut stream: Stream, reception: &Reception, ticket: u64) {
             let (limit, clerk) = (patience(reception.clock), counter.clone());
             counter.detach(match receiver.wait_until(move || clerk.is_late(limit)) {
                 Ok(()) => read(&mut receiver, counter, limit),
-                Err(error) => error.to_string(),
+                Err(error) => Parting::Left(error.to_string()),
             });
         }
         Err(why) => {
@@ -334,13 +334,13 @@ fn admit<'a>(
 }
 
 /// Read until the connection ends; why it did.
-fn read(receiver: &mut Receiver, counter: &Counter, limit: Duration) -> String {
-    let silent = || format!("no answer for {} s", limit.as_secs());
+fn read(receiver: &mut Receiver, counter: &Counter, limit: Duration) -> Parting {
+    let silent = || Parting::Dismissed(format!("no answer for {} s", limit.as_secs()));
     loop {
         match receiver.receive() {
             Ok(frame) => {
                 if let Err(error) = counter.deliver(&frame) {
-                    return error.to_string();
+                    return Parting::Dismissed(error.to_string());
                 }
                 // He may talk without end, and answer nothing.
                 if counter.is_late(limit) {
@@ -349,9 +349,10 @@ fn read(receiver: &mut Receiver, counter: &Counter, limit: Duration) -> String {
             }
             Err(FrameError::Stream(error)) if is_timeout(&error) => return silent(),
             Err(FrameError::Stream(error)) if error.kind() == io::ErrorKind::UnexpectedEof => {
-                return "the connection was closed".to_owned();
+                return Parting::Left("the connection was closed".to_owned());
             }
-            Err(error) => return error.to_string(),
+            Err(FrameError::Stream(error)) => return Parting::Left(error.to_string()),
+            Err(error) => return Parting::Dismissed(error.to_string()),
         }
     }
 }

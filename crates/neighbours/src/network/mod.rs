@@ -35,6 +35,6 @@ mod stream;
 pub use address::Address;
 pub use hello::Secret;
 pub use listener::Listener;
-pub use office::{Desk, News};
+pub use office::{Desk, News, Parting};
 pub use peer::{Peer, PeerError, Received};
 pub use role::Role;

@@ -41,13 +41,29 @@ pub trait Outlet: Send {
     fn close(&mut self);
 }
 
+/// Why a neighbour is there no longer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Parting {
+    /// He has closed the connection, or it broke.
+    Left(String),
+    /// He was disconnected: what he sent was none of his, or nothing came from him for too long.
+    Dismissed(String),
+}
+
+impl std::fmt::Display for Parting {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (Self::Left(why) | Self::Dismissed(why)) = self;
+        f.write_str(why)
+    }
+}
+
 /// What happened on the network.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum News {
     /// A neighbour has come.
     Came(Role),
     /// A neighbour has gone, and why.
-    Gone(Role, String),
+    Gone(Role, Parting),
     /// Somebody was not let in, and why.
     Refused(String),
     /// What came was from nobody who is connected, and what.
@@ -118,6 +134,8 @@ pub struct Presence {
     pub here: bool,
     /// He has come since the last exchange: his mailboxes were initialized.
     pub new: bool,
+    /// He has been there at some time, if only between two exchanges.
+    pub came: bool,
 }
 
 impl Desk {
@@ -230,7 +248,8 @@ impl Desk {
         }
         // Who has answered was there, even if he has gone since: so a run ends in the same tick every time.
         let here = if waits { answered } else { connection != 0 && now == connection };
-        Presence { here: here && !self.shared.over.load(Ordering::Acquire), new }
+        let here = here && !self.shared.over.load(Ordering::Acquire);
+        Presence { here, new, came: self.numbers.load(Ordering::Acquire) != 0 }
     }
 
     /// Until the neighbour has answered the pulse, or is gone, or the desk is closed; true if he has answered. Whoever reads from him
@@ -423,7 +442,7 @@ impl Counter {
             locked(mailbox).initialize();
         }
         *line = Some(outlet);
-        let number = self.numbers.fetch_add(1, Ordering::Relaxed).wrapping_add(1).max(1);
+        let number = self.numbers.fetch_add(1, Ordering::AcqRel).wrapping_add(1).max(1);
         let mut answered = locked(&self.shared.answered);
         *answered = Answered { tick: 0, due: Instant::now() };
         self.shared.connection.store(number, Ordering::Release);
@@ -434,17 +453,17 @@ impl Counter {
     }
 
     /// The neighbour goes; he is told why, if he still hears it.
-    pub fn detach(&self, why: String) {
+    pub fn detach(&self, why: Parting) {
         let mut line = locked(&self.shared.outlet);
         if let Some(mut outlet) = line.take() {
-            let _ = outlet.send(&Frame::last_words(&why));
+            let _ = outlet.send(&Frame::last_words(&why.to_string()));
             outlet.close();
         }
-        let answered = locked(&self.shared.answered);
+        // Before the tick can find nobody there: then it finds the reason, too.
+        self.tell(News::Gone(self.shared.role, why));
+        let _answered = locked(&self.shared.answered);
         self.shared.connection.store(0, Ordering::Release);
         self.shared.news_of_answer.notify_all();
-        drop(answered);
-        self.tell(News::Gone(self.shared.role, why));
     }
 
     /// Pulses were sent, and for so long none has come back.

@@ -205,7 +205,7 @@ mod tests {
     use super::*;
     use crate::{
         mailbox::Mailbox,
-        network::{Role, frame::Frame, office::Counter},
+        network::{Parting, Role, frame::Frame, office::Counter},
     };
 
     /// The controller's side on the 40 ms grid, and a pedestal that writes what a test wants.
@@ -319,7 +319,7 @@ mod tests {
         let mut bench = Bench::connected();
         bench.report(4, PedestalReport::Executing);
         assert_eq!(bench.tick(4), (true, false));
-        bench.counter.detach("the cable was cut".to_owned());
+        bench.counter.detach(Parting::Left("the cable was cut".to_owned()));
         assert!(!bench.tick(4).0);
         assert_eq!(bench.agent.sent().pedestal.status.echo, 4);
         assert!(bench.agent.sent().elsewhere);

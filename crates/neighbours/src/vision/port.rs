@@ -250,7 +250,7 @@ mod tests {
     use super::*;
     use crate::{
         mailbox::{Mailbox, Place},
-        network::{Role, frame::Frame, hello::ClockKind, office::Counter},
+        network::{Parting, Role, frame::Frame, hello::ClockKind, office::Counter},
     };
 
     /// A port, and the other end of its line.
@@ -287,7 +287,7 @@ mod tests {
         }
 
         fn go(&mut self) {
-            self.counter.detach("the cable was cut".to_owned());
+            self.counter.detach(Parting::Left("the cable was cut".to_owned()));
             self.line = None;
         }
 

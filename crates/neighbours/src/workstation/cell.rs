@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!   command   at  bytes  holds
-//!              0    2    number: another one than the last is a new line
+//!              0    2    number, 1 to 65535: another one than the last is a new line
 //!              2  240    the line, as in a job without its asterisks: vise close PFIXTURE
 //!
 //!   status     0    2    number of the line that was begun last, or refused
@@ -59,13 +59,22 @@ pub fn encode_line(number: u16, line: &str) -> [u8; COMMAND] {
     fields.finish()
 }
 
-/// Read a line with its number.
+/// A line with its number, which is known even if the rest cannot be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line<'a> {
+    /// The number.
+    pub number: u16,
+    /// The line, or why it cannot be read.
+    pub text: Result<&'a str, FieldError>,
+}
+
+/// Read a line.
 ///
 /// # Errors
-/// [`FieldError`] for what cannot be.
-pub fn decode_line(bytes: &[u8]) -> Result<(u16, &str), FieldError> {
+/// [`FieldError`] if it has no number.
+pub fn decode_line(bytes: &[u8]) -> Result<Line<'_>, FieldError> {
     let mut fields = Unpacker::new(bytes);
-    Ok((fields.word("number")?, fields.text("line", TEXT)?))
+    Ok(Line { number: fields.word("number")?, text: fields.text("line", TEXT) })
 }
 
 impl<'a> CellStatus<'a> {
@@ -107,7 +116,10 @@ mod tests {
     fn lines_and_statuses_come_back() {
         let bytes = encode_line(7, "vise close PFIXTURE");
         assert_eq!(&bytes[..24], b"\x07\x00vise close PFIXTURE   ");
-        assert_eq!(decode_line(&bytes), Ok((7, "vise close PFIXTURE")));
+        assert_eq!(decode_line(&bytes), Ok(Line { number: 7, text: Ok("vise close PFIXTURE") }));
+        let short = Line { number: 7, text: Err(FieldError::End { field: "line" }) };
+        assert_eq!(decode_line(&bytes[..100]), Ok(short));
+        assert_eq!(decode_line(&bytes[..1]), Err(FieldError::End { field: "number" }));
         let status =
             CellStatus { echo: 7, busy: true, trouble: Trouble::Refused, text: "there is no vise at TABLE" };
         let bytes = status.encode();

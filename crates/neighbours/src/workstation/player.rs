@@ -115,6 +115,9 @@ pub enum JobFailure {
     /// An emergency has stopped the robot.
     #[error("{0}")]
     Emergency(String),
+    /// Whoever commands from another process is lost.
+    #[error("{0}")]
+    Commander(String),
 }
 
 /// Where the job stands.

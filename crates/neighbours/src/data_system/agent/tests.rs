@@ -22,7 +22,7 @@ use super::*;
 use crate::{
     data_system::{DataSystem, Pace},
     mailbox::Mailbox,
-    network::{Role, frame::Frame, hello::ClockKind, office::Counter},
+    network::{Parting, Role, frame::Frame, hello::ClockKind, office::Counter},
 };
 
 /// What a server writes, one mailgram after the other.
@@ -252,7 +252,7 @@ fn another_server_is_heard_though_it_counts_its_mailgrams_from_the_beginning() {
         // Its statuses have the same mailgram numbers as those of the server before.
         let server = serve(counter.clone(), |_, bytes| done(bytes));
         is_done(agent.execute(&update(number, "UNIT_1")), number.try_into().unwrap());
-        counter.detach("it was killed".to_owned());
+        counter.detach(Parting::Left("it was killed".to_owned()));
         server.join().unwrap();
     }
 }

@@ -56,7 +56,7 @@ fn in_fast_clock_the_tick_waits_for_what_answers_it() {
     for tick in 1..=100_u64 {
         desk.outgoing(HWSC_STATUS).write(&[1]).unwrap();
         let presence = desk.exchange(tick);
-        assert_eq!(presence, Presence { here: true, new: tick == 1 });
+        assert_eq!(presence, Presence { here: true, new: tick == 1, came: true });
         assert_eq!(desk.incoming(HWSC_COMMAND).data(), tick.to_le_bytes());
     }
     echo.join().unwrap();
@@ -66,8 +66,8 @@ fn in_fast_clock_the_tick_waits_for_what_answers_it() {
 fn on_the_grid_nobody_is_waited_for() {
     let mut desk = Desk::new(Role::Workstation, ClockKind::Real);
     let (counter, line) = came(&desk);
-    assert_eq!(desk.exchange(1), Presence { here: true, new: true });
-    assert_eq!(desk.exchange(2), Presence { here: true, new: false });
+    assert_eq!(desk.exchange(1), Presence { here: true, new: true, came: true });
+    assert_eq!(desk.exchange(2), Presence { here: true, new: false, came: true });
     counter.deliver(&mailgram(HWSC_COMMAND, b"go")).unwrap();
     desk.exchange(3);
     assert_eq!(desk.incoming(HWSC_COMMAND).data(), b"go");
@@ -100,16 +100,16 @@ fn who_comes_again_finds_his_mailboxes_initialized_and_gets_all_that_is_for_him(
     let occupied = desk.counter().attach(Box::new(Wire(send)), Some(&Frame::welcome(&[])));
     assert!(matches!(occupied, Err(AttachError::Occupied(Role::Workstation))));
     assert_eq!(second.recv().unwrap(), Frame::last_words("workstation is connected already"));
-    counter.detach("the cable was cut".to_owned());
+    let cut = Parting::Left("the cable was cut".to_owned());
+    counter.detach(cut.clone());
     assert!(!desk.exchange(2).here);
     let (_, line) = came(&desk);
-    assert_eq!(desk.exchange(3), Presence { here: true, new: true });
+    assert_eq!(desk.exchange(3), Presence { here: true, new: true, came: true });
     assert_eq!(desk.incoming(HWSC_COMMAND).mailgram(), 0);
     let first = line.recv_timeout(Duration::from_secs(60)).unwrap();
     assert_eq!((first.address(), first.data()), (HWSC_STATUS.address, &b"status"[..]));
     let news: Vec<_> = std::iter::from_fn(|| desk.news()).collect();
-    let (came, gone) =
-        (News::Came(Role::Workstation), News::Gone(Role::Workstation, "the cable was cut".into()));
+    let (came, gone) = (News::Came(Role::Workstation), News::Gone(Role::Workstation, cut));
     assert_eq!(news, [came.clone(), gone, came]);
 }
 
@@ -132,11 +132,21 @@ fn a_tick_that_waits_goes_on_when_the_neighbour_is_gone() {
     let (counter, line) = came(&desk);
     let leaver = thread::spawn(move || {
         while line.recv().unwrap().as_pulse().unwrap().is_none() {}
-        counter.detach("enough".to_owned());
+        counter.detach(Parting::Left("enough".to_owned()));
     });
-    assert_eq!(desk.exchange(1), Presence { here: false, new: true });
+    assert_eq!(desk.exchange(1), Presence { here: false, new: true, came: true });
     leaver.join().unwrap();
     assert!(!desk.exchange(2).here);
+}
+
+/// A run whose workstation controller has been there at some time is over when it is not.
+#[test]
+fn who_comes_and_goes_between_two_ticks_has_come() {
+    let mut desk = Desk::new(Role::Workstation, ClockKind::Fast);
+    assert!(!desk.exchange(1).came);
+    let (counter, _line) = came(&desk);
+    counter.detach(Parting::Left("enough".to_owned()));
+    assert_eq!(desk.exchange(2), Presence { here: false, new: false, came: true });
 }
 
 #[test]

@@ -40,7 +40,7 @@ use crate::network::{
     frame::{Frame, PULSE},
     hello::{ANSWER, Agreement, Challenge, HELLO, HelloError, welcome},
     listener::patience,
-    office::{Counter, Outlet, locked},
+    office::{Counter, Outlet, Parting, locked},
     seal::Seal,
     station::Station,
 };
@@ -96,7 +96,7 @@ struct Connection {
 enum State {
     Lives,
     /// It is to be taken leave of, and why.
-    Over(String),
+    Over(Parting),
     /// Last words were sent.
     Parted,
 }
@@ -107,7 +107,7 @@ impl Connection {
     }
 
     /// Only the first reason counts.
-    fn end(&mut self, why: String) {
+    fn end(&mut self, why: Parting) {
         if self.lives() {
             self.state = State::Over(why);
         }
@@ -190,7 +190,7 @@ fn listen(session: &Session, keys: &Keys, shared: &Arc<Shared>, number: usize) -
     let theirs = Arc::clone(shared);
     let gone = move |token: Sample| {
         if token.kind() == SampleKind::Delete {
-            theirs.end(number, |id| token.key_expr().as_str().ends_with(id), "the connection was closed");
+            theirs.leave(number, |id| token.key_expr().as_str().ends_with(id));
         }
     };
     let everybody = keys.neighbour_here(role, "*");
@@ -219,8 +219,10 @@ impl Shared {
             SampleKind::Delete => Err(EnvelopeError::Short(0)),
         };
         let over = match opened {
-            Ok(frame) => booth.counter.deliver(&frame).err().map(|error| error.to_string()),
-            Err(EnvelopeError::Broken(error)) => Some(error.to_string()),
+            Ok(frame) => {
+                booth.counter.deliver(&frame).err().map(|error| Parting::Dismissed(error.to_string()))
+            }
+            Err(EnvelopeError::Broken(error)) => Some(Parting::Dismissed(error.to_string())),
             Err(error) => return self.stray(number, format!("{key}: {error}")),
         };
         if let Some(why) = over {
@@ -229,11 +231,11 @@ impl Shared {
         }
     }
 
-    /// End the connection of a booth, if its name is meant.
-    fn end(&self, number: usize, is_meant: impl FnOnce(&str) -> bool, why: &str) {
+    /// A neighbour has left; nothing if his name is not meant.
+    fn leave(&self, number: usize, is_meant: impl FnOnce(&str) -> bool) {
         let mut connection = locked(&self.booths[number].connection);
         if let Some(connection) = connection.as_mut().filter(|connection| is_meant(&connection.id)) {
-            connection.end(why.to_owned());
+            connection.end(Parting::Left("the connection was closed".to_owned()));
             self.look();
         }
     }
@@ -374,7 +376,7 @@ fn look_after(booth: &Booth) {
     let Some(connection) = locked.as_mut() else { return };
     let limit = patience(booth.counter.clock());
     if booth.counter.is_late(limit) {
-        connection.end(format!("no answer for {} s", limit.as_secs()));
+        connection.end(Parting::Dismissed(format!("no answer for {} s", limit.as_secs())));
     }
     match std::mem::replace(&mut connection.state, State::Parted) {
         State::Over(why) => {
@@ -400,7 +402,7 @@ impl Outlet for Publishing {
     }
 
     fn close(&mut self) {
-        self.shared.end(self.number, |id| id == self.id, "the connection was closed");
+        self.shared.leave(self.number, |id| id == self.id);
     }
 }
 

@@ -1,0 +1,167 @@
+//! How a run ends that is commanded from another process, and what its exit status says of it.
+
+use neighbours::{
+    mailbox::{HWSC_STATUS, Mailbox},
+    network::{Received, Role},
+    workstation::cell::Trouble,
+};
+use rcs_core::{interface::HwsCommand, name::Name16};
+use rustix::process::{Pid, Signal, kill_process};
+
+use crate::bench::{Controller, Ended, Workstation, bare};
+
+/// A run that goes on without its workstation controller ends here, and not where it should.
+const TOO_LONG: [&str; 3] = ["--json", "--ticks", "20000"];
+
+const FAILED: Option<i32> = Some(1);
+const STOPPED: Option<i32> = Some(3);
+
+fn start(name: &str) -> (Controller, Workstation) {
+    let controller = Controller::start(name, "workstation", &TOO_LONG);
+    let workstation = Workstation::connect(&controller);
+    (controller, workstation)
+}
+
+fn to_safe(number: u32) -> HwsCommand {
+    HwsCommand { destination: Name16::clipped("SAFE"), ..bare(number, "MOVE") }
+}
+
+/// The last line on standard error.
+fn last_words(ended: &Ended) -> &str {
+    ended.said.lines().last().unwrap_or_default()
+}
+
+/// It failed with these words, on standard error and in the result.
+fn assert_ended(ended: &Ended, status: Option<i32>, why: &str) {
+    assert_eq!(ended.status, status, "{}", ended.said);
+    assert!(last_words(ended).contains(why), "{why}: {}", ended.said);
+    let failure = ended.result["failure"]["text"].as_str().expect("a failure");
+    assert!(failure.contains(why), "{why}: {failure}");
+}
+
+#[test]
+fn who_goes_before_he_has_answered_ends_the_run_in_its_first_tick() {
+    for answers in 0..3 {
+        let controller = Controller::start("early", "workstation", &TOO_LONG);
+        let mut peer = controller.connect(Role::Workstation, None);
+        for answer in 0..=answers {
+            let tick = loop {
+                if let Received::Pulse(tick) = peer.receive().expect("the controller goes on") {
+                    break tick;
+                }
+            };
+            if answer < answers {
+                peer.pulse(tick).expect("the controller reads");
+            }
+        }
+        drop(peer);
+        let ended = controller.end();
+        assert_eq!(ended.status, Some(0), "{}", ended.said);
+        assert_eq!(ended.result["ticks"], answers + 1);
+    }
+}
+
+#[test]
+fn who_goes_between_two_commands_has_finished_even_if_one_failed() {
+    let (controller, mut workstation) = start("between");
+    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
+    assert_eq!(workstation.carry_out(&bare(2, "FROBNICATE")).0, "error");
+    drop(workstation);
+    let ended = controller.end();
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert!(ended.result.get("failure").is_none());
+}
+
+#[test]
+fn who_goes_while_the_robot_moves_has_not_finished() {
+    let (controller, mut workstation) = start("amid");
+    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
+    workstation.send(&to_safe(2));
+    workstation.run_to(workstation.tick + 30);
+    assert_eq!((workstation.status().echo, workstation.status().report.text()), (2, "executing"));
+    drop(workstation);
+    let ended = controller.end();
+    assert_ended(&ended, FAILED, "HWSC: the workstation controller has gone while MOVE was not finished");
+    assert!(last_words(&ended).contains("in `== MOVE"), "{}", ended.said);
+    assert_eq!(ended.result["failure"]["process"], "HWSC");
+}
+
+#[test]
+fn who_is_disconnected_for_what_he_sent_has_not_finished() {
+    let (controller, mut workstation) = start("violation");
+    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
+    let mut status = Mailbox::initialized(HWSC_STATUS);
+    status.write(b"finished").expect("it fits");
+    workstation.peer.send(&status).expect("the controller reads");
+    while workstation.peer.receive().is_ok() {}
+    let ended = controller.end();
+    assert_ended(&ended, FAILED, "HWSC: the workstation controller was disconnected: the address of");
+}
+
+#[test]
+fn an_emergency_stop_that_stands_ends_the_run_when_the_arm_lies_still() {
+    let (controller, mut workstation) = start("estop");
+    workstation.begin_in_cell("estop terminals");
+    while workstation.cell().trouble != Trouble::Emergency {
+        workstation.tick();
+    }
+    drop(workstation);
+    let ended = controller.end();
+    assert_ended(&ended, STOPPED, "the E-stop near the terminals was pressed");
+    assert_eq!(ended.result["emergency_stop"]["at_rest"], true);
+}
+
+/// An end that was asked for, too.
+#[test]
+fn an_emergency_stop_that_stands_is_no_good_end_on_the_grid_either() {
+    let controller = Controller::start("standing", "workstation", &["--json", "--clock", "real"]);
+    let mut workstation = Workstation::connect(&controller);
+    workstation.begin_in_cell("estop joystick-box");
+    while workstation.cell().trouble != Trouble::Emergency {
+        workstation.tick();
+    }
+    drop(workstation);
+    kill_process(Pid::from_child(&controller.child), Signal::TERM).expect("it runs");
+    assert_ended(&controller.end(), STOPPED, "the E-stop on the joystick box was pressed");
+}
+
+#[test]
+fn a_robot_that_is_switched_off_is_a_lost_link() {
+    let (controller, mut workstation) = start("off");
+    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
+    workstation.in_cell("panel power off");
+    workstation.run_to(workstation.tick + 50);
+    drop(workstation);
+    assert_ended(&controller.end(), STOPPED, "T3I: the link to the robot is lost: not responding");
+}
+
+/// Lines that bring the robot to HOME from wherever it stands (IV.3.3).
+const BY_HAND: [&str; 6] = [
+    "panel hydraulics disable",
+    "panel hydraulics enable",
+    "panel manual on",
+    "panel align",
+    "panel auto",
+    "panel cycle-start",
+];
+
+/// A command replaces the one that is executed. Then the robot stands somewhere on the way, until it is brought to HOME by hand.
+#[test]
+fn a_robot_that_was_stopped_on_its_way_is_brought_back_by_hand() {
+    let (controller, mut workstation) = start("by-hand");
+    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
+    workstation.send(&to_safe(2));
+    workstation.run_to(workstation.tick + 30);
+    let nowhere = ("error".to_owned(), "the robot is at no known location".to_owned());
+    assert_eq!(workstation.carry_out(&to_safe(3)), nowhere);
+    assert_eq!(workstation.carry_out(&bare(4, "PAUSE")).0, "finished");
+    assert_eq!(workstation.carry_out(&to_safe(5)), nowhere);
+    for line in BY_HAND {
+        workstation.in_cell(line);
+    }
+    assert_eq!(workstation.carry_out(&bare(6, "PAUSE")).0, "finished");
+    assert_eq!(workstation.carry_out(&to_safe(7)).0, "finished");
+    drop(workstation);
+    let ended = controller.end();
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+}
