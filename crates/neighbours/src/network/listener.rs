@@ -25,11 +25,11 @@ use rustix::{net::sockopt, process::geteuid};
 #[cfg(feature = "zenoh")]
 use super::over_zenoh;
 use super::{
-    Address, Desk, News, Secret,
+    Address, Desk, News, Parting, Secret,
     door::{self, Door},
     frame::{Frame, FrameError},
     hello::{ANSWER, Agreement, Challenge, ClockKind, welcome},
-    office::{Counter, Outlet as _, Parting},
+    office::{Counter, Outlet as _},
     peer::Inlet as _,
     stream::{Receiver, Sender, Stream, is_timeout},
 };

@@ -11,7 +11,7 @@
 //! * [`role`]: who a neighbour is, and which mailboxes are his;
 //! * [`frame`]: a mailgram on the line, and the pulse that tells of ticks;
 //! * [`hello`]: how a connection begins, and who is let in, `door`: who waits for it; [`seal`]: that a frame comes from him;
-//! * [`office`]: the mailboxes between tick and threads;
+//! * [`office`]: the mailboxes between tick and threads; [`news`]: what the tick hears of who comes and goes;
 //! * [`listener`]: the controller's end of the line, [`peer`]: the neighbour's;
 //! * [`station`]: a controller in a Zenoh network, between machines (with the feature `zenoh`).
 //!
@@ -23,6 +23,7 @@ mod door;
 pub mod frame;
 pub mod hello;
 pub mod listener;
+pub mod news;
 pub mod office;
 #[cfg(feature = "zenoh")]
 mod over_zenoh;
@@ -35,6 +36,7 @@ mod stream;
 pub use address::Address;
 pub use hello::Secret;
 pub use listener::Listener;
-pub use office::{Desk, News, Parting};
+pub use news::{News, Parting};
+pub use office::Desk;
 pub use peer::{Peer, PeerError, Received};
 pub use role::Role;

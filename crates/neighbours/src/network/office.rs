@@ -20,7 +20,7 @@ use std::{
 };
 
 use super::{
-    Role,
+    News, Parting, Role,
     frame::{Frame, FrameError},
     hello::ClockKind,
 };
@@ -39,46 +39,6 @@ pub trait Outlet: Send {
 
     /// End the connection, so that whoever reads from it notices.
     fn close(&mut self);
-}
-
-/// Why a neighbour is there no longer.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Parting {
-    /// He has closed the connection, or it broke.
-    Left(String),
-    /// He was disconnected: what he sent was none of his, or nothing came from him for too long.
-    Dismissed(String),
-}
-
-impl std::fmt::Display for Parting {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (Self::Left(why) | Self::Dismissed(why)) = self;
-        f.write_str(why)
-    }
-}
-
-/// What happened on the network.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum News {
-    /// A neighbour has come.
-    Came(Role),
-    /// A neighbour has gone, and why.
-    Gone(Role, Parting),
-    /// Somebody was not let in, and why.
-    Refused(String),
-    /// What came was from nobody who is connected, and what.
-    Stray(String),
-}
-
-impl std::fmt::Display for News {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Came(role) => write!(f, "{role} has connected"),
-            Self::Gone(role, why) => write!(f, "{role} has gone: {why}"),
-            Self::Refused(why) => write!(f, "a connection was refused: {why}"),
-            Self::Stray(what) => write!(f, "a frame was refused: {what}"),
-        }
-    }
 }
 
 /// What both sides see.

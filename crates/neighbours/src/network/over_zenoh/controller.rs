@@ -36,11 +36,11 @@ use super::{
     keys::{self, Keys},
 };
 use crate::network::{
-    News, Secret,
+    News, Parting, Secret,
     frame::{Frame, PULSE},
     hello::{ANSWER, Agreement, Challenge, HELLO, HelloError, welcome},
     listener::patience,
-    office::{Counter, Outlet, Parting, locked},
+    office::{Counter, Outlet, locked},
     seal::Seal,
     station::Station,
 };
