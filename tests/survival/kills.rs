@@ -13,7 +13,7 @@ const JOBS: [(&str, u64); 4] =
 /// In fast clock the log may be behind by its ring (256 ticks) and by what it writes at once (25).
 const BEHIND_FAST: u64 = 256 + 25 + 25;
 /// In real clock it writes once a second; one more for a log thread that a busy machine lets wait.
-const BEHIND_REAL: u64 = 4 * 25;
+const BEHIND_REAL: u64 = 2 * 25;
 
 fn kills() -> u64 {
     std::env::var("RCS_KILLS").map_or(4, |text| text.parse().expect("RCS_KILLS is a number"))
@@ -67,7 +67,7 @@ fn in_real_time_a_kill_costs_a_second_of_the_log() {
     let more = ["--clock", "real", "--log", "killed.mcap"];
     let mut run = Running::start(&scratch.file(""), "linkbar", &more);
     let reader = run.attach();
-    let tick = run.reach(&reader, 160);
+    let tick = run.reach(&reader, 110);
     drop(reader);
     run.kill();
     assert!(!traces(&run.name).is_empty(), "a killed run leaves something");

@@ -72,7 +72,7 @@ fn a_run_that_is_to_stop_ends_with_status_3() {
     let scratch = Scratch::new("stops");
     let ended = stopped_for_a_second(&scratch.file(""), &["--overrun", "stop:5", "--log", "none"]);
     assert_eq!(ended.status, Some(3), "{}", ended.said);
-    assert!(ended.number("ticks") < 400, "{}", ended.result);
+    assert!(ended.number("ticks") < 150, "{}", ended.result);
     let words = ended.last_words();
     assert!(words.contains("slots of 40 ms skipped") && words.contains("--overrun stop:5"), "{words}");
     assert_eq!(ended.result["failure"]["process"], "executive");

@@ -42,6 +42,7 @@ impl Place {
         self.0.path().join("t3")
     }
 }
+
 /// The program, its console and its screen.
 struct Cell {
     child: Child,

@@ -61,6 +61,7 @@ impl Scratch {
         path
     }
 }
+
 fn rcs_log(arguments: &[&str], files: &[&Path]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_rcs-log")).args(arguments).args(files).output().expect("rcs-log runs")
 }

@@ -39,6 +39,7 @@ impl Place {
         to
     }
 }
+
 fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
     for entry in fs::read_dir(from).unwrap().flatten() {

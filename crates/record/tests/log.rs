@@ -36,6 +36,7 @@ impl Scratch {
         self.0.path().join(name)
     }
 }
+
 fn setup() -> Setup {
     let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
     let link = |name: &str, parent: &str| Link { name: name.into(), parent: parent.into() };

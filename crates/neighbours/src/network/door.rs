@@ -6,11 +6,11 @@
 
 use std::{
     io,
-    sync::{Mutex, MutexGuard, PoisonError},
+    sync::Mutex,
     time::{Duration, Instant},
 };
 
-use super::stream::Stream;
+use super::{office::locked, stream::Stream};
 
 /// Connections that have not said who they are, at most.
 pub(super) const PLACES: usize = 8;
@@ -49,7 +49,7 @@ impl Door {
     /// If the system has no descriptor left.
     pub fn enter(&self, stream: &Stream) -> io::Result<Option<u64>> {
         let stream = stream.try_clone()?;
-        let mut inner = self.lock();
+        let mut inner = locked(&self.inner);
         let now = Instant::now();
         let waited = |place: &Option<Waiting>| place.as_ref().map_or(Duration::MAX, |who| now - who.since);
         let Some(longest) = inner.places.iter().map(waited).max().filter(|longest| *longest >= SAFE) else {
@@ -68,15 +68,11 @@ impl Door {
     pub const fn place(&self, ticket: u64) -> Place<'_> {
         Place { door: self, ticket }
     }
-
-    fn lock(&self) -> MutexGuard<'_, Inner> {
-        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
-    }
 }
 
 impl Drop for Place<'_> {
     fn drop(&mut self) {
-        let mut inner = self.door.lock();
+        let mut inner = locked(&self.door.inner);
         for place in &mut inner.places {
             place.take_if(|who| who.ticket == self.ticket);
         }
@@ -96,7 +92,7 @@ mod tests {
 
     /// Let everybody be there for so much longer.
     fn wait(door: &Door, time: Duration) {
-        door.lock().places.iter_mut().flatten().for_each(|who| who.since -= time);
+        locked(&door.inner).places.iter_mut().flatten().for_each(|who| who.since -= time);
     }
 
     #[test]
