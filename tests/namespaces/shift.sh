@@ -33,6 +33,7 @@ for end in "$a rcs-va" "$b rcs-vb"; do
     read -r space interface <<< "$end"
     ip -n "$space" link set "$interface" up
     ip -n "$space" link set lo up
+    ip -n "$space" route add 224.0.0.0/4 dev "$interface"
 done
 (umask 077; head -c 24 /dev/urandom | base64 > "$work/secret")
 
@@ -41,9 +42,10 @@ digest() { python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["dig
 expected=$(digest "$work/inside.json")
 echo "everybody in one process: digest $expected"
 
+shifts=0
 shift_over() { # ADDRESS
     local address=$1 servants=()
-    items=$work/items-${address%%:*}.db
+    items=$work/items-$((++shifts)).db
     neighbour() { ip netns exec "$b" "$programs/rcs-neighbour" "$1" --network "$address" --secret "$work/secret" --wait 20 "${@:2}"; }
     ip netns exec "$a" "$programs/rcs-run" shift --json --log none --shared-memory off --network "$address" --secret "$work/secret" \
         --outside workstation,data-system,pedestal,vision --outbox "$items.outbox" > "$work/run.json" 2> "$work/run.err" &
@@ -74,9 +76,12 @@ PYTHON
 
 shift_over tcp:10.99.1.1:7400
 where
-if "$programs/rcs-run" --network zenoh:t3 --outside workstation --wait 1 --log none --shared-memory off 2>&1 | grep -q "features zenoh"; then
+if ip netns exec "$a" "$programs/rcs-run" --network zenoh:t3 --outside workstation --wait 1 --log none --shared-memory off 2>&1 | grep -q "features zenoh"; then
     echo "over zenoh: not tried, these programs are built without it"
 else
     shift_over zenoh:t3@tcp/10.99.1.1:7447
+    where
+    # Without an endpoint they find each other by multicast.
+    shift_over zenoh:t3
     where
 fi

@@ -247,6 +247,17 @@ impl Workstation {
     }
 }
 
+/// Answer every pulse, until the line ends.
+pub fn attend(mut peer: Peer) {
+    while let Ok(received) = peer.receive() {
+        if let Received::Pulse(tick) = received
+            && peer.pulse(tick).is_err()
+        {
+            return;
+        }
+    }
+}
+
 /// A command without fields.
 pub fn bare(number: u32, verb: &str) -> HwsCommand {
     HwsCommand { number, command: Name16::clipped(verb), ..HwsCommand::default() }

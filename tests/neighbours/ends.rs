@@ -1,5 +1,7 @@
 //! How a run ends that is commanded from another process, and what its exit status says of it.
 
+use std::thread;
+
 use neighbours::{
     mailbox::{HWSC_STATUS, Mailbox},
     network::{Received, Role},
@@ -8,7 +10,7 @@ use neighbours::{
 use rcs_core::{interface::HwsCommand, name::Name16};
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::bench::{Controller, Ended, Workstation, bare};
+use crate::bench::{Controller, Ended, Workstation, attend, bare};
 
 /// A run that goes on without its workstation controller ends here, and not where it should.
 const TOO_LONG: [&str; 3] = ["--json", "--ticks", "20000"];
@@ -59,6 +61,21 @@ fn who_goes_before_he_has_answered_ends_the_run_in_its_first_tick() {
         assert_eq!(ended.status, Some(0), "{}", ended.said);
         assert_eq!(ended.result["ticks"], answers + 1);
     }
+}
+
+#[test]
+fn who_goes_while_others_are_waited_for_ends_the_run_in_its_first_tick() {
+    let controller = Controller::start("earlier", "workstation,pedestal", &TOO_LONG);
+    drop(controller.connect(Role::Workstation, None));
+    let pedestal = controller.connect(Role::Pedestal, None);
+    let pedestal = thread::spawn(move || attend(pedestal));
+    let ended = controller.end();
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert_eq!(ended.result["ticks"], 1);
+    let events = ended.result["events"]["first"].as_array().expect("events").iter();
+    let texts: Vec<_> = events.map(|event| event["text"].as_str().expect("a text")).collect();
+    assert!(texts.iter().any(|text| text.starts_with("workstation has gone: ")), "{texts:?}");
+    pedestal.join().expect("it has not panicked");
 }
 
 #[test]

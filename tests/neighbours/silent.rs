@@ -1,7 +1,8 @@
-//! A Data System that answers every pulse, and not what it is asked: it is asked again, and no run waits for it beyond its own end.
+//! Neighbours that do not answer. A run in fast clock waits for them, but not beyond its own end. A Data System that answers every
+//! pulse, and not what it is asked, is asked again.
 
 use std::{
-    sync::mpsc::{Receiver, channel},
+    sync::mpsc::{Receiver, Sender, channel},
     thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
@@ -17,7 +18,7 @@ use neighbours::{
 use rustix::process::{Pid, Signal, kill_process};
 use whole_system_tests::Scratch;
 
-use crate::bench::{Controller, Ended, PATIENCE, Workstation, bare};
+use crate::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
 
 /// Exchanges after which nobody can say that he was not given time.
 const LONG: usize = 50;
@@ -50,13 +51,44 @@ fn terminate(mut controller: Controller) -> Ended {
 
 /// Answer pulses as a workstation controller without any more wishes.
 fn follow(mut workstation: Workstation) {
-    let mut answered = workstation.peer.pulse(workstation.tick);
-    while answered.is_ok() {
-        answered = match workstation.peer.receive() {
-            Ok(Received::Pulse(tick)) => workstation.peer.pulse(tick),
-            Ok(_) => Ok(()),
-            Err(error) => Err(error),
-        };
+    // If the run is over, reading says so as well.
+    let _ = workstation.peer.pulse(workstation.tick);
+    attend(workstation.peer);
+}
+
+/// Answer so many pulses, and only read from then on.
+fn fall_silent(mut peer: Peer, answers: usize, tell: &Sender<()>) {
+    let mut pulses = 0;
+    while let Ok(received) = peer.receive() {
+        let Received::Pulse(pulse) = received else { continue };
+        if pulses < answers && peer.pulse(pulse).is_err() {
+            return;
+        }
+        if pulses == answers {
+            tell.send(()).expect("the test listens");
+        }
+        pulses += 1;
+    }
+}
+
+#[test]
+fn a_run_ends_as_asked_for_while_a_tick_waits_for_a_neighbour() {
+    const STEPPED: [Role; 3] = [Role::Workstation, Role::Pedestal, Role::Vision];
+    for silent in STEPPED {
+        let (tell, heard) = channel();
+        let controller = Controller::start("asked", "workstation,pedestal,vision", &["--clock", "fast"]);
+        let peers = STEPPED.map(|role| {
+            let (peer, tell) = (controller.connect(role, None), tell.clone());
+            let answers = if role == silent { LONG } else { usize::MAX };
+            thread::spawn(move || fall_silent(peer, answers, &tell))
+        });
+        heard.recv_timeout(PATIENCE).expect("a tick waits");
+        let ended = terminate(controller);
+        assert_eq!(ended.status, Some(0), "{silent}: {}", ended.said);
+        assert!(!ended.page.contains("has gone"), "{silent}: {}", ended.page);
+        for peer in peers {
+            peer.join().expect("it has not panicked");
+        }
     }
 }
 

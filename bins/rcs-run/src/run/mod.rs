@@ -11,6 +11,7 @@ mod log;
 mod neighbours;
 mod outside;
 mod pace;
+mod page;
 mod progress;
 mod result;
 mod robot;
@@ -54,9 +55,10 @@ use self::{
     log::Log,
     neighbours::Neighbours,
     pace::Pace,
+    page::Page,
     progress::Progress,
     result::{
-        CommandResult, EmergencyResult, Events, FailureResult, FaultsResult, ItemResult, Page, PortResult,
+        CommandResult, EmergencyResult, Events, FailureResult, FaultsResult, ItemResult, PortResult,
         RunResult,
     },
     robot::Robot,
@@ -87,7 +89,7 @@ struct Run {
     judge: Judge,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<(Level, &'static str, String)>,
-    /// What has happened, for the page.
+    /// What has happened, for the result.
     events: Events,
 }
 
@@ -135,7 +137,6 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let page = Page {
         result: &result,
         steps: run.neighbours.records(),
-        events: &run.events,
         log: &log_text,
         slowest: &pace::slowest(run.runner.laps()),
         stopped: matches!(ending, Ending::Stopped),
@@ -430,6 +431,7 @@ impl Run {
             data_base: self.items(),
             contacts: self.judge.collisions().to_vec(),
             clearance: self.judge.nearest().cloned(),
+            events: std::mem::take(&mut self.events),
             log: None,
             failure: match ending {
                 Ending::Failed(failure) => Some(FailureResult::from(failure)),

@@ -109,18 +109,22 @@ impl Neighbours {
     }
 
     /// Wait for those who are other processes: for so many seconds at most, and not beyond an interruption, of which the run will
-    /// see to it. On the 40 ms grid the workstation controller is waited for alone: the others may come later.
+    /// see to it. On the 40 ms grid the workstation controller is waited for alone: the others may come later. In fast clock a run
+    /// is over when it has gone, also if that was before the first tick.
     ///
     /// # Errors
     /// [`Error::NobodyCommands`].
     pub fn gather(&self, arguments: &RunArguments, interrupted: &AtomicBool) -> Result<(), Error> {
         let Some(network) = &self.network else { return Ok(()) };
         let (limit, started) = (Duration::from_secs(arguments.wait.into()), Instant::now());
-        let needed =
-            |counter: &&Counter| arguments.clock == ClockKind::Fast || counter.role() == Role::Workstation;
+        let fast = arguments.clock == ClockKind::Fast;
+        let is_missing = |counter: &&Counter| match counter.role() {
+            Role::Workstation if fast => !counter.has_come(),
+            Role::Workstation => !counter.is_connected(),
+            Role::DataSystem | Role::Pedestal | Role::Vision => fast && !counter.is_connected(),
+        };
         loop {
-            let missing: Vec<_> =
-                network.counters.iter().filter(needed).filter(|counter| !counter.is_connected()).collect();
+            let missing: Vec<_> = network.counters.iter().filter(is_missing).collect();
             if missing.is_empty() || interrupted.load(Ordering::Relaxed) {
                 return Ok(());
             }

@@ -1,20 +1,12 @@
-//! The result of a run: for scripts as one JSON object, for people as a page of text.
+//! The result of a run: the JSON object for scripts, and what [the page for people](super::page) is made of.
 
-use std::{
-    collections::BTreeMap,
-    fmt::{self, Write as _},
-    path::PathBuf,
-};
+use std::{collections::BTreeMap, fmt, path::PathBuf};
 
 use depc::fault::{Counts, FaultKind};
 use executive::{boards::conductor::BoardFigures, failure::Failure, histogram, serial::SerialCounts};
 use neighbours::data_system::Item;
-use neighbours::workstation::player::Record;
 use plant::{PartState, fault::Struck};
-use rcs_core::{
-    interface::t3i::LinkCounters,
-    tick::{TICK_MS, TICK_S, Tick},
-};
+use rcs_core::{interface::t3i::LinkCounters, tick::Tick};
 use serde::Serialize;
 
 use super::{
@@ -236,6 +228,21 @@ impl From<PartState> for PartResult {
     }
 }
 
+impl fmt::Display for PartResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} at {}", self.name, self.location)?;
+        if self.sector > 0 {
+            write!(f, " sector {}", self.sector)?;
+        }
+        if let Some(error) = self.error_in {
+            let from = if self.sector > 0 { "the sector's centre" } else { "its seat" };
+            write!(f, ", {error:.2} in from {from}")?;
+        }
+        let [x, y, z] = self.position_in;
+        write!(f, " ({x:.2} {y:.2} {z:.2})")
+    }
+}
+
 /// Where the Data System believes that an item is.
 #[derive(Clone, Debug, Serialize)]
 pub struct ItemResult {
@@ -320,6 +327,43 @@ impl From<&Failure> for FailureResult {
     }
 }
 
+/// What has happened, and when.
+#[derive(Clone, Debug, Serialize)]
+pub struct EventResult {
+    /// The tick.
+    pub tick: u64,
+    /// In words.
+    pub text: String,
+}
+
+impl fmt::Display for EventResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "tick {}: {}", self.tick, self.text)
+    }
+}
+
+/// Events that a run remembers; the log has all. A run of a year must not fill the memory.
+const REMEMBERED: usize = 1000;
+
+/// What has happened in a run beside what was commanded: in the cell, and with the neighbours.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Events {
+    /// How many events there were.
+    pub count: usize,
+    /// The first thousand of them.
+    pub first: Vec<EventResult>,
+}
+
+impl Events {
+    /// Something has happened in a tick.
+    pub fn push(&mut self, tick: Tick, what: &str) {
+        self.count += 1;
+        if self.first.len() < REMEMBERED {
+            self.first.push(EventResult { tick: tick.0, text: what.to_owned() });
+        }
+    }
+}
+
 /// The result of a run. The names of the fields are those of the JSON object.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunResult {
@@ -380,6 +424,8 @@ pub struct RunResult {
     /// The nearest miss, if something was passed nearer than 2 in.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clearance: Option<NearMiss>,
+    /// What has happened beside.
+    pub events: Events,
     /// The log that was written.
     pub log: Option<PathBuf>,
     /// Why it failed, if it did.
@@ -394,7 +440,7 @@ impl RunResult {
         let list = |items: Vec<String>| items.join("; ");
         let mut facts = vec![
             ("overruns", self.overruns.to_string()),
-            ("parts", list(self.parts.iter().map(place).collect())),
+            ("parts", list(self.parts.iter().map(ToString::to_string).collect())),
             ("data_base", list(self.data_base.iter().map(ToString::to_string).collect())),
         ];
         if let Some(allocations) = self.allocations_after_start {
@@ -411,153 +457,4 @@ impl RunResult {
         }
         facts.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
     }
-}
-
-/// The page of text: the result, all steps of the job, and remarks that have no place in JSON.
-pub struct Page<'a> {
-    /// The result.
-    pub result: &'a RunResult,
-    /// All steps, those of the workstation included.
-    pub steps: &'a [Record],
-    /// What happened in the cell that should not.
-    pub events: &'a Events,
-    /// Lines about the log.
-    pub log: &'a str,
-    /// The processes that took longest.
-    pub slowest: &'a str,
-    /// The run was stopped by `--ticks` before the job was over.
-    pub stopped: bool,
-}
-
-/// Events that are printed; the rest is in the log.
-const EVENTS_SHOWN: usize = 10;
-
-/// What has happened in a run, as far as it is printed: a run of a year must not fill the memory.
-#[derive(Default)]
-pub struct Events {
-    first: Vec<String>,
-    count: usize,
-}
-
-impl Events {
-    /// Something has happened in a tick.
-    pub fn push(&mut self, tick: Tick, what: &str) {
-        self.count += 1;
-        if self.first.len() < EVENTS_SHOWN {
-            self.first.push(format!("tick {tick}: {what}"));
-        }
-    }
-}
-
-impl fmt::Display for Page<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let result = self.result;
-        let outcome = match (&result.failure, self.stopped) {
-            (Some(_), _) => "failed",
-            (None, true) => "stopped as asked for",
-            (None, false) => "finished",
-        };
-        writeln!(
-            f,
-            "{} {outcome}: {:.1} s simulated in {:.1} s, {:.0} x real time\n",
-            result.job, result.simulated_s, result.wall_s, result.realtime_factor
-        )?;
-        let width = self.steps.iter().map(|step| step.text.len()).max().unwrap_or(0);
-        for step in self.steps {
-            let seconds = step.ticks as f64 * TICK_S;
-            writeln!(f, "  {:width$}  {seconds:7.1} s  {}", step.text, step.outcome.text())?;
-        }
-        writeln!(f)?;
-        for part in &result.parts {
-            writeln!(f, "part       {}", place(part))?;
-        }
-        for item in &result.data_base {
-            writeln!(f, "data base  {item}")?;
-        }
-        if let Some(nearest) = &result.clearance {
-            writeln!(f, "clearance  {nearest}")?;
-        }
-        for event in &self.events.first {
-            writeln!(f, "event      {event}")?;
-        }
-        let more = self.events.count - self.events.first.len();
-        if more > 0 {
-            writeln!(f, "           and {more} more, all in the log")?;
-        }
-        if let Some(EmergencyResult { tick, cause, touched, .. }) = &result.emergency_stop {
-            let into = match touched.len() {
-                0 => "the sagging arm touched nothing".to_owned(),
-                count => format!("the sagging arm ran into {count} things"),
-            };
-            writeln!(f, "stop       tick {tick}: {cause}; {into}")?;
-        }
-        let link = &result.link;
-        writeln!(
-            f,
-            "link       {} frames, {} NAKs, {} retries, {} checksum errors, {} points limited",
-            link.frames, link.naks, link.retries, link.checksum_errors, link.limited
-        )?;
-        if let Some(faults) = &result.faults {
-            writeln!(f, "faults     {faults}")?;
-        }
-        for fault in &result.cell_faults {
-            writeln!(f, "fault      {fault}")?;
-        }
-        if let Some(port) = &result.port {
-            let TickTimes { p50, p99, max } = port.deviation_us;
-            writeln!(
-                f,
-                "port       {} bytes sent, {} received, {} not taken, lost {} times; a frame every {TICK_MS} ms, \
-                 beside it by p50 {p50:.0} us, p99 {p99:.0} us, max {max:.0} us",
-                port.sent, port.received, port.unsent, port.losses
-            )?;
-        }
-        let times = &result.tick_us;
-        let allocations = result.allocations_after_start.map_or("not counted".to_owned(), |n| n.to_string());
-        writeln!(
-            f,
-            "controller {} ticks: p50 {:.1} us, p99 {:.1} us, max {:.1} us; {} slots skipped; \
-             allocations: {allocations}",
-            result.ticks, times.p50, times.p99, times.max, result.overruns
-        )?;
-        for board in result.boards.iter().flatten() {
-            let TickTimes { p50, p99, max } = board.tick_us;
-            writeln!(
-                f,
-                "board {}    p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us; allocations: {}; process {}: {}",
-                board.board, board.allocations, board.pid, board.processes
-            )?;
-        }
-        if result.boards.is_none() {
-            writeln!(f, "slowest    {}", self.slowest)?;
-        }
-        if let Some(TickTimes { p50, p99, max }) = &result.late_us {
-            let mut blame = String::new();
-            for (part, slots) in &result.overruns_by {
-                blame += &format!("; {slots} slots skipped for {part}");
-            }
-            writeln!(
-                f,
-                "punctual   ticks begin late by p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us{blame}"
-            )?;
-        }
-        writeln!(f, "digest     {}", result.digest)?;
-        writeln!(f, "log        {}", self.log)
-    }
-}
-
-fn place(part: &PartResult) -> String {
-    let [x, y, z] = part.position_in;
-    let mut text = format!("{} ", part.name);
-    // Writing to a String cannot fail.
-    let _ = match (part.location.as_str(), part.sector) {
-        (location, 0) => write!(text, "at {location}"),
-        (location, sector) => write!(text, "at {location} sector {sector}"),
-    };
-    if let Some(error) = part.error_in {
-        let from = if part.sector > 0 { "the sector's centre" } else { "its seat" };
-        let _ = write!(text, ", {error:.2} in from {from}");
-    }
-    let _ = write!(text, " ({x:.2} {y:.2} {z:.2})");
-    text
 }

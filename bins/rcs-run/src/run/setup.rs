@@ -158,7 +158,10 @@ fn neighbours(
         ClockKind::Fast => (hello::ClockKind::Fast, Pace::Wait),
         ClockKind::Real => (hello::ClockKind::Real, Pace::Poll),
     };
-    let desk = |role: Role| arguments.outside.contains(&role).then(|| Desk::new(role, clock));
+    let desk = |role: Role| {
+        let desk = || Desk::new(role, clock).until(Arc::clone(interrupted));
+        arguments.outside.contains(&role).then(desk)
+    };
     let (commands, items) = (desk(Role::Workstation), desk(Role::DataSystem));
     let (regrips, sees) = (desk(Role::Pedestal), desk(Role::Vision));
     let secret = arguments.secret.as_deref().map(Secret::load).transpose()?;

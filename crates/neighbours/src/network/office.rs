@@ -29,6 +29,9 @@ use crate::mailbox::{Mailbox, Place};
 /// Last words of a run that has ended.
 pub const OVER: &str = "the run is over";
 
+/// Between two looks at whether the run is interrupted while a tick waits for a neighbour.
+const LOOK: Duration = Duration::from_millis(50);
+
 /// Where frames go out to a neighbour.
 pub trait Outlet: Send {
     /// Send a frame, and its seal behind it where a secret was agreed upon.
@@ -85,6 +88,8 @@ pub struct Desk {
     /// Connections so far.
     numbers: Arc<AtomicU32>,
     carrier: Option<JoinHandle<()>>,
+    /// The run is to end: nobody is waited for any longer.
+    interrupted: Arc<AtomicBool>,
 }
 
 /// What an exchange found.
@@ -118,8 +123,24 @@ impl Desk {
         });
         let theirs = Arc::clone(&shared);
         let carrier = Some(thread::spawn(move || carry(&theirs)));
-        let numbers = Arc::default();
-        Self { shared, clock, outgoing, incoming, connection: 0, news: channel(), numbers, carrier }
+        Self {
+            shared,
+            clock,
+            outgoing,
+            incoming,
+            connection: 0,
+            news: channel(),
+            numbers: Arc::default(),
+            carrier,
+            interrupted: Arc::default(),
+        }
+    }
+
+    /// The same, at which nobody is waited for once the run is `interrupted`: an exchange takes what is there then.
+    #[must_use]
+    pub fn until(mut self, interrupted: Arc<AtomicBool>) -> Self {
+        self.interrupted = interrupted;
+        self
     }
 
     /// The network's side.
@@ -206,21 +227,29 @@ impl Desk {
             // Somebody who has come meanwhile is somebody of the next tick.
             self.incoming.iter_mut().for_each(Mailbox::initialize);
         }
-        // Who has answered was there, even if he has gone since: so a run ends in the same tick every time.
-        let here = if waits { answered } else { connection != 0 && now == connection };
+        // Who has answered was there, even if he has gone since: so a run ends in the same tick every time. Of who is waited for no
+        // longer it is not known, and need not be.
+        let here = if waits && !self.interrupted.load(Ordering::Relaxed) {
+            answered
+        } else {
+            connection != 0 && now == connection
+        };
         let here = here && !self.shared.over.load(Ordering::Acquire);
         Presence { here, new, came: self.numbers.load(Ordering::Acquire) != 0 }
     }
 
-    /// Until the neighbour has answered the pulse, or is gone, or the desk is closed; true if he has answered. Whoever reads from him
-    /// notices if he is silent.
+    /// Until the neighbour has answered the pulse, or is gone, or the desk is closed, or the run is to end; true if he has answered.
+    /// Whoever reads from him notices if he is silent.
     fn wait(&self, tick: u64, connection: u32) -> bool {
         let mut answered = locked(&self.shared.answered);
         while answered.tick < tick
             && self.shared.connection.load(Ordering::Acquire) == connection
             && !self.shared.over.load(Ordering::Acquire)
+            && !self.interrupted.load(Ordering::Relaxed)
         {
-            answered = self.shared.news_of_answer.wait(answered).unwrap_or_else(PoisonError::into_inner);
+            // A signal wakes nobody here.
+            let look = self.shared.news_of_answer.wait_timeout(answered, LOOK);
+            (answered, _) = look.unwrap_or_else(PoisonError::into_inner);
         }
         answered.tick >= tick
     }
@@ -368,6 +397,12 @@ impl Counter {
     #[must_use]
     pub fn is_connected(&self) -> bool {
         self.shared.connection.load(Ordering::Acquire) != 0
+    }
+
+    /// The neighbour has been there at some time.
+    #[must_use]
+    pub fn has_come(&self) -> bool {
+        self.numbers.load(Ordering::Acquire) != 0
     }
 
     /// Tell the controller what happened.

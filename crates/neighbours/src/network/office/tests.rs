@@ -139,6 +139,24 @@ fn a_tick_that_waits_goes_on_when_the_neighbour_is_gone() {
     assert!(!desk.exchange(2).here);
 }
 
+/// Nobody can say then whether he would have answered.
+#[test]
+fn a_tick_that_waits_goes_on_when_the_run_is_to_end() {
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let mut desk = Desk::new(Role::Workstation, ClockKind::Fast).until(Arc::clone(&interrupted));
+    let (counter, line) = came(&desk);
+    let silent = thread::spawn(move || {
+        while line.recv().unwrap().as_pulse().unwrap().is_none() {}
+        counter.deliver(&mailgram(HWSC_COMMAND, b"PAUSE")).unwrap();
+        interrupted.store(true, Ordering::Relaxed);
+        line
+    });
+    assert_eq!(desk.exchange(1), Presence { here: true, new: true, came: true });
+    assert_eq!(desk.incoming(HWSC_COMMAND).data(), b"PAUSE");
+    assert!(desk.exchange(2).here);
+    drop(silent.join().unwrap());
+}
+
 /// A run whose workstation controller has been there at some time is over when it is not.
 #[test]
 fn who_comes_and_goes_between_two_ticks_has_come() {
