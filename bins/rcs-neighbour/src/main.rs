@@ -17,7 +17,6 @@ use neighbours::{
     network::{
         Peer, PeerError, Role, Secret, address::AddressError, hello::SecretError, office::AttachError,
     },
-    vision::VisionError,
 };
 use plant::description::DescriptionError;
 use taskdata::load::Report;
@@ -58,9 +57,6 @@ enum Error {
         /// Of the run's.
         found: u64,
     },
-    /// What the controller has written cannot be read.
-    #[error("what the controller has written cannot be read: {0}")]
-    Vision(#[from] VisionError),
     /// Task data or the job have errors.
     #[error("{what} cannot be used")]
     Data {
@@ -78,7 +74,7 @@ impl Error {
     const fn status(&self) -> u8 {
         match self {
             Self::Peer(error) if error.is_usage() => UNUSABLE,
-            Self::Peer(_) | Self::Job(_) | Self::Vision(_) => FAILED,
+            Self::Peer(_) | Self::Job(_) => FAILED,
             Self::Address(_)
             | Self::Secret(_)
             | Self::DataBase(_)

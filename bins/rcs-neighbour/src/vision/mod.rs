@@ -7,7 +7,7 @@ use std::path::Path;
 use neighbours::{
     mailbox::{Mailbox, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE},
     network::{Peer, PeerError, Received, Role},
-    vision::{Areas, Picture, Ready, picture::Part, request},
+    vision::{Areas, Picture, Ready, VisionError, picture::Part, request},
 };
 use plant::{
     CellDescription,
@@ -100,23 +100,32 @@ impl Vision {
         self.said = VisionStatus::Idle;
     }
 
-    /// Read what the controller has written, and begin with a new request when its picture is there.
+    /// Read what the controller has written, and begin with a new request when its picture is there. What cannot be read is said,
+    /// and not answered.
     fn look(&mut self, requests: &Mailbox, pictures: &Mailbox) -> Result<(), Error> {
+        let said = |what: &str, why: &VisionError| eprintln!("rcs-neighbour: {what} cannot be read: {why}");
         if requests.mailgram() != self.read {
             self.read = requests.mailgram();
             // An initialized mailbox holds no request.
-            self.request = if self.read == 0 { None } else { Some(request::decode(requests.data())?) };
+            let request = (self.read != 0).then(|| request::decode(requests.data()));
+            self.request = request.and_then(|read| read.inspect_err(|why| said("a request", why)).ok());
         }
         let Some(request) = self.request else { return Ok(()) };
         if pictures.data().is_empty() {
             return Ok(());
         }
-        let picture = Picture::decode(pictures.data())?;
-        if u32::from(picture.number) != request.number {
-            return Ok(());
+        match Picture::decode(pictures.data()) {
+            Ok(picture) if u32::from(picture.number) == request.number => {
+                self.request = None;
+                self.begin(&request, &picture)
+            }
+            Ok(_) => Ok(()),
+            Err(why) => {
+                self.request = None;
+                said("a picture", &why);
+                Ok(())
+            }
         }
-        self.request = None;
-        self.begin(&request, &picture)
     }
 
     fn begin(&mut self, request: &VisionRequest, picture: &Picture) -> Result<(), Error> {
@@ -193,4 +202,52 @@ impl Vision {
 fn subject(part: &Part) -> Subject {
     let edges = part.edges.map(|(direction, length)| (Vector::from(direction), length));
     Subject::from_raster(Face { centre: Vector::from(part.centre), edges }, part.reflectance, part.seen)
+}
+
+#[cfg(test)]
+mod tests {
+    use rcs_core::interface::device;
+
+    use super::*;
+
+    const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/cell.toml");
+
+    fn request(number: u32) -> [u8; request::REQUEST] {
+        let request = VisionRequest {
+            number,
+            picture: device::Picture::Precise,
+            object_id: 17,
+            range_mm: 600,
+            ..VisionRequest::default()
+        };
+        request::encode(&request)
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_not_answered_and_the_next_request_is() {
+        let mut vision = Vision::new(Path::new(CELL), Vec::new()).unwrap();
+        let mut requests = Mailbox::initialized(VISION_REQUEST);
+        let mut pictures = Mailbox::initialized(VISION_PICTURE);
+        let dark = |number| {
+            let cell = Analysis::fingerprint(&vision.cell);
+            Picture { number, seed: 1, cell, parts: Vec::new() }.encode()
+        };
+        let (fourth, fifth) = (dark(4), dark(5));
+        for (asked, shown) in
+            [(&b"look!"[..], &fourth[..]), (&request(4), b"what a view"), (&request(5), &fifth)]
+        {
+            requests.write(asked).unwrap();
+            pictures.write(shown).unwrap();
+            vision.look(&requests, &pictures).unwrap();
+        }
+        assert_eq!(vision.pictures, 1, "of the others none was taken");
+        let response = loop {
+            let bytes = vision.work().unwrap().unwrap();
+            let response = Areas::decode(&bytes).unwrap().response;
+            if response.status != VisionStatus::Busy {
+                break response;
+            }
+        };
+        assert_eq!((response.echo, response.status), (5, VisionStatus::NothingSeen));
+    }
 }
