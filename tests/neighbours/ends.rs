@@ -28,6 +28,16 @@ fn to_safe(number: u32) -> HwsCommand {
     HwsCommand { destination: Name16::clipped("SAFE"), ..bare(number, "MOVE") }
 }
 
+/// The robot is on its way, by command 2.
+fn start_moving(name: &str) -> (Controller, Workstation) {
+    let (controller, mut workstation) = start(name);
+    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
+    workstation.send(&to_safe(2));
+    workstation.run_to(workstation.tick + 30);
+    assert_eq!((workstation.status().echo, workstation.status().report.text()), (2, "executing"));
+    (controller, workstation)
+}
+
 /// The last line on standard error.
 fn last_words(ended: &Ended) -> &str {
     ended.said.lines().last().unwrap_or_default()
@@ -91,11 +101,7 @@ fn who_goes_between_two_commands_has_finished_even_if_one_failed() {
 
 #[test]
 fn who_goes_while_the_robot_moves_has_not_finished() {
-    let (controller, mut workstation) = start("amid");
-    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
-    workstation.send(&to_safe(2));
-    workstation.run_to(workstation.tick + 30);
-    assert_eq!((workstation.status().echo, workstation.status().report.text()), (2, "executing"));
+    let (controller, workstation) = start_moving("amid");
     drop(workstation);
     let ended = controller.end();
     assert_ended(&ended, FAILED, "HWSC: the workstation controller has gone while MOVE was not finished");
@@ -165,10 +171,7 @@ const BY_HAND: [&str; 6] = [
 /// A command replaces the one that is executed. Then the robot stands somewhere on the way, until it is brought to HOME by hand.
 #[test]
 fn a_robot_that_was_stopped_on_its_way_is_brought_back_by_hand() {
-    let (controller, mut workstation) = start("by-hand");
-    assert_eq!(workstation.carry_out(&bare(1, "PAUSE")).0, "finished");
-    workstation.send(&to_safe(2));
-    workstation.run_to(workstation.tick + 30);
+    let (controller, mut workstation) = start_moving("by-hand");
     let nowhere = ("error".to_owned(), "the robot is at no known location".to_owned());
     assert_eq!(workstation.carry_out(&to_safe(3)), nowhere);
     assert_eq!(workstation.carry_out(&bare(4, "PAUSE")).0, "finished");

@@ -176,10 +176,7 @@ fn neighbours(
         None => None,
     };
     let data_system = match items {
-        Some(desk) => {
-            let agent = Agent::new(desk, outbox(arguments)?);
-            DataSystem::elsewhere(agent, pace, Arc::clone(interrupted))
-        }
+        Some(desk) => DataSystem::elsewhere(Agent::new(desk, outbox(arguments)?), pace),
         None => {
             let file = arguments.data_base.as_deref();
             let items = file.map_or_else(data_system::Store::in_memory, data_system::Store::open)?;

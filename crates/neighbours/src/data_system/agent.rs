@@ -209,7 +209,7 @@ impl Agent {
         presence
     }
 
-    /// Send a command and wait for its status; `None` if nobody is there, or nobody answers.
+    /// Send a command and wait for its status; `None` if nobody is there, or nobody answers, or the run is to end before.
     fn ask(&mut self, bytes: &[u8]) -> Option<Answer> {
         if let Err(error) = self.send(bytes) {
             return Some(refused(error.to_string()));
@@ -231,6 +231,9 @@ impl Agent {
                     self.remarks.push(Remark::Garbled(why));
                 }
                 _ => {}
+            }
+            if self.desk.is_interrupted() {
+                return None;
             }
             if sent.elapsed() >= self.patience {
                 let (command_id, patience) = (self.command_id, self.patience);

@@ -5,11 +5,7 @@
 //! end: a server in another process may be silent for long.
 
 use std::{
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering},
-        mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
-    },
+    sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
     thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
@@ -34,14 +30,11 @@ use crate::{
 
 /// Ticks for an answer unless a run asks for others: 1 s.
 pub const ANSWER_TICKS: u64 = 25;
-/// A thread that is silent for so long in a run that waits for it is taken for dead: for a disk it is long. An agent has a patience of
-/// its own, and gives up by itself.
+/// A server that is silent for so long in a run that waits for it is taken for dead: for a disk it is long. An agent gives up by itself.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Between two looks at who is there while nothing is asked.
 const IDLE: Duration = Duration::from_millis(500);
-/// Between two looks at whether the run is interrupted while it waits for an answer.
-const LOOK: Duration = Duration::from_millis(50);
 
 /// Whether a run waits for the server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,8 +118,6 @@ pub struct DataSystem {
     remarks: Receiver<Remark>,
     /// Ends the waiting for a server in another process; none if it is in this one.
     closer: Option<Closer>,
-    /// The run is to end: no answer is waited for any longer.
-    interrupted: Arc<AtomicBool>,
     requests: Option<Sender<Request>>,
     responses: Receiver<Response>,
     thread: Option<JoinHandle<()>>,
@@ -140,13 +131,13 @@ impl DataSystem {
     }
 
     /// A Data System in another process. Where a run waits its answers count after as many ticks as those of one here, so that
-    /// both runs are the same; on the grid they count when they are there. Once the run is `interrupted` nobody is waited for.
+    /// both runs are the same; on the grid they count when they are there.
     #[must_use]
-    pub fn elsewhere(agent: Agent, pace: Pace, interrupted: Arc<AtomicBool>) -> Self {
+    pub fn elsewhere(agent: Agent, pace: Pace) -> Self {
         let ticks = if pace == Pace::Wait { ANSWER_TICKS } else { 0 };
         let closer = Some(agent.closer());
         let mut system = Self::with(Keeper::Elsewhere(Box::new(agent)), ticks, pace);
-        (system.closer, system.interrupted) = (closer, interrupted);
+        system.closer = closer;
         system
     }
 
@@ -182,7 +173,6 @@ impl DataSystem {
             refusals: Vec::new(),
             remarks,
             closer: None,
-            interrupted: Arc::default(),
             requests: Some(requests),
             responses,
             thread: Some(thread),
@@ -272,27 +262,16 @@ impl DataSystem {
         }
     }
 
-    /// What the thread has answered; `None` if nothing yet, or if the run is to end.
+    /// What the thread has answered; `None` if nothing yet.
     fn response(&self) -> Result<Option<Response>, Dead> {
-        if self.pace == Pace::Poll {
-            return match self.responses.try_recv() {
+        match self.pace {
+            Pace::Poll => match self.responses.try_recv() {
                 Ok(response) => Ok(Some(response)),
                 Err(TryRecvError::Empty) => Ok(None),
                 Err(TryRecvError::Disconnected) => Err(Dead),
-            };
-        }
-        let asked = Instant::now();
-        loop {
-            match self.responses.recv_timeout(LOOK) {
-                Ok(response) => return Ok(Some(response)),
-                Err(RecvTimeoutError::Disconnected) => return Err(Dead),
-                Err(RecvTimeoutError::Timeout) if self.interrupted.load(Ordering::Relaxed) => {
-                    return Ok(None);
-                }
-                Err(RecvTimeoutError::Timeout) if self.closer.is_some() => {}
-                Err(RecvTimeoutError::Timeout) if asked.elapsed() < PATIENCE => {}
-                Err(RecvTimeoutError::Timeout) => return Err(Dead),
-            }
+            },
+            Pace::Wait if self.closer.is_some() => self.responses.recv().map(Some).map_err(|_| Dead),
+            Pace::Wait => self.responses.recv_timeout(PATIENCE).map(Some).map_err(|_| Dead),
         }
     }
 

@@ -335,7 +335,6 @@ fn admit<'a>(
 
 /// Read until the connection ends; why it did.
 fn read(receiver: &mut Receiver, counter: &Counter, limit: Duration) -> Parting {
-    let silent = || Parting::Dismissed(format!("no answer for {} s", limit.as_secs()));
     loop {
         match receiver.receive() {
             Ok(frame) => {
@@ -344,12 +343,12 @@ fn read(receiver: &mut Receiver, counter: &Counter, limit: Duration) -> Parting 
                 }
                 // He may talk without end, and answer nothing.
                 if counter.is_late(limit) {
-                    return silent();
+                    return Parting::silent(limit);
                 }
             }
-            Err(FrameError::Stream(error)) if is_timeout(&error) => return silent(),
+            Err(FrameError::Stream(error)) if is_timeout(&error) => return Parting::silent(limit),
             Err(FrameError::Stream(error)) if error.kind() == io::ErrorKind::UnexpectedEof => {
-                return Parting::Left("the connection was closed".to_owned());
+                return Parting::closed();
             }
             Err(FrameError::Stream(error)) => return Parting::Left(error.to_string()),
             Err(error) => return Parting::Dismissed(error.to_string()),

@@ -1,6 +1,6 @@
 //! What happens on the network: who comes, who goes and why, who is refused.
 
-use std::fmt;
+use std::{fmt, time::Duration};
 
 use super::Role;
 
@@ -11,6 +11,20 @@ pub enum Parting {
     Left(String),
     /// He was disconnected: what he sent was none of his, or nothing came from him for too long.
     Dismissed(String),
+}
+
+impl Parting {
+    /// He has closed the connection.
+    #[must_use]
+    pub fn closed() -> Self {
+        Self::Left("the connection was closed".to_owned())
+    }
+
+    /// He has answered no pulse for so long.
+    #[must_use]
+    pub fn silent(limit: Duration) -> Self {
+        Self::Dismissed(format!("no answer for {} s", limit.as_secs()))
+    }
 }
 
 impl fmt::Display for Parting {

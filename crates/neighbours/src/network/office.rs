@@ -143,6 +143,12 @@ impl Desk {
         self
     }
 
+    /// The run is to end.
+    #[must_use]
+    pub fn is_interrupted(&self) -> bool {
+        self.interrupted.load(Ordering::Relaxed)
+    }
+
     /// The network's side.
     #[must_use]
     pub fn counter(&self) -> Counter {
@@ -227,13 +233,10 @@ impl Desk {
             // Somebody who has come meanwhile is somebody of the next tick.
             self.incoming.iter_mut().for_each(Mailbox::initialize);
         }
-        // Who has answered was there, even if he has gone since: so a run ends in the same tick every time. Of who is waited for no
-        // longer it is not known, and need not be.
-        let here = if waits && !self.interrupted.load(Ordering::Relaxed) {
-            answered
-        } else {
-            connection != 0 && now == connection
-        };
+        // Who has answered was there, even if he has gone since: so a run ends in the same tick every time. Whether somebody would have
+        // who is waited for no longer is not known, and need not be.
+        let asked = waits && !self.is_interrupted();
+        let here = answered || (!asked && connection != 0 && now == connection);
         let here = here && !self.shared.over.load(Ordering::Acquire);
         Presence { here, new, came: self.numbers.load(Ordering::Acquire) != 0 }
     }
@@ -245,7 +248,7 @@ impl Desk {
         while answered.tick < tick
             && self.shared.connection.load(Ordering::Acquire) == connection
             && !self.shared.over.load(Ordering::Acquire)
-            && !self.interrupted.load(Ordering::Relaxed)
+            && !self.is_interrupted()
         {
             // A signal wakes nobody here.
             let look = self.shared.news_of_answer.wait_timeout(answered, LOOK);

@@ -57,7 +57,10 @@ fn serve(
 }
 
 fn agent(place: &Path, clock: ClockKind) -> (Agent, Counter) {
-    let desk = Desk::new(Role::DataSystem, clock);
+    agent_at(place, Desk::new(Role::DataSystem, clock))
+}
+
+fn agent_at(place: &Path, desk: Desk) -> (Agent, Counter) {
     let counter = desk.counter();
     (Agent::new(desk, Outbox::open(&place.join("outbox")).unwrap()).with_patience(Duration::ZERO), counter)
 }
@@ -281,15 +284,15 @@ fn whoever_waits_for_a_silent_server_stops_when_the_desk_is_closed() {
 fn a_run_that_is_interrupted_waits_for_no_silent_server() {
     for (clock, pace) in [(ClockKind::Fast, Pace::Wait), (ClockKind::Real, Pace::Poll)] {
         let place = tempfile::tempdir().unwrap();
-        let (agent, counter) = agent(place.path(), clock);
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let (flag, (tell, heard)) = (Arc::clone(&interrupted), mpsc::channel());
+        let flag = Arc::new(AtomicBool::new(false));
+        let desk = Desk::new(Role::DataSystem, clock).until(Arc::clone(&flag));
+        let ((agent, counter), (tell, heard)) = (agent_at(place.path(), desk), mpsc::channel());
         let server = serve(counter, move |_, _| {
             flag.store(true, std::sync::atomic::Ordering::Relaxed);
             tell.send(()).unwrap();
             Vec::new()
         });
-        let mut system = DataSystem::elsewhere(agent.with_patience(Duration::MAX), pace, interrupted);
+        let mut system = DataSystem::elsewhere(agent.with_patience(Duration::MAX), pace);
         system.step(Tick(1), &DataBaseCommand::default());
         let abort = command(1, DataBaseVerb::Abort, "");
         system.step(Tick(2), &abort);
@@ -309,7 +312,7 @@ fn task_hears_nothing_of_a_silent_server_and_is_heard_when_it_asks_again() {
     let place = tempfile::tempdir().unwrap();
     let (agent, counter) = agent(place.path(), ClockKind::Fast);
     let server = serve(counter, |read, bytes| if read == 1 { Vec::new() } else { done(bytes) });
-    let mut system = DataSystem::elsewhere(agent, Pace::Wait, Arc::default());
+    let mut system = DataSystem::elsewhere(agent, Pace::Wait);
     system.step(Tick(1), &DataBaseCommand::default());
     let reports = [1, 2].map(|number| {
         let first = u64::from(number) * 250;

@@ -235,7 +235,7 @@ impl Shared {
     fn leave(&self, number: usize, is_meant: impl FnOnce(&str) -> bool) {
         let mut connection = locked(&self.booths[number].connection);
         if let Some(connection) = connection.as_mut().filter(|connection| is_meant(&connection.id)) {
-            connection.end(Parting::Left("the connection was closed".to_owned()));
+            connection.end(Parting::closed());
             self.look();
         }
     }
@@ -376,7 +376,7 @@ fn look_after(booth: &Booth) {
     let Some(connection) = locked.as_mut() else { return };
     let limit = patience(booth.counter.clock());
     if booth.counter.is_late(limit) {
-        connection.end(Parting::Dismissed(format!("no answer for {} s", limit.as_secs())));
+        connection.end(Parting::silent(limit));
     }
     match std::mem::replace(&mut connection.state, State::Parted) {
         State::Over(why) => {

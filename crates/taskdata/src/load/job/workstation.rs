@@ -39,9 +39,6 @@ const VERBS: &[(&str, Verb)] = &[
     ("after", Verb::After),
 ];
 
-/// Those that have to do with the job they stand in, the last of all: its ticks, its files, its next command.
-const OF_A_JOB: usize = 3;
-
 #[derive(Clone, Copy)]
 enum BoxVerb {
     Frame,
@@ -169,10 +166,11 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A line that stands in no job.
+    /// A line that stands in no job. Some have to do with the job in which they stand: its ticks, its files, its next command.
     pub(super) fn own_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<Workstation> {
-        let (known, _) = VERBS.split_at(VERBS.len().saturating_sub(OF_A_JOB));
-        let verb = self.choice(fields, "line for the cell", known)?;
+        let is_own = |(_, verb): &(&str, Verb)| !matches!(verb, Verb::Wait | Verb::Load | Verb::After);
+        let known: Vec<_> = VERBS.iter().copied().filter(is_own).collect();
+        let verb = self.choice(fields, "line for the cell", &known)?;
         let action = self.action(verb, fields)?;
         self.end_of_line(fields)?;
         Some(action)
