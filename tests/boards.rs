@@ -24,7 +24,7 @@ use rcs_core::{
         emove::EmoveVerb,
         grip::{GripReport, GripVerb},
     },
-    record::from_bytes,
+    plain::from_bytes,
 };
 use record::{Log, replay};
 use rustix::process::{Pid, Signal, kill_process};

@@ -5,7 +5,7 @@ use std::fs;
 
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Reason, hws::HwsReport},
-    record::from_bytes,
+    plain::from_bytes,
 };
 use record::{Log, replay};
 use whole_system_tests::{Outcome, Scratch, run};

@@ -5,8 +5,9 @@ use std::{fs, sync::OnceLock, thread, time::Duration};
 use levels::ladder::{Ladder, ProcessId};
 use proptest::prelude::*;
 use rcs_core::{
+    Plain,
     interface::{CommonMemory, ExternalInputs, Reason},
-    record::{Field, Writer, from_bytes},
+    plain::{Writer, from_bytes},
     tick::Tick,
 };
 use record::{

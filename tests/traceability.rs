@@ -11,8 +11,9 @@ use std::{
 use levels::task::plan::TaskVerb;
 use neighbours::{mailbox::TABLE, network::Role};
 use rcs_core::{
+    Plain,
     interface::{CommonMemory, ExternalInputs, Reason},
-    record::{EnumSchema, Field, RecordSchema, Schema},
+    plain::{EnumSchema, RecordSchema, Schema},
 };
 use whole_system_tests::root;
 

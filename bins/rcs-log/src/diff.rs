@@ -12,8 +12,9 @@ use std::{
 
 use clap::ValueEnum;
 use rcs_core::{
+    Plain,
     interface::{CommonMemory, ExternalInputs},
-    record::{Field, Writer},
+    plain::Writer,
 };
 use record::layout::{self, Leaf};
 use serde::Serialize;

@@ -6,7 +6,7 @@ use executive::failure::{Failure, Watch};
 use levels::ladder::Ladder;
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, hws::HwsReport},
-    record::from_bytes,
+    plain::from_bytes,
     tick::Tick,
 };
 use record::{Log, ReadError, Timing, reader::LoggedTick, remarks::hws_text};

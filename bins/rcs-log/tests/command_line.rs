@@ -8,10 +8,10 @@ use std::{
 
 use levels::ladder::Ladder;
 use rcs_core::{
+    Plain,
     digest::Digest,
     interface::{CommonMemory, ExternalInputs},
     name::Name16,
-    record::Field,
     tick::Tick,
 };
 use record::{CellFrame, CellModel, End, Epoch, Pace, Recorder, Setup};

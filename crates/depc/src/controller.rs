@@ -6,7 +6,7 @@
 //!
 //! The state machine knows no robot; it moves whatever implements [`Robot`].
 
-use rcs_core::{coded_enum, interface::device::LinkBytes, record};
+use rcs_core::{Plain, interface::device::LinkBytes};
 
 use crate::{
     Limits, Plate,
@@ -28,79 +28,75 @@ pub trait Robot {
     fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem>;
 }
 
-coded_enum! {
-    /// State of the DEPC function.
-    ///
-    /// ```text
-    ///              start               D0..D6, P05, P0B, P9P
-    ///   Off ───────────────► Running ───────────────────────► Warning
-    ///    ▲                   │    ▲        ENTER; 05 after D6    │
-    ///    │ CANCEL      18    │    └──────────────────────────────┤ CANCEL
-    ///    │          Ended ◄──┘                                   ▼
-    ///    └─────────────────────────────────────────────────── PreManual
-    /// ```
-    pub enum ControllerState {
-        /// The program has not come to the DEPC function.
-        Off = "off",
-        /// Commands are taken.
-        Running = "running",
-        /// A warning waits for ENTER or CANCEL; nothing moves.
-        Warning = "warning",
-        /// Error P-IG: the function has ended (A 2.4).
-        PreManual = "pre-manual",
-        /// Cancelled by the host; the program goes on to its next point.
-        Ended = "ended",
-    }
+/// State of the DEPC function.
+///
+/// ```text
+///              start               D0..D6, P05, P0B, P9P
+///   Off ───────────────► Running ───────────────────────► Warning
+///    ▲                   │    ▲        ENTER; 05 after D6    │
+///    │ CANCEL      18    │    └──────────────────────────────┤ CANCEL
+///    │          Ended ◄──┘                                   ▼
+///    └─────────────────────────────────────────────────── PreManual
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum ControllerState {
+    /// The program has not come to the DEPC function.
+    Off,
+    /// Commands are taken.
+    Running,
+    /// A warning waits for ENTER or CANCEL; nothing moves.
+    Warning,
+    /// Error P-IG: the function has ended (A 2.4).
+    PreManual,
+    /// Cancelled by the host; the program goes on to its next point.
+    Ended,
 }
 
-record! {
-    /// The panel and the wiring, as seen in a tick. Pushbuttons are true in the tick in which they are pressed.
-    pub struct ControllerInputs {
-        /// Bytes from the host.
-        pub rx: LinkBytes,
-        /// The host's DTR (A.2).
-        pub cts: bool,
-        /// The RS232 boards are there.
-        pub board: bool,
-        /// The transmitter has a hardware problem.
-        pub transmitter_fault: bool,
-        /// The program comes to the DEPC function.
-        pub start: bool,
-        /// Hold, while it is on: the output in progress is completed, then nothing more is taken.
-        pub hold: bool,
-        /// Interrupt pushbutton.
-        pub interrupt: bool,
-        /// ENTER on the console.
-        pub enter: bool,
-        /// CANCEL on the console.
-        pub cancel: bool,
-    }
+/// The panel and the wiring, as seen in a tick. Pushbuttons are true in the tick in which they are pressed.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ControllerInputs {
+    /// Bytes from the host.
+    pub rx: LinkBytes,
+    /// The host's DTR (A.2).
+    pub cts: bool,
+    /// The RS232 boards are there.
+    pub board: bool,
+    /// The transmitter has a hardware problem.
+    pub transmitter_fault: bool,
+    /// The program comes to the DEPC function.
+    pub start: bool,
+    /// Hold, while it is on: the output in progress is completed, then nothing more is taken.
+    pub hold: bool,
+    /// Interrupt pushbutton.
+    pub interrupt: bool,
+    /// ENTER on the console.
+    pub enter: bool,
+    /// CANCEL on the console.
+    pub cancel: bool,
 }
 
-record! {
-    /// What the controller does in a tick, beside moving the robot.
-    pub struct ControllerOutputs {
-        /// Bytes to the host.
-        pub tx: LinkBytes,
-        /// DTR, the host's CTS (A.2).
-        pub dtr: bool,
-        /// A command was executed in this tick: the robot moves to [`Controller::commanded`].
-        pub moving: bool,
-        /// Function to run now, that of the command reached in the previous tick.
-        pub function: [u8; 2],
-    }
+/// What the controller does in a tick, beside moving the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ControllerOutputs {
+    /// Bytes to the host.
+    pub tx: LinkBytes,
+    /// DTR, the host's CTS (A.2).
+    pub dtr: bool,
+    /// A command was executed in this tick: the robot moves to [`Controller::commanded`].
+    pub moving: bool,
+    /// Function to run now, that of the command reached in the previous tick.
+    pub function: [u8; 2],
 }
 
-record! {
-    /// The DEPC function of the controller.
-    pub struct Controller {
-        limits: Limits,
-        state: ControllerState,
-        warning: Warning,
-        receiver: CommandReceiver,
-        commanded: Plate,
-        function: [u8; 2],
-    }
+/// The DEPC function of the controller.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Controller {
+    limits: Limits,
+    state: ControllerState,
+    warning: Warning,
+    receiver: CommandReceiver,
+    commanded: Plate,
+    function: [u8; 2],
 }
 
 impl Controller {

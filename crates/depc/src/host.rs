@@ -10,12 +10,11 @@
 //! time for an answer.
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     interface::{
         device::LinkBytes,
         t3i::{LinkCounters, LinkFault},
     },
-    record,
 };
 
 use crate::{
@@ -34,45 +33,44 @@ pub const MOST_RETRIES: u8 = 3;
 /// Unanswered attempts to start after which the link counts as not responding.
 pub const START_ATTEMPTS: u8 = 3;
 
-coded_enum! {
-    /// State of the host's end.
-    ///
-    /// ```text
-    ///         DTR on             report             position
-    ///   Down ────────► Starting ────────► Ready ───────────────► Waiting ─┐ NAK: same bytes
-    ///    ▲               ▲  └─ 05 ─┘        ▲         ACK           │  ▲  │
-    ///    │ DTR off       │ no answer,       └───────────────────────┤  └──┘
-    ///   (any)            └──────────────────────────────────────────┘
-    ///                      unasked report            18: Cancelling ──ACK or DTR off──► Ended
-    /// ```
-    pub enum HostState {
-        /// The controller's DTR is off: the DEPC function does not run.
-        Down = "down",
-        /// Waiting for a report.
-        Starting = "starting",
-        /// The position is known and no frame is outstanding.
-        Ready = "ready",
-        /// A data command is outstanding.
-        Waiting = "waiting",
-        /// A cancel is outstanding.
-        Cancelling = "cancelling",
-        /// The function was cancelled. A report, when the program comes to the function again, begins anew.
-        Ended = "ended",
-    }
+/// State of the host's end.
+///
+/// ```text
+///         DTR on             report             position
+///   Down ────────► Starting ────────► Ready ───────────────► Waiting ─┐ NAK: same bytes
+///    ▲               ▲  └─ 05 ─┘        ▲         ACK           │  ▲  │
+///    │ DTR off       │ no answer,       └───────────────────────┤  └──┘
+///   (any)            └──────────────────────────────────────────┘
+///                      unasked report            18: Cancelling ──ACK or DTR off──► Ended
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum HostState {
+    /// The controller's DTR is off: the DEPC function does not run.
+    Down,
+    /// Waiting for a report.
+    Starting,
+    /// The position is known and no frame is outstanding.
+    Ready,
+    /// A data command is outstanding.
+    Waiting,
+    /// A cancel is outstanding.
+    Cancelling,
+    /// The function was cancelled. A report, when the program comes to the function again, begins anew.
+    Ended,
 }
 
-coded_enum! {
-    /// What has happened since the last tick, as far as the user of the link must know.
-    pub enum HostEvent {
-        /// Nothing.
-        None = "nothing",
-        /// The outstanding data command is acknowledged.
-        Acknowledged = "acknowledged",
-        /// A report has come; the robot holds [`Host::position`].
-        Started = "started",
-        /// The link was lost while it ran: what was sent last may or may not have been executed.
-        Lost = "lost",
-    }
+/// What has happened since the last tick, as far as the user of the link must know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Plain)]
+pub enum HostEvent {
+    /// Nothing.
+    #[text = "nothing"]
+    None,
+    /// The outstanding data command is acknowledged.
+    Acknowledged,
+    /// A report has come; the robot holds [`Host::position`].
+    Started,
+    /// The link was lost while it ran: what was sent last may or may not have been executed.
+    Lost,
 }
 
 /// What the user of the link wants to send in this tick.
@@ -88,32 +86,31 @@ pub enum Intent {
     Cancel,
 }
 
-record! {
-    /// The host's end of the link.
-    pub struct Host {
-        state: HostState,
-        receiver: ReplyReceiver,
-        /// Where the robot was last known to be commanded: reported or acknowledged.
-        position: Plate,
-        /// The outstanding data command, for a NAK.
-        frame: [u8; FRAME_BYTES],
-        restart_due: bool,
-        resend_due: bool,
-        /// Ticks since the last byte was sent, or since the wait began.
-        waited: u16,
-        answer_ticks: u16,
-        retries: u8,
-        attempts: u8,
-        /// Reports that are on their way, as far as this end can know: restarts sent since the last start, and a report that
-        /// comes unasked.
-        asked: u8,
-        /// A report that may not be the last: more than one was asked for.
-        candidate: Plate,
-        has_candidate: bool,
-        fault: LinkFault,
-        lost_function: [u8; 2],
-        counters: LinkCounters,
-    }
+/// The host's end of the link.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Host {
+    state: HostState,
+    receiver: ReplyReceiver,
+    /// Where the robot was last known to be commanded: reported or acknowledged.
+    position: Plate,
+    /// The outstanding data command, for a NAK.
+    frame: [u8; FRAME_BYTES],
+    restart_due: bool,
+    resend_due: bool,
+    /// Ticks since the last byte was sent, or since the wait began.
+    waited: u16,
+    answer_ticks: u16,
+    retries: u8,
+    attempts: u8,
+    /// Reports that are on their way, as far as this end can know: restarts sent since the last start, and a report that
+    /// comes unasked.
+    asked: u8,
+    /// A report that may not be the last: more than one was asked for.
+    candidate: Plate,
+    has_candidate: bool,
+    fault: LinkFault,
+    lost_function: [u8; 2],
+    counters: LinkCounters,
 }
 
 fn count(counter: &mut u32) {

@@ -6,7 +6,7 @@
 
 use core::fmt;
 
-use rcs_core::record;
+use rcs_core::Plain;
 
 use crate::{Error, Plate, plate::angle_between};
 
@@ -19,12 +19,11 @@ const ORIENTATION_PER_US: u64 = 572_957_795;
 /// 1e11.
 const ORIENTATION_UNIT: u64 = 100_000_000_000;
 
-record! {
-    /// The limits for one period of the link.
-    pub struct Limits {
-        /// Time that a data command is given to be reached, microseconds.
-        period_us: u32,
-    }
+/// The limits for one period of the link.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Limits {
+    /// Time that a data command is given to be reached, microseconds.
+    period_us: u32,
 }
 
 /// Which limit a step exceeds.

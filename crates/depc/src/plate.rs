@@ -18,9 +18,9 @@ use core::f64::consts::PI;
 
 use nalgebra::Rotation3;
 use rcs_core::{
+    Plain,
     frame::{Frame, Rotation, Vector},
     kinematics::Arm,
-    record,
     units::{hundredths, hundredths_of_degree, inches, radians},
 };
 
@@ -31,12 +31,11 @@ const TURN: i32 = 36_000;
 /// Half a turn, 0.01 degree; also E of a gripper that points straight down.
 pub const HALF_TURN: i32 = 18_000;
 
-record! {
-    /// A position of the end plate as it stands on the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (ASSUMED coding).
-    pub struct Plate {
-        /// X, Y, Z, D, E, R.
-        pub words: [i16; 6],
-    }
+/// A position of the end plate as it stands on the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (ASSUMED coding).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Plate {
+    /// X, Y, Z, D, E, R.
+    pub words: [i16; 6],
 }
 
 /// The shortest way from angle word `from` to angle word `to`, modulo 360 degrees: -18000 to 17999, in 0.01 degree.

@@ -4,7 +4,7 @@
 //! any garbage, and never waits for the end of a frame that does not come: a tick in which nothing arrives ends whatever
 //! was begun (a frame takes 17 ms, a tick 40 ms).
 
-use rcs_core::{interface::device::LinkBytes, record};
+use rcs_core::{Plain, interface::device::LinkBytes};
 
 use crate::{
     Error, Plate,
@@ -29,21 +29,20 @@ pub enum Command {
     Undecipherable,
 }
 
-record! {
-    /// The receiver of the controller, with its buffer (A 2.3 "the buffer on the RS232 board").
-    ///
-    /// What follows a bad byte must not be read as commands: a data frame that has lost its first byte may hold a cancel.
-    /// So everything is discarded until the line is quiet, and only then comes the NAK.
-    pub struct CommandReceiver {
-        bytes: [u8; BOARD_BYTES],
-        length: u8,
-        /// Nothing arrived in this tick.
-        quiet: bool,
-        /// Ticks since a bad byte, 0 for none.
-        garbled: u8,
-        /// Ticks in which the frame at the front was not complete.
-        begun: u8,
-    }
+/// The receiver of the controller, with its buffer (A 2.3 "the buffer on the RS232 board").
+///
+/// What follows a bad byte must not be read as commands: a data frame that has lost its first byte may hold a cancel.
+/// So everything is discarded until the line is quiet, and only then comes the NAK.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct CommandReceiver {
+    bytes: [u8; BOARD_BYTES],
+    length: u8,
+    /// Nothing arrived in this tick.
+    quiet: bool,
+    /// Ticks since a bad byte, 0 for none.
+    garbled: u8,
+    /// Ticks in which the frame at the front was not complete.
+    begun: u8,
 }
 
 impl CommandReceiver {
@@ -158,12 +157,11 @@ pub enum Reply {
     Garbage,
 }
 
-record! {
-    /// The receiver of the host: one report long.
-    pub struct ReplyReceiver {
-        bytes: [u8; FRAME_BYTES],
-        length: u8,
-    }
+/// The receiver of the host: one report long.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ReplyReceiver {
+    bytes: [u8; FRAME_BYTES],
+    length: u8,
 }
 
 impl ReplyReceiver {

@@ -10,9 +10,9 @@
 //! tool still, until D shows the way out; so no goal is waited for in vain.
 
 use rcs_core::{
+    Plain,
     frame::{Frame, Vector, rotation_by, rotation_vector},
     kinematics::Arm,
-    record,
 };
 
 use crate::{
@@ -26,16 +26,15 @@ const BISECTIONS: u32 = 24;
 /// E this near to the pole (0.01 degree) is the pole: the tool point moves less than half a count if E is put right.
 const POLE: i32 = 2;
 
-record! {
-    /// A position commanded to the controller: its words, and the tool frame that was rounded to them.
-    pub struct Position {
-        /// What stands on the line.
-        pub plate: Plate,
-        /// Tool point, inches, world.
-        point: [f64; 3],
-        /// Orientation of the tool as a rotation vector, radians, world.
-        turn: [f64; 3],
-    }
+/// A position commanded to the controller: its words, and the tool frame that was rounded to them.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Position {
+    /// What stands on the line.
+    pub plate: Plate,
+    /// Tool point, inches, world.
+    point: [f64; 3],
+    /// Orientation of the tool as a rotation vector, radians, world.
+    turn: [f64; 3],
 }
 
 impl Position {

@@ -1,7 +1,7 @@
 //! What the controller complains of: the codes of its screen, and the joints behind some of them (A 2.3).
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     kinematics::{Arm, Joints, ReachError},
 };
 
@@ -43,34 +43,45 @@ pub fn joints_for(arm: &Arm, goal: &Plate, near: &Joints) -> Result<Joints, Join
     Ok(joints)
 }
 
-coded_enum! {
-    /// Codes on the controller's screen (A 2.3, "T3 controller error messages").
-    pub enum Warning {
-        /// No warning.
-        None = "",
-        /// The RS232 board is missing.
-        BoardMissing = "WD0",
-        /// The host's DTR is off.
-        CtsLow = "WD1",
-        /// The interrupt pushbutton.
-        Interrupt = "WD2",
-        /// More than 14 in/s.
-        Translation = "WD3",
-        /// More than 1.0 rad/s.
-        Orientation = "WD4",
-        /// The transmitter has failed.
-        Transmitter = "WD5",
-        /// Joint limit reached (joint 6).
-        JointLimit = "WD6",
-        /// Joint 2 reached the upward DEPC limit.
-        ShoulderUp = "P05",
-        /// Joint limit reached.
-        OtherJoint = "P0B",
-        /// Wrist singularity problem.
-        Wrist = "P9P",
-        /// DEPC link terminated (unrecoverable).
-        Terminated = "PIG",
-    }
+/// Codes on the controller's screen (A 2.3, "T3 controller error messages").
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Warning {
+    /// No warning.
+    #[text = ""]
+    None,
+    /// The RS232 board is missing.
+    #[text = "WD0"]
+    BoardMissing,
+    /// The host's DTR is off.
+    #[text = "WD1"]
+    CtsLow,
+    /// The interrupt pushbutton.
+    #[text = "WD2"]
+    Interrupt,
+    /// More than 14 in/s.
+    #[text = "WD3"]
+    Translation,
+    /// More than 1.0 rad/s.
+    #[text = "WD4"]
+    Orientation,
+    /// The transmitter has failed.
+    #[text = "WD5"]
+    Transmitter,
+    /// Joint limit reached (joint 6).
+    #[text = "WD6"]
+    JointLimit,
+    /// Joint 2 reached the upward DEPC limit.
+    #[text = "P05"]
+    ShoulderUp,
+    /// Joint limit reached.
+    #[text = "P0B"]
+    OtherJoint,
+    /// Wrist singularity problem.
+    #[text = "P9P"]
+    Wrist,
+    /// DEPC link terminated (unrecoverable).
+    #[text = "PIG"]
+    Terminated,
 }
 
 impl Warning {

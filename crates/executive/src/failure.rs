@@ -7,6 +7,7 @@
 
 use levels::ladder::{PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
+    Plain,
     handshake::Lower,
     interface::{
         CommonMemory, ExternalInputs, Header, HwsCommand, Reason,
@@ -16,7 +17,6 @@ use rcs_core::{
         pedestal::{PedestalCommand, PedestalVerb, TableVerb},
         t3i::{LinkFault, T3iReport},
     },
-    record::Field,
     table::{RowText, Table},
     tick::Tick,
 };
@@ -379,15 +379,28 @@ fn is_executing(process: ProcessId, memory: &CommonMemory) -> bool {
 mod tests {
     use super::*;
     use rcs_core::{
-        coded_enum, decision_table,
+        Plain,
         interface::{pedestal::TableCommand, subtask::SubtaskVerb},
         name::Name10,
+        old_table,
     };
 
-    coded_enum! { enum Step { Start = "start", Wait = "wait", } }
-    coded_enum! { enum Fingers { Apart = "apart", Shut = "shut", } }
-    coded_enum! { enum Action { Close = "close", Report = "report", } }
-    decision_table! {
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+    enum Step {
+        Start,
+        Wait,
+    }
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+    enum Fingers {
+        Apart,
+        Shut,
+    }
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+    enum Action {
+        Close,
+        Report,
+    }
+    old_table! {
         /// CLOSE-GRIP for the test.
         CLOSE_GRIP: fn close_grip(step: Step, fingers: Fingers) -> (Action, Step) {
             1: ( _    , Apart ) => Close , Wait ;

@@ -14,9 +14,9 @@ use std::convert::Infallible;
 
 use levels::ladder::{Ladder, ProcessId};
 use rcs_core::{
+    Plain,
     digest::Digest,
     interface::{CommonMemory, ExternalInputs},
-    record::Field,
     tick::Tick,
 };
 use taskdata::files::TaskData;

@@ -15,9 +15,10 @@ use executive::memory::{
     Attached, Publisher, ReadError, RunName, SharedMemoryError, buffers::Pulse, list, runs,
 };
 use rcs_core::{
+    Plain,
     interface::{CommonMemory, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport},
     name::Name16,
-    record::{Field, Schema, from_bytes},
+    plain::{Schema, from_bytes},
     tick::Tick,
 };
 

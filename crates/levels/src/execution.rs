@@ -1,152 +1,159 @@
-//! What Task, Subtask and E-move have in common: the upper of the two state tables (II.2.2.2).
+//! What the processes have in common: the upper of the two state tables (II.2.2.2).
 //!
-//! The lower table belongs to a command; this one decides whether it is consulted at all. An outcome, once reached, stays
-//! until a new command number comes (DESIGN 16 "Handshake").
+//! The lower tables belong to commands; this one decides whether they are consulted at all. An outcome, once reached, stays until a new
+//! command number comes.
 //!
 //! ```text
-//!            New, Good            table says Finish
+//!            new number           table says Finish
 //!   Idle ----------------> Executing ----------------> Done
-//!     |                     ^   |  \
-//!     | New, Faulty         |   |   `-- table says JoystickOn --> Joystick
-//!     v                     |   | table says Fail
+//!                           ^   |  \
+//!                           |   |   `-- table says JoystickOn --> Joystick
+//!                           |   |
+//!                           |   | table says Fail
 //!   Error <-----------------|---'
-//!     |______ New, Good ____|
+//!     |______ new number ___|
 //! ```
+//!
+//! A process consults in turn, until a row decides: [`EXECUTE`], its table ACCEPT with what a new command needs, its table of what all
+//! commands have in common, if it has one, and the table of the command. `docs/design/tables.md` tells more.
 
 use rcs_core::{
-    coded_enum, decision_table,
+    Actions, Plain, Variables, decision_table,
     handshake::{Arrival, Lower, Receiver},
     interface::{Header, Reason, Report},
-    record,
-    table::{Decision, Table},
+    name::Name16,
+    table::Choice,
     tick::Tick,
 };
 
-coded_enum! {
-    /// How far the current command has come.
-    pub enum Outcome {
-        /// Nothing was commanded yet.
-        Idle = "idle",
-        /// Under way.
-        Executing = "executing",
-        /// Finished.
-        Done = "done",
-        /// Failed.
-        Error = "error",
-        /// Given up, because the operator took the robot.
-        Joystick = "joystick",
-    }
+/// How far the current command has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Outcome {
+    /// Nothing was commanded yet.
+    Idle,
+    /// Under way.
+    Executing,
+    /// Finished.
+    Done,
+    /// Failed.
+    Error,
+    /// Given up, because the operator took the robot.
+    Joystick,
 }
 
-coded_enum! {
-    /// Whether the current command can be executed at all: its names are known, its records exist.
-    pub enum Check {
-        /// It can.
-        Good = "good",
-        /// It cannot; there is a reason.
-        Faulty = "faulty",
-    }
+/// What to do with the tables of the current command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
+pub enum Course {
+    /// Leave everything as it is.
+    Rest,
+    /// Report that the command was not executed, because the process was restarted.
+    Refuse,
+    /// Consult the tables, from the first step.
+    Begin,
+    /// Consult the tables.
+    Continue,
 }
 
-coded_enum! {
-    /// What to do with the table of the current command.
-    pub enum Course {
-        /// Leave everything as it is.
-        Rest = "rest",
-        /// Refuse the command with the reason found.
-        Refuse = "refuse",
-        /// Consult the table, from its first step.
-        Begin = "begin",
-        /// Consult the table.
-        Continue = "continue",
-    }
+/// The command buffer, for [`EXECUTE`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Buffer {
+    /// What the command buffer holds now.
+    pub arrival: Arrival,
 }
 
 decision_table! {
-    /// Upper state table: is the table of the current command consulted?
-    pub EXECUTE: fn execute(arrival: Arrival, check: Check, outcome: Outcome) -> (Course, Outcome) {
-        //    arrival     check    outcome       course     outcome
-        1: ( Nothing   , _      , _         ) => Rest     , Idle      ;
-        2: ( Restarted , _      , _         ) => Refuse   , Error     ;
-        3: ( New       , Faulty , _         ) => Refuse   , Error     ;
-        4: ( New       , Good   , _         ) => Begin    , Executing ;
-        5: ( Same      , _      , Executing ) => Continue , Executing ;
-        6: ( Same      , _      , Idle      ) => Rest     , Idle      ;
-        7: ( Same      , _      , Done      ) => Rest     , Done      ;
-        8: ( Same      , _      , Error     ) => Rest     , Error     ;
-        9: ( Same      , _      , Joystick  ) => Rest     , Joystick  ;
+    /// Upper state table: are the tables of the current command consulted?
+    pub EXECUTE: fn execute(Outcome, Buffer) -> Course {
+        any {
+            1: arrival: Nothing     => Rest      -> Idle;
+            2: arrival: Restarted   => Refuse    -> Error;
+            3: arrival: New         => Begin     -> Executing;
+        }
+        Executing {
+            4: arrival: Same        => Continue;
+        }
+        Idle | Done | Error | Joystick {
+            5: arrival: Same        => Rest;
+        }
     }
 }
 
-record! {
-    /// The current command of a process and how far it has come.
-    pub struct Execution {
-        /// Echo and adoption.
-        pub receiver: Receiver,
-        /// How far it has come.
-        pub outcome: Outcome,
-        /// The reference action (V.1.1): code of the step of the command's table.
-        pub step: u8,
-        /// Why it failed.
-        pub reason: Reason,
-        /// Table that was used last, from 1; 0 for none.
-        pub table: u8,
-        /// Row of it.
-        pub row: u8,
+/// Is the command in the buffer a new one? Only then it is checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Asked {
+    /// No: the current command goes on.
+    Before,
+    /// Yes.
+    Now,
+}
+
+impl Asked {
+    /// What [`Receiver::observe`] says, for a table ACCEPT.
+    #[must_use]
+    pub fn of(arrival: Arrival) -> Self {
+        if arrival == Arrival::New { Self::Now } else { Self::Before }
     }
 }
 
-/// What the table of the current command decided; `Action` is what the rows of a process can ask for.
-#[derive(Clone, Copy, Debug)]
-pub struct Choice<Action> {
-    /// The table.
-    pub table: &'static Table,
-    /// The row that fired.
+/// What the current command has ordered last of a process below, once failures are passed up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Work {
+    /// It is not done yet.
+    Busy,
+    /// It is done, or nothing was ordered.
+    Over,
+}
+
+/// The current command of a process and how far it has come.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Execution {
+    /// Echo and adoption.
+    pub receiver: Receiver,
+    /// How far it has come.
+    pub outcome: Outcome,
+    /// Why it failed.
+    pub reason: Reason,
+    /// Table that was used last, from 1; 0 for none.
+    pub table: u8,
+    /// Row of it.
     pub row: u8,
-    /// What to do.
-    pub action: Action,
-    /// Code of the next step.
-    pub step: u8,
 }
+
+/// Number of [`EXECUTE`] in every process.
+const EXECUTE_NUMBER: u8 = 1;
+/// Number of the table ACCEPT in every process.
+const ACCEPT_NUMBER: u8 = 2;
 
 impl Execution {
-    /// Consult the upper table; `fault` is why the command cannot be executed, if so.
-    pub fn consult(&mut self, number: u32, fault: impl FnOnce() -> Option<Reason>) -> Course {
-        let arrival = self.receiver.observe(number);
-        let fault = match arrival {
-            Arrival::New => fault(),
-            Arrival::Restarted => Some(Reason::Restarted),
-            Arrival::Nothing | Arrival::Same => None,
-        };
-        let check = if fault.is_some() { Check::Faulty } else { Check::Good };
-        let Decision { row, action, next } = execute(arrival, check, self.outcome);
-        self.outcome = next;
-        match action {
+    /// Consult [`EXECUTE`].
+    pub fn course(&mut self, arrival: Arrival) -> Course {
+        let decision = execute(self.outcome, &Buffer { arrival });
+        self.outcome = decision.next;
+        match decision.action {
             Course::Refuse => {
-                self.reason = fault.unwrap_or_default();
-                (self.table, self.row) = (1, row);
+                self.reason = Reason::Restarted;
+                (self.table, self.row) = (EXECUTE_NUMBER, decision.row);
             }
-            Course::Begin => {
-                self.step = 0;
-                self.reason = Reason::None;
-            }
+            Course::Begin => self.reason = Reason::None,
             Course::Rest | Course::Continue => {}
         }
-        action
-    }
-
-    /// The process was dormant in the tick before: the next command number it reads is adopted, not executed (DESIGN 16
-    /// "Handshake" e).
-    pub fn wake(&mut self) {
-        self.receiver = Receiver::default();
+        decision.action
     }
 
     /// Note which row of which table fired.
-    pub fn note(&mut self, tables: &[&'static Table], table: &'static Table, row: u8, step: u8) {
-        let position = tables.iter().position(|t| core::ptr::eq(*t, table));
-        self.table = position.and_then(|p| u8::try_from(p).ok()).and_then(|p| p.checked_add(1)).unwrap_or(0);
-        self.row = row;
-        self.step = step;
+    pub fn note<Action, Step>(&mut self, choice: &Choice<Action, Step>) {
+        (self.table, self.row) = (choice.table, choice.row);
+    }
+
+    /// True in the tick in which a command was accepted: `arrival` is that of the tick, and no row of ACCEPT has refused it.
+    #[must_use]
+    pub fn begins(&self, arrival: Arrival) -> bool {
+        arrival == Arrival::New && self.table != ACCEPT_NUMBER
+    }
+
+    /// The process was dormant in the tick before: the next command number it reads is adopted, not executed.
+    pub fn wake(&mut self) {
+        self.receiver = Receiver::default();
     }
 
     /// The command is finished.
@@ -184,10 +191,16 @@ impl Execution {
         }
     }
 
-    /// The header of the outputs of this tick.
+    /// The header of the outputs of this tick; `step` is the text of the command's step.
     #[must_use]
-    pub const fn header(&self, tick: Tick) -> Header {
-        Header { stamp: tick, republished: false, table: self.table, row: self.row }
+    pub fn header(&self, tick: Tick, step: &str) -> Header {
+        Header {
+            stamp: tick,
+            republished: false,
+            table: self.table,
+            row: self.row,
+            step: Name16::clipped(step),
+        }
     }
 }
 
@@ -196,22 +209,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_row_is_dead() {
-        EXECUTE.dead_rows(|row| panic!("row {row} can never fire"));
+    fn an_outcome_stays_until_a_new_number_comes() {
+        let mut e = Execution::default();
+        let mut course = |number, end: fn(&mut Execution)| {
+            let arrival = e.receiver.observe(number);
+            let course = e.course(arrival);
+            end(&mut e);
+            (course, e.report(), e.reason)
+        };
+        assert_eq!(course(0, |_| {}), (Course::Rest, Report::Idle, Reason::None));
+        assert_eq!(course(1, |_| {}), (Course::Begin, Report::Executing, Reason::None));
+        assert_eq!(course(1, Execution::finish), (Course::Continue, Report::Done, Reason::None));
+        assert_eq!(course(1, |_| {}), (Course::Rest, Report::Done, Reason::None));
+        let refuse = |e: &mut Execution| e.fail(Reason::UnknownObject);
+        assert_eq!(course(2, refuse), (Course::Begin, Report::Error, Reason::UnknownObject));
+        assert_eq!(course(2, |_| {}), (Course::Rest, Report::Error, Reason::UnknownObject));
+        assert_eq!(course(3, |_| {}), (Course::Begin, Report::Executing, Reason::None));
     }
 
     #[test]
-    fn an_outcome_stays_until_a_new_number_comes() {
+    fn a_restarted_process_refuses_what_stands_in_its_buffer() {
         let mut e = Execution::default();
-        assert_eq!(e.consult(0, || None), Course::Rest);
-        assert_eq!(e.consult(1, || None), Course::Begin);
-        assert_eq!(e.consult(1, || None), Course::Continue);
-        e.finish();
-        assert_eq!((e.consult(1, || None), e.report()), (Course::Rest, Report::Done));
-        assert_eq!(e.consult(2, || Some(Reason::UnknownObject)), Course::Refuse);
-        assert_eq!((e.report(), e.reason), (Report::Error, Reason::UnknownObject));
-        assert_eq!(e.consult(2, || panic!("checked only once")), Course::Rest);
-        assert_eq!(e.consult(3, || None), Course::Begin);
-        assert_eq!((e.report(), e.reason), (Report::Executing, Reason::None));
+        let arrival = e.receiver.observe(7);
+        assert_eq!((e.course(arrival), e.reason, e.row), (Course::Refuse, Reason::Restarted, 2));
     }
 }

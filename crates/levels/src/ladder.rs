@@ -6,13 +6,12 @@
 //! The processes of an Active Pedestal that is a system of its own are not stepped: what they sent is adopted in their place.
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     interface::{
         CommonMemory, ExternalInputs, Header, OutsidePedestal,
         device::{JoystickBox, single_step},
     },
     process::{Inputs, Process},
-    record,
     table::Table,
     tick::Tick,
 };
@@ -30,34 +29,45 @@ use crate::{
     task::Task,
 };
 
-coded_enum! {
-    /// The control processes in the order of [`CommonMemory`], which is the order of the digest.
-    pub enum ProcessId {
-        /// Task (V.4).
-        Task = "Task",
-        /// Subtask (V.3).
-        Subtask = "Subtask",
-        /// E-move (V.2).
-        Emove = "E-move",
-        /// Prim (V.1).
-        Prim = "Prim",
-        /// T3 Interface (VI.1).
-        T3i = "T3 Interface",
-        /// Quick Change (VI.2).
-        QuickChange = "Quick Change",
-        /// Grip (VI.3).
-        Grip = "Grip",
-        /// V-Grip (VI.4).
-        VGrip = "V-Grip",
-        /// Tool-Grip (VI.5).
-        ToolGrip = "Tool-Grip",
-        /// Active Pedestal (VI.7).
-        Pedestal = "Active Pedestal",
-        /// Hand of the pedestal.
-        Hand = "Pedestal Hand",
-        /// Rotary table of the pedestal.
-        RotaryTable = "Rotary Table",
-    }
+/// The control processes in the order of [`CommonMemory`], which is the order of the digest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum ProcessId {
+    /// Task (V.4).
+    #[text = "Task"]
+    Task,
+    /// Subtask (V.3).
+    #[text = "Subtask"]
+    Subtask,
+    /// E-move (V.2).
+    #[text = "E-move"]
+    Emove,
+    /// Prim (V.1).
+    #[text = "Prim"]
+    Prim,
+    /// T3 Interface (VI.1).
+    #[text = "T3 Interface"]
+    T3i,
+    /// Quick Change (VI.2).
+    #[text = "Quick Change"]
+    QuickChange,
+    /// Grip (VI.3).
+    #[text = "Grip"]
+    Grip,
+    /// V-Grip (VI.4).
+    #[text = "V-Grip"]
+    VGrip,
+    /// Tool-Grip (VI.5).
+    #[text = "Tool-Grip"]
+    ToolGrip,
+    /// Active Pedestal (VI.7).
+    #[text = "Active Pedestal"]
+    Pedestal,
+    /// Hand of the pedestal.
+    #[text = "Pedestal Hand"]
+    Hand,
+    /// Rotary table of the pedestal.
+    #[text = "Rotary Table"]
+    RotaryTable,
 }
 
 /// A process by name, with its decision tables.
@@ -101,36 +111,35 @@ static PROCESSES: [ProcessInfo; PROCESS_COUNT] = [
 
 type StateOf<P> = <P as Process<TaskData<'static>>>::State;
 
-record! {
-    /// What all processes remember.
-    pub struct LadderState {
-        /// Task.
-        pub task: StateOf<Task>,
-        /// Subtask.
-        pub subtask: StateOf<Subtask>,
-        /// E-move.
-        pub emove: StateOf<Emove>,
-        /// Prim.
-        pub prim: StateOf<Prim>,
-        /// T3 Interface.
-        pub t3i: StateOf<T3i>,
-        /// Quick Change.
-        pub quick_change: StateOf<QuickChange>,
-        /// Grip.
-        pub grip: StateOf<Grip>,
-        /// V-Grip.
-        pub v_grip: StateOf<VGrip>,
-        /// Tool-Grip.
-        pub tool_grip: StateOf<ToolGrip>,
-        /// Active Pedestal.
-        pub pedestal: StateOf<Pedestal>,
-        /// Hand of the pedestal.
-        pub hand: StateOf<Hand>,
-        /// Rotary table of the pedestal.
-        pub table: StateOf<RotaryTable>,
-        /// Single-step buttons of the tick before.
-        pub buttons: u8,
-    }
+/// What all processes remember.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct LadderState {
+    /// Task.
+    pub task: StateOf<Task>,
+    /// Subtask.
+    pub subtask: StateOf<Subtask>,
+    /// E-move.
+    pub emove: StateOf<Emove>,
+    /// Prim.
+    pub prim: StateOf<Prim>,
+    /// T3 Interface.
+    pub t3i: StateOf<T3i>,
+    /// Quick Change.
+    pub quick_change: StateOf<QuickChange>,
+    /// Grip.
+    pub grip: StateOf<Grip>,
+    /// V-Grip.
+    pub v_grip: StateOf<VGrip>,
+    /// Tool-Grip.
+    pub tool_grip: StateOf<ToolGrip>,
+    /// Active Pedestal.
+    pub pedestal: StateOf<Pedestal>,
+    /// Hand of the pedestal.
+    pub hand: StateOf<Hand>,
+    /// Rotary table of the pedestal.
+    pub table: StateOf<RotaryTable>,
+    /// Single-step buttons of the tick before.
+    pub buttons: u8,
 }
 
 /// All control processes.

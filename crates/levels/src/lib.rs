@@ -37,6 +37,8 @@
     )
 )]
 
+#[cfg(test)]
+mod coverage;
 pub mod emove;
 #[cfg(test)]
 mod exact_robot;
@@ -44,6 +46,7 @@ pub mod execution;
 pub mod grip;
 pub mod jaws;
 pub mod ladder;
+mod old_execution;
 pub mod pedestal;
 pub mod places;
 pub mod prim;

@@ -1,6 +1,6 @@
 //! Places of task data in the words of the interfaces, and back.
 
-use rcs_core::interface::{Reason, subtask::LocationKind};
+use rcs_core::{Plain, interface::subtask::LocationKind};
 use taskdata::files::{ArrayId, LocptId, LookupError, Place};
 
 /// Locations that the processes name themselves, because no command of the workstation controller does.
@@ -23,9 +23,46 @@ pub const fn place_of(kind: LocationKind, location_record: u32, location_array: 
     Place { kind, locpt: LocptId::new(location_record), array: ArrayId::new(location_array) }
 }
 
-/// Why a look-up failed, as a reason that can travel in a status.
+/// What a look-up of task data did not find: a state variable of the tables ACCEPT.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Missing {
+    /// Nothing: all was found.
+    Nothing,
+    /// The location, or it is only an owner of others.
+    Location,
+    /// The object.
+    Object,
+    /// The name of an object, which the location needs.
+    ObjectName,
+    /// An array of the object at the location.
+    Array,
+    /// The sector.
+    Sector,
+    /// The grip of the object.
+    Grip,
+    /// The grip movetable of object, grip and location.
+    GripMovetable,
+    /// The holster of a gripper.
+    Holster,
+}
+
+impl From<LookupError> for Missing {
+    fn from(error: LookupError) -> Self {
+        match error {
+            LookupError::UnknownLocation { .. } | LookupError::OwnerOnly { .. } => Self::Location,
+            LookupError::UnknownObject { .. } => Self::Object,
+            LookupError::ObjectNeeded { .. } => Self::ObjectName,
+            LookupError::NotAssigned { .. } => Self::Array,
+            LookupError::NoSectors { .. } | LookupError::SectorRange { .. } => Self::Sector,
+            LookupError::NoGrip { .. } => Self::GripMovetable,
+        }
+    }
+}
+
+/// Until all processes are converted.
 #[must_use]
-pub const fn reason_of(error: &LookupError) -> Reason {
+pub const fn reason_of(error: &LookupError) -> rcs_core::interface::Reason {
+    use rcs_core::interface::Reason;
     match error {
         LookupError::UnknownLocation { .. } | LookupError::OwnerOnly { .. } => Reason::UnknownLocation,
         LookupError::UnknownObject { .. } => Reason::UnknownObject,

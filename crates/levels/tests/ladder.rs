@@ -12,6 +12,7 @@ use fingers::Fingers;
 use levels::ladder::{Ladder, LadderState, PROCESS_COUNT, ProcessId};
 use proptest::prelude::*;
 use rcs_core::{
+    Plain,
     digest::Digest,
     frame::Frame,
     interface::{
@@ -21,7 +22,7 @@ use rcs_core::{
     },
     kinematics::{HOME_JOINTS, Joints, T3},
     name::Name16,
-    record::{Field, Writer, from_bytes},
+    plain::{Writer, from_bytes},
     tick::Tick,
 };
 use taskdata::load::Store;

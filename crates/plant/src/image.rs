@@ -4,14 +4,17 @@
 
 /// Records and coded enums of the controller, as their byte image.
 pub mod record {
-    use rcs_core::record::{Field, Writer, from_bytes};
+    use rcs_core::{
+        Plain,
+        plain::{Writer, from_bytes},
+    };
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
     /// Write the byte image.
     ///
     /// # Errors
     /// Those of the serializer.
-    pub fn serialize<T: Field, S: Serializer>(record: &T, serializer: S) -> Result<S::Ok, S::Error> {
+    pub fn serialize<T: Plain, S: Serializer>(record: &T, serializer: S) -> Result<S::Ok, S::Error> {
         let mut image = vec![0_u8; T::SIZE];
         record.encode(&mut Writer::new(&mut image));
         image.serialize(serializer)
@@ -21,7 +24,7 @@ pub mod record {
     ///
     /// # Errors
     /// Those of the deserializer, and if the bytes are not the image of a legal value.
-    pub fn deserialize<'de, T: Field, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    pub fn deserialize<'de, T: Plain, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
         from_bytes(&Vec::<u8>::deserialize(deserializer)?).map_err(D::Error::custom)
     }
 }

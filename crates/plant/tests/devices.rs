@@ -8,6 +8,7 @@ use depc::{
 };
 use plant::{Cell, CellEvent, Key, Placement, WorkstationAction, WorkstationError};
 use rcs_core::{
+    Plain,
     frame::Vector,
     interface::device::{
         DeviceInputs, DeviceOutputs, Picture, RESOLVER_COUNTS, VisionRequest, VisionResponse, VisionStatus,
@@ -15,13 +16,12 @@ use rcs_core::{
     },
     kinematics::{HOME_JOINTS, T3},
     movetable::System,
-    record::Field,
 };
 use rig::{Rig, UNIT_V1, description, table};
 
 fn bytes(inputs: &DeviceInputs) -> Vec<u8> {
     let mut image = vec![0; DeviceInputs::SCHEMA.size()];
-    inputs.encode(&mut rcs_core::record::Writer::new(&mut image));
+    inputs.encode(&mut rcs_core::plain::Writer::new(&mut image));
     image
 }
 

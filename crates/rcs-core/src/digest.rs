@@ -8,7 +8,7 @@
 //! It holds nothing that depends on time spent or on how processes are spread over boards, so equal runs have equal
 //! digests wherever and however they ran.
 
-use crate::record::{Field, Writer};
+use crate::{Plain, plain::Writer};
 
 /// A running hash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl Digest {
     }
 
     /// Add a record through a scratch buffer that is at least as large as its image.
-    pub fn add_record<T: Field>(&mut self, record: &T, scratch: &mut [u8]) {
+    pub fn add_record<T: Plain>(&mut self, record: &T, scratch: &mut [u8]) {
         let Some(image) = scratch.get_mut(..T::SIZE) else { return };
         record.encode(&mut Writer::new(image));
         self.add(image);

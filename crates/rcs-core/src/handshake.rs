@@ -10,7 +10,7 @@
 //! | k+1  | reads echo n-1: `Pending`     | reads n, acts, writes echo n and status   |
 //! | k+2  | reads echo n and its status   |                                           |
 
-use crate::{coded_enum, interface::Header, record, tick::Tick};
+use crate::{Plain, interface::Header, tick::Tick};
 
 /// Ticks after which a command that is not echoed counts as lost.
 pub const ECHO_LIMIT: u64 = 3;
@@ -28,34 +28,33 @@ pub const fn successor(number: u32) -> u32 {
     }
 }
 
-coded_enum! {
-    /// What a commander makes of the status of the process below it.
-    pub enum Lower {
-        /// The last command is not echoed yet: neither done nor an error.
-        Pending = "pending",
-        /// The last command is being executed.
-        Executing = "executing",
-        /// The last command is done.
-        Done = "done",
-        /// The last command failed.
-        Error = "error",
-        /// The operator has the robot.
-        Joystick = "joystick-on",
-        /// The process below does not answer: its stamp is old, or it does not echo.
-        Lost = "lost",
-    }
+/// What a commander makes of the status of the process below it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Lower {
+    /// The last command is not echoed yet: neither done nor an error.
+    Pending,
+    /// The last command is being executed.
+    Executing,
+    /// The last command is done.
+    Done,
+    /// The last command failed.
+    Error,
+    /// The operator has the robot.
+    #[text = "joystick-on"]
+    Joystick,
+    /// The process below does not answer: its stamp is old, or it does not echo.
+    Lost,
 }
 
-record! {
-    /// The commander's side of one interface.
-    pub struct Commander {
-        /// Number of the last command; 0 before the first.
-        pub number: u32,
-        /// When it was written.
-        pub sent: Tick,
-        /// A command has been sent since the start.
-        pub started: bool,
-    }
+/// The commander's side of one interface.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Commander {
+    /// Number of the last command; 0 before the first.
+    pub number: u32,
+    /// When it was written.
+    pub sent: Tick,
+    /// A command has been sent since the start.
+    pub started: bool,
 }
 
 impl Commander {
@@ -95,30 +94,28 @@ impl Commander {
     }
 }
 
-coded_enum! {
-    /// What the command buffer of a process holds now.
-    pub enum Arrival {
-        /// Nothing was ever commanded.
-        Nothing = "nothing",
-        /// A command that has not been seen before.
-        New = "new",
-        /// The command that is being executed.
-        Same = "same",
-        /// The command that stood there when this process started: never executed by it.
-        Restarted = "restarted",
-    }
+/// What the command buffer of a process holds now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Arrival {
+    /// Nothing was ever commanded.
+    Nothing,
+    /// A command that has not been seen before.
+    New,
+    /// The command that is being executed.
+    Same,
+    /// The command that stood there when this process started: never executed by it.
+    Restarted,
 }
 
-record! {
-    /// The receiver's side of one interface.
-    pub struct Receiver {
-        /// Number of the last command seen, echoed.
-        pub echo: u32,
-        /// The process has read its command buffer at least once.
-        pub started: bool,
-        /// The echoed command was adopted at the start and never executed.
-        pub adopted: bool,
-    }
+/// The receiver's side of one interface.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Receiver {
+    /// Number of the last command seen, echoed.
+    pub echo: u32,
+    /// The process has read its command buffer at least once.
+    pub started: bool,
+    /// The echoed command was adopted at the start and never executed.
+    pub adopted: bool,
 }
 
 impl Receiver {

@@ -5,7 +5,7 @@
 //!
 //! * [`tick`], [`name`], [`units`]: time, names and the manual's integers;
 //! * [`frame`], [`pose`], [`movetable`], [`kinematics`]: geometry, in inches and radians;
-//! * [`record`]: one definition of a buffer gives its structure, its byte image and its description;
+//! * [`plain`]: one definition of a buffer gives its structure, its byte image and its description;
 //! * [`interface`]: the buffers of chapters V and VI;
 //! * [`handshake`]: command numbers, echoes and time stamps between two processes;
 //! * [`table`]: decision tables, exhaustive by compilation;
@@ -29,6 +29,11 @@
     )
 )]
 
+extern crate self as rcs_core;
+
+pub use plain::Plain;
+pub use rcs_macros::{Actions, Plain, Variables, commands, decision_table};
+
 pub mod digest;
 pub mod frame;
 pub mod handshake;
@@ -36,9 +41,9 @@ pub mod interface;
 pub mod kinematics;
 pub mod movetable;
 pub mod name;
+pub mod plain;
 pub mod pose;
 pub mod process;
-pub mod record;
 pub mod table;
 pub mod tick;
 pub mod units;

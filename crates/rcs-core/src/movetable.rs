@@ -3,50 +3,52 @@
 use core::f64::consts::FRAC_PI_2;
 
 use crate::{
-    coded_enum,
+    Plain,
     frame::{Frame, Rotation, Vector},
     pose::POINT_DISTANCE,
-    record,
     units::{inches, radians},
 };
 
 /// Lines of a movetable at most (VII.2).
 pub const MAX_LINES: usize = 8;
 
-coded_enum! {
-    /// Coordinate systems of Table VII.1.
-    pub enum System {
-        /// No line.
-        None = "",
-        /// `rw` x, y, z: translate in world coordinates.
-        World = "rw",
-        /// `t` x, y, z: translate in tool coordinates.
-        Tool = "t",
-        /// `to` pit, yaw: rotate about the tool point.
-        ToolOrigin = "to",
-        /// `wo` pit, yaw: rotate about the wrist point.
-        WristOrigin = "wo",
-        /// `ro` roll: rotate about the end effector axis.
-        Roll = "ro",
-    }
+/// Coordinate systems of Table VII.1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum System {
+    /// No line.
+    #[text = ""]
+    None,
+    /// `rw` x, y, z: translate in world coordinates.
+    #[text = "rw"]
+    World,
+    /// `t` x, y, z: translate in tool coordinates.
+    #[text = "t"]
+    Tool,
+    /// `to` pit, yaw: rotate about the tool point.
+    #[text = "to"]
+    ToolOrigin,
+    /// `wo` pit, yaw: rotate about the wrist point.
+    #[text = "wo"]
+    WristOrigin,
+    /// `ro` roll: rotate about the end effector axis.
+    #[text = "ro"]
+    Roll,
 }
 
-record! {
-    /// A line of a movetable: 0.01 in or 0.01 degree.
-    pub struct Line {
-        /// In which coordinates.
-        pub system: System,
-        /// x, y, z; or pitch, yaw; or roll.
-        pub values: [i32; 3],
-    }
+/// A line of a movetable: 0.01 in or 0.01 degree.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Line {
+    /// In which coordinates.
+    pub system: System,
+    /// x, y, z; or pitch, yaw; or roll.
+    pub values: [i32; 3],
 }
 
-record! {
-    /// A movetable: its lines in order; lines after the last have [`System::None`].
-    pub struct Movetable {
-        /// The lines.
-        pub lines: [Line; MAX_LINES],
-    }
+/// A movetable: its lines in order; lines after the last have [`System::None`].
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Movetable {
+    /// The lines.
+    pub lines: [Line; MAX_LINES],
 }
 
 impl Line {

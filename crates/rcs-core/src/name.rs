@@ -2,7 +2,10 @@
 
 use core::{fmt, str::FromStr};
 
-use crate::record::{DecodeError, Field, Reader, Schema, Writer};
+use crate::{
+    Plain,
+    plain::{DecodeError, Reader, Schema, Writer},
+};
 
 /// A name of at most `N` printable ASCII characters without blanks, zero-filled so that equal names are equal bytes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -144,7 +147,7 @@ impl<const N: usize> fmt::Debug for Name<N> {
     }
 }
 
-impl<const N: usize> Field for Name<N> {
+impl<const N: usize> Plain for Name<N> {
     const SCHEMA: Schema = Schema::Text(N);
     const ZERO: Self = Self::EMPTY;
 

@@ -3,37 +3,35 @@
 use core::fmt;
 
 use crate::{
+    Plain,
     frame::{Frame, Vector, norm, rotation_from_x_y},
-    record,
     units::{hundredths, inches},
 };
 
 /// Length of the vectors wrist to tool and tool to finger: 3000 counts (IV.3.3 step 11).
 pub const POINT_DISTANCE: f64 = 30.0;
 
-record! {
-    /// A pose as a form gives it: three points in world coordinates, hundredths of an inch (VII.1).
-    pub struct Pose {
-        /// A point on the axis of the end effector.
-        pub wrist: [i32; 3],
-        /// The centre of the distal end of the end effector.
-        pub tool: [i32; 3],
-        /// A point along a radial vector out from the tool point.
-        pub finger: [i32; 3],
-    }
+/// A pose as a form gives it: three points in world coordinates, hundredths of an inch (VII.1).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Pose {
+    /// A point on the axis of the end effector.
+    pub wrist: [i32; 3],
+    /// The centre of the distal end of the end effector.
+    pub tool: [i32; 3],
+    /// A point along a radial vector out from the tool point.
+    pub finger: [i32; 3],
 }
 
-record! {
-    /// A frame in RCS-II/T3 format (VI.1.2 frame-command-in): the tool point in hundredths of an inch, and two vectors
-    /// of length 3000.
-    pub struct WireFrame {
-        /// Tool point, 0.01 in.
-        pub tool: [i32; 3],
-        /// Wrist to tool point, length 3000.
-        pub wrist_to_tool: [i32; 3],
-        /// Tool to finger point, length 3000.
-        pub tool_to_finger: [i32; 3],
-    }
+/// A frame in RCS-II/T3 format (VI.1.2 frame-command-in): the tool point in hundredths of an inch, and two vectors
+/// of length 3000.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct WireFrame {
+    /// Tool point, 0.01 in.
+    pub tool: [i32; 3],
+    /// Wrist to tool point, length 3000.
+    pub wrist_to_tool: [i32; 3],
+    /// Tool to finger point, length 3000.
+    pub tool_to_finger: [i32; 3],
 }
 
 /// Why nine integers are not a pose.

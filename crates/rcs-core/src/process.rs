@@ -2,8 +2,8 @@
 //! output buffers.
 
 use crate::{
+    Plain,
     interface::{CommonMemory, ExternalInputs},
-    record::Field,
     table::Table,
     tick::Tick,
 };
@@ -23,25 +23,53 @@ pub struct Inputs<'a, Data: ?Sized> {
 
 /// A control process: a pure state machine without clock, I/O or heap.
 ///
-/// `step` is the generic process of II.2.2: *preprocess* reads inputs and sets state variables, *decide* looks them up in the table
-/// of the current command, *postprocess* fills the outputs. The same state and inputs give the same outputs, to the bit.
+/// [`Process::step`] is the generic process of II.2.2. *preprocess* reads the inputs and sets the state variables, *decide* looks them up in
+/// decision tables, *postprocess* fills the outputs. The same state and inputs give the same outputs, to the bit.
 pub trait Process<Data: ?Sized> {
     /// Everything the process remembers: plain data, logged, restorable.
-    type State: Field;
+    type State: Plain;
     /// Its output buffers.
-    type Outputs: Field;
+    type Outputs: Plain;
+    /// The state variables of a tick, and what else preprocess has found.
+    type Seen;
+    /// What the tables can ask for.
+    type Action;
 
     /// The manual's name.
     const NAME: &'static str;
     /// Its decision tables; the header of its outputs names one by position from 1.
     const TABLES: &'static [&'static Table];
 
-    /// One execution cycle. `outputs` holds what was written in the tick before and is overwritten.
-    fn step(&mut self, inputs: &Inputs<'_, Data>, outputs: &mut Self::Outputs);
+    /// Read the inputs and set the state variables. `outputs` holds what was written in the tick before.
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &Self::Outputs) -> Self::Seen;
+
+    /// Look the state variables up in the decision tables.
+    fn decide(&mut self, seen: &Self::Seen) -> Self::Action;
+
+    /// Carry out the action of the row that fired, and fill the output buffers.
+    fn postprocess(
+        &mut self,
+        action: Self::Action,
+        seen: &Self::Seen,
+        inputs: &Inputs<'_, Data>,
+        outputs: &mut Self::Outputs,
+    );
 
     /// What the process remembers.
     fn state(&self) -> &Self::State;
 
+    /// The same, to go on from another state.
+    fn state_mut(&mut self) -> &mut Self::State;
+
+    /// One execution cycle. `outputs` holds what was written in the tick before and is overwritten.
+    fn step(&mut self, inputs: &Inputs<'_, Data>, outputs: &mut Self::Outputs) {
+        let seen = self.preprocess(inputs, outputs);
+        let action = self.decide(&seen);
+        self.postprocess(action, &seen, inputs, outputs);
+    }
+
     /// Go on from a remembered state.
-    fn restore(&mut self, state: Self::State);
+    fn restore(&mut self, state: Self::State) {
+        *self.state_mut() = state;
+    }
 }

@@ -1,39 +1,163 @@
-//! Decision tables (II.2.2.2): the state variables select one row, the row names one action and the next step.
+//! Decision tables (II.2.2.2): the step and the state variables select one row, the row names one action and the next step.
 //!
-//! [`decision_table!`](crate::decision_table!) turns a table into one exhaustive `match`: the compiler proves that no
-//! case is missing, and [`Table::dead_rows`] that no row is idle. Rows carry their number, so that a number in a log
-//! is found in the source by reading, and the same source gives the table as text.
+//! [`decision_table!`](crate::decision_table!) turns a table into one exhaustive `match`. The compiler proves that no case is missing and
+//! that no row is dead, and underlines what is wrong in the row itself. The same source gives the table as text, for logs, for
+//! `rcs-run tables` and for the documentation.
+//!
+//! Rows are read from the top: the first one that fits decides. A row names only the variables that it asks for, and the next step
+//! only where it changes. A group of rows belongs to one step, to several, or to `any`. A group with a doc comment declares its step;
+//! the first step that is declared is the one in which a command begins.
+//!
+//! ```
+//! # mod cell {
+//! use rcs_core::{Actions, Plain, Variables, decision_table};
+//!
+//! /// The door of the cell.
+//! #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+//! pub enum Door {
+//!     /// Nothing is in the way.
+//!     Open,
+//!     /// Both switches see it.
+//!     Shut,
+//!     /// It stands between its switches.
+//!     Stuck,
+//! }
+//!
+//! /// The state variables.
+//! #[derive(Clone, Copy, Debug, Variables)]
+//! pub struct Situation {
+//!     /// The door.
+//!     pub door: Door,
+//! }
+//!
+//! /// Why a command failed.
+//! #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+//! pub enum Reason {
+//!     /// The door did not shut.
+//!     DoorStuck,
+//! }
+//!
+//! /// What a row can ask for.
+//! #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+//! pub enum Action {
+//!     /// Nothing new.
+//!     Wait,
+//!     /// Drive the door.
+//!     Close,
+//!     /// Report done.
+//!     Finish,
+//!     /// Report an error.
+//!     Fail(Reason),
+//! }
+//!
+//! decision_table! {
+//!     /// CLOSE-DOOR: for the example.
+//!     pub CLOSE_DOOR: fn close_door(enum CloseDoorStep, Situation) -> Action {
+//!         any {
+//!             1: door: Shut           => Finish;
+//!         }
+//!         /// Nothing done yet.
+//!         Start {
+//!             2: door: Open | Stuck   => Close            -> Closing;
+//!         }
+//!         /// The door is driven.
+//!         Closing {
+//!             3: door: Open           => Wait;
+//!             4: door: Stuck          => Fail(DoorStuck);
+//!         }
+//!     }
+//! }
+//!
+//! # }
+//! # use cell::*;
+//! let decision = close_door(CloseDoorStep::Start, &Situation { door: Door::Open });
+//! assert_eq!((decision.row, decision.action, decision.next), (2, Action::Close, CloseDoorStep::Closing));
+//! let row = CLOSE_DOOR.row(4).unwrap();
+//! assert_eq!(row.to_string(), "Closing, door Stuck => Fail(DoorStuck)");
+//! ```
+//!
+//! # Tables above
+//!
+//! What several tables have in common stands in a table of its own, which is consulted first. Its head says `-> Action or Type`. A row
+//! with `consult(Value)` does not decide: it passes a value of that type to the table below. The type is narrower than the variable that was
+//! asked for, so that the table below needs no rows for what was decided above. `-> Action or ()` and `consult` pass nothing.
+//!
+//! # Commands
+//!
+//! [`commands!`](crate::commands!) lists the tables of a process once. It gives the enum of all steps, the list of all tables, the numbers
+//! of those that no command selects, and the function that consults the table of a command. `A then b::c` consults two in turn.
+
+use core::fmt;
+
+use crate::plain::EnumSchema;
 
 /// A decision table as text: what people read in logs, in `rcs-run tables` and in failure reports.
 #[derive(Debug)]
 pub struct Table {
-    /// Function that decides, as the command it serves.
+    /// The command that it serves, as the manual writes it: `GET-OBJECT`.
     pub name: &'static str,
-    /// Doc comment of the table.
+    /// Lines of the doc comment.
     pub doc: &'static [&'static str],
-    /// State variables, in order.
-    pub columns: &'static [&'static str],
-    /// The rows, in order; row `n` is at `n - 1`.
-    pub rows: &'static [RowText],
+    /// The state variables that a row may ask for.
+    pub variables: &'static [Variable],
+    /// The actions that a row may name.
+    pub actions: &'static [ActionText],
+    /// The steps, if the table has any.
+    pub steps: Option<&'static EnumSchema>,
+    /// The rows in order; row `n` is at `n - 1`.
+    pub rows: &'static [Row],
     /// Source file.
     pub file: &'static str,
     /// Line of the table in it.
     pub line: u32,
-    /// Rows that fire for at least one combination of the state variables.
-    pub live_rows: fn(&mut dyn FnMut(u8)),
+}
+
+/// A state variable.
+#[derive(Debug, PartialEq)]
+pub struct Variable {
+    /// Its name.
+    pub name: &'static str,
+    /// What it tells: the doc comment of the field.
+    pub doc: &'static str,
+    /// Its values.
+    pub values: &'static EnumSchema,
+}
+
+/// An action.
+#[derive(Debug, PartialEq)]
+pub struct ActionText {
+    /// Its name in the rows.
+    pub name: &'static str,
+    /// What it does: the doc comment.
+    pub doc: &'static str,
+    /// What it carries.
+    pub argument: Option<&'static EnumSchema>,
 }
 
 /// A row as text.
 #[derive(Debug, PartialEq, Eq)]
-pub struct RowText {
+pub struct Row {
     /// Number in the source, from 1.
     pub number: u8,
-    /// Values of the state variables: `(Start, Held, _)`.
-    pub conditions: &'static str,
-    /// The action.
+    /// The steps in which it is looked at; empty for any.
+    pub steps: &'static [&'static str],
+    /// The variables that it asks for; all conditions must hold.
+    pub when: &'static [Condition],
+    /// The action; `consult` if the table below decides.
     pub action: &'static str,
-    /// The step after it.
-    pub next: &'static str,
+    /// What the action carries.
+    pub argument: Option<&'static str>,
+    /// The step after it, if it changes.
+    pub next: Option<&'static str>,
+}
+
+/// What a row asks of a variable.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Condition {
+    /// The variable.
+    pub variable: &'static str,
+    /// The values that fit.
+    pub values: &'static [&'static str],
 }
 
 /// What a table decided.
@@ -47,65 +171,110 @@ pub struct Decision<Action, Step> {
     pub next: Step,
 }
 
+/// What a table above others decided, or what it passes to the table below.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict<Action, Step, Passed> {
+    /// A row has decided.
+    Decided(Decision<Action, Step>),
+    /// The table below decides.
+    Passed(Passed),
+}
+
+/// What the tables of a process decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice<Action, Step> {
+    /// Number of the table in its process, from 1.
+    pub table: u8,
+    /// Number of the row that fired.
+    pub row: u8,
+    /// What to do.
+    pub action: Action,
+    /// The step from now on.
+    pub next: Step,
+}
+
+impl<Action, Step> Decision<Action, Step> {
+    /// The decision as one of the table with this number.
+    pub fn of(self, table: u8) -> Choice<Action, Step> {
+        Choice { table, row: self.row, action: self.action, next: self.next }
+    }
+}
+
+impl<Action, Step, Passed> Verdict<Action, Step, Passed> {
+    /// The decision as one of the table with this number, or what the table below makes of the value that was passed.
+    pub fn then<Next: From<Step>>(
+        self,
+        table: u8,
+        below: impl FnOnce(Passed) -> Choice<Action, Next>,
+    ) -> Choice<Action, Next> {
+        match self {
+            Self::Decided(Decision { row, action, next }) => Choice { table, row, action, next: next.into() },
+            Self::Passed(value) => below(value),
+        }
+    }
+}
+
 impl Table {
     /// The row with a number.
     #[must_use]
-    pub fn row(&self, number: u8) -> Option<&RowText> {
+    pub fn row(&self, number: u8) -> Option<&'static Row> {
         self.rows.iter().find(|row| row.number == number)
     }
 
-    /// Calls `found` with the number of each row that no combination of the state variables reaches.
-    pub fn dead_rows(&self, mut found: impl FnMut(u8)) {
-        for row in self.rows {
-            let mut alive = false;
-            (self.live_rows)(&mut |number| alive |= number == row.number);
-            if !alive {
-                found(row.number);
+    /// The variables that at least one row asks for.
+    pub fn asked(&self) -> impl Iterator<Item = &'static Variable> {
+        let asks = |name: &str| {
+            self.rows.iter().flat_map(|row| row.when).any(|condition| condition.variable == name)
+        };
+        self.variables.iter().filter(move |variable| asks(variable.name))
+    }
+}
+
+/// Names with a word between them.
+fn join(f: &mut fmt::Formatter<'_>, names: &[&str], word: &str) -> fmt::Result {
+    for (position, name) in names.iter().enumerate() {
+        if position > 0 {
+            f.write_str(word)?;
+        }
+        f.write_str(name)?;
+    }
+    Ok(())
+}
+
+impl fmt::Display for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ", self.variable)?;
+        join(f, self.values, " or ")
+    }
+}
+
+/// The row as one says it: `Closing, door Stuck => Fail(DoorStuck)`.
+impl fmt::Display for Row {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        join(f, self.steps, " or ")?;
+        for (position, condition) in self.when.iter().enumerate() {
+            if position > 0 || !self.steps.is_empty() {
+                f.write_str(", ")?;
             }
+            condition.fmt(f)?;
+        }
+        if self.steps.is_empty() && self.when.is_empty() {
+            f.write_str("always")?;
+        }
+        write!(f, " => {}", self.action)?;
+        if let Some(argument) = self.argument {
+            write!(f, "({argument})")?;
+        }
+        match self.next {
+            Some(next) => write!(f, " -> {next}"),
+            None => Ok(()),
         }
     }
 }
 
-/// True if rows are numbered 1, 2, 3 …; checked at compile time for every table.
-#[must_use]
-pub const fn numbered_in_order(rows: &[RowText]) -> bool {
-    let (mut rest, mut expected) = (rows, 1_u8);
-    while let Some((row, more)) = rest.split_first() {
-        if row.number != expected {
-            return false;
-        }
-        (rest, expected) = (more, expected.saturating_add(1));
-    }
-    true
-}
-
-/// Write a decision table.
-///
-/// Cells hold variants of the column's enum, alternatives with `|`, or `_`. The action may carry one argument.
-/// Column types are [`coded_enum!`](crate::coded_enum!)s.
-///
-/// ```
-/// use rcs_core::{coded_enum, decision_table};
-/// coded_enum! { pub enum Step { Start = "start", Wait = "wait", } }
-/// coded_enum! { pub enum Door { Open = "open", Shut = "shut", Stuck = "stuck", } }
-/// coded_enum! { pub enum Action { Stay = "stay", Close = "close", Report = "report", } }
-/// decision_table! {
-///     /// CLOSE-DOOR: for the example.
-///     pub CLOSE_DOOR: fn close_door(step: Step, door: Door) -> (Action, Step) {
-///         //   step   door             action  next
-///         1: ( _    , Shut         ) => Report, Start;
-///         2: ( Start, Open | Stuck ) => Close , Wait ;
-///         3: ( Wait , Open         ) => Stay  , Wait ;
-///         4: ( Wait , Stuck        ) => Close , Wait ;
-///     }
-/// }
-/// let decision = close_door(Step::Wait, Door::Stuck);
-/// assert_eq!((decision.row, decision.action), (4, Action::Close));
-/// CLOSE_DOOR.dead_rows(|row| panic!("row {row} can never fire"));
-/// assert_eq!(CLOSE_DOOR.row(2).unwrap().conditions, "(Start, Open | Stuck)");
-/// ```
+/// The form of a table before it was written by groups; until all are converted.
 #[macro_export]
-macro_rules! decision_table {
+macro_rules! old_table {
     (
         $(#[doc = $doc:literal])*
         $vis:vis $table:ident : fn $decide:ident $columns:tt -> ($action:ident, $step:ident) {
@@ -116,20 +285,19 @@ macro_rules! decision_table {
         $vis static $table: $crate::table::Table = $crate::table::Table {
             name: stringify!($decide),
             doc: &[ $( $doc, )* ],
-            columns: $crate::decision_columns!(names $columns),
-            rows: {
-                const ROWS: &[$crate::table::RowText] = &[ $( $crate::table::RowText {
+            variables: &[],
+            actions: &[],
+            steps: None,
+            rows: &[ $( $crate::table::Row {
                     number: $number,
-                    conditions: stringify!($cells),
+                    steps: &[stringify!($cells)],
+                    when: &[],
                     action: stringify!($act $( ( $argument ) )?),
-                    next: stringify!($next),
-                }, )+ ];
-                const { assert!($crate::table::numbered_in_order(ROWS), "rows are numbered from 1 in order") }
-                ROWS
-            },
+                    argument: None,
+                    next: Some(stringify!($next)),
+            }, )+ ],
             file: file!(),
             line: line!(),
-            live_rows: |found| { $crate::decision_columns!(every $decide found $columns); },
         };
 
         $(#[doc = $doc])*
@@ -145,7 +313,6 @@ macro_rules! decision_table {
         }
     };
 }
-
 /// Columns of a decision table as names, values, or a walk over all combinations.
 #[doc(hidden)]
 #[macro_export]

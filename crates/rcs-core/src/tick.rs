@@ -2,7 +2,10 @@
 
 use core::fmt;
 
-use crate::record::{DecodeError, Field, Reader, Schema, Writer};
+use crate::{
+    Plain,
+    plain::{DecodeError, Reader, Schema, Writer},
+};
 
 /// Length of one tick in milliseconds (II.2.3 "cyclic execution").
 pub const TICK_MS: u64 = 40;
@@ -49,7 +52,7 @@ impl fmt::Display for Tick {
     }
 }
 
-impl Field for Tick {
+impl Plain for Tick {
     const SCHEMA: Schema = Schema::U64;
     const ZERO: Self = Self::BEFORE_START;
 

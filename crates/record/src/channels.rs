@@ -17,7 +17,7 @@ use mcap::{McapResult, records::MessageHeader};
 use prost_types::field_descriptor_proto::Type;
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Header},
-    record::{self, RecordSchema, Schema},
+    plain::{self, RecordSchema, Schema},
     table::{RowText, Table},
     tick::Tick,
 };
@@ -201,7 +201,7 @@ impl Buffers {
 /// The header of one process in the image of common memory.
 #[derive(Clone, Copy, Debug)]
 pub struct HeaderPlace {
-    /// Field of [`CommonMemory`].
+    /// Plain of [`CommonMemory`].
     pub field: &'static str,
     /// First byte of the header.
     pub offset: usize,
@@ -304,7 +304,7 @@ fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::record::Field;
+    use rcs_core::Plain;
     use std::collections::BTreeSet;
 
     #[test]

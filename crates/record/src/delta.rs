@@ -12,7 +12,7 @@
 //! hardly differ from tick to tick, which is what a compressor is good at. Names and frames on the line are
 //! bytes, not numbers: their difference is a list of runs. A full image is a delta from zeros.
 
-use rcs_core::record::{RecordSchema, Schema};
+use rcs_core::plain::{RecordSchema, Schema};
 
 use crate::{
     layout,
@@ -176,11 +176,12 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use rcs_core::{
+        Plain,
         interface::{CommonMemory, ExternalInputs},
-        record::{Field, Writer},
+        plain::Writer,
     };
 
-    fn image<T: Field>(record: &T) -> Vec<u8> {
+    fn image<T: Plain>(record: &T) -> Vec<u8> {
         let mut bytes = vec![0xA5; T::SIZE];
         record.encode(&mut Writer::new(&mut bytes));
         bytes

@@ -114,7 +114,7 @@ pub enum ReplayError {
         /// The tick.
         tick: u64,
         /// What is wrong with them.
-        source: rcs_core::record::DecodeError,
+        source: rcs_core::plain::DecodeError,
     },
     /// A tick uses task data that are not in the log.
     #[error("tick {tick} uses generation {generation} of the task data, which is not in the log")]

@@ -10,7 +10,7 @@ use levels::ladder::LadderState;
 use rcs_core::{
     digest::Digest,
     interface::{CommonMemory, ExternalInputs},
-    record::{FieldSchema, RecordSchema, Schema},
+    plain::{FieldSchema, RecordSchema, Schema},
 };
 
 /// A field that is not made of other fields: where it stands in the image and what it holds.
@@ -122,7 +122,7 @@ pub fn first_difference<'a>(leaves: &'a [Leaf], was: &[u8], is: &[u8]) -> Option
 #[must_use]
 pub fn describe(name: &str, record: &'static RecordSchema) -> String {
     let mut lines = format!("{name}: {}, {} bytes\n", record.name, record.size());
-    let mut enums: Vec<&'static rcs_core::record::EnumSchema> = Vec::new();
+    let mut enums: Vec<&'static rcs_core::plain::EnumSchema> = Vec::new();
     for leaf in leaves(record) {
         let kind = kind_name(leaf.schema);
         // Writing to a String cannot fail.
@@ -193,9 +193,9 @@ pub fn version() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::record::{Field, Writer};
+    use rcs_core::{Plain, plain::Writer};
 
-    fn image<T: Field>(record: &T) -> Vec<u8> {
+    fn image<T: Plain>(record: &T) -> Vec<u8> {
         let mut bytes = vec![0xA5; T::SIZE];
         record.encode(&mut Writer::new(&mut bytes));
         bytes

@@ -16,9 +16,10 @@ use std::{
 
 use levels::ladder::{Ladder, LadderState};
 use rcs_core::{
+    Plain,
     digest::Digest,
     interface::{CommonMemory, ExternalInputs},
-    record::{Field, Writer, from_bytes},
+    plain::{Writer, from_bytes},
     tick::{TICK_MS, Tick},
 };
 use taskdata::load::{Source, Store};

@@ -26,8 +26,9 @@ use levels::ladder::LadderState;
 use mcap::{Compression, McapResult, WriteOptions, records::Metadata};
 use prost_types::field_descriptor_proto::Type;
 use rcs_core::{
+    Plain,
     interface::{CommonMemory, ExternalInputs},
-    record::{Field, Writer},
+    plain::Writer,
     tick::Tick,
 };
 
@@ -67,7 +68,7 @@ pub const REPLAY: &str = "/replay";
 /// Topic of the log lines.
 pub const LOG_TOPIC: &str = "/log";
 
-/// Field numbers of the message on [`REPLAY`].
+/// Plain numbers of the message on [`REPLAY`].
 pub mod replay_field {
     /// The tick.
     pub const TICK: u32 = 1;

@@ -11,9 +11,10 @@ use std::{
 
 use levels::ladder::{Ladder, LadderState};
 use rcs_core::{
+    Plain,
     interface::{CommonMemory, ExternalInputs},
     name::Name16,
-    record::{Field, to_bytes},
+    plain::to_bytes,
     tick::Tick,
 };
 use record::{

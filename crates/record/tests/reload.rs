@@ -4,10 +4,10 @@ use std::path::Path;
 
 use levels::ladder::Ladder;
 use rcs_core::{
+    Plain,
     digest::Digest,
     interface::{CommonMemory, ExternalInputs, Reason, hws::HwsReport},
     name::Name16,
-    record::Field,
     tick::Tick,
 };
 use record::{Attachment, End, Epoch, Pace, Recorder, ReplayError, Setup, replay};

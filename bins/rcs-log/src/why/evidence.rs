@@ -9,9 +9,10 @@ use levels::{
     prim::{sensors::Reading, tables},
 };
 use rcs_core::{
+    Plain,
     interface::{ExternalInputs, prim::PrimVerb},
+    plain::{Schema, Writer, from_bytes},
     pose::WireFrame,
-    record::{Field, Schema, Writer, from_bytes},
 };
 use record::{
     Log,

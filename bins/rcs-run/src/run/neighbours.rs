@@ -24,8 +24,8 @@ use neighbours::{
 };
 use plant::camera::Subject;
 use rcs_core::{
+    Plain as _,
     interface::{CommonMemory, DataBaseStatus, DeviceInputs, Header, HwsCommand, OutsidePedestal},
-    record::Field as _,
     tick::Tick,
 };
 use record::Level;

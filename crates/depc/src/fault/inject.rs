@@ -4,24 +4,23 @@
 //! other. A line holds bytes with the tick in which they are due; they leave it in order, and as many a tick as
 //! [`LinkBytes`] holds.
 
-use rcs_core::{interface::device::LinkBytes, record, tick::Tick};
+use rcs_core::{Plain, interface::device::LinkBytes, tick::Tick};
 
 use super::{ALWAYS, Direction, FaultKind, KINDS, Numbers, Plan, Rule};
 
 /// Bytes that a line holds while it is late or stalls; further ones are lost.
 pub const LINE_BYTES: usize = 256;
 
-record! {
-    /// What was done to one direction, or to both.
-    pub struct Counts {
-        /// Bytes sent.
-        pub sent: u64,
-        /// Bytes that arrived.
-        pub arrived: u64,
-        /// Bytes that a late line could not hold.
-        pub overflowed: u64,
-        by_kind: [u64; KINDS],
-    }
+/// What was done to one direction, or to both.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Counts {
+    /// Bytes sent.
+    pub sent: u64,
+    /// Bytes that arrived.
+    pub arrived: u64,
+    /// Bytes that a late line could not hold.
+    pub overflowed: u64,
+    by_kind: [u64; KINDS],
 }
 
 impl Counts {
@@ -57,28 +56,26 @@ impl Counts {
     }
 }
 
-record! {
-    /// One direction.
-    struct Line {
-        numbers: Numbers,
-        bytes: [u8; LINE_BYTES],
-        due: [u64; LINE_BYTES],
-        held: u16,
-        /// Nothing arrives before this tick.
-        stalled_until: u64,
-        /// The signal is off before this tick.
-        low_until: u64,
-        counts: Counts,
-    }
+/// One direction.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+struct Line {
+    numbers: Numbers,
+    bytes: [u8; LINE_BYTES],
+    due: [u64; LINE_BYTES],
+    held: u16,
+    /// Nothing arrives before this tick.
+    stalled_until: u64,
+    /// The signal is off before this tick.
+    low_until: u64,
+    counts: Counts,
 }
 
-record! {
-    /// The line between the two ends, with the faults of a plan. It must be used once a tick and direction.
-    pub struct Injector {
-        plan: Plan,
-        to_controller: Line,
-        to_host: Line,
-    }
+/// The line between the two ends, with the faults of a plan. It must be used once a tick and direction.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Injector {
+    plan: Plan,
+    to_controller: Line,
+    to_host: Line,
 }
 
 impl Injector {

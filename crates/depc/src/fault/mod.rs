@@ -28,7 +28,7 @@ pub mod text;
 
 use core::fmt;
 
-use rcs_core::{coded_enum, record};
+use rcs_core::Plain;
 
 pub use inject::{Counts, Injector, LINE_BYTES};
 pub use numbers::Numbers;
@@ -42,36 +42,34 @@ pub const ALWAYS: u32 = 1_000_000;
 /// The longest delay, stall or loss of the signal that one event causes, ticks.
 pub const MOST_TICKS: u16 = 1000;
 
-coded_enum! {
-    /// What can happen on a line.
-    pub enum FaultKind {
-        /// A byte is lost.
-        Drop = "drop",
-        /// A bit of a byte is inverted.
-        Flip = "flip",
-        /// A byte arrives twice.
-        Duplicate = "duplicate",
-        /// A byte and what is behind it arrive later.
-        Delay = "delay",
-        /// A byte arrives that nobody sent.
-        Insert = "insert",
-        /// The end of what was sent in a tick is lost.
-        Truncate = "truncate",
-        /// Nothing arrives for some ticks.
-        Stall = "stall",
-        /// The modem signal is off for some ticks.
-        CtsLow = "cts-low",
-    }
+/// What can happen on a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum FaultKind {
+    /// A byte is lost.
+    Drop,
+    /// A bit of a byte is inverted.
+    Flip,
+    /// A byte arrives twice.
+    Duplicate,
+    /// A byte and what is behind it arrive later.
+    Delay,
+    /// A byte arrives that nobody sent.
+    Insert,
+    /// The end of what was sent in a tick is lost.
+    Truncate,
+    /// Nothing arrives for some ticks.
+    Stall,
+    /// The modem signal is off for some ticks.
+    CtsLow,
 }
 
-coded_enum! {
-    /// A direction of the line.
-    pub enum Direction {
-        /// From the host.
-        ToController = "to-controller",
-        /// From the controller.
-        ToHost = "to-host",
-    }
+/// A direction of the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Direction {
+    /// From the host.
+    ToController,
+    /// From the controller.
+    ToHost,
 }
 
 impl FaultKind {
@@ -93,28 +91,27 @@ impl FaultKind {
     }
 }
 
-record! {
-    /// One kind of fault: where, when, how often. Zero stands for what was not said.
-    pub struct Rule {
-        /// What happens.
-        pub kind: FaultKind,
-        /// It happens to what the host sends.
-        pub to_controller: bool,
-        /// It happens to what the controller sends.
-        pub to_host: bool,
-        /// Chance of each byte or tick, millionths; 0: not said.
-        pub rate: u32,
-        /// First tick of the window.
-        pub from: u64,
-        /// Tick behind the window; 0: not said, then there is no window.
-        pub until: u64,
-        /// Length of a delay, a stall or a loss of the signal; 0: not said, then it is one tick.
-        pub ticks: u16,
-        /// `insert`: always `byte`, otherwise any.
-        pub fixed: bool,
-        /// The byte to insert.
-        pub byte: u8,
-    }
+/// One kind of fault: where, when, how often. Zero stands for what was not said.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Rule {
+    /// What happens.
+    pub kind: FaultKind,
+    /// It happens to what the host sends.
+    pub to_controller: bool,
+    /// It happens to what the controller sends.
+    pub to_host: bool,
+    /// Chance of each byte or tick, millionths; 0: not said.
+    pub rate: u32,
+    /// First tick of the window.
+    pub from: u64,
+    /// Tick behind the window; 0: not said, then there is no window.
+    pub until: u64,
+    /// Length of a delay, a stall or a loss of the signal; 0: not said, then it is one tick.
+    pub ticks: u16,
+    /// `insert`: always `byte`, otherwise any.
+    pub fixed: bool,
+    /// The byte to insert.
+    pub byte: u8,
 }
 
 impl Rule {
@@ -237,15 +234,14 @@ impl Rule {
     }
 }
 
-record! {
-    /// A seed and rules, checked.
-    pub struct Plan {
-        seed: u64,
-        /// Faults in a tick and direction; 0: as many as come.
-        most_per_tick: u8,
-        rules: [Rule; RULES],
-        count: u8,
-    }
+/// A seed and rules, checked.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Plan {
+    seed: u64,
+    /// Faults in a tick and direction; 0: as many as come.
+    most_per_tick: u8,
+    rules: [Rule; RULES],
+    count: u8,
 }
 
 impl Plan {

@@ -1,16 +1,15 @@
 //! Numbers that depend on the seed alone: PCG-XSH-RR 64/32 (O'Neill, 2014), written out so that a plan gives the same
 //! faults in every build and on every machine.
 
-use rcs_core::record;
+use rcs_core::Plain;
 
 const MULTIPLIER: u64 = 6_364_136_223_846_793_005;
 
-record! {
-    /// The generator.
-    pub struct Numbers {
-        state: u64,
-        stream: u64,
-    }
+/// The generator.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Numbers {
+    state: u64,
+    stream: u64,
 }
 
 impl Numbers {

@@ -14,8 +14,9 @@ use std::{
 use iceoryx2::{node::Node, prelude::ipc};
 use levels::ladder::LadderState;
 use rcs_core::{
+    Plain,
     interface::{CommonMemory, ExternalInputs, HwsCommand},
-    record::{DecodeError, Field},
+    plain::DecodeError,
     tick::{TICK_MS, Tick},
 };
 use taskdata::files::TaskData;

@@ -28,9 +28,10 @@ use levels::{
     task::Task,
 };
 use rcs_core::{
+    Plain,
     interface::CommonMemory,
+    plain::{DecodeError, Reader, Writer},
     process::Process,
-    record::{DecodeError, Field, Reader, Writer},
     tick::Tick,
 };
 use taskdata::files::TaskData;
@@ -48,7 +49,7 @@ type StateOf<P> = <P as Process<TaskData<'static>>>::State;
 type OutputsOf<P> = <P as Process<TaskData<'static>>>::Outputs;
 
 /// Bytes of an entry.
-pub(super) const fn entry_size<T: Field>() -> usize {
+pub(super) const fn entry_size<T: Plain>() -> usize {
     Tick::SIZE + T::SIZE
 }
 
@@ -66,7 +67,7 @@ pub(super) struct EntryWriter<const N: usize, T> {
     holds: PhantomData<T>,
 }
 
-impl<const N: usize, T: Field> EntryWriter<N, T> {
+impl<const N: usize, T: Plain> EntryWriter<N, T> {
     pub(super) const fn new(entry: EntryHandleMut<ipc::Service, u32, [u8; N]>) -> Self {
         Self { entry, holds: PhantomData }
     }
@@ -77,7 +78,7 @@ impl<const N: usize, T: Field> EntryWriter<N, T> {
 }
 
 /// An entry as it stands in shared memory.
-pub(super) fn stamped<const N: usize, T: Field>(tick: Tick, value: &T) -> [u8; N] {
+pub(super) fn stamped<const N: usize, T: Plain>(tick: Tick, value: &T) -> [u8; N] {
     let mut bytes = [0; N];
     let mut w = Writer::new(&mut bytes);
     tick.encode(&mut w);
@@ -92,7 +93,7 @@ pub(super) struct EntryReader<const N: usize, T> {
     holds: PhantomData<T>,
 }
 
-impl<const N: usize, T: Field> EntryReader<N, T> {
+impl<const N: usize, T: Plain> EntryReader<N, T> {
     pub(super) const fn new(entry: EntryHandle<ipc::Service, u32, [u8; N]>) -> Self {
         Self { entry, holds: PhantomData }
     }
@@ -121,7 +122,7 @@ struct ProcessWriter<const N: usize, const S: usize, O, T> {
     state: EntryWriter<S, T>,
 }
 
-impl<const N: usize, const S: usize, O: Field, T: Field> ProcessWriter<N, S, O, T> {
+impl<const N: usize, const S: usize, O: Plain, T: Plain> ProcessWriter<N, S, O, T> {
     fn create(
         node: &Node<ipc::Service>,
         service: &'static str,
@@ -160,7 +161,7 @@ struct ProcessReader<const N: usize, const S: usize, O, T> {
     state: EntryReader<S, T>,
 }
 
-impl<const N: usize, const S: usize, O: Field, T: Field> ProcessReader<N, S, O, T> {
+impl<const N: usize, const S: usize, O: Plain, T: Plain> ProcessReader<N, S, O, T> {
     fn open(
         node: &Node<ipc::Service>,
         service: &'static str,

@@ -15,11 +15,7 @@ use std::{
 
 use iceoryx2::{node::Node, prelude::ipc};
 use levels::ladder::Ladder;
-use rcs_core::{
-    interface::CommonMemory,
-    record::{DecodeError, Field},
-    tick::Tick,
-};
+use rcs_core::{Plain, interface::CommonMemory, plain::DecodeError, tick::Tick};
 use rustix::process::{Pid, Signal, getppid, set_parent_process_death_signal};
 use taskdata::files::TaskData;
 

@@ -14,13 +14,7 @@ use iceoryx2::{
     prelude::ipc,
     service::port_factory::event,
 };
-use rcs_core::{
-    digest::Digest,
-    interface::ExternalInputs,
-    record,
-    record::{DecodeError, Field},
-    tick::Tick,
-};
+use rcs_core::{Plain, digest::Digest, interface::ExternalInputs, plain::DecodeError, tick::Tick};
 use taskdata::load::Source;
 
 use super::{
@@ -35,16 +29,15 @@ use crate::memory::{
 /// Epoch of the services of board 0, which is never taken over: a run ends with it.
 const BOARD_0: Epoch = 1;
 
-record! {
-    /// What a program and its data are, told by their bytes: boards that differ in them must not run together.
-    pub struct Fingerprint {
-        /// Of the program: version control, and the layout of all buffers.
-        pub program: u64,
-        /// Of the task data.
-        pub data: u64,
-        /// Of the job, with the blocks that it loads on the way.
-        pub job: u64,
-    }
+/// What a program and its data are, told by their bytes: boards that differ in them must not run together.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Fingerprint {
+    /// Of the program: version control, and the layout of all buffers.
+    pub program: u64,
+    /// Of the task data.
+    pub data: u64,
+    /// Of the job, with the blocks that it loads on the way.
+    pub job: u64,
 }
 
 impl Fingerprint {
@@ -85,49 +78,46 @@ impl Fingerprint {
     }
 }
 
-record! {
-    /// What a board must know of the run before the first tick.
-    pub struct RunCard {
-        /// What every board must have.
-        pub fingerprint: Fingerprint,
-        /// Ticks come every 40 ms: boards ask for real time.
-        pub real_time: bool,
-    }
+/// What a board must know of the run before the first tick.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct RunCard {
+    /// What every board must have.
+    pub fingerprint: Fingerprint,
+    /// Ticks come every 40 ms: boards ask for real time.
+    pub real_time: bool,
 }
 
 /// The epoch of each board, in the order of [`Board::ALL`].
 pub type Epochs = [Epoch; BOARDS];
 
-record! {
-    /// One pulse.
-    pub struct SystemPulse {
-        /// The tick that is to be run; [`Tick::BEFORE_START`] until all boards are there.
-        pub tick: Tick,
-        /// The run is over: boards end.
-        pub over: bool,
-        /// The present epoch of each board.
-        pub epochs: Epochs,
-        /// What came from outside for the tick.
-        pub external: ExternalInputs,
-    }
+/// One pulse.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct SystemPulse {
+    /// The tick that is to be run; [`Tick::BEFORE_START`] until all boards are there.
+    pub tick: Tick,
+    /// The run is over: boards end.
+    pub over: bool,
+    /// The present epoch of each board.
+    pub epochs: Epochs,
+    /// What came from outside for the tick.
+    pub external: ExternalInputs,
 }
 
-record! {
-    /// What a board says of itself, after each tick.
-    pub struct Report {
-        /// What it runs with.
-        pub fingerprint: Fingerprint,
-        /// Its process number in the operating system.
-        pub pid: u32,
-        /// It reads all its neighbours and waits for pulses; no more once it has left.
-        pub ready: bool,
-        /// It got everything that it asked of the system for real time; true if it asked for nothing.
-        pub punctual: bool,
-        /// Heap allocations in its ticks so far.
-        pub allocations: u64,
-        /// Nanoseconds from its wake-up to its stamp in the last tick.
-        pub step_ns: u64,
-    }
+/// What a board says of itself, after each tick.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Report {
+    /// What it runs with.
+    pub fingerprint: Fingerprint,
+    /// Its process number in the operating system.
+    pub pid: u32,
+    /// It reads all its neighbours and waits for pulses; no more once it has left.
+    pub ready: bool,
+    /// It got everything that it asked of the system for real time; true if it asked for nothing.
+    pub punctual: bool,
+    /// Heap allocations in its ticks so far.
+    pub allocations: u64,
+    /// Nanoseconds from its wake-up to its stamp in the last tick.
+    pub step_ns: u64,
 }
 
 /// Bytes of the entries.

@@ -3,7 +3,7 @@
 use iceoryx2::{node::Node, prelude::ipc};
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs},
-    record::DecodeError,
+    plain::DecodeError,
 };
 
 use super::{

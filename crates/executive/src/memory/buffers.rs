@@ -13,6 +13,7 @@ use iceoryx2::{
     prelude::ipc,
 };
 use rcs_core::{
+    Plain,
     digest::Digest,
     interface::{
         ChangingPose, DataBaseCommand, DataBaseStatus, EmoveOutputs, GripOutputs, Header, HwsCommand,
@@ -31,8 +32,7 @@ use rcs_core::{
         subtask::{SUBTASK_POSES, SubtaskCommand, SubtaskStatus},
         t3i::{T3iCommand, T3iStatus},
     },
-    record,
-    record::{DecodeError, Field, Reader, Schema, Writer},
+    plain::{DecodeError, Reader, Schema, Writer},
     tick::Tick,
 };
 
@@ -43,82 +43,76 @@ use super::runs::SharedMemoryError;
 /// name.
 pub type Epoch = u32;
 
-record! {
-    /// What the executive says about a run, once a tick. Holds counts of this machine: not part of the
-    /// digest.
-    pub struct Pulse {
-        /// The tick that was run last.
-        pub tick: Tick,
-        /// Generation of the task data that it used.
-        pub generation: u32,
-        /// Slots of the 40 ms grid that were skipped so far.
-        pub skipped: u64,
-        /// Heap allocations of the controller since the start.
-        pub allocations: u64,
-        /// Nanoseconds that the controller took for the tick.
-        pub controller_ns: u64,
-        /// The run is over: nothing will be written any more.
-        pub over: bool,
-    }
+/// What the executive says about a run, once a tick. Holds counts of this machine: not part of the
+/// digest.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Pulse {
+    /// The tick that was run last.
+    pub tick: Tick,
+    /// Generation of the task data that it used.
+    pub generation: u32,
+    /// Slots of the 40 ms grid that were skipped so far.
+    pub skipped: u64,
+    /// Heap allocations of the controller since the start.
+    pub allocations: u64,
+    /// Nanoseconds that the controller took for the tick.
+    pub controller_ns: u64,
+    /// The run is over: nothing will be written any more.
+    pub over: bool,
 }
 
-record! {
-    /// Buffers of the workstation controller.
-    pub struct HwscOutputs {
-        /// Stamp: the tick that reads the buffers.
-        pub header: Header,
-        /// To Task.
-        pub command: HwsCommand,
-    }
+/// Buffers of the workstation controller.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct HwscOutputs {
+    /// Stamp: the tick that reads the buffers.
+    pub header: Header,
+    /// To Task.
+    pub command: HwsCommand,
 }
 
-record! {
-    /// Buffers of the Data System.
-    pub struct DataBaseOutputs {
-        /// Stamp: the tick that reads the buffers.
-        pub header: Header,
-        /// To Task.
-        pub status: DataBaseStatus,
-    }
+/// Buffers of the Data System.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct DataBaseOutputs {
+    /// Stamp: the tick that reads the buffers.
+    pub header: Header,
+    /// To Task.
+    pub status: DataBaseStatus,
 }
 
-record! {
-    /// Buffers of an Active Pedestal that is a system of its own.
-    pub struct OutsidePedestalOutputs {
-        /// Stamp: the tick that reads the buffers.
-        pub header: Header,
-        /// For the buffers of the pedestal's processes.
-        pub sent: OutsidePedestal,
-    }
+/// Buffers of an Active Pedestal that is a system of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct OutsidePedestalOutputs {
+    /// Stamp: the tick that reads the buffers.
+    pub header: Header,
+    /// For the buffers of the pedestal's processes.
+    pub sent: OutsidePedestal,
 }
 
-record! {
-    /// Buffers of the devices.
-    pub struct DevicesOutputs {
-        /// Stamp: the tick that reads the buffers.
-        pub header: Header,
-        /// To the processes that own the devices.
-        pub inputs: DeviceInputs,
-    }
+/// Buffers of the devices.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct DevicesOutputs {
+    /// Stamp: the tick that reads the buffers.
+    pub header: Header,
+    /// To the processes that own the devices.
+    pub inputs: DeviceInputs,
 }
 
-record! {
-    /// Buffers of the executive.
-    pub struct ExecutiveOutputs {
-        /// Stamp.
-        pub header: Header,
-        /// To everybody.
-        pub pulse: Pulse,
-    }
+/// Buffers of the executive.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ExecutiveOutputs {
+    /// Stamp.
+    pub header: Header,
+    /// To everybody.
+    pub pulse: Pulse,
 }
 
 /// Bytes of a buffer in shared memory.
-const fn image_size<T: Field>() -> usize {
+const fn image_size<T: Plain>() -> usize {
     Header::SIZE + T::SIZE
 }
 
 /// A buffer as it stands in shared memory.
-fn image<const N: usize, T: Field>(header: &Header, value: &T) -> [u8; N] {
+fn image<const N: usize, T: Plain>(header: &Header, value: &T) -> [u8; N] {
     let mut bytes = [0; N];
     let mut w = Writer::new(&mut bytes);
     header.encode(&mut w);
@@ -133,7 +127,7 @@ struct BufferWriter<const N: usize, T> {
     holds: PhantomData<T>,
 }
 
-impl<const N: usize, T: Field> BufferWriter<N, T> {
+impl<const N: usize, T: Plain> BufferWriter<N, T> {
     fn write(&self, header: &Header, value: &T) {
         self.entry.update_with_copy(image(header, value));
     }
@@ -145,7 +139,7 @@ struct BufferReader<const N: usize, T> {
     holds: PhantomData<T>,
 }
 
-impl<const N: usize, T: Field> BufferReader<N, T> {
+impl<const N: usize, T: Plain> BufferReader<N, T> {
     fn read(&self) -> Result<(Header, T), DecodeError> {
         let image: [u8; N] = *self.entry.get();
         let mut r = Reader::new(&image);
@@ -163,7 +157,7 @@ macro_rules! services {
         /// The services of a run: for each, its name, and the names and schemas of its buffers in the order
         /// of their keys.
         pub const SERVICES: &[(&str, &[(&str, Schema)])] = &[ $(
-            (stringify!($service), &[ $( (stringify!($buffer), <$type as Field>::SCHEMA), )+ ]),
+            (stringify!($service), &[ $( (stringify!($buffer), <$type as Plain>::SCHEMA), )+ ]),
         )+ ];
 
         $(
@@ -184,7 +178,7 @@ macro_rules! services {
                         .blackboard_creator::<u32>()
                         .max_readers(super::runs::MAX_READERS)
                         .max_nodes(super::runs::MAX_READERS + 1)
-                        $( .add($key, image::<{ image_size::<$type>() }, _>(&Header::ZERO, &<$type as Field>::ZERO)) )+
+                        $( .add($key, image::<{ image_size::<$type>() }, _>(&Header::ZERO, &<$type as Plain>::ZERO)) )+
                         .create()
                         .map_err(|error| failed(&error))?;
                     let port = service.writer_builder().create().map_err(|error| failed(&error))?;

@@ -22,7 +22,7 @@ use super::{
     state::Sort,
     tables::{Action, Situation},
 };
-use crate::execution::Outcome;
+use crate::old_execution::Outcome;
 
 impl Emove {
     /// Set the outputs that a row asks for.

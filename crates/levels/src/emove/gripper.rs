@@ -18,7 +18,7 @@
 //! is an error here.
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     handshake::{Commander, Lower},
     interface::{
         CommonMemory, EmoveOutputs, JawsOutputs, Reason,
@@ -26,7 +26,6 @@ use rcs_core::{
         grip::{GripCommand, GripVerb},
         jaws::{JawsCommand, JawsReport, JawsVerb},
     },
-    record,
     tick::Tick,
     units::hundredths,
 };
@@ -51,18 +50,20 @@ const JAWS_BAND: i32 = 10;
 /// They are at a stop within this, 0.01 in.
 const STOP_BAND: i32 = 5;
 
-coded_enum! {
-    /// The gripper on the robot; the code is `endeff-id#` (III.3.6 to III.3.8).
-    pub enum Gripper {
-        /// None: the robot is bare.
-        None = "none",
-        /// Parts gripper.
-        Parts = "parts gripper",
-        /// v-gripper.
-        V = "v-gripper",
-        /// Tool gripper.
-        Tool = "tool gripper",
-    }
+/// The gripper on the robot; the code is `endeff-id#` (III.3.6 to III.3.8).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Gripper {
+    /// None: the robot is bare.
+    None,
+    /// Parts gripper.
+    #[text = "parts gripper"]
+    Parts,
+    /// v-gripper.
+    #[text = "v-gripper"]
+    V,
+    /// Tool gripper.
+    #[text = "tool gripper"]
+    Tool,
 }
 
 impl Gripper {
@@ -206,22 +207,22 @@ impl Gripper {
     }
 }
 
-coded_enum! {
-    /// What is asked of the attached gripper.
-    pub enum Order {
-        /// Nothing yet.
-        None = "",
-        /// Leave the fingers as they are.
-        Pause = "pause",
-        /// Bring the fingers to an opening, nothing between them.
-        Stand = "stand",
-        /// Open and let go.
-        Release = "release",
-        /// Close on an object.
-        Grasp = "grasp",
-        /// Calibrate the sensors.
-        Calibrate = "calibrate",
-    }
+/// What is asked of the attached gripper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Order {
+    /// Nothing yet.
+    #[text = ""]
+    None,
+    /// Leave the fingers as they are.
+    Pause,
+    /// Bring the fingers to an opening, nothing between them.
+    Stand,
+    /// Open and let go.
+    Release,
+    /// Close on an object.
+    Grasp,
+    /// Calibrate the sensors.
+    Calibrate,
 }
 
 /// An [`Order`] with what goes with it.
@@ -243,24 +244,23 @@ impl Request {
     }
 }
 
-record! {
-    /// E-move's side of the interfaces to the three gripper processes, and the order that was given last.
-    pub struct Grippers {
-        /// Commands to Grip.
-        pub parts: Commander,
-        /// Commands to V-Grip.
-        pub v: Commander,
-        /// Commands to Tool-Grip.
-        pub tool: Commander,
-        /// The gripper that has the last order.
-        pub to: Gripper,
-        /// The last order.
-        pub order: Order,
-        /// Size commanded last to jaws, 0.01 in.
-        pub size: i32,
-        /// Jaws were told to close by it.
-        pub closing: bool,
-    }
+/// E-move's side of the interfaces to the three gripper processes, and the order that was given last.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Grippers {
+    /// Commands to Grip.
+    pub parts: Commander,
+    /// Commands to V-Grip.
+    pub v: Commander,
+    /// Commands to Tool-Grip.
+    pub tool: Commander,
+    /// The gripper that has the last order.
+    pub to: Gripper,
+    /// The last order.
+    pub order: Order,
+    /// Size commanded last to jaws, 0.01 in.
+    pub size: i32,
+    /// Jaws were told to close by it.
+    pub closing: bool,
 }
 
 impl Grippers {

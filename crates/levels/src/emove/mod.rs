@@ -40,7 +40,7 @@ use rcs_core::{
 use taskdata::files::TaskData;
 
 use self::{route::Route, state::State};
-use crate::execution::{Course, EXECUTE, Outcome};
+use crate::old_execution::{Course, EXECUTE, Outcome};
 
 /// The E-move process.
 #[derive(Clone, Debug, Default)]
@@ -60,6 +60,8 @@ enum Slot {
 impl<'d> Process<TaskData<'d>> for Emove {
     type Outputs = EmoveOutputs;
     type State = State;
+    type Seen = ();
+    type Action = ();
 
     const NAME: &'static str = "E-move";
     const TABLES: &'static [&'static Table] = &[
@@ -98,6 +100,16 @@ impl<'d> Process<TaskData<'d>> for Emove {
         }
         self.state.button = inputs.memory.prim.status.joystick_grip;
         self.report(inputs, outputs);
+    }
+
+    fn preprocess(&mut self, _: &Inputs<'_, TaskData<'d>>, _: &EmoveOutputs) {}
+
+    fn decide(&mut self, (): &()) {}
+
+    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, TaskData<'d>>, _: &mut EmoveOutputs) {}
+
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
     fn state(&self) -> &State {

@@ -6,7 +6,7 @@
 //! before it ended where the sensor said.
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     interface::{
         EmoveOutputs, Reason,
         emove::{EmoveCommand, EmoveVerb},
@@ -22,44 +22,60 @@ use taskdata::files::{PoseId, RelativeMove, TaskData};
 use super::{Emove, Slot, sensing::present_frame};
 use crate::places::place_of;
 
-coded_enum! {
-    /// The relative moves by their names in task data.
-    pub enum Relative {
-        /// QC-DETACH: down into the holster until its large sensors see the ears.
-        QcdDown = "QCD-DOWN",
-        /// QC-DETACH: forward until the small sensors see the ears at the seat.
-        QcdSeat = "QCD-SEAT",
-        /// QC-DETACH: up out of the gripper.
-        QcdUp = "QCD-UP",
-        /// QC-ATTACH: fairly rapidly close to the gripper.
-        QcaFast = "QCA-FAST",
-        /// QC-ATTACH: slowly onto the gripper.
-        QcaSlow = "QCA-SLOW",
-        /// QC-ATTACH: back out of the seat.
-        QcaBack = "QCA-BACK",
-        /// QC-ATTACH: a distance out of the holster.
-        QcaLift = "QCA-LIFT",
-        /// QC-ATTACH: completely out of the holster.
-        QcaUp = "QCA-UP",
-        /// WITHDRAW.
-        Withdraw = "WITHDRAW",
-        /// INSERT-TOOL: to the drum.
-        InsNear = "INS-NEAR",
-        /// INSERT-TOOL: in, unless the insertion force is too great.
-        InsIn = "INS-IN",
-        /// RELEASE-TOOL: to the right until the strike plate gives a moment.
-        RelSlide = "REL-SLIDE",
-        /// RELEASE-TOOL: back from the machine tool.
-        RelBack = "REL-BACK",
-        /// ACQUIRE-TOOL: towards the machine tool.
-        AcqNear = "ACQ-NEAR",
-        /// ACQUIRE-TOOL: on until the strike plate is touched.
-        AcqStrike = "ACQ-STRIKE",
-        /// ACQUIRE-TOOL: to the left until the fingers are around the tool.
-        AcqSlide = "ACQ-SLIDE",
-        /// REMOVE-TOOL: out, unless the extraction force is too great.
-        RemOut = "REM-OUT",
-    }
+/// The relative moves by their names in task data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Relative {
+    /// QC-DETACH: down into the holster until its large sensors see the ears.
+    #[text = "QCD-DOWN"]
+    QcdDown,
+    /// QC-DETACH: forward until the small sensors see the ears at the seat.
+    #[text = "QCD-SEAT"]
+    QcdSeat,
+    /// QC-DETACH: up out of the gripper.
+    #[text = "QCD-UP"]
+    QcdUp,
+    /// QC-ATTACH: fairly rapidly close to the gripper.
+    #[text = "QCA-FAST"]
+    QcaFast,
+    /// QC-ATTACH: slowly onto the gripper.
+    #[text = "QCA-SLOW"]
+    QcaSlow,
+    /// QC-ATTACH: back out of the seat.
+    #[text = "QCA-BACK"]
+    QcaBack,
+    /// QC-ATTACH: a distance out of the holster.
+    #[text = "QCA-LIFT"]
+    QcaLift,
+    /// QC-ATTACH: completely out of the holster.
+    #[text = "QCA-UP"]
+    QcaUp,
+    /// WITHDRAW.
+    #[text = "WITHDRAW"]
+    Withdraw,
+    /// INSERT-TOOL: to the drum.
+    #[text = "INS-NEAR"]
+    InsNear,
+    /// INSERT-TOOL: in, unless the insertion force is too great.
+    #[text = "INS-IN"]
+    InsIn,
+    /// RELEASE-TOOL: to the right until the strike plate gives a moment.
+    #[text = "REL-SLIDE"]
+    RelSlide,
+    /// RELEASE-TOOL: back from the machine tool.
+    #[text = "REL-BACK"]
+    RelBack,
+    /// ACQUIRE-TOOL: towards the machine tool.
+    #[text = "ACQ-NEAR"]
+    AcqNear,
+    /// ACQUIRE-TOOL: on until the strike plate is touched.
+    #[text = "ACQ-STRIKE"]
+    AcqStrike,
+    /// ACQUIRE-TOOL: to the left until the fingers are around the tool.
+    #[text = "ACQ-SLIDE"]
+    AcqSlide,
+    /// REMOVE-TOOL: out, unless the extraction force is too great.
+    #[text = "REM-OUT"]
+    RemOut,
 }
 
 /// From where a relative move leads.

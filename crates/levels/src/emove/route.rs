@@ -8,13 +8,12 @@
 //! ```
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     frame::Frame,
     interface::{
         Reason,
         emove::{EmoveCommand, EmoveVerb},
     },
-    record,
 };
 use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Place, Target, TaskData, TrajParaId, VisionId};
 
@@ -29,42 +28,40 @@ pub const THERE_INCHES: f64 = 0.02;
 /// … and this many radians (0.1 degree) of it.
 pub const THERE_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0;
 
-coded_enum! {
-    /// What lies ahead on the route.
-    pub enum Ahead {
-        /// Nothing: the robot is at the goal.
-        Nothing = "nothing",
-        /// A point to go through.
-        Through = "through",
-        /// The goal, to stop at.
-        Stop = "stop",
-    }
+/// What lies ahead on the route.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Ahead {
+    /// Nothing: the robot is at the goal.
+    Nothing,
+    /// A point to go through.
+    Through,
+    /// The goal, to stop at.
+    Stop,
 }
 
-record! {
-    /// A planned way and how far it has been commanded.
-    pub struct Route {
-        /// Depart points, relative to the pose departed from.
-        pub depart: PathId,
-        /// Intermediate trajectory.
-        pub between: PathId,
-        /// Approach points, relative to the goal, and the stop.
-        pub approach: PathId,
-        /// Parameters of the final motion.
-        pub stop: TrajParaId,
-        /// Points commanded so far.
-        pub commanded: u16,
-        /// The goal has been commanded, or need not be.
-        pub complete: bool,
-        /// Opening of the fingers at the goal, 0.01 in; negative if it does not matter.
-        pub opening: i32,
-        /// The opening has been commanded.
-        pub opening_sent: bool,
-        /// The pose departed from (changing record).
-        pub departure: u32,
-        /// The goal (changing record).
-        pub goal: u32,
-    }
+/// A planned way and how far it has been commanded.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Route {
+    /// Depart points, relative to the pose departed from.
+    pub depart: PathId,
+    /// Intermediate trajectory.
+    pub between: PathId,
+    /// Approach points, relative to the goal, and the stop.
+    pub approach: PathId,
+    /// Parameters of the final motion.
+    pub stop: TrajParaId,
+    /// Points commanded so far.
+    pub commanded: u16,
+    /// The goal has been commanded, or need not be.
+    pub complete: bool,
+    /// Opening of the fingers at the goal, 0.01 in; negative if it does not matter.
+    pub opening: i32,
+    /// The opening has been commanded.
+    pub opening_sent: bool,
+    /// The pose departed from (changing record).
+    pub departure: u32,
+    /// The goal (changing record).
+    pub goal: u32,
 }
 
 /// A point of a route that Prim is to be sent to.

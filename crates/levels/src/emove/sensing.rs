@@ -28,7 +28,7 @@ use super::{
         Tries, Whereabouts,
     },
 };
-use crate::{execution::Outcome, places::place_of};
+use crate::{old_execution::Outcome, places::place_of};
 
 /// The robot is no longer where its last move ended if it is more than this many inches … (DESIGN 16 "Where
 /// the robot is")

@@ -64,7 +64,7 @@ use self::{
     preprocess::{Arriving, Seen},
     tables::{Action, CLOSE_GRIP, Gripper, PAUSE, POSITION, UP_INIT, close_grip, pause, position, up_init},
 };
-use crate::execution::{Course, EXECUTE};
+use crate::old_execution::{Course, EXECUTE};
 
 /// Decision tables, the upper one first.
 const TABLES: &[&Table] = &[&EXECUTE, &POSITION, &CLOSE_GRIP, &UP_INIT, &PAUSE];
@@ -145,6 +145,8 @@ impl<S> Servo<S> {
 
 impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
     type State = State;
+    type Seen = ();
+    type Action = ();
     type Outputs = GripOutputs;
 
     const NAME: &'static str = S::NAME;
@@ -163,6 +165,16 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
         let seen = Seen::preprocess(&mut self.state, &arriving);
         let action = self.decide(&seen);
         *outputs = postprocess::perform(&mut self.state, &seen, action, inputs.tick);
+    }
+
+    fn preprocess(&mut self, _: &Inputs<'_, Data>, _: &GripOutputs) {}
+
+    fn decide(&mut self, (): &()) {}
+
+    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, Data>, _: &mut GripOutputs) {}
+
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
     fn state(&self) -> &State {

@@ -15,7 +15,7 @@ use super::{
     state::{CLOSED_END, Calibration, OPEN_END, Phase, SUPPLY_FORCE, Scale, State, Steady},
     tables::{Action, Flow, Gripper},
 };
-use crate::execution::Outcome;
+use crate::old_execution::Outcome;
 
 /// All close flows.
 const CLOSE_FULLY: u8 = valve::SUPPLY | valve::CLOSE_COARSE | valve::CLOSE_MEDIUM | valve::CLOSE_FINE;

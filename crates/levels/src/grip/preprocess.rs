@@ -17,7 +17,7 @@ use super::{
     state::{CLOSED_END, Command, OPEN_END, Phase, Readings, SUPPLY_FORCE, State, Steady, Step, WINDOW},
     tables::{Calibrating, Clock, Flow, Grasp, Gripper, Opening, Rest},
 };
-use crate::execution::Course;
+use crate::old_execution::Course;
 
 /// Farther than this from the goal a coarse flow is used, in.
 const FAR: f64 = 0.40;

@@ -45,7 +45,7 @@ use self::{
     preprocess::Seen,
     tables::{Action, GRASP, PAUSE, RELEASE, Step, grasp, pause, release},
 };
-use crate::execution::{Course, EXECUTE};
+use crate::old_execution::{Course, EXECUTE};
 
 /// Decision tables, the upper one first.
 const TABLES: &[&Table] = &[&EXECUTE, &GRASP, &RELEASE, &PAUSE];
@@ -135,6 +135,8 @@ impl<K> Jaws<K> {
 
 impl<K: Kind, Data: ?Sized> Process<Data> for Jaws<K> {
     type State = State;
+    type Seen = ();
+    type Action = ();
     type Outputs = JawsOutputs;
 
     const NAME: &'static str = K::NAME;
@@ -147,6 +149,16 @@ impl<K: Kind, Data: ?Sized> Process<Data> for Jaws<K> {
         let seen = Seen::preprocess(&mut self.state, &K::PARAMETERS, command, devices, woken, inputs.tick);
         let action = self.decide(&seen);
         *outputs = postprocess::perform(&mut self.state, &seen, action, inputs.tick);
+    }
+
+    fn preprocess(&mut self, _: &Inputs<'_, Data>, _: &JawsOutputs) {}
+
+    fn decide(&mut self, (): &()) {}
+
+    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, Data>, _: &mut JawsOutputs) {}
+
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
     fn state(&self) -> &State {

@@ -15,7 +15,7 @@ use super::{
     state::State,
     tables::{Action, Gripper},
 };
-use crate::execution::Outcome;
+use crate::old_execution::Outcome;
 
 /// Carry out `action` and report.
 pub(super) fn perform(state: &mut State, seen: &Seen, action: Action, tick: Tick) -> JawsOutputs {

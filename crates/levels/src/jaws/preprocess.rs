@@ -15,7 +15,7 @@ use super::{
     state::{State, WINDOW},
     tables::{Gripper, Motion, Size, Stop},
 };
-use crate::execution::Course;
+use crate::old_execution::Course;
 
 /// Counts of the potentiometer at opening 0. ASSUMED; all grippers use the same connections (III.3.7, III.3.8).
 pub const POTENTIOMETER_OFFSET: f64 = 205.0;

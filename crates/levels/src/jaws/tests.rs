@@ -4,13 +4,14 @@ use std::collections::BTreeSet;
 
 use proptest::prelude::*;
 use rcs_core::{
+    Plain,
     interface::{
         CommonMemory, ExternalInputs, JawsOutputs, Reason,
         device::{JawValves, QuickChangeSensors},
         jaws::{JawsCommand, JawsReport, JawsVerb},
     },
+    plain::to_bytes,
     process::{Inputs, Process},
-    record::{Field, to_bytes},
     tick::{TICK_S, Tick},
     units::hundredths,
 };
@@ -164,13 +165,6 @@ type ToolBench = Bench<super::ToolGripper>;
 
 const CLOSED: (JawsReport, Reason) = (JawsReport::Closed, Reason::None);
 const OPENED: (JawsReport, Reason) = (JawsReport::Opened, Reason::None);
-
-#[test]
-fn no_row_is_dead() {
-    for table in TABLES {
-        table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
-    }
-}
 
 #[test]
 fn the_two_processes_differ_in_name_id_and_way() {

@@ -28,7 +28,7 @@ use super::{
         record_pose::{Button, Note, Recording, record_pose},
     },
 };
-use crate::execution::{Course, Outcome};
+use crate::old_execution::{Course, Outcome};
 
 impl Prim {
     /// Take notice of a time in which Prim was held or suspended: T3I has stopped the robot dead, so that

@@ -10,11 +10,10 @@
 //! farther from the centre, so that all frames have the same limits in inches of path.
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     frame::{Frame, INCHES_PER_RADIAN, Vector, norm, rotation_by, rotation_from_x_y},
     interface::device::{JoystickBox, KNOB_FULL, joystick_frame},
     pose::POINT_DISTANCE,
-    record,
     tick::TICK_S,
 };
 
@@ -28,20 +27,21 @@ const RAMP: f64 = 9.0;
 /// Deflection of the stick that counts as none, of 1: potentiometers do not come back to 0. ASSUMED.
 const PLAY: f64 = 0.03;
 
-coded_enum! {
-    /// Coordinates of manual motions (III.3.3).
-    pub enum Coordinates {
-        /// No frame switch is on, or more than one.
-        None = "none",
-        /// Switch f: translations in world coordinates.
-        World = "world",
-        /// Switch h: translations in tool coordinates.
-        Tool = "tool",
-        /// Switch j: pitch and yaw about the tool point.
-        ToolOrigin = "tool origin",
-        /// Switch k: pitch and yaw about the wrist point.
-        WristOrigin = "wrist origin",
-    }
+/// Coordinates of manual motions (III.3.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Coordinates {
+    /// No frame switch is on, or more than one.
+    None,
+    /// Switch f: translations in world coordinates.
+    World,
+    /// Switch h: translations in tool coordinates.
+    Tool,
+    /// Switch j: pitch and yaw about the tool point.
+    #[text = "tool origin"]
+    ToolOrigin,
+    /// Switch k: pitch and yaw about the wrist point.
+    #[text = "wrist origin"]
+    WristOrigin,
 }
 
 impl Coordinates {
@@ -71,22 +71,21 @@ impl Coordinates {
     }
 }
 
-record! {
-    /// A manual motion.
-    pub struct Manual {
-        /// The box has the robot in this tick.
-        pub engaged: bool,
-        /// Coordinates of the motion.
-        pub coordinates: Coordinates,
-        /// Translation that is asked for, a share of [`SPEED`], in `coordinates`.
-        pub translate: [f64; 3],
-        /// Rotation that is asked for, a share of [`SPEED`] at the lever, about the axes of the tool.
-        pub rotate: [f64; 3],
-        /// in/s, in world coordinates.
-        pub linear: [f64; 3],
-        /// rad/s about the centre, in world coordinates.
-        pub angular: [f64; 3],
-    }
+/// A manual motion.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Manual {
+    /// The box has the robot in this tick.
+    pub engaged: bool,
+    /// Coordinates of the motion.
+    pub coordinates: Coordinates,
+    /// Translation that is asked for, a share of [`SPEED`], in `coordinates`.
+    pub translate: [f64; 3],
+    /// Rotation that is asked for, a share of [`SPEED`] at the lever, about the axes of the tool.
+    pub rotate: [f64; 3],
+    /// in/s, in world coordinates.
+    pub linear: [f64; 3],
+    /// rad/s about the centre, in world coordinates.
+    pub angular: [f64; 3],
 }
 
 /// A share from -1 to 1 that two buttons ask for.

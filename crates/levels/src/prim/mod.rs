@@ -48,7 +48,7 @@ use self::{
     state::State,
     tables::path_clock::{Flow, path_clock},
 };
-use crate::execution::EXECUTE;
+use crate::old_execution::EXECUTE;
 
 /// The Prim process.
 #[derive(Clone, Debug, Default)]
@@ -59,6 +59,8 @@ pub struct Prim {
 impl<'d> Process<TaskData<'d>> for Prim {
     type Outputs = PrimOutputs;
     type State = State;
+    type Seen = ();
+    type Action = ();
 
     const NAME: &'static str = "Prim";
     const TABLES: &'static [&'static Table] = &[
@@ -103,6 +105,16 @@ impl<'d> Process<TaskData<'d>> for Prim {
         }
         let record = self.records(&inputs.external.devices.joystick, posture);
         self.postprocess(inputs, record, outputs);
+    }
+
+    fn preprocess(&mut self, _: &Inputs<'_, TaskData<'d>>, _: &PrimOutputs) {}
+
+    fn decide(&mut self, (): &()) {}
+
+    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, TaskData<'d>>, _: &mut PrimOutputs) {}
+
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
     fn state(&self) -> &State {

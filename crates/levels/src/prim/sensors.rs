@@ -11,11 +11,11 @@
 //! every force looks alike.
 
 use rcs_core::{
+    Plain,
     interface::device::{
         ADC_FULL_SCALE, DeviceInputs, FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, HolsterSensors,
         MOMENT_COUNTS_PER_IN_LB,
     },
-    record,
 };
 use taskdata::files::{SensorPara, SensorSource};
 
@@ -32,18 +32,17 @@ const NEAR: u8 = 0x03;
 /// Both small sensors of a holster: the ears are seated.
 const SEATED: u8 = 0x0C;
 
-record! {
-    /// The bias of the force sensor and how it is taken. Counts, in the order tool Fx, Fy, Fz, My.
-    pub struct Calibration {
-        /// What is read without a force of interest.
-        pub bias: [f64; AXES],
-        /// `bias` has been taken, and the sensor has had power ever since.
-        pub valid: bool,
-        /// Sum of the readings taken so far.
-        pub sum: [f64; AXES],
-        /// How many.
-        pub samples: u32,
-    }
+/// The bias of the force sensor and how it is taken. Counts, in the order tool Fx, Fy, Fz, My.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Calibration {
+    /// What is read without a force of interest.
+    pub bias: [f64; AXES],
+    /// `bias` has been taken, and the sensor has had power ever since.
+    pub valid: bool,
+    /// Sum of the readings taken so far.
+    pub sum: [f64; AXES],
+    /// How many.
+    pub samples: u32,
 }
 
 /// What the sensor of a guarded move says.

@@ -39,7 +39,7 @@ use self::{
     preprocess::Seen,
     tables::{Action, QC_LOCK, QC_PAUSE, QC_UNLOCK, Step, qc_lock, qc_pause, qc_unlock},
 };
-use crate::execution::{Course, EXECUTE};
+use crate::old_execution::{Course, EXECUTE};
 
 /// Decision tables, the upper one first.
 const TABLES: &[&Table] = &[&EXECUTE, &QC_PAUSE, &QC_LOCK, &QC_UNLOCK];
@@ -70,6 +70,8 @@ impl QuickChange {
 
 impl<Data: ?Sized> Process<Data> for QuickChange {
     type State = State;
+    type Seen = ();
+    type Action = ();
     type Outputs = QuickChangeOutputs;
 
     const NAME: &'static str = "Quick Change";
@@ -79,6 +81,16 @@ impl<Data: ?Sized> Process<Data> for QuickChange {
         let seen = Seen::preprocess(&mut self.state, inputs);
         let action = self.decide(&seen);
         *outputs = postprocess::perform(&mut self.state, action, inputs.tick);
+    }
+
+    fn preprocess(&mut self, _: &Inputs<'_, Data>, _: &QuickChangeOutputs) {}
+
+    fn decide(&mut self, (): &()) {}
+
+    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, Data>, _: &mut QuickChangeOutputs) {}
+
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
     fn state(&self) -> &State {

@@ -10,7 +10,7 @@ use rcs_core::{
 };
 
 use super::{state::State, tables::Action};
-use crate::execution::Outcome;
+use crate::old_execution::Outcome;
 
 /// Carry out the action of the row that fired.
 pub(super) fn perform(state: &mut State, action: Action, tick: Tick) -> QuickChangeOutputs {

@@ -9,7 +9,7 @@ use super::{
     state::{Ring, State},
     tables::{Clock, Id, Step},
 };
-use crate::execution::Course;
+use crate::old_execution::Course;
 
 /// Ticks after which a ring that neither sensor sees is stuck (0.5 s): longer than it is on its way.
 pub(super) const STUCK_TICKS: u8 = 12;

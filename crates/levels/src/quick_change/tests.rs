@@ -9,8 +9,8 @@ use rcs_core::{
         device::{QuickChangeSensors, QuickChangeValves},
         quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
     },
+    plain::to_bytes,
     process::{Inputs, Process},
-    record::to_bytes,
     tick::Tick,
 };
 
@@ -98,13 +98,6 @@ impl Bench {
 }
 
 const UNLOCKED: RingModel = RingModel { place: 0.0, speed: 0.125, jam: None };
-
-#[test]
-fn no_row_is_dead() {
-    for table in TABLES {
-        table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
-    }
-}
 
 #[test]
 fn every_row_fires() {

@@ -5,18 +5,17 @@
 //! changing records.
 
 use rcs_core::{
+    Plain,
     interface::{
-        Reason,
         emove::{EmoveCommand, EmoveVerb},
         subtask::{LocationKind, SubtaskCommand, SubtaskVerb},
     },
     name::{Name10, Name16},
     pose::Pose,
-    record,
 };
 use taskdata::files::{Location, LocptId, RefType, TaskData};
 
-use crate::places::{named, place_of, reason_of};
+use crate::places::{Missing, named, place_of};
 
 /// Grip of a holster's object with which the gripper that is on the robot is put in (VII.7 by convention).
 const PUT_IN: i32 = 1;
@@ -25,43 +24,41 @@ const TAKE_OUT: i32 = 2;
 /// The holsters' objects: what the gripper with id 1, 2, 3 is called as a thing that can be put somewhere.
 const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
 
-record! {
-    /// What a command to E-move is aimed at: an object, a location, or an object at a location.
-    pub struct Aim {
-        /// The object; empty for none.
-        pub object: Name16,
-        /// Its grip.
-        pub grip: i32,
-        /// Its record of END-EFF-PARA.
-        pub parameters: u32,
-        /// Gripper that is needed.
-        pub end_effector_id: u8,
-        /// Name of the location.
-        pub location: Name10,
-        /// Its type.
-        pub kind: LocationKind,
-        /// Record of LOCPT.
-        pub record: u32,
-        /// Record of ARRAY-TABLE.
-        pub array: u32,
-        /// Record number of its pose.
-        pub pose: u32,
-    }
+/// What a command to E-move is aimed at: an object, a location, or an object at a location.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Aim {
+    /// The object; empty for none.
+    pub object: Name16,
+    /// Its grip.
+    pub grip: i32,
+    /// Its record of END-EFF-PARA.
+    pub parameters: u32,
+    /// Gripper that is needed.
+    pub end_effector_id: u8,
+    /// Name of the location.
+    pub location: Name10,
+    /// Its type.
+    pub kind: LocationKind,
+    /// Record of LOCPT.
+    pub record: u32,
+    /// Record of ARRAY-TABLE.
+    pub array: u32,
+    /// Record number of its pose.
+    pub pose: u32,
 }
 
-record! {
-    /// The aims that a command of Task does not name, and the two poses that they share.
-    pub struct Aims {
-        /// GET-ENDEFF: the holster of the attached gripper. FIX-GRIP: the object brought to the pedestal.
-        /// Tool commands: the drum.
-        pub first: Aim,
-        /// GET-ENDEFF: the holster of the wanted gripper. FIX-GRIP: the robot out of the pedestal's way.
-        pub second: Aim,
-        /// FIX-GRIP: the object taken from the pedestal, at the pose of the first.
-        pub third: Aim,
-        /// Poses of the first and the second aim.
-        pub poses: [Pose; 2],
-    }
+/// The aims that a command of Task does not name, and the two poses that they share.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Aims {
+    /// GET-ENDEFF: the holster of the attached gripper. FIX-GRIP: the object brought to the pedestal.
+    /// Tool commands: the drum.
+    pub first: Aim,
+    /// GET-ENDEFF: the holster of the wanted gripper. FIX-GRIP: the robot out of the pedestal's way.
+    pub second: Aim,
+    /// FIX-GRIP: the object taken from the pedestal, at the pose of the first.
+    pub third: Aim,
+    /// Poses of the first and the second aim.
+    pub poses: [Pose; 2],
 }
 
 impl Aim {
@@ -103,8 +100,8 @@ impl Aim {
     }
 
     /// The same location with an object in a grip.
-    fn with_object(self, object: Name16, grip: i32, data: &TaskData<'_>) -> Result<Self, Reason> {
-        let (id, _) = data.object(&object, grip).ok_or(Reason::UnknownGrip)?;
+    fn with_object(self, object: Name16, grip: i32, data: &TaskData<'_>) -> Result<Self, Missing> {
+        let (id, _) = data.object(&object, grip).ok_or(Missing::Grip)?;
         Ok(Self { object, grip, parameters: id.number(), ..self })
     }
 
@@ -135,8 +132,8 @@ impl Aims {
     /// robot, 0 for none.
     ///
     /// # Errors
-    /// The [`Reason`] why the command cannot be executed with these task data.
-    pub fn new(command: &SubtaskCommand, attached: u8, data: &TaskData<'_>) -> Result<Self, Reason> {
+    /// What the task data lack for the command.
+    pub fn new(command: &SubtaskCommand, attached: u8, data: &TaskData<'_>) -> Result<Self, Missing> {
         match command.command {
             SubtaskVerb::GetEndeff => Self::holsters(command.end_effector_id, attached, data),
             SubtaskVerb::FixGrip => Self::pedestal(command, data),
@@ -157,7 +154,7 @@ impl Aims {
     }
 
     /// GET-ENDEFF: where the attached gripper is left, and where the wanted one is.
-    fn holsters(wanted: u8, attached: u8, data: &TaskData<'_>) -> Result<Self, Reason> {
+    fn holsters(wanted: u8, attached: u8, data: &TaskData<'_>) -> Result<Self, Missing> {
         let mut aims = Self::default();
         if attached != 0 && (attached == wanted || wanted == 0) {
             return Ok(aims);
@@ -171,7 +168,7 @@ impl Aims {
     }
 
     /// FIX-GRIP: the object at the pedestal in both grips, and the place where the robot waits.
-    fn pedestal(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Reason> {
+    fn pedestal(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Missing> {
         let (pedestal, safe) = (point(named::PEDESTAL, data)?, point(named::PED_SAFE, data)?);
         let at = Aim::at(&pedestal, command.end_effector_id);
         Ok(Self {
@@ -183,7 +180,7 @@ impl Aims {
     }
 
     /// Tool commands: the transfer location, with the object as Task gave it.
-    fn drum(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Reason> {
+    fn drum(command: &SubtaskCommand, data: &TaskData<'_>) -> Result<Self, Missing> {
         let location = point(named::TOOL_TRNS, data)?;
         let at = Aim::at(&location, command.end_effector_id);
         let first = Aim {
@@ -198,15 +195,15 @@ impl Aims {
 }
 
 /// The holster of the gripper with an id: the location point that is assigned to its object (VII.7.3).
-fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<Aim, Reason> {
+fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<Aim, Missing> {
     let name = usize::from(id).checked_sub(1).and_then(|position| GRIPPERS.get(position));
-    let object = Name16::clipped(name.ok_or(Reason::NoHolster)?);
-    let record = data.object_named(&object).ok_or(Reason::NoHolster)?;
+    let object = Name16::clipped(name.ok_or(Missing::Holster)?);
+    let record = data.object_named(&object).ok_or(Missing::Holster)?;
     let assigned = data
         .object_locations(record)
         .find(|assigned| assigned.kind == RefType::LocationPoint)
-        .ok_or(Reason::NoHolster)?;
-    let locpt = data.locpt(LocptId::new(assigned.number)).ok_or(Reason::NoHolster)?;
+        .ok_or(Missing::Holster)?;
+    let locpt = data.locpt(LocptId::new(assigned.number)).ok_or(Missing::Holster)?;
     *pose = Pose::from_frame(&locpt.frame);
     let place = data.place_of(LocptId::new(assigned.number));
     let location = Location { name: locpt.name, place, sector: 0, frame: locpt.frame };
@@ -214,6 +211,6 @@ fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<Ai
 }
 
 /// A location point by name.
-fn point(name: &str, data: &TaskData<'_>) -> Result<Location, Reason> {
-    data.resolve_location(&Name10::clipped(name), 0, None::<&Name16>).map_err(|error| reason_of(&error))
+fn point(name: &str, data: &TaskData<'_>) -> Result<Location, Missing> {
+    data.resolve_location(&Name10::clipped(name), 0, None::<&Name16>).map_err(Missing::from)
 }

@@ -1,38 +1,43 @@
 //! What Subtask remembers from tick to tick.
 
-use rcs_core::{handshake::Commander, name::Name16, record};
+use rcs_core::{Plain, handshake::Commander, name::Name16};
 use taskdata::files::PedPara;
 
-use super::aims::Aims;
+use super::{
+    aims::Aims,
+    tables::{Ordered, Step},
+};
 use crate::execution::Execution;
 
-record! {
-    /// How the held object is gripped. The status of E-move names the object; the grip is the one with which
-    /// it was last taken.
-    pub struct Grasp {
-        /// The object; empty if nothing is held, or if Subtask has not seen how it was taken.
-        pub object: Name16,
-        /// Its grip number.
-        pub grip: i32,
-    }
+/// How the held object is gripped. The status of E-move names the object; the grip is the one with which
+/// it was last taken.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Grasp {
+    /// The object; empty if nothing is held, or if Subtask has not seen how it was taken.
+    pub object: Name16,
+    /// Its grip number.
+    pub grip: i32,
 }
 
-record! {
-    /// State of Subtask.
-    pub struct State {
-        /// The command of Task and how far it has come.
-        pub execution: Execution,
-        /// Commands to E-move.
-        pub emove: Commander,
-        /// Commands to the Active Pedestal.
-        pub pedestal: Commander,
-        /// How the held object is gripped.
-        pub grasp: Grasp,
-        /// What the current command names beside the location and the object that Task gave.
-        pub aims: Aims,
-        /// How the pedestal takes the object of the current FIX-GRIP.
-        pub ped_para: PedPara,
-        /// Last record number given to a pose of [`Aims`].
-        pub last_pose: u32,
-    }
+/// State of Subtask.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct State {
+    /// The command of Task and how far it has come.
+    pub execution: Execution,
+    /// Step of its table.
+    pub step: Step,
+    /// The process that has its last order.
+    pub ordered: Ordered,
+    /// Commands to E-move.
+    pub emove: Commander,
+    /// Commands to the Active Pedestal.
+    pub pedestal: Commander,
+    /// How the held object is gripped.
+    pub grasp: Grasp,
+    /// What the current command names beside the location and the object that Task gave.
+    pub aims: Aims,
+    /// How the pedestal takes the object of the current FIX-GRIP.
+    pub ped_para: PedPara,
+    /// Last record number given to a pose of [`Aims`].
+    pub last_pose: u32,
 }

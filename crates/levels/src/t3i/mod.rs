@@ -74,6 +74,8 @@ struct Decided {
 impl<Data: ?Sized> Process<Data> for T3i {
     type Outputs = T3iOutputs;
     type State = State;
+    type Seen = ();
+    type Action = ();
 
     const NAME: &'static str = "T3 Interface";
     const TABLES: &'static [&'static Table] = TABLES;
@@ -90,10 +92,21 @@ impl<Data: ?Sized> Process<Data> for T3i {
                 republished: false,
                 table: self.state.table,
                 row: self.state.row,
+                step: rcs_core::name::Name16::EMPTY,
             },
             status: self.status(inputs, decided.report),
             link_tx: tx,
         };
+    }
+
+    fn preprocess(&mut self, _: &Inputs<'_, Data>, _: &T3iOutputs) {}
+
+    fn decide(&mut self, (): &()) {}
+
+    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, Data>, _: &mut T3iOutputs) {}
+
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
     fn state(&self) -> &State {

@@ -5,7 +5,7 @@ use depc::{
     host::{ANSWER_TICKS, Host},
     step::Position,
 };
-use rcs_core::{handshake::Receiver, interface::t3i::T3iVerb, pose::WireFrame, record};
+use rcs_core::{Plain, handshake::Receiver, interface::t3i::T3iVerb, pose::WireFrame};
 
 use super::tables::Refusal;
 
@@ -13,32 +13,31 @@ use super::tables::Refusal;
 /// its way, and one to spare.
 pub const QUEUE_POINTS: usize = 4;
 
-record! {
-    /// Everything that T3I remembers.
-    pub struct State {
-        /// The command number and its adoption.
-        pub receiver: Receiver,
-        /// The current command.
-        pub command: T3iVerb,
-        /// A command was refused.
-        pub refusal: Refusal,
-        /// The host's end of the link.
-        pub host: Host,
-        /// The velocity limits.
-        pub limits: Limits,
-        /// The position last sent, or reported.
-        pub position: Position,
-        /// Points that wait; the first `queued` are valid, the oldest first.
-        pub queue: [WireFrame; QUEUE_POINTS],
-        /// How many.
-        pub queued: u8,
-        /// Decision table that was used last, from 1.
-        pub table: u8,
-        /// Row of it.
-        pub row: u8,
-        /// Row of RECEIVE that fired last: the header names it for refusals only.
-        pub intake_row: u8,
-    }
+/// Everything that T3I remembers.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct State {
+    /// The command number and its adoption.
+    pub receiver: Receiver,
+    /// The current command.
+    pub command: T3iVerb,
+    /// A command was refused.
+    pub refusal: Refusal,
+    /// The host's end of the link.
+    pub host: Host,
+    /// The velocity limits.
+    pub limits: Limits,
+    /// The position last sent, or reported.
+    pub position: Position,
+    /// Points that wait; the first `queued` are valid, the oldest first.
+    pub queue: [WireFrame; QUEUE_POINTS],
+    /// How many.
+    pub queued: u8,
+    /// Decision table that was used last, from 1.
+    pub table: u8,
+    /// Row of it.
+    pub row: u8,
+    /// Row of RECEIVE that fired last: the header names it for refusals only.
+    pub intake_row: u8,
 }
 
 impl State {

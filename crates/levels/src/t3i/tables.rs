@@ -1,65 +1,62 @@
 //! Decision tables of T3I: one for what comes from Prim, and one for each command.
 
 use rcs_core::{
-    coded_enum, decision_table,
+    Plain,
     handshake::Arrival,
     interface::t3i::{T3iReport, T3iVerb},
+    old_table,
     table::Table,
 };
 
-coded_enum! {
-    /// What a new POINT is worth.
-    pub enum Order {
-        /// The next in order, with a frame that the line can carry.
-        Next = "next",
-        /// A number was left out: a point is missing, and the path would have a jump.
-        Gap = "gap",
-        /// The frame is none, or has no words on the line, or the queue is full.
-        Unusable = "unusable",
-    }
+/// What a new POINT is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Order {
+    /// The next in order, with a frame that the line can carry.
+    Next,
+    /// A number was left out: a point is missing, and the path would have a jump.
+    Gap,
+    /// The frame is none, or has no words on the line, or the queue is full.
+    Unusable,
 }
 
-coded_enum! {
-    /// The link, as a precondition of points.
-    pub enum Link {
-        /// It runs.
-        Running = "running",
-        /// No report has come yet.
-        Starting = "starting",
-        /// It has failed since the last RESTART.
-        Failed = "failed",
-    }
+/// The link, as a precondition of points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Link {
+    /// It runs.
+    Running,
+    /// No report has come yet.
+    Starting,
+    /// It has failed since the last RESTART.
+    Failed,
 }
 
-coded_enum! {
-    /// Whether a command was refused and no RESTART or PAUSE has come since.
-    pub enum Refusal {
-        /// No.
-        None = "none",
-        /// Yes: `status-arg-out` 5.
-        Refused = "refused",
-    }
+/// Whether a command was refused and no RESTART or PAUSE has come since.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Refusal {
+    /// No.
+    None,
+    /// Yes: `status-arg-out` 5.
+    Refused,
 }
 
-coded_enum! {
-    /// What to do with the command in the buffer.
-    pub enum Intake {
-        /// Go on with the current command.
-        Keep = "keep",
-        /// Empty the queue, forget all faults, and begin the link again.
-        Restart = "restart",
-        /// Empty the queue.
-        Pause = "pause",
-        /// Append the point to the queue.
-        Append = "append",
-        /// Leave the point out; the reason is already reported.
-        Ignore = "ignore",
-        /// Empty the queue and report an invalid command.
-        Refuse = "refuse",
-    }
+/// What to do with the command in the buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Intake {
+    /// Go on with the current command.
+    Keep,
+    /// Empty the queue, forget all faults, and begin the link again.
+    Restart,
+    /// Empty the queue.
+    Pause,
+    /// Append the point to the queue.
+    Append,
+    /// Leave the point out; the reason is already reported.
+    Ignore,
+    /// Empty the queue and report an invalid command.
+    Refuse,
 }
 
-decision_table! {
+old_table! {
     /// What comes from Prim (VI.1.1). A refusal lasts until RESTART or PAUSE, because the next point is already on its way
     /// when Prim reads of it; a failed link until RESTART.
     pub RECEIVE: fn receive(arrival: Arrival, command: T3iVerb, order: Order, link: Link, refusal: Refusal)
@@ -81,75 +78,69 @@ decision_table! {
     }
 }
 
-coded_enum! {
-    /// Whether there is something to report as an error.
-    pub enum Trouble {
-        /// No.
-        None = "none",
-        /// A refused command or a failed link.
-        Some = "some",
-    }
+/// Whether there is something to report as an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Trouble {
+    /// No.
+    None,
+    /// A refused command or a failed link.
+    Some,
 }
 
-coded_enum! {
-    /// What the line can take in this tick.
-    pub enum Line {
-        /// No position is known: nothing but a restart.
-        Down = "down",
-        /// A frame is outstanding.
-        Busy = "busy",
-        /// A frame.
-        Free = "free",
-    }
+/// What the line can take in this tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Line {
+    /// No position is known: nothing but a restart.
+    Down,
+    /// A frame is outstanding.
+    Busy,
+    /// A frame.
+    Free,
 }
 
-coded_enum! {
-    /// Whether Prim works.
-    pub enum Above {
-        /// It has run in the last tick.
-        Live = "live",
-        /// It is held, dormant or lost.
-        Still = "still",
-    }
+/// Whether Prim works.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Above {
+    /// It has run in the last tick.
+    Live,
+    /// It is held, dormant or lost.
+    Still,
 }
 
-coded_enum! {
-    /// Points that wait, before this tick's frame.
-    pub enum Queue {
-        /// None: the output is the goal.
-        Empty = "empty",
-        /// One: another may come.
-        One = "one",
-        /// More than one: none may come.
-        More = "more",
-    }
+/// Points that wait, before this tick's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Queue {
+    /// None: the output is the goal.
+    Empty,
+    /// One: another may come.
+    One,
+    /// More than one: none may come.
+    More,
 }
 
-coded_enum! {
-    /// Whether the command came in this tick.
-    pub enum Phase {
-        /// In an earlier one.
-        Going = "going",
-        /// In this one.
-        Begun = "begun",
-    }
+/// Whether the command came in this tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Phase {
+    /// In an earlier one.
+    Going,
+    /// In this one.
+    Begun,
 }
 
-coded_enum! {
-    /// What goes out on the line.
-    pub enum Output {
-        /// Nothing, or what the link itself has to repeat.
-        Nothing = "nothing",
-        /// A restart.
-        Restart = "restart",
-        /// The last position once more, so that the loss of the link is noticed.
-        Repeat = "repeat",
-        /// The next point, or as much of the way to it as the limits allow.
-        Advance = "advance",
-    }
+/// What goes out on the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Output {
+    /// Nothing, or what the link itself has to repeat.
+    Nothing,
+    /// A restart.
+    Restart,
+    /// The last position once more, so that the loss of the link is noticed.
+    Repeat,
+    /// The next point, or as much of the way to it as the limits allow.
+    Advance,
 }
 
-decision_table! {
+old_table! {
     /// RESTART (VI.1.1): begin the link again and wait for the report.
     pub RESTART: fn restart(phase: Phase, trouble: Trouble, line: Line) -> (Output, T3iReport) {
         //   phase   trouble  line      output    report
@@ -163,7 +154,7 @@ decision_table! {
     }
 }
 
-decision_table! {
+old_table! {
     /// POINT (VI.1.1): one point a tick. "Ready" is said one point ahead: Prim's answer to it arrives two ticks later.
     /// While Prim stands still the robot is held at once; what is said then is for a Prim that is stepped singly, whose next
     /// point lets one out of the queue.
@@ -185,7 +176,7 @@ decision_table! {
     }
 }
 
-decision_table! {
+old_table! {
     /// PAUSE (VI.1.1): the last position is repeated. Also before the first command.
     pub PAUSE: fn pause(trouble: Trouble, line: Line) -> (Output, T3iReport) {
         //   trouble  line      output    report
@@ -200,15 +191,3 @@ decision_table! {
 
 /// All tables; the header of the outputs names one by its position from 1.
 pub const TABLES: &[&Table] = &[&RECEIVE, &RESTART, &POINT, &PAUSE];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_row_is_dead() {
-        for table in TABLES {
-            table.dead_rows(|row| panic!("row {row} of {} can never fire", table.name));
-        }
-    }
-}

@@ -17,7 +17,7 @@ use super::{
     state::Watch,
     tables::{Action, Situation},
 };
-use crate::execution::Outcome;
+use crate::old_execution::Outcome;
 
 impl Task {
     /// Set the outputs that a row asks for.

@@ -34,7 +34,7 @@ use self::{
     state::{State, Watch},
     tables::joystick::{JOYSTICK, Takeover, joystick},
 };
-use crate::execution::{Course, EXECUTE};
+use crate::old_execution::{Course, EXECUTE};
 
 /// The Task process.
 #[derive(Clone, Debug, Default)]
@@ -63,6 +63,8 @@ pub const TABLES: &[&Table] = &[
 impl<'d> Process<TaskData<'d>> for Task {
     type Outputs = TaskOutputs;
     type State = State;
+    type Seen = ();
+    type Action = ();
 
     const NAME: &'static str = "Task";
     const TABLES: &'static [&'static Table] = TABLES;
@@ -84,6 +86,16 @@ impl<'d> Process<TaskData<'d>> for Task {
             self.act(choice.action, &situation, inputs, outputs);
         }
         self.report(inputs, outputs);
+    }
+
+    fn preprocess(&mut self, _: &Inputs<'_, TaskData<'d>>, _: &TaskOutputs) {}
+
+    fn decide(&mut self, (): &()) {}
+
+    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, TaskData<'d>>, _: &mut TaskOutputs) {}
+
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
     fn state(&self) -> &State {

@@ -2,95 +2,104 @@
 //! IV.1.
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     interface::{HwsCommand, Reason, subtask::LocationKind},
     name::{Name10, Name16},
     pose::Pose,
-    record,
 };
 use taskdata::files::{Reference, TaskData};
 
 use crate::places::{named, reason_of};
 
-coded_enum! {
-    /// Commands of Task (V.4.1).
-    pub enum TaskVerb {
-        /// None yet.
-        None = "",
-        /// Do nothing.
-        Pause = "PAUSE",
-        /// Move an object from one location to another.
-        Transfer = "TRANSFER",
-        /// Move an object to a location and hold it there, or move the robot.
-        Move = "MOVE",
-        /// Release what is held and move to a position.
-        Position = "POSITION",
-        /// Move to an object and grasp it.
-        Acquire = "ACQUIRE",
-        /// Take an object, regrip it on the pedestal and move it to a location.
-        Refixture = "REFIXTURE",
-        /// Insert a tool into the tool drum.
-        InsertTool = "INSERT-TOOL",
-        /// Let go of a tool in the drum.
-        ReleaseTool = "RELEASE-TOOL",
-        /// Move to a tool in the drum and grasp it.
-        AcquireTool = "ACQUIRE-TOOL",
-        /// Pull a tool out of the drum.
-        RemoveTool = "REMOVE-TOOL",
-        /// Connect the Data System.
-        Startup = "STARTUP",
-        /// Disconnect it.
-        Shutdown = "SHUTDOWN",
-    }
+/// Commands of Task (V.4.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum TaskVerb {
+    /// None yet.
+    #[text = ""]
+    None,
+    /// Do nothing.
+    #[text = "PAUSE"]
+    Pause,
+    /// Move an object from one location to another.
+    #[text = "TRANSFER"]
+    Transfer,
+    /// Move an object to a location and hold it there, or move the robot.
+    #[text = "MOVE"]
+    Move,
+    /// Release what is held and move to a position.
+    #[text = "POSITION"]
+    Position,
+    /// Move to an object and grasp it.
+    #[text = "ACQUIRE"]
+    Acquire,
+    /// Take an object, regrip it on the pedestal and move it to a location.
+    #[text = "REFIXTURE"]
+    Refixture,
+    /// Insert a tool into the tool drum.
+    #[text = "INSERT-TOOL"]
+    InsertTool,
+    /// Let go of a tool in the drum.
+    #[text = "RELEASE-TOOL"]
+    ReleaseTool,
+    /// Move to a tool in the drum and grasp it.
+    #[text = "ACQUIRE-TOOL"]
+    AcquireTool,
+    /// Pull a tool out of the drum.
+    #[text = "REMOVE-TOOL"]
+    RemoveTool,
+    /// Connect the Data System.
+    #[text = "STARTUP"]
+    Startup,
+    /// Disconnect it.
+    #[text = "SHUTDOWN"]
+    Shutdown,
 }
 
 /// `endeff-id#` of the tool gripper (VII.7.2).
 pub const TOOL_GRIPPER: u8 = 3;
 
-record! {
-    /// One of the three locations of a command.
-    pub struct Site {
-        /// Name; empty if the command does not name the location.
-        pub location: Name10,
-        /// Its type.
-        pub kind: LocationKind,
-        /// Record of LOCPT.
-        pub record: u32,
-        /// Record of ARRAY-TABLE.
-        pub array: u32,
-        /// Sector from 1, or 0.
-        pub sector: i32,
-        /// Record number of its T-POSE.
-        pub pose: u32,
-        /// Grip of the object there.
-        pub grip: i32,
-        /// Record of END-EFF-PARA for the object with that grip.
-        pub parameters: u32,
-    }
+/// One of the three locations of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Site {
+    /// Name; empty if the command does not name the location.
+    pub location: Name10,
+    /// Its type.
+    pub kind: LocationKind,
+    /// Record of LOCPT.
+    pub record: u32,
+    /// Record of ARRAY-TABLE.
+    pub array: u32,
+    /// Sector from 1, or 0.
+    pub sector: i32,
+    /// Record number of its T-POSE.
+    pub pose: u32,
+    /// Grip of the object there.
+    pub grip: i32,
+    /// Record of END-EFF-PARA for the object with that grip.
+    pub parameters: u32,
 }
 
-record! {
-    /// A command, looked up.
-    pub struct Plan {
-        /// What to do.
-        pub verb: TaskVerb,
-        /// The object; empty for none.
-        pub object: Name16,
-        /// Its serial number.
-        pub serial: Name16,
-        /// Gripper for the object; 0 if any will do.
-        pub end_effector_id: u8,
-        /// Where the object is.
-        pub source: Site,
-        /// Where it, or the robot, is to go.
-        pub destination: Site,
-        /// Where the robot is to be at the end.
-        pub end_at: Site,
-        /// The object is moved from or to the MBD, of which the data base keeps account.
-        pub concerns_mbd: bool,
-        /// Poses of the three sites.
-        pub poses: [Pose; 3],
-    }
+/// A command, looked up.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Plan {
+    /// What to do.
+    pub verb: TaskVerb,
+    /// The object; empty for none.
+    pub object: Name16,
+    /// Its serial number.
+    pub serial: Name16,
+    /// Gripper for the object; 0 if any will do.
+    pub end_effector_id: u8,
+    /// Where the object is.
+    pub source: Site,
+    /// Where it, or the robot, is to go.
+    pub destination: Site,
+    /// Where the robot is to be at the end.
+    pub end_at: Site,
+    /// The object is moved from or to the MBD, of which the data base keeps account.
+    pub concerns_mbd: bool,
+    /// Poses of the three sites.
+    pub poses: [Pose; 3],
 }
 
 /// Which fields a command must have.

@@ -21,7 +21,7 @@
 //! [`Reason`]: rcs_core::interface::Reason
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     interface::{
         Header,
         pedestal::{PedestalReport, PedestalStatus},
@@ -37,16 +37,17 @@ pub const STATUS: usize = 206;
 /// Bytes of `reason`.
 pub const REASON: usize = 160;
 
-coded_enum! {
-    /// `verdict`.
-    pub enum Verdict {
-        /// What was read last was taken.
-        Taken = "taken",
-        /// It is no command.
-        NoCommand = "no command",
-        /// The sensor words of the simulated cell cannot be read.
-        NoSensors = "no sensor words",
-    }
+/// `verdict`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Verdict {
+    /// What was read last was taken.
+    Taken,
+    /// It is no command.
+    #[text = "no command"]
+    NoCommand,
+    /// The sensor words of the simulated cell cannot be read.
+    #[text = "no sensor words"]
+    NoSensors,
 }
 
 /// A status as it is read.

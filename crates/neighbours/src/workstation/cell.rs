@@ -12,7 +12,7 @@
 //!              6  240    what is wrong, in a sentence
 //! ```
 
-use rcs_core::coded_enum;
+use rcs_core::Plain;
 
 use crate::fields::{FieldError, Packer, Unpacker};
 
@@ -23,18 +23,18 @@ pub const STATUS: usize = 246;
 /// Bytes of a text.
 pub const TEXT: usize = 240;
 
-coded_enum! {
-    /// What is wrong.
-    pub enum Trouble {
-        /// Nothing.
-        None = "",
-        /// The last line was refused.
-        Refused = "refused",
-        /// The cell has a fault.
-        Fault = "fault",
-        /// An emergency has stopped the robot.
-        Emergency = "emergency",
-    }
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Trouble {
+    /// Nothing.
+    #[text = ""]
+    None,
+    /// The last line was refused.
+    Refused,
+    /// The cell has a fault.
+    Fault,
+    /// An emergency has stopped the robot.
+    Emergency,
 }
 
 /// The status of the cell.

@@ -1,58 +1,59 @@
 //! Task and the Data System (IV.4.2, IX.2): what is asked of it, apart from how it travels.
 
 use crate::{
-    coded_enum,
+    Plain,
     handshake::Lower,
     name::{Name10, Name16},
-    record,
 };
 
-coded_enum! {
-    /// What Task asks of the Data System.
-    pub enum DataBaseVerb {
-        /// Nothing yet.
-        None = "",
-        /// End whatever transaction is open (reconfiguration command).
-        Abort = "ABORT",
-        /// Make this client known (reconfiguration command).
-        Initiate = "INITIATE",
-        /// Begin to take commands (reconfiguration command).
-        Startup = "STARTUP",
-        /// UPDATE EQUIP_ITEM_ACTION: where an item now is.
-        Update = "UPDATE",
-    }
+/// What Task asks of the Data System.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum DataBaseVerb {
+    /// Nothing yet.
+    #[text = ""]
+    None,
+    /// End whatever transaction is open (reconfiguration command).
+    #[text = "ABORT"]
+    Abort,
+    /// Make this client known (reconfiguration command).
+    #[text = "INITIATE"]
+    Initiate,
+    /// Begin to take commands (reconfiguration command).
+    #[text = "STARTUP"]
+    Startup,
+    /// UPDATE EQUIP_ITEM_ACTION: where an item now is.
+    #[text = "UPDATE"]
+    Update,
 }
 
-record! {
-    /// Command from Task to the Data System: the fields of the DML string that Task stuffs (IX.2).
-    pub struct DataBaseCommand {
-        /// Command number.
-        pub number: u32,
-        /// What to do.
-        pub command: DataBaseVerb,
-        /// `ITEM-NAME`: the object.
-        pub item: Name16,
-        /// `ITEM#`: its serial number.
-        pub serial: Name16,
-        /// `STORAGE-POS`: the location where the item now is; `H_ROBOT` while the robot has it.
-        pub position: Name10,
-        /// `SECTOR#`: sector there; 0 for none.
-        pub sector: i32,
-    }
+/// Command from Task to the Data System: the fields of the DML string that Task stuffs (IX.2).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct DataBaseCommand {
+    /// Command number.
+    pub number: u32,
+    /// What to do.
+    pub command: DataBaseVerb,
+    /// `ITEM-NAME`: the object.
+    pub item: Name16,
+    /// `ITEM#`: its serial number.
+    pub serial: Name16,
+    /// `STORAGE-POS`: the location where the item now is; `H_ROBOT` while the robot has it.
+    pub position: Name10,
+    /// `SECTOR#`: sector there; 0 for none.
+    pub sector: i32,
 }
 
-coded_enum! {
-    /// What the Data System makes of the last command: server status and summary status (IX.2), read together.
-    pub enum DataBaseReport {
-        /// Nothing was asked yet (extension).
-        Idle = "idle",
-        /// The command is executing.
-        Executing = "executing",
-        /// It is done.
-        Done = "done",
-        /// It was refused.
-        Refused = "refused",
-    }
+/// What the Data System makes of the last command: server status and summary status (IX.2), read together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum DataBaseReport {
+    /// Nothing was asked yet (extension).
+    Idle,
+    /// The command is executing.
+    Executing,
+    /// It is done.
+    Done,
+    /// It was refused.
+    Refused,
 }
 
 impl DataBaseReport {
@@ -67,12 +68,11 @@ impl DataBaseReport {
     }
 }
 
-record! {
-    /// Status from the Data System to Task.
-    pub struct DataBaseStatus {
-        /// Number of the command that is answered.
-        pub echo: u32,
-        /// What became of it.
-        pub report: DataBaseReport,
-    }
+/// Status from the Data System to Task.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct DataBaseStatus {
+    /// Number of the command that is answered.
+    pub echo: u32,
+    /// What became of it.
+    pub report: DataBaseReport,
 }

@@ -2,20 +2,19 @@
 //!
 //! Raw words only: counts, bits and bytes. Scaling is the business of the process that owns the device.
 
-use crate::{coded_enum, record};
+use crate::Plain;
 
 /// Bytes that can travel on the DEPC line in one direction in a tick: 9600 baud gives 38, rounded up with room for what
 /// has queued in a receiver.
 pub const LINK_BYTES: usize = 64;
 
-record! {
-    /// Bytes of one tick on a serial line.
-    pub struct LinkBytes {
-        /// How many of `bytes` are valid.
-        pub length: u8,
-        /// The bytes, zero after `length`.
-        pub bytes: [u8; LINK_BYTES],
-    }
+/// Bytes of one tick on a serial line.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct LinkBytes {
+    /// How many of `bytes` are valid.
+    pub length: u8,
+    /// The bytes, zero after `length`.
+    pub bytes: [u8; LINK_BYTES],
 }
 
 impl LinkBytes {
@@ -46,14 +45,13 @@ impl LinkBytes {
 /// Steps of a resolver turn: 17 bits (III.3.2).
 pub const RESOLVER_COUNTS: u32 = 1 << 17;
 
-record! {
-    /// The joint resolvers (III.3.2): 17-bit integers, joints 0 to 5 from the base; one turn a joint, count 0 at angle 0 (ASSUMED).
-    pub struct Resolvers {
-        /// Counts, 0 to 131071.
-        pub counts: [u32; 6],
-        /// The resolver box has power.
-        pub valid: bool,
-    }
+/// The joint resolvers (III.3.2): 17-bit integers, joints 0 to 5 from the base; one turn a joint, count 0 at angle 0 (ASSUMED).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Resolvers {
+    /// Counts, 0 to 131071.
+    pub counts: [u32; 6],
+    /// The resolver box has power.
+    pub valid: bool,
 }
 
 /// Air valves of the parts gripper: bits of [`GripValves::bits`] (III.3.6: eight valves; the assignment is ASSUMED).
@@ -79,76 +77,70 @@ pub mod valve {
     pub const SUPPLY: u8 = 0x80;
 }
 
-record! {
-    /// Command bits to the eight air valves of the parts gripper (VI.3.2 `grip`); see [`valve`].
-    pub struct GripValves {
-        /// One bit a valve.
-        pub bits: u8,
-    }
+/// Command bits to the eight air valves of the parts gripper (VI.3.2 `grip`); see [`valve`].
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct GripValves {
+    /// One bit a valve.
+    pub bits: u8,
 }
 
 /// Counts of a 12-bit converter at full scale.
 pub const ADC_FULL_SCALE: u16 = 4095;
 
-record! {
-    /// Sensors of the attached gripper (III.3.6 to III.3.8): 12-bit converters and beam breaks.
-    pub struct GripSensors {
-        /// Finger potentiometer, 0 to 4095 counts; grows with the opening; UP-INIT finds offset and scale of the parts gripper's.
-        pub potentiometer: u16,
-        /// Strain gage of the left finger, counts; grows with the force that closes on a part.
-        pub strain_left: u16,
-        /// Strain gage of the right finger, counts.
-        pub strain_right: u16,
-        /// Eight beam breaks between the fingers, one bit each, 1 is broken.
-        pub beams: u8,
-    }
+/// Sensors of the attached gripper (III.3.6 to III.3.8): 12-bit converters and beam breaks.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct GripSensors {
+    /// Finger potentiometer, 0 to 4095 counts; grows with the opening; UP-INIT finds offset and scale of the parts gripper's.
+    pub potentiometer: u16,
+    /// Strain gage of the left finger, counts; grows with the force that closes on a part.
+    pub strain_left: u16,
+    /// Strain gage of the right finger, counts.
+    pub strain_right: u16,
+    /// Eight beam breaks between the fingers, one bit each, 1 is broken.
+    pub beams: u8,
 }
 
-record! {
-    /// Sensors of the quick change (VI.2): two reflectance sensors on the locking ring, and the id pins.
-    pub struct QuickChangeSensors {
-        /// The ring is seen in the locked position.
-        pub locked: bool,
-        /// The ring is seen in the unlocked position.
-        pub unlocked: bool,
-        /// `endeff-id#` of the mated gripper: 0 none, 1 parts, 2 v, 3 tool.
-        pub end_effector_id: u8,
-    }
+/// Sensors of the quick change (VI.2): two reflectance sensors on the locking ring, and the id pins.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct QuickChangeSensors {
+    /// The ring is seen in the locked position.
+    pub locked: bool,
+    /// The ring is seen in the unlocked position.
+    pub unlocked: bool,
+    /// `endeff-id#` of the mated gripper: 0 none, 1 parts, 2 v, 3 tool.
+    pub end_effector_id: u8,
 }
 
-record! {
-    /// Valves of the quick change (VI.2.1).
-    pub struct QuickChangeValves {
-        /// Air to the lock side of the ring.
-        pub lock: bool,
-        /// Air to the unlock side of the ring.
-        pub unlock: bool,
-        /// The control port is enabled; with it disabled the ring cannot move.
-        pub port: bool,
-    }
+/// Valves of the quick change (VI.2.1).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct QuickChangeValves {
+    /// Air to the lock side of the ring.
+    pub lock: bool,
+    /// Air to the unlock side of the ring.
+    pub unlock: bool,
+    /// The control port is enabled; with it disabled the ring cannot move.
+    pub port: bool,
 }
 
-record! {
-    /// Holster proximity sensors (V.1.2): right, left, centre. Bits 0, 1: large rear sensors see the ears; bits 2, 3: small front
-    /// sensors see the ears at the seat.
-    pub struct HolsterSensors {
-        /// `hol-R-status`.
-        pub right: u8,
-        /// `hol-L-status`.
-        pub left: u8,
-        /// `hol-C-status`.
-        pub centre: u8,
-    }
+/// Holster proximity sensors (V.1.2): right, left, centre. Bits 0, 1: large rear sensors see the ears; bits 2, 3: small front
+/// sensors see the ears at the seat.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct HolsterSensors {
+    /// `hol-R-status`.
+    pub right: u8,
+    /// `hol-L-status`.
+    pub left: u8,
+    /// `hol-C-status`.
+    pub centre: u8,
 }
 
-record! {
-    /// Air to a gripper that only opens and closes: v-gripper and tool gripper (VI.4, VI.5). With neither bit the air is trapped.
-    pub struct JawValves {
-        /// Air to the side that opens.
-        pub open: bool,
-        /// Air to the side that closes.
-        pub close: bool,
-    }
+/// Air to a gripper that only opens and closes: v-gripper and tool gripper (VI.4, VI.5). With neither bit the air is trapped.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct JawValves {
+    /// Air to the side that opens.
+    pub open: bool,
+    /// Air to the side that closes.
+    pub close: bool,
 }
 
 /// Counts of a force axis without load (ASSUMED: middle of the converter's range).
@@ -158,23 +150,22 @@ pub const FORCE_COUNTS_PER_LB: i32 = 16;
 /// Counts for an inch pound of moment (ASSUMED).
 pub const MOMENT_COUNTS_PER_IN_LB: i32 = 4;
 
-record! {
-    /// Force sensor of the tool gripper, the four axes that are connected (III.3.8), in the axes of the sensor: 12-bit converters,
-    /// [`FORCE_ZERO`] without load. Tool X, Y, Z are sensor Z, -Y, X. 0 and [`ADC_FULL_SCALE`] mean overload.
-    ///
-    /// Positive is what pushes the fingers along the positive sensor axis.
-    pub struct ForceSensor {
-        /// Force along sensor X.
-        pub x: u16,
-        /// Force along sensor Y.
-        pub y: u16,
-        /// Force along sensor Z.
-        pub z: u16,
-        /// Moment about the tool's Y, right-hand.
-        pub moment: u16,
-        /// The sensor is connected and its conditioners have power.
-        pub valid: bool,
-    }
+/// Force sensor of the tool gripper, the four axes that are connected (III.3.8), in the axes of the sensor: 12-bit converters,
+/// [`FORCE_ZERO`] without load. Tool X, Y, Z are sensor Z, -Y, X. 0 and [`ADC_FULL_SCALE`] mean overload.
+///
+/// Positive is what pushes the fingers along the positive sensor axis.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ForceSensor {
+    /// Force along sensor X.
+    pub x: u16,
+    /// Force along sensor Y.
+    pub y: u16,
+    /// Force along sensor Z.
+    pub z: u16,
+    /// Moment about the tool's Y, right-hand.
+    pub moment: u16,
+    /// The sensor is connected and its conditioners have power.
+    pub valid: bool,
 }
 
 /// Full speed of the velocity knob, and full deflection of the joystick.
@@ -204,207 +195,198 @@ pub mod single_step {
     pub const PRIM: u8 = 0x08;
 }
 
-record! {
-    /// The joystick box (III.3.3). Its emergency stop is in the T3's circuit and does not come to the controller.
-    pub struct JoystickBox {
-        /// Potentiometer C, the velocity knob, 0 to [`KNOB_FULL`]: whatever commands the motion.
-        pub velocity: u16,
-        /// Stick L: X, or pitch; -1000 to 1000.
-        pub x: i16,
-        /// Stick M: Y, or yaw; -1000 to 1000.
-        pub y: i16,
-        /// Push-button D: along +Z.
-        pub up: bool,
-        /// Push-button E: along -Z.
-        pub down: bool,
-        /// Push-button Z: positive roll about the tool's X.
-        pub roll_plus: bool,
-        /// Push-button a: negative roll.
-        pub roll_minus: bool,
-        /// Push-button F: open the gripper.
-        pub open: bool,
-        /// Push-button H: close it.
-        pub close: bool,
-        /// Coordinate switches, bits of [`joystick_frame`]; one at most may be on. The box is active while one is.
-        pub frame: u8,
-        /// Push-button X: record the pose.
-        pub record: bool,
-        /// Carriage return at the terminal of the Prim board: go on after a recorded pose.
-        pub resume: bool,
-        /// Switches N, P, R, S: processes that are suspended, bits of [`single_step`].
-        pub hold: u8,
-        /// Push-buttons T, U, V, W: step a suspended process once, bits of [`single_step`].
-        pub single_step: u8,
-    }
+/// The joystick box (III.3.3). Its emergency stop is in the T3's circuit and does not come to the controller.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct JoystickBox {
+    /// Potentiometer C, the velocity knob, 0 to [`KNOB_FULL`]: whatever commands the motion.
+    pub velocity: u16,
+    /// Stick L: X, or pitch; -1000 to 1000.
+    pub x: i16,
+    /// Stick M: Y, or yaw; -1000 to 1000.
+    pub y: i16,
+    /// Push-button D: along +Z.
+    pub up: bool,
+    /// Push-button E: along -Z.
+    pub down: bool,
+    /// Push-button Z: positive roll about the tool's X.
+    pub roll_plus: bool,
+    /// Push-button a: negative roll.
+    pub roll_minus: bool,
+    /// Push-button F: open the gripper.
+    pub open: bool,
+    /// Push-button H: close it.
+    pub close: bool,
+    /// Coordinate switches, bits of [`joystick_frame`]; one at most may be on. The box is active while one is.
+    pub frame: u8,
+    /// Push-button X: record the pose.
+    pub record: bool,
+    /// Carriage return at the terminal of the Prim board: go on after a recorded pose.
+    pub resume: bool,
+    /// Switches N, P, R, S: processes that are suspended, bits of [`single_step`].
+    pub hold: u8,
+    /// Push-buttons T, U, V, W: step a suspended process once, bits of [`single_step`].
+    pub single_step: u8,
 }
 
-record! {
-    /// Hand and rotary table of the Active Pedestal (III.9, III.10).
-    pub struct PedestalSensors {
-        /// Finger potentiometer, counts.
-        pub potentiometer: u16,
-        /// Strain gage of the left finger, counts.
-        pub strain_left: u16,
-        /// Strain gage of the right finger, counts.
-        pub strain_right: u16,
-        /// Potentiometer in the base of the table, counts: grows with the angle.
-        pub table_potentiometer: u16,
-        /// The table is at its + limit.
-        pub limit_plus: bool,
-        /// The table is at its - limit.
-        pub limit_minus: bool,
-        /// Number of the last order that the rotary table controller has taken.
-        pub motor_echo: u32,
-        /// Its motor turns.
-        pub motor_moving: bool,
-        /// Its step counter: steps from where it was set to a value.
-        pub motor_counter: i32,
-    }
+/// Hand and rotary table of the Active Pedestal (III.9, III.10).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PedestalSensors {
+    /// Finger potentiometer, counts.
+    pub potentiometer: u16,
+    /// Strain gage of the left finger, counts.
+    pub strain_left: u16,
+    /// Strain gage of the right finger, counts.
+    pub strain_right: u16,
+    /// Potentiometer in the base of the table, counts: grows with the angle.
+    pub table_potentiometer: u16,
+    /// The table is at its + limit.
+    pub limit_plus: bool,
+    /// The table is at its - limit.
+    pub limit_minus: bool,
+    /// Number of the last order that the rotary table controller has taken.
+    pub motor_echo: u32,
+    /// Its motor turns.
+    pub motor_moving: bool,
+    /// Its step counter: steps from where it was set to a value.
+    pub motor_counter: i32,
 }
 
 /// Steps of the rotary table's motor for a tenth of a degree (ASSUMED).
 pub const TABLE_STEPS_PER_TENTH: i32 = 10;
 
-coded_enum! {
-    /// What the rotary table controller is told over its serial link (III.10; the words are ASSUMED).
-    pub enum MotorOrder {
-        /// Nothing.
-        None = "",
-        /// Turn by a number of steps; a limit switch stops it.
-        Turn = "turn",
-        /// Give the step counter a value.
-        SetCounter = "set-counter",
-        /// Stop.
-        Stop = "stop",
-    }
+/// What the rotary table controller is told over its serial link (III.10; the words are ASSUMED).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum MotorOrder {
+    /// Nothing.
+    #[text = ""]
+    None,
+    /// Turn by a number of steps; a limit switch stops it.
+    Turn,
+    /// Give the step counter a value.
+    SetCounter,
+    /// Stop.
+    Stop,
 }
 
-record! {
-    /// Order to the rotary table controller.
-    pub struct MotorCommand {
-        /// Changes with each order; 0 means none.
-        pub number: u32,
-        /// What to do.
-        pub order: MotorOrder,
-        /// Steps to turn, or value of the counter.
-        pub steps: i32,
-    }
+/// Order to the rotary table controller.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct MotorCommand {
+    /// Changes with each order; 0 means none.
+    pub number: u32,
+    /// What to do.
+    pub order: MotorOrder,
+    /// Steps to turn, or value of the counter.
+    pub steps: i32,
 }
 
-coded_enum! {
-    /// What the vision system is asked for (V.2.1 LOCATE-OBJ).
-    pub enum Picture {
-        /// Nothing.
-        None = "none",
-        /// Fast flood: approximate centroid.
-        FastFlood = "fast-flood",
-        /// Second picture: centroid, angle, recognition.
-        Precise = "precise",
-    }
+/// What the vision system is asked for (V.2.1 LOCATE-OBJ).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Picture {
+    /// Nothing.
+    None,
+    /// Fast flood: approximate centroid.
+    FastFlood,
+    /// Second picture: centroid, angle, recognition.
+    Precise,
 }
 
-record! {
-    /// Request to the vision system.
-    pub struct VisionRequest {
-        /// Changes with each request; 0 means none.
-        pub number: u32,
-        /// Which picture.
-        pub picture: Picture,
-        /// Vision id of the object (VII.7.6).
-        pub object_id: u16,
-        /// 1: grip across the widest dimension, 2: across the shortest (VII.7.6).
-        pub grip: i16,
-        /// Expected range from the image plane to the viewed surface, mm.
-        pub range_mm: u16,
-        /// Parameter set, 0 first; varied on a retry.
-        pub variation: u8,
-    }
+/// Request to the vision system.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct VisionRequest {
+    /// Changes with each request; 0 means none.
+    pub number: u32,
+    /// Which picture.
+    pub picture: Picture,
+    /// Vision id of the object (VII.7.6).
+    pub object_id: u16,
+    /// 1: grip across the widest dimension, 2: across the shortest (VII.7.6).
+    pub grip: i16,
+    /// Expected range from the image plane to the viewed surface, mm.
+    pub range_mm: u16,
+    /// Parameter set, 0 first; varied on a retry.
+    pub variation: u8,
 }
 
-coded_enum! {
-    /// Answer of the vision system.
-    pub enum VisionStatus {
-        /// No request yet.
-        Idle = "idle",
-        /// Working on it.
-        Busy = "busy",
-        /// Done: the values are valid.
-        Done = "done",
-        /// No object in the picture.
-        NothingSeen = "nothing-seen",
-        /// An object, but not the one asked for.
-        NotRecognised = "not-recognised",
-    }
+/// Answer of the vision system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum VisionStatus {
+    /// No request yet.
+    Idle,
+    /// Working on it.
+    Busy,
+    /// Done: the values are valid.
+    Done,
+    /// No object in the picture.
+    NothingSeen,
+    /// An object, but not the one asked for.
+    NotRecognised,
 }
 
-record! {
-    /// Answer of the vision system, in the axes of the place that the camera looks at (as if the view movetable were undone):
-    /// X along the optical axis away from the camera, Y the tool's Y, Z = X x Y.
-    pub struct VisionResponse {
-        /// Number of the request that is answered.
-        pub echo: u32,
-        /// How it went.
-        pub status: VisionStatus,
-        /// Centroid from the optical axis along Y, 0.01 in.
-        pub y: i32,
-        /// Centroid from the optical axis along Z, 0.01 in.
-        pub z: i32,
-        /// Right-hand roll about X, 0.01 degree, -9000 < angle <= 9000, that brings the tool's Y onto the dimension to grip across.
-        pub angle: i32,
-        /// Vision id of what was recognised, 0 for none.
-        pub recognised: u16,
-    }
+/// Answer of the vision system, in the axes of the place that the camera looks at (as if the view movetable were undone):
+/// X along the optical axis away from the camera, Y the tool's Y, Z = X x Y.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct VisionResponse {
+    /// Number of the request that is answered.
+    pub echo: u32,
+    /// How it went.
+    pub status: VisionStatus,
+    /// Centroid from the optical axis along Y, 0.01 in.
+    pub y: i32,
+    /// Centroid from the optical axis along Z, 0.01 in.
+    pub z: i32,
+    /// Right-hand roll about X, 0.01 degree, -9000 < angle <= 9000, that brings the tool's Y onto the dimension to grip across.
+    pub angle: i32,
+    /// Vision id of what was recognised, 0 for none.
+    pub recognised: u16,
 }
 
-record! {
-    /// Everything that the controller reads from its devices in a tick.
-    pub struct DeviceInputs {
-        /// From the DEPC line.
-        pub link_rx: LinkBytes,
-        /// The line's clear-to-send (the robot's DTR, A.2).
-        pub link_ready: bool,
-        /// The port has not taken all bytes of the last tick: they are not on the line.
-        pub link_unsent: bool,
-        /// Joint resolvers.
-        pub resolvers: Resolvers,
-        /// The attached gripper. All three have their potentiometer on the same connections (III.3.7, III.3.8); strain gages and
-        /// beam breaks are the parts gripper's, zeros with another one.
-        pub grip: GripSensors,
-        /// Force sensor of the tool gripper; invalid with another one.
-        pub force: ForceSensor,
-        /// Quick change.
-        pub quick_change: QuickChangeSensors,
-        /// Holsters.
-        pub holsters: HolsterSensors,
-        /// Joystick box.
-        pub joystick: JoystickBox,
-        /// Vision system.
-        pub vision: VisionResponse,
-        /// Active Pedestal.
-        pub pedestal: PedestalSensors,
-    }
+/// Everything that the controller reads from its devices in a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct DeviceInputs {
+    /// From the DEPC line.
+    pub link_rx: LinkBytes,
+    /// The line's clear-to-send (the robot's DTR, A.2).
+    pub link_ready: bool,
+    /// The port has not taken all bytes of the last tick: they are not on the line.
+    pub link_unsent: bool,
+    /// Joint resolvers.
+    pub resolvers: Resolvers,
+    /// The attached gripper. All three have their potentiometer on the same connections (III.3.7, III.3.8); strain gages and
+    /// beam breaks are the parts gripper's, zeros with another one.
+    pub grip: GripSensors,
+    /// Force sensor of the tool gripper; invalid with another one.
+    pub force: ForceSensor,
+    /// Quick change.
+    pub quick_change: QuickChangeSensors,
+    /// Holsters.
+    pub holsters: HolsterSensors,
+    /// Joystick box.
+    pub joystick: JoystickBox,
+    /// Vision system.
+    pub vision: VisionResponse,
+    /// Active Pedestal.
+    pub pedestal: PedestalSensors,
 }
 
-record! {
-    /// Everything that the controller writes to its devices in a tick.
-    pub struct DeviceOutputs {
-        /// To the DEPC line.
-        pub link_tx: LinkBytes,
-        /// Parts gripper.
-        pub grip: GripValves,
-        /// Quick change.
-        pub quick_change: QuickChangeValves,
-        /// Vision system.
-        pub vision: VisionRequest,
-        /// v-gripper.
-        pub v_grip: JawValves,
-        /// Tool gripper.
-        pub tool_grip: JawValves,
-        /// LEDs b, c, d, e of the joystick box, bits of [`joystick_frame`].
-        pub joystick_leds: u8,
-        /// Fingers of the pedestal's hand: eight valves as those of the parts gripper (III.9.2).
-        pub pedestal_hand: GripValves,
-        /// Rotary table of the pedestal.
-        pub pedestal_table: MotorCommand,
-    }
+/// Everything that the controller writes to its devices in a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct DeviceOutputs {
+    /// To the DEPC line.
+    pub link_tx: LinkBytes,
+    /// Parts gripper.
+    pub grip: GripValves,
+    /// Quick change.
+    pub quick_change: QuickChangeValves,
+    /// Vision system.
+    pub vision: VisionRequest,
+    /// v-gripper.
+    pub v_grip: JawValves,
+    /// Tool gripper.
+    pub tool_grip: JawValves,
+    /// LEDs b, c, d, e of the joystick box, bits of [`joystick_frame`].
+    pub joystick_leds: u8,
+    /// Fingers of the pedestal's hand: eight valves as those of the parts gripper (III.9.2).
+    pub pedestal_hand: GripValves,
+    /// Rotary table of the pedestal.
+    pub pedestal_table: MotorCommand,
 }

@@ -1,146 +1,157 @@
 //! Subtask and E-move (V.2.2).
 
 use crate::{
-    coded_enum,
+    Plain,
     interface::{
         ChangingPose, Header, Reason, Report, device::VisionRequest, grip::GripCommand, jaws::JawsCommand,
         prim::PrimCommand, quick_change::QuickChangeCommand, subtask::LocationKind,
     },
     name::{Name10, Name16},
-    record,
 };
 
-coded_enum! {
-    /// Commands of E-move (V.2.1).
-    pub enum EmoveVerb {
-        /// None yet.
-        None = "",
-        /// Do nothing.
-        Pause = "E-PAUSE",
-        /// Move to a location.
-        MovToLoc = "MOV-TO-LOC",
-        /// Move to an object at a location, fingers open for it.
-        MovToObj = "MOV-TO-OBJ",
-        /// Move the held object to a location.
-        MovObjTo = "MOV-OBJ-TO",
-        /// Move to where pictures are taken.
-        MovToVu = "MOV-TO-VU",
-        /// Find the object with the vision system.
-        LocateObj = "LOCATE-OBJ",
-        /// Close the fingers on the object.
-        GraspObj = "GRASP-OBJ",
-        /// Open the fingers.
-        Release = "RELEASE",
-        /// Move to a holster, fingers closed for it.
-        MovToHol = "MOV-TO-HOL",
-        /// Put the attached gripper into the holster and leave it there.
-        QcDetach = "QC-DETACH",
-        /// Take the gripper out of the holster.
-        QcAttach = "QC-ATTACH",
-        /// A DELTA-MOVE from above.
-        Withdraw = "WITHDRAW",
-        /// Insert a tool into the tool drum.
-        InsertTool = "INSERT-TOOL",
-        /// Let go of a tool in the drum.
-        ReleaseTool = "RELEASE-TOOL",
-        /// Move to a tool in the drum and grasp it.
-        AcquireTool = "ACQUIRE-TOOL",
-        /// Pull a tool out of the drum.
-        RemoveTool = "REMOVE-TOOL",
-    }
+/// Commands of E-move (V.2.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum EmoveVerb {
+    /// None yet.
+    #[text = ""]
+    None,
+    /// Do nothing.
+    #[text = "E-PAUSE"]
+    Pause,
+    /// Move to a location.
+    #[text = "MOV-TO-LOC"]
+    MovToLoc,
+    /// Move to an object at a location, fingers open for it.
+    #[text = "MOV-TO-OBJ"]
+    MovToObj,
+    /// Move the held object to a location.
+    #[text = "MOV-OBJ-TO"]
+    MovObjTo,
+    /// Move to where pictures are taken.
+    #[text = "MOV-TO-VU"]
+    MovToVu,
+    /// Find the object with the vision system.
+    #[text = "LOCATE-OBJ"]
+    LocateObj,
+    /// Close the fingers on the object.
+    #[text = "GRASP-OBJ"]
+    GraspObj,
+    /// Open the fingers.
+    #[text = "RELEASE"]
+    Release,
+    /// Move to a holster, fingers closed for it.
+    #[text = "MOV-TO-HOL"]
+    MovToHol,
+    /// Put the attached gripper into the holster and leave it there.
+    #[text = "QC-DETACH"]
+    QcDetach,
+    /// Take the gripper out of the holster.
+    #[text = "QC-ATTACH"]
+    QcAttach,
+    /// A DELTA-MOVE from above.
+    #[text = "WITHDRAW"]
+    Withdraw,
+    /// Insert a tool into the tool drum.
+    #[text = "INSERT-TOOL"]
+    InsertTool,
+    /// Let go of a tool in the drum.
+    #[text = "RELEASE-TOOL"]
+    ReleaseTool,
+    /// Move to a tool in the drum and grasp it.
+    #[text = "ACQUIRE-TOOL"]
+    AcquireTool,
+    /// Pull a tool out of the drum.
+    #[text = "REMOVE-TOOL"]
+    RemoveTool,
 }
 
-record! {
-    /// Command from Subtask to E-move.
-    pub struct EmoveCommand {
-        /// `command-#-in`.
-        pub number: u32,
-        /// `"command-in"`.
-        pub command: EmoveVerb,
-        /// `"obj"`.
-        pub object: Name16,
-        /// Grip number of the object (extension: the manual has it only in the records that `obj-para-^` names).
-        pub grip: i32,
-        /// `obj-para-^`: record of END-EFF-PARA.
-        pub object_parameters: u32,
-        /// `obj-grip-loc-^`: record of OBJ-GRIPS.
-        pub object_grips: u32,
-        /// `obj-vision-para-^`: record of VISION-PARA, 0 if vision is not used.
-        pub object_vision: u32,
-        /// `locpt-name`.
-        pub location: Name10,
-        /// `locpt-type`.
-        pub location_kind: LocationKind,
-        /// `locpt-^-in`: record of LOCPT.
-        pub location_record: u32,
-        /// Record of ARRAY-TABLE if the location is a sector (extension); 0 for none.
-        pub location_array: u32,
-        /// `pose-^-in`: the goal pose.
-        pub pose: u32,
-        /// `endeff-id#-in`.
-        pub end_effector_id: u8,
-    }
+/// Command from Subtask to E-move.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct EmoveCommand {
+    /// `command-#-in`.
+    pub number: u32,
+    /// `"command-in"`.
+    pub command: EmoveVerb,
+    /// `"obj"`.
+    pub object: Name16,
+    /// Grip number of the object (extension: the manual has it only in the records that `obj-para-^` names).
+    pub grip: i32,
+    /// `obj-para-^`: record of END-EFF-PARA.
+    pub object_parameters: u32,
+    /// `obj-grip-loc-^`: record of OBJ-GRIPS.
+    pub object_grips: u32,
+    /// `obj-vision-para-^`: record of VISION-PARA, 0 if vision is not used.
+    pub object_vision: u32,
+    /// `locpt-name`.
+    pub location: Name10,
+    /// `locpt-type`.
+    pub location_kind: LocationKind,
+    /// `locpt-^-in`: record of LOCPT.
+    pub location_record: u32,
+    /// Record of ARRAY-TABLE if the location is a sector (extension); 0 for none.
+    pub location_array: u32,
+    /// `pose-^-in`: the goal pose.
+    pub pose: u32,
+    /// `endeff-id#-in`.
+    pub end_effector_id: u8,
 }
 
-record! {
-    /// Status from E-move to Subtask.
-    pub struct EmoveStatus {
-        /// `command-#-echo-out`.
-        pub echo: u32,
-        /// `status-report`.
-        pub report: Report,
-        /// `status-para-out`.
-        pub reason: Reason,
-        /// `ref-pose-^`: the feedback pose.
-        pub reference_pose: u32,
-        /// `obj-held-status-out`.
-        pub object_held: bool,
-        /// `pres-endeff-id#-out`.
-        pub end_effector_id: u8,
-        /// Name of the object held (extension).
-        pub held_object: Name16,
-        /// Where the robot is: location of the last completed move; empty if unknown (extension).
-        pub at: Name10,
-    }
+/// Status from E-move to Subtask.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct EmoveStatus {
+    /// `command-#-echo-out`.
+    pub echo: u32,
+    /// `status-report`.
+    pub report: Report,
+    /// `status-para-out`.
+    pub reason: Reason,
+    /// `ref-pose-^`: the feedback pose.
+    pub reference_pose: u32,
+    /// `obj-held-status-out`.
+    pub object_held: bool,
+    /// `pres-endeff-id#-out`.
+    pub end_effector_id: u8,
+    /// Name of the object held (extension).
+    pub held_object: Name16,
+    /// Where the robot is: location of the last completed move; empty if unknown (extension).
+    pub at: Name10,
 }
 
-record! {
-    /// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.
-    pub struct Dormancy {
-        /// Grip.
-        pub grip: bool,
-        /// V-Grip.
-        pub v_grip: bool,
-        /// Tool-Grip.
-        pub tool_grip: bool,
-    }
+/// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Dormancy {
+    /// Grip.
+    pub grip: bool,
+    /// V-Grip.
+    pub v_grip: bool,
+    /// Tool-Grip.
+    pub tool_grip: bool,
 }
 
 /// Changing poses of E-move: the pose departed from, the goal, a point between, and the located object.
 pub const EMOVE_POSES: usize = 4;
 
-record! {
-    /// Output buffers of E-move.
-    pub struct EmoveOutputs {
-        /// Stamp and row.
-        pub header: Header,
-        /// To Subtask.
-        pub status: EmoveStatus,
-        /// To Prim.
-        pub prim: PrimCommand,
-        /// To Quick Change.
-        pub quick_change: QuickChangeCommand,
-        /// To Grip.
-        pub grip: GripCommand,
-        /// To V-Grip.
-        pub v_grip: JawsCommand,
-        /// To Tool-Grip.
-        pub tool_grip: JawsCommand,
-        /// Which gripper processes are dormant (II.2.3): all but that of the attached gripper.
-        pub dormant: Dormancy,
-        /// To the vision system.
-        pub vision: VisionRequest,
-        /// Departure, goal, point between, located object.
-        pub poses: [ChangingPose; EMOVE_POSES],
-    }
+/// Output buffers of E-move.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct EmoveOutputs {
+    /// Stamp and row.
+    pub header: Header,
+    /// To Subtask.
+    pub status: EmoveStatus,
+    /// To Prim.
+    pub prim: PrimCommand,
+    /// To Quick Change.
+    pub quick_change: QuickChangeCommand,
+    /// To Grip.
+    pub grip: GripCommand,
+    /// To V-Grip.
+    pub v_grip: JawsCommand,
+    /// To Tool-Grip.
+    pub tool_grip: JawsCommand,
+    /// Which gripper processes are dormant (II.2.3): all but that of the attached gripper.
+    pub dormant: Dormancy,
+    /// To the vision system.
+    pub vision: VisionRequest,
+    /// Departure, goal, point between, located object.
+    pub poses: [ChangingPose; EMOVE_POSES],
 }

@@ -1,87 +1,82 @@
 //! Task and the workstation controller, HWSC (V.4.2).
 
 use crate::{
-    coded_enum,
+    Plain,
     interface::{ChangingPose, Header, Reason, data_base::DataBaseCommand, subtask::SubtaskCommand},
     name::Name16,
-    record,
 };
 
-record! {
-    /// Command from the HWSC to Task. Words are text, since they come from outside; Task checks them.
-    pub struct HwsCommand {
-        /// `command-#-in`; 0 for none.
-        pub number: u32,
-        /// `"command-16"`.
-        pub command: Name16,
-        /// `"obj"`; empty for none.
-        pub object: Name16,
-        /// `"obj-serial-#"`.
-        pub serial: Name16,
-        /// `source-grip-#`.
-        pub source_grip: i32,
-        /// `"src-loc-16"`; empty for none.
-        pub source: Name16,
-        /// `src-sector#`; 0 for none.
-        pub source_sector: i32,
-        /// `dest-grip-#`.
-        pub destination_grip: i32,
-        /// `"dest-loc-16"`; empty for none.
-        pub destination: Name16,
-        /// `dest-sector#`; 0 for none.
-        pub destination_sector: i32,
-        /// `"end-at-16"`; empty for none.
-        pub end_at: Name16,
-        /// `endatsector#`; 0 for none.
-        pub end_at_sector: i32,
-    }
+/// Command from the HWSC to Task. Words are text, since they come from outside; Task checks them.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct HwsCommand {
+    /// `command-#-in`; 0 for none.
+    pub number: u32,
+    /// `"command-16"`.
+    pub command: Name16,
+    /// `"obj"`; empty for none.
+    pub object: Name16,
+    /// `"obj-serial-#"`.
+    pub serial: Name16,
+    /// `source-grip-#`.
+    pub source_grip: i32,
+    /// `"src-loc-16"`; empty for none.
+    pub source: Name16,
+    /// `src-sector#`; 0 for none.
+    pub source_sector: i32,
+    /// `dest-grip-#`.
+    pub destination_grip: i32,
+    /// `"dest-loc-16"`; empty for none.
+    pub destination: Name16,
+    /// `dest-sector#`; 0 for none.
+    pub destination_sector: i32,
+    /// `"end-at-16"`; empty for none.
+    pub end_at: Name16,
+    /// `endatsector#`; 0 for none.
+    pub end_at_sector: i32,
 }
 
-coded_enum! {
-    /// `"status"` to the HWSC. The manual has `executing` and `finished`; the others are extensions (DESIGN 16).
-    pub enum HwsReport {
-        /// Nothing was commanded yet (extension).
-        Idle = "idle",
-        /// The command is executing.
-        Executing = "executing",
-        /// The command is finished.
-        Finished = "finished",
-        /// The command failed (extension).
-        Error = "error",
-        /// The operator has the robot (extension).
-        JoystickOn = "joystick-on",
-    }
+/// `"status"` to the HWSC. The manual has `executing` and `finished`; the others are extensions (DESIGN 16).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum HwsReport {
+    /// Nothing was commanded yet (extension).
+    Idle,
+    /// The command is executing.
+    Executing,
+    /// The command is finished.
+    Finished,
+    /// The command failed (extension).
+    Error,
+    /// The operator has the robot (extension).
+    JoystickOn,
 }
 
-record! {
-    /// Status from Task to the HWSC.
-    pub struct HwsStatus {
-        /// Echo of the command number.
-        pub echo: u32,
-        /// `"command-echo"`.
-        pub command: Name16,
-        /// `"status"`.
-        pub report: HwsReport,
-        /// Why it failed (extension).
-        pub reason: Reason,
-    }
+/// Status from Task to the HWSC.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct HwsStatus {
+    /// Echo of the command number.
+    pub echo: u32,
+    /// `"command-echo"`.
+    pub command: Name16,
+    /// `"status"`.
+    pub report: HwsReport,
+    /// Why it failed (extension).
+    pub reason: Reason,
 }
 
 /// T-POSE-1 to T-POSE-3 (VII.1).
 pub const TASK_POSES: usize = 3;
 
-record! {
-    /// Output buffers of Task.
-    pub struct TaskOutputs {
-        /// Stamp and row.
-        pub header: Header,
-        /// To the HWSC.
-        pub status: HwsStatus,
-        /// To Subtask.
-        pub subtask: SubtaskCommand,
-        /// To the Data System.
-        pub data_base: DataBaseCommand,
-        /// T-POSE-1 …: poses that the commands name.
-        pub poses: [ChangingPose; TASK_POSES],
-    }
+/// Output buffers of Task.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct TaskOutputs {
+    /// Stamp and row.
+    pub header: Header,
+    /// To the HWSC.
+    pub status: HwsStatus,
+    /// To Subtask.
+    pub subtask: SubtaskCommand,
+    /// To the Data System.
+    pub data_base: DataBaseCommand,
+    /// T-POSE-1 …: poses that the commands name.
+    pub poses: [ChangingPose; TASK_POSES],
 }

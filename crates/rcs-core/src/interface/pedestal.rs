@@ -4,63 +4,66 @@
 //! table are ours. The hand is nearly identical to the parts gripper (III.9.2) and has the buffers of Grip.
 
 use crate::{
-    coded_enum,
+    Plain,
     handshake::Lower,
     interface::{GripOutputs, Header, Reason, device::MotorCommand, grip::GripCommand},
-    record,
     tick::Tick,
 };
 
-coded_enum! {
-    /// Commands of the Active Pedestal (VI.7.1).
-    pub enum PedestalVerb {
-        /// None yet.
-        None = "",
-        /// Do nothing.
-        Pause = "PAUSE",
-        /// Open the hand and turn the table to an absolute angle, to receive an object.
-        PreGrip = "PRE-GRIP",
-        /// Close the hand on the object.
-        Grip = "GRIP",
-        /// Turn the table by a relative angle.
-        Flip = "FLIP",
-        /// Open the hand and let the object go.
-        Release = "RELEASE",
-    }
+/// Commands of the Active Pedestal (VI.7.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum PedestalVerb {
+    /// None yet.
+    #[text = ""]
+    None,
+    /// Do nothing.
+    #[text = "PAUSE"]
+    Pause,
+    /// Open the hand and turn the table to an absolute angle, to receive an object.
+    #[text = "PRE-GRIP"]
+    PreGrip,
+    /// Close the hand on the object.
+    #[text = "GRIP"]
+    Grip,
+    /// Turn the table by a relative angle.
+    #[text = "FLIP"]
+    Flip,
+    /// Open the hand and let the object go.
+    #[text = "RELEASE"]
+    Release,
 }
 
-record! {
-    /// Command from Subtask to the Active Pedestal.
-    pub struct PedestalCommand {
-        /// `cycle-cnt`: tick in which the command was written.
-        pub cycle: Tick,
-        /// `incr-cmnd#`.
-        pub number: u32,
-        /// `command`.
-        pub command: PedestalVerb,
-        /// `grasp-size`: opening, 0.01 in (contradiction 27).
-        pub grasp_size: i32,
-        /// `grasp-force`: lb.
-        pub grasp_force: i32,
-        /// `table-angle`: 0.1 degree, absolute for PRE-GRIP, relative for FLIP.
-        pub table_angle: i32,
-    }
+/// Command from Subtask to the Active Pedestal.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PedestalCommand {
+    /// `cycle-cnt`: tick in which the command was written.
+    pub cycle: Tick,
+    /// `incr-cmnd#`.
+    pub number: u32,
+    /// `command`.
+    pub command: PedestalVerb,
+    /// `grasp-size`: opening, 0.01 in (contradiction 27).
+    pub grasp_size: i32,
+    /// `grasp-force`: lb.
+    pub grasp_force: i32,
+    /// `table-angle`: 0.1 degree, absolute for PRE-GRIP, relative for FLIP.
+    pub table_angle: i32,
 }
 
-coded_enum! {
-    /// `status` of the Active Pedestal and of its table.
-    pub enum PedestalReport {
-        /// Nothing was commanded yet (extension).
-        Idle = "idle",
-        /// Hand, table or both are moving.
-        Executing = "executing",
-        /// Hand and table have reached what was commanded.
-        Done = "done",
-        /// A command that cannot be executed.
-        CannotDo = "can't-do",
-        /// An error that prevents the command from finishing.
-        Error = "error",
-    }
+/// `status` of the Active Pedestal and of its table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum PedestalReport {
+    /// Nothing was commanded yet (extension).
+    Idle,
+    /// Hand, table or both are moving.
+    Executing,
+    /// Hand and table have reached what was commanded.
+    Done,
+    /// A command that cannot be executed.
+    #[text = "can't-do"]
+    CannotDo,
+    /// An error that prevents the command from finishing.
+    Error,
 }
 
 impl PedestalReport {
@@ -75,108 +78,105 @@ impl PedestalReport {
     }
 }
 
-record! {
-    /// Status from the Active Pedestal to Subtask.
-    pub struct PedestalStatus {
-        /// `cycle-cnt-echo`.
-        pub cycle_echo: Tick,
-        /// `incr-cmnd#-echo`.
-        pub echo: u32,
-        /// `status`.
-        pub report: PedestalReport,
-        /// `status-code`.
-        pub reason: Reason,
-        /// `grip-size`: opening, 0.01 in.
-        pub grip_size: i32,
-        /// `grip-force`: lb.
-        pub grip_force: i32,
-        /// `table-position`: absolute angle, 0.1 degree.
-        pub table_position: i32,
-    }
+/// Status from the Active Pedestal to Subtask.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PedestalStatus {
+    /// `cycle-cnt-echo`.
+    pub cycle_echo: Tick,
+    /// `incr-cmnd#-echo`.
+    pub echo: u32,
+    /// `status`.
+    pub report: PedestalReport,
+    /// `status-code`.
+    pub reason: Reason,
+    /// `grip-size`: opening, 0.01 in.
+    pub grip_size: i32,
+    /// `grip-force`: lb.
+    pub grip_force: i32,
+    /// `table-position`: absolute angle, 0.1 degree.
+    pub table_position: i32,
 }
 
-coded_enum! {
-    /// Commands of the table process (ours).
-    pub enum TableVerb {
-        /// None yet.
-        None = "",
-        /// Do nothing; a turning table stops.
-        Pause = "PAUSE",
-        /// Find the + limit and set the counter (IV.1 step 3, IV.5.1 step 10).
-        Calibrate = "CALIBRATE",
-        /// Turn to an absolute angle.
-        Turn = "TURN",
-    }
+/// Commands of the table process (ours).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum TableVerb {
+    /// None yet.
+    #[text = ""]
+    None,
+    /// Do nothing; a turning table stops.
+    #[text = "PAUSE"]
+    Pause,
+    /// Find the + limit and set the counter (IV.1 step 3, IV.5.1 step 10).
+    #[text = "CALIBRATE"]
+    Calibrate,
+    /// Turn to an absolute angle.
+    #[text = "TURN"]
+    Turn,
 }
 
-record! {
-    /// Command from the pedestal process to the table process.
-    pub struct TableCommand {
-        /// Command number.
-        pub number: u32,
-        /// Command.
-        pub command: TableVerb,
-        /// Absolute angle, 0.1 degree.
-        pub angle: i32,
-    }
+/// Command from the pedestal process to the table process.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct TableCommand {
+    /// Command number.
+    pub number: u32,
+    /// Command.
+    pub command: TableVerb,
+    /// Absolute angle, 0.1 degree.
+    pub angle: i32,
 }
 
-record! {
-    /// Status from the table process to the pedestal process.
-    pub struct TableStatus {
-        /// Echo of the command number.
-        pub echo: u32,
-        /// How it stands.
-        pub report: PedestalReport,
-        /// Why it failed.
-        pub reason: Reason,
-        /// The counter has been set at the limit: angles are absolute.
-        pub calibrated: bool,
-        /// Absolute angle, 0.1 degree.
-        pub position: i32,
-    }
+/// Status from the table process to the pedestal process.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct TableStatus {
+    /// Echo of the command number.
+    pub echo: u32,
+    /// How it stands.
+    pub report: PedestalReport,
+    /// Why it failed.
+    pub reason: Reason,
+    /// The counter has been set at the limit: angles are absolute.
+    pub calibrated: bool,
+    /// Absolute angle, 0.1 degree.
+    pub position: i32,
 }
 
-record! {
-    /// Output buffers of the pedestal process.
-    pub struct PedestalOutputs {
-        /// Stamp and row.
-        pub header: Header,
-        /// To Subtask.
-        pub status: PedestalStatus,
-        /// To the hand process.
-        pub hand: GripCommand,
-        /// To the table process.
-        pub table: TableCommand,
-    }
+/// Output buffers of the pedestal process.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PedestalOutputs {
+    /// Stamp and row.
+    pub header: Header,
+    /// To Subtask.
+    pub status: PedestalStatus,
+    /// To the hand process.
+    pub hand: GripCommand,
+    /// To the table process.
+    pub table: TableCommand,
 }
 
-record! {
-    /// Output buffers of the table process.
-    pub struct TableOutputs {
-        /// Stamp and row.
-        pub header: Header,
-        /// To the pedestal process.
-        pub status: TableStatus,
-        /// To the rotary table controller.
-        pub motor: MotorCommand,
-    }
+/// Output buffers of the table process.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct TableOutputs {
+    /// Stamp and row.
+    pub header: Header,
+    /// To the pedestal process.
+    pub status: TableStatus,
+    /// To the rotary table controller.
+    pub motor: MotorCommand,
 }
 
-record! {
-    /// What an Active Pedestal that is a system of its own has sent over the network (II.2, IX.3). Its three processes run there, and
-    /// what they wrote is adopted into common memory here.
-    pub struct OutsidePedestal {
-        /// It is another system: the processes of the pedestal are not stepped here.
-        pub elsewhere: bool,
-        /// It answers. While it does not, its buffers keep what it wrote last and the stamp of that tick, by which their readers know
-        /// it for lost.
-        pub answers: bool,
-        /// Output buffers of its pedestal process; the stamp does not count.
-        pub pedestal: PedestalOutputs,
-        /// Output buffers of its hand process; the stamp does not count.
-        pub hand: GripOutputs,
-        /// Output buffers of its table process; the stamp does not count.
-        pub table: TableOutputs,
-    }
+/// What an Active Pedestal that is a system of its own has sent over the network (II.2, IX.3). Its three processes run there, and
+/// what they wrote is adopted into common memory here.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct OutsidePedestal {
+    /// It is another system: the processes of the pedestal are not stepped here.
+    pub elsewhere: bool,
+    /// It answers. While it does not, its buffers keep what it wrote last and the stamp of that tick, by which their readers know
+    /// it for lost.
+    pub answers: bool,
+    /// Output buffers of its pedestal process; the stamp does not count.
+    pub pedestal: PedestalOutputs,
+    /// Output buffers of its hand process; the stamp does not count.
+    pub hand: GripOutputs,
+    /// Output buffers of its table process; the stamp does not count.
+    pub table: TableOutputs,
 }

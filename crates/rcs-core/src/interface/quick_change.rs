@@ -1,52 +1,56 @@
 //! E-move and Quick Change (VI.2.2).
 
 use crate::{
-    coded_enum,
+    Plain,
     handshake::Lower,
     interface::{Header, Reason, device::QuickChangeValves},
-    record,
 };
 
-coded_enum! {
-    /// Commands of Quick Change (VI.2.1).
-    pub enum QuickChangeVerb {
-        /// None yet.
-        None = "",
-        /// Do nothing; sensors and id are read.
-        Pause = "QC-PAUSE",
-        /// Lock, check, disable the port.
-        Lock = "QC-LOCK",
-        /// Unlock and check.
-        Unlock = "QC-UNLOCK",
-    }
+/// Commands of Quick Change (VI.2.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum QuickChangeVerb {
+    /// None yet.
+    #[text = ""]
+    None,
+    /// Do nothing; sensors and id are read.
+    #[text = "QC-PAUSE"]
+    Pause,
+    /// Lock, check, disable the port.
+    #[text = "QC-LOCK"]
+    Lock,
+    /// Unlock and check.
+    #[text = "QC-UNLOCK"]
+    Unlock,
 }
 
-record! {
-    /// Command from E-move to Quick Change.
-    pub struct QuickChangeCommand {
-        /// `command-#-in`.
-        pub number: u32,
-        /// `"command"`.
-        pub command: QuickChangeVerb,
-    }
+/// Command from E-move to Quick Change.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct QuickChangeCommand {
+    /// `command-#-in`.
+    pub number: u32,
+    /// `"command"`.
+    pub command: QuickChangeVerb,
 }
 
-coded_enum! {
-    /// `status-report` of Quick Change.
-    pub enum QuickChangeReport {
-        /// Nothing was read yet (extension).
-        Idle = "idle",
-        /// The command is executing.
-        Executing = "executing",
-        /// Locked; there may or may not be an end effector.
-        Locked = "qc-locked",
-        /// Unlocked; there may or may not be an end effector.
-        Unlocked = "qc-unlocked",
-        /// The sensors contradict each other.
-        SensorMalfunction = "qc-sens-malf",
-        /// The locking ring is neither fully locked nor unlocked.
-        Stuck = "qc-stuck",
-    }
+/// `status-report` of Quick Change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum QuickChangeReport {
+    /// Nothing was read yet (extension).
+    Idle,
+    /// The command is executing.
+    Executing,
+    /// Locked; there may or may not be an end effector.
+    #[text = "qc-locked"]
+    Locked,
+    /// Unlocked; there may or may not be an end effector.
+    #[text = "qc-unlocked"]
+    Unlocked,
+    /// The sensors contradict each other.
+    #[text = "qc-sens-malf"]
+    SensorMalfunction,
+    /// The locking ring is neither fully locked nor unlocked.
+    #[text = "qc-stuck"]
+    Stuck,
 }
 
 impl QuickChangeReport {
@@ -61,28 +65,26 @@ impl QuickChangeReport {
     }
 }
 
-record! {
-    /// Status from Quick Change to E-move.
-    pub struct QuickChangeStatus {
-        /// `command-#-echo`.
-        pub echo: u32,
-        /// `status-report`.
-        pub report: QuickChangeReport,
-        /// `status-para-out`.
-        pub reason: Reason,
-        /// `endeff-id#`: gripper mated, locked or not; 0 for none.
-        pub end_effector_id: u8,
-    }
+/// Status from Quick Change to E-move.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct QuickChangeStatus {
+    /// `command-#-echo`.
+    pub echo: u32,
+    /// `status-report`.
+    pub report: QuickChangeReport,
+    /// `status-para-out`.
+    pub reason: Reason,
+    /// `endeff-id#`: gripper mated, locked or not; 0 for none.
+    pub end_effector_id: u8,
 }
 
-record! {
-    /// Output buffers of Quick Change.
-    pub struct QuickChangeOutputs {
-        /// Stamp and row.
-        pub header: Header,
-        /// To E-move.
-        pub status: QuickChangeStatus,
-        /// To the valves.
-        pub valves: QuickChangeValves,
-    }
+/// Output buffers of Quick Change.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct QuickChangeOutputs {
+    /// Stamp and row.
+    pub header: Header,
+    /// To E-move.
+    pub status: QuickChangeStatus,
+    /// To the valves.
+    pub valves: QuickChangeValves,
 }

@@ -4,7 +4,7 @@
 //! names and frames on the line, the new bytes). A field that never changes is an empty column, the noise of a
 //! converter two small bytes a change, alike enough to be packed to a few bits.
 
-use rcs_core::record::{RecordSchema, Schema};
+use rcs_core::plain::{RecordSchema, Schema};
 
 use crate::{
     layout,
@@ -127,7 +127,7 @@ fn change(column: &Column, due: &mut Option<u64>, rest: &mut &[u8], image: &mut 
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use rcs_core::{interface::ExternalInputs, record::Field};
+    use rcs_core::{Plain, interface::ExternalInputs};
 
     proptest! {
         #[test]

@@ -24,9 +24,10 @@ use std::{
 use levels::ladder::Ladder;
 use prost::Message as _;
 use rcs_core::{
+    Plain as _,
     digest::Digest,
     interface::{CommonMemory, ExternalInputs},
-    record::{Field as _, from_bytes},
+    plain::from_bytes,
     tick::{TICK_MS, Tick},
 };
 use taskdata::load::Store;

@@ -7,9 +7,10 @@
 use std::{collections::BTreeMap, fmt::Write as _};
 
 use rcs_core::{
+    Plain as _,
     digest::Digest,
     interface::{CommonMemory, ExternalInputs, hws::HwsReport},
-    record::{Field as _, Writer},
+    plain::Writer,
     tick::{TICK_S, Tick},
 };
 

@@ -20,7 +20,7 @@ use prost_types::{
     FileDescriptorProto, FileDescriptorSet,
     field_descriptor_proto::{Label, Type},
 };
-use rcs_core::record::{EnumSchema, RecordSchema, Schema};
+use rcs_core::plain::{EnumSchema, RecordSchema, Schema};
 
 /// Package of all messages of this project.
 pub const PACKAGE: &str = "rcs";

@@ -1,6 +1,6 @@
 //! A record's byte image as a protobuf message, described by [`super::descriptor`].
 
-use rcs_core::record::{RecordSchema, Schema};
+use rcs_core::plain::{RecordSchema, Schema};
 
 use super::wire;
 use crate::layout;
@@ -48,30 +48,32 @@ fn encode_packed(schema: &Schema, bytes: &[u8], out: &mut Vec<u8>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::record::{Field, Writer};
+    use rcs_core::{Plain, plain::Writer};
 
-    rcs_core::coded_enum! {
-        /// For the test.
-        enum Light { Off = "off", On = "on", }
+    /// For the test.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+    enum Light {
+        Off,
+        On,
     }
 
-    rcs_core::record! {
-        /// For the test.
-        struct Inner { at: i16, }
+    /// For the test.
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    struct Inner {
+        at: i16,
     }
 
-    rcs_core::record! {
-        /// For the test.
-        struct Lamp {
-            number: u16,
-            light: Light,
-            hours: [i32; 2],
-            name: rcs_core::name::Name10,
-            raw: [u8; 3],
-            inner: [Inner; 2],
-            level: f64,
-            lit: bool,
-        }
+    /// For the test.
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    struct Lamp {
+        number: u16,
+        light: Light,
+        hours: [i32; 2],
+        name: rcs_core::name::Name10,
+        raw: [u8; 3],
+        inner: [Inner; 2],
+        level: f64,
+        lit: bool,
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! Record numbers: what the manual's variables ending in `-^` hold (V.1.2 `traj-para-^`, V.2.2 `pose-^-in` …).
 
-use rcs_core::record::{DecodeError, Field, Reader, Schema, Writer};
+use rcs_core::{
+    Plain,
+    plain::{DecodeError, Reader, Schema, Writer},
+};
 
 macro_rules! record_numbers {
     ($($(#[$meta:meta])* $name:ident;)+) => {$(
@@ -56,7 +59,7 @@ macro_rules! record_numbers {
             }
         }
 
-        impl Field for $name {
+        impl Plain for $name {
             const SCHEMA: Schema = Schema::U32;
             const ZERO: Self = Self::NULL;
 

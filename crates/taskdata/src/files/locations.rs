@@ -7,10 +7,10 @@
 use core::fmt;
 
 use rcs_core::{
+    Plain,
     frame::Frame,
     interface::subtask::LocationKind,
     name::{Name, Name10, Name16},
-    record,
 };
 
 use super::{
@@ -20,18 +20,17 @@ use super::{
     records::{Array, RefType, Reference},
 };
 
-record! {
-    /// What decides which grips, approaches and trajectories apply: the location point, and the array on it.
-    ///
-    /// It fits into a buffer (`locpt-type-in`, `locpt-^-in`; V.2.2).
-    pub struct Place {
-        /// How the command's location was understood: a location point, a static array, or a sector at an owner.
-        pub kind: LocationKind,
-        /// The location point; null for a static array.
-        pub locpt: LocptId,
-        /// The array in which the sector lies; null for a location point.
-        pub array: ArrayId,
-    }
+/// What decides which grips, approaches and trajectories apply: the location point, and the array on it.
+///
+/// It fits into a buffer (`locpt-type-in`, `locpt-^-in`; V.2.2).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Place {
+    /// How the command's location was understood: a location point, a static array, or a sector at an owner.
+    pub kind: LocationKind,
+    /// The location point; null for a static array.
+    pub locpt: LocptId,
+    /// The array in which the sector lies; null for a location point.
+    pub array: ArrayId,
 }
 
 /// A location of a command, resolved.

@@ -1,51 +1,57 @@
 //! The record of each file. The manual names the files and their variables but not their layouts (SPECNOTES).
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     frame::Frame,
     movetable::Movetable,
     name::{Name10, Name16},
     pose::Pose,
-    record,
 };
 
 use super::ids::{
     ArrayId, EndEffId, LocptId, MovtabId, ObjectId, OwnerId, PathId, PedParaId, PoseId, TrajParaId,
 };
 
-coded_enum! {
-    /// What a name in a form refers to: the words of the "type" columns (VII.4 to VII.7). The manual passes them as
-    /// integers (`locpt-type`, `pose-type`) and gives no values; these codes are ASSUMED.
-    pub enum RefType {
-        /// Nothing.
-        None = "",
-        /// `lpt`: a location point.
-        LocationPoint = "lpt",
-        /// `arr`: an array.
-        Array = "arr",
-        /// `own`: an owner.
-        Owner = "own",
-        /// `pos`: a pose.
-        Pose = "pos",
-        /// `mtb`: a movetable.
-        Movetable = "mtb",
-        /// `obj`: an object.
-        Object = "obj",
-        /// `vu`: the view location of an object.
-        View = "vu",
-        /// `$$$`: every location that no other entry names (VII.7.5).
-        Any = "$$$",
-    }
+/// What a name in a form refers to: the words of the "type" columns (VII.4 to VII.7). The manual passes them as
+/// integers (`locpt-type`, `pose-type`) and gives no values; these codes are ASSUMED.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum RefType {
+    /// Nothing.
+    #[text = ""]
+    None,
+    /// `lpt`: a location point.
+    #[text = "lpt"]
+    LocationPoint,
+    /// `arr`: an array.
+    #[text = "arr"]
+    Array,
+    /// `own`: an owner.
+    #[text = "own"]
+    Owner,
+    /// `pos`: a pose.
+    #[text = "pos"]
+    Pose,
+    /// `mtb`: a movetable.
+    #[text = "mtb"]
+    Movetable,
+    /// `obj`: an object.
+    #[text = "obj"]
+    Object,
+    /// `vu`: the view location of an object.
+    #[text = "vu"]
+    View,
+    /// `$$$`: every location that no other entry names (VII.7.5).
+    #[text = "$$$"]
+    Any,
 }
 
-record! {
-    /// A type and a name of a form, resolved: the record `number` of the file that `kind` means.
-    pub struct Reference {
-        /// Which file.
-        pub kind: RefType,
-        /// Record number in it; 0 for [`RefType::Any`] and [`RefType::None`].
-        pub number: u32,
-    }
+/// A type and a name of a form, resolved: the record `number` of the file that `kind` means.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Reference {
+    /// Which file.
+    pub kind: RefType,
+    /// Record number in it; 0 for [`RefType::Any`] and [`RefType::None`].
+    pub number: u32,
 }
 
 impl Reference {
@@ -190,18 +196,17 @@ pub struct Traj {
     pub path: PathId,
 }
 
-record! {
-    /// TRAJ-PARA: parameters of a trajectory segment (VII.6). Their units are ASSUMED where the manual has none (DESIGN 8).
-    pub struct TrajPara {
-        /// `acc-fac`, acceleration factor: counts of 0.1 in/s for each 40 ms.
-        pub acc_fac: i32,
-        /// `vel-max`, greatest velocity: counts of 0.1 in/s.
-        pub vel_max: i32,
-        /// `smooth-acc`: a greater value is less smoothing.
-        pub smooth: i32,
-        /// `brk-dst`: distance from the goal at which the next point may be begun, 0.01 in.
-        pub brk_dst: i32,
-    }
+/// TRAJ-PARA: parameters of a trajectory segment (VII.6). Their units are ASSUMED where the manual has none (DESIGN 8).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct TrajPara {
+    /// `acc-fac`, acceleration factor: counts of 0.1 in/s for each 40 ms.
+    pub acc_fac: i32,
+    /// `vel-max`, greatest velocity: counts of 0.1 in/s.
+    pub vel_max: i32,
+    /// `smooth-acc`: a greater value is less smoothing.
+    pub smooth: i32,
+    /// `brk-dst`: distance from the goal at which the next point may be begun, 0.01 in.
+    pub brk_dst: i32,
 }
 
 /// Where a point of a path is (VII.6, VII.7.7).
@@ -243,146 +248,139 @@ pub struct Object {
     pub name: Name16,
 }
 
-record! {
-    /// END-EFF-PARA: how a grip of an object is taken (VII.7.1).
-    pub struct EndEffPara {
-        /// The object.
-        pub object: ObjectId,
-        /// Reference grip number.
-        pub grip: i32,
-        /// Opening while the object is approached, 0.01 in.
-        pub appr_size: i32,
-        /// Opening that is commanded to grasp it, 0.01 in.
-        pub grasp_size: i32,
-        /// Grasp force, lb.
-        pub grasp_force: i32,
-        /// Opening when the object is let go and left, 0.01 in.
-        pub depart_size: i32,
-    }
+/// END-EFF-PARA: how a grip of an object is taken (VII.7.1).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct EndEffPara {
+    /// The object.
+    pub object: ObjectId,
+    /// Reference grip number.
+    pub grip: i32,
+    /// Opening while the object is approached, 0.01 in.
+    pub appr_size: i32,
+    /// Opening that is commanded to grasp it, 0.01 in.
+    pub grasp_size: i32,
+    /// Grasp force, lb.
+    pub grasp_force: i32,
+    /// Opening when the object is let go and left, 0.01 in.
+    pub depart_size: i32,
 }
 
-record! {
-    /// OBJ-GRIPS: which gripper handles an object (VII.7.2).
-    pub struct ObjGrips {
-        /// The object.
-        pub object: ObjectId,
-        /// `endeff-id#`: 1 parts, 2 v-blocks, 3 tool gripper.
-        pub endeff_id: i32,
-        /// `tray-grip#`: grip number at the trays.
-        pub tray_grip: i32,
-    }
+/// OBJ-GRIPS: which gripper handles an object (VII.7.2).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ObjGrips {
+    /// The object.
+    pub object: ObjectId,
+    /// `endeff-id#`: 1 parts, 2 v-blocks, 3 tool gripper.
+    pub endeff_id: i32,
+    /// `tray-grip#`: grip number at the trays.
+    pub tray_grip: i32,
 }
 
-record! {
-    /// The object location form (VII.7.3): where at an owner the object lies.
-    pub struct ObjLoc {
-        /// The object.
-        pub object: ObjectId,
-        /// Array or location point assigned to it.
-        pub assigned: Reference,
-    }
+/// The object location form (VII.7.3): where at an owner the object lies.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ObjLoc {
+    /// The object.
+    pub object: ObjectId,
+    /// Array or location point assigned to it.
+    pub assigned: Reference,
 }
 
-record! {
-    /// PED-PARA: how the Active Pedestal takes an object (VII.7.4).
-    pub struct PedPara {
-        /// `"p-object"`.
-        pub object: ObjectId,
-        /// `ped-appr`: opening before the object comes, 0.01 in.
-        pub appr: i32,
-        /// `ped-grasp-size`, 0.01 in.
-        pub grasp_size: i32,
-        /// `ped-force`, lb.
-        pub force: i32,
-        /// `ped-release-size`, 0.01 in.
-        pub release_size: i32,
-        /// `ped-table-pos`: table angle when the object is first grasped, 0.1 degree.
-        pub table_pos: i32,
-        /// `ped-flip-angle`: rotation that flips it, 0.1 degree.
-        pub flip_angle: i32,
-    }
+/// PED-PARA: how the Active Pedestal takes an object (VII.7.4).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PedPara {
+    /// `"p-object"`.
+    pub object: ObjectId,
+    /// `ped-appr`: opening before the object comes, 0.01 in.
+    pub appr: i32,
+    /// `ped-grasp-size`, 0.01 in.
+    pub grasp_size: i32,
+    /// `ped-force`, lb.
+    pub force: i32,
+    /// `ped-release-size`, 0.01 in.
+    pub release_size: i32,
+    /// `ped-table-pos`: table angle when the object is first grasped, 0.1 degree.
+    pub table_pos: i32,
+    /// `ped-flip-angle`: rotation that flips it, 0.1 degree.
+    pub flip_angle: i32,
 }
 
-record! {
-    /// GRIP-LOC: the movetable of a grip at a location (VII.7.5).
-    pub struct GripLoc {
-        /// The object.
-        pub object: ObjectId,
-        /// Grip number.
-        pub grip: i32,
-        /// Location point, array, owner or `$$$`.
-        pub at: Reference,
-        /// Movetable from the location to the grip.
-        pub movetable: MovtabId,
-    }
+/// GRIP-LOC: the movetable of a grip at a location (VII.7.5).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct GripLoc {
+    /// The object.
+    pub object: ObjectId,
+    /// Grip number.
+    pub grip: i32,
+    /// Location point, array, owner or `$$$`.
+    pub at: Reference,
+    /// Movetable from the location to the grip.
+    pub movetable: MovtabId,
 }
 
-record! {
-    /// VISION-PARA: how an object is found with the camera at a location (VII.7.6).
-    pub struct VisionPara {
-        /// The object.
-        pub object: ObjectId,
-        /// Reference grip number.
-        pub grip: i32,
-        /// Number of the object in the vision system.
-        pub id: i32,
-        /// Location point, array, owner or `$$$`.
-        pub at: Reference,
-        /// `vu-offset`: movetable from the location to the place where the first picture is taken.
-        pub movetable: MovtabId,
-        /// `mov-ref`: to what the movetable is applied, location point, array or object.
-        pub offset_from: RefType,
-        /// Expected range from image plane to object, mm.
-        pub range: i32,
-        /// True if vision is used for the object.
-        pub enabled: bool,
-    }
+/// VISION-PARA: how an object is found with the camera at a location (VII.7.6).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct VisionPara {
+    /// The object.
+    pub object: ObjectId,
+    /// Reference grip number.
+    pub grip: i32,
+    /// Number of the object in the vision system.
+    pub id: i32,
+    /// Location point, array, owner or `$$$`.
+    pub at: Reference,
+    /// `vu-offset`: movetable from the location to the place where the first picture is taken.
+    pub movetable: MovtabId,
+    /// `mov-ref`: to what the movetable is applied, location point, array or object.
+    pub offset_from: RefType,
+    /// Expected range from image plane to object, mm.
+    pub range: i32,
+    /// True if vision is used for the object.
+    pub enabled: bool,
 }
 
-coded_enum! {
-    /// Approach or depart (VII.7.7).
-    pub enum Direction {
-        /// `-appr`.
-        Approach = "-appr",
-        /// `-dept`.
-        Depart = "-dept",
-    }
+/// Approach or depart (VII.7.7).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Direction {
+    /// `-appr`.
+    #[text = "-appr"]
+    Approach,
+    /// `-dept`.
+    #[text = "-dept"]
+    Depart,
 }
 
-record! {
-    /// An approach or depart trajectory (VII.7.7).
-    pub struct ApprDept {
-        /// Which of the two.
-        pub direction: Direction,
-        /// Object, view of an object, or a plain location point, array, owner or `$$$`.
-        pub subject: Reference,
-        /// Grip number; 0 for a plain location.
-        pub grip: i32,
-        /// Where it applies: location point, array, owner or `$$$`; the subject again for a plain location.
-        pub at: Reference,
-        /// Its points.
-        pub path: PathId,
-    }
+/// An approach or depart trajectory (VII.7.7).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ApprDept {
+    /// Which of the two.
+    pub direction: Direction,
+    /// Object, view of an object, or a plain location point, array, owner or `$$$`.
+    pub subject: Reference,
+    /// Grip number; 0 for a plain location.
+    pub grip: i32,
+    /// Where it applies: location point, array, owner or `$$$`; the subject again for a plain location.
+    pub at: Reference,
+    /// Its points.
+    pub path: PathId,
 }
 
-coded_enum! {
-    /// What a guarded move watches (III.3.4, III.3.6, III.3.8). The words are ours: the manual has no form for sensors.
-    pub enum SensorSource {
-        /// Force along the tool's X.
-        Fx = "fx",
-        /// Force along the tool's Y.
-        Fy = "fy",
-        /// Force along the tool's Z.
-        Fz = "fz",
-        /// Moment about the tool's Y.
-        My = "my",
-        /// Large holster sensors: the ears are near.
-        Near = "near",
-        /// Small holster sensors: the ears are seated.
-        Seated = "seated",
-        /// A beam between the fingers is broken.
-        Beam = "beam",
-    }
+/// What a guarded move watches (III.3.4, III.3.6, III.3.8). The words are ours: the manual has no form for sensors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum SensorSource {
+    /// Force along the tool's X.
+    Fx,
+    /// Force along the tool's Y.
+    Fy,
+    /// Force along the tool's Z.
+    Fz,
+    /// Moment about the tool's Y.
+    My,
+    /// Large holster sensors: the ears are near.
+    Near,
+    /// Small holster sensors: the ears are seated.
+    Seated,
+    /// A beam between the fingers is broken.
+    Beam,
 }
 
 impl SensorSource {
@@ -393,35 +391,33 @@ impl SensorSource {
     }
 }
 
-record! {
-    /// SENSOR-PARA: a sensor that Prim can watch by name (V.1.2 `"sensor"`). An extension: the manual keeps thresholds in code.
-    pub struct SensorPara {
-        /// Name of the sensor.
-        pub name: Name10,
-        /// What is watched.
-        pub source: SensorSource,
-        /// Which holster, 1 right, 2 left, 3 centre; which beam, 1 to 8, 0 for any; 0 for forces.
-        pub which: i32,
-        /// Forces only: the condition holds at this value or beyond it, away from 0; lb or in lb on the tool, sign included.
-        pub threshold: i32,
-    }
+/// SENSOR-PARA: a sensor that Prim can watch by name (V.1.2 `"sensor"`). An extension: the manual keeps thresholds in code.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct SensorPara {
+    /// Name of the sensor.
+    pub name: Name10,
+    /// What is watched.
+    pub source: SensorSource,
+    /// Which holster, 1 right, 2 left, 3 centre; which beam, 1 to 8, 0 for any; 0 for forces.
+    pub which: i32,
+    /// Forces only: the condition holds at this value or beyond it, away from 0; lb or in lb on the tool, sign included.
+    pub threshold: i32,
 }
 
-record! {
-    /// REL-MOVES: a relative motion of a command at a location, and the sensor that guards it. An extension: the manual keeps
-    /// those of holsters and tool drum in code.
-    pub struct RelativeMove {
-        /// What the motion is for: a name that a command of E-move looks for.
-        pub name: Name10,
-        /// Where it applies: location point, array, owner or `$$$`.
-        pub at: Reference,
-        /// Where it leads, from the pose that the command names as the start.
-        pub movetable: MovtabId,
-        /// Its parameters.
-        pub para: TrajParaId,
-        /// Sensor of a guarded move, a name of SENSOR-PARA; empty for none.
-        pub sensor: Name10,
-    }
+/// REL-MOVES: a relative motion of a command at a location, and the sensor that guards it. An extension: the manual keeps
+/// those of holsters and tool drum in code.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct RelativeMove {
+    /// What the motion is for: a name that a command of E-move looks for.
+    pub name: Name10,
+    /// Where it applies: location point, array, owner or `$$$`.
+    pub at: Reference,
+    /// Where it leads, from the pose that the command names as the start.
+    pub movetable: MovtabId,
+    /// Its parameters.
+    pub para: TrajParaId,
+    /// Sensor of a guarded move, a name of SENSOR-PARA; empty for none.
+    pub sensor: Name10,
 }
 
 /// A record with its number, as look-ups of parameters return it.

@@ -1,33 +1,34 @@
 //! ACQUIRE-TOOL (V.2.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Fingers, Held, Situation, Station, Travel};
 use crate::emove::relative::Relative::{AcqNear, AcqSlide, AcqStrike};
 
-coded_enum! {
-    /// Reference action of ACQUIRE-TOOL.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The gripper is opening.
-        Opening = "opening",
-        /// The robot is moving towards the machine tool.
-        Approaching = "approaching",
-        /// The force sensor is being calibrated for the contact.
-        CalibratingFirst = "calibrating first",
-        /// The robot is moving into contact with the strike plate.
-        Striking = "striking",
-        /// The force sensor is being calibrated for the slide.
-        CalibratingSecond = "calibrating second",
-        /// The gripper is sliding to the left.
-        Sliding = "sliding",
-        /// The gripper is closing.
-        Grasping = "grasping",
-    }
+/// Reference action of ACQUIRE-TOOL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The gripper is opening.
+    Opening,
+    /// The robot is moving towards the machine tool.
+    Approaching,
+    /// The force sensor is being calibrated for the contact.
+    #[text = "calibrating first"]
+    CalibratingFirst,
+    /// The robot is moving into contact with the strike plate.
+    Striking,
+    /// The force sensor is being calibrated for the slide.
+    #[text = "calibrating second"]
+    CalibratingSecond,
+    /// The gripper is sliding to the left.
+    Sliding,
+    /// The gripper is closing.
+    Grasping,
 }
 
-decision_table! {
+old_table! {
     /// ACQUIRE-TOOL (V.2.1): open the tool gripper, move towards the machine tool, calibrate, touch the
     /// strike plate, calibrate, slide to the left around the tool, grasp it. Done at once if it is held in
     /// the drum.

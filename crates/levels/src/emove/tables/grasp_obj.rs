@@ -1,20 +1,19 @@
 //! GRASP-OBJ (V.2.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Fingers, Held, Situation};
 
-coded_enum! {
-    /// Reference action of GRASP-OBJ.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The gripper is closing.
-        Closing = "closing",
-    }
+/// Reference action of GRASP-OBJ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The gripper is closing.
+    Closing,
 }
 
-decision_table! {
+old_table! {
     /// GRASP-OBJ (V.2.1): close the gripper on the object; done at once if it is held.
     pub GRASP_OBJ: fn grasp_obj(step: Step, held: Held, fingers: Fingers, gripper: Lower) -> (Action, Step) {
         //    step      held      fingers    gripper                     action                        next

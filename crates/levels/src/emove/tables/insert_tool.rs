@@ -1,25 +1,24 @@
 //! INSERT-TOOL (V.2.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Held, Situation, Station};
 use crate::emove::relative::Relative::{InsIn, InsNear};
 
-coded_enum! {
-    /// Reference action of INSERT-TOOL.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The tool is moving to the drum.
-        Approaching = "approaching",
-        /// The force sensor is being calibrated.
-        Calibrating = "calibrating",
-        /// The tool is moving into the drum.
-        Inserting = "inserting",
-    }
+/// Reference action of INSERT-TOOL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The tool is moving to the drum.
+    Approaching,
+    /// The force sensor is being calibrated.
+    Calibrating,
+    /// The tool is moving into the drum.
+    Inserting,
 }
 
-decision_table! {
+old_table! {
     /// INSERT-TOOL (V.2.1): DELTA-MOVE, CAL-SENSOR, and a GO-WHILE that the insertion force ends. Done at
     /// once if the tool is in the drum.
     pub INSERT_TOOL: fn insert_tool(step: Step, station: Station, held: Held, prim: Lower) -> (Action, Step) {

@@ -1,26 +1,25 @@
 //! LOCATE-OBJ (V.2.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Sight, Situation, Tries};
 
-coded_enum! {
-    /// Reference action of LOCATE-OBJ.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The fast flood picture is being taken.
-        Flooding = "flooding",
-        /// The camera is moving over the centroid.
-        Centring = "centring",
-        /// The second picture is being taken.
-        Measuring = "measuring",
-        /// The camera is moving over the part, and turning with it.
-        Aligning = "aligning",
-    }
+/// Reference action of LOCATE-OBJ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The fast flood picture is being taken.
+    Flooding,
+    /// The camera is moving over the centroid.
+    Centring,
+    /// The second picture is being taken.
+    Measuring,
+    /// The camera is moving over the part, and turning with it.
+    Aligning,
 }
 
-decision_table! {
+old_table! {
     /// LOCATE-OBJ (V.2.1): a fast flood picture, centre the camera over it, a second picture with recognition
     /// and angle, align.
     pub LOCATE_OBJ: fn locate_obj(step: Step, sight: Sight, tries: Tries, prim: Lower) -> (Action, Step) {

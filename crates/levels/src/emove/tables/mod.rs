@@ -107,7 +107,7 @@ pub enum Action {
 }
 
 /// What the table of the current command decided.
-pub type Choice = crate::execution::Choice<Action>;
+pub type Choice = crate::old_execution::Choice<Action>;
 
 /// Consult the table of a command. A step that the command does not have counts as its first.
 #[must_use]
@@ -128,20 +128,5 @@ pub fn decide(verb: EmoveVerb, step: u8, s: &Situation) -> Choice {
         EmoveVerb::ReleaseTool => release_tool::consult(step, s),
         EmoveVerb::AcquireTool => acquire_tool::consult(step, s),
         EmoveVerb::RemoveTool => remove_tool::consult(step, s),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use rcs_core::process::Process;
-    use taskdata::files::TaskData;
-
-    use crate::emove::Emove;
-
-    #[test]
-    fn no_row_is_dead() {
-        for table in <Emove as Process<TaskData<'_>>>::TABLES {
-            table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
-        }
     }
 }

@@ -1,10 +1,10 @@
 //! MOV-OBJ-TO (V.2.1).
 
-use rcs_core::{decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Ahead, Choice, Held, Motion, Situation};
 
-decision_table! {
+old_table! {
     /// MOV-OBJ-TO (V.2.1): move the held object to a destination. An object that is lost on the way stops the
     /// robot.
     pub MOV_OBJ_TO: fn mov_obj_to(step: Motion, held: Held, ahead: Ahead, prim: Lower) -> (Action, Motion) {

@@ -1,10 +1,10 @@
 //! MOV-TO-HOL (V.2.1).
 
-use rcs_core::{decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Ahead, Choice, Held, Motion, Opening, Situation};
 
-decision_table! {
+old_table! {
     /// MOV-TO-HOL (V.2.1): move to a holster; the gripper, if one is attached, closes to the value of the
     /// holster object on the way. A gripper that holds an object cannot do that.
     pub MOV_TO_HOL: fn mov_to_hol(step: Motion, held: Held, ahead: Ahead, opening: Opening, prim: Lower) -> (Action, Motion) {

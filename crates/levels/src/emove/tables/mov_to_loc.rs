@@ -1,10 +1,10 @@
 //! MOV-TO-LOC (V.2.1).
 
-use rcs_core::{decision_table, handshake::Lower, table::Decision};
+use rcs_core::{handshake::Lower, old_table, table::Decision};
 
 use super::{Action, Ahead, Choice, Load, Motion, Situation};
 
-decision_table! {
+old_table! {
     /// MOV-TO-LOC (V.2.1): a series of GO-THRU and one GOTO-PT; no gripper commands. What the robot carries
     /// must not be lost.
     pub MOV_TO_LOC: fn mov_to_loc(step: Motion, load: Load, ahead: Ahead, prim: Lower) -> (Action, Motion) {

@@ -1,10 +1,10 @@
 //! MOV-TO-OBJ and MOV-TO-VU (V.2.1).
 
-use rcs_core::{decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Ahead, Choice, Held, Motion, Opening, Situation};
 
-decision_table! {
+old_table! {
     /// MOV-TO-OBJ, MOV-TO-VU (V.2.1): like MOV-TO-LOC, with the fingers opened for the goal once the last
     /// depart point is behind; the final motion waits for them. Who holds the object is at it; who holds
     /// another must not open the fingers.

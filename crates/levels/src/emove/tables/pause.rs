@@ -1,26 +1,23 @@
 //! E-PAUSE (V.2.1).
 
-use rcs_core::{
-    coded_enum, decision_table, handshake::Lower, interface::prim::JoystickGrip, table::Decision,
-};
+use rcs_core::{Plain, handshake::Lower, interface::prim::JoystickGrip, old_table, table::Decision};
 
 use super::{Action, Choice, Link, Situation, Tooling, Whereabouts};
 
-coded_enum! {
-    /// Reference action of E-PAUSE.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// Prim is initializing the link.
-        Initializing = "initializing",
-        /// The processes below are pausing.
-        Pausing = "pausing",
-        /// They pause. The operator may take the robot and give it back as long as the command stands.
-        Standing = "standing",
-    }
+/// Reference action of E-PAUSE.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// Prim is initializing the link.
+    Initializing,
+    /// The processes below are pausing.
+    Pausing,
+    /// They pause. The operator may take the robot and give it back as long as the command stands.
+    Standing,
 }
 
-decision_table! {
+old_table! {
     /// E-PAUSE (V.2.1): do nothing. The first one after the start initializes the link (IV.3.3 step 2), waits
     /// for the calibration of the parts gripper (VI.3.1 UP-INIT), and finds out where the robot is. While it
     /// stands, the joystick box has robot and gripper.

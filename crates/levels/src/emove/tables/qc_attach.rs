@@ -1,37 +1,36 @@
 //! QC-ATTACH (V.2.1).
 
-use rcs_core::{coded_enum, decision_table, interface::Reason, table::Decision};
+use rcs_core::{Plain, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Holster, Mate, Readiness, Ring, Situation, Station, Travel};
 use crate::emove::relative::Relative::{QcaBack, QcaFast, QcaLift, QcaSlow, QcaUp};
 
-coded_enum! {
-    /// Reference action of QC-ATTACH.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The quick change of the bare robot is unlocking.
-        Unlocking = "unlocking",
-        /// The robot is moving close to the gripper.
-        Approaching = "approaching",
-        /// It is moving slowly onto the gripper.
-        Mating = "mating",
-        /// The quick change is locking.
-        Locking = "locking",
-        /// The gripper is closing.
-        Closing = "closing",
-        /// The gripper is sliding back out of its seat.
-        Backing = "backing",
-        /// It is being lifted a distance out of the holster.
-        Lifting = "lifting",
-        /// It is being lifted completely out of it.
-        Raising = "raising",
-        /// It is being calibrated.
-        Calibrating = "calibrating",
-    }
+/// Reference action of QC-ATTACH.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The quick change of the bare robot is unlocking.
+    Unlocking,
+    /// The robot is moving close to the gripper.
+    Approaching,
+    /// It is moving slowly onto the gripper.
+    Mating,
+    /// The quick change is locking.
+    Locking,
+    /// The gripper is closing.
+    Closing,
+    /// The gripper is sliding back out of its seat.
+    Backing,
+    /// It is being lifted a distance out of the holster.
+    Lifting,
+    /// It is being lifted completely out of it.
+    Raising,
+    /// It is being calibrated.
+    Calibrating,
 }
 
-decision_table! {
+old_table! {
     /// QC-ATTACH (V.2.1): down fast, down slowly, lock, close the gripper, back, lift, check the id, up,
     /// calibrate if required. Done at once if the gripper is locked on and clear of its holster. A bare robot
     /// whose ring is locked is unlocked first.

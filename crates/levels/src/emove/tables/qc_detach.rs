@@ -1,27 +1,26 @@
 //! QC-DETACH (V.2.1).
 
-use rcs_core::{coded_enum, decision_table, interface::Reason, table::Decision};
+use rcs_core::{Plain, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Held, Holster, Mate, Ring, Situation, Station, Travel};
 use crate::emove::relative::Relative::{QcdDown, QcdSeat, QcdUp};
 
-coded_enum! {
-    /// Reference action of QC-DETACH.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The gripper is moving down into the holster.
-        Lowering = "lowering",
-        /// The quick change is unlocking; the gripper drops.
-        Unlocking = "unlocking",
-        /// The gripper is being pushed to its seat.
-        Seating = "seating",
-        /// The robot is moving up out of the gripper.
-        Rising = "rising",
-    }
+/// Reference action of QC-DETACH.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The gripper is moving down into the holster.
+    Lowering,
+    /// The quick change is unlocking; the gripper drops.
+    Unlocking,
+    /// The gripper is being pushed to its seat.
+    Seating,
+    /// The robot is moving up out of the gripper.
+    Rising,
 }
 
-decision_table! {
+old_table! {
     /// QC-DETACH (V.2.1): down until the large sensors of the holster see the ears, unlock, forward until the
     /// small ones see them, up, and check that the gripper stayed there. Done at once if it is there.
     pub QC_DETACH: fn qc_detach(step: Step, station: Station, held: Held, mate: Mate, holster: Holster, ring: Ring, travel: Travel) -> (Action, Step) {

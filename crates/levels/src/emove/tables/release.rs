@@ -1,20 +1,19 @@
 //! RELEASE (V.2.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, table::Decision};
+use rcs_core::{Plain, handshake::Lower, old_table, table::Decision};
 
 use super::{Action, Choice, Held, Situation, Spread};
 
-coded_enum! {
-    /// Reference action of RELEASE.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The gripper is opening.
-        Opening = "opening",
-    }
+/// Reference action of RELEASE.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The gripper is opening.
+    Opening,
 }
 
-decision_table! {
+old_table! {
     /// RELEASE (V.2.1): open the gripper to the depart size; done at once if it is open and holds nothing.
     pub RELEASE: fn release(step: Step, held: Held, spread: Spread, gripper: Lower) -> (Action, Step) {
         //    step      held            spread   gripper                    action         next

@@ -1,27 +1,26 @@
 //! RELEASE-TOOL (V.2.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Held, Situation, Spread, Station, Travel};
 use crate::emove::relative::Relative::{RelBack, RelSlide};
 
-coded_enum! {
-    /// Reference action of RELEASE-TOOL.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The gripper is opening.
-        Opening = "opening",
-        /// The force sensor is being calibrated.
-        Calibrating = "calibrating",
-        /// The gripper is sliding to the right.
-        Sliding = "sliding",
-        /// The robot is pulling back.
-        Withdrawing = "withdrawing",
-    }
+/// Reference action of RELEASE-TOOL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The gripper is opening.
+    Opening,
+    /// The force sensor is being calibrated.
+    Calibrating,
+    /// The gripper is sliding to the right.
+    Sliding,
+    /// The robot is pulling back.
+    Withdrawing,
 }
 
-decision_table! {
+old_table! {
     /// RELEASE-TOOL (V.2.1): open the tool gripper, calibrate, slide to the right until the strike plate
     /// gives a moment, pull back. Done at once by who stands before the drum with open fingers and nothing in
     /// them.

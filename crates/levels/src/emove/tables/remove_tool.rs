@@ -1,23 +1,22 @@
 //! REMOVE-TOOL (V.2.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Held, Situation, Station};
 use crate::emove::relative::Relative::RemOut;
 
-coded_enum! {
-    /// Reference action of REMOVE-TOOL.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The force sensor is being calibrated.
-        Calibrating = "calibrating",
-        /// The tool is being pulled out.
-        Removing = "removing",
-    }
+/// Reference action of REMOVE-TOOL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The force sensor is being calibrated.
+    Calibrating,
+    /// The tool is being pulled out.
+    Removing,
 }
 
-decision_table! {
+old_table! {
     /// REMOVE-TOOL (V.2.1): CAL-SENSOR and a guarded move that the extraction force ends: a GO-WHILE, though
     /// the manual says GO-UNTIL, for the force is what must not come (contradiction 18). Done at once if the
     /// tool is out.

@@ -1,219 +1,206 @@
 //! The state variables that the tables look up, and the steps that the motion commands share.
 
-use rcs_core::{coded_enum, handshake::Lower, interface::prim::JoystickGrip};
+use rcs_core::{Plain, handshake::Lower, interface::prim::JoystickGrip};
 
 use crate::emove::route::Ahead;
 
-coded_enum! {
-    /// Steps of a motion command: the reference action of all MOV-… commands.
-    pub enum Motion {
-        /// Nothing commanded yet.
-        Start = "start",
-        /// On the way through points.
-        Moving = "moving",
-        /// On the final motion.
-        Stopping = "stopping",
-    }
+/// Steps of a motion command: the reference action of all MOV-… commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Motion {
+    /// Nothing commanded yet.
+    Start,
+    /// On the way through points.
+    Moving,
+    /// On the final motion.
+    Stopping,
 }
 
-coded_enum! {
-    /// The opening of the fingers for the goal.
-    pub enum Opening {
-        /// As it should be, or it does not matter.
-        Set = "set",
-        /// Not yet: the next point is a depart point.
-        Departing = "departing",
-        /// To be commanded now.
-        Due = "due",
-        /// The fingers are moving.
-        Moving = "moving",
-        /// The gripper reports an error.
-        Failed = "failed",
-    }
+/// The opening of the fingers for the goal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Opening {
+    /// As it should be, or it does not matter.
+    Set,
+    /// Not yet: the next point is a depart point.
+    Departing,
+    /// To be commanded now.
+    Due,
+    /// The fingers are moving.
+    Moving,
+    /// The gripper reports an error.
+    Failed,
 }
 
-coded_enum! {
-    /// Is the object of the command held?
-    pub enum Held {
-        /// The gripper holds nothing.
-        Nothing = "nothing",
-        /// It holds the object of the command.
-        Right = "right",
-        /// It holds another object.
-        Other = "other",
-    }
+/// Is the object of the command held?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Held {
+    /// The gripper holds nothing.
+    Nothing,
+    /// It holds the object of the command.
+    Right,
+    /// It holds another object.
+    Other,
 }
 
-coded_enum! {
-    /// What was held when the command came.
-    pub enum Load {
-        /// It is held still, or nothing was.
-        Kept = "kept",
-        /// It is held no more.
-        Lost = "lost",
-    }
+/// What was held when the command came.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Load {
+    /// It is held still, or nothing was.
+    Kept,
+    /// It is held no more.
+    Lost,
 }
 
-coded_enum! {
-    /// What closed fingers have between them.
-    pub enum Fingers {
-        /// Nothing, or nothing of the object's size.
-        Empty = "empty",
-        /// Something.
-        Gripping = "gripping",
-    }
+/// What closed fingers have between them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Fingers {
+    /// Nothing, or nothing of the object's size.
+    Empty,
+    /// Something.
+    Gripping,
 }
 
-coded_enum! {
-    /// Are the fingers as wide open as letting go of the object would leave them?
-    pub enum Spread {
-        /// They are not.
-        Narrow = "narrow",
-        /// They are, or there are none.
-        Open = "open",
-    }
+/// Are the fingers as wide open as letting go of the object would leave them?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Spread {
+    /// They are not.
+    Narrow,
+    /// They are, or there are none.
+    Open,
 }
 
-coded_enum! {
-    /// The DEPC link.
-    pub enum Link {
-        /// Prim does not command the robot.
-        Down = "down",
-        /// It does.
-        Up = "up",
-    }
+/// The DEPC link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Link {
+    /// Prim does not command the robot.
+    Down,
+    /// It does.
+    Up,
 }
 
-coded_enum! {
-    /// Quick change and gripper after the start.
-    pub enum Tooling {
-        /// Not read or not calibrated yet.
-        Busy = "busy",
-        /// Read, and calibrated if it must be.
-        Ready = "ready",
-        /// The quick change reports an error.
-        RingFaulty = "ring faulty",
-        /// The gripper reports an error.
-        GripFaulty = "grip faulty",
-    }
+/// Quick change and gripper after the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Tooling {
+    /// Not read or not calibrated yet.
+    Busy,
+    /// Read, and calibrated if it must be.
+    Ready,
+    /// The quick change reports an error.
+    #[text = "ring faulty"]
+    RingFaulty,
+    /// The gripper reports an error.
+    #[text = "grip faulty"]
+    GripFaulty,
 }
 
-coded_enum! {
-    /// Is it known where the robot is?
-    pub enum Whereabouts {
-        /// It is at a known location.
-        Known = "known",
-        /// The location points are being looked through.
-        Searching = "searching",
-        /// It is at none of them.
-        Unknown = "unknown",
-    }
+/// Is it known where the robot is?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Whereabouts {
+    /// It is at a known location.
+    Known,
+    /// The location points are being looked through.
+    Searching,
+    /// It is at none of them.
+    Unknown,
 }
 
-coded_enum! {
-    /// Where the robot is, seen from the location of the command.
-    pub enum Station {
-        /// Elsewhere, or nobody knows.
-        Elsewhere = "elsewhere",
-        /// There.
-        There = "there",
-        /// There, with the fingers around a tool in the drum.
-        InDrum = "in drum",
-    }
+/// Where the robot is, seen from the location of the command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Station {
+    /// Elsewhere, or nobody knows.
+    Elsewhere,
+    /// There.
+    There,
+    /// There, with the fingers around a tool in the drum.
+    #[text = "in drum"]
+    InDrum,
 }
 
-coded_enum! {
-    /// What is mated with the quick change, seen from the gripper of the command.
-    pub enum Mate {
-        /// Nothing.
-        None = "none",
-        /// That gripper.
-        Right = "right",
-        /// Another one.
-        Wrong = "wrong",
-    }
+/// What is mated with the quick change, seen from the gripper of the command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Mate {
+    /// Nothing.
+    None,
+    /// That gripper.
+    Right,
+    /// Another one.
+    Wrong,
 }
 
-coded_enum! {
-    /// What Quick Change says of its locking ring.
-    pub enum Ring {
-        /// It turns, or has not answered yet.
-        Busy = "busy",
-        /// It is locked.
-        Locked = "locked",
-        /// It is unlocked.
-        Unlocked = "unlocked",
-        /// It is stuck, its sensors fail, or nobody answers.
-        Faulty = "faulty",
-    }
+/// What Quick Change says of its locking ring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Ring {
+    /// It turns, or has not answered yet.
+    Busy,
+    /// It is locked.
+    Locked,
+    /// It is unlocked.
+    Unlocked,
+    /// It is stuck, its sensors fail, or nobody answers.
+    Faulty,
 }
 
-coded_enum! {
-    /// What the four sensors of the command's holster see (V.1.2 hol-R-status …).
-    pub enum Holster {
-        /// Nothing.
-        Empty = "empty",
-        /// Something, but no gripper at its seat.
-        Partial = "partial",
-        /// A gripper at its seat: all four see its ears.
-        Full = "full",
-    }
+/// What the four sensors of the command's holster see (V.1.2 hol-R-status …).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Holster {
+    /// Nothing.
+    Empty,
+    /// Something, but no gripper at its seat.
+    Partial,
+    /// A gripper at its seat: all four see its ears.
+    Full,
 }
 
-coded_enum! {
-    /// How the last motion stands.
-    pub enum Travel {
-        /// The robot is on its way, or Prim has not answered yet.
-        UnderWay = "under way",
-        /// It stands at the goal of a GO-UNTIL, and the condition has not come for a second.
-        Missed = "missed",
-        /// It has come to its end.
-        Over = "over",
-        /// It was given up.
-        Failed = "failed",
-    }
+/// How the last motion stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Travel {
+    /// The robot is on its way, or Prim has not answered yet.
+    #[text = "under way"]
+    UnderWay,
+    /// It stands at the goal of a GO-UNTIL, and the condition has not come for a second.
+    Missed,
+    /// It has come to its end.
+    Over,
+    /// It was given up.
+    Failed,
 }
 
-coded_enum! {
-    /// The attached gripper after an order.
-    pub enum Readiness {
-        /// It has not done what was ordered yet.
-        Busy = "busy",
-        /// It has.
-        Ready = "ready",
-        /// It has, and must be calibrated: the parts gripper, attached for the first time (VI.3.1 UP-INIT).
-        Raw = "raw",
-        /// It cannot.
-        Faulty = "faulty",
-    }
+/// The attached gripper after an order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Readiness {
+    /// It has not done what was ordered yet.
+    Busy,
+    /// It has.
+    Ready,
+    /// It has, and must be calibrated: the parts gripper, attached for the first time (VI.3.1 UP-INIT).
+    Raw,
+    /// It cannot.
+    Faulty,
 }
 
-coded_enum! {
-    /// What vision says to the last request.
-    pub enum Sight {
-        /// Nothing yet.
-        Waiting = "waiting",
-        /// It sees the object.
-        Seen = "seen",
-        /// It sees nothing.
-        Missing = "missing",
-        /// It sees something else.
-        Unrecognised = "unrecognised",
-        /// It says what cannot be.
-        Implausible = "implausible",
-        /// It does not answer.
-        Silent = "silent",
-    }
+/// What vision says to the last request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Sight {
+    /// Nothing yet.
+    Waiting,
+    /// It sees the object.
+    Seen,
+    /// It sees nothing.
+    Missing,
+    /// It sees something else.
+    Unrecognised,
+    /// It says what cannot be.
+    Implausible,
+    /// It does not answer.
+    Silent,
 }
 
-coded_enum! {
-    /// May a picture be taken again?
-    pub enum Tries {
-        /// Yes, with other parameters.
-        Left = "left",
-        /// No.
-        Spent = "spent",
-    }
+/// May a picture be taken again?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Tries {
+    /// Yes, with other parameters.
+    Left,
+    /// No.
+    Spent,
 }
 
 /// The state variables of a tick.

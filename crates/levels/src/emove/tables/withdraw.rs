@@ -1,21 +1,20 @@
 //! WITHDRAW (V.2.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, table::Decision};
+use rcs_core::{Plain, handshake::Lower, old_table, table::Decision};
 
 use super::{Action, Choice, Load, Situation};
 use crate::emove::relative::Relative::Withdraw;
 
-coded_enum! {
-    /// Reference action of WITHDRAW.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The robot is on its way.
-        Moving = "moving",
-    }
+/// Reference action of WITHDRAW.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The robot is on its way.
+    Moving,
 }
 
-decision_table! {
+old_table! {
     /// WITHDRAW (V.2.1): a DELTA-MOVE from above E-move. What the robot carries must not be lost.
     pub WITHDRAW: fn withdraw(step: Step, load: Load, prim: Lower) -> (Action, Step) {
         //    step     load   Prim                       action                     next

@@ -15,7 +15,7 @@ use rcs_core::process::Process;
 use taskdata::files::TaskData;
 
 use self::bench::ROWS;
-use crate::{emove::Emove, execution::EXECUTE};
+use crate::{emove::Emove, old_execution::EXECUTE};
 
 /// Every row of every table fires in some scenario.
 #[test]
@@ -31,7 +31,7 @@ fn every_row_fires() {
         .filter(|table| table.name != EXECUTE.name)
         .flat_map(|table| table.rows.iter().map(|row| (table.name, row)))
         .filter(|(table, row)| !fired.contains(&(*table, row.number)))
-        .map(|(table, row)| format!("{table} row {}: {} => {}", row.number, row.conditions, row.action))
+        .map(|(table, row)| format!("{table} row {}: {row}", row.number))
         .collect();
     assert!(silent.is_empty(), "rows that never fired:\n{}", silent.join("\n"));
 }

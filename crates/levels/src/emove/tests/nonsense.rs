@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use rcs_core::{
+    Plain,
     interface::{
         EmoveOutputs, Header, Reason,
         emove::EmoveVerb,
@@ -10,8 +11,8 @@ use rcs_core::{
         prim::{JoystickGrip, PrimReport},
         quick_change::QuickChangeReport,
     },
+    plain::to_bytes,
     process::{Inputs, Process},
-    record::{Field, to_bytes},
 };
 
 use super::bench::{Bench, frame_of, moved};

@@ -1,8 +1,8 @@
 //! CLOSE-GRIP: grasp with a commanded force.
 
 use rcs_core::{
-    decision_table,
     interface::Reason::{GripTimeout, WrongGripper},
+    old_table,
 };
 
 use super::{
@@ -12,7 +12,7 @@ use super::{
 };
 use crate::grip::Step;
 
-decision_table! {
+old_table! {
     /// CLOSE-GRIP (VI.3.1): close until both fingers touch, then servo the force to `sforce`. Done as well if there is
     /// nothing between the fingers; E-move tells the two apart by the opening.
     pub CLOSE_GRIP: fn close_grip(step: Step, gripper: Gripper, clock: Clock, grasp: Grasp, rest: Rest) -> (Action, Step) {

@@ -5,7 +5,7 @@ mod pause;
 mod position;
 mod up_init;
 
-use rcs_core::{coded_enum, interface::Reason};
+use rcs_core::{Plain, interface::Reason};
 
 pub use self::{
     close_grip::{CLOSE_GRIP, close_grip},
@@ -14,90 +14,89 @@ pub use self::{
     up_init::{UP_INIT, up_init},
 };
 
-coded_enum! {
-    /// Is the parts gripper there?
-    pub enum Gripper {
-        /// It is mated and the quick change is locked.
-        Attached = "attached",
-        /// It is not.
-        Detached = "detached",
-    }
+/// Is the parts gripper there?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Gripper {
+    /// It is mated and the quick change is locked.
+    Attached,
+    /// It is not.
+    Detached,
 }
 
-coded_enum! {
-    /// Time of the command that has the duty.
-    pub enum Clock {
-        /// Within its limit.
-        Running = "running",
-        /// Over its limit.
-        Expired = "expired",
-    }
+/// Time of the command that has the duty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Clock {
+    /// Within its limit.
+    Running,
+    /// Over its limit.
+    Expired,
 }
 
-coded_enum! {
-    /// Opening of the fingers, seen from the commanded one.
-    pub enum Opening {
-        /// Much too narrow: a coarse flow cannot overshoot.
-        VeryNarrow = "very narrow",
-        /// Too narrow: a medium flow cannot overshoot.
-        Narrow = "narrow",
-        /// A little too narrow.
-        BitNarrow = "bit narrow",
-        /// Within the dead band.
-        Right = "right",
-        /// A little too wide.
-        BitWide = "bit wide",
-        /// Too wide: a medium flow cannot overshoot.
-        Wide = "wide",
-        /// Much too wide: a coarse flow cannot overshoot.
-        VeryWide = "very wide",
-    }
+/// Opening of the fingers, seen from the commanded one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Opening {
+    /// Much too narrow: a coarse flow cannot overshoot.
+    #[text = "very narrow"]
+    VeryNarrow,
+    /// Too narrow: a medium flow cannot overshoot.
+    Narrow,
+    /// A little too narrow.
+    #[text = "bit narrow"]
+    BitNarrow,
+    /// Within the dead band.
+    Right,
+    /// A little too wide.
+    #[text = "bit wide"]
+    BitWide,
+    /// Too wide: a medium flow cannot overshoot.
+    Wide,
+    /// Much too wide: a coarse flow cannot overshoot.
+    #[text = "very wide"]
+    VeryWide,
 }
 
-coded_enum! {
-    /// What the fingers feel on the way to a grasp.
-    pub enum Grasp {
-        /// Nothing, far from the grasp size.
-        Far = "far",
-        /// Nothing, where the object is expected.
-        Near = "near",
-        /// Nothing for some ticks, though the grasp size is passed: there is no object.
-        Missed = "missed",
-        /// One finger touches, the other does not.
-        OneFinger = "one finger",
-        /// Both touch, force much too low: a medium flow cannot overshoot.
-        Loose = "loose",
-        /// Force a little too low.
-        Weak = "weak",
-        /// Force as commanded.
-        Firm = "firm",
-        /// Force a little too high.
-        Strong = "strong",
-        /// Force much too high.
-        Crushing = "crushing",
-    }
+/// What the fingers feel on the way to a grasp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Grasp {
+    /// Nothing, far from the grasp size.
+    Far,
+    /// Nothing, where the object is expected.
+    Near,
+    /// Nothing for some ticks, though the grasp size is passed: there is no object.
+    Missed,
+    /// One finger touches, the other does not.
+    #[text = "one finger"]
+    OneFinger,
+    /// Both touch, force much too low: a medium flow cannot overshoot.
+    Loose,
+    /// Force a little too low.
+    Weak,
+    /// Force as commanded.
+    Firm,
+    /// Force a little too high.
+    Strong,
+    /// Force much too high.
+    Crushing,
 }
 
-coded_enum! {
-    /// Have the readings settled since the valves went off?
-    pub enum Rest {
-        /// Not yet.
-        Waiting = "waiting",
-        /// Yes.
-        Rested = "rested",
-    }
+/// Have the readings settled since the valves went off?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Rest {
+    /// Not yet.
+    Waiting,
+    /// Yes.
+    Rested,
 }
 
-coded_enum! {
-    /// What the sensors read while calibrating.
-    pub enum Calibrating {
-        /// Something changes.
-        Unsteady = "unsteady",
-        /// Steady for long enough.
-        Steady = "steady",
-        /// Steady, and the sensors do not tell the ends of travel apart.
-        Implausible = "implausible",
-    }
+/// What the sensors read while calibrating.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Calibrating {
+    /// Something changes.
+    Unsteady,
+    /// Steady for long enough.
+    Steady,
+    /// Steady, and the sensors do not tell the ends of travel apart.
+    Implausible,
 }
 
 /// How much air flows.

@@ -1,11 +1,11 @@
 //! PAUSE: do nothing.
 
-use rcs_core::decision_table;
+use rcs_core::old_table;
 
 use super::{Action, Gripper};
 use crate::grip::Step;
 
-decision_table! {
+old_table! {
     /// PAUSE (VI.3.1): the valves stay as they were; without the gripper they are off.
     pub PAUSE: fn pause(gripper: Gripper) -> (Action, Step) {
         //   gripper       action   next

@@ -1,8 +1,8 @@
 //! POSITION and OPEN-GRIP: move the fingers to an opening.
 
 use rcs_core::{
-    decision_table,
     interface::Reason::{GripTimeout, WrongGripper},
+    old_table,
 };
 
 use super::{
@@ -12,7 +12,7 @@ use super::{
 };
 use crate::grip::Step;
 
-decision_table! {
+old_table! {
     /// POSITION, OPEN-GRIP (VI.3.1): servo the fingers to `sposition`.
     pub POSITION: fn position(step: Step, gripper: Gripper, clock: Clock, opening: Opening, rest: Rest) -> (Action, Step) {
         //    step           gripper    clock     opening      rest          action               next

@@ -1,14 +1,14 @@
 //! UP-INIT: find scale and offset of the sensors.
 
 use rcs_core::{
-    decision_table,
     interface::Reason::{GripNotCalibrated, WrongGripper},
+    old_table,
 };
 
 use super::{Action, Calibrating, Clock, Gripper};
 use crate::grip::Phase;
 
-decision_table! {
+old_table! {
     /// UP-INIT (VI.3.1): close and open the gripper and read the sensors at both ends of travel and without force. Runs by
     /// itself if the gripper is there when the system is booted, and before the first command that moves the fingers.
     pub UP_INIT: fn up_init(phase: Phase, gripper: Gripper, clock: Clock, readings: Calibrating) -> (Action, Phase) {

@@ -5,13 +5,14 @@ pub mod gripper;
 
 use proptest::prelude::*;
 use rcs_core::{
+    Plain,
     interface::{
         GripOutputs, Reason,
         device::valve,
         grip::{GripReport, GripVerb},
     },
+    plain::to_bytes,
     process::Process,
-    record::{Field, to_bytes},
 };
 
 use self::{
@@ -32,13 +33,6 @@ fn reason(bench: &mut Bench) -> Reason {
     assert_eq!(outputs.status.report, GripReport::Serror);
     assert_eq!(outputs.valves.bits, 0);
     outputs.status.reason
-}
-
-#[test]
-fn no_row_is_dead() {
-    for table in TABLES {
-        table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
-    }
 }
 
 #[test]
@@ -441,7 +435,7 @@ fn state_and_outputs_survive_as_bytes() {
     let state = *<Grip as Process<()>>::state(&bench.process);
     let image: [u8; 512] = to_bytes(&state);
     assert!(State::SIZE <= image.len() && GripOutputs::SIZE <= 64, "{} {}", State::SIZE, GripOutputs::SIZE);
-    let back = rcs_core::record::from_bytes::<State>(&image).unwrap();
+    let back = rcs_core::plain::from_bytes::<State>(&image).unwrap();
     let mut resumed = Grip::default();
     Process::<()>::restore(&mut resumed, back);
     let going_on = bench.wait(100);

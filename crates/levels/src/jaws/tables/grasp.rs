@@ -1,26 +1,26 @@
 //! VG-GRASP, TG-GRASP: close the fingers.
 
 use rcs_core::{
-    coded_enum, decision_table,
+    Plain,
     interface::{
         Reason::{JawsStuck, WrongGripper},
         jaws::JawsReport,
     },
+    old_table,
 };
 
 use super::{Action, Gripper, Motion, Size, Stop};
 
-coded_enum! {
-    /// Reference action of a command that moves the fingers.
-    pub enum Step {
-        /// Not begun.
-        Start = "start",
-        /// The fingers have air.
-        Move = "move",
-    }
+/// Reference action of a command that moves the fingers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Not begun.
+    Start,
+    /// The fingers have air.
+    Move,
 }
 
-decision_table! {
+old_table! {
     /// VG-GRASP, TG-GRASP (VI.4.1): close the fingers and see where they stop. At `commanded-size` counts as closed.
     pub GRASP: fn grasp(step: Step, gripper: Gripper, motion: Motion, stop: Stop, size: Size) -> (Action, Step) {
         //   step    gripper    motion              stop      size          action                       next

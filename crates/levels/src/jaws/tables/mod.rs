@@ -5,7 +5,7 @@ mod pause;
 mod release;
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     interface::{Reason, jaws::JawsReport},
 };
 
@@ -15,48 +15,44 @@ pub use self::{
     release::{RELEASE, release},
 };
 
-coded_enum! {
-    /// Is the gripper of this process there?
-    pub enum Gripper {
-        /// It is mated and the quick change is locked.
-        Attached = "attached",
-        /// It is not.
-        Detached = "detached",
-    }
+/// Is the gripper of this process there?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Gripper {
+    /// It is mated and the quick change is locked.
+    Attached,
+    /// It is not.
+    Detached,
 }
 
-coded_enum! {
-    /// What the fingers do.
-    pub enum Motion {
-        /// They move, or may not have begun to.
-        Moving = "moving",
-        /// They stand still.
-        Stopped = "stopped",
-        /// They move for longer than the whole way takes.
-        Endless = "endless",
-    }
+/// What the fingers do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Motion {
+    /// They move, or may not have begun to.
+    Moving,
+    /// They stand still.
+    Stopped,
+    /// They move for longer than the whole way takes.
+    Endless,
 }
 
-coded_enum! {
-    /// Where the fingers are, seen from the ends of their way.
-    pub enum Stop {
-        /// Closed.
-        Closed = "closed",
-        /// Somewhere between.
-        Between = "between",
-        /// Opened.
-        Opened = "opened",
-    }
+/// Where the fingers are, seen from the ends of their way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Stop {
+    /// Closed.
+    Closed,
+    /// Somewhere between.
+    Between,
+    /// Opened.
+    Opened,
 }
 
-coded_enum! {
-    /// Where the fingers are, seen from `commanded-size`.
-    pub enum Size {
-        /// There.
-        Commanded = "commanded",
-        /// Elsewhere, or nothing was commanded.
-        Other = "other",
-    }
+/// Where the fingers are, seen from `commanded-size`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Size {
+    /// There.
+    Commanded,
+    /// Elsewhere, or nothing was commanded.
+    Other,
 }
 
 /// What a row wants of the valves and the status; the first two are for ticks in which no table of a command is consulted.

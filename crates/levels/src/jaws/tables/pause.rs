@@ -1,10 +1,10 @@
 //! VG-PAUSE, TG-PAUSE: do nothing but look.
 
-use rcs_core::{decision_table, interface::jaws::JawsReport};
+use rcs_core::{interface::jaws::JawsReport, old_table};
 
 use super::{Action, Gripper, Motion, Size, Step, Stop};
 
-decision_table! {
+old_table! {
     /// VG-PAUSE, TG-PAUSE (VI.4.1): the valves stay as they are; the potentiometer is read for the status. Without the gripper
     /// there is nothing to read.
     pub PAUSE: fn pause(gripper: Gripper, motion: Motion, stop: Stop, size: Size) -> (Action, Step) {

@@ -1,16 +1,16 @@
 //! VG-RELEASE, VGRIP-POSE, TG-RELEASE, TGRIP-POSE: open the fingers.
 
 use rcs_core::{
-    decision_table,
     interface::{
         Reason::{JawsStuck, WrongGripper},
         jaws::JawsReport,
     },
+    old_table,
 };
 
 use super::{Action, Gripper, Motion, Size, Step, Stop};
 
-decision_table! {
+old_table! {
     /// VG-RELEASE, VGRIP-POSE, TG-RELEASE, TGRIP-POSE (VI.4.1): open the fingers and see where they stop. At `commanded-size`
     /// counts as opened.
     pub RELEASE: fn release(step: Step, gripper: Gripper, motion: Motion, stop: Stop, size: Size) -> (Action, Step) {

@@ -29,7 +29,7 @@ use self::{
     preprocess::Seen,
     tables::{Action, FLIP, GRIP, PAUSE, PRE_GRIP, RELEASE, Step, flip, grip, pause, pre_grip, release},
 };
-use crate::execution::{Course, EXECUTE};
+use crate::old_execution::{Course, EXECUTE};
 
 /// Decision tables, the upper one first.
 const TABLES: &[&Table] = &[&EXECUTE, &PRE_GRIP, &GRIP, &FLIP, &RELEASE, &PAUSE];
@@ -63,6 +63,8 @@ impl Pedestal {
 
 impl<Data: ?Sized> Process<Data> for Pedestal {
     type State = State;
+    type Seen = ();
+    type Action = ();
     type Outputs = PedestalOutputs;
 
     const NAME: &'static str = "Active Pedestal";
@@ -72,6 +74,16 @@ impl<Data: ?Sized> Process<Data> for Pedestal {
         let seen = Seen::preprocess(&mut self.state, inputs);
         let action = self.decide(&seen);
         postprocess::perform(&mut self.state, &seen, action, inputs, outputs);
+    }
+
+    fn preprocess(&mut self, _: &Inputs<'_, Data>, _: &PedestalOutputs) {}
+
+    fn decide(&mut self, (): &()) {}
+
+    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, Data>, _: &mut PedestalOutputs) {}
+
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
     fn state(&self) -> &State {

@@ -12,7 +12,7 @@ use rcs_core::{
 };
 
 use super::{state::State, tables::Object};
-use crate::{execution::Course, grip, pedestal::table::within_limits};
+use crate::{grip, old_execution::Course, pedestal::table::within_limits};
 
 /// State variables of a tick.
 #[derive(Clone, Copy, Debug)]

@@ -4,13 +4,14 @@ use std::collections::BTreeSet;
 
 use proptest::prelude::*;
 use rcs_core::{
+    Plain,
     interface::{
         CommonMemory, ExternalInputs, Header, PedestalOutputs, Reason,
         grip::{GripReport, GripVerb},
         pedestal::{PedestalCommand, PedestalReport, PedestalVerb, TableVerb},
     },
+    plain::to_bytes,
     process::{Inputs, Process},
-    record::{Field, to_bytes},
     tick::Tick,
 };
 
@@ -85,13 +86,6 @@ impl Bench {
 
 const EXECUTING: (PedestalReport, Reason) = (PedestalReport::Executing, Reason::None);
 const DONE: (PedestalReport, Reason) = (PedestalReport::Done, Reason::None);
-
-#[test]
-fn no_row_is_dead() {
-    for table in TABLES {
-        table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
-    }
-}
 
 #[test]
 fn pre_grip_opens_the_hand_and_turns_the_table_at_once() {
@@ -227,7 +221,8 @@ fn a_neighbour_that_does_not_answer_is_lost() {
     for (verb, angle) in [(PedestalVerb::Grip, 0), (PedestalVerb::Flip, 100)] {
         let mut bench = Bench::new();
         bench.send(verb, 250, 50, angle);
-        assert_eq!((0..4).map(|_| bench.end()).collect::<BTreeSet<_>>().len(), 1, "it has some time");
+        let first = bench.end();
+        assert!((0..3).all(|_| bench.end() == first), "it has some time");
         assert_eq!(bench.end(), (PedestalReport::Error, Reason::NeighbourLost), "{verb}");
     }
 }

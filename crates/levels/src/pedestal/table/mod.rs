@@ -47,7 +47,7 @@ use self::{
     preprocess::Seen,
     tables::{Action, CALIBRATE, PAUSE, Step, TURN, calibrate, pause, turn},
 };
-use crate::execution::{Course, EXECUTE};
+use crate::old_execution::{Course, EXECUTE};
 
 /// Decision tables, the upper one first.
 const TABLES: &[&DecisionTable] = &[&EXECUTE, &CALIBRATE, &TURN, &PAUSE];
@@ -86,6 +86,8 @@ impl Table {
 
 impl<Data: ?Sized> Process<Data> for Table {
     type State = State;
+    type Seen = ();
+    type Action = ();
     type Outputs = TableOutputs;
 
     const NAME: &'static str = "Rotary Table";
@@ -97,6 +99,16 @@ impl<Data: ?Sized> Process<Data> for Table {
         let seen = Seen::preprocess(&mut self.state, command, sensors, inputs.tick);
         let action = self.decide(&seen);
         *outputs = postprocess::perform(&mut self.state, &seen, action, sensors, inputs.tick);
+    }
+
+    fn preprocess(&mut self, _: &Inputs<'_, Data>, _: &TableOutputs) {}
+
+    fn decide(&mut self, (): &()) {}
+
+    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, Data>, _: &mut TableOutputs) {}
+
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 
     fn state(&self) -> &State {

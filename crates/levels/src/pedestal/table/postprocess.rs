@@ -15,7 +15,7 @@ use super::{
     state::{Phase, State},
     tables::Action,
 };
-use crate::execution::Outcome;
+use crate::old_execution::Outcome;
 
 /// Steps that lead to the + limit from anywhere: twice as far as from one limit to the other. The switch ends the turn.
 const TO_THE_LIMIT: i32 = steps(LIMIT_PLUS.saturating_sub(LIMIT_MINUS).saturating_mul(2));

@@ -13,7 +13,7 @@ use super::{
     state::{Phase, State},
     tables::{Clock, Motor, Place},
 };
-use crate::execution::Course;
+use crate::old_execution::Course;
 
 /// Angle at the + limit, 0.1 degree (IV.1 step 3: the counter is set to -20.00 there).
 pub const LIMIT_PLUS: i32 = -200;

@@ -4,13 +4,14 @@ use std::collections::BTreeSet;
 
 use proptest::prelude::*;
 use rcs_core::{
+    Plain,
     interface::{
         CommonMemory, ExternalInputs, Reason, TableOutputs,
         device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH},
         pedestal::{PedestalReport, TableCommand, TableVerb},
     },
+    plain::to_bytes,
     process::{Inputs, Process},
-    record::{Field, to_bytes},
     tick::Tick,
 };
 
@@ -195,13 +196,6 @@ impl Bench {
 
 const DONE: (PedestalReport, Reason) = (PedestalReport::Done, Reason::None);
 const STUCK: (PedestalReport, Reason) = (PedestalReport::Error, Reason::TableStuck);
-
-#[test]
-fn no_row_is_dead() {
-    for table in TABLES {
-        table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
-    }
-}
 
 #[test]
 fn a_table_that_is_booted_calibrates_itself() {

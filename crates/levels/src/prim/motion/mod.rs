@@ -36,7 +36,7 @@ pub mod segment;
 #[cfg(test)]
 mod tests;
 
-use rcs_core::{frame::Frame, record, tick::TICK_S};
+use rcs_core::{Plain, frame::Frame, tick::TICK_S};
 
 use self::{
     limits::Limits,
@@ -44,24 +44,23 @@ use self::{
     segment::{FrameData, Order, Segment},
 };
 
-record! {
-    /// The commanded motion of the tool frame.
-    pub struct Motion {
-        /// The commanded frame.
-        pub at: FrameData,
-        /// Goal of the last order; the commanded frame after a halt.
-        pub goal: FrameData,
-        /// The last order is a GO-THRU with this brake distance, inches.
-        pub brake_distance: f64,
-        /// The segment before, braking into its through point.
-        pub residual: Segment,
-        /// The segment under way.
-        pub current: Segment,
-        /// What comes after it.
-        pub next: Order,
-        /// Everything is to come to rest before the next segment starts.
-        pub halting: bool,
-    }
+/// The commanded motion of the tool frame.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Motion {
+    /// The commanded frame.
+    pub at: FrameData,
+    /// Goal of the last order; the commanded frame after a halt.
+    pub goal: FrameData,
+    /// The last order is a GO-THRU with this brake distance, inches.
+    pub brake_distance: f64,
+    /// The segment before, braking into its through point.
+    pub residual: Segment,
+    /// The segment under way.
+    pub current: Segment,
+    /// What comes after it.
+    pub next: Order,
+    /// Everything is to come to rest before the next segment starts.
+    pub halting: bool,
 }
 
 impl Motion {

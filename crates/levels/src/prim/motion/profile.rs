@@ -10,7 +10,7 @@
 //! found by a fixed number of bisections over the closed forms; what the last bisection leaves over is
 //! cruised, so that the end is exact.
 
-use rcs_core::record;
+use rcs_core::Plain;
 
 use super::limits::Limits;
 
@@ -19,44 +19,41 @@ const BISECTIONS: u32 = 48;
 /// Path that is no motion, inches.
 pub const NO_PATH: f64 = 1e-9;
 
-record! {
-    /// State along a segment.
-    pub struct Along {
-        /// Path from the start, inches.
-        pub position: f64,
-        /// in/s, never negative but for rounding.
-        pub velocity: f64,
-        /// in/s².
-        pub acceleration: f64,
-    }
+/// State along a segment.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Along {
+    /// Path from the start, inches.
+    pub position: f64,
+    /// in/s, never negative but for rounding.
+    pub velocity: f64,
+    /// in/s².
+    pub acceleration: f64,
 }
 
-record! {
-    /// A stretch of constant jerk.
-    pub struct Phase {
-        /// Seconds.
-        pub duration: f64,
-        /// in/s³.
-        pub jerk: f64,
-    }
+/// A stretch of constant jerk.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Phase {
+    /// Seconds.
+    pub duration: f64,
+    /// in/s³.
+    pub jerk: f64,
 }
 
-record! {
-    /// A planned motion along a segment, and how far its clock has come.
-    pub struct Profile {
-        /// State at clock 0.
-        pub start: Along,
-        /// To the cruise velocity.
-        pub change: [Phase; 3],
-        /// At the cruise velocity, seconds.
-        pub cruise: f64,
-        /// From the cruise velocity to rest.
-        pub stop: [Phase; 3],
-        /// It ends at the goal; otherwise where it comes to rest.
-        pub to_goal: bool,
-        /// Seconds since `start`.
-        pub clock: f64,
-    }
+/// A planned motion along a segment, and how far its clock has come.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Profile {
+    /// State at clock 0.
+    pub start: Along,
+    /// To the cruise velocity.
+    pub change: [Phase; 3],
+    /// At the cruise velocity, seconds.
+    pub cruise: f64,
+    /// From the cruise velocity to rest.
+    pub stop: [Phase; 3],
+    /// It ends at the goal; otherwise where it comes to rest.
+    pub to_goal: bool,
+    /// Seconds since `start`.
+    pub clock: f64,
 }
 
 impl Along {

@@ -2,8 +2,8 @@
 
 use nalgebra::Matrix3;
 use rcs_core::{
+    Plain,
     frame::{Distance, Frame, Rotation, Vector, norm, rotation_by, rotation_vector},
-    record,
 };
 
 use super::{
@@ -11,14 +11,13 @@ use super::{
     profile::{NO_PATH, Profile},
 };
 
-record! {
-    /// A [`Frame`] as plain data.
-    pub struct FrameData {
-        /// Tool point, inches.
-        pub position: [f64; 3],
-        /// Rotation matrix, row by row.
-        pub rotation: [f64; 9],
-    }
+/// A [`Frame`] as plain data.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct FrameData {
+    /// Tool point, inches.
+    pub position: [f64; 3],
+    /// Rotation matrix, row by row.
+    pub rotation: [f64; 9],
 }
 
 impl From<&Frame> for FrameData {
@@ -43,40 +42,38 @@ impl FrameData {
     }
 }
 
-record! {
-    /// Where to go, and how.
-    pub struct Order {
-        /// There is one.
-        pub given: bool,
-        /// The goal.
-        pub goal: FrameData,
-        /// GO-THRU: the next segment may start before this one has ended.
-        pub through: bool,
-        /// Path to a through point at which the next segment may be given, inches; 0 for at the point itself.
-        pub brake_distance: f64,
-        /// Limits of TRAJ-PARA.
-        pub limits: Limits,
-    }
+/// Where to go, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Order {
+    /// There is one.
+    pub given: bool,
+    /// The goal.
+    pub goal: FrameData,
+    /// GO-THRU: the next segment may start before this one has ended.
+    pub through: bool,
+    /// Path to a through point at which the next segment may be given, inches; 0 for at the point itself.
+    pub brake_distance: f64,
+    /// Limits of TRAJ-PARA.
+    pub limits: Limits,
 }
 
-record! {
-    /// A segment under way.
-    pub struct Segment {
-        /// There is one.
-        pub active: bool,
-        /// Where it goes.
-        pub order: Order,
-        /// From start to goal, inches.
-        pub translation: [f64; 3],
-        /// From start to goal, axis times angle, radians.
-        pub rotation: [f64; 3],
-        /// [`Distance::path`] from start to goal, inches.
-        pub length: f64,
-        /// The motion along it.
-        pub profile: Profile,
-        /// Velocity that the profile was planned for, in/s.
-        pub velocity: f64,
-    }
+/// A segment under way.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Segment {
+    /// There is one.
+    pub active: bool,
+    /// Where it goes.
+    pub order: Order,
+    /// From start to goal, inches.
+    pub translation: [f64; 3],
+    /// From start to goal, axis times angle, radians.
+    pub rotation: [f64; 3],
+    /// [`Distance::path`] from start to goal, inches.
+    pub length: f64,
+    /// The motion along it.
+    pub profile: Profile,
+    /// Velocity that the profile was planned for, in/s.
+    pub velocity: f64,
 }
 
 /// A small displacement: inches, and axis times angle in radians.

@@ -5,20 +5,19 @@
 //! done may be one on which the robot still flies: the operator can stop it, and the commander must learn of
 //! it.
 
-use rcs_core::{coded_enum, decision_table, interface::prim::PrimVerb};
+use rcs_core::{Plain, interface::prim::PrimVerb, old_table};
 
-use crate::execution::{Course, Outcome};
+use crate::old_execution::{Course, Outcome};
 
-coded_enum! {
-    /// What a command is, for the joystick box.
-    pub enum Kind {
-        /// It ends, and moves nothing afterwards.
-        Single = "single",
-        /// It moves the robot.
-        Motion = "motion",
-        /// PAUSE.
-        Lasting = "lasting",
-    }
+/// What a command is, for the joystick box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Kind {
+    /// It ends, and moves nothing afterwards.
+    Single,
+    /// It moves the robot.
+    Motion,
+    /// PAUSE.
+    Lasting,
 }
 
 impl Kind {
@@ -37,16 +36,15 @@ impl Kind {
     }
 }
 
-coded_enum! {
-    /// The frame switches of the joystick box.
-    pub enum Switches {
-        /// None is on.
-        Off = "off",
-        /// One: the box may move the robot.
-        One = "one",
-        /// Two or more: nobody knows what is meant.
-        Several = "several",
-    }
+/// The frame switches of the joystick box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Switches {
+    /// None is on.
+    Off,
+    /// One: the box may move the robot.
+    One,
+    /// Two or more: nobody knows what is meant.
+    Several,
 }
 
 /// What happens with the table of the current command.
@@ -58,7 +56,7 @@ pub enum Attention {
     Consult,
 }
 
-decision_table! {
+old_table! {
     /// ATTEND (III.3.3): is the table of the current command consulted, and with which outcome?
     pub ATTEND: fn attend(course: Course, kind: Kind, outcome: Outcome, switches: Switches)
         -> (Attention, Outcome)

@@ -1,26 +1,26 @@
 //! CAL-SENSOR (V.1.1).
 
 use rcs_core::{
-    coded_enum, decision_table,
+    Plain,
     interface::Reason::{
         InterfaceRefused, InterfaceSilent, LinkError, LinkOff, NeighbourLost, NotAtGoal, SensorError,
     },
+    old_table,
     table::Decision,
 };
 
 use super::{Action, Arrival, Choice, Health, Posture, Samples, Situation};
 
-coded_enum! {
-    /// Reference action of CAL-SENSOR.
-    pub enum Step {
-        /// Not at rest yet.
-        Start = "start",
-        /// Readings are taken.
-        Sampling = "sampling",
-    }
+/// Reference action of CAL-SENSOR.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Not at rest yet.
+    Start,
+    /// Readings are taken.
+    Sampling,
 }
 
-decision_table! {
+old_table! {
     /// CAL-SENSOR (V.1.1): take what the force sensor reads at rest as no force. A robot that moves is stopped first.
     pub CAL_SENSOR: fn cal_sensor(step: Step, health: Health, posture: Posture, rest: Arrival, samples: Samples)
         -> (Action, Step)

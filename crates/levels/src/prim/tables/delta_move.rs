@@ -1,24 +1,24 @@
 //! DELTA-MOVE (V.1.1).
 
 use rcs_core::{
-    coded_enum, decision_table,
+    Plain,
     interface::Reason::{InterfaceRefused, InterfaceSilent, LinkError, LinkOff, NeighbourLost, NotAtGoal},
+    old_table,
     table::Decision,
 };
 
 use super::{Action, Arrival, Choice, Health, Posture, Situation};
 
-coded_enum! {
-    /// Reference action of DELTA-MOVE.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// On the way.
-        Going = "going",
-    }
+/// Reference action of DELTA-MOVE.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// On the way.
+    Going,
 }
 
-decision_table! {
+old_table! {
     /// DELTA-MOVE (V.1.1): move to a place given relative to a pose, by a movetable, and stop. It ends as
     /// GOTO-PT does.
     pub DELTA_MOVE: fn delta_move(step: Step, health: Health, posture: Posture, arrival: Arrival)

@@ -1,24 +1,24 @@
 //! GO-THRU (V.1.1).
 
 use rcs_core::{
-    coded_enum, decision_table,
+    Plain,
     interface::Reason::{InterfaceRefused, InterfaceSilent, LinkError, LinkOff, NeighbourLost},
+    old_table,
     table::Decision,
 };
 
 use super::{Action, Choice, Health, Passage, Posture, Situation};
 
-coded_enum! {
-    /// Reference action of GO-THRU.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// On the way.
-        Going = "going",
-    }
+/// Reference action of GO-THRU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// On the way.
+    Going,
 }
 
-decision_table! {
+old_table! {
     /// GO-THRU (V.1.1): move near a point on the way to the next. Done within the brake distance; the robot
     /// flies on while the next command comes, and stops at the point if none does.
     pub GO_THRU: fn go_thru(step: Step, health: Health, posture: Posture, passage: Passage)

@@ -1,40 +1,40 @@
 //! GO-UNTIL (V.1.1).
 
 use rcs_core::{
-    coded_enum, decision_table,
+    Plain,
     interface::Reason::{
         InterfaceRefused, InterfaceSilent, LinkError, LinkOff, NeighbourLost, NotAtGoal, SensorError,
     },
+    old_table,
     table::Decision,
 };
 
 use super::{Action, Arrival, Choice, Guard, Health, Posture, Situation};
 
-coded_enum! {
-    /// Reference action of GO-UNTIL.
-    ///
-    /// ```text
-    ///             condition                          stands
-    ///   Start ----------------------> Stopping ------------------> done
-    ///     |                            ^    ^
-    ///     v         condition          |    |  condition
-    ///   Going -------------------------'    |
-    ///     |    at the goal                  |
-    ///     `-------------------------> Missed: not-detected
-    /// ```
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// On the way.
-        Going = "going",
-        /// The condition has come; the robot comes to rest.
-        Stopping = "stopping",
-        /// At the goal without it.
-        Missed = "missed",
-    }
+/// Reference action of GO-UNTIL.
+///
+/// ```text
+///             condition                          stands
+///   Start ----------------------> Stopping ------------------> done
+///     |                            ^    ^
+///     v         condition          |    |  condition
+///   Going -------------------------'    |
+///     |    at the goal                  |
+///     `-------------------------> Missed: not-detected
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// On the way.
+    Going,
+    /// The condition has come; the robot comes to rest.
+    Stopping,
+    /// At the goal without it.
+    Missed,
 }
 
-decision_table! {
+old_table! {
     /// GO-UNTIL (V.1.1): a guarded move. Done when the condition has come and the robot stands; a goal
     /// without it is `not-detected` until it comes after all, or another command does.
     pub GO_UNTIL: fn go_until(

@@ -1,27 +1,27 @@
 //! GO-WHILE (V.1.1).
 
 use rcs_core::{
-    coded_enum, decision_table,
+    Plain,
     interface::Reason::{
         Detected, InterfaceRefused, InterfaceSilent, LinkError, LinkOff, NeighbourLost, NotAtGoal,
         SensorError,
     },
+    old_table,
     table::Decision,
 };
 
 use super::{Action, Arrival, Choice, Guard, Health, Posture, Situation};
 
-coded_enum! {
-    /// Reference action of GO-WHILE.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// On the way.
-        Going = "going",
-    }
+/// Reference action of GO-WHILE.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// On the way.
+    Going,
 }
 
-decision_table! {
+old_table! {
     /// GO-WHILE (V.1.1): move to a point and stop, while the condition does not come. If it comes, or the
     /// sensor cannot tell, the robot ramps down and the move has failed.
     pub GO_WHILE: fn go_while(step: Step, health: Health, posture: Posture, guard: Guard, arrival: Arrival)

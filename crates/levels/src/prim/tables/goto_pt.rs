@@ -1,24 +1,24 @@
 //! GOTO-PT (V.1.1).
 
 use rcs_core::{
-    coded_enum, decision_table,
+    Plain,
     interface::Reason::{InterfaceRefused, InterfaceSilent, LinkError, LinkOff, NeighbourLost, NotAtGoal},
+    old_table,
     table::Decision,
 };
 
 use super::{Action, Arrival, Choice, Health, Posture, Situation};
 
-coded_enum! {
-    /// Reference action of GOTO-PT.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// On the way.
-        Going = "going",
-    }
+/// Reference action of GOTO-PT.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// On the way.
+    Going,
 }
 
-decision_table! {
+old_table! {
     /// GOTO-PT (V.1.1): move to a point and stop. Done when the robot rests there, not when it was told to.
     pub GOTO_PT: fn goto_pt(step: Step, health: Health, posture: Posture, arrival: Arrival)
         -> (Action, Step)

@@ -14,114 +14,110 @@ pub mod record_pose;
 pub mod robot_init;
 
 use rcs_core::{
-    coded_enum,
+    Plain,
     interface::{Reason, prim::PrimVerb},
 };
 
 use self::attend::Switches;
 
-coded_enum! {
-    /// What hinders a command.
-    pub enum Health {
-        /// Nothing.
-        Good = "good",
-        /// T3I reports that the DEPC link does not respond.
-        LinkOff = "link off",
-        /// T3I reports an error of the DEPC link.
-        LinkError = "link error",
-        /// T3I refused a command.
-        Refused = "refused",
-        /// T3I does not answer.
-        Silent = "silent",
-        /// E-move does not write its buffers.
-        Orphaned = "orphaned",
-        /// The operator has turned a frame switch of the joystick box on.
-        Operator = "operator",
-    }
+/// What hinders a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Health {
+    /// Nothing.
+    Good,
+    /// T3I reports that the DEPC link does not respond.
+    #[text = "link off"]
+    LinkOff,
+    /// T3I reports an error of the DEPC link.
+    #[text = "link error"]
+    LinkError,
+    /// T3I refused a command.
+    Refused,
+    /// T3I does not answer.
+    Silent,
+    /// E-move does not write its buffers.
+    Orphaned,
+    /// The operator has turned a frame switch of the joystick box on.
+    Operator,
 }
 
-coded_enum! {
-    /// Does T3I want a point (VI.1.2 status-report)?
-    pub enum Pace {
-        /// It has enough points, or has not answered yet.
-        Busy = "busy",
-        /// It is ready for a new point.
-        Wanted = "wanted",
-        /// It has finished all points.
-        Finished = "finished",
-    }
+/// Does T3I want a point (VI.1.2 status-report)?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Pace {
+    /// It has enough points, or has not answered yet.
+    Busy,
+    /// It is ready for a new point.
+    Wanted,
+    /// It has finished all points.
+    Finished,
 }
 
-coded_enum! {
-    /// What the robot was told to do.
-    pub enum Posture {
-        /// Nothing: where it is was never taken over, or is lost.
-        Unpositioned = "unpositioned",
-        /// The path is under way.
-        Moving = "moving",
-        /// The last point of the path is sent, but not finished.
-        Ending = "ending",
-        /// It stands where it was told to be.
-        Standing = "standing",
-    }
+/// What the robot was told to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Posture {
+    /// Nothing: where it is was never taken over, or is lost.
+    Unpositioned,
+    /// The path is under way.
+    Moving,
+    /// The last point of the path is sent, but not finished.
+    Ending,
+    /// It stands where it was told to be.
+    Standing,
 }
 
-coded_enum! {
-    /// The DEPC link after a RESTART.
-    pub enum Link {
-        /// It does not run yet.
-        Down = "down",
-        /// It runs, and T3I feeds back a frame.
-        Running = "running",
-    }
+/// The DEPC link after a RESTART.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Link {
+    /// It does not run yet.
+    Down,
+    /// It runs, and T3I feeds back a frame.
+    Running,
 }
 
-coded_enum! {
-    /// A through point.
-    pub enum Passage {
-        /// On the way.
-        UnderWay = "under way",
-        /// Nearer than the brake distance: the next goal is welcome.
-        Passing = "passing",
-    }
+/// A through point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Passage {
+    /// On the way.
+    #[text = "under way"]
+    UnderWay,
+    /// Nearer than the brake distance: the next goal is welcome.
+    Passing,
 }
 
-coded_enum! {
-    /// The end of a motion: at the goal (DESIGN 16 "Done"), or wherever the robot stands.
-    pub enum Arrival {
-        /// On the way.
-        UnderWay = "under way",
-        /// All points are finished; the resolvers are watched.
-        Settling = "settling",
-        /// The resolvers say that the robot rests there.
-        Arrived = "arrived",
-        /// It should have come to rest there long ago.
-        Late = "late",
-    }
+/// The end of a motion: at the goal (DESIGN 16 "Done"), or wherever the robot stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Arrival {
+    /// On the way.
+    #[text = "under way"]
+    UnderWay,
+    /// All points are finished; the resolvers are watched.
+    Settling,
+    /// The resolvers say that the robot rests there.
+    Arrived,
+    /// It should have come to rest there long ago.
+    Late,
 }
 
-coded_enum! {
-    /// The sensor of a guarded move.
-    pub enum Guard {
-        /// The condition does not hold.
-        Clear = "clear",
-        /// It holds.
-        Met = "met",
-        /// The sensor is overloaded, not calibrated, or not there.
-        Faulty = "faulty",
-    }
+/// The sensor of a guarded move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Guard {
+    /// The condition does not hold.
+    Clear,
+    /// It holds.
+    Met,
+    /// The sensor is overloaded, not calibrated, or not there.
+    Faulty,
 }
 
-coded_enum! {
-    /// The readings that make a bias of the force sensor.
-    pub enum Samples {
-        /// Another one is wanted.
-        Wanted = "wanted",
-        /// There are enough.
-        Complete = "complete",
-        /// The sensor is overloaded, or not there.
-        Faulty = "faulty",
-    }
+/// The readings that make a bias of the force sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Samples {
+    /// Another one is wanted.
+    Wanted,
+    /// There are enough.
+    Complete,
+    /// The sensor is overloaded, or not there.
+    Faulty,
 }
 
 /// The state variables of a tick.
@@ -181,7 +177,7 @@ pub enum Action {
 }
 
 /// What the table of the current command decided.
-pub type Choice = crate::execution::Choice<Action>;
+pub type Choice = crate::old_execution::Choice<Action>;
 
 /// Consult the table of a command. A step that the command does not have counts as its first.
 #[must_use]
@@ -195,20 +191,5 @@ pub fn decide(verb: PrimVerb, step: u8, s: &Situation) -> Choice {
         PrimVerb::GoWhile => go_while::consult(step, s),
         PrimVerb::DeltaMove => delta_move::consult(step, s),
         PrimVerb::CalSensor => cal_sensor::consult(step, s),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use rcs_core::process::Process;
-    use taskdata::files::TaskData;
-
-    use crate::prim::Prim;
-
-    #[test]
-    fn no_row_is_dead() {
-        for table in <Prim as Process<TaskData<'_>>>::TABLES {
-            table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
-        }
     }
 }

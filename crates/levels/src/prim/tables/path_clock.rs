@@ -4,18 +4,17 @@
 //! and nothing is lost or hurried afterwards. So the clock goes on after a GO-THRU is done, and while an
 //! error ramps down.
 
-use rcs_core::{coded_enum, decision_table};
+use rcs_core::{Plain, old_table};
 
 use super::{Health, Pace, Posture};
 
-coded_enum! {
-    /// The path clock in the last tick.
-    pub enum Clock {
-        /// It stood.
-        Stands = "stands",
-        /// It ran.
-        Runs = "runs",
-    }
+/// The path clock in the last tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Clock {
+    /// It stood.
+    Stands,
+    /// It ran.
+    Runs,
 }
 
 /// What happens on the path in a tick.
@@ -29,7 +28,7 @@ pub enum Flow {
     Abandon,
 }
 
-decision_table! {
+old_table! {
     /// PATH-CLOCK (DESIGN 16 "Prim to T3I"): is the next point sent? A robot that does not follow must not be
     /// asked to jump, so that a lost link leaves no motion behind.
     pub PATH_CLOCK: fn path_clock(posture: Posture, health: Health, pace: Pace) -> (Flow, Clock) {

@@ -1,22 +1,21 @@
 //! PAUSE (V.1.1), with the joystick box (III.3.3).
 
-use rcs_core::{coded_enum, decision_table, table::Decision};
+use rcs_core::{Plain, old_table, table::Decision};
 
 use super::{Action, Choice, Posture, Situation, attend::Switches};
 
-coded_enum! {
-    /// Reference action of PAUSE.
-    pub enum Step {
-        /// Nothing done yet, or nothing to do.
-        Start = "start",
-        /// The motion of the command before ramps down.
-        Stopping = "stopping",
-        /// The box moves the robot.
-        Driving = "driving",
-    }
+/// Reference action of PAUSE.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet, or nothing to do.
+    Start,
+    /// The motion of the command before ramps down.
+    Stopping,
+    /// The box moves the robot.
+    Driving,
 }
 
-decision_table! {
+old_table! {
     /// PAUSE (V.1.1): do nothing. A motion ramps down within its limits; then the last point is repeated.
     /// From there on the joystick box moves the robot while one of its frame switches is on.
     pub PAUSE: fn pause(step: Step, posture: Posture, switches: Switches) -> (Action, Step) {

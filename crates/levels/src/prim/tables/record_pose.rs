@@ -1,27 +1,25 @@
 //! The record button of the joystick box: the table of every tick, whatever the command.
 
-use rcs_core::{coded_enum, decision_table};
+use rcs_core::{Plain, old_table};
 
 use super::Posture;
 
-coded_enum! {
-    /// Push-button X.
-    pub enum Button {
-        /// Not pressed, or held down since an earlier tick.
-        Idle = "idle",
-        /// Pressed in this tick.
-        Pressed = "pressed",
-    }
+/// Push-button X.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Button {
+    /// Not pressed, or held down since an earlier tick.
+    Idle,
+    /// Pressed in this tick.
+    Pressed,
 }
 
-coded_enum! {
-    /// A pose was recorded, and Prim and E-move wait for the operator.
-    pub enum Recording {
-        /// No.
-        Off = "off",
-        /// Yes.
-        On = "on",
-    }
+/// A pose was recorded, and Prim and E-move wait for the operator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Recording {
+    /// No.
+    Off,
+    /// Yes.
+    On,
 }
 
 /// What happens to the record of the recorded pose.
@@ -33,7 +31,7 @@ pub enum Note {
     Record,
 }
 
-decision_table! {
+old_table! {
     /// RECORD-POSE (III.3.3): record the pose, and suspend Prim and E-move until the operator goes on. A
     /// Prim that is stepped is not suspended any more.
     pub RECORD_POSE: fn record_pose(button: Button, posture: Posture) -> (Note, Recording) {

@@ -1,24 +1,24 @@
 //! ROBOT-INIT (V.1.1).
 
 use rcs_core::{
-    coded_enum, decision_table,
+    Plain,
     interface::Reason::{InterfaceRefused, InterfaceSilent, LinkError, LinkOff, NeighbourLost},
+    old_table,
     table::Decision,
 };
 
 use super::{Action, Choice, Health, Link, Posture, Situation};
 
-coded_enum! {
-    /// Reference action of ROBOT-INIT.
-    pub enum Step {
-        /// Nothing sent yet.
-        Start = "start",
-        /// RESTART is sent.
-        Restarting = "restarting",
-    }
+/// Reference action of ROBOT-INIT.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing sent yet.
+    Start,
+    /// RESTART is sent.
+    Restarting,
 }
 
-decision_table! {
+old_table! {
     /// ROBOT-INIT (V.1.1): RESTART to T3I. It is there to clear errors of the link, so that only those count
     /// which come after the RESTART. The only way from an error, or from a start, to a commanded position.
     /// The joystick box does not hinder it: nothing moves.

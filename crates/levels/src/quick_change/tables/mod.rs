@@ -4,7 +4,7 @@ mod qc_lock;
 mod qc_pause;
 mod qc_unlock;
 
-use rcs_core::{coded_enum, interface::quick_change::QuickChangeReport};
+use rcs_core::{Plain, interface::quick_change::QuickChangeReport};
 
 pub use self::{
     qc_lock::{QC_LOCK, qc_lock},
@@ -12,38 +12,35 @@ pub use self::{
     qc_unlock::{QC_UNLOCK, qc_unlock},
 };
 
-coded_enum! {
-    /// Reference action of all commands: it outlasts the command, so that a failure is reported until the next one.
-    pub enum Step {
-        /// Watching the sensors.
-        Watch = "watch",
-        /// The ring turns.
-        Turn = "turn",
-        /// The ring did not arrive in time.
-        Stuck = "stuck",
-        /// The sensors failed on the way.
-        Faulty = "faulty",
-    }
+/// Reference action of all commands: it outlasts the command, so that a failure is reported until the next one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Watching the sensors.
+    Watch,
+    /// The ring turns.
+    Turn,
+    /// The ring did not arrive in time.
+    Stuck,
+    /// The sensors failed on the way.
+    Faulty,
 }
 
-coded_enum! {
-    /// What the id pins of the mated gripper are worth.
-    pub enum Id {
-        /// The id of a gripper, or of none.
-        Legal = "legal",
-        /// An id that no gripper has.
-        Illegal = "illegal",
-    }
+/// What the id pins of the mated gripper are worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Id {
+    /// The id of a gripper, or of none.
+    Legal,
+    /// An id that no gripper has.
+    Illegal,
 }
 
-coded_enum! {
-    /// Time for which the ring has been turning.
-    pub enum Clock {
-        /// Within the limit.
-        Running = "running",
-        /// Over the limit.
-        Expired = "expired",
-    }
+/// Time for which the ring has been turning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Clock {
+    /// Within the limit.
+    Running,
+    /// Over the limit.
+    Expired,
 }
 
 /// What a row wants of the valves and the status.

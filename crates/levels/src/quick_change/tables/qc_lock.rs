@@ -1,14 +1,14 @@
 //! QC-LOCK: turn the ring until it is locked.
 
 use rcs_core::{
-    decision_table,
     interface::quick_change::QuickChangeReport::{Executing, Locked, SensorMalfunction, Stuck},
+    old_table,
 };
 
 use super::{Action, Clock, Id, Step};
 use crate::quick_change::Ring;
 
-decision_table! {
+old_table! {
     /// QC-LOCK (VI.2.1): lock, check that the ring did not get stuck, disable the control port. Done at once if it is locked.
     pub QC_LOCK: fn qc_lock(ring: Ring, id: Id, clock: Clock) -> (Action, Step) {
         //   ring                 id        clock        action                    next

@@ -1,14 +1,14 @@
 //! QC-PAUSE: do nothing but look.
 
 use rcs_core::{
-    decision_table,
     interface::quick_change::QuickChangeReport::{Executing, Locked, SensorMalfunction, Stuck, Unlocked},
+    old_table,
 };
 
 use super::{Action, Id, Step};
 use crate::quick_change::Ring;
 
-decision_table! {
+old_table! {
     /// QC-PAUSE (VI.2.1): do nothing; the sensors are checked for the status. Watches after the end of the other commands too: a
     /// failure of theirs is reported until the next command.
     pub QC_PAUSE: fn qc_pause(step: Step, ring: Ring, id: Id) -> (Action, Step) {

@@ -1,111 +1,117 @@
-//! Decision tables of Subtask: a file a command.
+//! Decision tables of Subtask: what a new command needs, what has become of its last order, and a file a command.
 
+pub mod accept;
 pub mod acquire_tool;
 pub mod fix_grip;
 pub mod get_endeff;
 pub mod get_object;
 pub mod goto;
 pub mod insert_tool;
-pub mod move_obj;
-pub mod pause;
+pub mod move_obj_to_dest;
+pub mod ordered;
 pub mod place_obj;
 pub mod position;
 pub mod release;
 pub mod release_tool;
 pub mod remove_tool;
+pub mod s_pause;
 
 use rcs_core::{
-    coded_enum,
+    Actions, Plain, Variables, commands,
     handshake::Lower,
     interface::{Reason, subtask::SubtaskVerb},
+    table::Choice,
 };
 
-coded_enum! {
-    /// Is the object held (V.3.1)?
-    pub enum Held {
-        /// The gripper holds nothing.
-        Nothing = "nothing",
-        /// It holds the object of the command.
-        Right = "right",
-        /// It holds another object.
-        Other = "other",
-    }
+use self::{accept::accept, ordered::ordered};
+use super::preprocess::Seen;
+use crate::{
+    execution::{Asked, EXECUTE, Work},
+    places::Missing,
+};
+
+/// Is the object held (V.3.1)?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Held {
+    /// The gripper holds nothing.
+    Nothing,
+    /// It holds the object of the command.
+    Right,
+    /// It holds another object.
+    Other,
 }
 
-coded_enum! {
-    /// With which grip the object of the command is held.
-    pub enum GripHeld {
-        /// Subtask has not seen how it was taken.
-        Unknown = "unknown",
-        /// The grip for the source location.
-        Source = "source",
-        /// The grip for the destination location, which may be the same.
-        Destination = "destination",
-        /// Neither of the two.
-        Neither = "neither",
-    }
+/// With which grip the object of the command is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum GripHeld {
+    /// Subtask has not seen how it was taken.
+    Unknown,
+    /// The grip for the source location.
+    Source,
+    /// The grip for the destination location, which may be the same.
+    Destination,
+    /// Neither of the two.
+    Neither,
 }
 
-coded_enum! {
-    /// Must the object be found by vision (VII.7.6, en)?
-    pub enum Vision {
-        /// Its location is known well enough.
-        NotNeeded = "not needed",
-        /// It must be found.
-        Needed = "needed",
-    }
+/// Must the object be found by vision (VII.7.6, en)?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Vision {
+    /// Its location is known well enough.
+    #[text = "not needed"]
+    NotNeeded,
+    /// It must be found.
+    Needed,
 }
 
-coded_enum! {
-    /// End effector state (V.3.1): right, wrong, none.
-    pub enum Gripper {
-        /// No gripper is attached.
-        None = "none",
-        /// The gripper for the object is attached.
-        Right = "right",
-        /// Another one is attached.
-        Wrong = "wrong",
-    }
+/// End effector state (V.3.1): right, wrong, none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Gripper {
+    /// No gripper is attached.
+    None,
+    /// The gripper for the object is attached.
+    Right,
+    /// Another one is attached.
+    Wrong,
 }
 
-coded_enum! {
-    /// What a position is named by.
-    pub enum Named {
-        /// The location alone.
-        Location = "location",
-        /// An object, real or virtual, at the location.
-        Object = "object",
-    }
+/// What a position is named by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Named {
+    /// The location alone.
+    Location,
+    /// An object, real or virtual, at the location.
+    Object,
 }
 
-coded_enum! {
-    /// Pedestal status (V.3.1): what the Active Pedestal makes of the last command.
-    pub enum Pedestal {
-        /// Hand or table are moving, or the command is not echoed yet.
-        Moving = "moving",
-        /// The command is done.
-        Done = "done",
-        /// It cannot be executed.
-        Cannot = "can't-do",
-        /// An error prevents it from finishing.
-        Faulty = "error",
-        /// The pedestal does not answer.
-        Silent = "silent",
-    }
+/// Pedestal status (V.3.1): what the Active Pedestal makes of the last command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Pedestal {
+    /// Hand or table are moving, or the command is not echoed yet.
+    Moving,
+    /// The command is done.
+    Done,
+    /// It cannot be executed.
+    #[text = "can't-do"]
+    Cannot,
+    /// An error prevents it from finishing.
+    #[text = "error"]
+    Faulty,
+    /// The pedestal does not answer.
+    Silent,
 }
 
-coded_enum! {
-    /// The hand of the pedestal, by its opening.
-    pub enum Hand {
-        /// It stands at the grasp size or below it: nothing is between its fingers.
-        Empty = "empty",
-        /// It stands above.
-        Gripping = "gripping",
-    }
+/// The hand of the pedestal, by its opening.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Hand {
+    /// It stands at the grasp size or below it: nothing is between its fingers.
+    Empty,
+    /// It stands above.
+    Gripping,
 }
 
 /// Which holster is moved to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Holster {
     /// That of the attached gripper.
     Own,
@@ -113,11 +119,57 @@ pub enum Holster {
     Wanted,
 }
 
-/// The state variables of a tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Situation {
+/// The PED-PARA record of the object (VII.7.4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum PedestalData {
+    /// There is none, or it is not needed.
+    Missing,
+    /// It is there.
+    Found,
+}
+
+/// The process that has the last order of the current command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Ordered {
+    /// Nothing was ordered yet.
+    Nothing,
+    /// E-move.
+    Emove,
+    /// The Active Pedestal.
+    Pedestal,
+}
+
+/// What a new command needs, for [`accept::ACCEPT`].
+#[derive(Clone, Copy, Debug, Default, Variables)]
+pub struct Request {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The command.
+    pub verb: SubtaskVerb,
+    /// Is an object named?
+    pub named: Named,
+    /// How the pedestal takes the object.
+    pub pedestal: PedestalData,
+    /// What the task data lack.
+    pub missing: Missing,
+}
+
+/// How the last order of the command stands, for [`ordered::ORDERED`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Orders {
+    /// The process that has it.
+    pub ordered: Ordered,
     /// Status of E-move.
     pub emove: Lower,
+    /// Status of the pedestal.
+    pub pedestal: Pedestal,
+}
+
+/// The state variables of a tick, for the tables of the commands.
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Situation {
+    /// The last order.
+    pub work: Work,
     /// Is the object held?
     pub held: Held,
     /// With which grip?
@@ -128,14 +180,12 @@ pub struct Situation {
     pub gripper: Gripper,
     /// What the position is named by.
     pub named: Named,
-    /// Pedestal status.
-    pub pedestal: Pedestal,
     /// Hand of the pedestal.
     pub hand: Hand,
 }
 
 /// What a row can ask for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Nothing new.
     Wait,
@@ -197,25 +247,31 @@ pub enum Action {
     PassUpPedestal(Reason),
 }
 
-/// What the table of the current command decided.
-pub type Choice = crate::execution::Choice<Action>;
-
-/// Consult the table of a command. A step that the command does not have counts as its first.
-#[must_use]
-pub fn decide(verb: SubtaskVerb, step: u8, s: &Situation) -> Choice {
-    match verb {
-        SubtaskVerb::None | SubtaskVerb::Pause => pause::consult(step, s),
-        SubtaskVerb::GetEndeff => get_endeff::consult(step, s),
-        SubtaskVerb::GetObject => get_object::consult(step, s),
-        SubtaskVerb::FixGrip => fix_grip::consult(step, s),
-        SubtaskVerb::PlaceObj => place_obj::consult(step, s),
-        SubtaskVerb::GotoEndpt | SubtaskVerb::GotoDest => goto::consult(step, s),
-        SubtaskVerb::MoveObjToDest => move_obj::consult(step, s),
-        SubtaskVerb::Position => position::consult(step, s),
-        SubtaskVerb::Release => release::consult(step, s),
-        SubtaskVerb::InsertTool => insert_tool::consult(step, s),
-        SubtaskVerb::ReleaseTool => release_tool::consult(step, s),
-        SubtaskVerb::AcquireTool => acquire_tool::consult(step, s),
-        SubtaskVerb::RemoveTool => remove_tool::consult(step, s),
+commands! {
+    /// Consult the table of a command.
+    pub fn of_command(SubtaskVerb, enum Step, Situation) -> Action {
+        others: EXECUTE, accept::ACCEPT, ordered::ORDERED;
+        None | Pause            => s_pause::s_pause;
+        GetEndeff               => get_endeff::get_endeff;
+        GetObject               => get_object::get_object;
+        FixGrip                 => fix_grip::fix_grip;
+        PlaceObj                => place_obj::place_obj;
+        MoveObjToDest           => move_obj_to_dest::move_obj_to_dest;
+        GotoEndpt | GotoDest    => goto::goto;
+        Position                => position::position;
+        Release                 => release::release;
+        InsertTool              => insert_tool::insert_tool;
+        ReleaseTool             => release_tool::release_tool;
+        AcquireTool             => acquire_tool::acquire_tool;
+        RemoveTool              => remove_tool::remove_tool;
     }
+}
+
+/// Consult the tables in turn until a row decides.
+#[must_use]
+pub fn decide(step: Step, seen: &Seen) -> Choice<Action, Step> {
+    accept(step, &seen.request).then(number::ACCEPT, |()| {
+        ordered(step, &seen.orders)
+            .then(number::ORDERED, |work| of_command(seen.verb, step, &Situation { work, ..seen.situation }))
+    })
 }

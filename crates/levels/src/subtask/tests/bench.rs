@@ -1,8 +1,6 @@
 //! Subtask with doubles of the processes below it: an E-move and an Active Pedestal that do at once what they
 //! are told, or fail as a test wants.
 
-use std::collections::BTreeSet;
-
 use rcs_core::{
     handshake::{Arrival, Receiver},
     interface::{
@@ -19,7 +17,7 @@ use rcs_core::{
 use taskdata::files::TaskData;
 
 use super::data::data;
-use crate::{places::reason_of, subtask::Subtask};
+use crate::{coverage::Coverage, places::Missing, subtask::Subtask};
 
 /// Ticks that a double takes for a command.
 const WORK: u32 = 3;
@@ -180,7 +178,7 @@ pub struct Bench<'d> {
     pub pedestal: PedestalDouble,
     pub tick: Tick,
     /// Tables and rows that fired.
-    pub rows: BTreeSet<(u8, u8)>,
+    pub rows: Coverage,
 }
 
 impl Default for Bench<'static> {
@@ -199,7 +197,7 @@ impl<'d> Bench<'d> {
             emove: EmoveDouble::default(),
             pedestal: PedestalDouble { part: 255, ..PedestalDouble::default() },
             tick: Tick::BEFORE_START,
-            rows: BTreeSet::new(),
+            rows: Coverage::default(),
         };
         bench.emove.outputs.status.end_effector_id = 1;
         bench.step();
@@ -212,7 +210,7 @@ impl<'d> Bench<'d> {
         let mut poses = self.memory.task.poses;
         let place = (!location.is_empty()).then(|| {
             let name = Name16::new(location).unwrap();
-            self.data.resolve_location(&name, 0, None::<&Name16>).map_err(|e| reason_of(&e)).unwrap()
+            self.data.resolve_location(&name, 0, None::<&Name16>).map_err(Missing::from).unwrap()
         });
         let number = self.memory.task.subtask.number + 1;
         let mut command = SubtaskCommand {
@@ -244,7 +242,7 @@ impl<'d> Bench<'d> {
         let external = ExternalInputs::default();
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &external, data: &self.data };
         self.process.step(&inputs, &mut outputs);
-        self.rows.insert((outputs.header.table, outputs.header.row));
+        self.rows.note(&outputs.header);
         let before = self.memory.subtask;
         self.emove.step(self.tick, &before.emove);
         self.pedestal.step(self.tick, &before.pedestal);

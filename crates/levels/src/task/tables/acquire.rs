@@ -1,22 +1,21 @@
 //! ACQUIRE (V.4.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, table::Decision};
+use rcs_core::{Plain, handshake::Lower, old_table, table::Decision};
 
 use super::{Action, Choice, Situation};
 
-coded_enum! {
-    /// Reference action of ACQUIRE.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The gripper is being fetched.
-        Gripper = "gripper",
-        /// The object is being fetched.
-        Object = "object",
-    }
+/// Reference action of ACQUIRE.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The gripper is being fetched.
+    Gripper,
+    /// The object is being fetched.
+    Object,
 }
 
-decision_table! {
+old_table! {
     /// ACQUIRE (V.4.1): get the proper end effector, move to the object and grasp it.
     pub ACQUIRE: fn acquire(step: Step, subtask: Lower) -> (Action, Step) {
         //    step               subtask                    action      next

@@ -1,24 +1,23 @@
 //! ACQUIRE-TOOL (V.4.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Holding, Situation, Station};
 
-coded_enum! {
-    /// Reference action of ACQUIRE-TOOL.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The tool gripper is being fetched.
-        Gripper = "gripper",
-        /// The robot is on its way to the destination, near the drum.
-        Approaching = "approaching",
-        /// The tool is being grasped.
-        Acquiring = "acquiring",
-    }
+/// Reference action of ACQUIRE-TOOL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The tool gripper is being fetched.
+    Gripper,
+    /// The robot is on its way to the destination, near the drum.
+    Approaching,
+    /// The tool is being grasped.
+    Acquiring,
 }
 
-decision_table! {
+old_table! {
     /// ACQUIRE-TOOL (V.4.1): get the tool gripper, go to the destination, which is TOOL-SAFE, and grasp a
     /// tool in the tool drum; done at once if it is held there.
     pub ACQUIRE_TOOL: fn acquire_tool(step: Step, holding: Holding, station: Station, subtask: Lower) -> (Action, Step) {

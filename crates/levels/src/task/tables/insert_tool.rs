@@ -1,20 +1,19 @@
 //! INSERT-TOOL (V.4.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Situation, Station, Tool};
 
-coded_enum! {
-    /// Reference action of INSERT-TOOL.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The tool is being inserted.
-        Inserting = "inserting",
-    }
+/// Reference action of INSERT-TOOL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The tool is being inserted.
+    Inserting,
 }
 
-decision_table! {
+old_table! {
     /// INSERT-TOOL (V.4.1): insert a tool, which a MOVE has brought near the tool drum, into the drum; done
     /// at once if it is there.
     pub INSERT_TOOL: fn insert_tool(step: Step, tool: Tool, station: Station, subtask: Lower) -> (Action, Step) {

@@ -1,6 +1,6 @@
 //! The joystick box (V.4.1 PAUSE): the table of every tick, whatever the command.
 
-use rcs_core::{decision_table, handshake::Lower};
+use rcs_core::{handshake::Lower, old_table};
 
 use crate::task::state::Watch;
 
@@ -17,7 +17,7 @@ pub enum Takeover {
     Resume,
 }
 
-decision_table! {
+old_table! {
     /// JOYSTICK (V.4.1 PAUSE): when the box becomes active, Task sends down a pause, also when no command was
     /// running. What was interrupted is not resumed.
     pub JOYSTICK: fn joystick(watch: Watch, subtask: Lower) -> (Takeover, Watch) {

@@ -14,105 +14,99 @@ pub mod shutdown;
 pub mod startup;
 pub mod transfer;
 
-use rcs_core::{coded_enum, handshake::Lower, interface::Reason};
+use rcs_core::{Plain, handshake::Lower, interface::Reason};
 
 use super::plan::TaskVerb;
 
-coded_enum! {
-    /// Is an object to be handled (V.4.1)?
-    pub enum Handling {
-        /// The command names no object.
-        NoObject = "no object",
-        /// It does.
-        Object = "object",
-    }
+/// Is an object to be handled (V.4.1)?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Handling {
+    /// The command names no object.
+    #[text = "no object"]
+    NoObject,
+    /// It does.
+    Object,
 }
 
-coded_enum! {
-    /// Object status (V.4.1): does the gripper hold something?
-    pub enum Holding {
-        /// Nothing.
-        NotHeld = "not held",
-        /// The object of the command.
-        Held = "held",
-        /// Something else.
-        Other = "other",
-    }
+/// Object status (V.4.1): does the gripper hold something?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Holding {
+    /// Nothing.
+    #[text = "not held"]
+    NotHeld,
+    /// The object of the command.
+    Held,
+    /// Something else.
+    Other,
 }
 
-coded_enum! {
-    /// Source and destination grip numbers.
-    pub enum Grips {
-        /// The object stays as it is gripped.
-        Same = "same",
-        /// It must be regripped on the way.
-        Different = "different",
-    }
+/// Source and destination grip numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Grips {
+    /// The object stays as it is gripped.
+    Same,
+    /// It must be regripped on the way.
+    Different,
 }
 
-coded_enum! {
-    /// Where the robot is to be at the end.
-    pub enum Ends {
-        /// Where the command leaves it.
-        Here = "here",
-        /// At the end-at location, where it is now.
-        There = "there",
-        /// At the end-at location, where it is not.
-        Elsewhere = "elsewhere",
-    }
+/// Where the robot is to be at the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Ends {
+    /// Where the command leaves it.
+    Here,
+    /// At the end-at location, where it is now.
+    There,
+    /// At the end-at location, where it is not.
+    Elsewhere,
 }
 
-coded_enum! {
-    /// State of the data base (V.4.1): what the Data System makes of the last command to it.
-    pub enum DataBase {
-        /// It is done.
-        Done = "done",
-        /// It is executing, or not answered yet.
-        Executing = "executing",
-        /// It was refused.
-        Refused = "refused",
-        /// It is not done in time, and can be written again.
-        Overdue = "overdue",
-        /// It is not done in time, however often it was written.
-        Silent = "silent",
-    }
+/// State of the data base (V.4.1): what the Data System makes of the last command to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum DataBase {
+    /// It is done.
+    Done,
+    /// It is executing, or not answered yet.
+    Executing,
+    /// It was refused.
+    Refused,
+    /// It is not done in time, and can be written again.
+    Overdue,
+    /// It is not done in time, however often it was written.
+    Silent,
 }
 
-coded_enum! {
-    /// What the Data System is to be told.
-    pub enum Books {
-        /// Nothing: the object is not moved from or to the MBD, it has been told, or no Data System is
-        /// connected (DB-DONE, IV.3.2).
-        Closed = "closed",
-        /// The move of this command.
-        Open = "open",
-        /// An update that was written and is not taken yet.
-        Owed = "owed",
-    }
+/// What the Data System is to be told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Books {
+    /// Nothing: the object is not moved from or to the MBD, it has been told, or no Data System is
+    /// connected (DB-DONE, IV.3.2).
+    Closed,
+    /// The move of this command.
+    Open,
+    /// An update that was written and is not taken yet.
+    Owed,
 }
 
-coded_enum! {
-    /// The tool gripper.
-    pub enum Tool {
-        /// It is not on, or it holds another tool than the command names.
-        None = "none",
-        /// It holds nothing.
-        Free = "free",
-        /// It holds the tool.
-        Held = "held",
-    }
+/// The tool gripper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Tool {
+    /// It is not on, or it holds another tool than the command names.
+    None,
+    /// It holds nothing.
+    Free,
+    /// It holds the tool.
+    Held,
 }
 
-coded_enum! {
-    /// Where the robot is, for the tool commands.
-    pub enum Station {
-        /// At none of the following.
-        Elsewhere = "elsewhere",
-        /// Near the drum: at TOOL-SAFE, or at the source location that the command names.
-        Safe = "safe",
-        /// In the transfer location of the drum.
-        Transfer = "transfer",
-    }
+/// Where the robot is, for the tool commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Station {
+    /// At none of the following.
+    Elsewhere,
+    /// Near the drum: at TOOL-SAFE, or at the source location that the command names.
+    Safe,
+    /// In the transfer location of the drum.
+    Transfer,
 }
 
 /// The state variables of a tick.
@@ -200,7 +194,7 @@ pub enum Action {
 }
 
 /// What the table of the current command decided.
-pub type Choice = crate::execution::Choice<Action>;
+pub type Choice = crate::old_execution::Choice<Action>;
 
 /// Consult the table of a command. A step that the command does not have counts as its first.
 #[must_use]

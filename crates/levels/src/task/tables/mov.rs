@@ -1,30 +1,29 @@
 //! MOVE (V.4.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Books, Choice, DataBase, Grips, Handling, Situation};
 
-coded_enum! {
-    /// Reference action of MOVE.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// An earlier update is told again.
-        Settling = "settling",
-        /// The gripper is being fetched.
-        Gripper = "gripper",
-        /// The object is being fetched.
-        Object = "object",
-        /// It is being regripped on the pedestal.
-        Regripping = "regripping",
-        /// The object, or the robot alone, is on its way.
-        Moving = "moving",
-        /// The data base is being told.
-        Telling = "telling",
-    }
+/// Reference action of MOVE.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// An earlier update is told again.
+    Settling,
+    /// The gripper is being fetched.
+    Gripper,
+    /// The object is being fetched.
+    Object,
+    /// It is being regripped on the pedestal.
+    Regripping,
+    /// The object, or the robot alone, is on its way.
+    Moving,
+    /// The data base is being told.
+    Telling,
 }
 
-decision_table! {
+old_table! {
     /// MOVE (V.4.1): move an object to a location and hold it there, or move the robot; the end-at location
     /// is ignored.
     pub MOVE: fn mov(step: Step, handling: Handling, grips: Grips, subtask: Lower, data_base: DataBase, books: Books) -> (Action, Step) {

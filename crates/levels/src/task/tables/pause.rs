@@ -1,20 +1,19 @@
 //! PAUSE (V.4.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, table::Decision};
+use rcs_core::{Plain, handshake::Lower, old_table, table::Decision};
 
 use super::{Action, Choice, Situation};
 
-coded_enum! {
-    /// Reference action of PAUSE.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// Subtask is pausing.
-        Pausing = "pausing",
-    }
+/// Reference action of PAUSE.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// Subtask is pausing.
+    Pausing,
 }
 
-decision_table! {
+old_table! {
     /// PAUSE (V.4.1): do nothing; the pause goes down the ladder.
     pub PAUSE: fn pause(step: Step, subtask: Lower) -> (Action, Step) {
         //    step      subtask                    action   next

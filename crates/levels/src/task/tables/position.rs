@@ -1,22 +1,21 @@
 //! POSITION (V.4.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, table::Decision};
+use rcs_core::{Plain, handshake::Lower, old_table, table::Decision};
 
 use super::{Action, Choice, Holding, Situation};
 
-coded_enum! {
-    /// Reference action of POSITION.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The held object is being released.
-        Releasing = "releasing",
-        /// The robot is on its way.
-        Moving = "moving",
-    }
+/// Reference action of POSITION.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The held object is being released.
+    Releasing,
+    /// The robot is on its way.
+    Moving,
 }
 
-decision_table! {
+old_table! {
     /// POSITION (V.4.1): release what is held, then move to the position, with the parameters of a virtual
     /// object if one is named.
     pub POSITION: fn position(step: Step, holding: Holding, subtask: Lower) -> (Action, Step) {

@@ -1,26 +1,25 @@
 //! REFIXTURE (V.4.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, table::Decision};
+use rcs_core::{Plain, handshake::Lower, old_table, table::Decision};
 
 use super::{Action, Choice, Grips, Holding, Situation};
 
-coded_enum! {
-    /// Reference action of REFIXTURE.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The gripper is being fetched.
-        Gripper = "gripper",
-        /// The object is being fetched.
-        Object = "object",
-        /// It is being regripped on the pedestal.
-        Regripping = "regripping",
-        /// It is on its way to the destination.
-        Moving = "moving",
-    }
+/// Reference action of REFIXTURE.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The gripper is being fetched.
+    Gripper,
+    /// The object is being fetched.
+    Object,
+    /// It is being regripped on the pedestal.
+    Regripping,
+    /// It is on its way to the destination.
+    Moving,
 }
 
-decision_table! {
+old_table! {
     /// REFIXTURE (V.4.1): take an object, reorient it with the Active Pedestal, and hold it at the
     /// destination. An object that is held already, as after ACQUIRE, is not fetched.
     pub REFIXTURE: fn refixture(step: Step, holding: Holding, grips: Grips, subtask: Lower) -> (Action, Step) {

@@ -1,22 +1,21 @@
 //! RELEASE-TOOL (V.4.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Ends, Situation, Station, Tool};
 
-coded_enum! {
-    /// Reference action of RELEASE-TOOL.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The tool is being let go.
-        Releasing = "releasing",
-        /// The robot is on its way to the end-at location.
-        Leaving = "leaving",
-    }
+/// Reference action of RELEASE-TOOL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The tool is being let go.
+    Releasing,
+    /// The robot is on its way to the end-at location.
+    Leaving,
 }
 
-decision_table! {
+old_table! {
     /// RELEASE-TOOL (V.4.1): let go of a tool in the transfer location, then go to the end-at location; done
     /// at once if that is so.
     pub RELEASE_TOOL: fn release_tool(step: Step, tool: Tool, station: Station, ends: Ends, subtask: Lower) -> (Action, Step) {

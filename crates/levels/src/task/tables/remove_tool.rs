@@ -1,22 +1,21 @@
 //! REMOVE-TOOL (V.4.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, Ends, Situation, Station, Tool};
 
-coded_enum! {
-    /// Reference action of REMOVE-TOOL.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// The tool is being pulled out.
-        Removing = "removing",
-        /// The robot is on its way to the end-at location.
-        Leaving = "leaving",
-    }
+/// Reference action of REMOVE-TOOL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// The tool is being pulled out.
+    Removing,
+    /// The robot is on its way to the end-at location.
+    Leaving,
 }
 
-decision_table! {
+old_table! {
     /// REMOVE-TOOL (V.4.1): pull a tool that has been acquired out of the tool drum, then go to the end-at
     /// location; done at once if the tool is there.
     pub REMOVE_TOOL: fn remove_tool(step: Step, tool: Tool, station: Station, ends: Ends, subtask: Lower) -> (Action, Step) {

@@ -1,20 +1,19 @@
 //! SHUTDOWN (V.4.1).
 
-use rcs_core::{coded_enum, decision_table, interface::Reason, table::Decision};
+use rcs_core::{Plain, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Choice, DataBase, Situation};
 
-coded_enum! {
-    /// Reference action of SHUTDOWN.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// Abort was sent.
-        Aborting = "aborting",
-    }
+/// Reference action of SHUTDOWN.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// Abort was sent.
+    Aborting,
 }
 
-decision_table! {
+old_table! {
     /// SHUTDOWN (V.4.1): disconnect the Data System with an Abort. It counts as gone from the first tick,
     /// whatever it answers.
     pub SHUTDOWN: fn shutdown(step: Step, data_base: DataBase) -> (Action, Step) {

@@ -1,26 +1,25 @@
 //! STARTUP (V.4.1, IV.4.2).
 
-use rcs_core::{coded_enum, decision_table, interface::Reason, table::Decision};
+use rcs_core::{Plain, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Books, Choice, DataBase, Situation};
 
-coded_enum! {
-    /// Reference action of STARTUP; three of them are what the terminal showed (IV.4.2 step 3).
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// Abort was sent.
-        Aborting = "aborting",
-        /// Initiate was sent.
-        Initiating = "initiating",
-        /// Startup was sent.
-        Connecting = "connecting",
-        /// An earlier update is told again.
-        Settling = "settling",
-    }
+/// Reference action of STARTUP; three of them are what the terminal showed (IV.4.2 step 3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// Abort was sent.
+    Aborting,
+    /// Initiate was sent.
+    Initiating,
+    /// Startup was sent.
+    Connecting,
+    /// An earlier update is told again.
+    Settling,
 }
 
-decision_table! {
+old_table! {
     /// STARTUP (V.4.1): connect the Data System: Abort, Initiate, Startup, and the update that it did not
     /// take before, if there is one.
     pub STARTUP: fn startup(step: Step, data_base: DataBase, books: Books) -> (Action, Step) {

@@ -1,32 +1,31 @@
 //! TRANSFER (V.4.1).
 
-use rcs_core::{coded_enum, decision_table, handshake::Lower, interface::Reason, table::Decision};
+use rcs_core::{Plain, handshake::Lower, interface::Reason, old_table, table::Decision};
 
 use super::{Action, Books, Choice, DataBase, Ends, Grips, Situation};
 
-coded_enum! {
-    /// Reference action of TRANSFER.
-    pub enum Step {
-        /// Nothing done yet.
-        Start = "start",
-        /// An earlier update is told again.
-        Settling = "settling",
-        /// The gripper is being fetched.
-        Gripper = "gripper",
-        /// The object is being fetched.
-        Object = "object",
-        /// It is being regripped on the pedestal.
-        Regripping = "regripping",
-        /// It is being placed.
-        Placing = "placing",
-        /// The robot is on its way to the end-at location.
-        Leaving = "leaving",
-        /// The data base is being told.
-        Telling = "telling",
-    }
+/// Reference action of TRANSFER.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing done yet.
+    Start,
+    /// An earlier update is told again.
+    Settling,
+    /// The gripper is being fetched.
+    Gripper,
+    /// The object is being fetched.
+    Object,
+    /// It is being regripped on the pedestal.
+    Regripping,
+    /// It is being placed.
+    Placing,
+    /// The robot is on its way to the end-at location.
+    Leaving,
+    /// The data base is being told.
+    Telling,
 }
 
-decision_table! {
+old_table! {
     /// TRANSFER (V.4.1): move an object from one location to another, then go to the end-at location. The
     /// data base is told as soon as the object is there, so that a robot that cannot leave does not leave it
     /// wrong.

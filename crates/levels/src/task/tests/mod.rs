@@ -11,20 +11,13 @@ use rcs_core::{
 
 use self::bench::{Bench, FINISHED, Mishap};
 use super::{
-    TABLES, Task,
+    Task,
     plan::{Plan, TaskVerb},
 };
 use crate::subtask::tests::data::without;
 
 fn error(reason: Reason) -> (HwsReport, Reason) {
     (HwsReport::Error, reason)
-}
-
-#[test]
-fn no_row_is_dead() {
-    for table in TABLES {
-        table.dead_rows(|row| panic!("{}: row {row} can never fire", table.name));
-    }
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! FLIP: turn the object round.
 
-use rcs_core::{decision_table, handshake::Lower, interface::Reason::ObjectLost};
+use rcs_core::{handshake::Lower, interface::Reason::ObjectLost, old_table};
 
 use super::{Action, Object, Step};
 
-decision_table! {
+old_table! {
     /// FLIP (VI.7.1): turn the table by the relative `table-angle`; no command to the hand. Notices an object that comes loose.
     pub FLIP: fn flip(step: Step, table: Lower, object: Object) -> (Action, Step) {
         //   step    table                      object        action             next

@@ -1,10 +1,10 @@
 //! GRIP: close the hand on the object.
 
-use rcs_core::{decision_table, handshake::Lower, interface::Reason::GraspMissed};
+use rcs_core::{handshake::Lower, interface::Reason::GraspMissed, old_table};
 
 use super::{Action, Object, Step};
 
-decision_table! {
+old_table! {
     /// GRIP (VI.7.1): grasp the object with `grasp-force`; no command to the table. A hand that has closed on nothing is an error,
     /// since the robot is about to let go.
     pub GRIP: fn grip(step: Step, hand: Lower, object: Object) -> (Action, Step) {

@@ -6,7 +6,7 @@ mod pause;
 mod pre_grip;
 mod release;
 
-use rcs_core::{coded_enum, interface::Reason};
+use rcs_core::{Plain, interface::Reason};
 
 pub use self::{
     flip::{FLIP, flip},
@@ -16,26 +16,24 @@ pub use self::{
     release::{RELEASE, release},
 };
 
-coded_enum! {
-    /// Reference action of all commands.
-    pub enum Step {
-        /// Nothing sent yet.
-        Start = "start",
-        /// Hand, table or both have their commands.
-        Move = "move",
-    }
+/// Reference action of all commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Nothing sent yet.
+    Start,
+    /// Hand, table or both have their commands.
+    Move,
 }
 
-coded_enum! {
-    /// What the hand holds.
-    pub enum Object {
-        /// Nothing that it was to hold.
-        None = "none",
-        /// The object between its fingers.
-        Held = "held",
-        /// Nothing, though it gripped an object.
-        Lost = "lost",
-    }
+/// What the hand holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Object {
+    /// Nothing that it was to hold.
+    None,
+    /// The object between its fingers.
+    Held,
+    /// Nothing, though it gripped an object.
+    Lost,
 }
 
 /// What a row wants of hand, table and status.

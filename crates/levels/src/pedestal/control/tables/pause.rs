@@ -1,10 +1,10 @@
 //! PAUSE: do nothing.
 
-use rcs_core::{decision_table, handshake::Lower};
+use rcs_core::{handshake::Lower, old_table};
 
 use super::{Action, Step};
 
-decision_table! {
+old_table! {
     /// PAUSE (VI.7.1): do nothing. A turning table stops; the hand goes on to the end of what it was told, since half a grasp
     /// holds nothing.
     pub PAUSE: fn pause(step: Step, table: Lower) -> (Action, Step) {

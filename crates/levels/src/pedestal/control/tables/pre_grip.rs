@@ -1,10 +1,10 @@
 //! PRE-GRIP: get ready to receive an object.
 
-use rcs_core::{decision_table, handshake::Lower};
+use rcs_core::{handshake::Lower, old_table};
 
 use super::{Action, Step};
 
-decision_table! {
+old_table! {
     /// PRE-GRIP (VI.7.1): open the hand to `grasp-size` and turn the table to the absolute `table-angle`, both at once.
     pub PRE_GRIP: fn pre_grip(step: Step, hand: Lower, table: Lower) -> (Action, Step) {
         //   step    hand                     table                           action        next

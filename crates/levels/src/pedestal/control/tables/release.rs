@@ -1,10 +1,10 @@
 //! RELEASE: let the object go.
 
-use rcs_core::{decision_table, handshake::Lower};
+use rcs_core::{handshake::Lower, old_table};
 
 use super::{Action, Step};
 
-decision_table! {
+old_table! {
     /// RELEASE (VI.7.1): open the hand to `grasp-size`; no command to the table.
     pub RELEASE: fn release(step: Step, hand: Lower) -> (Action, Step) {
         //   step    hand                        action     next

@@ -1,11 +1,11 @@
 //! CALIBRATE: find the + limit and set the counter.
 
-use rcs_core::{decision_table, interface::Reason::TableStuck};
+use rcs_core::{interface::Reason::TableStuck, old_table};
 
 use super::{Action, Clock, Motor, Place};
 use crate::pedestal::table::Phase;
 
-decision_table! {
+old_table! {
     /// CALIBRATE (IV.1 step 3, IV.5.1 step 10): turn to the + limit and give the counter the angle of the limit. Runs by itself
     /// when the table is booted, and before the first command that turns it.
     pub CALIBRATE: fn calibrate(phase: Phase, motor: Motor, place: Place, clock: Clock) -> (Action, Phase) {

@@ -4,7 +4,7 @@ mod calibrate;
 mod pause;
 mod turn;
 
-use rcs_core::{coded_enum, interface::Reason};
+use rcs_core::{Plain, interface::Reason};
 
 pub use self::{
     calibrate::{CALIBRATE, calibrate},
@@ -12,38 +12,35 @@ pub use self::{
     turn::{Step, TURN, turn},
 };
 
-coded_enum! {
-    /// What the motor does.
-    pub enum Motor {
-        /// Its controller has not taken the last order yet.
-        Pending = "pending",
-        /// It turns, or has come to rest only just now.
-        Turning = "turning",
-        /// It stands.
-        Standing = "standing",
-        /// Its controller does not take the last order.
-        Silent = "silent",
-    }
+/// What the motor does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Motor {
+    /// Its controller has not taken the last order yet.
+    Pending,
+    /// It turns, or has come to rest only just now.
+    Turning,
+    /// It stands.
+    Standing,
+    /// Its controller does not take the last order.
+    Silent,
 }
 
-coded_enum! {
-    /// Where the table is.
-    pub enum Place {
-        /// Where the step that is under way wants it: at the + limit, with the counter set, at the angle.
-        There = "there",
-        /// Anywhere else.
-        Elsewhere = "elsewhere",
-    }
+/// Where the table is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Place {
+    /// Where the step that is under way wants it: at the + limit, with the counter set, at the angle.
+    There,
+    /// Anywhere else.
+    Elsewhere,
 }
 
-coded_enum! {
-    /// Time of what has the duty.
-    pub enum Clock {
-        /// Within its limit.
-        Running = "running",
-        /// Over its limit.
-        Expired = "expired",
-    }
+/// Time of what has the duty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Clock {
+    /// Within its limit.
+    Running,
+    /// Over its limit.
+    Expired,
 }
 
 /// What a row wants of the motor and the status.

@@ -1,10 +1,10 @@
 //! PAUSE: stop.
 
-use rcs_core::{decision_table, interface::Reason::TableStuck};
+use rcs_core::{interface::Reason::TableStuck, old_table};
 
 use super::{Action, Clock, Motor, Step};
 
-decision_table! {
+old_table! {
     /// PAUSE: a turning table stops; one that does not answer is left alone.
     pub PAUSE: fn pause(motor: Motor, clock: Clock) -> (Action, Step) {
         //   motor               clock        action              next

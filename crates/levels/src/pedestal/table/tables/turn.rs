@@ -1,20 +1,19 @@
 //! TURN: turn to an absolute angle.
 
-use rcs_core::{coded_enum, decision_table, interface::Reason::TableStuck};
+use rcs_core::{Plain, interface::Reason::TableStuck, old_table};
 
 use super::{Action, Clock, Motor, Place};
 
-coded_enum! {
-    /// Reference action of a command to the table.
-    pub enum Step {
-        /// No turn ordered yet.
-        Start = "start",
-        /// The turn is ordered.
-        Turning = "turning",
-    }
+/// Reference action of a command to the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// No turn ordered yet.
+    Start,
+    /// The turn is ordered.
+    Turning,
 }
 
-decision_table! {
+old_table! {
     /// TURN: turn to the commanded angle, which counter and potentiometer must both show in the end.
     pub TURN: fn turn(step: Step, motor: Motor, place: Place, clock: Clock) -> (Action, Step) {
         //   step              motor               place       clock        action              next

@@ -1,9 +1,23 @@
-//! Records: the fixed-size data that processes exchange, with one definition for everything that is done with them.
+//! Plain data: the fixed-size values that processes exchange and remember, with one definition for everything that is done with them.
 //!
-//! A record is written once, with [`record!`](crate::record!), and the same definition gives the plain Rust structure,
-//! its byte image (field by field, little-endian, without padding), the checked way back from bytes, and a
-//! [`Schema`] that recorders, viewers and the digest walk. Equal records are equal bytes, and a byte image from outside
-//! becomes a record only if every name, flag and enum in it is legal.
+//! A type is written once, with `#[derive(Plain)]`, and the same definition gives the Rust type, its byte image (field by field,
+//! little-endian, without padding), the checked way back from bytes, and a [`Schema`] that recorders, viewers and the digest walk.
+//! Equal values are equal bytes, and a byte image from outside becomes a value only if every name, flag and enum in it is legal.
+//!
+//! ```
+//! use rcs_core::{Plain, plain::to_bytes};
+//!
+//! /// Where the table of the pedestal stands.
+//! #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+//! pub struct Table {
+//!     /// Angle, 0.1 degree.
+//!     pub angle: i32,
+//!     /// The object on it, if there is one.
+//!     pub object: Option<u8>,
+//! }
+//! assert_eq!(Table::SIZE, 6);
+//! assert_eq!(to_bytes::<6, _>(&Table { angle: -2135, object: Some(7) }), [0xA9, 0xF7, 0xFF, 0xFF, 1, 7]);
+//! ```
 
 use core::fmt;
 
@@ -32,29 +46,66 @@ pub enum Schema {
     Enum(&'static EnumSchema),
     /// So many of the same.
     Array(&'static Schema, usize),
-    /// A record in the record.
+    /// A struct.
     Record(&'static RecordSchema),
+    /// One byte, 0 for none or 1, then the value, zero for none.
+    Option(&'static Schema),
+    /// One byte, the code of a variant, then what it carries, then zeros to the size of the largest variant.
+    Union(&'static UnionSchema),
 }
 
-/// An enum in a record: its name, and the code and text of each variant.
+/// An enum without data.
 #[derive(Debug, PartialEq)]
 pub struct EnumSchema {
     /// Rust name of the enum.
     pub name: &'static str,
-    /// Code and text of each variant; the text is the manual's word where it has one.
-    pub variants: &'static [(u8, &'static str)],
+    /// The variants in the order of their codes.
+    pub variants: &'static [VariantSchema],
 }
 
-/// A record: its name and fields in the order of the byte image.
+/// A variant of an enum without data.
+#[derive(Debug, PartialEq)]
+pub struct VariantSchema {
+    /// Code in the byte image.
+    pub code: u8,
+    /// Rust name.
+    pub name: &'static str,
+    /// Text in logs and on screens: the manual's word where it has one.
+    pub text: &'static str,
+    /// What it means: the doc comment.
+    pub doc: &'static str,
+}
+
+/// An enum with data.
+#[derive(Debug, PartialEq)]
+pub struct UnionSchema {
+    /// Rust name of the enum.
+    pub name: &'static str,
+    /// The variants in the order of their codes.
+    pub variants: &'static [UnionVariant],
+}
+
+/// A variant of an enum with data.
+#[derive(Debug, PartialEq)]
+pub struct UnionVariant {
+    /// Code in the byte image.
+    pub code: u8,
+    /// Text in logs and on screens.
+    pub text: &'static str,
+    /// What it carries.
+    pub payload: Option<Schema>,
+}
+
+/// A struct: its name and fields in the order of the byte image.
 #[derive(Debug, PartialEq)]
 pub struct RecordSchema {
-    /// Rust name of the record.
+    /// Rust name of the struct.
     pub name: &'static str,
     /// The fields.
     pub fields: &'static [FieldSchema],
 }
 
-/// A field of a record.
+/// A field of a struct.
 #[derive(Debug, PartialEq)]
 pub struct FieldSchema {
     /// Rust name of the field.
@@ -75,7 +126,34 @@ impl Schema {
             Self::Text(n) => *n,
             Self::Array(of, n) => of.size().saturating_mul(*n),
             Self::Record(record) => record.size(),
+            Self::Option(of) => of.size().saturating_add(1),
+            Self::Union(of) => of.payload_size().saturating_add(1),
         }
+    }
+}
+
+impl EnumSchema {
+    /// The variant with a Rust name.
+    #[must_use]
+    pub fn named(&self, name: &str) -> Option<&'static VariantSchema> {
+        self.variants.iter().find(|variant| variant.name == name)
+    }
+}
+
+impl UnionSchema {
+    /// Bytes of the largest value that a variant carries.
+    #[must_use]
+    pub const fn payload_size(&self) -> usize {
+        let (mut rest, mut largest) = (self.variants, 0_usize);
+        while let Some((variant, more)) = rest.split_first() {
+            if let Some(payload) = &variant.payload
+                && payload.size() > largest
+            {
+                largest = payload.size();
+            }
+            rest = more;
+        }
+        largest
     }
 }
 
@@ -101,6 +179,8 @@ pub enum DecodeError {
     BadName,
     /// A flag that is neither 0 nor 1.
     BadFlag(u8),
+    /// A byte that carries nothing and is not 0.
+    BadFill(u8),
     /// A code that no variant of the enum has.
     BadCode {
         /// Name of the enum.
@@ -116,6 +196,7 @@ impl fmt::Display for DecodeError {
             Self::TooShort => f.write_str("the bytes end before the record does"),
             Self::BadName => f.write_str("a name holds bytes that no name can have"),
             Self::BadFlag(found) => write!(f, "a flag is 0 or 1, found {found}"),
+            Self::BadFill(found) => write!(f, "a byte that carries nothing is 0, found {found}"),
             Self::BadCode { of, found } => write!(f, "{found} is the code of no {of}"),
         }
     }
@@ -147,6 +228,13 @@ impl<'a> Writer<'a> {
         }
     }
 
+    /// Append so many zeros.
+    pub fn zeros(&mut self, count: usize) {
+        for _ in 0..count {
+            self.put(&[0]);
+        }
+    }
+
     /// Bytes that found no room.
     #[must_use]
     pub const fn missing(&self) -> usize {
@@ -175,10 +263,24 @@ impl<'a> Reader<'a> {
         self.rest = rest;
         Ok(*here)
     }
+
+    /// Pass over so many zeros.
+    ///
+    /// # Errors
+    /// [`DecodeError::BadFill`] if one of them is not zero, [`DecodeError::TooShort`] if fewer are left.
+    pub fn zeros(&mut self, count: usize) -> Result<(), DecodeError> {
+        for _ in 0..count {
+            let [found] = self.take()?;
+            if found != 0 {
+                return Err(DecodeError::BadFill(found));
+            }
+        }
+        Ok(())
+    }
 }
 
-/// Something that stands in a record: a number, a name, an enum, an array, a record.
-pub trait Field: Copy + PartialEq {
+/// Plain data: a number, a name, an enum, an array, an option, a struct of such.
+pub trait Plain: Copy + PartialEq {
     /// What its byte image holds.
     const SCHEMA: Schema;
     /// Bytes of the image.
@@ -198,7 +300,7 @@ pub trait Field: Copy + PartialEq {
 
 macro_rules! number {
     ($($type:ty => $schema:ident, $zero:expr;)*) => {$(
-        impl Field for $type {
+        impl Plain for $type {
             const SCHEMA: Schema = Schema::$schema;
             const ZERO: Self = $zero;
 
@@ -223,7 +325,7 @@ number! {
     f64 => F64, 0.0;
 }
 
-impl Field for bool {
+impl Plain for bool {
     const SCHEMA: Schema = Schema::Bool;
     const ZERO: Self = false;
 
@@ -240,7 +342,7 @@ impl Field for bool {
     }
 }
 
-impl<T: Field + 'static, const N: usize> Field for [T; N] {
+impl<T: Plain + 'static, const N: usize> Plain for [T; N] {
     const SCHEMA: Schema = Schema::Array(&T::SCHEMA, N);
     const ZERO: Self = [T::ZERO; N];
 
@@ -259,145 +361,25 @@ impl<T: Field + 'static, const N: usize> Field for [T; N] {
     }
 }
 
-/// Define a record: a plain structure whose fields all are [`Field`]s.
-///
-/// ```
-/// rcs_core::record! {
-///     /// Where the table of the pedestal stands.
-///     pub struct Table {
-///         /// Angle in tenths of a degree.
-///         pub angle: i32,
-///         /// True while it moves.
-///         pub moving: bool,
-///     }
-/// }
-/// use rcs_core::record::{Field, to_bytes};
-/// assert_eq!(Table::SIZE, 5);
-/// assert_eq!(to_bytes::<5, _>(&Table { angle: -2135, moving: true }), [0xA9, 0xF7, 0xFF, 0xFF, 1]);
-/// ```
-#[macro_export]
-macro_rules! record {
-    ($(#[$meta:meta])* $vis:vis struct $name:ident { $( $(#[$field_meta:meta])* $field_vis:vis $field:ident : $type:ty, )* }) => {
-        $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        #[repr(C)]
-        $vis struct $name { $( $(#[$field_meta])* $field_vis $field: $type, )* }
+impl<T: Plain + 'static> Plain for Option<T> {
+    const SCHEMA: Schema = Schema::Option(&T::SCHEMA);
+    const ZERO: Self = None;
 
-        impl Default for $name {
-            fn default() -> Self {
-                <Self as $crate::record::Field>::ZERO
-            }
+    fn encode(&self, w: &mut Writer<'_>) {
+        self.is_some().encode(w);
+        match self {
+            Some(value) => value.encode(w),
+            None => w.zeros(T::SIZE),
         }
+    }
 
-        impl $name {
-            /// The fields of the byte image.
-            pub const RECORD: &'static $crate::record::RecordSchema = &$crate::record::RecordSchema {
-                name: stringify!($name),
-                fields: &[ $( $crate::record::FieldSchema {
-                    name: stringify!($field),
-                    schema: <$type as $crate::record::Field>::SCHEMA,
-                }, )* ],
-            };
-        }
-
-        impl $crate::record::Field for $name {
-            const SCHEMA: $crate::record::Schema = $crate::record::Schema::Record(Self::RECORD);
-            const ZERO: Self = Self { $( $field: <$type as $crate::record::Field>::ZERO, )* };
-
-            fn encode(&self, w: &mut $crate::record::Writer<'_>) {
-                $( $crate::record::Field::encode(&self.$field, w); )*
-            }
-
-            fn decode(r: &mut $crate::record::Reader<'_>) -> Result<Self, $crate::record::DecodeError> {
-                Ok(Self { $( $field: $crate::record::Field::decode(r)?, )* })
-            }
-        }
-    };
-}
-
-/// Define an enum that stands in records: each variant with its text, which is the manual's word where it has one.
-/// Codes are the position of the variant from 0; the first variant is the value before anything was written.
-#[macro_export]
-macro_rules! coded_enum {
-    ($(#[$meta:meta])* $vis:vis enum $name:ident { $( $(#[$variant_meta:meta])* $variant:ident = $text:literal, )+ }) => {
-        $(#[$meta])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        #[repr(u8)]
-        $vis enum $name { $( $(#[$variant_meta])* $variant, )+ }
-
-        #[allow(dead_code, reason = "not every enum needs every conversion")]
-        impl $name {
-            /// All variants in the order of their codes.
-            pub const ALL: &'static [Self] = &[ $( Self::$variant, )+ ];
-
-            /// The text in logs and on screens.
-            #[must_use]
-            pub const fn text(self) -> &'static str {
-                match self { $( Self::$variant => $text, )+ }
-            }
-
-            /// The code in a byte image.
-            #[must_use]
-            #[expect(clippy::as_conversions, reason = "the discriminant of a repr(u8) enum is its code")]
-            pub const fn code(self) -> u8 {
-                self as u8
-            }
-
-            /// The variant with a code.
-            #[must_use]
-            pub fn from_code(code: u8) -> Option<Self> {
-                Self::ALL.get(usize::from(code)).copied()
-            }
-
-            /// The variant with a text.
-            #[must_use]
-            pub fn from_text(text: &str) -> Option<Self> {
-                Self::ALL.iter().copied().find(|v| v.text() == text)
-            }
-        }
-
-        impl Default for $name {
-            fn default() -> Self {
-                <Self as $crate::record::Field>::ZERO
-            }
-        }
-
-        impl core::fmt::Display for $name {
-            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-                f.pad(self.text())
-            }
-        }
-
-        impl $crate::record::Field for $name {
-            const SCHEMA: $crate::record::Schema = $crate::record::Schema::Enum(&$crate::record::EnumSchema {
-                name: stringify!($name),
-                variants: &[ $( ($name::$variant.code(), $text), )+ ],
-            });
-            const ZERO: Self = $crate::first_variant!($name $($variant)+);
-
-            fn encode(&self, w: &mut $crate::record::Writer<'_>) {
-                $crate::record::Field::encode(&self.code(), w);
-            }
-
-            fn decode(r: &mut $crate::record::Reader<'_>) -> Result<Self, $crate::record::DecodeError> {
-                let found = <u8 as $crate::record::Field>::decode(r)?;
-                Self::from_code(found).ok_or($crate::record::DecodeError::BadCode { of: stringify!($name), found })
-            }
-        }
-    };
-}
-
-/// The first variant of an enum; part of [`coded_enum!`](crate::coded_enum!).
-#[doc(hidden)]
-#[macro_export]
-macro_rules! first_variant {
-    ($name:ident $first:ident $($rest:ident)*) => {
-        $name::$first
-    };
+    fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
+        if bool::decode(r)? { T::decode(r).map(Some) } else { r.zeros(T::SIZE).map(|()| None) }
+    }
 }
 
 /// The byte image of a record whose size is `N`.
-pub fn to_bytes<const N: usize, T: Field>(record: &T) -> [u8; N] {
+pub fn to_bytes<const N: usize, T: Plain>(record: &T) -> [u8; N] {
     let mut bytes = [0; N];
     record.encode(&mut Writer::new(&mut bytes));
     bytes
@@ -407,26 +389,34 @@ pub fn to_bytes<const N: usize, T: Field>(record: &T) -> [u8; N] {
 ///
 /// # Errors
 /// [`DecodeError`] if the bytes are not the image of a legal record.
-pub fn from_bytes<T: Field>(bytes: &[u8]) -> Result<T, DecodeError> {
+pub fn from_bytes<T: Plain>(bytes: &[u8]) -> Result<T, DecodeError> {
     T::decode(&mut Reader::new(bytes))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rcs_macros::Plain;
 
-    coded_enum! {
-        /// For the test.
-        enum Light { Off = "off", On = "on", }
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    enum Light {
+        Off,
+        On,
     }
 
-    record! {
-        /// For the test.
-        struct Lamp {
-            number: u16,
-            light: Light,
-            hours: [i32; 2],
-        }
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    struct Lamp {
+        number: u16,
+        light: Light,
+        hours: [i32; 2],
+    }
+
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    enum Fixture {
+        Nothing,
+        #[text = "a lamp"]
+        Lamp(Lamp),
+        Candle(u8),
     }
 
     #[test]
@@ -443,6 +433,32 @@ mod tests {
         let bytes = [0x34, 0x12, 7, 0, 0, 0, 0, 2, 0, 0, 0];
         assert_eq!(from_bytes::<Lamp>(&bytes), Err(DecodeError::BadCode { of: "Light", found: 7 }));
         assert_eq!(from_bytes::<Lamp>(bytes.get(..2).unwrap()), Err(DecodeError::TooShort));
+    }
+
+    #[test]
+    fn what_an_option_or_a_variant_does_not_carry_is_zero() {
+        assert_eq!(to_bytes::<3, _>(&Some(0x1234_u16)), [1, 0x34, 0x12]);
+        assert_eq!(to_bytes::<3, _>(&None::<u16>), [0, 0, 0]);
+        assert_eq!(from_bytes::<Option<u16>>(&[0, 0, 9]), Err(DecodeError::BadFill(9)));
+        assert_eq!(from_bytes::<Option<u16>>(&[2, 0, 0]), Err(DecodeError::BadFlag(2)));
+        assert_eq!(Fixture::SIZE, 12);
+        let image: [u8; 12] = to_bytes(&Fixture::Candle(7));
+        assert_eq!(image, [2, 7, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+        assert_eq!(from_bytes(&image), Ok(Fixture::Candle(7)));
+        assert_eq!(from_bytes::<Fixture>(&[3; 12]), Err(DecodeError::BadCode { of: "Fixture", found: 3 }));
+        assert_eq!(from_bytes::<Fixture>(&[2; 12]), Err(DecodeError::BadFill(2)));
+        let lamp = Fixture::Lamp(Lamp { number: 1, light: Light::On, hours: [2, 3] });
+        assert_eq!(from_bytes(&to_bytes::<12, _>(&lamp)), Ok(lamp));
+    }
+
+    #[test]
+    fn a_variant_has_a_text_and_a_meaning() {
+        assert_eq!(Light::from_text("on"), Some(Light::On));
+        assert_eq!(Light::ENUM.named("Off").map(|off| (off.code, off.text)), Some((0, "off")));
+        assert_eq!(
+            Fixture::UNION.variants.iter().map(|v| v.text).collect::<Vec<_>>(),
+            ["nothing", "a lamp", "candle"]
+        );
     }
 
     #[test]

@@ -2,10 +2,11 @@
 
 use rcs_core::{
     interface::{
-        Reason, Report, SubtaskOutputs,
+        ChangingPose, Reason, Report, SubtaskOutputs,
         emove::{EmoveCommand, EmoveVerb},
         pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
-        subtask::{SubtaskCommand, SubtaskStatus},
+        pose_range,
+        subtask::SubtaskStatus,
     },
     process::Inputs,
 };
@@ -14,7 +15,8 @@ use taskdata::files::TaskData;
 use super::{
     Subtask,
     aims::Aim,
-    tables::{Action, Holster, Situation},
+    preprocess::Seen,
+    tables::{Action, Holster, Ordered},
 };
 use crate::execution::Outcome;
 
@@ -23,23 +25,23 @@ impl Subtask {
     pub(super) fn act(
         &mut self,
         action: Action,
-        situation: &Situation,
-        command: &SubtaskCommand,
+        seen: &Seen,
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut SubtaskOutputs,
     ) {
-        let (own, aims) = (Aim::of_command(command), self.state.aims);
+        let (own, aims) = (Aim::of_command(&inputs.memory.task.subtask), self.state.aims);
         let ped = self.state.ped_para;
+        if action == Action::Pause {
+            self.pause_pedestal(inputs, outputs);
+        }
         let mut send = |verb, aim: &Aim| {
             let number = self.state.emove.send(inputs.tick);
+            self.state.ordered = Ordered::Emove;
             outputs.emove = EmoveCommand { number, ..aim.command(verb, inputs.data) };
         };
         match action {
             Action::Wait => {}
-            Action::Pause => {
-                send(EmoveVerb::Pause, &own);
-                self.pause_pedestal(inputs, outputs);
-            }
+            Action::Pause => send(EmoveVerb::Pause, &own),
             Action::MovToVu => send(EmoveVerb::MovToVu, &own),
             Action::LocateObj => send(EmoveVerb::LocateObj, &own),
             Action::MovToObj => send(EmoveVerb::MovToObj, &own),
@@ -75,7 +77,7 @@ impl Subtask {
             Action::Finish => self.state.execution.finish(),
             Action::Fail(reason) => self.state.execution.fail(reason),
             Action::PassUp => {
-                self.state.execution.pass_up(situation.emove, inputs.memory.emove.status.reason);
+                self.state.execution.pass_up(seen.orders.emove, inputs.memory.emove.status.reason);
             }
             Action::PassUpPedestal(reason) => {
                 // What hand or table report is more than that there was an error.
@@ -97,6 +99,7 @@ impl Subtask {
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut SubtaskOutputs,
     ) {
+        self.state.ordered = Ordered::Pedestal;
         outputs.pedestal = PedestalCommand {
             cycle: inputs.tick,
             number: self.state.pedestal.send(inputs.tick),
@@ -114,6 +117,21 @@ impl Subtask {
         }
     }
 
+    /// Give the poses of a new command new record numbers.
+    pub(super) fn publish_poses(&mut self, outputs: &mut SubtaskOutputs) {
+        let aims = &mut self.state.aims;
+        for ((slot, pose), aim) in
+            outputs.poses.iter_mut().zip(&aims.poses).zip([&mut aims.first, &mut aims.second])
+        {
+            if !aim.location.is_empty() {
+                self.state.last_pose = pose_range::next(pose_range::SUBTASK, self.state.last_pose);
+                *slot = ChangingPose { number: self.state.last_pose, pose: *pose };
+                aim.pose = self.state.last_pose;
+            }
+        }
+        aims.third.pose = aims.first.pose;
+    }
+
     /// Write the status to Task.
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut SubtaskOutputs) {
         let execution = &self.state.execution;
@@ -126,7 +144,7 @@ impl Subtask {
         } else {
             (execution.report(), execution.reason)
         };
-        outputs.header = execution.header(inputs.tick);
+        outputs.header = execution.header(inputs.tick, self.state.step.text());
         outputs.status = SubtaskStatus {
             echo: execution.receiver.echo,
             report,

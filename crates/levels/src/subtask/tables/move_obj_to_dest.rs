@@ -1,0 +1,23 @@
+//! MOVE-OBJ>D (V.3.1).
+
+use rcs_core::decision_table;
+
+decision_table! {
+    /// MOVE-OBJ>D (V.3.1): move an object to the destination and hold it there.
+    pub MOVE_OBJ_TO_DEST: fn move_obj_to_dest(enum MoveObjToDestStep, super::Situation) -> super::Action {
+        any {
+            1: work: Busy                               => Wait;
+        }
+        /// Nothing done yet.
+        Start {
+            2: held: Right, grip: Destination | Unknown    => MovObjTo         -> Moving;
+            3: held: Right, grip: Source | Neither         => Fail(RegripNeeded);
+            4: held: Nothing | Other                       => Fail(NothingHeld);
+        }
+        /// The object is on its way.
+        Moving {
+            5: held: Right                                 => Finish;
+            6: held: Nothing | Other                       => Fail(ObjectLost);
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! What has become of the last order of a command.
+
+use rcs_core::decision_table;
+
+decision_table! {
+    /// ORDERED: E-move or the pedestal is busy with the last order, or it is done. A failure ends the command.
+    pub ORDERED: fn ordered(super::Orders) -> super::Action or crate::execution::Work {
+        1:  ordered: Nothing                                => consult(Over);
+        2:  ordered: Emove, emove: Pending | Executing      => consult(Busy);
+        3:  ordered: Emove, emove: Done                     => consult(Over);
+        4:  ordered: Emove, emove: Error | Joystick | Lost  => PassUp;
+        5:  ordered: Pedestal, pedestal: Moving             => consult(Busy);
+        6:  ordered: Pedestal, pedestal: Done               => consult(Over);
+        7:  ordered: Pedestal, pedestal: Cannot             => PassUpPedestal(PedestalCannot);
+        8:  ordered: Pedestal, pedestal: Faulty             => PassUpPedestal(PedestalError);
+        9:  ordered: Pedestal, pedestal: Silent             => PassUpPedestal(PedestalSilent);
+    }
+}

@@ -1,0 +1,263 @@
+//! `commands!`.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+use syn::{
+    Attribute, Ident, Path, Result, Token, Visibility, braced, parenthesized,
+    parse::{Parse, ParseStream},
+    parse2,
+    punctuated::Punctuated,
+};
+
+use crate::names;
+
+/// The list as written.
+struct Commands {
+    attributes: Vec<Attribute>,
+    vis: Visibility,
+    decide: Ident,
+    /// The steps of all commands are a new enum with a variant for each table.
+    declared: bool,
+    step: Ident,
+    verb: Path,
+    situation: Path,
+    action: Path,
+    /// Tables that the process consults itself.
+    others: Vec<Path>,
+    entries: Vec<Entry>,
+}
+
+/// Commands, and the tables that are consulted one after the other until one decides.
+struct Entry {
+    verbs: Vec<Ident>,
+    chain: Vec<Path>,
+}
+
+mod word {
+    syn::custom_keyword!(others);
+    syn::custom_keyword!(then);
+}
+
+impl Parse for Commands {
+    fn parse(input: ParseStream<'_>) -> Result<Self> {
+        let attributes = input.call(Attribute::parse_outer)?;
+        let vis = input.parse()?;
+        input.parse::<Token![fn]>()?;
+        let decide = input.parse()?;
+        let parameters;
+        parenthesized!(parameters in input);
+        let verb = parameters.call(Path::parse_mod_style)?;
+        parameters.parse::<Token![,]>()?;
+        let declared = parameters.parse::<Option<Token![enum]>>()?.is_some();
+        let step = parameters.parse()?;
+        parameters.parse::<Token![,]>()?;
+        let situation = parameters.call(Path::parse_mod_style)?;
+        input.parse::<Token![->]>()?;
+        let action = input.call(Path::parse_mod_style)?;
+        let body;
+        braced!(body in input);
+        let mut others = Vec::new();
+        if body.parse::<Option<word::others>>()?.is_some() {
+            body.parse::<Token![:]>()?;
+            others =
+                Punctuated::<Path, Token![,]>::parse_separated_nonempty_with(&body, Path::parse_mod_style)?
+                    .into_iter()
+                    .collect();
+            body.parse::<Token![;]>()?;
+        }
+        let mut entries = Vec::new();
+        while !body.is_empty() {
+            entries.push(body.parse()?);
+        }
+        Ok(Self { attributes, vis, decide, declared, step, verb, situation, action, others, entries })
+    }
+}
+
+impl Parse for Entry {
+    fn parse(input: ParseStream<'_>) -> Result<Self> {
+        let verbs = Punctuated::<Ident, Token![|]>::parse_separated_nonempty(input)?.into_iter().collect();
+        input.parse::<Token![=>]>()?;
+        let mut chain = vec![input.call(Path::parse_mod_style)?];
+        while input.parse::<Option<word::then>>()?.is_some() {
+            chain.push(input.call(Path::parse_mod_style)?);
+        }
+        input.parse::<Token![;]>()?;
+        Ok(Self { verbs, chain })
+    }
+}
+
+impl Entry {
+    /// The table at the end of the chain: its steps are those of the command.
+    fn last(&self) -> &Path {
+        self.chain.last().unwrap_or_else(|| unreachable!("a chain is not empty"))
+    }
+}
+
+/// The path with another last name.
+fn beside(path: &Path, name: impl FnOnce(&str) -> String) -> Path {
+    let mut path = path.clone();
+    if let Some(last) = path.segments.last_mut() {
+        last.ident = Ident::new(&name(&last.ident.to_string()), last.ident.span());
+    }
+    path
+}
+
+/// The name of the function in upper camel case.
+fn camel(table: &Path) -> Ident {
+    let last = table.segments.last();
+    last.map_or_else(
+        || format_ident!("_"),
+        |last| Ident::new(&names::camel(&last.ident.to_string()), last.ident.span()),
+    )
+}
+
+/// The static of a table, by the name of its function.
+fn static_of(table: &Path) -> Path {
+    beside(table, str::to_uppercase)
+}
+
+/// The steps of a table, by the name of its function.
+fn step_of(table: &Path) -> Path {
+    beside(table, |name| format!("{}Step", names::camel(name)))
+}
+
+fn same(a: &Path, b: &Path) -> bool {
+    quote!(#a).to_string() == quote!(#b).to_string()
+}
+
+/// Each path once, in the order of the first.
+fn once(paths: impl Iterator<Item = Path>) -> Vec<Path> {
+    let mut all = Vec::new();
+    for path in paths {
+        if !all.iter().any(|other| same(other, &path)) {
+            all.push(path);
+        }
+    }
+    all
+}
+
+impl Commands {
+    /// All tables in the order of their numbers.
+    fn tables(&self) -> Vec<Path> {
+        let tables = self.entries.iter().flat_map(|entry| &entry.chain).map(static_of);
+        once(self.others.iter().cloned().chain(tables))
+    }
+
+    /// The enum of all steps.
+    fn steps(&self) -> TokenStream {
+        if !self.declared {
+            return TokenStream::new();
+        }
+        let (vis, name, verb) = (&self.vis, &self.step, &self.verb);
+        let firsts = self.entries.iter().map(|entry| {
+            let (verbs, last) = (&entry.verbs, entry.last());
+            let (variant, of) = (camel(last), step_of(last));
+            quote!(#( #verb::#verbs )|* => Self::#variant(<#of as ::rcs_core::Plain>::ZERO))
+        });
+        let tables = once(self.entries.iter().map(|entry| entry.last().clone()));
+        let (mut variants, mut texts) = (Vec::new(), Vec::new());
+        for table in &tables {
+            let (variant, of) = (camel(table), step_of(table));
+            let doc = format!("Step of [`{}`].", quote!(#table).to_string().replace(' ', ""));
+            variants.push(quote!(#[doc = #doc] #variant(#of)));
+            texts.push(quote!(Self::#variant(step) => step.text()));
+        }
+        quote! {
+            /// Step of the current command: the reference action of its table (V.1.1).
+            #[derive(Clone, Copy, Debug, PartialEq, Eq, ::rcs_core::Plain)]
+            #vis enum #name { #( #variants, )* }
+
+            impl #name {
+                /// The text in logs and on screens.
+                #[must_use]
+                pub const fn text(self) -> &'static str {
+                    match self { #( #texts, )* }
+                }
+
+                /// The step in which a command begins.
+                #[must_use]
+                pub const fn first(verb: #verb) -> Self {
+                    match verb { #( #firsts, )* }
+                }
+            }
+        }
+    }
+
+    /// The arm of a command: its tables in turn.
+    fn arm(&self, entry: &Entry, tables: &[Path]) -> TokenStream {
+        let (verb, all) = (&self.verb, &self.step);
+        let verbs = entry.verbs.iter().map(|name| quote!(#verb::#name));
+        let last = entry.last();
+        let variant = camel(last);
+        let number = |table: &Path| {
+            let position = tables.iter().position(|other| same(other, &static_of(table)));
+            Literal::u8_suffixed(
+                position.and_then(|at| u8::try_from(at).ok()).map_or(0, |at| at.saturating_add(1)),
+            )
+        };
+        let choice = |table: &Path| {
+            let number = number(table);
+            let next =
+                if self.declared { quote!(#all::#variant(decision.next)) } else { quote!(decision.next) };
+            quote! {
+                ::rcs_core::table::Choice {
+                    table: #number, row: decision.row, action: decision.action, next: #next,
+                }
+            }
+        };
+        let decided = choice(last);
+        let mut body = quote! { let decision = #last(step, situation); #decided };
+        for table in entry.chain.iter().rev().skip(1) {
+            let decided = choice(table);
+            body = quote! {
+                match #table(step, situation) {
+                    ::rcs_core::table::Verdict::Decided(decision) => #decided,
+                    ::rcs_core::table::Verdict::Passed(()) => { #body }
+                }
+            };
+        }
+        if self.declared {
+            let of = step_of(last);
+            body = quote! {
+                let step = match step {
+                    #all::#variant(step) => step,
+                    #[allow(unreachable_patterns, reason = "a process may have a single table")]
+                    _ => <#of as ::rcs_core::Plain>::ZERO,
+                };
+                #body
+            };
+        }
+        quote!(#( #verbs )|* => { #body })
+    }
+}
+
+/// The enum of all steps, the list of all tables, their numbers, and the function that consults the table of a command.
+pub fn expand(input: TokenStream) -> Result<TokenStream> {
+    let commands: Commands = parse2(input)?;
+    let Commands { attributes, vis, decide, step, verb, situation, action, others, .. } = &commands;
+    let (tables, steps) = (commands.tables(), commands.steps());
+    let arms = commands.entries.iter().map(|entry| commands.arm(entry, &tables));
+    let numbers = others.iter().zip(1_u8..).map(|(table, number)| {
+        let (name, number) = (table.segments.last().map(|last| &last.ident), Literal::u8_suffixed(number));
+        let doc =
+            format!("Of [`{}`](super::{}).", quote!(#name), quote!(#table).to_string().replace(' ', ""));
+        quote!(#[doc = #doc] pub const #name: u8 = #number;)
+    });
+    Ok(quote! {
+        #steps
+
+        /// All decision tables; the header of the outputs names one by its position from 1.
+        #vis const TABLES: &[&::rcs_core::table::Table] = &[ #( &#tables, )* ];
+
+        /// Numbers of the tables that no command selects.
+        #vis mod number { #( #numbers )* }
+
+        #( #attributes )*
+        #[must_use]
+        #vis fn #decide(
+            verb: #verb, step: #step, situation: &#situation,
+        ) -> ::rcs_core::table::Choice<#action, #step> {
+            match verb { #( #arms, )* }
+        }
+    })
+}

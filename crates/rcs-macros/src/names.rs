@@ -1,0 +1,61 @@
+//! Spellings of a name, and doc comments.
+
+use syn::{Attribute, Expr, ExprLit, Lit, Meta};
+
+/// The words of a name in upper camel case, in lower case with `separator` between them: `LettingGo` is `letting-go`.
+pub fn words(name: &str, separator: char) -> String {
+    let mut text = String::new();
+    for letter in name.chars() {
+        if letter.is_uppercase() && !text.is_empty() {
+            text.push(separator);
+        }
+        text.extend(letter.to_lowercase());
+    }
+    text
+}
+
+/// A name in snake case as upper camel case: `get_object` is `GetObject`.
+pub fn camel(name: &str) -> String {
+    let upper = |word: &str| {
+        let mut letters = word.chars();
+        letters
+            .next()
+            .map(|first| first.to_uppercase().chain(letters).collect::<String>())
+            .unwrap_or_default()
+    };
+    name.split('_').map(upper).collect()
+}
+
+/// The value of an attribute `#[name = "value"]`.
+fn text_of(attribute: &Attribute, name: &str) -> Option<String> {
+    let Meta::NameValue(pair) = &attribute.meta else { return None };
+    let Expr::Lit(ExprLit { lit: Lit::Str(text), .. }) = &pair.value else { return None };
+    pair.path.is_ident(name).then(|| text.value())
+}
+
+/// The value of the attribute `#[text = "..."]`.
+pub fn text(attributes: &[Attribute]) -> Option<String> {
+    attributes.iter().find_map(|attribute| text_of(attribute, "text"))
+}
+
+/// The lines of the doc comment.
+pub fn doc(attributes: &[Attribute]) -> Vec<String> {
+    attributes
+        .iter()
+        .filter_map(|attribute| text_of(attribute, "doc"))
+        .map(|line| line.trim().to_owned())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{camel, words};
+
+    #[test]
+    fn names_are_spelt_in_both_ways() {
+        assert_eq!(words("LettingGo", '-'), "letting-go");
+        assert_eq!(words("Start", '-'), "start");
+        assert_eq!(camel("get_object"), "GetObject");
+        assert_eq!(camel("goto"), "Goto");
+    }
+}

@@ -1,0 +1,45 @@
+//! `#[derive(Variables)]`.
+
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use syn::{Data, DeriveInput, Error, Fields, Result, spanned::Spanned as _};
+
+use crate::names;
+
+/// Describe the variables, and give the type of each under the name of its field, in a hidden module `__Name`.
+pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
+    let name = &input.ident;
+    let Data::Struct(data) = &input.data else {
+        return Err(Error::new_spanned(name, "state variables are the fields of a struct"));
+    };
+    let Fields::Named(fields) = &data.fields else {
+        return Err(Error::new_spanned(name, "state variables have names"));
+    };
+    let vis = &input.vis;
+    let module = format_ident!("__{name}");
+    let idents: Vec<_> = fields.named.iter().filter_map(|field| field.ident.as_ref()).collect();
+    let types: Vec<_> = fields.named.iter().map(|field| &field.ty).collect();
+    let texts: Vec<_> = idents.iter().map(ToString::to_string).collect();
+    let docs: Vec<_> = fields.named.iter().map(|field| names::doc(&field.attrs).join(" ")).collect();
+    for field in &fields.named {
+        if !matches!(field.ty, syn::Type::Path(_)) {
+            return Err(Error::new(field.ty.span(), "a state variable is an enum that derives Plain"));
+        }
+    }
+    Ok(quote! {
+        impl #name {
+            /// Name, meaning and values of each variable.
+            pub const VARIABLES: &'static [::rcs_core::table::Variable] = &[ #( ::rcs_core::table::Variable {
+                name: #texts,
+                doc: #docs,
+                values: <#types>::ENUM,
+            }, )* ];
+        }
+
+        #[doc(hidden)]
+        #[allow(non_snake_case, non_camel_case_types, dead_code, reason = "a type under the name of each field")]
+        #vis mod #module {
+            #( pub type #idents = super::#types; )*
+        }
+    })
+}
