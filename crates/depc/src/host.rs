@@ -23,7 +23,8 @@ use crate::{
     wire::{Control, DataCommand, FRAME_BYTES, NO_FUNCTION, Response},
 };
 
-/// Ticks without an answer after which a frame counts as lost (DESIGN 16). Hold on the controller's panel only delays, and
+/// Ticks without an answer after which a frame counts as lost
+/// (docs/design/link.md "Time-out"). Hold on the controller's panel only delays, and
 /// looks the same.
 pub const ANSWER_TICKS: u16 = 3;
 /// Bytes of a tick in which an answer is believed; the rest may be noise.

@@ -1,6 +1,7 @@
 //! An allocator that counts what the controller allocates.
 //!
-//! Nothing may be allocated after the start (DESIGN 14). The levels cannot allocate, since they are built
+//! Nothing may be allocated after the start
+//! (docs/design/tick.md "No allocation"). The levels cannot allocate, since they are built
 //! without `alloc`; what stands around them in a tick could. So the program installs [`Counting`] as its
 //! allocator, each tick runs inside a [`Section`], and what is allocated there is counted: over the whole
 //! run, in production as in tests. Other threads, and what the same thread does between ticks, are not

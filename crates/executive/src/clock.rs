@@ -1,4 +1,4 @@
-//! When ticks are run (DESIGN 4).
+//! When ticks are run (docs/design/tick.md "Grid").
 //!
 //! The controller itself has no clock; somebody has to say "now". [`Clock::Fast`] says it at once: the
 //! simulated cell advances 40 ms a tick, however long that takes. [`Clock::Real`] says it on an absolute 40

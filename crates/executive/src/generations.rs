@@ -1,4 +1,5 @@
-//! Generations of the task data: blocks that are loaded while the robot runs (DESIGN 16 "Changing records and reload").
+//! Generations of the task data: blocks that are loaded while the robot runs
+//! (docs/design/ownership.md "Reload").
 //!
 //! A reload is built and checked outside the tick. It becomes visible as a whole between two ticks, and only when no command
 //! is being executed: a command in progress keeps the records that it began with. Record numbers of names that existed stay

@@ -3,7 +3,8 @@
 //! A skipped slot is always counted, with the part of the tick before that took too long, or the system that
 //! woke the thread too late. What else happens is for the user to say ([`Policy`]): nothing; the robot holds
 //! until the ticks are punctual again; or it comes to rest and the run ends. Holding is what an operator would
-//! do: the velocity knob goes to zero, Prim ramps down on its path and keeps the position (DESIGN 8), every
+//! do: the velocity knob goes to zero, Prim ramps down on its path and keeps the position
+//! (docs/design/motion.md "Knob"), every
 //! grip stays as it is. The knob is an input of the controller like any other, so it is in the log, and a
 //! replay needs to know nothing of clocks.
 

@@ -219,14 +219,16 @@ const fn header_of(process: ProcessId, memory: &mut CommonMemory) -> &mut Header
     }
 }
 
-/// Publish the last outputs of a process that is not stepped again, so that its readers do not take it for lost (DESIGN 16).
+/// Publish the last outputs of a process that is not stepped again, so that its readers do not take it for lost
+/// (docs/design/handshake.md "Stamp").
 const fn republish(header: &mut Header, tick: Tick) {
     header.stamp = tick;
     header.republished = true;
 }
 
 /// A process of the pedestal that runs in another system: take over what it has sent, as if it had run here in this tick. Of one
-/// that does not answer everything stays, the old stamp too, so that its readers know it for lost (DESIGN 16).
+/// that does not answer everything stays, the old stamp too, so that its readers know it for lost
+/// (docs/design/handshake.md "Outside").
 const fn adopt(process: ProcessId, sent: &OutsidePedestal, tick: Tick, memory: &mut CommonMemory) {
     if !sent.answers {
         return;

@@ -217,7 +217,7 @@ fn a_bad_command_is_refused_and_nothing_moves() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
-    /// DESIGN 4: the order of processes within a tick cannot change a bit of the result.
+    /// docs/design/tick.md "Order": the order of processes within a tick cannot change a bit of the result.
     #[test]
     fn order_does_not_matter(seed in prop::collection::vec(Just(ProcessId::ALL.to_vec()).prop_shuffle(), 1..20)) {
         let run = |orders: &[Vec<ProcessId>]| {
@@ -261,7 +261,8 @@ fn partition() -> impl Strategy<Value = (Vec<usize>, Vec<ProcessId>)> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
-    /// DESIGN 4: nor can their distribution over boards, each with a ladder of its own that steps some of the processes and is
+    /// docs/design/tick.md "Order": nor can their distribution over boards, each with a ladder of its own
+    /// that steps some of the processes and is
     /// given what the others wrote; with suspended processes and single steps on the way.
     #[test]
     fn distribution_does_not_matter(

@@ -1,4 +1,4 @@
-//! Inches to metres and back: the one place where the cell's units become SI (DESIGN 2).
+//! Inches to metres and back: the one place where the cell's units become SI (docs/design/units.md "Cell").
 //!
 //! The controller, the description file and the interface of this crate speak inches, pounds and radians; rapier and the
 //! viewers speak metres, newtons and kilograms.

@@ -1,4 +1,4 @@
-//! Command numbers and echoes between two processes (DESIGN 16 "Handshake").
+//! Command numbers and echoes between two processes (docs/design/handshake.md).
 //!
 //! A commander counts its commands; a receiver echoes the number with the status of *that* command. So a status is
 //! believed only if it answers the last command, a repeated text is a new command only if its number is new, and a

@@ -83,7 +83,7 @@ impl<const N: usize> Name<N> {
     }
 
     /// The first `N` characters of a text; what the manual does when a twelve-character command meets a
-    /// ten-character field (contradiction 22). Characters that a name cannot have become `?`.
+    /// ten-character field (SPECNOTES.md, contradiction 22). Characters that a name cannot have become `?`.
     #[must_use]
     pub fn clipped(text: &str) -> Self {
         let mut bytes = [0; N];

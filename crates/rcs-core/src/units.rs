@@ -1,4 +1,5 @@
-//! The manual's integers and the controller's inches and radians, converted in this one place (DESIGN 2).
+//! The manual's integers and the controller's inches and radians, converted in this one place
+//! (docs/design/units.md "Manual").
 
 use core::f64::consts::PI;
 

@@ -1,4 +1,5 @@
-//! 100,000 records of task data in one file, and in each file: how long a load takes, and how long a look-up (DESIGN 14).
+//! 100,000 records of task data in one file, and in each file: how long a load takes, and how long a look-up
+//! (SPECNOTES.md, Task data).
 //!
 //! The time of a load is that until the data are ready; giving back the memory comes after it. Look-ups are timed warm (the same
 //! few records again and again), cold (all records in an order that no cache can guess; together they fill several times what

@@ -14,7 +14,7 @@ use crate::why::{Link, Told};
 /// Limits of the link (A 2.3): in/s and rad/s.
 const SPEED_LIMIT: f64 = 14.0;
 const TURNING_LIMIT: f64 = 1.0;
-/// What the controller part of a tick may take (DESIGN 14), microseconds.
+/// What the controller part of a tick may take (docs/design/tick.md "Budget"), microseconds.
 const CONTROLLER_LIMIT: f64 = 20.0;
 
 const STYLE: &str = include_str!("style.css");

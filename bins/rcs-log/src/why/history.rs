@@ -25,7 +25,7 @@ pub struct Wiring {
     pub devices: &'static [&'static str],
 }
 
-/// The wiring of all processes, in the order of common memory (DESIGN 6, III.1).
+/// The wiring of all processes, in the order of common memory (docs/design/ownership.md "Commands", III.1).
 pub const WIRING: [Wiring; PROCESSES] = [
     Wiring { commander: None, below: &[1], devices: &["data_base"] },
     Wiring { commander: Some(0), below: &[2, 9], devices: &["devices.quick_change", "pedestal.answers"] },

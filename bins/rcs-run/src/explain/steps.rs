@@ -173,7 +173,8 @@ impl Maker<'_> {
         Ok(())
     }
 
-    /// POSITION goes to the source, or to the destination if the source is null (contradiction 24).
+    /// POSITION goes to the source, or to the destination if the source is null
+    /// (SPECNOTES.md, contradiction 24).
     fn position(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
         let c = self.command;
         let (name, sector, grip) = if c.source.is_empty() {

@@ -34,9 +34,10 @@ use super::{Entry, Leg, Phase, steps::Step};
 /// Stand for the changing records of E-move in a route: where it departs from, and its goal.
 const DEPARTURE: u32 = u32::MAX - 1;
 const GOAL: u32 = u32::MAX;
-/// From the tick in which a through point is passed to the one in which Prim has the next goal (DESIGN 16).
+/// From the tick in which a through point is passed to the one in which Prim has the next goal
+/// (docs/design/motion.md "Flying on").
 const FLIES_ON: u32 = 2;
-/// Ticks for which Prim wants to see the robot at rest (DESIGN 16 "Done").
+/// Ticks for which Prim wants to see the robot at rest (docs/design/motion.md "Rest").
 const SETTLES: u32 = 3;
 /// A motion that takes longer is given up, ticks: ten minutes.
 const LONGEST: u32 = 15_000;

@@ -38,7 +38,8 @@ use crate::{
 
 /// Name of board 0 among the nodes of a run.
 pub const BOARD_0: &str = "board-0";
-/// Slots without a stamp after which a board is lost (DESIGN 16 "Pulse"); in fast clock the same time.
+/// Slots without a stamp after which a board is lost
+/// (docs/design/handshake.md "Lost board"); in fast clock the same time.
 pub const LOST_AFTER: Duration = Duration::from_millis(25 * TICK_MS);
 /// How long board 0 waits before it looks for itself.
 const LOOK: Duration = Duration::from_millis(10);

@@ -3,7 +3,7 @@
 //! Each process has one blackboard service with three entries: its outputs in even ticks, its outputs in odd ticks, its state.
 //! An entry is a byte image under the number of the tick that wrote it; iceoryx2 hands it over whole or not at all. A reader
 //! that finds another number than the one it needs takes nothing: then the process's outputs keep their old stamp, and its
-//! neighbours know it for lost (DESIGN 16 "Processes that are not stepped").
+//! neighbours know it for lost (docs/design/handshake.md "Stamp").
 //!
 //! A service belongs to the board on which the process runs, and bears the board's epoch in its name: a board that takes over
 //! from a killed one opens the next.

@@ -6,7 +6,7 @@
 //!
 //! A board that takes over from a killed one in the middle of a run finds a pulse that the other has not answered. It latches
 //! the outputs of its predecessor, whose processes it starts anew: they adopt the numbers of the commands that they find and
-//! report that they were restarted (DESIGN 16 "Handshake").
+//! report that they were restarted (docs/design/handshake.md "Restart").
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},

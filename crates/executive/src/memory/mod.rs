@@ -1,4 +1,5 @@
-//! Common memory that others can see (DESIGN 6): the buffers of a run in shared memory.
+//! Common memory that others can see
+//! (docs/design/memory.md "Shared memory"): the buffers of a run in shared memory.
 //!
 //! The run publishes, once a tick, what its processes wrote. Programs outside attach and leave whenever they
 //! like and read the latest values; nothing they do changes a tick. Each writer (a control process, the HWSC,

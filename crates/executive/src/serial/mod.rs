@@ -1,5 +1,5 @@
 //! A serial port as the controller needs it: what has arrived is taken, what is due is handed over, and
-//! nothing waits (DESIGN 9).
+//! nothing waits (docs/design/link.md "Serial port").
 //!
 //! [`SerialLine`] stands between the T3 Interface, which knows bytes only, and the port. In a tick it makes a
 //! handful of system calls, never blocks and never allocates. The port may disappear at any time, by an

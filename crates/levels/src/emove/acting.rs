@@ -204,8 +204,8 @@ impl Emove {
     }
 
     /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was
-    /// done before; a command that was given up for it ends in an error and is not resumed (DESIGN 16
-    /// "Failure upward").
+    /// done before; a command that was given up for it ends in an error and is not resumed
+    /// (docs/design/ownership.md "Joystick box").
     fn outcome(&self, inputs: &Inputs<'_, TaskData<'_>>) -> (Report, Reason) {
         let execution = &self.state.execution;
         let prim = &inputs.memory.prim;

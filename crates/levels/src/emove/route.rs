@@ -240,8 +240,8 @@ impl Route {
         }
     }
 
-    /// True while the next point is a depart point: the fingers must not move yet (DESIGN 16 "Finger
-    /// opening").
+    /// True while the next point is a depart point: the fingers must not move yet
+    /// (docs/design/motion.md "Finger opening").
     #[must_use]
     pub fn departing(&self, data: &TaskData<'_>) -> bool {
         !self.complete

@@ -30,8 +30,8 @@ use super::{
 };
 use crate::{old_execution::Outcome, places::place_of};
 
-/// The robot is no longer where its last move ended if it is more than this many inches … (DESIGN 16 "Where
-/// the robot is")
+/// The robot is no longer where its last move ended if it is more than this many inches …
+/// (docs/design/motion.md "Where the robot is")
 const LOST_INCHES: f64 = 0.5;
 /// … or radians (2 degrees) off.
 const LOST_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;

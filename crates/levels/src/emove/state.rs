@@ -28,7 +28,8 @@ pub enum Sort {
     Drum,
 }
 
-/// Where the robot is (DESIGN 16): location, object and grip of the last completed move. It decides how
+/// Where the robot is (docs/design/motion.md "Where the robot is"):
+/// location, object and grip of the last completed move. It decides how
 /// the robot departs.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Stance {

@@ -34,7 +34,8 @@
 //! ```
 //!
 //! A gripper that is there when the system is booted is calibrated at once. One that comes later belongs to a process that was
-//! dormant, and a process that wakes moves nothing before it is told to (DESIGN 16): E-move sends UP-INIT when the gripper is
+//! dormant, and a process that wakes moves nothing before it is told to
+//! (docs/design/handshake.md "Wake"): E-move sends UP-INIT when the gripper is
 //! clear of its holster (V.2.1 QC-ATTACH). When the gripper is taken off, a calibration under way is void and all valves go off; one that was finished is kept.
 //! PAUSE leaves the valves as they are, literally (VI.3.1): sent while a flow is on, the flow stays on.
 

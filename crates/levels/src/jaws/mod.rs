@@ -16,7 +16,7 @@
 //! beside it. Air stays on until the next command: what is held is pressed, not only enclosed.
 //!
 //! The process sleeps while its gripper is in the holster (II.2.3). When it wakes it adopts the command that stands in its
-//! buffer and executes none before a new one comes (DESIGN 16).
+//! buffer and executes none before a new one comes (docs/design/handshake.md "Wake").
 
 mod postprocess;
 mod preprocess;

@@ -23,9 +23,9 @@ use super::{
     tables::{Arrival, Guard, Health, Link, Pace, Passage, Posture, Samples, Situation, attend::Switches},
 };
 
-/// Ticks in a row that the robot must rest at the goal (DESIGN 16 "Done").
+/// Ticks in a row that the robot must rest at the goal (docs/design/motion.md "Rest").
 const SETTLED: u32 = 3;
-/// Ticks after the last point in which it must have come to rest: 2 s (DESIGN 16 "Done").
+/// Ticks after the last point in which it must have come to rest: 2 s (docs/design/motion.md "Rest").
 const PATIENCE: u32 = 50;
 /// Inches that count as at the goal, and as no motion from a tick to the next.
 const AT_GOAL_INCHES: f64 = 0.02;

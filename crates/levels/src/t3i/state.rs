@@ -9,7 +9,8 @@ use rcs_core::{Plain, handshake::Receiver, interface::t3i::T3iVerb, pose::WireFr
 
 use super::tables::Refusal;
 
-/// Points that wait for the line (DESIGN 16 "Prim to T3I"): one that is being sent, one that was allowed, one that is on
+/// Points that wait for the line
+/// (docs/design/link.md "Queue"): one that is being sent, one that was allowed, one that is on
 /// its way, and one to spare.
 pub const QUEUE_POINTS: usize = 4;
 

@@ -110,8 +110,8 @@ struct Needs {
 }
 
 impl TaskVerb {
-    /// The command that a word means. Ten characters are compared, as all processes below do (contradiction
-    /// 22).
+    /// The command that a word means. Ten characters are compared, as all processes below do
+    /// (SPECNOTES.md, contradiction 22).
     #[must_use]
     pub fn of(word: &Name16) -> Option<Self> {
         let word = Name10::clipped(word.as_str());
@@ -237,7 +237,7 @@ impl Plan {
     }
 
     /// Where POSITION goes: the source location, an object where it is; the destination if the source is null
-    /// (contradiction 24).
+    /// (SPECNOTES.md, contradiction 24).
     #[must_use]
     pub const fn position_site(&self) -> Site {
         if self.source.record == 0 && self.source.array == 0 { self.destination } else { self.source }

@@ -5,7 +5,7 @@
 //!    0    8    cycle-cnt     tick in which the command was written
 //!    8    4    incr-cmnd#    1 to 4294967295, then 1 again; 0 for no command yet
 //!   12   10    command       PRE-GRIP, GRIP, FLIP, RELEASE, PAUSE; blank for none
-//!   22    4    grasp-size    0.01 in (contradiction 27)
+//!   22    4    grasp-size    0.01 in (SPECNOTES.md, contradiction 27)
 //!   26    4    grasp-force   lb
 //!   30    4    table-angle   0.1 degree, signed; absolute for PRE-GRIP, relative for FLIP
 //! ```

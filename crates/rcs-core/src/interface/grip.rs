@@ -38,7 +38,7 @@ pub struct GripCommand {
     pub command: GripVerb,
     /// `sforce`: lb.
     pub force: i32,
-    /// `sposition`: opening, 0.01 in (contradiction 27).
+    /// `sposition`: opening, 0.01 in (SPECNOTES.md, contradiction 27).
     pub position: i32,
     /// `svelocity`: 0.01 in/s; 0 means full speed.
     pub velocity: i32,

@@ -35,7 +35,8 @@ pub struct HwsCommand {
     pub end_at_sector: i32,
 }
 
-/// `"status"` to the HWSC. The manual has `executing` and `finished`; the others are extensions (DESIGN 16).
+/// `"status"` to the HWSC. The manual has `executing` and `finished`; the others are extensions
+/// (docs/design/failures.md "Task").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum HwsReport {
     /// Nothing was commanded yet (extension).

@@ -37,7 +37,7 @@ pub struct JawsCommand {
     pub command: JawsVerb,
     /// `commanded-force`: lb; not used by the device.
     pub force: i32,
-    /// `commanded-size`: opening, 0.01 in (contradiction 27).
+    /// `commanded-size`: opening, 0.01 in (SPECNOTES.md, contradiction 27).
     pub size: i32,
     /// `commanded-vel`: 0.01 in/s; not used by the device.
     pub velocity: i32,

@@ -77,7 +77,8 @@ impl Report {
     }
 }
 
-/// Why a command failed: `status-para-out`, passed up the ladder unchanged (extension, DESIGN 15).
+/// Why a command failed: `status-para-out`, passed up the ladder unchanged
+/// (extension, docs/design/failures.md "Reason").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Reason {
     /// It did not fail.

@@ -42,7 +42,7 @@ pub struct PedestalCommand {
     pub number: u32,
     /// `command`.
     pub command: PedestalVerb,
-    /// `grasp-size`: opening, 0.01 in (contradiction 27).
+    /// `grasp-size`: opening, 0.01 in (SPECNOTES.md, contradiction 27).
     pub grasp_size: i32,
     /// `grasp-force`: lb.
     pub grasp_force: i32,

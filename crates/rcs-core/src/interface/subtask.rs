@@ -56,7 +56,7 @@ pub enum SubtaskVerb {
     RemoveTool,
 }
 
-/// `locpt-type`: what a location is (VII.3 to VII.5, contradiction 26).
+/// `locpt-type`: what a location is (VII.3 to VII.5; SPECNOTES.md, contradiction 26).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum LocationKind {
     /// No location.

@@ -109,7 +109,8 @@ pub struct T3iStatus {
     pub report: T3iReport,
     /// `status-arg-out`.
     pub fault: LinkFault,
-    /// `frame-feedback`: resolver frame until the link runs, commanded frame afterwards (contradiction 14).
+    /// `frame-feedback`: resolver frame until the link runs, commanded frame afterwards
+    /// (SPECNOTES.md, contradiction 14).
     pub frame_feedback: WireFrame,
     /// `scale-factor-out`: resolver scale, counts per turn.
     pub scale_factor: i32,

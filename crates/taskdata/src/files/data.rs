@@ -18,7 +18,7 @@ use super::{
 /// The task data of a run: a view of the files and their indexes, as cheap to copy as a few pointers.
 ///
 /// It is built outside the tick (by `load::Store`), and nothing in it changes: blocks that are loaded while the robot runs make
-/// a new generation (DESIGN 6, 16).
+/// a new generation (docs/design/ownership.md "Reload").
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TaskData<'a> {
     /// POSE.

@@ -196,7 +196,8 @@ pub struct Traj {
     pub path: PathId,
 }
 
-/// TRAJ-PARA: parameters of a trajectory segment (VII.6). Their units are ASSUMED where the manual has none (DESIGN 8).
+/// TRAJ-PARA: parameters of a trajectory segment (VII.6). Their units are ASSUMED where the manual has none
+/// (docs/design/motion.md "Units").
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct TrajPara {
     /// `acc-fac`, acceleration factor: counts of 0.1 in/s for each 40 ms.

@@ -2,7 +2,7 @@
 //!
 //! The order decides the record numbers: each entry becomes the record whose number is its position here. So the next
 //! generation of the data is made by putting newer entries into the places of those that they replace and the others at
-//! the end (DESIGN 16, "Changing records and reload"): what existed keeps its number.
+//! the end (docs/design/ownership.md "Reload"): what existed keeps its number.
 
 use std::{
     collections::{HashMap, HashSet},

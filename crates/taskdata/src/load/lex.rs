@@ -1,7 +1,8 @@
 //! Words of a block: what is left when comments are taken out.
 //!
 //! `%` at the beginning of a word makes the rest of the line a comment (IV.3.2). A word that begins with `(` makes a
-//! comment of all up to the next `)`, over lines if need be; such comments do not nest (VIII.9, DESIGN 16). Words are
+//! comment of all up to the next `)`, over lines if need be; such comments do not nest
+//! (VIII.9; SPECNOTES.md, Task data). Words are
 //! separated by blanks, so `(` within a word, as in `A(B`, is part of a name.
 
 use super::{

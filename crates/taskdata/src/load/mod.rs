@@ -66,7 +66,8 @@ impl Store {
         Self::default().with_blocks(sources)
     }
 
-    /// The next generation of the data: these data with more blocks loaded, while these stay as they are (DESIGN 16).
+    /// The next generation of the data: these data with more blocks loaded, while these stay as they are
+    /// (docs/design/ownership.md "Reload").
     ///
     /// An entry that says again what an entry of these data says (a pose of the same name, the same grip of the same object
     /// at the same location …) replaces it and keeps its record number; other entries are appended. Nothing is removed, but

@@ -17,7 +17,7 @@ use super::{
     source::{At, BlockNumber, Source},
 };
 
-/// Records that a file can hold (DESIGN 7); one more is the manual's FILE FULL.
+/// Records that a file can hold (SPECNOTES.md, Task data); one more is the manual's FILE FULL.
 pub const FILE_RECORDS: usize = 100_000;
 
 /// The files, by the names that a declaration may give. Those of the object location form and of the approach/depart form are

@@ -18,7 +18,8 @@ pub enum Step {
 
 old_table! {
     /// REMOVE-TOOL (V.2.1): CAL-SENSOR and a guarded move that the extraction force ends: a GO-WHILE, though
-    /// the manual says GO-UNTIL, for the force is what must not come (contradiction 18). Done at once if the
+    /// the manual says GO-UNTIL, for the force is what must not come
+    /// (SPECNOTES.md, contradiction 18). Done at once if the
     /// tool is out.
     pub REMOVE_TOOL: fn remove_tool(step: Step, station: Station, held: Held, prim: Lower) -> (Action, Step) {
         //     step                     station     held              Prim                       action                      next

@@ -266,7 +266,7 @@ fn rest(motion: &mut Motion, watch: &mut Watch, knob: u16) -> Result<(), String>
     if motion.frame() == frame { Ok(()) } else { Err("creeps after a halt".into()) }
 }
 
-/// Moves of the ordinary test; `RCS_MOVES` asks for more (DESIGN 14: a million).
+/// Moves of the ordinary test; `RCS_MOVES` asks for more (a million, docs/design/motion.md "Limits").
 fn moves() -> u32 {
     std::env::var("RCS_MOVES").ok().and_then(|text| text.parse().ok()).unwrap_or(200_000)
 }

@@ -84,7 +84,7 @@ pub enum Passage {
     Passing,
 }
 
-/// The end of a motion: at the goal (DESIGN 16 "Done"), or wherever the robot stands.
+/// The end of a motion: at the goal (docs/design/motion.md "Rest"), or wherever the robot stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Arrival {
     /// On the way.

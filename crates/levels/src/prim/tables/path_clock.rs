@@ -29,7 +29,8 @@ pub enum Flow {
 }
 
 old_table! {
-    /// PATH-CLOCK (DESIGN 16 "Prim to T3I"): is the next point sent? A robot that does not follow must not be
+    /// PATH-CLOCK
+    /// (docs/design/link.md "Path clock"): is the next point sent? A robot that does not follow must not be
     /// asked to jump, so that a lost link leaves no motion behind.
     pub PATH_CLOCK: fn path_clock(posture: Posture, health: Health, pace: Pace) -> (Flow, Clock) {
         //   posture             health                                   pace                   flow      clock

@@ -12,13 +12,15 @@ use super::{
     Findings, Origins, origin,
 };
 
-/// From the moment when a sensor's condition comes to the halt of the robot, s (DESIGN 16 "Done").
+/// From the moment when a sensor's condition comes to the halt of the robot, s
+/// (docs/design/motion.md "Guarded speed").
 const HALT: f64 = 0.2;
 /// How fast the force grows while the tool moves on against something hard, lb/in: that of the arm of the cell (ASSUMED).
 const STIFFNESS: f64 = 2000.0;
 /// From the tool point to the middle of the force sensor, in: what makes a moment of a force (ASSUMED, `data/cell.toml`).
 const LEVER: f64 = 8.0;
-/// in/s in a count of `vel-max` (ASSUMED, as `levels::prim::motion::limits` has it; DESIGN 8).
+/// in/s in a count of `vel-max` (ASSUMED, as `levels::prim::motion::limits` has it;
+/// docs/design/motion.md "Units").
 const VELOCITY_COUNT: f64 = 0.1;
 
 /// The greatest force or moment that an axis can read, lb or in lb: more is an overload, which ends the move in an error.

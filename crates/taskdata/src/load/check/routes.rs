@@ -49,7 +49,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
     }
 }
 
-/// True if no trajectory is flown between the two (DESIGN 16 "Finger opening").
+/// True if no trajectory is flown between the two (docs/design/motion.md "Same location").
 fn same_location(a: &Place, b: &Place) -> bool {
     a.locpt == b.locpt && (!a.locpt.is_null() || a.array == b.array)
 }

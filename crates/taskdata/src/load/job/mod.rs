@@ -1,7 +1,8 @@
 //! Job files: what the workstation controller sends, and what the workstation does in between.
 //!
 //! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the variables of
-//! V.4.2 without the serial number (contradiction 25): object, source grip, location and sector, destination grip, location
+//! V.4.2 without the serial number
+//! (SPECNOTES.md, contradiction 25): object, source grip, location and sector, destination grip, location
 //! and sector, end-at location and sector; `--` is a null field. A serial number may stand behind them: `#17` (ours). The manual's own forms of lines end there: vise, trays and
 //! machine belong to the HWSC, not to the robot. Lines that begin with `**` say what they do:
 //!

@@ -65,7 +65,7 @@ impl Walk {
                 }
             }
             "ACQUIRE" => self.go(data, problems, source),
-            // An object where it is, or a location (contradiction 24).
+            // An object where it is, or a location (SPECNOTES.md, contradiction 24).
             "POSITION" => self.go(data, problems, source.or(destination)),
             "PAUSE" => {}
             _ => self.last = None,
@@ -117,7 +117,8 @@ fn view(data: &TaskData<'_>, problems: &mut Problems, visit: &Visit, verb: &str)
     }
 }
 
-/// Sectors of one tray are one location: the way between them needs no trajectory (DESIGN 16).
+/// Sectors of one tray are one location: the way between them needs no trajectory
+/// (docs/design/motion.md "Same location").
 fn same(one: &Location, other: &Location) -> bool {
     one.name == other.name
 }
