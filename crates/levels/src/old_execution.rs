@@ -1,7 +1,7 @@
 //! What Task, Subtask and E-move have in common: the upper of the two state tables (II.2.2.2).
 //!
 //! The lower table belongs to a command; this one decides whether it is consulted at all. An outcome, once reached, stays
-//! until a new command number comes (DESIGN 16 "Handshake").
+//! until a new command number comes .
 //!
 //! ```text
 //!            New, Good            table says Finish

@@ -34,9 +34,8 @@ use rcs_core::{
 use taskdata::files::TaskData;
 
 use self::{
-    preprocess::Seen,
     state::State,
-    tables::{Action, Step},
+    tables::{Action, Seen, Step},
 };
 use crate::execution::Course;
 
@@ -56,7 +55,7 @@ impl<'d> Process<TaskData<'d>> for Subtask {
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
     fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &SubtaskOutputs) -> Seen {
-        self.sense(inputs, outputs)
+        self.state.sense(inputs, outputs)
     }
 
     fn decide(&mut self, seen: &Seen) -> Action {
@@ -79,11 +78,12 @@ impl<'d> Process<TaskData<'d>> for Subtask {
         inputs: &Inputs<'_, TaskData<'d>>,
         outputs: &mut SubtaskOutputs,
     ) {
-        if self.state.execution.begins(seen.arrival) {
-            self.publish_poses(outputs);
+        let state = &mut self.state;
+        if state.execution.begins(seen.arrival) {
+            state.publish_poses(outputs);
         }
-        self.act(action, seen, inputs, outputs);
-        self.report(inputs, outputs);
+        state.act(action, seen, inputs, outputs);
+        state.report(inputs, outputs);
     }
 
     fn state(&self) -> &State {

@@ -13,14 +13,13 @@ use rcs_core::{
 use taskdata::files::TaskData;
 
 use super::{
-    Subtask,
     aims::Aim,
-    preprocess::Seen,
-    tables::{Action, Holster, Ordered},
+    state::State,
+    tables::{Action, Holster, Ordered, Seen},
 };
 use crate::execution::Outcome;
 
-impl Subtask {
+impl State {
     /// Set the outputs that a row asks for.
     pub(super) fn act(
         &mut self,
@@ -29,14 +28,14 @@ impl Subtask {
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut SubtaskOutputs,
     ) {
-        let (own, aims) = (Aim::of_command(&inputs.memory.task.subtask), self.state.aims);
-        let ped = self.state.ped_para;
+        let (own, aims) = (Aim::of_command(&inputs.memory.task.subtask), self.aims);
+        let ped = self.ped_para;
         if action == Action::Pause {
             self.pause_pedestal(inputs, outputs);
         }
         let mut send = |verb, aim: &Aim| {
-            let number = self.state.emove.send(inputs.tick);
-            self.state.ordered = Ordered::Emove;
+            let number = self.emove.send(inputs.tick);
+            self.ordered = Ordered::Emove;
             outputs.emove = EmoveCommand { number, ..aim.command(verb, inputs.data) };
         };
         match action {
@@ -74,17 +73,17 @@ impl Subtask {
             Action::PedRelease => {
                 self.command_pedestal(PedestalVerb::Release, ped.release_size, 0, 0, inputs, outputs);
             }
-            Action::Finish => self.state.execution.finish(),
-            Action::Fail(reason) => self.state.execution.fail(reason),
+            Action::Finish => self.execution.finish(),
+            Action::Fail(reason) => self.execution.fail(reason),
             Action::PassUp => {
-                self.state.execution.pass_up(seen.orders.emove, inputs.memory.emove.status.reason);
+                self.execution.pass_up(seen.orders.emove, inputs.memory.emove.status.reason);
             }
             Action::PassUpPedestal(reason) => {
                 // What hand or table report is more than that there was an error.
                 let below = &inputs.memory.pedestal.status;
                 let failed = matches!(below.report, PedestalReport::CannotDo | PedestalReport::Error);
                 let known = failed && below.reason != Reason::None && reason != Reason::PedestalSilent;
-                self.state.execution.fail(if known { below.reason } else { reason });
+                self.execution.fail(if known { below.reason } else { reason });
             }
         }
     }
@@ -99,10 +98,10 @@ impl Subtask {
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut SubtaskOutputs,
     ) {
-        self.state.ordered = Ordered::Pedestal;
+        self.ordered = Ordered::Pedestal;
         outputs.pedestal = PedestalCommand {
             cycle: inputs.tick,
-            number: self.state.pedestal.send(inputs.tick),
+            number: self.pedestal.send(inputs.tick),
             command: verb,
             grasp_size,
             grasp_force,
@@ -119,14 +118,14 @@ impl Subtask {
 
     /// Give the poses of a new command new record numbers.
     pub(super) fn publish_poses(&mut self, outputs: &mut SubtaskOutputs) {
-        let aims = &mut self.state.aims;
+        let aims = &mut self.aims;
         for ((slot, pose), aim) in
             outputs.poses.iter_mut().zip(&aims.poses).zip([&mut aims.first, &mut aims.second])
         {
             if !aim.location.is_empty() {
-                self.state.last_pose = pose_range::next(pose_range::SUBTASK, self.state.last_pose);
-                *slot = ChangingPose { number: self.state.last_pose, pose: *pose };
-                aim.pose = self.state.last_pose;
+                self.last_pose = pose_range::next(pose_range::SUBTASK, self.last_pose);
+                *slot = ChangingPose { number: self.last_pose, pose: *pose };
+                aim.pose = self.last_pose;
             }
         }
         aims.third.pose = aims.first.pose;
@@ -134,7 +133,7 @@ impl Subtask {
 
     /// Write the status to Task.
     pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut SubtaskOutputs) {
-        let execution = &self.state.execution;
+        let execution = &self.execution;
         let below = &inputs.memory.emove.status;
         // The operator can take the robot at any time, also between two commands (V.4.1 PAUSE).
         let (report, reason) = if below.report == Report::JoystickOn {
@@ -144,7 +143,7 @@ impl Subtask {
         } else {
             (execution.report(), execution.reason)
         };
-        outputs.header = execution.header(inputs.tick, self.state.step.text());
+        outputs.header = execution.header(inputs.tick, self.step.text());
         outputs.status = SubtaskStatus {
             echo: execution.receiver.echo,
             report,

@@ -13,12 +13,11 @@ use rcs_core::{
 use taskdata::files::TaskData;
 
 use super::{
-    Subtask,
     aims::Aims,
-    state::Grasp,
+    state::{Grasp, State},
     tables::{
-        GripHeld, Gripper, Hand, Held, Named, Ordered, Orders, Pedestal, PedestalData, Request, Situation,
-        Vision,
+        GripHeld, Gripper, Hand, Held, Named, Ordered, Orders, Pedestal, PedestalData, Request, Seen,
+        Situation, Vision,
     },
 };
 use crate::{
@@ -26,29 +25,14 @@ use crate::{
     places::{Missing, place_of},
 };
 
-/// What preprocess has found in a tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Seen {
-    /// What the command buffer holds.
-    pub arrival: Arrival,
-    /// The command in it.
-    pub verb: SubtaskVerb,
-    /// What a new command needs.
-    pub request: Request,
-    /// How the last order of the command stands.
-    pub orders: Orders,
-    /// The state variables of the command's table; [`Orders`] decide on `work`.
-    pub situation: Situation,
-}
-
-impl Subtask {
+impl State {
     /// Read the inputs of a tick.
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &SubtaskOutputs) -> Seen {
         let command = &inputs.memory.task.subtask;
-        self.state.emove.start(inputs.memory.emove.status.echo);
-        self.state.pedestal.start(inputs.memory.pedestal.status.echo);
+        self.emove.start(inputs.memory.emove.status.echo);
+        self.pedestal.start(inputs.memory.pedestal.status.echo);
         self.sense_grasp(inputs, outputs);
-        let arrival = self.state.execution.receiver.observe(command.number);
+        let arrival = self.execution.receiver.observe(command.number);
         let request =
             if arrival == Arrival::New { self.look_up(command, inputs) } else { Request::default() };
         Seen {
@@ -56,7 +40,7 @@ impl Subtask {
             verb: command.command,
             request,
             orders: Orders {
-                ordered: self.state.ordered,
+                ordered: self.ordered,
                 emove: self.emove(inputs),
                 pedestal: self.pedestal(inputs),
             },
@@ -71,16 +55,16 @@ impl Subtask {
             && self.emove(inputs) == Lower::Done
             && emove.held_object == outputs.emove.object;
         if !emove.object_held {
-            self.state.grasp = Grasp::default();
+            self.grasp = Grasp::default();
         } else if taken {
-            self.state.grasp = Grasp { object: emove.held_object, grip: outputs.emove.grip };
+            self.grasp = Grasp { object: emove.held_object, grip: outputs.emove.grip };
         }
     }
 
     /// Look up what a new command needs beside the location that Task names: the locations that Subtask names itself, and for FIX-GRIP how
     /// the pedestal takes the object. What is complete is kept.
     fn look_up(&mut self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
-        self.state.ordered = Ordered::Nothing;
+        self.ordered = Ordered::Nothing;
         let attached = inputs.memory.emove.status.end_effector_id;
         let aims = Aims::new(command, attached, inputs.data);
         let ped_para = match command.command {
@@ -88,8 +72,8 @@ impl Subtask {
             _ => None,
         };
         if let Ok(aims) = aims {
-            self.state.aims = aims;
-            self.state.ped_para = ped_para.unwrap_or_default();
+            self.aims = aims;
+            self.ped_para = ped_para.unwrap_or_default();
         }
         Request {
             asked: Asked::Now,
@@ -124,7 +108,7 @@ impl Subtask {
                 Gripper::Wrong
             },
             named: named(command),
-            hand: if inputs.memory.pedestal.status.grip_size > self.state.ped_para.grasp_size {
+            hand: if inputs.memory.pedestal.status.grip_size > self.ped_para.grasp_size {
                 Hand::Gripping
             } else {
                 Hand::Empty
@@ -135,11 +119,11 @@ impl Subtask {
     /// Status of E-move.
     fn emove(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
         let emove = &inputs.memory.emove;
-        self.state.emove.read(inputs.tick, &emove.header, emove.status.echo, emove.status.report.lower())
+        self.emove.read(inputs.tick, &emove.header, emove.status.echo, emove.status.report.lower())
     }
 
     fn grip_held(&self, command: &SubtaskCommand) -> GripHeld {
-        let Grasp { object, grip } = self.state.grasp;
+        let Grasp { object, grip } = self.grasp;
         if object.is_empty() || object != command.object {
             GripHeld::Unknown
         } else if grip == command.destination_grip {
@@ -154,7 +138,7 @@ impl Subtask {
     fn pedestal(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Pedestal {
         let pedestal = &inputs.memory.pedestal;
         let status = &pedestal.status;
-        match self.state.pedestal.read(inputs.tick, &pedestal.header, status.echo, status.report.lower()) {
+        match self.pedestal.read(inputs.tick, &pedestal.header, status.echo, status.report.lower()) {
             Lower::Pending | Lower::Executing => Pedestal::Moving,
             Lower::Done => Pedestal::Done,
             Lower::Error | Lower::Joystick if status.report == PedestalReport::CannotDo => Pedestal::Cannot,

@@ -18,13 +18,12 @@ pub mod s_pause;
 
 use rcs_core::{
     Actions, Plain, Variables, commands,
-    handshake::Lower,
+    handshake::{Arrival, Lower},
     interface::{Reason, subtask::SubtaskVerb},
     table::Choice,
 };
 
 use self::{accept::accept, ordered::ordered};
-use super::preprocess::Seen;
 use crate::{
     execution::{Asked, EXECUTE, Work},
     places::Missing,
@@ -182,6 +181,21 @@ pub struct Situation {
     pub named: Named,
     /// Hand of the pedestal.
     pub hand: Hand,
+}
+
+/// What preprocess has found in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// What the command buffer holds.
+    pub arrival: Arrival,
+    /// The command in it.
+    pub verb: SubtaskVerb,
+    /// What a new command needs.
+    pub request: Request,
+    /// How the last order of the command stands.
+    pub orders: Orders,
+    /// The state variables of the command's table; [`Orders`] decide on `work`.
+    pub situation: Situation,
 }
 
 /// What a row can ask for.
