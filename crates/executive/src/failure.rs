@@ -349,9 +349,13 @@ pub fn present_commands(
 
 /// The commands that processes have not finished, as people say them: `Grip executed CLOSE-GRIP (...)`; empty for none.
 #[must_use]
-pub fn unfinished_commands(of: &[ProcessId], hws: &HwsCommand, memory: &CommonMemory) -> String {
-    let lines = of.iter().filter(|&&process| is_executing(process, memory)).filter_map(|process| {
-        let command = command(usize::from(process.code()), hws, memory);
+pub fn unfinished_commands(
+    of: impl Iterator<Item = ProcessId>,
+    hws: &HwsCommand,
+    memory: &CommonMemory,
+) -> String {
+    let lines = of.filter(|process| is_executing(*process, memory)).filter_map(|process| {
+        let command = command(process.position(), hws, memory);
         (!command.is_empty()).then(|| format!("{process} executed {command}"))
     });
     lines.collect::<Vec<_>>().join(", ")
