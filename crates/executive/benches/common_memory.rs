@@ -93,7 +93,7 @@ fn ticks() {
     measure("tick, not published", 1, || {
         let Ok(_) = alone.step(&external, &data, 0);
     });
-    measure("rehearsal of a tick, not published", 1, || alone.rehearse(&external, &data));
+    measure("warm-up of a tick, not published", 1, || alone.warm_up(&external, &data));
     let name = RunName::unique("bench-tick");
     let publisher = Publisher::create(&name).expect("this machine has shared memory");
     let mut published = Runner::new(Ladder::default(), Some(publisher));
