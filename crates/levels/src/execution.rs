@@ -140,6 +140,26 @@ impl Execution {
         decision.action
     }
 
+    /// Consult [`EXECUTE`], and the tables of the process if it says so: from the step `first` if the command is new, else from `step`.
+    /// Gives the action of the row that decided; none if no table of the process was consulted.
+    pub fn decide<Action, Step: Copy>(
+        &mut self,
+        arrival: Arrival,
+        first: Step,
+        step: &mut Step,
+        tables: impl FnOnce(Step) -> Choice<Action, Step>,
+    ) -> Option<Action> {
+        match self.course(arrival) {
+            Course::Rest | Course::Refuse => return None,
+            Course::Begin => *step = first,
+            Course::Continue => {}
+        }
+        let choice = tables(*step);
+        self.note(&choice);
+        *step = choice.next;
+        Some(choice.action)
+    }
+
     /// Note which row of which table fired.
     pub fn note<Action, Step>(&mut self, choice: &Choice<Action, Step>) {
         (self.table, self.row) = (choice.table, choice.row);
