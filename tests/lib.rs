@@ -5,6 +5,7 @@
 //! release.
 
 pub mod golden;
+pub mod trace;
 
 use std::{
     env, fs,
