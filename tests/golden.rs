@@ -5,8 +5,8 @@
 //! person reads: commands with their durations, warnings and errors, which rows of which tables fired. The test `goldens`
 //! replays the inputs through today's controller, which takes no time, and compares both.
 //!
-//! A golden cannot be replayed with other records. Before it is made again, [`crate::trace`] shows what the old
-//! version and the new one do.
+//! A golden cannot be replayed with other records. Before it is made again, [`crate::trace`] and
+//! [`crate::compare`] show that the new version behaves as the old one.
 
 use std::{
     fs, io,
@@ -21,7 +21,11 @@ use record::{
 };
 use serde::Deserialize;
 
-use crate::{Scratch, rcs_run, root, trace};
+use crate::{
+    Scratch,
+    compare::{CompareError, Comparison, Renames, compare},
+    rcs_run, root, trace,
+};
 
 /// The command that makes all goldens again.
 pub const COMMAND: &str = "cargo run --release -p whole-system-tests --bin goldens";
@@ -141,6 +145,9 @@ pub enum Failed {
     /// A trace needs all ticks.
     #[error("ticks are missing in the log before tick {0}")]
     Gap(Tick),
+    /// The traces cannot be compared.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
 }
 
 fn status(found: &Option<i32>) -> String {
@@ -198,6 +205,29 @@ impl Scenario {
         let run = self.run()?;
         let ticks = trace::write(&run.log()?, &run.ending, &trace::path(directory, &self.name))?;
         Ok((run.ending, ticks))
+    }
+
+    /// Run it and compare the run with its trace in a directory; if nothing differs and `make` is set, also make
+    /// the golden.
+    ///
+    /// # Errors
+    /// [`Failed`]. A difference is no error: it is in the result.
+    pub fn against(
+        &self,
+        directory: &Path,
+        renames: &Renames,
+        make: bool,
+    ) -> Result<(Comparison, Option<Made>), Failed> {
+        let old = trace::path(directory, &self.name);
+        let open =
+            |path: &Path| trace::open(path).map_err(|source| Failed::File { path: path.to_owned(), source });
+        let was = open(&old)?;
+        let run = self.run()?;
+        let new = run.scratch.file("run.trace");
+        trace::write(&run.log()?, &run.ending, &new)?;
+        let found = compare(was, open(&new)?, renames)?;
+        let made = if make && found.differences.is_empty() { Some(self.made_of(&run)?) } else { None };
+        Ok((found, made))
     }
 
     fn made_of(&self, run: &Run) -> Result<Made, Failed> {

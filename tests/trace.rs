@@ -3,7 +3,7 @@
 //!
 //! A golden holds digests of byte images: another layout of a record, or another number of a row, changes all
 //! of them, although the controller does the same. A trace names each field by its path and writes each value
-//! as text.
+//! as text. [`crate::compare`] compares the traces of two versions.
 //!
 //! ```text
 //! 1       emove.status.report      idle              tick, path, value; in the first tick all fields,
@@ -16,7 +16,7 @@
 
 use std::{
     fs::File,
-    io::{self, BufWriter, Write},
+    io::{self, BufRead, BufReader, BufWriter, Write},
     path::{Path, PathBuf},
 };
 
@@ -30,7 +30,7 @@ use record::{
     channels::{HeaderPlace, headers},
     layout,
 };
-use zstd::stream::write::Encoder;
+use zstd::stream::{read::Decoder, write::Encoder};
 
 use crate::golden::{Ending, Failed};
 
@@ -83,6 +83,14 @@ pub fn write(log: &Log, ending: &Ending, path: &Path) -> Result<u64, Failed> {
     encoder.finish().and_then(|file| file.sync_all()).map_err(failed)?;
     std::fs::rename(&unfinished, path).map_err(failed)?;
     Ok(ticks)
+}
+
+/// Open a trace to read its lines.
+///
+/// # Errors
+/// If the file cannot be opened.
+pub fn open(path: &Path) -> io::Result<impl BufRead + use<>> {
+    Ok(BufReader::with_capacity(1 << 20, Decoder::new(File::open(path)?)?))
 }
 
 /// Writes a trace tick by tick.
