@@ -19,17 +19,7 @@ use taskdata::files::TaskData;
 
 pub use rcs_core::interface::{PROCESS_COUNT, ProcessId};
 
-use crate::{
-    emove::Emove,
-    grip::Grip,
-    jaws::{ToolGrip, VGrip},
-    pedestal::{Hand, Pedestal, Table as RotaryTable},
-    prim::Prim,
-    quick_change::QuickChange,
-    subtask::Subtask,
-    t3i::T3i,
-    task::Task,
-};
+use crate::processes::*;
 
 /// A process by name, with its decision tables.
 #[derive(Debug)]
@@ -58,7 +48,7 @@ macro_rules! ladder {
     ($(
         #[doc = $doc:literal]
         $id:ident $text:literal {
-            buffers: $field:ident, $outputs:ident;
+            buffers: $field:ident, $outputs:ty;
             failure: $failure:ident;
             board: $board:literal;
             commander: $($commander:ident, $above:ident . $command:ident)?;

@@ -54,3 +54,18 @@ pub mod quick_change;
 pub mod subtask;
 pub mod t3i;
 pub mod task;
+
+/// The types of the control processes, each under its identifier in `rcs_core::for_each_process!`.
+pub mod processes {
+    pub use crate::{
+        emove::Emove,
+        grip::Grip,
+        jaws::{ToolGrip, VGrip},
+        pedestal::{Hand, Pedestal, Table as RotaryTable},
+        prim::Prim,
+        quick_change::QuickChange,
+        subtask::Subtask,
+        t3i::T3i,
+        task::Task,
+    };
+}

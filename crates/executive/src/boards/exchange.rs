@@ -16,16 +16,8 @@ use iceoryx2::{
     prelude::ipc,
 };
 use levels::{
-    emove::Emove,
-    grip::Grip,
-    jaws::{ToolGrip, VGrip},
     ladder::{LadderState, ProcessId},
-    pedestal::{Hand, Pedestal, Table as RotaryTable},
-    prim::Prim,
-    quick_change::QuickChange,
-    subtask::Subtask,
-    t3i::T3i,
-    task::Task,
+    processes::*,
 };
 use rcs_core::{
     Plain, for_each_process,
@@ -189,7 +181,7 @@ macro_rules! exchange {
     ($(
         #[doc = $doc:literal]
         $id:ident $text:literal {
-            buffers: $field:ident, $outputs:ident;
+            buffers: $field:ident, $outputs:ty;
             failure: $failure:ident;
             board: $board:literal;
             commander: $($commander:ident, $above:ident . $command:ident)?;

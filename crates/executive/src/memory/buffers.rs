@@ -14,10 +14,7 @@ use rcs_core::{
     Plain,
     digest::Digest,
     for_each_process,
-    interface::{
-        CommonMemory, EmoveOutputs, ExternalInputs, GripOutputs, JawsOutputs, PedestalOutputs, PrimOutputs,
-        QuickChangeOutputs, SubtaskOutputs, T3iOutputs, TableOutputs, TaskOutputs,
-    },
+    interface::{CommonMemory, ExternalInputs},
     plain::{DecodeError, Schema, from_bytes, to_bytes},
     tick::Tick,
 };
@@ -129,7 +126,7 @@ macro_rules! services {
     ($(
         #[doc = $doc:literal]
         $id:ident $text:literal {
-            buffers: $field:ident, $outputs:ident;
+            buffers: $field:ident, $outputs:ty;
             failure: $failure:ident;
             board: $board:literal;
             commander: $($commander:ident, $above:ident . $command:ident)?;
@@ -138,14 +135,14 @@ macro_rules! services {
     )+) => {
         /// The services of a run: for each its name and the schema of its entry.
         pub const SERVICES: &[(&str, Schema)] = &[
-            $( (stringify!($field), $outputs::SCHEMA), )+
+            $( (stringify!($field), <$outputs as Plain>::SCHEMA), )+
             (OUTSIDE, Outside::SCHEMA),
             (EXECUTIVE, Pulse::SCHEMA),
         ];
 
         /// The writer's ends of all services.
         pub struct Writers {
-            $( $field: ServiceWriter<{ $outputs::SIZE }, $outputs>, )+
+            $( $field: ServiceWriter<{ <$outputs as Plain>::SIZE }, $outputs>, )+
             outside: ServiceWriter<{ Outside::SIZE }, Outside>,
             /// What the executive says.
             pub executive: ServiceWriter<{ Pulse::SIZE }, Pulse>,
@@ -174,7 +171,7 @@ macro_rules! services {
 
         /// A reader's ends of all services.
         pub struct Readers {
-            $( $field: ServiceReader<{ $outputs::SIZE }, $outputs>, )+
+            $( $field: ServiceReader<{ <$outputs as Plain>::SIZE }, $outputs>, )+
             /// What came from outside.
             pub outside: ServiceReader<{ Outside::SIZE }, Outside>,
             /// What the executive says.
@@ -275,6 +272,7 @@ fn add_schema(digest: &mut Digest, schema: &Schema) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rcs_core::interface::{SubtaskOutputs, TaskOutputs};
 
     #[test]
     fn the_layout_version_depends_on_every_word() {

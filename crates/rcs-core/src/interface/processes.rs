@@ -1,21 +1,14 @@
 //! The control processes, each registered once.
 //!
 //! [`for_each_process!`](crate::for_each_process!) is the one list. From it follow [`ProcessId`], [`CommonMemory`] and the order of the digest, the
-//! ladder, the boards and what they exchange, shared memory, and the chains that explain a failure. Who adds a process writes its
-//! folder and an entry here.
+//! ladder, the boards and what they exchange, shared memory, and the chains that explain a failure.
 
-use crate::{
-    Plain,
-    interface::{
-        EmoveOutputs, GripOutputs, Header, JawsOutputs, PedestalOutputs, PrimOutputs, QuickChangeOutputs,
-        SubtaskOutputs, T3iOutputs, TableOutputs, TaskOutputs,
-    },
-};
+use crate::{Plain, interface::Header};
 
 /// Give the list of processes to a macro. An entry is:
 ///
-/// * the identifier, which is also the name of its type in the crate of the levels, and the manual's name;
-/// * `buffers`: its field of common memory and their type;
+/// * the identifier, which is also the name of its type in `levels::processes`, and the manual's name;
+/// * `buffers`: its field of common memory, and the type of its output buffers;
 /// * `failure`: the field of its status that says why it failed;
 /// * `board`: the number of the board on which it runs (IV.2.2);
 /// * `commander`: the process above it and the buffer with its command, nothing for Task;
@@ -26,7 +19,7 @@ macro_rules! for_each_process {
         $with! {
             /// Task (V.4).
             Task "Task" {
-                buffers: task, TaskOutputs;
+                buffers: task, $crate::interface::TaskOutputs;
                 failure: reason;
                 board: 6;
                 commander: ;
@@ -34,7 +27,7 @@ macro_rules! for_each_process {
             }
             /// Subtask (V.3).
             Subtask "Subtask" {
-                buffers: subtask, SubtaskOutputs;
+                buffers: subtask, $crate::interface::SubtaskOutputs;
                 failure: reason;
                 board: 6;
                 commander: Task, task.subtask;
@@ -42,7 +35,7 @@ macro_rules! for_each_process {
             }
             /// E-move (V.2).
             Emove "E-move" {
-                buffers: emove, EmoveOutputs;
+                buffers: emove, $crate::interface::EmoveOutputs;
                 failure: reason;
                 board: 2;
                 commander: Subtask, subtask.emove;
@@ -50,7 +43,7 @@ macro_rules! for_each_process {
             }
             /// Prim (V.1).
             Prim "Prim" {
-                buffers: prim, PrimOutputs;
+                buffers: prim, $crate::interface::PrimOutputs;
                 failure: reason;
                 board: 2;
                 commander: Emove, emove.prim;
@@ -58,7 +51,7 @@ macro_rules! for_each_process {
             }
             /// T3 Interface (VI.1).
             T3i "T3 Interface" {
-                buffers: t3i, T3iOutputs;
+                buffers: t3i, $crate::interface::T3iOutputs;
                 failure: fault;
                 board: 4;
                 commander: Prim, prim.t3i;
@@ -69,7 +62,7 @@ macro_rules! for_each_process {
             }
             /// Quick Change (VI.2).
             QuickChange "Quick Change" {
-                buffers: quick_change, QuickChangeOutputs;
+                buffers: quick_change, $crate::interface::QuickChangeOutputs;
                 failure: reason;
                 board: 8;
                 commander: Emove, emove.quick_change;
@@ -77,7 +70,7 @@ macro_rules! for_each_process {
             }
             /// Grip (VI.3).
             Grip "Grip" {
-                buffers: grip, GripOutputs;
+                buffers: grip, $crate::interface::GripOutputs;
                 failure: reason;
                 board: 8;
                 commander: Emove, emove.grip;
@@ -85,7 +78,7 @@ macro_rules! for_each_process {
             }
             /// V-Grip (VI.4).
             VGrip "V-Grip" {
-                buffers: v_grip, JawsOutputs;
+                buffers: v_grip, $crate::interface::JawsOutputs;
                 failure: reason;
                 board: 8;
                 commander: Emove, emove.v_grip;
@@ -93,7 +86,7 @@ macro_rules! for_each_process {
             }
             /// Tool-Grip (VI.5).
             ToolGrip "Tool-Grip" {
-                buffers: tool_grip, JawsOutputs;
+                buffers: tool_grip, $crate::interface::JawsOutputs;
                 failure: reason;
                 board: 8;
                 commander: Emove, emove.tool_grip;
@@ -101,7 +94,7 @@ macro_rules! for_each_process {
             }
             /// Active Pedestal (VI.7).
             Pedestal "Active Pedestal" {
-                buffers: pedestal, PedestalOutputs;
+                buffers: pedestal, $crate::interface::PedestalOutputs;
                 failure: reason;
                 board: 8;
                 commander: Subtask, subtask.pedestal;
@@ -109,7 +102,7 @@ macro_rules! for_each_process {
             }
             /// Hand of the pedestal.
             Hand "Pedestal Hand" {
-                buffers: hand, GripOutputs;
+                buffers: hand, $crate::interface::GripOutputs;
                 failure: reason;
                 board: 8;
                 commander: Pedestal, pedestal.hand;
@@ -120,7 +113,7 @@ macro_rules! for_each_process {
             }
             /// Rotary table of the pedestal.
             RotaryTable "Rotary Table" {
-                buffers: table, TableOutputs;
+                buffers: table, $crate::interface::TableOutputs;
                 failure: reason;
                 board: 8;
                 commander: Pedestal, pedestal.table;
@@ -138,7 +131,7 @@ macro_rules! register {
     ($(
         #[doc = $doc:literal]
         $id:ident $text:literal {
-            buffers: $field:ident, $outputs:ident;
+            buffers: $field:ident, $outputs:ty;
             failure: $failure:ident;
             board: $board:literal;
             commander: $($commander:ident, $above:ident . $command:ident)?;
