@@ -1,4 +1,4 @@
-//! Random moves, watched from outside: only the sampled frames are judged, as T3I sees them.
+//! Random moves, watched from outside: only the sampled frames are checked, as T3I sees them.
 
 use std::collections::VecDeque;
 
@@ -99,7 +99,7 @@ impl Allowed {
     }
 }
 
-/// Judges samples.
+/// Checks samples.
 struct Watch {
     frames: VecDeque<Frame>,
     allowed: VecDeque<Allowed>,
@@ -132,10 +132,10 @@ impl Watch {
         self.allowed.pop_front();
         self.allowed.push_back(allowed);
         self.ticks += 1;
-        self.judge().and_then(|()| on_the_line(motion)).map_err(|text| format!("{text} in {motion:#?}"))
+        self.check().and_then(|()| on_the_line(motion)).map_err(|text| format!("{text} in {motion:#?}"))
     }
 
-    fn judge(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), String> {
         let allowed = self.allowed.iter().fold(Allowed::default(), |all, one| all.and(one));
         let f = &self.frames;
         let v = [Rate::between(&f[0], &f[1]), Rate::between(&f[1], &f[2]), Rate::between(&f[2], &f[3])];

@@ -14,7 +14,7 @@ const VELOCITY: f64 = 10.0;
 /// in/s³ of the smoothest of them.
 const JERK: f64 = 250.0;
 
-/// Judges the points that Prim sends, one after the other.
+/// Checks the points that Prim sends, one after the other.
 struct Watch {
     number: u32,
     frames: [Frame; 3],
@@ -31,7 +31,7 @@ impl Watch {
         self.frames[1].distance(&self.frames[2]).path() / TICK_S
     }
 
-    /// A tick of the rig, judged. Points are counted, not ticks: without a point the path stands.
+    /// A tick of the rig, checked. Points are counted, not ticks: without a point the path stands.
     fn step(&mut self, rig: &mut Rig) -> Result<(), String> {
         let before = rig.commanded();
         rig.step();
@@ -47,7 +47,7 @@ impl Watch {
         self.number = rig.memory.prim.t3i.number;
         self.frames.rotate_left(1);
         self.frames[2] = rig.commanded();
-        self.judge()?;
+        self.check()?;
         match self.trip {
             Some((of, at, speed)) if of == command => {
                 let (beyond, path) =
@@ -65,7 +65,7 @@ impl Watch {
         }
     }
 
-    fn judge(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), String> {
         let rate = |a: &Frame, b: &Frame| {
             let turn: Rotation = b.rotation * a.rotation.inverse();
             ((b.position - a.position) / TICK_S, rotation_vector(&turn) * (INCHES_PER_RADIAN / TICK_S))
