@@ -6,7 +6,7 @@ use rcs_core::interface::{
     grip::GripCommand,
 };
 
-use crate::grip::{Servo, Site, tables::Gripper};
+use crate::grip::{Servo, site::Site, tables::Gripper};
 
 /// The gripper on the rotary table. It has finger position and force sensing and nothing else, and is always there.
 #[derive(Clone, Copy, Debug, Default)]

@@ -12,7 +12,7 @@ use rcs_core::{
 };
 
 use super::{state::State, tables::Object};
-use crate::{grip, old_execution::Course, pedestal::table::within_limits};
+use crate::{grip::goal::Goal, old_execution::Course, pedestal::table::within_limits};
 
 /// State variables of a tick.
 #[derive(Clone, Copy, Debug)]
@@ -103,7 +103,7 @@ fn fault(command: &PedestalCommand, table: &TableStatus) -> Option<Reason> {
     };
     if turns && !within_limits(angle(command, table)) {
         Some(Reason::TableLimit)
-    } else if !grip::attainable(&hand_command(command)) {
+    } else if !Goal::from(&hand_command(command)).is_attainable() {
         Some(Reason::GripUnattainable)
     } else {
         None
