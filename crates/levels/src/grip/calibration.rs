@@ -7,7 +7,8 @@ use rcs_core::{
 
 use super::goal::{CLOSED_END, OPEN_END, SUPPLY_FORCE};
 
-/// Readings that differ by more than this from the last ones are not steady, counts: the noise, and less than a fine flow.
+/// Readings that differ by more than this from the last ones are not steady, counts: the noise, and less than
+/// a fine flow.
 const STEADY_COUNTS: u16 = 6;
 /// Least difference of the potentiometer between the ends of travel, counts.
 const LEAST_TRAVEL: f64 = 1000.0;

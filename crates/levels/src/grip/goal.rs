@@ -12,8 +12,8 @@ use super::tables::Flow;
 pub(super) const CLOSED_END: f64 = 0.10;
 /// Opening at the open end of travel, in.
 pub(super) const OPEN_END: f64 = 5.00;
-/// Force on each finger with the whole supply pressure behind it, lb: what the strain gages feel when the fingers are shut
-/// on each other. ASSUMED: the pads meet at the closed end of travel.
+/// Force on each finger with the whole supply pressure behind it, lb: what the strain gages feel when the
+/// fingers are shut on each other. ASSUMED: the pads meet at the closed end of travel.
 pub(super) const SUPPLY_FORCE: f64 = 80.0;
 
 /// What the current command asks for: a copy, because the buffer of a commander that restarts is empty.

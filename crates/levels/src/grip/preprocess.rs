@@ -1,8 +1,9 @@
 //! Preprocess of Grip: its state variables, from the command and the sensors.
 //!
-//! Bands are chosen for valves that act between one and two samples after the reading that they answer, at the flows of
-//! [`rcs_core::interface::device::valve`]: a coarse flow moves 0.16 in a tick, a medium one 0.04 in or 4 lb, a fine one
-//! 0.01 in or 1 lb. Each band is wider than two ticks of the flow used in it, so no flow overshoots the next finer band.
+//! Bands are chosen for valves that act between one and two samples after the reading that they answer, at
+//! the flows of [`rcs_core::interface::device::valve`]: a coarse flow moves 0.16 in a tick, a medium one 0.04
+//! in or 4 lb, a fine one 0.01 in or 1 lb. Each band is wider than two ticks of the flow used in it, so no
+//! flow overshoots the next finer band.
 
 use rcs_core::{
     handshake::Arrival,
@@ -29,7 +30,8 @@ const FAR: f64 = 0.40;
 const MIDDLE: f64 = 0.10;
 /// Closer than this the fingers are stopped, in.
 const DEAD_BAND: f64 = 0.010;
-/// Fingers that came to rest within this are where they should be, in: above the dead band by twice the noise.
+/// Fingers that came to rest within this are where they should be, in: above the dead band by twice the
+/// noise.
 const REST_BAND: f64 = 0.016;
 
 /// A finger that feels more than this touches something, lb.
@@ -42,18 +44,19 @@ const FORCE_MIDDLE: f64 = 12.0;
 const FORCE_DEAD_BAND: f64 = 1.0;
 /// A force that came to rest within this is as commanded, lb.
 const FORCE_REST_BAND: f64 = 2.0;
-/// So far below the grasp size fingers without force have missed the object, in: reported openings are rounded to 0.01 in,
-/// and "nothing held" must read at or below the grasp size.
+/// So far below the grasp size fingers without force have missed the object, in: reported openings are
+/// rounded to 0.01 in, and "nothing held" must read at or below the grasp size.
 const MISSED_BELOW: f64 = 0.02;
 /// The same near the closed end, where no opening is below: in above the closed end.
 const MISSED_AT_END: f64 = 0.02;
 /// Ticks in which force must build up if there is anything between the fingers.
 const MISSED_TICKS: u8 = 3;
 
-/// Ticks with the valves off after which readings count as settled: two until the last flow has ended, and a window.
+/// Ticks with the valves off after which readings count as settled: two until the last flow has ended, and a
+/// window.
 const SETTLE_TICKS: u8 = 6;
-/// Ticks that a command may take, by its greatest flow: fine, medium, coarse (26, 12 and 6 s). The whole travel takes 490,
-/// 125 and 55 ticks, a grasp 30 more.
+/// Ticks that a command may take, by its greatest flow: fine, medium, coarse (26, 12 and 6 s). The whole
+/// travel takes 490, 125 and 55 ticks, a grasp 30 more.
 const LIMIT_TICKS: [u64; 3] = [650, 300, 150];
 /// Ticks that UP-INIT may take (16 s); it takes about 100.
 const CALIBRATION_LIMIT_TICKS: u64 = 400;
@@ -100,7 +103,8 @@ impl State {
         }
     }
 
-    /// Read the command number, and find out where the calibration begins with a process that starts or wakes.
+    /// Read the command number, and find out where the calibration begins with a process that starts or
+    /// wakes.
     fn observe(&mut self, number: u32, gripper: Gripper, woken: bool) -> Arrival {
         if woken {
             self.execution.wake();
@@ -154,7 +158,8 @@ impl State {
         }
     }
 
-    /// Count ticks: since the command has not been waiting, since the valves went off, since the object should have been felt.
+    /// Count ticks: since the command has not been waiting, since the valves went off, since the object
+    /// should have been felt.
     fn count(&mut self, arrival: Arrival, step: Step, measured: &Measured, tick: Tick) {
         if step == Step::Start && !self.is_calibrating() {
             self.since = tick;

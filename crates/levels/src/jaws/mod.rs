@@ -1,7 +1,8 @@
 //! V-Grip (VI.4) and Tool-Grip (VI.5): grippers that open and close by air, and tell where their fingers are.
 //!
-//! TG-LEVEL is VG-LEVEL with other parameters, so there is one process here and a [`Kind`] each. Nothing is servoed: a command
-//! gives air to one side, waits until the potentiometer stands still, and reports where the fingers have stopped.
+//! TG-LEVEL is VG-LEVEL with other parameters, so there is one process here and a [`Kind`] each. Nothing is
+//! servoed: a command gives air to one side, waits until the potentiometer stands still, and reports where
+//! the fingers have stopped.
 //!
 //! ```text
 //!    GRASP    closed ........................... size ........................... opened
@@ -12,8 +13,8 @@
 //!             closed        jaws-stuck       at-position       jaws-stuck         opened
 //! ```
 //!
-//! Fingers that have stopped on the wrong side, or where nothing wanted them, are reported as what they are, with a reason
-//! beside it. Air stays on until the next command: what is held is pressed, not only enclosed.
+//! Fingers that have stopped on the wrong side, or where nothing wanted them, are reported as what they are,
+//! with a reason beside it. Air stays on until the next command: what is held is pressed, not only enclosed.
 //!
 //! ```text
 //!               ACCEPT               AIR: gripper, motion
@@ -24,8 +25,8 @@
 //!     error <-----------------------------
 //! ```
 //!
-//! The process sleeps while its gripper is in the holster (II.2.3). When it wakes it adopts the command that stands in its
-//! buffer and executes none before a new one comes (docs/design/handshake.md "Wake").
+//! The process sleeps while its gripper is in the holster (II.2.3). When it wakes it adopts the command that
+//! stands in its buffer and executes none before a new one comes (docs/design/handshake.md "Wake").
 //!
 //! * [`kind`]: what makes one gripper differ from another;
 //! * [`state`]: what the process remembers;

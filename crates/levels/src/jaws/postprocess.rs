@@ -17,8 +17,8 @@ use super::{
 use crate::execution::Outcome;
 
 impl State {
-    /// Carry out what a row asks for. Air stays on when the fingers have arrived: a part is held as long as they press. Without the
-    /// gripper there is none.
+    /// Carry out what a row asks for. Air stays on when the fingers have arrived: a part is held as long as
+    /// they press. Without the gripper there is none.
     pub(super) fn act(&mut self, action: Action, seen: &Seen) {
         const NONE: JawValves = JawValves { open: false, close: false };
         match action {
@@ -46,8 +46,8 @@ impl State {
         }
     }
 
-    /// The outputs of this tick. Of the words of VI.4.2 only `jaws-stuck` is bad news, so it stands for every failure that finds the
-    /// fingers nowhere; the reason says which.
+    /// The outputs of this tick. Of the words of VI.4.2 only `jaws-stuck` is bad news, so it stands for every
+    /// failure that finds the fingers nowhere; the reason says which.
     pub(super) fn report(&self, seen: &Seen, tick: Tick) -> JawsOutputs {
         let report = match self.execution.outcome {
             Outcome::Idle => JawsReport::Idle,

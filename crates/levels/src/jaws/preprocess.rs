@@ -15,7 +15,8 @@ use super::{
 };
 use crate::execution::Asked;
 
-/// Counts of the potentiometer at opening 0. ASSUMED; all grippers use the same connections (III.3.7, III.3.8).
+/// Counts of the potentiometer at opening 0. ASSUMED; all grippers use the same connections (III.3.7,
+/// III.3.8).
 pub const POTENTIOMETER_OFFSET: f64 = 205.0;
 /// Counts of the potentiometer an inch. ASSUMED.
 pub const POTENTIOMETER_SCALE: f64 = 600.0;

@@ -30,7 +30,8 @@ pub struct State {
     pub size: Option<i32>,
     /// Where the current command has found the fingers at its end.
     pub found: Option<JawsReport>,
-    /// Potentiometer readings of the last ticks, the newest first, if the gripper was attached in the last tick.
+    /// Potentiometer readings of the last ticks, the newest first, if the gripper was attached in the last
+    /// tick.
     pub window: Option<[u16; WINDOW]>,
     /// Air.
     pub valves: JawValves,

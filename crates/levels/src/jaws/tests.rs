@@ -342,8 +342,8 @@ fn every_row_fires() {
 }
 
 proptest! {
-    /// Whatever is commanded and whatever the sensors read: no panic, no air both ways or without the gripper, every command
-    /// ends, and the same inputs give the same bits, also after a restore.
+    /// Whatever is commanded and whatever the sensors read: no panic, no air both ways or without the
+    /// gripper, every command ends, and the same inputs give the same bits, also after a restore.
     #[test]
     fn nonsense(ticks in prop::collection::vec((0_u8..30, any::<i32>(), any::<u8>(), any::<u16>()), 1..200)) {
         let (mut bench, mut twin) = (ToolBench::new(2.0), ToolBench::new(2.0));

@@ -1,7 +1,8 @@
 //! Quick Change (VI.2): turns the locking ring, watches it, and reads which gripper is mated.
 //!
-//! Two reflectance sensors see the ring at either end of its way. What they say together is one of four readings; a reading
-//! that may be a passing one (the ring on its way, a sensor that switches late) counts only after some ticks.
+//! Two reflectance sensors see the ring at either end of its way. What they say together is one of four
+//! readings; a reading that may be a passing one (the ring on its way, a sensor that switches late) counts
+//! only after some ticks.
 //!
 //! ```text
 //!                     locked seen             neither seen, 12 ticks
@@ -14,11 +15,12 @@
 //!                       '---------> Both     both seen, 3 ticks: qc-sens-malf
 //! ```
 //!
-//! QC-LOCK and QC-UNLOCK give the ring air and enable the control port, until the ring has arrived, both sensors see it, or
-//! 25 ticks have passed; then the port is disabled again, so that nothing can unlock a gripper by accident. In between the
-//! status is that of the ring, not of a command: QC-PAUSE watches from the first tick on, before any command, after a restart
-//! and after the end of the other commands. One thing is kept: a ring that did not arrive, or sensors that failed while it
-//! turned, are reported until the next command, whatever the sensors say meanwhile.
+//! QC-LOCK and QC-UNLOCK give the ring air and enable the control port, until the ring has arrived, both
+//! sensors see it, or 25 ticks have passed; then the port is disabled again, so that nothing can unlock a
+//! gripper by accident. In between the status is that of the ring, not of a command: QC-PAUSE watches from
+//! the first tick on, before any command, after a restart and after the end of the other commands. One thing
+//! is kept: a ring that did not arrive, or sensors that failed while it turned, are reported until the next
+//! command, whatever the sensors say meanwhile.
 //!
 //! ```text
 //!    QC-LOCK, QC-UNLOCK            arrived

@@ -37,8 +37,8 @@ impl State {
                 reason: self.execution.reason,
                 end_effector_id: self.end_effector_id,
             },
-            // With the port disabled the ring cannot move, whatever the two air lines do (VI.2.1 QC-LOCK): it is enabled only
-            // while the ring is to turn.
+            // With the port disabled the ring cannot move, whatever the two air lines do (VI.2.1 QC-LOCK): it
+            // is enabled only while the ring is to turn.
             valves: QuickChangeValves { lock, unlock, port: lock || unlock },
         }
     }

@@ -281,8 +281,8 @@ fn a_restart_and_an_unknown_command_are_named_and_the_ring_still_reported() {
 }
 
 proptest! {
-    /// Whatever the sensors say and whatever is commanded: air and port only for a command that turns the ring, never for longer
-    /// than its time, ids are legal, and the same inputs give the same bits.
+    /// Whatever the sensors say and whatever is commanded: air and port only for a command that turns the
+    /// ring, never for longer than its time, ids are legal, and the same inputs give the same bits.
     #[test]
     fn the_ring_is_moved_only_by_command(
         readings in prop::collection::vec((any::<bool>(), any::<bool>(), any::<u8>(), 0_u8..40), 1..300)

@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// CLOSE-GRIP (VI.3.1): close until both fingers touch, then servo the force to `sforce`. Done as well if there is nothing between the
-    /// fingers; E-move tells the two apart by the opening.
+    /// CLOSE-GRIP (VI.3.1): close until both fingers touch, then servo the force to `sforce`. Done as well if
+    /// there is nothing between the fingers; E-move tells the two apart by the opening.
     pub CLOSE_GRIP: fn close_grip(super::Step, super::Situation) -> super::Action {
         Start | Move {
             1:  grasp: Far                                  => Close(Coarse)    -> Move;

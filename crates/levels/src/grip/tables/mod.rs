@@ -1,4 +1,5 @@
-//! Decision tables of Grip: what a new command needs, the calibration, what commands have in common, and a file a command.
+//! Decision tables of Grip: what a new command needs, the calibration, what commands have in common, and a
+//! file a command.
 
 pub mod accept;
 pub mod close_grip;
@@ -31,8 +32,9 @@ pub enum Step {
 pub enum Phase {
     /// Never done: begins at once, since the gripper is there when the system is booted (VI.3.1).
     Missing,
-    /// Never done, or interrupted: waits for UP-INIT or another command that moves the fingers. So begins a process whose gripper
-    /// comes later, which is then still in its holster, and one that was started in the middle of a job: a part may be held.
+    /// Never done, or interrupted: waits for UP-INIT or another command that moves the fingers. So begins a
+    /// process whose gripper comes later, which is then still in its holster, and one that was started in the
+    /// middle of a job: a part may be held.
     Deferred,
     /// The fingers close, until the readings are steady.
     Closing,

@@ -3,8 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// UP-INIT (VI.3.1): close and open the gripper and read the sensors at both ends of travel and without force. Runs by itself if
-    /// the gripper is there when the system is booted, and before the first command that moves the fingers. Commands wait for it.
+    /// UP-INIT (VI.3.1): close and open the gripper and read the sensors at both ends of travel and without
+    /// force. Runs by itself if the gripper is there when the system is booted, and before the first command
+    /// that moves the fingers. Commands wait for it.
     pub UP_INIT: fn up_init(super::Phase, super::Situation) -> super::Action or super::Duty {
         Missing {
             1:  command: Nothing, gripper: Attached             => Begin                    -> Closing;

@@ -31,8 +31,8 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// A bench with the gripper attached, after one tick in which nothing was commanded: a command that stands in the buffer
-    /// in the first tick is one of the time before a restart.
+    /// A bench with the gripper attached, after one tick in which nothing was commanded: a command that
+    /// stands in the buffer in the first tick is one of the time before a restart.
     pub fn new(gripper: Gripper) -> Self {
         Self::boot(gripper, true)
     }

@@ -360,8 +360,8 @@ fn work(
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
 
-    /// From any opening, with any noise of 1 or 2 counts and valves that act at once or a tick late: positions to 0.02 in,
-    /// forces to 3 lb, never both ways at once, and the same bits twice.
+    /// From any opening, with any noise of 1 or 2 counts and valves that act at once or a tick late:
+    /// positions to 0.02 in, forces to 3 lb, never both ways at once, and the same bits twice.
     #[test]
     fn servo(
         seed in any::<u64>(),
@@ -512,7 +512,8 @@ fn every_row_fires() {
         bench.gripper.strain[1].1 = 39.2;
         bench.done(GripVerb::OpenGrip, 3.0, 0);
     }
-    // CLOSE-GRIP: off centre, far from the grasp size so that the force overshoots, and losing force while settling.
+    // CLOSE-GRIP: off centre, far from the grasp size so that the force overshoots, and losing force while
+    // settling.
     bench.gripper.object = Some(Object { size: 1.5, off_centre: 0.1 });
     bench.command(GripVerb::CloseGrip, 0.6, 5);
     settle(&mut bench);

@@ -3,7 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// AIR: fingers that have air are waited for until they stop. Without the gripper, or if they never stop, there is no air.
+    /// AIR: fingers that have air are waited for until they stop. Without the gripper, or if they never stop,
+    /// there is no air.
     pub AIR: fn air(super::Step, super::Situation) -> super::Action or () {
         any {
             1:  gripper: Detached       => Fail(WrongGripper);

@@ -3,7 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// VG-GRASP, TG-GRASP (VI.4.1): close the fingers and see where they stop. At `commanded-size` counts as closed.
+    /// VG-GRASP, TG-GRASP (VI.4.1): close the fingers and see where they stop. At `commanded-size` counts as
+    /// closed.
     pub GRASP: fn grasp(super::Step, super::Situation) -> super::Action {
         Start {
             1:                          => Close            -> Move;

@@ -1,4 +1,5 @@
-//! Decision tables of V-Grip and Tool-Grip: what a new command needs, what commands have in common, and a file a command.
+//! Decision tables of V-Grip and Tool-Grip: what a new command needs, what commands have in common, and a
+//! file a command.
 
 pub mod accept;
 pub mod air;
@@ -131,7 +132,8 @@ pub enum Action {
     Open,
     /// The valves stay as they are; the command is done, with this status.
     Report(JawsReport),
-    /// The valves stay as they are; the fingers stopped where the command did not send them: an error, with this status.
+    /// The valves stay as they are; the fingers stopped where the command did not send them: an error, with
+    /// this status.
     Wrong(JawsReport),
     /// The valves stay as they are; report an error.
     Refuse(Reason),

@@ -3,7 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// QC-LOCK (VI.2.1): lock, check that the ring did not get stuck, disable the control port. Done at once if it is locked.
+    /// QC-LOCK (VI.2.1): lock, check that the ring did not get stuck, disable the control port. Done at once
+    /// if it is locked.
     pub QC_LOCK: fn qc_lock(super::Step, super::Situation) -> super::Action or () {
         Start {
             1:  ring: Unread                                => Wait;
