@@ -230,6 +230,33 @@ impl Table {
     }
 }
 
+impl Row {
+    /// The step and the conditions as one says them: `Closing, door Stuck`, or `always`.
+    pub fn conditions(&self) -> impl fmt::Display {
+        fmt::from_fn(move |f| {
+            if self.steps.is_empty() && self.when.is_empty() {
+                return f.write_str("always");
+            }
+            join(f, self.steps, " or ")?;
+            for (position, condition) in self.when.iter().enumerate() {
+                if position > 0 || !self.steps.is_empty() {
+                    f.write_str(", ")?;
+                }
+                write!(f, "{condition}")?;
+            }
+            Ok(())
+        })
+    }
+
+    /// The action with what it carries: `Fail(DoorStuck)`.
+    pub fn call(&self) -> impl fmt::Display {
+        fmt::from_fn(move |f| match self.argument {
+            Some(argument) => write!(f, "{}({argument})", self.action),
+            None => f.write_str(self.action),
+        })
+    }
+}
+
 /// Names with a word between them.
 fn join(f: &mut fmt::Formatter<'_>, names: &[&str], word: &str) -> fmt::Result {
     for (position, name) in names.iter().enumerate() {
@@ -251,20 +278,7 @@ impl fmt::Display for Condition {
 /// The row as one says it: `Closing, door Stuck => Fail(DoorStuck)`.
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        join(f, self.steps, " or ")?;
-        for (position, condition) in self.when.iter().enumerate() {
-            if position > 0 || !self.steps.is_empty() {
-                f.write_str(", ")?;
-            }
-            condition.fmt(f)?;
-        }
-        if self.steps.is_empty() && self.when.is_empty() {
-            f.write_str("always")?;
-        }
-        write!(f, " => {}", self.action)?;
-        if let Some(argument) = self.argument {
-            write!(f, "({argument})")?;
-        }
+        write!(f, "{} => {}", self.conditions(), self.call())?;
         match self.next {
             Some(next) => write!(f, " -> {next}"),
             None => Ok(()),
