@@ -158,7 +158,7 @@ mod tests {
     fn every_process_runs_on_one_board() {
         let mut all: Vec<ProcessId> =
             Board::ALL.iter().flat_map(|board| board.processes()).copied().collect();
-        all.sort_unstable();
+        all.sort_unstable_by_key(|process| process.code());
         assert_eq!(all, ProcessId::ALL);
         for (index, board) in Board::ALL.iter().enumerate() {
             assert_eq!(board.index(), index);

@@ -376,10 +376,27 @@ fn add_schema(digest: &mut Digest, schema: &Schema) {
         }
         Schema::Enum(of) => {
             add_text(digest, of.name);
-            for (code, text) in of.variants {
-                digest.add(&[*code]);
-                add_text(digest, text);
+            for variant in of.variants {
+                digest.add(&[variant.code]);
+                add_text(digest, variant.text);
             }
+        }
+        Schema::Option(of) => {
+            add_text(digest, "option");
+            add_schema(digest, of);
+        }
+        Schema::Union(of) => {
+            add_text(digest, "union");
+            add_text(digest, of.name);
+            for variant in of.variants {
+                digest.add(&[variant.code]);
+                add_text(digest, variant.text);
+                match &variant.payload {
+                    Some(payload) => add_schema(digest, payload),
+                    None => add_text(digest, "nothing"),
+                }
+            }
+            digest.add(&[0]);
         }
         Schema::Record(of) => {
             add_text(digest, of.name);
@@ -395,7 +412,11 @@ fn add_schema(digest: &mut Digest, schema: &Schema) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::interface::{CommonMemory, ExternalInputs};
+    use rcs_core::{
+        interface::{CommonMemory, ExternalInputs},
+        plain::{UnionSchema, UnionVariant},
+    };
+    use std::collections::BTreeSet;
 
     /// The services together carry every field of common memory and of the external inputs: their schemas,
     /// headers apart, are those of the records.
@@ -431,6 +452,19 @@ mod tests {
         assert_ne!(version(&Schema::Text(10)), version(&Schema::Text(12)));
         assert_ne!(version(&Schema::Array(&Schema::U8, 3)), version(&Schema::Array(&Schema::I16, 3)));
         assert_ne!(version(&HwsStatus::SCHEMA), version(&SubtaskStatus::SCHEMA));
+        assert_ne!(version(&Schema::Option(&Schema::U8)), version(&Schema::U8));
+        assert_ne!(version(&Schema::Option(&Schema::U8)), version(&Schema::Option(&Schema::Bool)));
+        const fn carried(text: &'static str, payload: Option<Schema>) -> UnionVariant {
+            UnionVariant { code: 0, text, payload }
+        }
+        static UNIONS: [UnionSchema; 4] = [
+            UnionSchema { name: "Goal", variants: &[carried("at", None)] },
+            UnionSchema { name: "Goal", variants: &[carried("at", Some(Schema::U8))] },
+            UnionSchema { name: "Goal", variants: &[carried("at", Some(Schema::Bool))] },
+            UnionSchema { name: "Goal", variants: &[carried("in", Some(Schema::Bool))] },
+        ];
+        let versions: BTreeSet<_> = UNIONS.iter().map(|of| version(&Schema::Union(of))).collect();
+        assert_eq!(versions.len(), UNIONS.len());
         assert_eq!(layout_version(), layout_version());
     }
 }

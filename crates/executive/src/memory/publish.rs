@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, TryLockError};
 
 use iceoryx2::{node::Node, prelude::ipc};
 use rcs_core::{
+    Plain as _,
     interface::{CommonMemory, ExternalInputs, Header},
     tick::Tick,
 };
@@ -161,7 +162,7 @@ impl Publisher {
 }
 
 const fn stamp(tick: Tick) -> Header {
-    Header { stamp: tick, republished: false, table: 0, row: 0 }
+    Header { stamp: tick, ..Header::ZERO }
 }
 
 impl Drop for Publisher {
