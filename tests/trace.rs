@@ -21,8 +21,9 @@ use std::{
 };
 
 use rcs_core::{
+    Plain,
     interface::{CommonMemory, DeviceOutputs, Header},
-    record::{Field, RecordSchema, Schema, Writer, from_bytes},
+    plain::{RecordSchema, Schema, Writer, from_bytes},
     tick::Tick,
 };
 use record::{
@@ -47,8 +48,8 @@ pub const ABSENT: &str = "-";
 /// First name of what goes to the devices.
 const DEVICE: &str = "device";
 /// Fields of a header that are not written. The stamp is new in every tick; `age` says how old the outputs
-/// are. Table and row are numbers; `fired` says the same by name.
-const NOT_WRITTEN: [&str; 3] = ["stamp", "table", "row"];
+/// are. Table and row are numbers; `fired` says the same by name. The step belongs to the row.
+const NOT_WRITTEN: [&str; 4] = ["stamp", "table", "row", "step"];
 
 /// The trace of a scenario in a directory.
 #[must_use]
@@ -116,7 +117,7 @@ impl Images {
     }
 
     /// Take in the record of this tick, and write what changed.
-    fn change<T: Field>(&mut self, record: &T, prefix: &str, visit: &mut Visit<'_>) -> io::Result<()> {
+    fn change<T: Plain>(&mut self, record: &T, prefix: &str, visit: &mut Visit<'_>) -> io::Result<()> {
         self.is.resize(T::SIZE, 0);
         record.encode(&mut Writer::new(&mut self.is));
         changes(&T::SCHEMA, &mut prefix.to_owned(), self.was.as_deref(), &self.is, visit)?;
@@ -182,7 +183,7 @@ type Visit<'a> = dyn FnMut(&str, &str) -> io::Result<()> + 'a;
 /// Visits the fields whose bytes differ between `was` and `is`, or all fields of `is` if `was` is none.
 ///
 /// A new kind of [`Schema`] is added in this `match`, and nowhere else in traces:
-/// * An option of a value: `none`, or the value. An option of a record is an enum with data.
+/// * An option: `none`, or the value. An option of a record is an enum with data, `none` or `some`.
 /// * An enum with data: the text of the variant as the value of `path`, its fields below `path`. When the
 ///   variant changes, each field that only the variant before had gets the value [`ABSENT`], and the fields
 ///   of the new variant are visited with `was` as none. The comparison takes a field that was never written
@@ -222,11 +223,63 @@ fn changes(
         Schema::Text(_) => visit(path, &layout::text(is)),
         Schema::Enum(of) => {
             let code = layout::unsigned(is);
-            match of.variants.iter().find(|(known, _)| u64::from(*known) == code) {
-                Some((_, text)) => visit(path, text),
+            match of.variants.iter().find(|variant| u64::from(variant.code) == code) {
+                Some(variant) => visit(path, variant.text),
                 None => visit(path, &format!("code {code}")),
             }
         }
+        Schema::Option(of) => {
+            let carried = |code: u8| (code != 0).then_some(**of);
+            carried_changes(
+                if is.first() == Some(&0) { "none" } else { "some" },
+                carried,
+                path,
+                was,
+                is,
+                visit,
+            )
+        }
+        Schema::Union(of) => {
+            let variant = |code: u8| of.variants.iter().find(|variant| variant.code == code);
+            let text =
+                is.first().and_then(|code| variant(*code)).map_or("no variant", |variant| variant.text);
+            carried_changes(text, |code| variant(code)?.payload, path, was, is, visit)
+        }
+    }
+}
+
+/// An option or an enum with data: `text` at `path` if the variant is another one, then what it carries.
+fn carried_changes(
+    text: &str,
+    carried: impl Fn(u8) -> Option<Schema>,
+    path: &mut String,
+    was: Option<&[u8]>,
+    is: &[u8],
+    visit: &mut Visit<'_>,
+) -> io::Result<()> {
+    let (Some((code, is)), was) = (is.split_first(), was.and_then(<[u8]>::split_first)) else {
+        return Ok(());
+    };
+    let same = was.filter(|(before, _)| *before == code);
+    // A value that stands alone is its own text.
+    let alone = |schema: &Schema| !matches!(schema, Schema::Record(_) | Schema::Option(_) | Schema::Union(_));
+    let now = carried(*code);
+    if same.is_none() && now.as_ref().is_none_or(|schema| !alone(schema)) {
+        visit(path, text)?;
+    }
+    if let Some((before, bytes)) = was.filter(|_| same.is_none())
+        && let Some(schema) = carried(*before).filter(|schema| !alone(schema))
+    {
+        let mut absent = |path: &str, _: &str| visit(path, ABSENT);
+        changes(&schema, path, None, bytes.get(..schema.size()).unwrap_or_default(), &mut absent)?;
+    }
+    match now {
+        Some(schema) => {
+            let size = schema.size();
+            let was = same.and_then(|(_, bytes)| bytes.get(..size));
+            changes(&schema, path, was, is.get(..size).unwrap_or_default(), visit)
+        }
+        None => Ok(()),
     }
 }
 

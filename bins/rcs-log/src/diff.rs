@@ -196,9 +196,8 @@ impl Comparison {
             if was == is {
                 continue;
             }
-            for leaf in leaves.iter().filter(matters).filter(|leaf| leaf.bytes(was) != leaf.bytes(is)) {
-                let value = |image| layout::value_text(leaf.schema, leaf.bytes(image));
-                different.push((format!("{prefix}{}", leaf.path), [value(was), value(is)]));
+            for leaf in leaves.iter().filter(matters).filter(|leaf| leaf.differs(was, is)) {
+                different.push((format!("{prefix}{}", leaf.path), [leaf.text(was), leaf.text(is)]));
             }
         }
         // A cell that is elsewhere shows in the inputs sooner or later; the digest says when it began.

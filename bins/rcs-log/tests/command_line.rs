@@ -104,7 +104,12 @@ fn why_finds_the_tick_of_the_failure_and_names_the_row() {
     );
     assert!(text.contains("  tick     50  HWSC commands Task: TRANSFER NOBODY, number 1\n"), "{text}");
     assert!(text.contains("In tick 50 (2.00 s), from Task down:"), "{text}");
-    assert!(text.contains("execute row 3: Refuse"), "{text}");
+    let output = rcs_log(&["why", "--json"], &[&log]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let task = &json["levels"][0];
+    let word = |key: &str| task[key].as_str().expect("a row fired").to_owned();
+    let row = format!("{} row {}: {}", word("table"), task["row"], word("action"));
+    assert!(text.contains(&row), "{row} in {text}");
 
     let output = rcs_log(&["why", "--tick", "7", "--json"], &[&log]);
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");

@@ -1,4 +1,11 @@
-//! `rcs-run tables`: every decision table as Markdown.
+//! `rcs-run tables`: every decision table as Markdown, with the meaning of what stands in it.
+//!
+//! The steps of a table are explained below it, and so are state variables and actions that no other table of the process has.
+//! What several tables share is explained once, under *Values* at the end of the process. A table that an earlier process has
+//! too is not printed again.
+
+#[cfg(test)]
+mod tests;
 
 use std::{
     fmt::Write as _,
@@ -6,63 +13,320 @@ use std::{
     process::ExitCode,
 };
 
-use executive::failure;
-use levels::ladder::Ladder;
-use rcs_core::table::Table;
+use levels::ladder::{Ladder, ProcessInfo};
+use rcs_core::{
+    plain::{EnumSchema, VariantSchema},
+    table::{ActionText, Row, Table, Variable},
+};
 
 use crate::error::Error;
 
+/// What the reader has to know of the form.
+const HEAD: &str = "\
+# Decision tables
+
+Once a tick a process looks its state variables up in its tables (II.2.2.2). Rows are read from the top: the
+first one that fits decides. A row fits if the command is in one of the row's steps (`any`: in whatever step),
+and if each variable that the row names has one of the values behind it. It names one action, and the next
+step where the step changes.
+
+`consult` is no decision: the next table of the process is consulted, with the value in brackets. Each process
+begins with table 1, and ends with the table of its command.
+
+The log, `rcs-run status` and the sentence about a failure name a row by table and number, and write a step
+in small letters: `letting-go` for `LettingGo`.
+";
+
 /// Print all tables.
 pub fn tables() -> Result<ExitCode, Error> {
-    let mut text = String::from("# Decision tables\n");
-    for process in Ladder::processes() {
-        let _ = write!(text, "\n## {}\n", process.name);
-        for (number, table) in (1..).zip(process.tables) {
-            append(&mut text, number, table);
-        }
-    }
-    match io::stdout().write_all(text.as_bytes()) {
+    match io::stdout().write_all(page(Ladder::processes()).as_bytes()) {
         // A reader that has seen enough, such as `head`, is no failure.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(ExitCode::SUCCESS),
         other => Ok(other.map(|()| ExitCode::SUCCESS)?),
     }
 }
 
-fn append(text: &mut String, number: usize, table: &Table) {
-    // Writing to a String cannot fail.
-    let _ = write!(text, "\n### {number}. {}\n\n", table.name);
-    for line in table.doc {
-        let _ = writeln!(text, "{}", line.trim());
+/// The tables of all processes.
+fn page(processes: &'static [ProcessInfo]) -> String {
+    let mut text = HEAD.to_owned();
+    text.push('\n');
+    for process in processes {
+        let names: Vec<_> = process.tables.iter().map(|table| table.name).collect();
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "- {}: {}", link(process.name), names.join(", "));
     }
-    let _ = writeln!(text, "\nSource: `{}:{}`\n", table.file, table.line);
-    let columns = table.columns.iter().map(|column| format!(" {column} |")).collect::<String>();
-    let _ = writeln!(text, "| row |{columns} action | next |");
-    let _ = writeln!(text, "|---:|{} --- | --- |", " --- |".repeat(table.columns.len()));
-    for row in table.rows {
-        let cells: String = failure::cells(row).iter().map(|cell| format!(" {cell} |")).collect();
-        let _ = writeln!(text, "| {} |{cells} {} | {} |", row.number, failure::action(row), row.next);
+    for (index, process) in processes.iter().enumerate() {
+        let earlier = processes.get(..index).unwrap_or_default();
+        append_process(&mut text, process, earlier);
+    }
+    text
+}
+
+/// A link to a heading of the page.
+fn link(heading: &str) -> String {
+    format!("[{heading}](#{})", heading.to_lowercase().replace(' ', "-"))
+}
+
+fn append_process(text: &mut String, process: &ProcessInfo, earlier: &[ProcessInfo]) {
+    let _ = write!(text, "\n## {}\n", process.name);
+    let printed = |table: &Table| {
+        let number_in = |other: &ProcessInfo| {
+            (1..).zip(other.tables).find(|(_, known)| std::ptr::eq(**known, table)).map(|(number, _)| number)
+        };
+        earlier.iter().find_map(|other| Some((other.name, number_in(other)?)))
+    };
+    let own: Vec<&'static Table> =
+        process.tables.iter().copied().filter(|table| printed(table).is_none()).collect();
+    for (number, table) in (1..).zip(process.tables) {
+        let _ = write!(text, "\n### {number}. {}\n\n", table.name);
+        match printed(table) {
+            Some((other, number)) => {
+                let _ = writeln!(text, "Table {number} of {}.", link(other));
+            }
+            None => append_table(text, table, &own),
+        }
+    }
+    let shared = Groups::of(&own, |tables| tables > 1);
+    if !shared.is_empty() {
+        text.push_str("\n### Values\n\nWhat several tables of the process share.\n");
+        shared.append(text);
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// A table, and the meaning of what no other table has.
+fn append_table(text: &mut String, table: &'static Table, own: &[&'static Table]) {
+    for line in table.doc {
+        let _ = writeln!(text, "{}", prose(line));
+    }
+    let _ = writeln!(text, "\nSource: `{}:{}`\n", table.file, table.line);
+    let mut last: Option<&Row> = None;
+    let rows = table.rows.iter().map(|row| {
+        // The step stands where it changes, as in the source.
+        let steps = match (last.replace(row), row.steps) {
+            (Some(before), steps) if before.steps == steps => String::new(),
+            (_, []) => "any".to_owned(),
+            (_, steps) => steps.join(" or "),
+        };
+        let [when, next] = [conditions(row), row.next.unwrap_or_default().to_owned()];
+        [row.number.to_string(), steps, when, row.call().to_string(), next]
+    });
+    let rows: Vec<_> = rows.collect();
+    let has_steps = table.rows.iter().any(|row| !row.steps.is_empty() || row.next.is_some());
+    if has_steps {
+        grid(text, ["row", "step", "when", "action", "next"], rows);
+    } else {
+        let rows = rows.into_iter().map(|[row, _, when, action, _]| [row, when, action]).collect();
+        grid(text, ["row", "when", "action"], rows);
+    }
+    if let Some(steps) = table.steps {
+        let named = |name: &str| {
+            table
+                .rows
+                .iter()
+                .any(|row| row.steps.contains(&name) || row.next.is_some_and(|next| next == name))
+        };
+        text.push_str("\nSteps:\n\n");
+        append_values(text, "", steps.variants.iter().filter(|step| named(step.name)), meaning);
+    }
+    let alone = Groups::of(own, |tables| tables == 1);
+    alone.only(table).append(text);
+}
 
-    #[test]
-    fn every_row_of_every_table_has_as_many_cells_as_columns() {
-        let mut rows = 0;
-        for table in Ladder::processes().iter().flat_map(|process| process.tables) {
-            for row in table.rows {
-                assert_eq!(
-                    failure::cells(row).len(),
-                    table.columns.len(),
-                    "{} row {}",
-                    table.name,
-                    row.number
-                );
-                rows += 1;
+/// What a row asks of the variables: `held: Nothing or Other, vision: Needed`.
+fn conditions(row: &Row) -> String {
+    let asked = row.when.iter().map(|asked| format!("{}: {}", asked.variable, asked.values.join(" or ")));
+    let asked: Vec<String> = asked.collect();
+    if asked.is_empty() { "always".to_owned() } else { asked.join(", ") }
+}
+
+/// Tables that have the same state variables, and tables that have the same actions.
+struct Groups {
+    variables: Vec<Vec<&'static Table>>,
+    actions: Vec<Vec<&'static Table>>,
+}
+
+impl Groups {
+    /// The groups of as many tables as are wanted.
+    fn of(tables: &[&'static Table], wanted: impl Fn(usize) -> bool) -> Self {
+        let group = |same: fn(&Table, &Table) -> bool| {
+            let mut groups: Vec<Vec<&'static Table>> = Vec::new();
+            for &table in tables {
+                match groups.iter_mut().find(|group| group.iter().any(|other| same(other, table))) {
+                    Some(group) => group.push(table),
+                    None => groups.push(vec![table]),
+                }
+            }
+            groups.retain(|group| wanted(group.len()));
+            groups
+        };
+        Self {
+            variables: group(|a, b| a.variables == b.variables),
+            actions: group(|a, b| a.actions == b.actions),
+        }
+    }
+
+    /// The groups in which a table is.
+    fn only(mut self, table: &Table) -> Self {
+        let holds = |group: &Vec<&'static Table>| group.iter().any(|other| std::ptr::eq(*other, table));
+        self.variables.retain(holds);
+        self.actions.retain(holds);
+        self
+    }
+
+    /// Nothing of these tables is explained.
+    fn is_empty(&self) -> bool {
+        let named =
+            |group: &[&'static Table]| variables(group).next().is_some() || actions(group).next().is_some();
+        !self.variables.iter().chain(&self.actions).any(|group| named(group))
+    }
+
+    /// The meaning of variables, actions, and what actions carry.
+    fn append(&self, text: &mut String) {
+        for group in &self.variables {
+            append_variables(text, group);
+        }
+        for group in &self.actions {
+            append_actions(text, group);
+        }
+    }
+}
+
+fn rows(tables: &[&'static Table]) -> impl Iterator<Item = &'static Row> {
+    tables.iter().flat_map(|table| table.rows)
+}
+
+/// The variables for which tables with the same variables ask.
+fn variables(tables: &[&'static Table]) -> impl Iterator<Item = &'static Variable> {
+    let all = tables.first().map_or(&[][..], |table| table.variables);
+    all.iter().filter(move |variable| {
+        rows(tables).flat_map(|row| row.when).any(|asked| asked.variable == variable.name)
+    })
+}
+
+/// The actions that tables with the same actions name.
+fn actions(tables: &[&'static Table]) -> impl Iterator<Item = &'static ActionText> {
+    let all = tables.first().map_or(&[][..], |table| table.actions);
+    all.iter().filter(move |action| rows(tables).any(|row| row.action == action.name))
+}
+
+fn append_variables(text: &mut String, tables: &[&'static Table]) {
+    for (position, variable) in variables(tables).enumerate() {
+        if position == 0 {
+            text.push_str("\nState variables:\n\n");
+        }
+        let asked = |value: &str| {
+            let mut all = rows(tables).flat_map(|row| row.when);
+            all.any(|asked| asked.variable == variable.name && asked.values.contains(&value))
+        };
+        let _ = writeln!(text, "- `{}`: {}", variable.name, prose(variable.doc));
+        append_values(text, "  ", variable.values.variants.iter().filter(|value| asked(value.name)), meaning);
+    }
+}
+
+fn append_actions(text: &mut String, tables: &[&'static Table]) {
+    let carriers = |of: &EnumSchema| {
+        let carries = |action: &&ActionText| action.argument.is_some_and(|argument| argument == of);
+        actions(tables).filter(carries).map(|action| action.name).collect::<Vec<_>>()
+    };
+    let carried = |by: &[&str], of: &'static EnumSchema| {
+        let named: Vec<&str> =
+            rows(tables).filter(|row| by.contains(&row.action)).filter_map(|row| row.argument).collect();
+        of.variants.iter().filter(move |variant| named.contains(&variant.name))
+    };
+    let mut several: Vec<&'static EnumSchema> = Vec::new();
+    for (position, action) in actions(tables).enumerate() {
+        if position == 0 {
+            text.push_str("\nActions:\n\n");
+        }
+        let _ = writeln!(text, "- `{}`: {}", action.name, prose(action.doc));
+        let Some(argument) = action.argument else { continue };
+        match carriers(argument).as_slice() {
+            [only] => append_values(text, "  ", carried(&[only], argument), sentence),
+            _ if !several.contains(&argument) => several.push(argument),
+            _ => {}
+        }
+    }
+    for argument in several {
+        let by = carriers(argument);
+        let _ = write!(text, "\n{}, which `{}` carry:\n\n", argument.name, by.join("` and `"));
+        append_values(text, "", carried(&by, argument), sentence);
+    }
+}
+
+fn append_values(
+    text: &mut String,
+    indent: &str,
+    values: impl Iterator<Item = &'static VariantSchema>,
+    meaning: fn(&VariantSchema) -> String,
+) {
+    for value in values {
+        let _ = writeln!(text, "{indent}- `{}`: {}", value.name, meaning(value));
+    }
+}
+
+/// What a value means: its doc comment.
+fn meaning(value: &VariantSchema) -> String {
+    prose(value.doc)
+}
+
+/// What an argument means: its text if that is a sentence, as people read it in the log; else its doc comment.
+fn sentence(value: &VariantSchema) -> String {
+    if value.text.contains(' ') { value.text.to_owned() } else { meaning(value) }
+}
+
+/// A doc comment without its links, which lead into the sources: ``[`Pose`](crate::pose)`` is `Pose`.
+fn prose(doc: &str) -> String {
+    let (mut text, mut rest) = (String::new(), doc.trim());
+    while let Some((before, bracket)) = rest.split_once('[') {
+        text += before;
+        let link = bracket.split_once(']').and_then(|(name, after)| {
+            let target = after.strip_prefix('(').and_then(|target| target.split_once(')'));
+            let is_link = target.is_some() || name.starts_with('`');
+            is_link.then_some((name, target.map_or(after, |(_, after)| after)))
+        });
+        match link {
+            Some((name, after)) => {
+                text += name;
+                rest = after;
+            }
+            None => {
+                text.push('[');
+                rest = bracket;
             }
         }
-        assert!(rows > 0);
     }
+    text + rest
+}
+
+/// A table whose columns stand under one another in the source too. The number of a row is on the right.
+fn grid<const N: usize>(text: &mut String, head: [&str; N], rows: Vec<[String; N]>) {
+    // A bar would end the cell.
+    let cells = |row: [String; N]| row.map(|cell| cell.replace('|', "\\|"));
+    let rows: Vec<[String; N]> = rows.into_iter().map(cells).collect();
+    let lengths = |column: usize| rows.iter().map(move |row| row[column].chars().count());
+    let widths: [usize; N] =
+        std::array::from_fn(|column| lengths(column).chain([head[column].len()]).max().unwrap_or_default());
+    let mut line = |cells: [&str; N]| {
+        for (column, (cell, width)) in cells.iter().zip(widths).enumerate() {
+            let _ = match is_number(head[column]) {
+                true => write!(text, "| {cell:>width$} "),
+                false => write!(text, "| {cell:<width$} "),
+            };
+        }
+        text.push_str("|\n");
+    };
+    line(head);
+    let rule = |column: usize| {
+        let dashes = "-".repeat(widths[column]);
+        if is_number(head[column]) { format!("{}:", &dashes[1..]) } else { dashes }
+    };
+    let rules: [String; N] = std::array::from_fn(rule);
+    line(rules.each_ref().map(String::as_str));
+    for row in &rows {
+        line(row.each_ref().map(String::as_str));
+    }
+}
+
+fn is_number(head: &str) -> bool {
+    head == "row"
 }

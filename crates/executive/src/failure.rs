@@ -17,7 +17,7 @@ use rcs_core::{
         pedestal::{PedestalCommand, PedestalVerb, TableVerb},
         t3i::{LinkFault, T3iReport},
     },
-    table::{RowText, Table},
+    table::{Row, Table},
     tick::Tick,
 };
 
@@ -137,9 +137,8 @@ impl Watch {
             process.name,
             while_doing(root, cause),
             row.map_or_else(String::new, |(table, row)| format!(
-                " (table {}, {})",
-                table.name,
-                describe(table, row)
+                " (table {}, row {}: {row})",
+                table.name, row.number
             ))
         );
         Some(Failure {
@@ -153,37 +152,8 @@ impl Watch {
     }
 }
 
-/// The row as a person says it: `row 5: step Flooding, tries Spent => Fail(NothingSeen)`. Columns in which
-/// anything goes are left out.
-fn describe(table: &Table, row: &RowText) -> String {
-    let named = table.columns.iter().zip(cells(row)).filter(|(_, cell)| !cell.is_empty());
-    let conditions: Vec<String> = named.map(|(column, cell)| format!("{column} {cell}")).collect();
-    format!("row {}: {} => {}", row.number, conditions.join(", "), action(row))
-}
-
-/// The conditions of a row, one a column: `Open or Stuck`; empty where anything goes.
-#[must_use]
-pub fn cells(row: &RowText) -> Vec<String> {
-    let inner = row.conditions.trim().trim_start_matches('(').trim_end_matches(')');
-    let cell = |cell: &str| cell.split('|').map(str::trim).collect::<Vec<_>>().join(" or ");
-    inner.split(',').map(cell).map(|cell| if cell == "_" { String::new() } else { cell }).collect()
-}
-
-/// The action of a row with its argument, if it has one, as a bare name: `Fail(NothingSeen)`.
-#[must_use]
-pub fn action(row: &RowText) -> String {
-    match row.action.split_once('(') {
-        None => row.action.trim().to_owned(),
-        Some((action, argument)) => {
-            let argument = argument.trim().trim_end_matches(')').trim_end();
-            let bare = argument.rsplit("::").next().unwrap_or(argument).trim();
-            format!("{}({bare})", action.trim())
-        }
-    }
-}
-
 /// The table and the row that a header names.
-fn row_of(process: &ProcessInfo, header: &Header) -> Option<(&'static Table, &'static RowText)> {
+fn row_of(process: &ProcessInfo, header: &Header) -> Option<(&'static Table, &'static Row)> {
     let table = process.table(header.table)?;
     Some((table, table.row(header.row)?))
 }
@@ -383,33 +353,43 @@ fn is_executing(process: ProcessId, memory: &CommonMemory) -> bool {
 mod tests {
     use super::*;
     use rcs_core::{
-        Plain,
+        Actions, Plain, Variables, decision_table,
         interface::{pedestal::TableCommand, subtask::SubtaskVerb},
         name::Name10,
-        old_table,
     };
 
-    #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-    enum Step {
-        Start,
-        Wait,
-    }
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
     enum Fingers {
         Apart,
         Shut,
     }
-    #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+
+    #[derive(Clone, Copy, Debug, Variables)]
+    struct Situation {
+        /// Where the fingers are.
+        fingers: Fingers,
+    }
+
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
     enum Action {
         Close,
-        Report,
+        Fail(Reason),
     }
-    old_table! {
+
+    decision_table! {
         /// CLOSE-GRIP for the test.
-        CLOSE_GRIP: fn close_grip(step: Step, fingers: Fingers) -> (Action, Step) {
-            1: ( _    , Apart ) => Close , Wait ;
-            2: ( Start, Shut  ) => Close , Wait ;
-            3: ( Wait , Shut  ) => Report, Start;
+        CLOSE_GRIP: fn close_grip(enum CloseGripStep, Situation) -> Action {
+            any {
+                1: fingers: Apart   => Close                -> Wait;
+            }
+            /// Nothing done yet.
+            Start {
+                2: fingers: Shut    => Close                -> Wait;
+            }
+            /// The fingers close.
+            Wait {
+                3: fingers: Shut    => Fail(GraspMissed)    -> Start;
+            }
         }
     }
 
@@ -445,17 +425,6 @@ mod tests {
     }
 
     #[test]
-    fn a_row_is_told_without_what_does_not_matter() {
-        let row = RowText {
-            number: 7,
-            conditions: "(_, Apart | Shut)",
-            action: "Fail (Reason::GraspMissed)",
-            next: "",
-        };
-        assert_eq!(describe(&CLOSE_GRIP, &row), "row 7: fingers Apart or Shut => Fail(GraspMissed)");
-    }
-
-    #[test]
     fn no_failure_without_a_reason_at_task() {
         assert_eq!(Watch::default().failure(&processes()), None);
         let watch = watched(&[|memory| memory.grip.status.reason = Reason::GraspMissed]);
@@ -468,7 +437,8 @@ mod tests {
             |memory| memory.emove.grip.command = GripVerb::CloseGrip,
             |memory| memory.emove.grip.force = 25,
             |memory| {
-                memory.grip.header = Header { stamp: Tick(3), republished: false, table: 1, row: 3 };
+                let row = close_grip(CloseGripStep::Wait, &Situation { fingers: Fingers::Shut }).row;
+                memory.grip.header = Header { stamp: Tick(3), table: 1, row, ..Header::ZERO };
                 memory.grip.status.reason = Reason::GraspMissed;
             },
             |memory| {
@@ -483,11 +453,11 @@ mod tests {
         ]);
         let failure = watch.failure(&processes()).expect("Task reports a reason");
         assert_eq!((failure.tick, failure.row, failure.stopped), (Tick(3), Some(3), false));
-        assert_eq!((failure.process.as_str(), failure.table.as_deref()), ("Grip", Some("close_grip")));
+        assert_eq!((failure.process.as_str(), failure.table.as_deref()), ("Grip", Some("CLOSE-GRIP")));
         assert_eq!(
             failure.text,
             "Grip: the fingers closed on nothing, while it executed CLOSE-GRIP (opening 0.00 in, force 25 lb) \
-             (table close_grip, row 3: step Wait, fingers Shut => Report)"
+             (table CLOSE-GRIP, row 3: Wait, fingers Shut => Fail(GraspMissed) -> Start)"
         );
     }
 

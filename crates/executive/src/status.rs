@@ -29,6 +29,8 @@ pub struct ProcessStatus {
     pub table: Option<&'static str>,
     /// The row that fired; 0 for none.
     pub row: u8,
+    /// Step of its command after that row; empty for none.
+    pub step: String,
     /// It was not stepped: dormant or held.
     pub suspended: bool,
     /// It runs in another system.
@@ -72,6 +74,7 @@ impl Status {
                 status: report(id, memory),
                 table: info.table(header.table).map(|table| table.name),
                 row: header.row,
+                step: header.step.to_string(),
                 suspended: header.republished,
                 elsewhere: of_pedestal(id) && external.pedestal.elsewhere,
                 lost: header.stamp != pulse.tick,
@@ -127,7 +130,11 @@ impl fmt::Display for Status {
             self.controller_us
         )?;
         for process in &self.processes {
-            let row = process.table.map_or_else(String::new, |table| format!("{table} row {}", process.row));
+            let mut row =
+                process.table.map_or_else(String::new, |table| format!("{table} row {}", process.row));
+            if !process.step.is_empty() {
+                row += &format!(", {}", process.step);
+            }
             let suspended = if process.suspended { " (suspended)" } else { "" };
             let elsewhere = match (process.elsewhere, process.lost) {
                 (true, true) => " (another system, which does not answer)",
@@ -137,7 +144,7 @@ impl fmt::Display for Status {
             };
             writeln!(
                 f,
-                "  {:<15} {:<14} {:<28} {}{suspended}{elsewhere}",
+                "  {:<15} {:<14} {:<36} {}{suspended}{elsewhere}",
                 process.process, process.status, row, process.command
             )?;
         }
@@ -164,12 +171,14 @@ mod tests {
         external.pedestal.elsewhere = true;
         memory.hand.header.stamp = Tick(50);
         (memory.task.header.table, memory.task.header.row) = (1, 2);
+        memory.task.header.step = Name16::clipped("moving");
         let pulse = Pulse { tick: Tick(50), skipped: 3, controller_ns: 2500, ..Pulse::default() };
         let status = Status::of("linkbar-1", &external, &memory, &pulse);
         assert_eq!((status.tick, status.skipped, status.processes.len()), (50, 3, ProcessId::ALL.len()));
         let [task, _, emove, ..] = &status.processes[..] else { panic!("{status}") };
         assert_eq!((task.command.as_str(), emove.command.as_str()), ("PAUSE", "E-PAUSE"));
         assert_eq!((task.table, task.row), (Ladder::processes()[0].table(1).map(|table| table.name), 2));
+        assert_eq!(task.step, "moving");
         let grip = &status.processes[6];
         assert_eq!((grip.status, grip.suspended, grip.table), (GripReport::ALL[1].text(), true, None));
         let text = status.to_string();
@@ -177,6 +186,7 @@ mod tests {
         let ends = |process: &str, end: &str| {
             text.lines().any(|l| l.contains(process) && l.trim_end().ends_with(end))
         };
+        assert!(text.contains(" row 2, moving "), "{text}");
         assert!(ends("Grip", "(suspended)"), "{text}");
         assert!(ends("Pedestal Hand", "(another system)"), "{text}");
         assert!(ends("Rotary Table", "(another system, which does not answer)"), "{text}");

@@ -30,7 +30,7 @@ fn name(test: &str) -> RunName {
 
 fn with_stamp(tick: u64) -> (ExternalInputs, CommonMemory, Pulse) {
     let tick = Tick(tick);
-    let header = Header { stamp: tick, republished: false, table: 2, row: 7 };
+    let header = Header { stamp: tick, table: 2, row: 7, ..Header::ZERO };
     let mut memory = CommonMemory::default();
     headers(&mut memory).into_iter().for_each(|place| *place = header);
     memory.task.status.report = HwsReport::Executing;
@@ -171,7 +171,21 @@ impl Numbers {
 fn some_value(schema: &Schema, numbers: &mut Numbers, image: &mut Vec<u8>) {
     match schema {
         Schema::Bool => image.push(u8::try_from(numbers.below(2)).unwrap()),
-        Schema::Enum(of) => image.push(of.variants[numbers.below(of.variants.len())].0),
+        Schema::Enum(of) => image.push(of.variants[numbers.below(of.variants.len())].code),
+        Schema::Option(of) => match numbers.below(2) {
+            0 => image.extend(std::iter::repeat_n(0, 1 + of.size())),
+            _ => {
+                image.push(1);
+                some_value(of, numbers, image);
+            }
+        },
+        Schema::Union(of) => {
+            let (variant, end) =
+                (&of.variants[numbers.below(of.variants.len())], image.len() + schema.size());
+            image.push(variant.code);
+            variant.payload.iter().for_each(|payload| some_value(payload, numbers, image));
+            image.resize(end, 0);
+        }
         Schema::F64 => image.extend((numbers.below(100_000) as f64 / 7.0).to_le_bytes()),
         Schema::Text(length) => {
             let used = numbers.below(length + 1);

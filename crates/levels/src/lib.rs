@@ -46,7 +46,6 @@ pub mod execution;
 pub mod grip;
 pub mod jaws;
 pub mod ladder;
-mod old_execution;
 pub mod pedestal;
 pub mod places;
 pub mod prim;

@@ -230,6 +230,33 @@ impl Table {
     }
 }
 
+impl Row {
+    /// The step and the conditions as one says them: `Closing, door Stuck`, or `always`.
+    pub fn conditions(&self) -> impl fmt::Display {
+        fmt::from_fn(move |f| {
+            if self.steps.is_empty() && self.when.is_empty() {
+                return f.write_str("always");
+            }
+            join(f, self.steps, " or ")?;
+            for (position, condition) in self.when.iter().enumerate() {
+                if position > 0 || !self.steps.is_empty() {
+                    f.write_str(", ")?;
+                }
+                write!(f, "{condition}")?;
+            }
+            Ok(())
+        })
+    }
+
+    /// The action with what it carries: `Fail(DoorStuck)`.
+    pub fn call(&self) -> impl fmt::Display {
+        fmt::from_fn(move |f| match self.argument {
+            Some(argument) => write!(f, "{}({argument})", self.action),
+            None => f.write_str(self.action),
+        })
+    }
+}
+
 /// Names with a word between them.
 fn join(f: &mut fmt::Formatter<'_>, names: &[&str], word: &str) -> fmt::Result {
     for (position, name) in names.iter().enumerate() {
@@ -251,97 +278,10 @@ impl fmt::Display for Condition {
 /// The row as one says it: `Closing, door Stuck => Fail(DoorStuck)`.
 impl fmt::Display for Row {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        join(f, self.steps, " or ")?;
-        for (position, condition) in self.when.iter().enumerate() {
-            if position > 0 || !self.steps.is_empty() {
-                f.write_str(", ")?;
-            }
-            condition.fmt(f)?;
-        }
-        if self.steps.is_empty() && self.when.is_empty() {
-            f.write_str("always")?;
-        }
-        write!(f, " => {}", self.action)?;
-        if let Some(argument) = self.argument {
-            write!(f, "({argument})")?;
-        }
+        write!(f, "{} => {}", self.conditions(), self.call())?;
         match self.next {
             Some(next) => write!(f, " -> {next}"),
             None => Ok(()),
         }
     }
-}
-
-/// The form of a table before it was written by groups; until all are converted.
-#[macro_export]
-macro_rules! old_table {
-    (
-        $(#[doc = $doc:literal])*
-        $vis:vis $table:ident : fn $decide:ident $columns:tt -> ($action:ident, $step:ident) {
-            $( $number:literal : $cells:tt => $act:ident $( ( $argument:path ) )? , $next:ident ; )+
-        }
-    ) => {
-        $(#[doc = $doc])*
-        $vis static $table: $crate::table::Table = $crate::table::Table {
-            name: stringify!($decide),
-            doc: &[ $( $doc, )* ],
-            variables: &[],
-            actions: &[],
-            steps: None,
-            rows: &[ $( $crate::table::Row {
-                    number: $number,
-                    steps: &[stringify!($cells)],
-                    when: &[],
-                    action: stringify!($act $( ( $argument ) )?),
-                    argument: None,
-                    next: Some(stringify!($next)),
-            }, )+ ],
-            file: file!(),
-            line: line!(),
-        };
-
-        $(#[doc = $doc])*
-        #[must_use]
-        $vis fn $decide $columns -> $crate::table::Decision<$action, $step> {
-            match $crate::decision_columns!(values $columns) {
-                $( $crate::decision_pattern!($columns $cells) => $crate::table::Decision {
-                    row: $number,
-                    action: $action::$act $( ( $argument ) )?,
-                    next: $step::$next,
-                }, )+
-            }
-        }
-    };
-}
-/// Columns of a decision table as names, values, or a walk over all combinations.
-#[doc(hidden)]
-#[macro_export]
-macro_rules! decision_columns {
-    (names ( $( $column:ident : $type:ident ),+ $(,)? )) => { &[ $( stringify!($column), )+ ] };
-    (values ( $( $column:ident : $type:ident ),+ $(,)? )) => { ( $( $column, )+ ) };
-    (every $decide:ident $found:ident ( $( $column:ident : $type:ident ),+ $(,)? )) => {
-        $crate::decision_columns!(walk $decide $found [ $( $column )+ ] $( $column $type )+)
-    };
-    (walk $decide:ident $found:ident [ $( $all:ident )+ ]) => { $found($decide($( $all, )+).row) };
-    (walk $decide:ident $found:ident $all:tt $column:ident $type:ident $( $rest:ident )*) => {
-        for &$column in $type::ALL {
-            $crate::decision_columns!(walk $decide $found $all $( $rest )*)
-        }
-    };
-}
-
-/// Cells of a row as a pattern: `(Start, Open | Stuck)` becomes `(Step::Start, Door::Open | Door::Stuck)`.
-#[doc(hidden)]
-#[macro_export]
-macro_rules! decision_pattern {
-    (( $( $column:ident : $type:ident ),+ $(,)? ) ( $( $cells:tt )+ )) => {
-        $crate::decision_pattern!(@ [ $( $type )+ ] [] $( $cells )+ ,)
-    };
-    (@ [] [ $( $done:tt )* ]) => { ( $( $done )* ) };
-    (@ [ $type:ident $( $types:ident )* ] [ $( $done:tt )* ] _ , $( $rest:tt )*) => {
-        $crate::decision_pattern!(@ [ $( $types )* ] [ $( $done )* _ , ] $( $rest )*)
-    };
-    (@ [ $type:ident $( $types:ident )* ] [ $( $done:tt )* ] $( $variant:ident )|+ , $( $rest:tt )*) => {
-        $crate::decision_pattern!(@ [ $( $types )* ] [ $( $done )* $( $type::$variant )|+ , ] $( $rest )*)
-    };
 }

@@ -3,7 +3,7 @@
 //!
 //! The outputs of a process are a header and buffers. Each buffer gets a channel `/process/buffer`, a command
 //! `/process/buffer_command`; the header gets `/process/row`, the row of the decision table that fired as
-//! text. A message is written when its buffer changes, and every ten seconds anyway, so that a viewer that jumps
+//! text, and the step of the command after it. A message is written when its buffer changes, and every ten seconds anyway, so that a viewer that jumps
 //! into the middle finds a value soon.
 
 use std::{
@@ -18,7 +18,7 @@ use prost_types::field_descriptor_proto::Type;
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Header},
     plain::{self, RecordSchema, Schema},
-    table::{RowText, Table},
+    table::{Row, Table},
     tick::Tick,
 };
 
@@ -201,7 +201,7 @@ impl Buffers {
 /// The header of one process in the image of common memory.
 #[derive(Clone, Copy, Debug)]
 pub struct HeaderPlace {
-    /// Plain of [`CommonMemory`].
+    /// Field of [`CommonMemory`].
     pub field: &'static str,
     /// First byte of the header.
     pub offset: usize,
@@ -213,12 +213,12 @@ impl HeaderPlace {
     /// The header in an image; the default if the image is too short.
     #[must_use]
     pub fn read(&self, image: &[u8]) -> Header {
-        image.get(self.offset..).and_then(|bytes| record::from_bytes(bytes).ok()).unwrap_or_default()
+        image.get(self.offset..).and_then(|bytes| plain::from_bytes(bytes).ok()).unwrap_or_default()
     }
 
     /// The row that a header names.
     #[must_use]
-    pub fn row(&self, header: &Header) -> Option<(&'static Table, &'static RowText)> {
+    pub fn row(&self, header: &Header) -> Option<(&'static Table, &'static Row)> {
         let table = self.process.table(header.table)?;
         Some((table, table.row(header.row)?))
     }
@@ -254,6 +254,7 @@ impl Rows {
             field("action", 6, Type::String),
             field("next", 7, Type::String),
             field("republished", 8, Type::Bool),
+            field("step", 9, Type::String),
         ];
         let message = descriptor::message(ROW, fields);
         let set = encode_set(vec![file("rcs.proto", descriptor::PACKAGE, &[], vec![message])]);
@@ -286,9 +287,12 @@ impl Rows {
 }
 
 fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
-    let (table, conditions, action, next) = place
-        .row(header)
-        .map_or(("", "", "", ""), |(table, row)| (table.name, row.conditions, row.action, row.next));
+    let (table, conditions, action, next) = match place.row(header) {
+        Some((table, row)) => {
+            (table.name, row.conditions().to_string(), row.call().to_string(), row.next.unwrap_or_default())
+        }
+        None => Default::default(),
+    };
     let mut data = Vec::new();
     wire::bytes(1, place.process.name.as_bytes(), &mut data);
     wire::unsigned(2, header.table.into(), &mut data);
@@ -298,6 +302,7 @@ fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
     wire::bytes(6, action.as_bytes(), &mut data);
     wire::bytes(7, next.as_bytes(), &mut data);
     wire::unsigned(8, header.republished.into(), &mut data);
+    wire::bytes(9, header.step.as_str().as_bytes(), &mut data);
     data
 }
 
@@ -330,9 +335,9 @@ mod tests {
     #[test]
     fn headers_are_where_the_processes_are() {
         let mut memory = CommonMemory::default();
-        memory.prim.header = Header { stamp: Tick(7), republished: false, table: 2, row: 3 };
+        memory.prim.header = Header { stamp: Tick(7), table: 2, row: 3, ..Header::default() };
         let mut image = vec![0; CommonMemory::SIZE];
-        memory.encode(&mut record::Writer::new(&mut image));
+        memory.encode(&mut plain::Writer::new(&mut image));
         let headers = headers();
         assert_eq!(headers.len(), CommonMemory::RECORD.fields.len());
         let prim = headers.iter().find(|place| place.field == "prim").unwrap();

@@ -12,28 +12,20 @@
 //! hardly differ from tick to tick, which is what a compressor is good at. Names and frames on the line are
 //! bytes, not numbers: their difference is a list of runs. A full image is a delta from zeros.
 
-use rcs_core::plain::{RecordSchema, Schema};
+use rcs_core::plain::RecordSchema;
 
 use crate::{
-    layout,
+    layout::{self, Piece},
     proto::wire::{put_varint, take_varint, unzigzag, zigzag},
 };
 
 /// Equal bytes that end a run: a shorter gap costs more as a new run than as bytes.
 const GAP: usize = 4;
 
-/// A field that changes as a whole.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    offset: usize,
-    size: usize,
-    number: bool,
-}
-
 /// Makes and applies the deltas of one record's images.
 #[derive(Clone, Debug)]
 pub struct Codec {
-    places: Vec<Place>,
+    pieces: Vec<Piece>,
     size: usize,
 }
 
@@ -41,11 +33,7 @@ impl Codec {
     /// The codec of a record.
     #[must_use]
     pub fn new(record: &'static RecordSchema) -> Self {
-        let place = |leaf: layout::Leaf| {
-            let number = !matches!(leaf.schema, Schema::Text(_) | Schema::Array(..) | Schema::Record(_));
-            Place { offset: leaf.offset, size: leaf.schema.size(), number }
-        };
-        Self { places: layout::leaves(record).into_iter().map(place).collect(), size: record.size() }
+        Self { pieces: layout::pieces(record), size: record.size() }
     }
 
     /// Bytes of an image.
@@ -58,15 +46,15 @@ impl Codec {
     pub fn encode(&self, from: &[u8], to: &[u8], out: &mut Vec<u8>) {
         let (mut count, mut skipped) = (0, 0);
         let (mut skips, mut values) = (Vec::new(), Vec::new());
-        for place in &self.places {
-            let (was, is) = (place.bytes(from), place.bytes(to));
+        for piece in &self.pieces {
+            let (was, is) = (piece.bytes(from), piece.bytes(to));
             if was == is {
                 skipped += 1;
                 continue;
             }
             put_varint(skipped, &mut skips);
             (count, skipped) = (count + 1, 0);
-            place.encode(was, is, &mut values);
+            piece.encode(was, is, &mut values);
         }
         put_varint(count, out);
         out.extend_from_slice(&skips);
@@ -82,24 +70,24 @@ impl Codec {
 
     fn try_apply(&self, mut delta: &[u8], image: &mut [u8]) -> Option<()> {
         let count = usize::try_from(take_varint(&mut delta)?).ok()?;
-        if count > self.places.len() {
+        if count > self.pieces.len() {
             return None;
         }
         let mut values = delta;
         for _ in 0..count {
             take_varint(&mut values)?;
         }
-        let mut places = self.places.iter();
+        let mut pieces = self.pieces.iter();
         for _ in 0..count {
-            let place = places.nth(usize::try_from(take_varint(&mut delta)?).ok()?)?;
-            let field = image.get_mut(place.offset..place.offset + place.size)?;
-            place.apply(&mut values, field)?;
+            let piece = pieces.nth(usize::try_from(take_varint(&mut delta)?).ok()?)?;
+            let field = image.get_mut(piece.offset..piece.offset + piece.size)?;
+            piece.apply(&mut values, field)?;
         }
         values.is_empty().then_some(())
     }
 }
 
-impl Place {
+impl Piece {
     fn bytes<'a>(&self, image: &'a [u8]) -> &'a [u8] {
         image.get(self.offset..self.offset + self.size).unwrap_or_default()
     }
@@ -174,6 +162,7 @@ fn apply_runs(mut runs: &[u8], field: &mut [u8]) -> Option<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use levels::ladder::LadderState;
     use proptest::prelude::*;
     use rcs_core::{
         Plain,
@@ -236,19 +225,23 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_was_encoded_comes_back(changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..60)) {
-            let codec = Codec::new(CommonMemory::RECORD);
-            let from = image(&CommonMemory::default());
-            let mut to = from.clone();
-            for (at, byte) in changes {
-                let at = at.index(to.len());
-                to[at] = byte;
+        fn what_was_encoded_comes_back(
+            changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..60),
+        ) {
+            for record in [CommonMemory::RECORD, LadderState::RECORD] {
+                let codec = Codec::new(record);
+                let from = vec![0; codec.size()];
+                let mut to = from.clone();
+                for (at, byte) in &changes {
+                    let at = at.index(to.len());
+                    to[at] = *byte;
+                }
+                let mut delta = Vec::new();
+                codec.encode(&from, &to, &mut delta);
+                let mut image = from;
+                prop_assert!(codec.apply(&delta, &mut image));
+                prop_assert_eq!(image, to);
             }
-            let mut delta = Vec::new();
-            codec.encode(&from, &to, &mut delta);
-            let mut image = from;
-            prop_assert!(codec.apply(&delta, &mut image));
-            prop_assert_eq!(image, to);
         }
 
         #[test]

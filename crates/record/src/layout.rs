@@ -1,8 +1,19 @@
 //! The layout of byte images: which field stands at which byte, what a value is as text, and the version of
 //! it all.
 //!
-//! Everything here walks the [`Schema`] trees that [`rcs_core::record!`] makes, so that a field that is added
+//! Everything here walks the [`Schema`] trees that `#[derive(Plain)]` makes, so that a field that is added
 //! to a buffer is described, compared and versioned without another line being written.
+//!
+//! | in the schema                              | leaves                                        | as text                  |
+//! |--------------------------------------------|-----------------------------------------------|--------------------------|
+//! | number, flag, name, enum, array of bytes   | one                                           | `7`, `true`, `"HOME"`    |
+//! | record, other array                        | those of its fields, of its elements          |                          |
+//! | option of what is one leaf                 | one                                           | `none`, or the value     |
+//! | other option                               | one `x` for the flag, and those of the value  | `none` or `some`         |
+//! | union whose variants carry at most a leaf  | one                                           | `"candle"`, `"candle" 7` |
+//! | other union                                | one `x` for the variant, and `x.variant` ...  | the variant's text       |
+//!
+//! A leaf of a value that an image does not hold is `none` there.
 
 use std::fmt::Write as _;
 
@@ -10,8 +21,10 @@ use levels::ladder::LadderState;
 use rcs_core::{
     digest::Digest,
     interface::{CommonMemory, ExternalInputs},
-    plain::{FieldSchema, RecordSchema, Schema},
+    plain::{FieldSchema, RecordSchema, Schema, UnionSchema},
 };
+
+use crate::proto::descriptor;
 
 /// A field that is not made of other fields: where it stands in the image and what it holds.
 #[derive(Clone, Debug)]
@@ -21,17 +34,42 @@ pub struct Leaf {
     pub path: String,
     /// First byte in the image.
     pub offset: usize,
+    /// Bytes in the image. Only the first one of an option or a union that has other leaves.
+    pub size: usize,
     /// What it holds.
     pub schema: &'static Schema,
+    /// Bytes that have a certain value in each image that holds the leaf: flags of options, codes of variants.
+    pub given: Vec<(usize, u8)>,
 }
 
 impl Leaf {
     /// The bytes of the field in `image`; none if the image is too short.
     #[must_use]
     pub fn bytes<'a>(&self, image: &'a [u8]) -> &'a [u8] {
-        image.get(self.offset..).and_then(|rest| rest.get(..self.schema.size())).unwrap_or_default()
+        image.get(self.offset..).and_then(|rest| rest.get(..self.size)).unwrap_or_default()
+    }
+
+    /// True if the value to which the field belongs is in `image`.
+    #[must_use]
+    pub fn is_in(&self, image: &[u8]) -> bool {
+        self.given.iter().all(|(at, byte)| image.get(*at) == Some(byte))
+    }
+
+    /// The value in `image` as people write it.
+    #[must_use]
+    pub fn text(&self, image: &[u8]) -> String {
+        if self.is_in(image) { value_text(self.schema, self.bytes(image)) } else { NONE.to_owned() }
+    }
+
+    /// True if the field has not the same value in two images.
+    #[must_use]
+    pub fn differs(&self, was: &[u8], is: &[u8]) -> bool {
+        self.bytes(was) != self.bytes(is) && (self.is_in(was) || self.is_in(is))
     }
 }
+
+/// What people read where a value is absent.
+const NONE: &str = "none";
 
 /// All leaves of a record in the order of the image.
 #[must_use]
@@ -42,30 +80,136 @@ pub fn leaves(record: &'static RecordSchema) -> Vec<Leaf> {
 /// All leaves of consecutive fields.
 #[must_use]
 pub fn leaves_of(fields: &'static [FieldSchema]) -> Vec<Leaf> {
+    let mut walk = Walk::default();
+    walk.fields(fields, "", 0);
+    walk.found
+}
+
+/// A walk through a schema.
+#[derive(Default)]
+struct Walk {
+    /// What must be in the image, where the walk is now.
+    given: Vec<(usize, u8)>,
+    found: Vec<Leaf>,
+}
+
+impl Walk {
+    fn fields(&mut self, fields: &'static [FieldSchema], prefix: &str, mut offset: usize) {
+        for field in fields {
+            let path =
+                if prefix.is_empty() { field.name.to_owned() } else { format!("{prefix}.{}", field.name) };
+            self.schema(&field.schema, path, offset);
+            offset += field.schema.size();
+        }
+    }
+
+    fn schema(&mut self, schema: &'static Schema, path: String, offset: usize) {
+        match schema {
+            Schema::Record(record) => self.fields(record.fields, &path, offset),
+            Schema::Array(of, count) if !is_leaf(schema) => {
+                for index in 0..*count {
+                    self.schema(of, format!("{path}[{index}]"), offset + index * of.size());
+                }
+            }
+            Schema::Option(of) if !is_leaf(schema) => {
+                self.leaf(schema, path.clone(), offset, 1);
+                self.carried(of, path, offset, 1);
+            }
+            Schema::Union(of) if !is_leaf(schema) => {
+                self.leaf(schema, path.clone(), offset, 1);
+                for (variant, name) in of.variants.iter().zip(payload_names(of)) {
+                    if let Some(payload) = &variant.payload {
+                        self.carried(payload, format!("{path}.{name}"), offset, variant.code);
+                    }
+                }
+            }
+            _ => self.leaf(schema, path, offset, schema.size()),
+        }
+    }
+
+    /// What stands behind the flag of an option or the code of a variant.
+    fn carried(&mut self, schema: &'static Schema, path: String, offset: usize, given: u8) {
+        self.given.push((offset, given));
+        self.schema(schema, path, offset + 1);
+        self.given.pop();
+    }
+
+    fn leaf(&mut self, schema: &'static Schema, path: String, offset: usize, size: usize) {
+        self.found.push(Leaf { path, offset, size, schema, given: self.given.clone() });
+    }
+}
+
+/// True if people read the value as one word.
+fn is_leaf(schema: &Schema) -> bool {
+    match schema {
+        Schema::Record(_) => false,
+        // Bytes are read as one word: a frame on the line, not 64 numbers.
+        Schema::Array(of, _) => **of == Schema::U8,
+        Schema::Option(of) => is_leaf(of),
+        Schema::Union(of) => of.variants.iter().filter_map(|variant| variant.payload.as_ref()).all(is_leaf),
+        _ => true,
+    }
+}
+
+/// Name of what each variant carries, in paths and in messages: the variant's text as an identifier.
+#[must_use]
+pub fn payload_names(of: &UnionSchema) -> Vec<String> {
+    let texts = of.variants.iter().map(|variant| (variant.code, variant.text));
+    let name = |(code, name)| match name {
+        // The field beside it, which says which variant it is.
+        name if name == descriptor::KIND => format!("{name}_{code}"),
+        name => name,
+    };
+    descriptor::identifiers(texts).into_iter().map(name).collect()
+}
+
+/// A stretch of an image that changes as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece {
+    /// First byte in the image.
+    pub offset: usize,
+    /// Bytes in the image.
+    pub size: usize,
+    /// It is a number of at most eight bytes, which changes by a difference.
+    pub number: bool,
+}
+
+/// The pieces of a record: each byte of its image is in one of them. What the variants of a union carry stands in the same bytes, so it
+/// is one piece.
+#[must_use]
+pub fn pieces(record: &'static RecordSchema) -> Vec<Piece> {
     let mut found = Vec::new();
-    field_leaves(fields, "", 0, &mut found);
+    record_pieces(record, 0, &mut found);
     found
 }
 
-fn field_leaves(fields: &'static [FieldSchema], prefix: &str, mut offset: usize, found: &mut Vec<Leaf>) {
-    for field in fields {
-        let path = if prefix.is_empty() { field.name.to_owned() } else { format!("{prefix}.{}", field.name) };
-        schema_leaves(&field.schema, path, offset, found);
+fn record_pieces(record: &RecordSchema, mut offset: usize, found: &mut Vec<Piece>) {
+    for field in record.fields {
+        schema_pieces(&field.schema, offset, found);
         offset += field.schema.size();
     }
 }
 
-fn schema_leaves(schema: &'static Schema, path: String, offset: usize, found: &mut Vec<Leaf>) {
+fn schema_pieces(schema: &Schema, offset: usize, found: &mut Vec<Piece>) {
+    let mut piece = |offset, size, number| found.push(Piece { offset, size, number });
     match schema {
-        Schema::Record(record) => field_leaves(record.fields, &path, offset, found),
-        // Bytes are read as one word: a frame on the line, not 64 numbers.
-        Schema::Array(of, _) if **of == Schema::U8 => found.push(Leaf { path, offset, schema }),
+        Schema::Record(record) => record_pieces(record, offset, found),
+        Schema::Text(_) | Schema::Array(Schema::U8, _) => piece(offset, schema.size(), false),
         Schema::Array(of, count) => {
-            for index in 0..*count {
-                schema_leaves(of, format!("{path}[{index}]"), offset + index * of.size(), found);
+            (0..*count).for_each(|index| schema_pieces(of, offset + index * of.size(), found));
+        }
+        Schema::Option(of) => {
+            piece(offset, 1, true);
+            schema_pieces(of, offset + 1, found);
+        }
+        Schema::Union(of) => {
+            piece(offset, 1, true);
+            match of.payload_size() {
+                0 => {}
+                size => piece(offset + 1, size, size <= 8),
             }
         }
-        _ => found.push(Leaf { path, offset, schema }),
+        _ => piece(offset, schema.size(), true),
     }
 }
 
@@ -81,10 +225,28 @@ pub fn value_text(schema: &Schema, bytes: &[u8]) -> String {
         Schema::Text(_) => format!("{:?}", text(bytes)),
         Schema::Enum(of) => {
             let code = unsigned(bytes);
-            let variant = of.variants.iter().find(|(known, _)| u64::from(*known) == code);
-            variant.map_or_else(|| format!("code {code}"), |(_, text)| format!("{text:?}"))
+            let variant = of.variants.iter().find(|variant| u64::from(variant.code) == code);
+            variant.map_or_else(|| format!("code {code}"), |variant| format!("{:?}", variant.text))
         }
+        Schema::Option(of) => match bytes.split_first() {
+            Some((0, _)) | None => NONE.to_owned(),
+            Some((_, [])) => "some".to_owned(),
+            Some((_, value)) => value_text(of, value),
+        },
+        Schema::Union(of) => union_text(of, bytes),
         Schema::Array(..) | Schema::Record(_) => bytes.iter().map(|byte| format!("{byte:02X}")).collect(),
+    }
+}
+
+/// The variant, and what it carries if that stands behind it.
+fn union_text(of: &UnionSchema, bytes: &[u8]) -> String {
+    let (code, carried) = bytes.split_first().map_or((0, bytes), |(code, carried)| (*code, carried));
+    let Some(variant) = of.variants.iter().find(|variant| variant.code == code) else {
+        return format!("code {code}");
+    };
+    match variant.payload.as_ref().and_then(|payload| Some((payload, carried.get(..payload.size())?))) {
+        Some((payload, value)) => format!("{:?} {}", variant.text, value_text(payload, value)),
+        None => format!("{:?}", variant.text),
     }
 }
 
@@ -114,30 +276,56 @@ pub fn first_difference<'a>(leaves: &'a [Leaf], was: &[u8], is: &[u8]) -> Option
     if was == is {
         return None;
     }
-    leaves.iter().find(|leaf| leaf.bytes(was) != leaf.bytes(is))
+    let differ = |leaf: &&Leaf| leaf.differs(was, is);
+    // Bytes that no value holds differ only between images that nobody encoded.
+    leaves.iter().find(differ).or_else(|| leaves.iter().find(|leaf| leaf.bytes(was) != leaf.bytes(is)))
 }
 
 /// The layout of a record for people and for the version: a line a leaf with its offset, size, kind and path,
-/// and a line for each enum with its codes.
+/// and a line for each enum and union with its codes.
 #[must_use]
 pub fn describe(name: &str, record: &'static RecordSchema) -> String {
     let mut lines = format!("{name}: {}, {} bytes\n", record.name, record.size());
-    let mut enums: Vec<&'static rcs_core::plain::EnumSchema> = Vec::new();
     for leaf in leaves(record) {
         let kind = kind_name(leaf.schema);
         // Writing to a String cannot fail.
-        let _ = writeln!(lines, "{:6} {:4} {kind:12} {}", leaf.offset, leaf.schema.size(), leaf.path);
-        if let Schema::Enum(of) = leaf.schema
-            && !enums.contains(of)
-        {
-            enums.push(of);
+        let _ = writeln!(lines, "{:6} {:4} {kind:12} {}", leaf.offset, leaf.size, leaf.path);
+    }
+    let mut definitions = Vec::new();
+    record.fields.iter().for_each(|field| define(&field.schema, &mut definitions));
+    lines + &definitions.concat()
+}
+
+/// A line for each enum and union in a schema that has none yet.
+fn define(schema: &Schema, lines: &mut Vec<String>) {
+    let mut add = |line: String| {
+        if !lines.contains(&line) {
+            lines.push(line);
         }
+    };
+    match schema {
+        Schema::Enum(of) => {
+            let codes: Vec<String> =
+                of.variants.iter().map(|variant| format!("{} {:?}", variant.code, variant.text)).collect();
+            add(format!("enum {}: {}\n", of.name, codes.join(", ")));
+        }
+        Schema::Union(of) => {
+            let payloads = || of.variants.iter().map(|variant| variant.payload.as_ref());
+            let kinds = payloads()
+                .map(|payload| payload.map_or_else(String::new, |of| format!(" {}", kind_name(of))));
+            let codes: Vec<String> = of
+                .variants
+                .iter()
+                .zip(kinds)
+                .map(|(variant, kind)| format!("{} {:?}{kind}", variant.code, variant.text))
+                .collect();
+            add(format!("union {}: {}\n", of.name, codes.join(", ")));
+            payloads().flatten().for_each(|payload| define(payload, lines));
+        }
+        Schema::Record(of) => of.fields.iter().for_each(|field| define(&field.schema, lines)),
+        Schema::Array(of, _) | Schema::Option(of) => define(of, lines),
+        _ => {}
     }
-    for of in enums {
-        let codes: Vec<String> = of.variants.iter().map(|(code, text)| format!("{code} {text:?}")).collect();
-        let _ = writeln!(lines, "enum {}: {}", of.name, codes.join(", "));
-    }
-    lines
 }
 
 fn kind_name(schema: &Schema) -> String {
@@ -150,10 +338,12 @@ fn kind_name(schema: &Schema) -> String {
         Schema::I32 => "i32".into(),
         Schema::F64 => "f64".into(),
         Schema::Bool => "bool".into(),
-        Schema::Text(_) => "text".into(),
+        Schema::Text(length) => format!("text {length}"),
         Schema::Enum(of) => of.name.into(),
         Schema::Array(of, count) => format!("{}[{count}]", kind_name(of)),
         Schema::Record(of) => of.name.into(),
+        Schema::Option(of) => format!("option {}", kind_name(of)),
+        Schema::Union(of) => of.name.into(),
     }
 }
 
@@ -193,7 +383,36 @@ pub fn version() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::{Plain, plain::Writer};
+    use rcs_core::{Plain, name::Name10, plain::Writer};
+
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    struct Place {
+        x: i16,
+        name: Name10,
+    }
+
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    enum Phase {
+        Rest,
+        #[text = "MOVE-TO"]
+        Move(bool),
+    }
+
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    enum Goal {
+        Nowhere,
+        #[text = "at a place"]
+        At(Place),
+        Kind(u32),
+    }
+
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    struct Order {
+        number: Option<u16>,
+        phase: Phase,
+        from: Option<Place>,
+        to: Goal,
+    }
 
     fn image<T: Plain>(record: &T) -> Vec<u8> {
         let mut bytes = vec![0xA5; T::SIZE];
@@ -201,15 +420,42 @@ mod tests {
         bytes
     }
 
+    fn texts<T: Plain>(record: &'static RecordSchema, value: &T) -> Vec<(String, String)> {
+        let image = image(value);
+        leaves(record).into_iter().map(|leaf| (leaf.path.clone(), leaf.text(&image))).collect()
+    }
+
+    fn ordered() -> Order {
+        let place = |x, name| Place { x, name: Name10::new(name).unwrap() };
+        Order {
+            number: Some(7),
+            phase: Phase::Move(true),
+            from: Some(place(-2, "HOME")),
+            to: Goal::At(place(3, "UNIT")),
+        }
+    }
+
     #[test]
-    fn leaves_cover_every_byte_once() {
-        for record in [ExternalInputs::RECORD, CommonMemory::RECORD, LadderState::RECORD] {
+    fn pieces_cover_every_byte_once() {
+        for record in [ExternalInputs::RECORD, CommonMemory::RECORD, LadderState::RECORD, Order::RECORD] {
             let mut next = 0;
-            for leaf in leaves(record) {
-                assert_eq!(leaf.offset, next, "{}", leaf.path);
-                next += leaf.schema.size();
+            for piece in pieces(record) {
+                assert_eq!(piece.offset, next);
+                next += piece.size;
             }
             assert_eq!(next, record.size());
+        }
+    }
+
+    #[test]
+    fn leaves_cover_every_byte_and_have_paths_of_their_own() {
+        for record in [ExternalInputs::RECORD, CommonMemory::RECORD, LadderState::RECORD, Order::RECORD] {
+            let (leaves, mut covered) = (leaves(record), vec![false; record.size()]);
+            for (at, leaf) in leaves.iter().enumerate() {
+                covered[leaf.offset..leaf.offset + leaf.size].fill(true);
+                assert!(leaves[..at].iter().all(|other| other.path != leaf.path), "{}", leaf.path);
+            }
+            assert!(covered.iter().all(|byte| *byte));
         }
     }
 
@@ -222,8 +468,7 @@ mod tests {
         let (was, is) = (image(&was), image(&is));
         let leaf = first_difference(&leaves, &was, &is).unwrap();
         assert_eq!(leaf.path, "prim.poses[2].pose.tool[1]");
-        assert_eq!(value_text(leaf.schema, leaf.bytes(&was)), "0");
-        assert_eq!(value_text(leaf.schema, leaf.bytes(&is)), "-7145");
+        assert_eq!((leaf.text(&was).as_str(), leaf.text(&is).as_str()), ("0", "-7145"));
         assert!(first_difference(&leaves, &was, &was).is_none());
     }
 
@@ -235,5 +480,94 @@ mod tests {
         assert_eq!(value_text(&Schema::Text(5), b"HOME\0"), "\"HOME\"");
         assert_eq!(value_text(&rcs_core::interface::Report::SCHEMA, &[3]), "\"error-state\"");
         assert_eq!(value_text(&rcs_core::interface::Report::SCHEMA, &[99]), "code 99");
+        let number = Schema::Option(&Schema::U16);
+        assert_eq!([[0, 0, 0], [1, 7, 1]].map(|bytes| value_text(&number, &bytes)), ["none", "263"]);
+        let phases = [[0, 0], [1, 0], [9, 0]].map(|bytes| value_text(&Phase::SCHEMA, &bytes));
+        assert_eq!(phases, ["\"rest\"", "\"MOVE-TO\" false", "code 9"]);
+    }
+
+    #[test]
+    fn a_value_that_is_absent_is_none() {
+        let told = |order: &Order| {
+            let found = texts(Order::RECORD, order);
+            found.iter().map(|(path, text)| format!("{path} {text}")).collect::<Vec<_>>()
+        };
+        let expected = [
+            "number 7",
+            "phase \"MOVE-TO\" true",
+            "from some",
+            "from.x -2",
+            "from.name \"HOME\"",
+            "to \"at a place\"",
+            "to.at_a_place.x 3",
+            "to.at_a_place.name \"UNIT\"",
+            "to.kind_2 none",
+        ];
+        assert_eq!(told(&ordered()), expected);
+        let expected = [
+            "number none",
+            "phase \"rest\"",
+            "from none",
+            "from.x none",
+            "from.name none",
+            "to \"kind\"",
+            "to.at_a_place.x none",
+            "to.at_a_place.name none",
+            "to.kind_2 1027",
+        ];
+        assert_eq!(told(&Order { to: Goal::Kind(1027), ..Order::default() }), expected);
+    }
+
+    #[test]
+    fn leaves_stand_at_their_bytes() {
+        let expected = [
+            1, 7, 0, // number
+            1, 1, // phase
+            1, 0xFE, 0xFF, b'H', b'O', b'M', b'E', 0, 0, 0, 0, 0, 0, // from
+            1, 3, 0, b'U', b'N', b'I', b'T', 0, 0, 0, 0, 0, 0, // to
+        ];
+        assert_eq!(image(&ordered()), expected);
+        let places: Vec<_> = leaves(Order::RECORD).iter().map(|leaf| (leaf.offset, leaf.size)).collect();
+        assert_eq!(
+            places,
+            [(0, 3), (3, 2), (5, 1), (6, 2), (8, 10), (18, 1), (19, 2), (21, 10), (19, 4)],
+            "what the variants carry stands in the same bytes"
+        );
+    }
+
+    /// The bytes of a variant that is not there are no difference.
+    #[test]
+    fn a_difference_is_one_of_the_variant_that_is_there() {
+        let (was, leaves) = (Order { to: Goal::Kind(1), ..Order::default() }, leaves(Order::RECORD));
+        let first = |is: &Order| {
+            let (was, is) = (image(&was), image(is));
+            let leaf = first_difference(&leaves, &was, &is).unwrap();
+            (leaf.path.clone(), leaf.text(&was), leaf.text(&is))
+        };
+        let of = |path: &str, was: &str, is: &str| (path.to_owned(), was.to_owned(), is.to_owned());
+        assert_eq!(first(&Order { to: Goal::Kind(2), ..was }), of("to.kind_2", "1", "2"));
+        assert_eq!(first(&Order { to: Goal::Nowhere, ..was }), of("to", "\"kind\"", "\"nowhere\""));
+        assert_eq!(first(&Order { number: Some(0), ..was }), of("number", "none", "0"));
+        assert_eq!(first(&Order { from: Some(Place::default()), ..was }), of("from", "none", "some"));
+    }
+
+    #[test]
+    fn the_description_tells_what_a_union_carries() {
+        let text = describe("order", Order::RECORD);
+        let expected = "\
+order: Order, 31 bytes
+     0    3 option u16   number
+     3    2 Phase        phase
+     5    1 option Place from
+     6    2 i16          from.x
+     8   10 text 10      from.name
+    18    1 Goal         to
+    19    2 i16          to.at_a_place.x
+    21   10 text 10      to.at_a_place.name
+    19    4 u32          to.kind_2
+union Phase: 0 \"rest\", 1 \"MOVE-TO\" bool
+union Goal: 0 \"nowhere\", 1 \"at a place\" Place, 2 \"kind\" u32
+";
+        assert_eq!(text, expected);
     }
 }

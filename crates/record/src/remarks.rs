@@ -4,11 +4,14 @@
 //! move, a part, a gripper), what the link suffered, and each failure as one sentence: which process, why, and
 //! by which row of which decision table.
 
-use rcs_core::interface::{
-    CommonMemory, Header, Reason,
-    hws::{HwsCommand, HwsReport},
-    prim::{PrimReport, PrimVerb},
-    t3i::{LinkFault, T3iStatus},
+use rcs_core::{
+    interface::{
+        CommonMemory, Header, Reason,
+        hws::{HwsCommand, HwsReport},
+        prim::{PrimReport, PrimVerb},
+        t3i::{LinkFault, T3iStatus},
+    },
+    table::{Row, Table},
 };
 
 use crate::{channels::HeaderPlace, proto::foxglove::Level};
@@ -234,18 +237,10 @@ fn failure(headers: &[HeaderPlace], field: &str, header: &Header, level: Level, 
     }
 }
 
-/// A row as one line: `get_object row 4: (step, object) = (Start, _) => report(NoGrip), next Start`.
+/// A row as one line: `GET-OBJECT row 4: Start, held Nothing, vision Needed => MovToVu -> Viewing`.
 #[must_use]
-pub fn row_text(table: &rcs_core::table::Table, row: &rcs_core::table::RowText) -> String {
-    format!(
-        "{} row {}: ({}) = {} => {}, next {}",
-        table.name,
-        row.number,
-        table.columns.join(", "),
-        row.conditions,
-        row.action,
-        row.next
-    )
+pub fn row_text(table: &Table, row: &Row) -> String {
+    format!("{} row {}: {row}", table.name, row.number)
 }
 
 fn name_of(headers: &[HeaderPlace], field: &str) -> String {
@@ -389,14 +384,13 @@ mod tests {
     fn a_failure_names_its_row() {
         let before = CommonMemory::default();
         let mut after = before;
-        after.subtask.status.reason = Reason::NoTrajectory;
-        after.subtask.header.table = 1;
-        after.subtask.header.row = 1;
+        after.subtask.status.reason = Reason::UnknownLocation;
+        (after.subtask.header.table, after.subtask.header.row) = (2, 5);
         let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
         assert_eq!(said.len(), 1, "{said:?}");
         assert_eq!(said[0].level, Level::Error);
-        let text = &said[0].text;
-        assert!(text.starts_with(Reason::NoTrajectory.text()) && text.contains(" row 1: ("), "{text}");
+        let row = "ACCEPT row 5: missing Location => Fail(UnknownLocation)";
+        assert_eq!(said[0].text, format!("the location is not in the task data ({row})"));
         assert!(said[0].line > 0);
     }
 }

@@ -338,7 +338,6 @@ impl Replayer {
         was: &[u8],
         is: &[u8],
     ) -> Difference {
-        let text = |image| layout::value_text(leaf.schema, leaf.bytes(image));
         let process = leaf.path.split('.').next().unwrap_or_default();
         let row =
             self.headers.iter().find(|place| place.field == process).map_or_else(String::new, |place| {
@@ -349,7 +348,7 @@ impl Replayer {
                     None => format!("{} decided by no row", place.process.name),
                 }
             });
-        Difference { tick, buffer, field, was: text(was), is: text(is), row }
+        Difference { tick, buffer, field, was: leaf.text(was), is: leaf.text(is), row }
     }
 }
 

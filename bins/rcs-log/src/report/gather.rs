@@ -9,6 +9,7 @@ use rcs_core::{
         CommonMemory,
         device::{FORCE_COUNTS_PER_LB, FORCE_ZERO},
     },
+    name::Name16,
     pose::WireFrame,
     tick::{TICK_S, Tick},
 };
@@ -35,6 +36,8 @@ pub struct Stretch {
     pub to: u64,
     /// The command, as people write it; empty for none.
     pub text: String,
+    /// Its steps, each with the tick in which it began.
+    pub steps: Vec<(u64, String)>,
 }
 
 /// A picture of the cell before a tick.
@@ -115,8 +118,13 @@ impl Run {
         self.chronicle.note(moment);
         let tick = moment.tick.0;
         self.ticks.push(tick);
-        for (index, (_, lane)) in self.lanes.iter_mut().enumerate() {
-            extend(lane, tick, failure::command(index, &moment.external.hws, &moment.after));
+        let headers = failure::headers(&moment.after);
+        for (index, ((_, lane), header)) in self.lanes.iter_mut().zip(headers).enumerate() {
+            let command = |memory| failure::command(index, &moment.external.hws, memory);
+            let text = command(&moment.after);
+            // A command that was written in this tick is not read yet: the step is that of the command before it.
+            let step = if text == command(&moment.before) { header.step } else { Name16::EMPTY };
+            extend(lane, tick, text, &step);
         }
         let (speed, turning) = motion(&moment.before, &moment.after);
         self.speed.push(speed);
@@ -124,7 +132,7 @@ impl Run {
         let status = &moment.after.t3i.status;
         self.path.push(status.frame_feedback.tool.map(|hundredths| f64::from(hundredths) / 100.0));
         let running = if status.link_running { "the link runs" } else { "" };
-        extend(&mut self.link, tick, running.to_owned());
+        extend(&mut self.link, tick, running.to_owned(), &Name16::EMPTY);
         let grip = &moment.after.grip.status;
         self.opening.push(f64::from(grip.position) / 100.0);
         self.force.push(f64::from(grip.left_force.max(grip.right_force)));
@@ -173,10 +181,14 @@ fn pictures(log: &Log, run: &Run) -> Vec<Picture> {
 }
 
 /// Lengthen the last stretch of a lane, or begin a new one.
-fn extend(lane: &mut Vec<Stretch>, tick: u64, text: String) {
-    match lane.last_mut() {
-        Some(last) if last.text == text => last.to = tick,
-        _ => lane.push(Stretch { from: tick, to: tick, text }),
+fn extend(lane: &mut Vec<Stretch>, tick: u64, text: String, step: &Name16) {
+    if lane.last().is_none_or(|last| last.text != text) {
+        lane.push(Stretch { from: tick, to: tick, text, steps: Vec::new() });
+    }
+    let Some(stretch) = lane.last_mut() else { return };
+    stretch.to = tick;
+    if !step.is_empty() && stretch.steps.last().is_none_or(|(_, last)| last != step.as_str()) {
+        stretch.steps.push((tick, step.to_string()));
     }
 }
 
@@ -203,11 +215,13 @@ mod tests {
     #[test]
     fn a_lane_has_one_stretch_a_command() {
         let mut lane = Vec::new();
-        for (tick, text) in [(1, ""), (2, "MOVE"), (3, "MOVE"), (4, "PAUSE")] {
-            extend(&mut lane, tick, text.to_owned());
+        let ticks = [(1, "", ""), (2, "MOVE", "start"), (3, "MOVE", "moving"), (4, "MOVE", "moving")];
+        for (tick, text, step) in ticks.into_iter().chain([(5, "PAUSE", "start")]) {
+            extend(&mut lane, tick, text.to_owned(), &Name16::clipped(step));
         }
         let texts: Vec<_> = lane.iter().map(|s| (s.from, s.to, s.text.as_str())).collect();
-        assert_eq!(texts, [(1, 1, ""), (2, 3, "MOVE"), (4, 4, "PAUSE")]);
+        assert_eq!(texts, [(1, 1, ""), (2, 4, "MOVE"), (5, 5, "PAUSE")]);
+        assert_eq!(lane[1].steps, [(2, "start".to_owned()), (3, "moving".to_owned())]);
     }
 
     #[test]

@@ -122,9 +122,11 @@ pub fn lanes(lanes: &[(&str, Vec<Stretch>)], marks: &[Mark<'_>], axis: TimeAxis)
 fn put_stretch(stretch: &Stretch, top: f64, axis: TimeAxis, out: &mut String) {
     let (from, to) = (axis.x(stretch.from as f64), axis.x(stretch.to as f64 + 1.0));
     let (width, text) = ((to - from).max(0.5), escape(&stretch.text));
+    let steps: String =
+        stretch.steps.iter().map(|(tick, step)| format!("\ntick {tick}: {}", escape(step))).collect();
     let _ = write!(
         out,
-        "<g><title>{text}, ticks {} to {}</title><rect class=\"box c{}\" x=\"{from:.1}\" y=\"{:.1}\" width=\"{width:.1}\" \
+        "<g><title>{text}, ticks {} to {}{steps}</title><rect class=\"box c{}\" x=\"{from:.1}\" y=\"{:.1}\" width=\"{width:.1}\" \
          height=\"{:.1}\" rx=\"2\"/>",
         stretch.from,
         stretch.to,
@@ -300,9 +302,11 @@ mod tests {
     #[test]
     fn text_of_a_log_cannot_become_markup() {
         assert_eq!(escape("<b a=\"1\">&"), "&lt;b a=&quot;1&quot;&gt;&amp;");
-        let stretches = vec![Stretch { from: 1, to: 100, text: "<script>".into() }];
+        let stretches =
+            vec![Stretch { from: 1, to: 100, text: "<script>".into(), steps: vec![(2, "a<b".into())] }];
         let marks = [Mark { tick: 5, error: true, text: "<script>" }];
-        assert!(!lanes(&[("Task", stretches)], &marks, TimeAxis::new(1, 100)).contains("<script>"));
+        let drawn = lanes(&[("Task", stretches)], &marks, TimeAxis::new(1, 100));
+        assert!(!drawn.contains("<script>") && drawn.contains("\ntick 2: a&lt;b</title>"), "{drawn}");
     }
 
     #[test]

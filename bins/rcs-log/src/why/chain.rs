@@ -6,14 +6,10 @@
 //! back until nobody below has said anything. What is left there is a device, a limit, or data. From there the commands lead up
 //! again: who commanded it, when, by which row.
 
-use executive::failure::cells;
-use rcs_core::{
-    interface::t3i::LinkFault,
-    table::{RowText, Table},
-};
+use rcs_core::{interface::t3i::LinkFault, table::Row};
 use serde::Serialize;
 
-use super::history::{Fired, History, T3I, WIRING, process, row_of, row_words};
+use super::history::{Fired, History, T3I, WIRING, condition, process, row_of, row_words};
 
 /// A step of the chain.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -85,25 +81,26 @@ fn report(history: &History, at: Root) -> Link {
     Link { tick: at.tick, process: process(at.process).name.to_owned(), text }
 }
 
-/// The conditions of a row that the row before did not ask for: what made it fire. Only if it fired for the first time.
+/// The conditions of a row that the row before did not ask for: what made it fire. Only if it fired for the first time, and its command
+/// is that of the tick before.
 fn news(history: &History, at: Root, fired: &Fired) -> Option<String> {
     if fired.tick != at.tick {
         return None;
     }
-    let before = history.row(at.process, at.tick.checked_sub(1)?)?;
-    if before.table != fired.table {
+    let seen = at.tick.checked_sub(1)?;
+    let command = |tick| history.command(at.process, tick).map(|command| command.number);
+    if command(at.tick) != command(seen) {
         return None;
     }
-    let ((table, now), (_, before)) = (row_of(at.process, fired)?, row_of(at.process, before)?);
-    let changed = changed(table, before, now);
+    let ((_, now), (_, before)) =
+        (row_of(at.process, fired)?, row_of(at.process, history.row(at.process, seen)?)?);
+    let changed = changed(before, now);
     (!changed.is_empty()).then(|| changed.join(", "))
 }
 
-fn changed(table: &Table, before: &RowText, now: &RowText) -> Vec<String> {
-    let pairs = table.columns.iter().zip(cells(before).into_iter().zip(cells(now)));
-    // The step is the table's own memory, not news.
-    let news = pairs.filter(|(column, (was, is))| **column != "step" && !is.is_empty() && was != is);
-    news.map(|(column, (_, is))| format!("{column} is {is}")).collect()
+/// The step is the table's own memory, not news.
+fn changed(before: &Row, now: &Row) -> Vec<String> {
+    now.when.iter().filter(|asked| !before.when.contains(asked)).map(condition).collect()
 }
 
 /// The commands that led to a process, from the workstation controller down: when each was given, and by which row.
@@ -152,6 +149,7 @@ mod tests {
     use crate::story::Moment;
     use rcs_core::{
         interface::{CommonMemory, ExternalInputs, Header, Reason, Report, prim::PrimReport},
+        table::Condition,
         tick::Tick,
     };
 
@@ -184,7 +182,7 @@ mod tests {
             |_, memory| {
                 memory.prim.status.report = PrimReport::NotDetected;
                 memory.prim.status.reason = Reason::NotDetected;
-                memory.prim.header = Header { stamp: Tick(5), republished: false, table: 1, row: 1 };
+                memory.prim.header = Header { stamp: Tick(5), table: 1, row: 1, ..Header::default() };
             },
             |_, memory| {
                 memory.emove.status.report = Report::Error;
@@ -223,11 +221,15 @@ mod tests {
 
     #[test]
     fn what_a_row_asks_for_and_the_one_before_did_not_is_news() {
-        let row = |number, conditions| RowText { number, conditions, action: "Go", next: "" };
-        let (before, now) = (row(1, "(Wait, No, _)"), row(2, "(Wait, Yes | Maybe, _)"));
-        let table = process(2).tables[0];
-        let found = changed(table, &before, &now);
-        assert_eq!(found.len(), 1, "{found:?}");
-        assert!(found[0].ends_with(" is Yes or Maybe"), "{found:?}");
+        const fn row(number: u8, when: &'static [Condition]) -> Row {
+            Row { number, steps: &["Wait"], when, action: "Go", argument: None, next: None }
+        }
+        const fn asked(variable: &'static str, values: &'static [&'static str]) -> Condition {
+            Condition { variable, values }
+        }
+        const BEFORE: Row = row(1, &[asked("hand", &["Empty"]), asked("held", &["No"])]);
+        const NOW: Row = row(2, &[asked("hand", &["Empty"]), asked("held", &["Yes", "Maybe"])]);
+        assert_eq!(changed(&BEFORE, &NOW), ["held is Yes or Maybe"]);
+        assert!(changed(&NOW, &NOW).is_empty());
     }
 }

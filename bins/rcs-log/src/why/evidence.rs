@@ -104,7 +104,7 @@ impl Trace {
             (self.least, self.most) = (self.least.min(value), self.most.max(value));
             return;
         }
-        let value = layout::value_text(self.leaf.schema, bytes);
+        let value = self.leaf.text(image);
         if self.changes.last().is_none_or(|(_, last)| *last != value) {
             self.changes.push((tick, value));
         }

@@ -1,11 +1,12 @@
 //! What every process did over a whole run, kept by change: its commands, rows and reports. And the wiring of the ladder:
 //! who commands whom, and who looks at which devices.
 
-use executive::failure::{self, PROCESSES, action, cells};
+use executive::failure::{self, PROCESSES};
 use levels::ladder::{Ladder, ProcessInfo};
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Header},
-    table::{RowText, Table},
+    name::Name16,
+    table::{Condition, Row, Table},
 };
 
 use crate::story::Moment;
@@ -96,6 +97,8 @@ pub struct Fired {
     pub table: u8,
     /// The row; 0 for none.
     pub row: u8,
+    /// Step of the command after it; empty for none.
+    pub step: Name16,
 }
 
 /// A report from the tick on in which it was written.
@@ -124,10 +127,10 @@ impl History {
         let (headers, reports) = (failure::headers(&moment.after), reports(&moment.after));
         let numbers = numbers(&moment.external, &moment.after);
         for process in 0..PROCESSES {
-            let Header { table, row, .. } = headers[process];
+            let Header { table, row, step, .. } = headers[process];
             let rows = &mut self.rows[process];
-            if rows.last().is_none_or(|last| (last.table, last.row) != (table, row)) {
-                rows.push(Fired { tick, table, row });
+            if rows.last().is_none_or(|last| (last.table, last.row, last.step) != (table, row, step)) {
+                rows.push(Fired { tick, table, row, step });
             }
             let (report, reason) = reports[process];
             let said = &mut self.reports[process];
@@ -172,28 +175,48 @@ pub fn process(at: usize) -> &'static ProcessInfo {
 }
 
 /// Table and row that fired.
-pub fn row_of(at: usize, fired: &Fired) -> Option<(&'static Table, &'static RowText)> {
+pub fn row_of(at: usize, fired: &Fired) -> Option<(&'static Table, &'static Row)> {
     let table = process(at).table(fired.table)?;
     Some((table, table.row(fired.row)?))
 }
 
-/// The conditions of a row as words, one a column that matters: `mate is None`.
-pub fn conditions(table: &Table, row: &RowText) -> Vec<String> {
-    let named = table.columns.iter().zip(cells(row)).filter(|(_, cell)| !cell.is_empty());
-    named.map(|(column, cell)| format!("{column} is {cell}")).collect()
+/// What a row asks for, as words: `step is Start`, `gripper is None`.
+pub fn conditions(row: &Row) -> Vec<String> {
+    let step = (!row.steps.is_empty()).then(|| format!("step is {}", row.steps.join(" or ")));
+    step.into_iter().chain(row.when.iter().map(condition)).collect()
 }
 
-/// A row as a person says it: `table qc_detach row 7, because step is Start, station is There`.
+/// What a row asks of a variable, as words: `held is Nothing or Other`.
+pub fn condition(asked: &Condition) -> String {
+    format!("{} is {}", asked.variable, asked.values.join(" or "))
+}
+
+/// What a row did, as words: `GraspObj, then Grasping`. A row that fires in any step says in which one it did: `Wait in step moving`.
+pub fn deed(row: &Row, step: &str) -> String {
+    let at = if row.steps.is_empty() && row.next.is_none() && !step.is_empty() {
+        format!(" in step {step}")
+    } else {
+        String::new()
+    };
+    let next = row.next.map_or_else(String::new, |next| format!(", then {next}"));
+    format!("{}{at}{next}", row.call())
+}
+
+/// Why a row fired, as words: `because step is Start, gripper is None`.
+pub fn because(conditions: &[String]) -> String {
+    match conditions {
+        [] => "whatever the state".to_owned(),
+        conditions => format!("because {}", conditions.join(", ")),
+    }
+}
+
+/// A row as one says it: `table QC-DETACH row 7: Unlock, then Unlocking, because step is Start, station is There`.
 pub fn row_words(at: usize, fired: &Fired) -> String {
     match row_of(at, fired) {
         None => "by no row of a table".to_owned(),
         Some((table, row)) => {
-            let conditions = conditions(table, row);
-            let because = match conditions.is_empty() {
-                true => "whatever the state".to_owned(),
-                false => format!("because {}", conditions.join(", ")),
-            };
-            format!("table {} row {}: {}, {because}", table.name, row.number, action(row))
+            let (deed, because) = (deed(row, fired.step.as_str()), because(&conditions(row)));
+            format!("table {} row {}: {deed}, {because}", table.name, row.number)
         }
     }
 }
@@ -261,5 +284,31 @@ mod tests {
         let entries = [3, 7, 9];
         let at = |tick| latest(&entries, tick, |entry| *entry).copied();
         assert_eq!([at(2), at(3), at(8), at(100)], [None, Some(3), Some(7), Some(9)]);
+    }
+
+    #[test]
+    fn a_row_is_told_with_the_step_in_which_it_fired() {
+        let any = Row {
+            number: 1,
+            steps: &[],
+            when: &[Condition { variable: "work", values: &["Busy", "Lost"] }],
+            action: "Wait",
+            argument: None,
+            next: None,
+        };
+        assert_eq!(deed(&any, "letting-go"), "Wait in step letting-go");
+        assert_eq!(deed(&any, ""), "Wait");
+        assert_eq!(because(&conditions(&any)), "because work is Busy or Lost");
+        let one = Row {
+            number: 2,
+            steps: &["Start"],
+            when: &[],
+            action: "MovToHol",
+            argument: Some("Own"),
+            next: Some("Stowing"),
+        };
+        assert_eq!(deed(&one, "stowing"), "MovToHol(Own), then Stowing");
+        assert_eq!(because(&conditions(&one)), "because step is Start");
+        assert_eq!(because(&conditions(&Row { steps: &[], ..one })), "whatever the state");
     }
 }

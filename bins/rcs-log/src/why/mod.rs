@@ -10,7 +10,7 @@ mod history;
 
 use std::{fmt, path::PathBuf, process::ExitCode};
 
-use executive::failure::{self, Failure, action};
+use executive::failure::{self, Failure};
 use levels::ladder::Ladder;
 use rcs_core::tick::{TICK_S, Tick};
 use record::{Log, proto::foxglove::Level};
@@ -19,7 +19,7 @@ use serde::Serialize;
 pub use self::{chain::Link, history::History};
 use self::{
     chain::Root,
-    history::{conditions, process},
+    history::{because, conditions, deed, process},
 };
 use crate::{
     Answer, Error, print,
@@ -106,10 +106,17 @@ struct Rung {
     held: bool,
     table: Option<String>,
     row: Option<u8>,
-    /// State variables of the row, and what they were: only those that the row asks for.
+    /// What the row asks for: its steps and state variables.
     conditions: Vec<String>,
+    /// Action of the row, with what it carries.
     action: Option<String>,
+    /// Step to which the row leads, if it changes.
     next: Option<String>,
+    /// Step of the command after the row; empty for none.
+    step: String,
+    /// What the row did, as words.
+    #[serde(skip)]
+    deed: String,
 }
 
 /// Explain a tick and print it.
@@ -188,16 +195,17 @@ fn explain(log: &Log, moment: &Moment, told: Option<Told>) -> Explanation {
         let command = failure::command(index, &moment.external.hws, &moment.before);
         let table = process.table(header.table);
         let row = table.and_then(|table| table.row(header.row).map(|row| (table, row)));
-        let conditions = row.map_or_else(Vec::new, |(table, row)| conditions(table, row));
         Rung {
             process: process.name.to_owned(),
             command,
             held: header.republished,
             table: row.map(|(table, _)| table.name.to_owned()),
             row: row.map(|(_, row)| row.number),
-            conditions,
-            action: row.map(|(_, row)| action(row)),
-            next: row.map(|(_, row)| row.next.to_owned()),
+            conditions: row.map_or_else(Vec::new, |(_, row)| conditions(row)),
+            action: row.map(|(_, row)| row.call().to_string()),
+            next: row.and_then(|(_, row)| row.next).map(str::to_owned),
+            step: header.step.to_string(),
+            deed: row.map_or_else(String::new, |(_, row)| deed(row, header.step.as_str())),
         }
     });
     let (failure, begun) = told.map_or((None, None), |told| (Some(told.story), Some(told.begun)));
@@ -282,16 +290,7 @@ impl fmt::Display for Rung {
         let command = if self.command.is_empty() { "nothing" } else { &self.command };
         let held = if self.held { " (not stepped: dormant or held)" } else { "" };
         writeln!(f, "  {:<14} executes {command}{held}", self.process)?;
-        let (Some(table), Some(row), Some(action), Some(next)) =
-            (&self.table, self.row, &self.action, &self.next)
-        else {
-            return Ok(());
-        };
-        let because = if self.conditions.is_empty() {
-            "whatever the state".to_owned()
-        } else {
-            format!("because {}", self.conditions.join(", "))
-        };
-        writeln!(f, "  {:<14} {table} row {row}: {action}, then {next}, {because}", "")
+        let (Some(table), Some(row)) = (&self.table, self.row) else { return Ok(()) };
+        writeln!(f, "  {:<14} {table} row {row}: {}, {}", "", self.deed, because(&self.conditions))
     }
 }

@@ -252,8 +252,9 @@ fn add_schema(digest: &mut Digest, schema: &Schema) {
             for variant in of.variants {
                 digest.add(&[variant.code]);
                 add_text(digest, variant.text);
-                if let Some(payload) = &variant.payload {
-                    add_schema(digest, payload);
+                match &variant.payload {
+                    Some(payload) => add_schema(digest, payload),
+                    None => add_text(digest, "nothing"),
                 }
             }
             digest.add(&[0]);
@@ -272,7 +273,11 @@ fn add_schema(digest: &mut Digest, schema: &Schema) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::interface::{SubtaskOutputs, TaskOutputs};
+    use rcs_core::{
+        interface::{SubtaskOutputs, TaskOutputs},
+        plain::{UnionSchema, UnionVariant},
+    };
+    use std::collections::BTreeSet;
 
     #[test]
     fn the_layout_version_depends_on_every_word() {
@@ -284,7 +289,19 @@ mod tests {
         assert_ne!(version(&Schema::Text(10)), version(&Schema::Text(12)));
         assert_ne!(version(&Schema::Array(&Schema::U8, 3)), version(&Schema::Array(&Schema::I16, 3)));
         assert_ne!(version(&TaskOutputs::SCHEMA), version(&SubtaskOutputs::SCHEMA));
-        assert_ne!(version(&Schema::Option(&Schema::U8)), version(&Schema::Array(&Schema::U8, 2)));
+        assert_ne!(version(&Schema::Option(&Schema::U8)), version(&Schema::U8));
+        assert_ne!(version(&Schema::Option(&Schema::U8)), version(&Schema::Option(&Schema::Bool)));
+        const fn carried(text: &'static str, payload: Option<Schema>) -> UnionVariant {
+            UnionVariant { code: 0, text, payload }
+        }
+        static UNIONS: [UnionSchema; 4] = [
+            UnionSchema { name: "Goal", variants: &[carried("at", None)] },
+            UnionSchema { name: "Goal", variants: &[carried("at", Some(Schema::U8))] },
+            UnionSchema { name: "Goal", variants: &[carried("at", Some(Schema::Bool))] },
+            UnionSchema { name: "Goal", variants: &[carried("in", Some(Schema::Bool))] },
+        ];
+        let versions: BTreeSet<_> = UNIONS.iter().map(|of| version(&Schema::Union(of))).collect();
+        assert_eq!(versions.len(), UNIONS.len());
         assert_eq!(layout_version(), layout_version());
     }
 }

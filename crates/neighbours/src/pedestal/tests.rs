@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use rcs_core::{
+    Plain as _,
     interface::{
         GripOutputs, Header, Reason, TableOutputs,
         device::{GripValves, MotorCommand, MotorOrder, PedestalSensors},
@@ -35,7 +36,7 @@ fn flip(number: u32) -> PedestalCommand {
     }
 }
 
-const ROW: Header = Header { stamp: Tick(0), republished: false, table: 3, row: 9 };
+const ROW: Header = Header { table: 3, row: 9, ..Header::ZERO };
 
 #[test]
 fn a_command_stands_at_its_bytes() {

@@ -1,20 +1,19 @@
 //! Images of many ticks, turned on their side: a column a field.
 //!
 //! A column is a list of changes: ticks since the change before, and the difference as a number (or, for
-//! names and frames on the line, the new bytes). A field that never changes is an empty column, the noise of a
+//! names, frames on the line and what larger unions carry, the new bytes). A field that never changes is an empty column, the noise of a
 //! converter two small bytes a change, alike enough to be packed to a few bits.
 
-use rcs_core::plain::{RecordSchema, Schema};
+use rcs_core::plain::RecordSchema;
 
 use crate::{
-    layout,
+    layout::{self, Piece},
     proto::wire::{put_varint, take_varint, unzigzag, zigzag},
 };
 
 /// A field, and what it was last.
 struct Column {
-    offset: usize,
-    number: bool,
+    piece: Piece,
     last: Vec<u8>,
     /// Tick of the last change.
     changed: u64,
@@ -22,13 +21,8 @@ struct Column {
 
 /// A column for each field of a record.
 fn columns(record: &'static RecordSchema) -> Vec<Column> {
-    let column = |leaf: layout::Leaf| Column {
-        offset: leaf.offset,
-        number: !matches!(leaf.schema, Schema::Text(_) | Schema::Array(..) | Schema::Record(_)),
-        last: vec![0; leaf.schema.size()],
-        changed: 0,
-    };
-    layout::leaves(record).into_iter().map(column).collect()
+    let column = |piece: Piece| Column { last: vec![0; piece.size], piece, changed: 0 };
+    layout::pieces(record).into_iter().map(column).collect()
 }
 
 /// Takes images in.
@@ -47,12 +41,13 @@ impl Columns {
     pub fn add(&mut self, image: &[u8]) {
         self.tick += 1;
         for (column, out) in &mut self.columns {
-            let Some(now) = image.get(column.offset..column.offset + column.last.len()) else { continue };
+            let Piece { offset, size, number } = column.piece;
+            let Some(now) = image.get(offset..offset + size) else { continue };
             if now == column.last {
                 continue;
             }
             put_varint(self.tick - column.changed, out);
-            if column.number {
+            if number {
                 let unused = 64 - 8 * now.len().clamp(1, 8);
                 let difference = layout::unsigned(now).wrapping_sub(layout::unsigned(&column.last));
                 put_varint(zigzag((difference << unused).cast_signed() >> unused), out);
@@ -105,8 +100,9 @@ impl<'a> Reader<'a> {
 
 /// Take the change that is due, and look when the next one is.
 fn change(column: &Column, due: &mut Option<u64>, rest: &mut &[u8], image: &mut [u8]) -> Option<()> {
-    let field = image.get_mut(column.offset..column.offset + column.last.len())?;
-    if column.number {
+    let Piece { offset, size, number } = column.piece;
+    let field = image.get_mut(offset..offset + size)?;
+    if number {
         let difference = unzigzag(take_varint(rest)?).cast_unsigned();
         let sum = layout::unsigned(field).wrapping_add(difference);
         field.iter_mut().zip(sum.to_le_bytes()).for_each(|(slot, byte)| *slot = byte);
@@ -156,7 +152,7 @@ mod tests {
             bytes in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..9), 0..300),
         ) {
             let mut reader = Reader::new(ExternalInputs::RECORD, &bytes);
-            let whole = layout::leaves(ExternalInputs::RECORD).len() == bytes.len();
+            let whole = layout::pieces(ExternalInputs::RECORD).len() == bytes.len();
             for _ in 0..300 {
                 let image = reader.next_image();
                 prop_assert!(whole || image.is_none());

@@ -10,20 +10,30 @@
 //! | enum                     | enum `Value` in a message with the enum's name, variants by their text |
 //! | array of bytes           | `bytes`                                                              |
 //! | array                    | `repeated`, packed where protobuf can                                |
+//! | option                   | `optional`; an absent value is not written                           |
+//! | option in an array       | message `OptionOfType` with the field `value`                        |
+//! | union                    | message of the same name: `kind` is an enum of the variants by their |
+//! |                          | text, and an optional field for what each carries, number code + 2   |
 //!
 //! The wrapping message gives each enum a scope of its own: protobuf forbids two enums of one scope to share
-//! a variant.
+//! a variant. A field of a union is named after its variant, so that a reader finds `goal.at_a_place.x` under
+//! the path that [`crate::layout`] has for it.
 
 use prost::Message as _;
 use prost_types::{
     DescriptorProto, EnumDescriptorProto, EnumValueDescriptorProto, FieldDescriptorProto,
-    FileDescriptorProto, FileDescriptorSet,
+    FileDescriptorProto, FileDescriptorSet, OneofDescriptorProto,
     field_descriptor_proto::{Label, Type},
 };
-use rcs_core::plain::{EnumSchema, RecordSchema, Schema};
+use rcs_core::plain::{EnumSchema, RecordSchema, Schema, UnionSchema};
+
+use crate::layout;
 
 /// Package of all messages of this project.
 pub const PACKAGE: &str = "rcs";
+
+/// The field of a union's message that says which variant it is.
+pub const KIND: &str = "kind";
 
 /// Full name of the message of a record.
 #[must_use]
@@ -63,10 +73,21 @@ pub fn file(
     }
 }
 
-/// A message with its fields.
+/// A message with its fields. Protobuf wants a oneof for each field that is [`optional`].
 #[must_use]
-pub fn message(name: &str, fields: Vec<FieldDescriptorProto>) -> DescriptorProto {
-    DescriptorProto { name: Some(name.into()), field: fields, ..DescriptorProto::default() }
+pub fn message(name: &str, mut fields: Vec<FieldDescriptorProto>) -> DescriptorProto {
+    let mut oneofs = Vec::new();
+    for (index, field) in (0..).zip(fields.iter_mut().filter(|field| field.proto3_optional())) {
+        field.oneof_index = Some(index);
+        let name = Some(format!("_{}", field.name()));
+        oneofs.push(OneofDescriptorProto { name, ..OneofDescriptorProto::default() });
+    }
+    DescriptorProto {
+        name: Some(name.into()),
+        field: fields,
+        oneof_decl: oneofs,
+        ..DescriptorProto::default()
+    }
 }
 
 /// A field of a kind that has no type of its own.
@@ -91,6 +112,13 @@ pub fn typed_field(name: &str, number: i32, kind: Type, of: &str) -> FieldDescri
 #[must_use]
 pub fn repeated(field: FieldDescriptorProto) -> FieldDescriptorProto {
     FieldDescriptorProto { label: Some(Label::Repeated.into()), ..field }
+}
+
+/// The same field, if it is there. A message is absent if it is not written, an array if it is empty.
+#[must_use]
+pub fn optional(field: FieldDescriptorProto) -> FieldDescriptorProto {
+    let absent_anyway = field.r#type() == Type::Message || field.label() == Label::Repeated;
+    FieldDescriptorProto { proto3_optional: (!absent_anyway).then_some(true), ..field }
 }
 
 /// An enum with codes and identifiers.
@@ -127,14 +155,61 @@ fn add_record(record: &RecordSchema, messages: &mut Vec<DescriptorProto>) {
 fn add_schema(schema: &'static Schema, messages: &mut Vec<DescriptorProto>) {
     match schema {
         Schema::Record(record) => add_record(record, messages),
-        Schema::Array(of, _) => add_schema(of, messages),
+        Schema::Array(of, _) => {
+            if matches!(of, Schema::Option(_)) && !known(&element_name(of), messages) {
+                messages.push(message(&element_name(of), vec![schema_field("value", 1, of)]));
+            }
+            add_schema(of, messages);
+        }
+        Schema::Option(of) => add_schema(of, messages),
         Schema::Enum(of) if !known(of.name, messages) => messages.push(DescriptorProto {
-            name: Some(of.name.into()),
-            enum_type: vec![enumeration("Value", identifiers(of))],
-            ..DescriptorProto::default()
+            enum_type: vec![enumeration("Value", enum_identifiers(of))],
+            ..message(of.name, Vec::new())
         }),
+        Schema::Union(of) => add_union(of, messages),
         _ => {}
     }
+}
+
+fn add_union(of: &'static UnionSchema, messages: &mut Vec<DescriptorProto>) {
+    if known(of.name, messages) {
+        return;
+    }
+    let payloads = || of.variants.iter().filter_map(|variant| variant.payload.as_ref());
+    let named = of.variants.iter().zip(layout::payload_names(of));
+    let carried = named.filter_map(|(variant, name)| {
+        let number = payload_number(variant.code).into();
+        Some(optional(schema_field(&name, number, variant.payload.as_ref()?)))
+    });
+    let kind = typed_field(KIND, 1, Type::Enum, &format!("{PACKAGE}.{}.Kind", of.name));
+    let texts = of.variants.iter().map(|variant| (variant.code, variant.text));
+    messages.push(DescriptorProto {
+        enum_type: vec![enumeration("Kind", identifiers(texts))],
+        ..message(of.name, std::iter::once(kind).chain(carried).collect())
+    });
+    payloads().for_each(|payload| add_schema(payload, messages));
+}
+
+/// Number of the field for what a variant carries.
+#[must_use]
+pub fn payload_number(code: u8) -> u16 {
+    u16::from(code) + 2
+}
+
+/// Message for an element of an array that can be absent.
+fn element_name(option: &Schema) -> String {
+    fn type_name(schema: &Schema) -> String {
+        match schema {
+            Schema::Enum(of) => of.name.to_owned(),
+            Schema::Record(of) => of.name.to_owned(),
+            Schema::Union(of) => of.name.to_owned(),
+            Schema::Text(_) => "Text".to_owned(),
+            Schema::Array(of, _) => format!("ArrayOf{}", type_name(of)),
+            Schema::Option(of) => format!("OptionOf{}", type_name(of)),
+            number => format!("{number:?}"),
+        }
+    }
+    type_name(option)
 }
 
 fn schema_field(name: &str, number: i32, schema: &'static Schema) -> FieldDescriptorProto {
@@ -147,17 +222,29 @@ fn schema_field(name: &str, number: i32, schema: &'static Schema) -> FieldDescri
         Schema::Text(_) => field(name, number, Type::String),
         Schema::Enum(of) => typed_field(name, number, Type::Enum, &format!("{PACKAGE}.{}.Value", of.name)),
         Schema::Record(of) => typed_field(name, number, Type::Message, &message_name(of)),
+        Schema::Union(of) => typed_field(name, number, Type::Message, &format!("{PACKAGE}.{}", of.name)),
+        Schema::Option(of) => optional(schema_field(name, number, of)),
         Schema::Array(of, _) if **of == Schema::U8 => field(name, number, Type::Bytes),
+        Schema::Array(of @ Schema::Option(_), _) => {
+            let element = format!("{PACKAGE}.{}", element_name(of));
+            repeated(typed_field(name, number, Type::Message, &element))
+        }
         Schema::Array(of, _) => repeated(schema_field(name, number, of)),
     }
 }
 
-/// Code and identifier of each variant. Protobuf wants identifiers: every other character becomes `_`, the
-/// empty text `NONE`, and a text that is then like an earlier one gets its code at the end.
+/// Code and identifier of each variant of an enum.
+fn enum_identifiers(of: &EnumSchema) -> Vec<(i32, String)> {
+    identifiers(of.variants.iter().map(|variant| (variant.code, variant.text)))
+}
+
+/// Code and identifier of each variant, from its code and text. Protobuf wants identifiers: every other
+/// character becomes `_`, the empty text `NONE`, and a text that is then like an earlier one gets its code at
+/// the end.
 #[must_use]
-pub fn identifiers(of: &EnumSchema) -> Vec<(i32, String)> {
+pub fn identifiers<'a>(variants: impl Iterator<Item = (u8, &'a str)>) -> Vec<(i32, String)> {
     let mut names: Vec<(i32, String)> = Vec::new();
-    for (code, text) in of.variants {
+    for (code, text) in variants {
         let plain: String = text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
         let mut name = plain.trim_matches('_').to_owned();
         if name.is_empty() {
@@ -168,7 +255,7 @@ pub fn identifiers(of: &EnumSchema) -> Vec<(i32, String)> {
         if names.iter().any(|(_, earlier)| *earlier == name) {
             name = format!("{name}_{code}");
         }
-        names.push((i32::from(*code), name));
+        names.push((i32::from(code), name));
     }
     names
 }
@@ -176,8 +263,43 @@ pub fn identifiers(of: &EnumSchema) -> Vec<(i32, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::interface::{CommonMemory, ExternalInputs, emove::EmoveCommand};
+    use rcs_core::{
+        Plain,
+        interface::{CommonMemory, ExternalInputs, emove::EmoveCommand},
+        plain::VariantSchema,
+    };
     use std::collections::BTreeMap;
+
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+    enum Light {
+        Off,
+        On,
+    }
+
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    struct Spot {
+        x: i16,
+    }
+
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    enum Goal {
+        Nowhere,
+        #[text = "at a spot"]
+        At(Spot),
+        Kind(Light),
+        Path([f64; 2]),
+    }
+
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    struct Order {
+        number: Option<u16>,
+        light: Option<Light>,
+        from: Option<Spot>,
+        hours: Option<[i32; 2]>,
+        seats: [Option<Spot>; 2],
+        goal: Goal,
+        last: Option<Goal>,
+    }
 
     fn decoded(record: &'static RecordSchema) -> FileDescriptorProto {
         FileDescriptorSet::decode(descriptor_set(record).as_slice()).unwrap().file.remove(0)
@@ -197,12 +319,19 @@ mod tests {
 
     #[test]
     fn every_type_is_there_and_every_identifier_is_legal() {
-        for record in [CommonMemory::RECORD, ExternalInputs::RECORD] {
+        for record in [CommonMemory::RECORD, ExternalInputs::RECORD, Order::RECORD] {
             let file = decoded(record);
             for message in &file.message_type {
                 for field in message.field.iter().filter(|field| field.type_name.is_some()) {
-                    let wanted = field.type_name().trim_start_matches(".rcs.").trim_end_matches(".Value");
+                    let wanted = field.type_name().trim_start_matches(".rcs.");
+                    let wanted = wanted.trim_end_matches(".Value").trim_end_matches(".Kind");
                     assert!(known(wanted, &file.message_type), "{wanted} is missing");
+                }
+                for (index, oneof) in (0..).zip(&message.oneof_decl) {
+                    let mut fields = message.field.iter().filter(|field| field.oneof_index == Some(index));
+                    let field = fields.next().unwrap();
+                    assert!(field.proto3_optional() && oneof.name() == format!("_{}", field.name()));
+                    assert!(fields.next().is_none(), "protobuf wants an oneof for each optional field");
                 }
                 for value in message.enum_type.iter().flat_map(|of| &of.value) {
                     let name = value.name();
@@ -218,14 +347,20 @@ mod tests {
     fn names_are_not_shared() {
         fn walk(schema: &'static Schema, seen: &mut BTreeMap<&'static str, String>) {
             let (name, content) = match schema {
-                Schema::Array(of, _) => return walk(of, seen),
+                Schema::Array(of, _) | Schema::Option(of) => return walk(of, seen),
                 Schema::Record(of) => (of.name, format!("{of:?}")),
                 Schema::Enum(of) => (of.name, format!("{of:?}")),
+                Schema::Union(of) => (of.name, format!("{of:?}")),
                 _ => return,
             };
             assert_eq!(*seen.entry(name).or_insert_with(|| content.clone()), content, "{name}");
-            if let Schema::Record(of) = schema {
-                of.fields.iter().for_each(|field| walk(&field.schema, seen));
+            match schema {
+                Schema::Record(of) => of.fields.iter().for_each(|field| walk(&field.schema, seen)),
+                Schema::Union(of) => {
+                    let payloads = of.variants.iter().filter_map(|variant| variant.payload.as_ref());
+                    payloads.for_each(|payload| walk(payload, seen));
+                }
+                _ => {}
             }
         }
         let mut seen = BTreeMap::new();
@@ -235,11 +370,68 @@ mod tests {
         assert!(seen.len() > 20);
     }
 
+    /// Field name, number, type or name of the type, and whether it is `optional` or repeated.
+    fn fields(message: &DescriptorProto) -> Vec<(&str, i32, &str, &str)> {
+        fn told(field: &FieldDescriptorProto) -> (&str, i32, &str, &str) {
+            let kind = field.type_name.as_deref().unwrap_or_else(|| field.r#type().as_str_name());
+            let presence = match (field.proto3_optional(), field.label()) {
+                (true, _) => "optional",
+                (false, Label::Repeated) => "repeated",
+                (false, _) => "",
+            };
+            (field.name(), field.number(), kind, presence)
+        }
+        message.field.iter().map(told).collect()
+    }
+
+    #[test]
+    fn what_can_be_absent_is_optional() {
+        let file = decoded(Order::RECORD);
+        let expected = [
+            ("number", 1, "TYPE_UINT32", "optional"),
+            ("light", 2, ".rcs.Light.Value", "optional"),
+            ("from", 3, ".rcs.Spot", ""),
+            ("hours", 4, "TYPE_SINT32", "repeated"),
+            ("seats", 5, ".rcs.OptionOfSpot", "repeated"),
+            ("goal", 6, ".rcs.Goal", ""),
+            ("last", 7, ".rcs.Goal", ""),
+        ];
+        assert_eq!(fields(&file.message_type[0]), expected);
+        let element = file.message_type.iter().find(|message| message.name() == "OptionOfSpot").unwrap();
+        assert_eq!(fields(element), [("value", 1, ".rcs.Spot", "")]);
+    }
+
+    #[test]
+    fn a_union_is_its_kind_and_a_field_for_what_a_variant_carries() {
+        let file = decoded(Order::RECORD);
+        let goal = file.message_type.iter().find(|message| message.name() == "Goal").unwrap();
+        let expected = [
+            ("kind", 1, ".rcs.Goal.Kind", ""),
+            ("at_a_spot", 3, ".rcs.Spot", ""),
+            ("kind_2", 4, ".rcs.Light.Value", "optional"),
+            ("path", 5, "TYPE_DOUBLE", "repeated"),
+        ];
+        assert_eq!(fields(goal), expected);
+        let kinds: Vec<_> = goal.enum_type[0].value.iter().map(|value| value.name()).collect();
+        assert_eq!(kinds, ["nowhere", "at_a_spot", "kind", "path"]);
+    }
+
     #[test]
     fn texts_that_are_alike_get_their_code() {
-        const OF: EnumSchema =
-            EnumSchema { name: "Test", variants: &[(0, ""), (1, "a-b"), (2, "a b"), (3, ">GO"), (4, "2nd")] };
-        let names: Vec<String> = identifiers(&OF).into_iter().map(|(_, name)| name).collect();
+        const fn variant(code: u8, text: &'static str) -> VariantSchema {
+            VariantSchema { code, name: "", text, doc: "" }
+        }
+        const OF: EnumSchema = EnumSchema {
+            name: "Test",
+            variants: &[
+                variant(0, ""),
+                variant(1, "a-b"),
+                variant(2, "a b"),
+                variant(3, ">GO"),
+                variant(4, "2nd"),
+            ],
+        };
+        let names: Vec<String> = enum_identifiers(&OF).into_iter().map(|(_, name)| name).collect();
         assert_eq!(names, ["NONE", "a_b", "a_b_2", "GO", "_2nd"]);
     }
 }

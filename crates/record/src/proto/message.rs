@@ -1,8 +1,8 @@
 //! A record's byte image as a protobuf message, described by [`super::descriptor`].
 
-use rcs_core::plain::{RecordSchema, Schema};
+use rcs_core::plain::{RecordSchema, Schema, UnionSchema};
 
-use super::wire;
+use super::{descriptor, wire};
 use crate::layout;
 
 /// Append the message of `record`, whose image is `image`.
@@ -26,13 +26,37 @@ fn encode_field(number: u32, schema: &Schema, bytes: &[u8], out: &mut Vec<u8>) {
             wire::bytes(number, bytes.get(..end).unwrap_or_default(), out);
         }
         Schema::Record(record) => wire::nested(number, out, |out| encode(record, bytes, out)),
+        Schema::Option(of) => match bytes.split_first() {
+            None | Some((0, _)) => {}
+            Some((_, value)) => encode_field(number, of, value, out),
+        },
+        Schema::Union(of) => wire::nested(number, out, |out| encode_union(of, bytes, out)),
         Schema::Array(Schema::U8, _) => wire::bytes(number, bytes, out),
-        Schema::Array(of @ (Schema::Text(_) | Schema::Record(_) | Schema::Array(..)), _) => {
+        Schema::Array(of @ Schema::Option(_), _) => {
+            for item in bytes.chunks_exact(of.size().max(1)) {
+                wire::nested(number, out, |out| encode_field(1, of, item, out));
+            }
+        }
+        Schema::Array(
+            of @ (Schema::Text(_) | Schema::Record(_) | Schema::Union(_) | Schema::Array(..)),
+            _,
+        ) => {
             bytes.chunks_exact(of.size().max(1)).for_each(|item| encode_field(number, of, item, out));
         }
         Schema::Array(of, _) => wire::nested(number, out, |out| {
             bytes.chunks_exact(of.size().max(1)).for_each(|item| encode_packed(of, item, out));
         }),
+    }
+}
+
+/// The variant, and what it carries.
+fn encode_union(of: &UnionSchema, bytes: &[u8], out: &mut Vec<u8>) {
+    let Some((code, carried)) = bytes.split_first() else { return };
+    wire::unsigned(1, u64::from(*code), out);
+    let variant = of.variants.iter().find(|variant| variant.code == *code);
+    if let Some(payload) = variant.and_then(|variant| variant.payload.as_ref()) {
+        let bytes = carried.get(..payload.size()).unwrap_or_default();
+        encode_field(descriptor::payload_number(*code).into(), payload, bytes, out);
     }
 }
 
@@ -104,5 +128,61 @@ mod tests {
             &[0x40, 0x01],                   // lit
         ];
         assert_eq!(out, expected.concat());
+    }
+
+    /// For the test.
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    enum Goal {
+        Nowhere,
+        At(Inner),
+        Count(u16),
+    }
+
+    /// For the test.
+    #[derive(Clone, Copy, Debug, PartialEq, Plain)]
+    struct Order {
+        number: Option<u16>,
+        from: Option<Inner>,
+        seats: [Option<Light>; 2],
+        goal: Goal,
+        last: Option<Goal>,
+    }
+
+    fn encoded(order: &Order) -> Vec<u8> {
+        let mut image = vec![0xA5; Order::SIZE];
+        order.encode(&mut Writer::new(&mut image));
+        let mut out = Vec::new();
+        encode(Order::RECORD, &image, &mut out);
+        out
+    }
+
+    #[test]
+    fn a_value_that_is_absent_is_not_written() {
+        let expected: &[&[u8]] = &[
+            &[0x1A, 0x00],             // seats[0]
+            &[0x1A, 0x00],             // seats[1]
+            &[0x22, 0x02, 0x08, 0x00], // goal: nowhere
+        ];
+        assert_eq!(encoded(&Order::default()), expected.concat());
+    }
+
+    #[test]
+    fn a_value_that_is_there_is_written_even_if_it_is_zero() {
+        let order = Order {
+            number: Some(0),
+            from: Some(Inner { at: -2 }),
+            seats: [None, Some(Light::On)],
+            goal: Goal::Count(300),
+            last: Some(Goal::At(Inner { at: 0 })),
+        };
+        let expected: &[&[u8]] = &[
+            &[0x08, 0x00],                               // number
+            &[0x12, 0x02, 0x08, 0x03],                   // from
+            &[0x1A, 0x00],                               // seats[0]: none
+            &[0x1A, 0x02, 0x08, 0x01],                   // seats[1]
+            &[0x22, 0x05, 0x08, 0x02, 0x20, 0xAC, 0x02], // goal: count, field 4
+            &[0x2A, 0x06, 0x08, 0x01, 0x1A, 0x02, 8, 0], // last: at, field 3
+        ];
+        assert_eq!(encoded(&order), expected.concat());
     }
 }
