@@ -17,6 +17,7 @@ pub mod processes;
 pub mod quick_change;
 pub mod subtask;
 pub mod t3i;
+mod words;
 
 use crate::{Plain, handshake::Lower, name::Name16, pose::Pose, tick::Tick};
 
@@ -29,7 +30,7 @@ pub use self::{
     jaws::JawsOutputs,
     pedestal::{OutsidePedestal, PedestalOutputs, TableOutputs},
     prim::PrimOutputs,
-    processes::{CommonMemory, PROCESS_COUNT, ProcessId},
+    processes::{CommonMemory, Fault, PROCESS_COUNT, ProcessId, Said},
     quick_change::QuickChangeOutputs,
     subtask::SubtaskOutputs,
     t3i::T3iOutputs,

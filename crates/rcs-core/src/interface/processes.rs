@@ -3,7 +3,11 @@
 //! [`for_each_process!`](crate::for_each_process!) is the one list. From it follow [`ProcessId`], [`CommonMemory`] and the order of the digest, the
 //! ladder, the boards and what they exchange, shared memory, and the chains that explain a failure.
 
-use crate::{Plain, interface::Header};
+use crate::{
+    Plain,
+    handshake::Lower,
+    interface::{Header, Reason, t3i::LinkFault},
+};
 
 /// Give the list of processes to a macro. An entry is:
 ///
@@ -185,7 +189,40 @@ macro_rules! register {
                 match process { $( ProcessId::$id => &self.$field.header, )+ }
             }
 
-            /// The same, to change it.
+            /// What the status of a process says.
+            #[must_use]
+            pub fn said(&self, process: ProcessId) -> Said {
+                match process { $( ProcessId::$id => {
+                    let status = &self.$field.status;
+                    Said {
+                        report: status.report.text(),
+                        lower: status.report.lower(),
+                        fault: Fault::from(status.$failure),
+                    }
+                } )+ }
+            }
+
+            /// Number of the command that a process has from the one above it; none for Task.
+            #[must_use]
+            pub fn command_number(&self, process: ProcessId) -> Option<u32> {
+                match process { $( ProcessId::$id => [ $( self.$above.$command.number )? ].first().copied(), )+ }
+            }
+
+            /// Give the command that a process has from the one above it, as one says it, to `show`; not for Task.
+            pub fn show_command<T>(
+                &self,
+                process: ProcessId,
+                show: impl FnOnce(&dyn core::fmt::Display) -> T,
+            ) -> Option<T> {
+                match process { $( ProcessId::$id => {
+                    let command: Option<&dyn core::fmt::Display> = None;
+                    $( let command: Option<&dyn core::fmt::Display> =
+                        command.or(Some(&self.$above.$command)); )?
+                    command.map(show)
+                } )+ }
+            }
+
+            /// The header of a process's outputs, to change it.
             #[must_use]
             pub const fn header_mut(&mut self, process: ProcessId) -> &mut Header {
                 match process { $( ProcessId::$id => &mut self.$field.header, )+ }
@@ -194,6 +231,55 @@ macro_rules! register {
     };
 }
 for_each_process!(register);
+
+/// What the status of a process says, whatever its type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Said {
+    /// The word of its report.
+    pub report: &'static str,
+    /// The report as a state variable of the process above.
+    pub lower: Lower,
+    /// Why it failed.
+    pub fault: Fault,
+}
+
+/// Why a process failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// As most of them say it.
+    Reason(Reason),
+    /// As T3 Interface says it.
+    Link(LinkFault),
+}
+
+impl Fault {
+    /// It did not fail.
+    #[must_use]
+    pub const fn is_none(self) -> bool {
+        matches!(self, Self::Reason(Reason::None) | Self::Link(LinkFault::None))
+    }
+
+    /// The sentence.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Reason(reason) => reason.text(),
+            Self::Link(fault) => fault.text(),
+        }
+    }
+}
+
+impl From<Reason> for Fault {
+    fn from(reason: Reason) -> Self {
+        Self::Reason(reason)
+    }
+}
+
+impl From<LinkFault> for Fault {
+    fn from(fault: LinkFault) -> Self {
+        Self::Link(fault)
+    }
+}
 
 /// How many processes there are.
 pub const PROCESS_COUNT: usize = ProcessId::ALL.len();

@@ -1,11 +1,15 @@
-//! Holds docs/traceability.md against the code: every command, variable and status value of chapters V and VI
-//! that the page names is there and has a test, and everything that the interfaces have is on the page.
+//! Compares pages of docs with the code: docs/traceability.md, docs/reasons.md, and the design pages ([`design`]).
+//!
+//! Every command, variable and status value of chapters V and VI that docs/traceability.md names is there and has a
+//! test, and everything that the interfaces have is on the page.
+
+mod design;
+mod sources;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
     fmt::Write as _,
     fs,
-    path::{Path, PathBuf},
 };
 
 use levels::task::plan::TaskVerb;
@@ -13,9 +17,11 @@ use neighbours::{mailbox::TABLE, network::Role};
 use rcs_core::{
     Plain,
     interface::{CommonMemory, ExternalInputs, Reason},
-    plain::{EnumSchema, RecordSchema, Schema},
+    plain::{EnumSchema, RecordSchema, Schema, UnionSchema, VariantSchema},
 };
 use whole_system_tests::root;
+
+use self::sources::Sources;
 
 /// A line of one of the three tables: name, whose, section, code, test.
 struct Line {
@@ -84,10 +90,11 @@ fn page() -> Page {
     page
 }
 
-/// The enums and records of the interfaces, by name.
+/// The types of the interfaces, by name.
 #[derive(Default)]
 struct Interfaces {
     enums: BTreeMap<&'static str, &'static EnumSchema>,
+    unions: BTreeMap<&'static str, &'static UnionSchema>,
     records: BTreeMap<&'static str, &'static RecordSchema>,
 }
 
@@ -105,7 +112,11 @@ impl Interfaces {
             Schema::Enum(of) => {
                 self.enums.insert(of.name, of);
             }
-            Schema::Array(of, _) => self.add(of),
+            Schema::Union(of) => {
+                self.unions.insert(of.name, of);
+                of.variants.iter().filter_map(|variant| variant.payload.as_ref()).for_each(|of| self.add(of));
+            }
+            Schema::Array(of, _) | Schema::Option(of) => self.add(of),
             Schema::Record(of) => {
                 self.records.insert(of.name, of);
                 of.fields.iter().for_each(|field| self.add(&field.schema));
@@ -113,66 +124,33 @@ impl Interfaces {
             _ => {}
         }
     }
-}
 
-/// Every file of Rust under a directory.
-fn sources(directory: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(directory).expect("a directory").map(|entry| entry.expect("an entry").path()) {
-        if entry.is_dir() {
-            if entry.file_name().is_some_and(|name| name != "target") {
-                sources(&entry, found);
-            }
-        } else if entry.extension().is_some_and(|extension| extension == "rs") {
-            found.push(entry);
+    /// The variant of an enum, from `Type::Variant`.
+    fn variant(&self, code: &str) -> &'static VariantSchema {
+        let (name, variant) = code.split_once("::").expect("a variant");
+        self.enums[name].named(variant).expect("it is in the code")
+    }
+
+    /// `Type::Variant` and `Record.field` of everything that the interfaces have. A variant that carries something goes by its
+    /// text.
+    fn everything(&self) -> BTreeSet<String> {
+        let mut all = BTreeSet::new();
+        for (name, of) in &self.enums {
+            all.extend(of.variants.iter().map(|variant| format!("{name}::{}", variant.name)));
         }
-    }
-}
-
-fn text_of(directories: &[&str]) -> Vec<String> {
-    let mut files = Vec::new();
-    directories.iter().for_each(|directory| sources(&root().join(directory), &mut files));
-    files.iter().map(|file| fs::read_to_string(file).expect("a source")).collect()
-}
-
-/// Rust name and text of the variants of each `coded_enum!` in the sources.
-fn variants() -> BTreeMap<String, BTreeMap<String, String>> {
-    let mut all: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
-    for source in text_of(&["crates/rcs-core/src", "crates/levels/src/task"]) {
-        let mut current = None;
-        for line in source.lines().map(str::trim) {
-            if let Some(name) = line.strip_prefix("pub enum ").and_then(|rest| rest.strip_suffix(" {")) {
-                current = Some(name.to_owned());
-            } else if line == "}" {
-                current = None;
-            } else if let (Some(name), Some((variant, text))) = (&current, line.split_once(" = \""))
-                && let Some(text) = text.strip_suffix("\",")
-            {
-                all.entry(name.clone()).or_default().insert(variant.to_owned(), text.to_owned());
-            }
+        for (name, of) in &self.unions {
+            all.extend(of.variants.iter().map(|variant| format!("{name}::{}", variant.text)));
         }
+        for (name, of) in &self.records {
+            all.extend(of.fields.iter().map(|field| format!("{name}.{}", field.name)));
+        }
+        all
     }
-    all
-}
-
-/// `Type::Variant` and `Record.field` of everything that the interfaces have.
-fn everything(interfaces: &Interfaces) -> BTreeSet<String> {
-    let variants = variants();
-    let mut all = BTreeSet::new();
-    for (name, schema) in &interfaces.enums {
-        let known = variants.get(*name).unwrap_or_else(|| panic!("the source of {name} is found"));
-        let texts: BTreeSet<&str> = known.values().map(String::as_str).collect();
-        assert_eq!(texts, schema.variants.iter().map(|(_, text)| *text).collect(), "{name}");
-        all.extend(known.keys().map(|variant| format!("{name}::{variant}")));
-    }
-    for (name, schema) in &interfaces.records {
-        all.extend(schema.fields.iter().map(|field| format!("{name}.{}", field.name)));
-    }
-    all
 }
 
 #[test]
 fn everything_that_the_page_names_is_in_the_code() {
-    let all = everything(&Interfaces::new());
+    let all = Interfaces::new().everything();
     let page = page();
     for line in &page.lines {
         if let Some(code) = &line.code {
@@ -197,7 +175,7 @@ fn everything_that_the_interfaces_have_is_on_the_page_once() {
     let beyond = |code: &str| {
         page.beyond.iter().any(|(other, _)| other == code || other.strip_suffix('*') == Some(start_of(code)))
     };
-    let all = everything(&Interfaces::new());
+    let all = Interfaces::new().everything();
     let wrong: Vec<_> = all.iter().filter(|code| named.contains(code.as_str()) == beyond(code)).collect();
     assert!(wrong.is_empty(), "not in one of the tables, and in one only: {wrong:#?}");
     let unique: BTreeSet<_> = page.lines.iter().map(|line| (line.kind, &line.name, &line.of)).collect();
@@ -212,18 +190,16 @@ fn start_of(code: &str) -> &str {
 
 #[test]
 fn a_command_or_a_status_is_named_as_the_code_has_it() {
-    let (interfaces, variants, page) = (Interfaces::new(), variants(), page());
+    let (interfaces, page) = (Interfaces::new(), page());
     let matches = |line: &Line, code: &str| {
-        let (kind, variant) = code.split_once("::").expect("a variant");
-        let text = &variants[kind][variant];
-        let number = interfaces.enums[kind].variants.iter().find(|(_, other)| other == text);
+        let variant = interfaces.variant(code);
         // V-Grip and Tool-Grip share their words, without the prefix (VI.5).
         let bare = ["VGRIP-", "TGRIP-", "VG-", "TG-", "vgrip-", "tgrip-"]
             .iter()
             .find_map(|prefix| line.name.strip_prefix(prefix))
-            .filter(|_| kind.starts_with("Jaws"))
+            .filter(|_| code.starts_with("Jaws"))
             .unwrap_or(&line.name);
-        bare.eq_ignore_ascii_case(text) || number.is_some_and(|(code, _)| line.name == code.to_string())
+        bare.eq_ignore_ascii_case(variant.text) || line.name == variant.code.to_string()
     };
     for line in page.lines.iter().filter(|line| line.kind != "variables") {
         let code = line.code.as_deref().expect("no command and no status is left out");
@@ -260,17 +236,8 @@ fn the_mailboxes_are_those_of_the_neighbours() {
 
 #[test]
 fn every_test_that_the_page_names_is_there() {
-    let sources = text_of(&["crates", "bins", "tests"]);
-    let is_test = |name: &str| {
-        sources.iter().any(|source| {
-            source.match_indices(&format!("fn {name}(")).any(|(at, _)| {
-                // The attribute, or the macro of a property test, stands close before it.
-                let before = &source[..at];
-                before.lines().rev().take(6).any(|line| matches!(line.trim(), "#[test]" | "proptest! {"))
-                    || before.rfind("proptest! {") > before.rfind("\n}\n")
-            })
-        })
-    };
+    let sources = Sources::read();
+    let is_test = |name: &str| sources.files().any(|(_, text)| sources::has_test(text, name));
     let page = page();
     for [name, .., test] in page.mailboxes {
         assert!(is_test(&test), "{name}: no test {test}");
