@@ -186,6 +186,7 @@ mod tests {
             jaws::{JawsCommand, JawsVerb, TOOL_GRIPPER},
             pedestal::{PedestalVerb, TableCommand, TableVerb},
             subtask::SubtaskVerb,
+            t3i::LinkFault,
         },
         name::Name10,
     };
