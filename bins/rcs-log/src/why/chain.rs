@@ -81,8 +81,8 @@ fn report(history: &History, at: Root) -> Link {
     Link { tick: at.tick, process: process(at.process).name.to_owned(), text }
 }
 
-/// The conditions of a row that the row before did not ask for: what made it fire. Only if it fired for the first time, and its command
-/// is that of the tick before.
+/// The conditions of a row that the row before did not ask for: what made it fire. Only if it fired for the
+/// first time, and its command is that of the tick before.
 fn news(history: &History, at: Root, fired: &Fired) -> Option<String> {
     if fired.tick != at.tick {
         return None;
