@@ -4,6 +4,9 @@
 //! the runs and writes two files for each: `NAME.golden` with the inputs and the digests of the outputs, and `NAME.txt`, which a
 //! person reads: commands with their durations, warnings and errors, which rows of which tables fired. The test `goldens`
 //! replays the inputs through today's controller, which takes no time, and compares both.
+//!
+//! A golden cannot be replayed with other records. Before it is made again, [`crate::trace`] and
+//! [`crate::compare`] show that the new version behaves as the old one.
 
 use std::{
     fs, io,
@@ -11,13 +14,18 @@ use std::{
     process::Command,
 };
 
+use rcs_core::tick::Tick;
 use record::{
     Log,
-    golden::{self, GoldenError, Played},
+    golden::{self, Golden, GoldenError, Played},
 };
 use serde::Deserialize;
 
-use crate::{Scratch, rcs_run, root};
+use crate::{
+    Scratch,
+    compare::{CompareError, Comparison, Renames, compare},
+    rcs_run, root, trace,
+};
 
 /// The command that makes all goldens again.
 pub const COMMAND: &str = "cargo run --release -p whole-system-tests --bin goldens";
@@ -126,6 +134,20 @@ pub enum Failed {
     /// The replay does something else than the run.
     #[error("the replay differs from the run that it was made of, from tick {0} to {1}")]
     Difference(u64, u64),
+    /// The run left no log.
+    #[error("the run has no log that can be read: {source}; its last line is {last_line:?}")]
+    NoLog {
+        /// Why.
+        source: record::ReadError,
+        /// The last line on standard error.
+        last_line: String,
+    },
+    /// A trace needs all ticks.
+    #[error("ticks are missing in the log before tick {0}")]
+    Gap(Tick),
+    /// The traces cannot be compared.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
 }
 
 fn status(found: &Option<i32>) -> String {
@@ -167,24 +189,66 @@ impl Scenario {
         directory().join(&self.name).with_added_extension("txt")
     }
 
-    /// Run it and write both files; gives the last words of the run, and the replay.
+    /// Run it and make the golden of the run; nothing is written.
     ///
     /// # Errors
-    /// [`Failed`], among others if the run ends in another way than it should: then the files stay as they are.
-    pub fn make(&self) -> Result<(String, Played), Failed> {
-        let scratch = Scratch::new(&format!("golden-{}", self.name));
-        let last_words = self.run(&scratch)?;
-        let golden = golden::from_log(&Log::open(&scratch.file("run.mcap"))?)?;
+    /// [`Failed`], among others if the run ends in another way than it should.
+    pub fn make(&self) -> Result<Made, Failed> {
+        self.made_of(&self.run()?)
+    }
+
+    /// Run it and write the trace of the run; gives how it ended, and the number of ticks.
+    ///
+    /// # Errors
+    /// [`Failed`]. To end in another way than it should is no error: the trace says how.
+    pub fn trace(&self, directory: &Path) -> Result<(Ending, u64), Failed> {
+        let run = self.run()?;
+        let ticks = trace::write(&run.log()?, &run.ending, &trace::path(directory, &self.name))?;
+        Ok((run.ending, ticks))
+    }
+
+    /// Run it and compare the run with its trace in a directory; if nothing differs and `make` is set, also make
+    /// the golden.
+    ///
+    /// # Errors
+    /// [`Failed`]. A difference is no error: it is in the result.
+    pub fn against(
+        &self,
+        directory: &Path,
+        renames: &Renames,
+        make: bool,
+    ) -> Result<(Comparison, Option<Made>), Failed> {
+        let old = trace::path(directory, &self.name);
+        let open =
+            |path: &Path| trace::open(path).map_err(|source| Failed::File { path: path.to_owned(), source });
+        let was = open(&old)?;
+        let run = self.run()?;
+        let new = run.scratch.file("run.trace");
+        trace::write(&run.log()?, &run.ending, &new)?;
+        let found = compare(was, open(&new)?, renames)?;
+        let made = if make && found.differences.is_empty() { Some(self.made_of(&run)?) } else { None };
+        Ok((found, made))
+    }
+
+    fn made_of(&self, run: &Run) -> Result<Made, Failed> {
+        let Ending { status, last_line } = &run.ending;
+        if *status != Some(self.status) || !last_line.contains(&self.says) {
+            let (expected, found) = (self.status, *status);
+            let (says, last_words) = (self.says.clone(), last_line.clone());
+            return Err(Failed::Ending { expected, says, found, last_words });
+        }
+        let golden = golden::from_log(&run.log()?)?;
         let played = golden::replay(&golden)?;
         if let Some((first, last)) = played.difference {
             return Err(Failed::Difference(first, last));
         }
-        golden::write(&golden, &self.golden())?;
-        write(&self.text(), &format!("{}{}", self.heading(&last_words), played.summary))?;
-        Ok((last_words, played))
+        let text = format!("{}{}", self.heading(last_line), played.summary);
+        let last_line = last_line.clone();
+        Ok(Made { files: (self.golden(), self.text()), golden, text, last_line, played })
     }
 
-    fn run(&self, scratch: &Scratch) -> Result<String, Failed> {
+    fn run(&self) -> Result<Run, Failed> {
+        let scratch = Scratch::new(&format!("golden-{}", self.name));
         scratch.copy_data();
         for Change { file, from, to } in &self.change {
             let path = scratch.file("data").join(file);
@@ -216,12 +280,8 @@ impl Scenario {
         }
         let output = command.output().map_err(Failed::Start)?;
         let said = String::from_utf8_lossy(&output.stderr);
-        let last_words = said.lines().last().unwrap_or_default().to_owned();
-        if output.status.code() == Some(self.status) && last_words.contains(&self.says) {
-            return Ok(last_words);
-        }
-        let (expected, found) = (self.status, output.status.code());
-        Err(Failed::Ending { expected, says: self.says.clone(), found, last_words })
+        let last_line = said.lines().last().unwrap_or_default().to_owned();
+        Ok(Run { ending: Ending { status: output.status.code(), last_line }, scratch })
     }
 
     /// What stands above the summary: what the replay cannot know.
@@ -231,6 +291,51 @@ impl Scenario {
         let said =
             if self.status == 0 || last_words.is_empty() { String::new() } else { format!(": {last_words}") };
         format!("# {}\n# exit status {}{said}\n\n", self.about, self.status)
+    }
+}
+
+/// A run that has ended.
+struct Run {
+    ending: Ending,
+    scratch: Scratch,
+}
+
+impl Run {
+    fn log(&self) -> Result<Log, Failed> {
+        let last_line = self.ending.last_line.clone();
+        Log::open(&self.scratch.file("run.mcap")).map_err(|source| Failed::NoLog { source, last_line })
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ending {
+    /// Exit status; none after a signal.
+    pub status: Option<i32>,
+    /// The last line on standard error.
+    pub last_line: String,
+}
+
+/// A golden that is not written yet.
+pub struct Made {
+    files: (PathBuf, PathBuf),
+    golden: Golden,
+    text: String,
+    /// The last line of the run on standard error.
+    pub last_line: String,
+    /// The replay.
+    pub played: Played,
+}
+
+impl Made {
+    /// Write both files.
+    ///
+    /// # Errors
+    /// [`Failed::File`], [`Failed::Golden`].
+    pub fn write(&self) -> Result<(), Failed> {
+        let (golden, text) = &self.files;
+        golden::write(&self.golden, golden)?;
+        write(text, &self.text)
     }
 }
 

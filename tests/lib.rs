@@ -4,7 +4,9 @@
 //! The tests of this package judge the whole: controller, link, cell, executive and log, built as for a
 //! release.
 
+pub mod compare;
 pub mod golden;
+pub mod trace;
 
 use std::{
     env, fs,

@@ -49,13 +49,12 @@ fn buffers() {
     let reader = Attached::open(&name).expect("the run lives");
     let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
     let mut pulse = Pulse::default();
-    let count: usize = SERVICES.iter().map(|(_, buffers)| buffers.len()).sum();
-    measure(&format!("write a buffer, one of {count}"), count, || {
+    let count = SERVICES.len();
+    measure(&format!("write the outputs of a process, one of {count}"), count, || {
         pulse.tick = Tick(pulse.tick.0 + 1);
         publisher.publish(&external, &memory, black_box(pulse));
     });
-    let own: usize = SERVICES.iter().take(PROCESS_COUNT).map(|(_, buffers)| buffers.len()).sum();
-    measure(&format!("read and decode a buffer, one of {own}"), own, || {
+    measure(&format!("read and decode them, one of {PROCESS_COUNT}"), PROCESS_COUNT, || {
         let _ = black_box(reader.memory());
     });
 }
@@ -94,7 +93,7 @@ fn ticks() {
     measure("tick, not published", 1, || {
         let Ok(_) = alone.step(&external, &data, 0);
     });
-    measure("rehearsal of a tick, not published", 1, || alone.rehearse(&external, &data));
+    measure("warm-up of a tick, not published", 1, || alone.warm_up(&external, &data));
     let name = RunName::unique("bench-tick");
     let publisher = Publisher::create(&name).expect("this machine has shared memory");
     let mut published = Runner::new(Ladder::default(), Some(publisher));

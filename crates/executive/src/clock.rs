@@ -25,7 +25,7 @@ use rustix::{
 
 /// Length of a slot.
 pub const SLOT: Duration = Duration::from_millis(TICK_MS);
-/// How long before a slot [`Grid::wake_early`] wakes. Enough for a late wake-up and a rehearsal of the tick with
+/// How long before a slot [`Grid::wake_early`] wakes. Enough for a late wake-up and a warm-up of the tick with
 /// cold caches (some 0.1 ms), and little beside a slot: a core is kept awake for at most 1.25 % of the time.
 pub const LEAD: Duration = Duration::from_micros(500);
 
@@ -248,10 +248,10 @@ mod tests {
         ) {
             let late = late.into_iter().map(|n| n.map(Duration::from_nanos)).collect();
             let mut grid = Grid::new(Scripted { now: Duration::from_secs(7), late });
-            for (work, rehearsal) in work {
-                if let Some(rehearsal) = rehearsal {
+            for (work, warm_up) in work {
+                if let Some(warm_up) = warm_up {
                     grid.wake_early();
-                    grid.time.now += Duration::from_nanos(rehearsal);
+                    grid.time.now += Duration::from_nanos(warm_up);
                 }
                 grid.wait();
                 prop_assert!(grid.begin(grid.slot()) <= grid.time.now, "a slot begins before it is run");
@@ -283,7 +283,7 @@ mod tests {
         // A wake-up that is later than the lead does not lose the slot.
         grid.wake_early();
         assert_eq!((grid.wait(), grid.slot(), grid.late()), (0, 2, Duration::from_micros(200)));
-        // Neither does a rehearsal that takes too long.
+        // Neither does a warm-up that takes too long.
         grid.wake_early();
         grid.time.now += Duration::from_millis(41);
         assert_eq!((grid.wait(), grid.slot()), (1, 4));

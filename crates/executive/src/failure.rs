@@ -9,27 +9,13 @@ use levels::ladder::{PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
     Plain,
     handshake::Lower,
-    interface::{
-        CommonMemory, ExternalInputs, Header, HwsCommand, Reason,
-        grip::{GripCommand, GripVerb},
-        hws::HwsReport,
-        jaws::{JawsCommand, JawsVerb},
-        pedestal::{PedestalCommand, PedestalVerb, TableVerb},
-        t3i::{LinkFault, T3iReport},
-    },
+    interface::{CommonMemory, ExternalInputs, Fault, Header, HwsCommand, Reason},
     table::{Row, Table},
     tick::Tick,
 };
 
 /// Processes of [`CommonMemory`], in its order.
 pub const PROCESSES: usize = PROCESS_COUNT;
-
-/// Processes from the lowest upward, as positions in [`CommonMemory`]: T3I, Grip, V-Grip, Tool-Grip, Quick
-/// Change, hand and table of the pedestal, the pedestal, Prim, E-move, Subtask, Task.
-const UPWARD: [usize; PROCESSES] = [4, 6, 7, 8, 5, 10, 11, 9, 3, 2, 1, 0];
-
-/// Position of Task.
-const TASK: usize = 0;
 
 /// Why a run failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,24 +34,11 @@ pub struct Failure {
     pub stopped: bool,
 }
 
-/// What a process reports.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Report {
-    Reason(Reason),
-    Link(LinkFault),
-}
-
-impl Report {
-    const fn is_none(self) -> bool {
-        matches!(self, Self::Reason(Reason::None) | Self::Link(LinkFault::None))
-    }
-}
-
 /// The beginning of a report that lasts.
 #[derive(Clone, Copy)]
 struct Cause {
     tick: Tick,
-    report: Report,
+    fault: Fault,
     external: HwsCommand,
     before: CommonMemory,
     header: Header,
@@ -73,13 +46,13 @@ struct Cause {
 
 /// Looks at every tick and keeps when, and amid what, each process began to report what it reports now.
 pub struct Watch {
-    last: [Report; PROCESSES],
+    last: [Fault; PROCESSES],
     causes: [Option<Cause>; PROCESSES],
 }
 
 impl Default for Watch {
     fn default() -> Self {
-        Self { last: reports(&CommonMemory::ZERO), causes: [None; PROCESSES] }
+        Self { last: faults(&CommonMemory::ZERO), causes: [None; PROCESSES] }
     }
 }
 
@@ -93,20 +66,15 @@ impl Watch {
         before: &CommonMemory,
         after: &CommonMemory,
     ) {
-        let now = reports(after);
-        let headers = headers(after);
-        for (process, cause) in self.causes.iter_mut().enumerate() {
-            let report = now[process];
-            if report.is_none() {
+        let now = faults(after);
+        for ((process, cause), (fault, last)) in
+            ProcessId::ALL.iter().zip(&mut self.causes).zip(now.into_iter().zip(self.last))
+        {
+            if fault.is_none() {
                 *cause = None;
-            } else if report != self.last[process] {
-                *cause = Some(Cause {
-                    tick,
-                    report,
-                    external: external.hws,
-                    before: *before,
-                    header: headers[process],
-                });
+            } else if fault != last {
+                let header = *after.header(*process);
+                *cause = Some(Cause { tick, fault, external: external.hws, before: *before, header });
             }
         }
         self.last = now;
@@ -116,21 +84,19 @@ impl Watch {
     /// order of [`CommonMemory`].
     #[must_use]
     pub fn failure(&self, processes: &[ProcessInfo; PROCESSES]) -> Option<Failure> {
-        let task = self.causes[TASK].as_ref()?;
-        let Report::Reason(reason) = task.report else { return None };
+        let cause_of = |process: ProcessId| self.causes[process.position()].as_ref();
+        let task = cause_of(ProcessId::Task)?;
+        let Fault::Reason(reason) = task.fault else { return None };
         let link = matches!(reason, Reason::LinkOff | Reason::LinkError);
-        let root = UPWARD.into_iter().find(|&process| {
-            self.causes[process].as_ref().is_some_and(|cause| match cause.report {
-                Report::Reason(other) => other == reason && cause.tick <= task.tick,
-                Report::Link(_) => link,
+        let root = ProcessId::upward().find(|process| {
+            cause_of(*process).is_some_and(|cause| match cause.fault {
+                Fault::Reason(other) => other == reason && cause.tick <= task.tick,
+                Fault::Link(_) => link,
             })
         })?;
-        let cause = self.causes[root].as_ref()?;
-        let why = match cause.report {
-            Report::Reason(reason) => reason.text(),
-            Report::Link(fault) => fault.text(),
-        };
-        let process = &processes[root];
+        let cause = cause_of(root)?;
+        let why = cause.fault.text();
+        let process = &processes[root.position()];
         let row = row_of(process, &cause.header);
         let text = format!(
             "{}: {why}, {}{}",
@@ -158,144 +124,23 @@ fn row_of(process: &ProcessInfo, header: &Header) -> Option<(&'static Table, &'s
     Some((table, table.row(header.row)?))
 }
 
-fn reports(memory: &CommonMemory) -> [Report; PROCESSES] {
-    [
-        Report::Reason(memory.task.status.reason),
-        Report::Reason(memory.subtask.status.reason),
-        Report::Reason(memory.emove.status.reason),
-        Report::Reason(memory.prim.status.reason),
-        Report::Link(memory.t3i.status.fault),
-        Report::Reason(memory.quick_change.status.reason),
-        Report::Reason(memory.grip.status.reason),
-        Report::Reason(memory.v_grip.status.reason),
-        Report::Reason(memory.tool_grip.status.reason),
-        Report::Reason(memory.pedestal.status.reason),
-        Report::Reason(memory.hand.status.reason),
-        Report::Reason(memory.table.status.reason),
-    ]
+fn faults(memory: &CommonMemory) -> [Fault; PROCESSES] {
+    let mut faults = [Fault::Reason(Reason::None); PROCESSES];
+    for (process, fault) in ProcessId::ALL.iter().zip(&mut faults) {
+        *fault = memory.said(*process).fault;
+    }
+    faults
 }
 
-/// Headers of all processes in the order of common memory.
-#[must_use]
-pub const fn headers(memory: &CommonMemory) -> [Header; PROCESSES] {
-    [
-        memory.task.header,
-        memory.subtask.header,
-        memory.emove.header,
-        memory.prim.header,
-        memory.t3i.header,
-        memory.quick_change.header,
-        memory.grip.header,
-        memory.v_grip.header,
-        memory.tool_grip.header,
-        memory.pedestal.header,
-        memory.hand.header,
-        memory.table.header,
-    ]
-}
-
-fn while_doing(process: usize, cause: &Cause) -> String {
+fn while_doing(process: ProcessId, cause: &Cause) -> String {
     let command = command(process, &cause.external, &cause.before);
     if command.is_empty() { "without a command".to_owned() } else { format!("while it executed {command}") }
 }
 
-/// The command that a process has, as a person says it; empty for none.
+/// The command that a process has, as one says it; empty for none.
 #[must_use]
-pub fn command(process: usize, hws: &HwsCommand, memory: &CommonMemory) -> String {
-    let words = |words: &[&dyn std::fmt::Display]| {
-        let words: Vec<String> =
-            words.iter().map(ToString::to_string).filter(|word| !word.is_empty()).collect();
-        words.join(" ")
-    };
-    match process {
-        0 => words(&[
-            &hws.command,
-            &hws.object,
-            &at(&hws.source, hws.source_sector),
-            &to(&hws.destination, hws.destination_sector),
-        ]),
-        1 => {
-            let command = &memory.task.subtask;
-            words(&[&command.command, &command.object, &at(&command.location, 0)])
-        }
-        2 => {
-            let command = &memory.subtask.emove;
-            words(&[&command.command, &command.object, &at(&command.location, 0)])
-        }
-        3 => {
-            let command = &memory.emove.prim;
-            words(&[&command.command, &command.sensor])
-        }
-        4 => words(&[&memory.prim.t3i.command]),
-        5 => words(&[&memory.emove.quick_change.command]),
-        6 => grip(&memory.emove.grip),
-        7 => jaws("VG", &memory.emove.v_grip),
-        8 => jaws("TG", &memory.emove.tool_grip),
-        9 => pedestal(&memory.subtask.pedestal),
-        10 => grip(&memory.pedestal.hand),
-        11 => {
-            let command = &memory.pedestal.table;
-            match command.command {
-                TableVerb::Turn => format!("{} to {}", command.command, degrees(command.angle)),
-                _ => command.command.to_string(),
-            }
-        }
-        _ => String::new(),
-    }
-}
-
-fn grip(command: &GripCommand) -> String {
-    match command.command {
-        GripVerb::None => String::new(),
-        verb => format!("{verb} (opening {}, force {} lb)", inches(command.position), command.force),
-    }
-}
-
-/// V-Grip's VG-GRASP, VG-RELEASE, VGRIP-POSE, VG-PAUSE, and Tool-Grip's with TG (VI.4.1, VI.5).
-fn jaws(prefix: &str, command: &JawsCommand) -> String {
-    match command.command {
-        JawsVerb::None => String::new(),
-        JawsVerb::Pose => format!("{prefix}RIP-{}", command.command),
-        JawsVerb::Pause => format!("{prefix}-{}", command.command),
-        verb => format!("{prefix}-{verb} (size {})", inches(command.size)),
-    }
-}
-
-fn pedestal(command: &PedestalCommand) -> String {
-    let (size, angle) = (inches(command.grasp_size), degrees(command.table_angle));
-    match command.command {
-        PedestalVerb::None | PedestalVerb::Pause => command.command.to_string(),
-        PedestalVerb::PreGrip => format!("{} (opening {size}, table at {angle})", command.command),
-        PedestalVerb::Grip => format!("{} (size {size}, force {} lb)", command.command, command.grasp_force),
-        PedestalVerb::Flip => format!("{} by {angle}", command.command),
-        PedestalVerb::Release => format!("{} (opening {size})", command.command),
-    }
-}
-
-/// Hundredths of an inch.
-fn inches(hundredths: i32) -> String {
-    format!("{:.2} in", f64::from(hundredths) / 100.0)
-}
-
-/// Tenths of a degree.
-fn degrees(tenths: i32) -> String {
-    format!("{:.1} degrees", f64::from(tenths) / 10.0)
-}
-
-fn at(location: &dyn std::fmt::Display, sector: i32) -> String {
-    place("at", location, sector)
-}
-
-fn to(location: &dyn std::fmt::Display, sector: i32) -> String {
-    place("to", location, sector)
-}
-
-fn place(word: &str, location: &dyn std::fmt::Display, sector: i32) -> String {
-    match (location.to_string(), sector) {
-        (name, _) if name.is_empty() => String::new(),
-        (name, 0) => format!("{word} {name}"),
-        (name, sector) => format!("{word} {name} sector {sector}"),
-    }
+pub fn command(process: ProcessId, hws: &HwsCommand, memory: &CommonMemory) -> String {
+    memory.show_command(process, |command| command.to_string()).unwrap_or_else(|| hws.to_string())
 }
 
 /// What each level is doing, from Task down, for a failure that no process reports: a command that takes too
@@ -306,10 +151,9 @@ pub fn present_commands(
     hws: &HwsCommand,
     memory: &CommonMemory,
 ) -> String {
-    let headers = headers(memory);
-    let lines = processes.iter().enumerate().filter_map(|(index, process)| {
-        let command = command(index, hws, memory);
-        let (table, row) = row_of(process, &headers[index])?;
+    let lines = ProcessId::ALL.iter().zip(processes).filter_map(|(id, process)| {
+        let command = command(*id, hws, memory);
+        let (table, row) = row_of(process, memory.header(*id))?;
         let text =
             || format!("{} executes {command} (table {}, row {})", process.name, table.name, row.number);
         (!command.is_empty()).then(text)
@@ -319,30 +163,17 @@ pub fn present_commands(
 
 /// The commands that processes have not finished, as people say them: `Grip executed CLOSE-GRIP (...)`; empty for none.
 #[must_use]
-pub fn unfinished_commands(of: &[ProcessId], hws: &HwsCommand, memory: &CommonMemory) -> String {
-    let lines = of.iter().filter(|&&process| is_executing(process, memory)).filter_map(|process| {
-        let command = command(usize::from(process.code()), hws, memory);
+pub fn unfinished_commands(
+    of: impl Iterator<Item = ProcessId>,
+    hws: &HwsCommand,
+    memory: &CommonMemory,
+) -> String {
+    let executing = |process: &ProcessId| memory.said(*process).lower == Lower::Executing;
+    let lines = of.filter(executing).filter_map(|process| {
+        let command = command(process, hws, memory);
         (!command.is_empty()).then(|| format!("{process} executed {command}"))
     });
     lines.collect::<Vec<_>>().join(", ")
-}
-
-fn is_executing(process: ProcessId, memory: &CommonMemory) -> bool {
-    let lower = match process {
-        ProcessId::Task => return memory.task.status.report == HwsReport::Executing,
-        ProcessId::T3i => return memory.t3i.status.report == T3iReport::Executing,
-        ProcessId::Subtask => memory.subtask.status.report.lower(),
-        ProcessId::Emove => memory.emove.status.report.lower(),
-        ProcessId::Prim => memory.prim.status.report.lower(),
-        ProcessId::QuickChange => memory.quick_change.status.report.lower(),
-        ProcessId::Grip => memory.grip.status.report.lower(),
-        ProcessId::VGrip => memory.v_grip.status.report.lower(),
-        ProcessId::ToolGrip => memory.tool_grip.status.report.lower(),
-        ProcessId::Pedestal => memory.pedestal.status.report.lower(),
-        ProcessId::Hand => memory.hand.status.report.lower(),
-        ProcessId::RotaryTable => memory.table.status.report.lower(),
-    };
-    lower == Lower::Executing
 }
 
 #[cfg(test)]
@@ -350,7 +181,13 @@ mod tests {
     use super::*;
     use rcs_core::{
         Actions, Plain, Variables, decision_table,
-        interface::{pedestal::TableCommand, subtask::SubtaskVerb},
+        interface::{
+            grip::GripVerb,
+            jaws::{JawsCommand, JawsVerb, TOOL_GRIPPER},
+            pedestal::{PedestalVerb, TableCommand, TableVerb},
+            subtask::SubtaskVerb,
+            t3i::LinkFault,
+        },
         name::Name10,
     };
 
@@ -481,13 +318,15 @@ mod tests {
     fn every_process_tells_its_command() {
         let mut memory = CommonMemory::default();
         memory.emove.v_grip = JawsCommand { command: JawsVerb::Grasp, size: 200, ..JawsCommand::default() };
-        memory.emove.tool_grip.command = JawsVerb::Pose;
+        memory.emove.tool_grip =
+            JawsCommand { command: JawsVerb::Pose, end_effector_id: TOOL_GRIPPER, ..JawsCommand::default() };
         memory.subtask.pedestal.command = PedestalVerb::Flip;
         memory.subtask.pedestal.table_angle = 1835;
         memory.pedestal.hand.command = GripVerb::CloseGrip;
         memory.pedestal.table = TableCommand { number: 1, command: TableVerb::Turn, angle: -300 };
         let told = |process| command(process, &HwsCommand::default(), &memory);
-        let commands: Vec<String> = (7..PROCESSES).map(told).collect();
+        let from_v_grip = ProcessId::ALL.iter().skip_while(|process| **process != ProcessId::VGrip);
+        let commands: Vec<String> = from_v_grip.copied().map(told).collect();
         assert_eq!(
             commands,
             [
@@ -498,9 +337,10 @@ mod tests {
                 "TURN to -30.0 degrees",
             ]
         );
-        assert!(
-            (0..PROCESSES).all(|p| command(p, &HwsCommand::default(), &CommonMemory::default()).is_empty())
-        );
+        let silent = |process: &ProcessId| {
+            command(*process, &HwsCommand::default(), &CommonMemory::default()).is_empty()
+        };
+        assert!(ProcessId::ALL.iter().all(silent));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! The control processes are pure state machines; this crate gives them time and surroundings. [`runner`]
 //! steps them with tick-parity buffers and sums up what they did, [`clock`] says when, [`realtime`] asks the
-//! system for punctuality, [`laps`] says where the time goes and [`overrun`] what is done if there is too little
+//! system for punctuality, [`timing`] says where the time goes and [`overrun`] what is done if there is too little
 //! of it, [`serial`] is the line to a real robot, [`alloc`] proves that nothing is allocated
 //! on the way, [`boards`] spreads the processes over operating system processes, [`memory`] lets others look on,
 //! [`status`] sums up what they see, [`generations`] lets task data be loaded between commands, and [`failure`] finds the
@@ -17,7 +17,6 @@ pub mod clock;
 pub mod failure;
 pub mod generations;
 pub mod histogram;
-pub mod laps;
 pub mod machine;
 pub mod memory;
 pub mod overrun;
@@ -25,3 +24,4 @@ pub mod realtime;
 pub mod runner;
 pub mod serial;
 pub mod status;
+pub mod timing;

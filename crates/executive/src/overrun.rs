@@ -14,7 +14,7 @@ use rcs_core::{interface::CommonMemory, pose::WireFrame};
 
 use crate::{
     clock::SLOT,
-    laps::{Laps, Part},
+    timing::{Stage, StageTimes},
 };
 
 /// Ticks in a row, one second, that must be punctual before a robot that holds goes on.
@@ -73,7 +73,7 @@ pub struct Overrun {
     pub slots: u64,
     /// The part of the tick before that took longest; `None` if the tick was over in time and the thread was
     /// woken too late.
-    pub part: Option<Part>,
+    pub part: Option<Stage>,
     /// How long that part took, or how late the thread was woken.
     pub taken: Duration,
 }
@@ -110,7 +110,7 @@ enum Reaction {
 pub struct Overruns {
     policy: Policy,
     waking: u64,
-    parts: Vec<(Part, u64)>,
+    parts: Vec<(Stage, u64)>,
     reaction: Reaction,
     commanded: WireFrame,
 }
@@ -122,15 +122,15 @@ impl Overruns {
         Self {
             policy,
             waking: 0,
-            parts: Part::all().map(|part| (part, 0)).collect(),
+            parts: Stage::all().map(|part| (part, 0)).collect(),
             reaction: Reaction::None,
             commanded: WireFrame::default(),
         }
     }
 
-    /// A tick begins: `slots` were skipped before it, `laps` are those of the tick before, and the thread was
+    /// A tick begins: `slots` were skipped before it, `stage_times` are those of the tick before, and the thread was
     /// there `late` after the beginning of the slot that it waited for. Returns the overrun, if it is one.
-    pub fn observe(&mut self, slots: u64, laps: &Laps, late: Duration) -> Option<Overrun> {
+    pub fn observe(&mut self, slots: u64, stage_times: &StageTimes, late: Duration) -> Option<Overrun> {
         if slots == 0 {
             if let Reaction::Holding { punctual } = &mut self.reaction {
                 *punctual += 1;
@@ -140,7 +140,7 @@ impl Overruns {
             }
             return None;
         }
-        let (part, taken, tick) = laps.worst();
+        let (part, taken, tick) = stage_times.worst();
         let overrun = if Duration::from_nanos(tick) >= SLOT {
             if let Some((_, count)) = self.parts.iter_mut().find(|(other, _)| *other == part) {
                 *count += slots;
@@ -198,7 +198,7 @@ impl Overruns {
 
     /// Skipped slots by what is to blame: `None` is the system that woke the thread late. What is not to blame
     /// for any is left out.
-    pub fn by_part(&self) -> impl Iterator<Item = (Option<Part>, u64)> {
+    pub fn by_part(&self) -> impl Iterator<Item = (Option<Stage>, u64)> {
         let parts = self.parts.iter().map(|(part, count)| (Some(*part), *count));
         std::iter::once((None, self.waking)).chain(parts).filter(|(_, count)| *count > 0)
     }
@@ -211,19 +211,19 @@ mod tests {
 
     const LATE: Duration = Duration::from_millis(95);
 
-    /// Laps of a tick in which the cell took so long.
-    fn laps(cell: Duration) -> Laps {
-        let mut laps = Laps::default();
-        laps.begin();
-        laps.lap(Part::Inputs);
+    /// StageTimes of a tick in which the cell took so long.
+    fn stage_times(cell: Duration) -> StageTimes {
+        let mut stage_times = StageTimes::default();
+        stage_times.begin();
+        stage_times.mark(Stage::Inputs);
         thread::sleep(cell);
-        laps.lap(Part::Cell);
-        laps
+        stage_times.mark(Stage::Cell);
+        stage_times
     }
 
     fn punctual(overruns: &mut Overruns, ticks: u32) {
-        let laps = Laps::default();
-        (0..ticks).for_each(|_| assert_eq!(overruns.observe(0, &laps, Duration::ZERO), None));
+        let stage_times = StageTimes::default();
+        (0..ticks).for_each(|_| assert_eq!(overruns.observe(0, &stage_times, Duration::ZERO), None));
     }
 
     #[test]
@@ -246,23 +246,23 @@ mod tests {
     #[test]
     fn the_part_that_took_longest_or_the_system_is_to_blame() {
         let mut overruns = Overruns::new(Policy::Count);
-        let (slow, quick) = (laps(Duration::from_millis(41)), laps(Duration::ZERO));
+        let (slow, quick) = (stage_times(Duration::from_millis(41)), stage_times(Duration::ZERO));
         let overrun = overruns.observe(2, &slow, LATE).expect("slots were skipped");
-        assert_eq!((overrun.slots, overrun.part), (2, Some(Part::Cell)));
+        assert_eq!((overrun.slots, overrun.part), (2, Some(Stage::Cell)));
         assert!(overrun.taken >= Duration::from_millis(41), "{overrun}");
         let taken = overrun.taken.as_secs_f64() * 1e3;
         assert_eq!(overrun.to_string(), format!("2 slots of 40 ms skipped: cell took {taken:.1} ms"));
         let overrun = overruns.observe(1, &quick, LATE).expect("a slot was skipped");
         assert_eq!(overrun.to_string(), "1 slot of 40 ms skipped: woken up 95.0 ms late");
         overruns.observe(3, &slow, LATE);
-        assert_eq!(overruns.by_part().collect::<Vec<_>>(), [(None, 1), (Some(Part::Cell), 5)]);
+        assert_eq!(overruns.by_part().collect::<Vec<_>>(), [(None, 1), (Some(Stage::Cell), 5)]);
         assert_eq!((overruns.knob(700), overruns.is_holding()), (700, false));
     }
 
     #[test]
     fn the_robot_holds_until_a_second_was_punctual() {
         let mut overruns = Overruns::new(Policy::Hold(2));
-        let quick = laps(Duration::ZERO);
+        let quick = stage_times(Duration::ZERO);
         overruns.observe(1, &quick, LATE);
         assert_eq!(overruns.knob(700), 700, "one slot is not yet enough");
         overruns.observe(2, &quick, LATE);
@@ -282,21 +282,21 @@ mod tests {
         let mut overruns = Overruns::new(Policy::Stop(1));
         let mut memory = CommonMemory::default();
         (0..50).for_each(|_| assert_eq!(overruns.ends(&memory), None, "nothing was skipped"));
-        let because = overruns.observe(4, &laps(Duration::ZERO), LATE);
+        let because = overruns.observe(4, &stage_times(Duration::ZERO), LATE);
         assert_eq!(overruns.knob(1000), 0);
         for moving in 1..30 {
             memory.prim.t3i.frame.tool[0] = moving;
             assert_eq!(overruns.ends(&memory), None);
         }
         (1..AT_REST).for_each(|_| assert_eq!(overruns.ends(&memory), None));
-        overruns.observe(1, &laps(Duration::ZERO), LATE);
+        overruns.observe(1, &stage_times(Duration::ZERO), LATE);
         assert_eq!(overruns.ends(&memory), because, "the first overrun is the reason");
     }
 
     #[test]
     fn a_robot_that_never_rests_does_not_keep_the_run_from_ending() {
         let mut overruns = Overruns::new(Policy::Stop(1));
-        overruns.observe(1, &laps(Duration::ZERO), LATE);
+        overruns.observe(1, &stage_times(Duration::ZERO), LATE);
         let ticks = (0..1000).find(|&tick| {
             let mut memory = CommonMemory::default();
             memory.prim.t3i.frame.tool[0] = tick % 2 + 1;

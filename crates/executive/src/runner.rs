@@ -7,7 +7,7 @@
 //!
 //! A tick takes some microseconds if its code and its data are in the caches, and ten times as long if they
 //! are not; in the 40 ms between two ticks they go. The processes are pure state machines, so a tick can be
-//! *rehearsed* ([`Runner::rehearse`]): a copy of the ladder runs it on what is there already, and the result
+//! *warmed up* ([`Runner::warm_up`]): a copy of the ladder runs it on what is there already, and the result
 //! is thrown away. The caches, the translation buffers and the branch predictor keep what they have learned.
 
 use std::convert::Infallible;
@@ -25,8 +25,8 @@ use crate::{
     alloc::{self, Section},
     failure::Watch,
     histogram::Histogram,
-    laps::{Laps, Part},
     memory::{Publisher, buffers::Pulse},
+    timing::{Stage, StageTimes},
 };
 
 /// A ladder of control processes that can be stepped: [`Ladder`], or a test's own.
@@ -64,16 +64,16 @@ pub trait Levels<Data: ?Sized> {
         self.step(tick, before, external, data, after)
     }
 
-    /// A copy that can rehearse a tick; `None` if there is nothing here that a rehearsal would make faster.
-    fn understudy(&self) -> Option<Box<Self>>
+    /// A copy that can warm up a tick; `None` if there is nothing here that a warm-up would make faster.
+    fn shadow(&self) -> Option<Box<Self>>
     where
         Self: Sized,
     {
         None
     }
 
-    /// Make the understudy equal again. Does not allocate.
-    fn teach(&self, _understudy: &mut Self)
+    /// Make the shadow equal again. Does not allocate.
+    fn copy_to(&self, _shadow: &mut Self)
     where
         Self: Sized,
     {
@@ -113,12 +113,12 @@ impl Levels<TaskData<'_>> for Ladder {
         Ok(())
     }
 
-    fn understudy(&self) -> Option<Box<Self>> {
+    fn shadow(&self) -> Option<Box<Self>> {
         Some(Box::new(self.clone()))
     }
 
-    fn teach(&self, understudy: &mut Self) {
-        understudy.clone_from(self);
+    fn copy_to(&self, shadow: &mut Self) {
+        shadow.clone_from(self);
     }
 }
 
@@ -131,11 +131,11 @@ pub struct Runner<L> {
     scratch: Box<[u8]>,
     watch: Box<Watch>,
     times: Box<Histogram>,
-    laps: Laps,
-    /// The copy of the ladder that rehearses; made by the first rehearsal.
-    understudy: Option<Box<L>>,
+    stage_times: StageTimes,
+    /// The copy of the ladder that warms up; made by the first warm-up.
+    shadow: Option<Box<L>>,
     publisher: Option<Publisher>,
-    /// What was published last, for rehearsals.
+    /// What was published last, for warm-ups.
     published: Box<(ExternalInputs, Pulse)>,
     allocations_at_start: u64,
     /// Allocations of processes that run elsewhere.
@@ -155,8 +155,8 @@ impl<L> Runner<L> {
             scratch: vec![0; CommonMemory::SIZE].into_boxed_slice(),
             watch: Box::default(),
             times: Box::default(),
-            laps: Laps::default(),
-            understudy: None,
+            stage_times: StageTimes::default(),
+            shadow: None,
             publisher,
             published: Box::default(),
             allocations_at_start: alloc::allocations(),
@@ -184,14 +184,14 @@ impl<L> Runner<L> {
         L: Levels<Data>,
     {
         let _section = Section::enter();
-        let laps = &mut self.laps;
-        laps.lap(Part::Inputs);
+        let stage_times = &mut self.stage_times;
+        stage_times.mark(Stage::Inputs);
         let mut controller_ns = 0;
         let tick = self.tick.next();
         let [even, odd] = &mut self.halves;
         let (before, after) = if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
         self.levels.step_observed(tick, before, external, data, after, &mut |process| {
-            controller_ns += laps.lap(process.map_or(Part::Buffers, Part::Process));
+            controller_ns += stage_times.mark(process.map_or(Stage::Buffers, Stage::Process));
         })?;
         self.tick = tick;
         self.elsewhere = self.levels.allocations();
@@ -207,11 +207,11 @@ impl<L> Runner<L> {
             publisher.publish(external, after, pulse);
             *self.published = (*external, pulse);
         }
-        self.last_ns = controller_ns + self.laps.lap(Part::Buffers);
+        self.last_ns = controller_ns + self.stage_times.mark(Stage::Buffers);
         self.times.add(self.last_ns);
         self.watch.observe(self.tick, external, before, after);
         self.digest.add_record(after, &mut self.scratch);
-        self.laps.lap(Part::Bookkeeping);
+        self.stage_times.mark(Stage::Bookkeeping);
         Ok(after)
     }
 
@@ -223,23 +223,23 @@ impl<L> Runner<L> {
     /// Run the next tick on a copy and forget it: see the head of this module. Changes nothing that anybody
     /// can see; what was published last is published once more. Between two ticks, when there is time.
     ///
-    /// The first rehearsal makes the copy, which allocates; no later one does.
-    pub fn rehearse<Data: ?Sized>(&mut self, external: &ExternalInputs, data: &Data)
+    /// The first warm-up makes the copy, which allocates; no later one does.
+    pub fn warm_up<Data: ?Sized>(&mut self, external: &ExternalInputs, data: &Data)
     where
         L: Levels<Data>,
     {
-        let Some(understudy) = &mut self.understudy else {
-            self.understudy = self.levels.understudy();
+        let Some(shadow) = &mut self.shadow else {
+            self.shadow = self.levels.shadow();
             return;
         };
         let _section = Section::enter();
-        self.levels.teach(understudy);
+        self.levels.copy_to(shadow);
         let tick = self.tick.next();
         let [even, odd] = &mut self.halves;
         let (before, after) = if tick.0.is_multiple_of(2) { (odd, even) } else { (even, odd) };
         // The half that the tick will write anew, all of it.
         // Whether it succeeds does not matter: the tick itself follows.
-        let _ = understudy.step_observed(tick, before, external, data, after, &mut |_| {});
+        let _ = shadow.step_observed(tick, before, external, data, after, &mut |_| {});
         if let Some(publisher) = &mut self.publisher {
             publisher.publish(&self.published.0, before, self.published.1);
         }
@@ -247,14 +247,14 @@ impl<L> Runner<L> {
 
     /// Stopwatch of the parts of a tick; who runs more of a tick than [`step`](Self::step) tells it of the
     /// other parts.
-    pub const fn laps_mut(&mut self) -> &mut Laps {
-        &mut self.laps
+    pub const fn stage_times_mut(&mut self) -> &mut StageTimes {
+        &mut self.stage_times
     }
 
     /// Times of the parts of a tick.
     #[must_use]
-    pub const fn laps(&self) -> &Laps {
-        &self.laps
+    pub const fn stage_times(&self) -> &StageTimes {
+        &self.stage_times
     }
 
     /// The ladder.
@@ -344,12 +344,12 @@ mod tests {
             Ok(())
         }
 
-        fn understudy(&self) -> Option<Box<Self>> {
+        fn shadow(&self) -> Option<Box<Self>> {
             Some(Box::new(self.clone()))
         }
 
-        fn teach(&self, understudy: &mut Self) {
-            understudy.clone_from(self);
+        fn copy_to(&self, shadow: &mut Self) {
+            shadow.clone_from(self);
         }
     }
 
@@ -367,13 +367,13 @@ mod tests {
     }
 
     #[test]
-    fn a_rehearsal_changes_nothing() {
+    fn a_warm_up_changes_nothing() {
         let (mut one, mut other) = (Runner::new(Chain::default(), None), Runner::new(Chain::default(), None));
         let external = ExternalInputs::default();
         for data in 1..=10 {
             let Ok(expected) = one.step(&external, &data, 0).copied();
             // Even if the tick itself is given something else.
-            (0..3).for_each(|_| other.rehearse(&external, &77));
+            (0..3).for_each(|_| other.warm_up(&external, &77));
             let Ok(memory) = other.step(&external, &data, 0);
             assert_eq!(*memory, expected);
         }

@@ -11,10 +11,7 @@ use rcs_core::{
 };
 use serde::Serialize;
 
-use crate::{
-    failure::{command, headers},
-    memory::buffers::Pulse,
-};
+use crate::{failure::command, memory::buffers::Pulse};
 
 /// A process.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -64,14 +61,12 @@ impl Status {
     /// Sum up what a tick left.
     #[must_use]
     pub fn of(run: &str, external: &ExternalInputs, memory: &CommonMemory, pulse: &Pulse) -> Self {
-        let headers = headers(memory);
-        let processes = ProcessId::ALL.iter().enumerate().map(|(index, &id)| {
-            let header = headers[index];
-            let info = &Ladder::processes()[index];
+        let processes = ProcessId::ALL.iter().zip(Ladder::processes()).map(|(&id, info)| {
+            let header = memory.header(id);
             ProcessStatus {
                 process: info.name,
-                command: command(index, &external.hws, memory),
-                status: report(id, memory),
+                command: command(id, &external.hws, memory),
+                status: memory.said(id).report,
                 table: info.table(header.table).map(|table| table.name),
                 row: header.row,
                 step: header.step.to_string(),
@@ -96,24 +91,6 @@ impl Status {
 /// A process that can run in another system.
 const fn of_pedestal(process: ProcessId) -> bool {
     matches!(process, ProcessId::Pedestal | ProcessId::Hand | ProcessId::RotaryTable)
-}
-
-/// The word of a process's status report.
-const fn report(process: ProcessId, memory: &CommonMemory) -> &'static str {
-    match process {
-        ProcessId::Task => memory.task.status.report.text(),
-        ProcessId::Subtask => memory.subtask.status.report.text(),
-        ProcessId::Emove => memory.emove.status.report.text(),
-        ProcessId::Prim => memory.prim.status.report.text(),
-        ProcessId::T3i => memory.t3i.status.report.text(),
-        ProcessId::QuickChange => memory.quick_change.status.report.text(),
-        ProcessId::Grip => memory.grip.status.report.text(),
-        ProcessId::VGrip => memory.v_grip.status.report.text(),
-        ProcessId::ToolGrip => memory.tool_grip.status.report.text(),
-        ProcessId::Pedestal => memory.pedestal.status.report.text(),
-        ProcessId::Hand => memory.hand.status.report.text(),
-        ProcessId::RotaryTable => memory.table.status.report.text(),
-    }
 }
 
 impl fmt::Display for Status {

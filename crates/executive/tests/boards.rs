@@ -261,7 +261,7 @@ fn a_board_that_is_replaced_goes_on_as_one_whose_processes_were_restarted() {
         let mut one = Runner::new(Ladder::default(), None);
         for tick in (1..=TICKS).map(Tick) {
             if tick == restarted {
-                Board::Two.processes().iter().for_each(|&process| one.levels_mut().restart(process));
+                Board::Two.processes().for_each(|process| one.levels_mut().restart(process));
             }
             let Ok(_) = one.step(&external(tick), &data, 0);
         }

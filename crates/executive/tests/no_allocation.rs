@@ -48,12 +48,12 @@ impl Levels<()> for Failing {
         Ok(())
     }
 
-    fn understudy(&self) -> Option<Box<Self>> {
+    fn shadow(&self) -> Option<Box<Self>> {
         Some(Box::new(self.clone()))
     }
 
-    fn teach(&self, understudy: &mut Self) {
-        understudy.clone_from(self);
+    fn copy_to(&self, shadow: &mut Self) {
+        shadow.clone_from(self);
     }
 }
 
@@ -96,10 +96,10 @@ fn a_tick_does_not_allocate_and_one_that_does_is_noticed() {
     let publisher = Publisher::create(&name).expect("this machine has shared memory");
     let mut runner = Runner::new(Failing, Some(publisher));
     let external = ExternalInputs::default();
-    // The first rehearsal makes the copy that rehearses.
-    runner.rehearse(&external, &());
+    // The first warm-up makes the copy that warms up.
+    runner.warm_up(&external, &());
     for _ in 0..10_000 {
-        runner.rehearse(&external, &());
+        runner.warm_up(&external, &());
         let Ok(_) = runner.step(&external, &(), 0);
     }
     assert_eq!(runner.allocations(), Some(0));

@@ -22,7 +22,7 @@ use rcs_core::{
     handshake::{Arrival, Lower, Receiver},
     interface::{Header, Reason, Report},
     name::Name16,
-    table::Choice,
+    table::{Choice, Decision, Verdict},
     tick::Tick,
 };
 
@@ -95,6 +95,13 @@ impl Asked {
     }
 }
 
+/// What a table ACCEPT decides in a process that does something beside its command in the same tick: it watches or calibrates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+pub enum Refusal {
+    /// Report an error.
+    Fail(Reason),
+}
+
 /// What the current command has ordered last of a process below, once failures are passed up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Work {
@@ -138,6 +145,38 @@ impl Execution {
             Course::Rest | Course::Continue => {}
         }
         decision.action
+    }
+
+    /// Consult [`EXECUTE`], and the tables of the process if it says so: from the step `first` if the command is new, else from `step`.
+    /// Gives the action of the row that decided; none if no table of the process was consulted.
+    pub fn decide<Action, Step: Copy>(
+        &mut self,
+        arrival: Arrival,
+        first: Step,
+        step: &mut Step,
+        tables: impl FnOnce(Step) -> Choice<Action, Step>,
+    ) -> Option<Action> {
+        match self.course(arrival) {
+            Course::Rest | Course::Refuse => return None,
+            Course::Begin => *step = first,
+            Course::Continue => {}
+        }
+        let choice = tables(*step);
+        self.note(&choice);
+        *step = choice.next;
+        Some(choice.action)
+    }
+
+    /// Note what a table ACCEPT has decided whose process does more in the same tick. False if it refused the command.
+    pub fn accepts<Step>(&mut self, verdict: &Verdict<Refusal, Step, ()>) -> bool {
+        match *verdict {
+            Verdict::Passed(()) => true,
+            Verdict::Decided(Decision { row, action: Refusal::Fail(reason), .. }) => {
+                (self.table, self.row) = (ACCEPT_NUMBER, row);
+                self.fail(reason);
+                false
+            }
+        }
     }
 
     /// Note which row of which table fired.
@@ -225,6 +264,18 @@ mod tests {
         assert_eq!(course(2, refuse), (Course::Begin, Report::Error, Reason::UnknownObject));
         assert_eq!(course(2, |_| {}), (Course::Rest, Report::Error, Reason::UnknownObject));
         assert_eq!(course(3, |_| {}), (Course::Begin, Report::Executing, Reason::None));
+    }
+
+    #[test]
+    fn a_refusal_beside_something_else_ends_the_command() {
+        let mut e = Execution::default();
+        e.course(Arrival::New);
+        assert!(e.accepts(&Verdict::<Refusal, (), ()>::Passed(())));
+        assert_eq!((e.report(), e.table), (Report::Executing, 0));
+        let refusal = Decision { row: 2, action: Refusal::Fail(Reason::UnknownCommand), next: () };
+        assert!(!e.accepts(&Verdict::Decided(refusal)));
+        assert_eq!((e.report(), e.reason, e.row), (Report::Error, Reason::UnknownCommand, 2));
+        assert!(!e.begins(Arrival::New));
     }
 
     #[test]

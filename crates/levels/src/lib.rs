@@ -46,7 +46,6 @@ pub mod execution;
 pub mod grip;
 pub mod jaws;
 pub mod ladder;
-mod old_execution;
 pub mod pedestal;
 pub mod places;
 pub mod prim;
@@ -54,3 +53,18 @@ pub mod quick_change;
 pub mod subtask;
 pub mod t3i;
 pub mod task;
+
+/// The types of the control processes, each under its identifier in `rcs_core::for_each_process!`.
+pub mod processes {
+    pub use crate::{
+        emove::Emove,
+        grip::Grip,
+        jaws::{ToolGrip, VGrip},
+        pedestal::{Hand, Pedestal, Table as RotaryTable},
+        prim::Prim,
+        quick_change::QuickChange,
+        subtask::Subtask,
+        t3i::T3i,
+        task::Task,
+    };
+}

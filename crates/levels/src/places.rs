@@ -58,17 +58,3 @@ impl From<LookupError> for Missing {
         }
     }
 }
-
-/// Until all processes are converted.
-#[must_use]
-pub const fn reason_of(error: &LookupError) -> rcs_core::interface::Reason {
-    use rcs_core::interface::Reason;
-    match error {
-        LookupError::UnknownLocation { .. } | LookupError::OwnerOnly { .. } => Reason::UnknownLocation,
-        LookupError::UnknownObject { .. } => Reason::UnknownObject,
-        LookupError::ObjectNeeded { .. } => Reason::NoObjectNamed,
-        LookupError::NotAssigned { .. } => Reason::NoArrayForObject,
-        LookupError::NoSectors { .. } | LookupError::SectorRange { .. } => Reason::SectorOutOfRange,
-        LookupError::NoGrip { .. } => Reason::NoGripMovetable,
-    }
-}

@@ -3,15 +3,12 @@
 use std::{path::Path, sync::OnceLock};
 
 use levels::emove::{
-    route::{Ahead, Goal, LegGoal, Route},
-    state::{Sort, Stance},
+    robot_place::{GoneTo, ObjectGrip, RobotPlace},
+    route::{Ahead, Goal, LegGoal, Planning, Route},
 };
 use rcs_core::{
     frame::Frame,
-    interface::{
-        Reason,
-        emove::{EmoveCommand, EmoveVerb},
-    },
+    interface::emove::{EmoveCommand, EmoveVerb},
     name::{Name10, Name16},
     pose::Pose,
 };
@@ -54,27 +51,21 @@ fn command(verb: EmoveVerb, object: &str, grip: i32, at: &Location) -> EmoveComm
     }
 }
 
-fn stance(sort: Sort, object: &str, grip: i32, at: &Location, frame: &Frame) -> Stance {
-    Stance {
-        known: true,
-        sort,
-        location: at.name,
-        kind: at.place.kind,
-        record: at.place.locpt.number(),
-        array: at.place.array.number(),
-        object: Name16::new(object).unwrap(),
-        grip,
-        pose: Pose::from_frame(frame),
-    }
+fn robot_at(gone_to: GoneTo, at: &Location, frame: &Frame) -> RobotPlace {
+    RobotPlace { gone_to, location: at.name, place: at.place, pose: Pose::from_frame(frame) }
+}
+
+fn gripped(object: &str, grip: i32) -> ObjectGrip {
+    ObjectGrip { object: Name16::new(object).unwrap(), grip }
 }
 
 /// The whole route as text: `departure A/D-8`, `UNIT-V1`, `goal A/D-10`, `goal`, each with the velocity of its segment.
-fn legs(mut route: Route, departure: &Frame) -> Vec<(String, i32)> {
+fn legs(mut route: Route) -> Vec<(String, i32)> {
     let data = data();
-    (route.departure, route.goal) = (1_000_001, 1_000_002);
+    (route.departure.number, route.goal.number) = (1_000_001, 1_000_002);
     let mut all = Vec::new();
     while route.ahead(&data) != Ahead::Nothing {
-        let leg = route.leg(departure, &data).unwrap();
+        let leg = route.leg(&data).unwrap();
         let name =
             |id: u32| data.movetables.get(id as usize - 1).map_or(String::new(), |m| format!(" {}", m.name));
         let text = match leg.at {
@@ -95,12 +86,12 @@ fn planned(
     object: &str,
     grip: i32,
     to: &Location,
-    from: &Stance,
-) -> Result<Vec<(String, i32)>, Reason> {
+    from: Option<&RobotPlace>,
+) -> Result<Vec<(String, i32)>, Planning> {
     let command = command(verb, object, grip, to);
     let goal = Goal::new(&command, &to.frame, &data())?;
     let route = Route::plan(&command, &goal, from, &data())?;
-    Ok(legs(route, &from.pose.to_frame().unwrap()))
+    Ok(legs(route))
 }
 
 fn texts(expected: &[(&str, i32)]) -> Vec<(String, i32)> {
@@ -112,8 +103,8 @@ fn the_blank_goes_from_the_tray_into_the_vise() {
     let tray = location("UNIT_1", 4, "LINKBAR1_BH");
     let vise = location("PFIXTURE", 0, "");
     let held = data().grip_frame(&Name16::new("LINKBAR1_BH").unwrap(), 2, &tray).unwrap();
-    let from = stance(Sort::Object, "LINKBAR1_BH", 2, &tray, &held);
-    let route = planned(EmoveVerb::MovObjTo, "LINKBAR1_BH", 2, &vise, &from).unwrap();
+    let from = robot_at(GoneTo::Object(gripped("LINKBAR1_BH", 2)), &tray, &held);
+    let route = planned(EmoveVerb::MovObjTo, "LINKBAR1_BH", 2, &vise, Some(&from)).unwrap();
     assert_eq!(
         route,
         texts(&[
@@ -134,24 +125,24 @@ fn the_blank_goes_from_the_tray_into_the_vise() {
 fn hold_then_seat_needs_no_trajectory_and_no_depart() {
     let vise = location("PFIXTURE", 0, "");
     let hold = data().grip_frame(&Name16::new("H-LINKBAR1_BH").unwrap(), 1, &vise).unwrap();
-    let from = stance(Sort::Object, "H-LINKBAR1_BH", 1, &vise, &hold);
+    let from = robot_at(GoneTo::Object(gripped("H-LINKBAR1_BH", 1)), &vise, &hold);
     assert_eq!(
-        planned(EmoveVerb::MovToObj, "S-LINKBAR1_BH", 1, &vise, &from).unwrap(),
+        planned(EmoveVerb::MovToObj, "S-LINKBAR1_BH", 1, &vise, Some(&from)).unwrap(),
         texts(&[("goal", 5)])
     );
     // Where the robot is already, nothing is left to do.
-    assert_eq!(planned(EmoveVerb::MovToObj, "H-LINKBAR1_BH", 1, &vise, &from).unwrap(), []);
+    assert_eq!(planned(EmoveVerb::MovToObj, "H-LINKBAR1_BH", 1, &vise, Some(&from)).unwrap(), []);
 }
 
 #[test]
 fn the_view_at_unit_1_is_approached_from_above() {
     let (home, tray) = (location("HOME", 0, ""), location("UNIT_1", 4, "LINKBAR1_BH"));
-    let from = stance(Sort::Location, "", 0, &home, &home.frame);
-    let route = planned(EmoveVerb::MovToVu, "LINKBAR1_BH", 2, &tray, &from).unwrap();
+    let from = robot_at(GoneTo::Location, &home, &home.frame);
+    let route = planned(EmoveVerb::MovToVu, "LINKBAR1_BH", 2, &tray, Some(&from)).unwrap();
     assert_eq!(route, texts(&[("HOM-SAF-3", 100), ("UNIT-V1", 100), ("goal D/A+10rwz", 40), ("goal", 40)]));
     let command = command(EmoveVerb::MovToVu, "LINKBAR1_BH", 2, &tray);
     let goal = Goal::new(&command, &tray.frame, &data()).unwrap();
-    assert_eq!(goal.opening, 500);
+    assert_eq!(goal.opening, Some(500));
     let view = data().movetable_named(&Name10::new("GR-PIC").unwrap()).unwrap();
     assert_ne!(view, MovtabId::NULL);
     assert!(data().moved(&tray.frame, view).distance(&goal.frame).inches < 1e-9);
@@ -161,13 +152,12 @@ fn the_view_at_unit_1_is_approached_from_above() {
 fn what_is_missing_has_a_reason() {
     let (home, vise) = (location("HOME", 0, ""), location("PFIXTURE", 0, ""));
     let tray = location("UNIT_1", 4, "LINKBAR1_BH");
-    let known = stance(Sort::Location, "", 0, &home, &home.frame);
-    let lost = Stance { known: false, ..known };
-    assert_eq!(planned(EmoveVerb::MovToLoc, "", 0, &vise, &lost), Err(Reason::UnknownStart));
+    let known = robot_at(GoneTo::Location, &home, &home.frame);
+    assert_eq!(planned(EmoveVerb::MovToLoc, "", 0, &vise, None), Err(Planning::NoStart));
     assert_eq!(
-        planned(EmoveVerb::MovToLoc, "", 0, &location("UT-1-TEST", 0, ""), &known),
-        Err(Reason::NoTrajectory)
+        planned(EmoveVerb::MovToLoc, "", 0, &location("UT-1-TEST", 0, ""), Some(&known)),
+        Err(Planning::NoTrajectory)
     );
-    assert_eq!(planned(EmoveVerb::MovToObj, "LINKBAR1_BH", 7, &tray, &known), Err(Reason::UnknownGrip));
-    assert_eq!(planned(EmoveVerb::MovToVu, "LINKBAR1", 2, &tray, &known), Err(Reason::BadRecord));
+    assert_eq!(planned(EmoveVerb::MovToObj, "LINKBAR1_BH", 7, &tray, Some(&known)), Err(Planning::NoSizes));
+    assert_eq!(planned(EmoveVerb::MovToVu, "LINKBAR1", 2, &tray, Some(&known)), Err(Planning::NoView));
 }

@@ -3,7 +3,9 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use syn::{
-    Attribute, Ident, Path, Result, Token, Visibility, braced, parenthesized,
+    Attribute, Ident, Path, Result, Token, Visibility, braced,
+    ext::IdentExt as _,
+    parenthesized,
     parse::{Parse, ParseStream},
     parse2,
     punctuated::Punctuated,
@@ -93,11 +95,11 @@ impl Entry {
     }
 }
 
-/// The path with another last name.
+/// The path with another last name; a table MOVE is decided by `r#move`.
 fn beside(path: &Path, name: impl FnOnce(&str) -> String) -> Path {
     let mut path = path.clone();
     if let Some(last) = path.segments.last_mut() {
-        last.ident = Ident::new(&name(&last.ident.to_string()), last.ident.span());
+        last.ident = Ident::new(&name(&last.ident.unraw().to_string()), last.ident.span());
     }
     path
 }
@@ -107,7 +109,7 @@ fn camel(table: &Path) -> Ident {
     let last = table.segments.last();
     last.map_or_else(
         || format_ident!("_"),
-        |last| Ident::new(&names::camel(&last.ident.to_string()), last.ident.span()),
+        |last| Ident::new(&names::camel(&last.ident.unraw().to_string()), last.ident.span()),
     )
 }
 

@@ -6,10 +6,10 @@
 
 use rcs_core::{
     interface::{
-        CommonMemory, Header, Reason,
+        CommonMemory, Fault, Header, ProcessId,
         hws::{HwsCommand, HwsReport},
         prim::{PrimReport, PrimVerb},
-        t3i::{LinkFault, T3iStatus},
+        t3i::T3iStatus,
     },
     table::{Row, Table},
 };
@@ -66,11 +66,7 @@ fn commands(
         let level = if is.report == HwsReport::Error { Level::Error } else { Level::Info };
         say(level, "task", format!("command {}: {}", is.echo, is.report));
     }
-    for (was, is) in steps_down(before).into_iter().zip(steps_down(after)) {
-        if was.number != is.number {
-            say(is.level, is.from, down(is.to, &is.words));
-        }
-    }
+    down(before, after, say);
 }
 
 /// What the robot meets: the condition of a guarded move, an object between the fingers, a gripper, the
@@ -138,87 +134,30 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
     }
 }
 
-/// The standing command between two processes.
-struct StepDown<'a> {
-    level: Level,
-    /// Field of the commander.
-    from: &'static str,
-    /// Name of the receiver.
-    to: &'static str,
-    number: u32,
-    words: [&'a str; 3],
-}
+/// The processes whose commands are of interest to who follows the job; those of the others are details.
+const FOLLOWED: [ProcessId; 3] = [ProcessId::Subtask, ProcessId::Emove, ProcessId::Pedestal];
 
-fn steps_down(memory: &CommonMemory) -> [StepDown<'_>; 10] {
-    let step = |level, from, to, number, words| StepDown { level, from, to, number, words };
-    let word = |command| [command, "", ""];
-    let (task, subtask, emove, pedestal) = (&memory.task, &memory.subtask, &memory.emove, &memory.pedestal);
-    let (down, across) = (&task.subtask, &subtask.pedestal);
-    let (goal, v_grip, tool_grip) = (&subtask.emove, &emove.v_grip, &emove.tool_grip);
-    let subtask_words = [down.command.text(), down.object.as_str(), down.location.as_str()];
-    let emove_words = [goal.command.text(), goal.object.as_str(), goal.location.as_str()];
-    [
-        step(Level::Info, "task", "Subtask", down.number, subtask_words),
-        step(Level::Info, "subtask", "E-move", goal.number, emove_words),
-        step(Level::Info, "subtask", "Active Pedestal", across.number, word(across.command.text())),
-        step(Level::Debug, "emove", "Prim", emove.prim.number, word(emove.prim.command.text())),
-        step(
-            Level::Debug,
-            "emove",
-            "Quick Change",
-            emove.quick_change.number,
-            word(emove.quick_change.command.text()),
-        ),
-        step(Level::Debug, "emove", "Grip", emove.grip.number, word(emove.grip.command.text())),
-        step(Level::Debug, "emove", "V-Grip", v_grip.number, word(v_grip.command.text())),
-        step(Level::Debug, "emove", "Tool-Grip", tool_grip.number, word(tool_grip.command.text())),
-        step(
-            Level::Debug,
-            "pedestal",
-            "Pedestal Hand",
-            pedestal.hand.number,
-            word(pedestal.hand.command.text()),
-        ),
-        step(
-            Level::Debug,
-            "pedestal",
-            "Rotary Table",
-            pedestal.table.number,
-            word(pedestal.table.command.text()),
-        ),
-    ]
-}
-
-/// A command on its way down: `-> E-move: GRASP-OBJ LINKBAR1 PFIXTURE`.
-fn down(to: &str, words: &[&str]) -> String {
-    let words: Vec<&str> = words.iter().copied().filter(|word| !word.is_empty()).collect();
-    format!("-> {to}: {}", words.join(" "))
+/// A command on its way down: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`. The points to T3I are left out: there is one a tick.
+fn down(before: &CommonMemory, after: &CommonMemory, mut say: impl FnMut(Level, &str, String)) {
+    for process in ProcessId::ALL.iter().copied().filter(|process| *process != ProcessId::T3i) {
+        let Some(commander) = process.commander() else { continue };
+        if before.command_number(process) != after.command_number(process)
+            && let Some(text) = after.show_command(process, |command| format!("-> {process}: {command}"))
+        {
+            let level = if FOLLOWED.contains(&process) { Level::Info } else { Level::Debug };
+            say(level, commander.field(), text);
+        }
+    }
 }
 
 fn failures(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, said: &mut Vec<Remark>) {
-    let reasons = |memory: &CommonMemory| {
-        [
-            ("task", memory.task.header, memory.task.status.reason),
-            ("subtask", memory.subtask.header, memory.subtask.status.reason),
-            ("emove", memory.emove.header, memory.emove.status.reason),
-            ("prim", memory.prim.header, memory.prim.status.reason),
-            ("quick_change", memory.quick_change.header, memory.quick_change.status.reason),
-            ("grip", memory.grip.header, memory.grip.status.reason),
-            ("v_grip", memory.v_grip.header, memory.v_grip.status.reason),
-            ("tool_grip", memory.tool_grip.header, memory.tool_grip.status.reason),
-            ("pedestal", memory.pedestal.header, memory.pedestal.status.reason),
-            ("hand", memory.hand.header, memory.hand.status.reason),
-            ("table", memory.table.header, memory.table.status.reason),
-        ]
-    };
-    for ((_, _, was), (field, header, is)) in reasons(before).into_iter().zip(reasons(after)) {
-        if is != was && is != Reason::None {
-            said.push(failure(headers, field, &header, Level::Error, is.text()));
+    for process in ProcessId::ALL.iter().copied() {
+        let (was, is) = (before.said(process).fault, after.said(process).fault);
+        if is != was && !is.is_none() {
+            // T3I mends many faults of the link itself; what it cannot mend Prim reports as an error.
+            let level = if matches!(is, Fault::Link(_)) { Level::Warning } else { Level::Error };
+            said.push(failure(headers, process.field(), after.header(process), level, is.text()));
         }
-    }
-    let (was, is) = (before.t3i.status.fault, after.t3i.status.fault);
-    if is != was && is != LinkFault::None {
-        said.push(failure(headers, "t3i", &after.t3i.header, Level::Warning, is.text()));
     }
 }
 
@@ -276,6 +215,7 @@ mod tests {
     use crate::channels::headers;
     use rcs_core::{
         interface::{
+            Reason,
             jaws::JawsVerb,
             pedestal::{PedestalVerb, TableVerb},
         },
@@ -313,9 +253,9 @@ mod tests {
         assert_eq!(
             told,
             [
-                ("Subtask", "-> Active Pedestal: FLIP"),
-                ("E-move", "-> V-Grip: GRASP"),
-                ("Active Pedestal", "-> Rotary Table: TURN")
+                ("E-move", "-> V-Grip: VG-GRASP (size 0.00 in)"),
+                ("Subtask", "-> Active Pedestal: FLIP by 0.0 degrees"),
+                ("Active Pedestal", "-> Rotary Table: TURN to 0.0 degrees")
             ]
         );
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use executive::failure;
-use levels::ladder::Ladder;
+use levels::ladder::{Ladder, ProcessId};
 use rcs_core::{
     interface::{
         CommonMemory,
@@ -118,9 +118,9 @@ impl Run {
         self.chronicle.note(moment);
         let tick = moment.tick.0;
         self.ticks.push(tick);
-        let headers = failure::headers(&moment.after);
-        for (index, ((_, lane), header)) in self.lanes.iter_mut().zip(headers).enumerate() {
-            let command = |memory| failure::command(index, &moment.external.hws, memory);
+        for ((_, lane), process) in self.lanes.iter_mut().zip(ProcessId::ALL) {
+            let header = moment.after.header(*process);
+            let command = |memory| failure::command(*process, &moment.external.hws, memory);
             let text = command(&moment.after);
             // A command that was written in this tick is not read yet: the step is that of the one before.
             let step = if text == command(&moment.before) { header.step } else { Name16::EMPTY };

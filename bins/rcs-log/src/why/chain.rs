@@ -6,13 +6,14 @@
 //! back until nobody below has said anything. What is left there is a device, a limit, or data. From there the commands lead up
 //! again: who commanded it, when, by which row.
 
+use levels::ladder::{PROCESS_COUNT, ProcessId};
 use rcs_core::{
     interface::t3i::LinkFault,
     table::{Condition, Row},
 };
 use serde::Serialize;
 
-use super::history::{Fired, History, T3I, WIRING, condition, process, row_of, row_words};
+use super::history::{Fired, History, condition, info, row_of, row_words};
 
 /// A step of the chain.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -28,18 +29,18 @@ pub struct Link {
 /// Where a walk ends: the process and tick of the first cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Root {
-    /// Position of the process.
-    pub process: usize,
+    /// The process.
+    pub process: ProcessId,
     /// The tick.
     pub tick: u64,
 }
 
 /// Walk from a report down to where nobody below has said anything. The links come in the order of the walk: the last one is
 /// the first cause.
-pub fn down(history: &History, process: usize, tick: u64) -> (Root, Vec<Link>) {
+pub fn down(history: &History, process: ProcessId, tick: u64) -> (Root, Vec<Link>) {
     let (mut root, mut links) = (Root { process, tick }, Vec::new());
     // The ladder has four levels above the link: a longer walk would be a circle.
-    for _ in 0..WIRING.len() {
+    for _ in 0..PROCESS_COUNT {
         links.push(report(history, root));
         match below(history, root) {
             Some(next) => root = next,
@@ -53,16 +54,16 @@ pub fn down(history: &History, process: usize, tick: u64) -> (Root, Vec<Link>) {
 /// before.
 fn below(history: &History, at: Root) -> Option<Root> {
     let seen = at.tick.checked_sub(1)?;
-    let said = |process: usize| Some((process, history.report(process, seen)?));
-    let neighbours = || WIRING[at.process].below.iter().copied().filter_map(said);
+    let said = |process: ProcessId| Some((process, history.report(process, seen)?));
+    let neighbours = || at.process.below().filter_map(said);
     let failed = neighbours().find(|(process, report)| has_failed(*process, report.reason));
     let found = failed.or_else(|| neighbours().find(|(_, report)| report.tick == seen && seen > 1));
     found.map(|(process, report)| Root { process, tick: report.tick })
 }
 
 /// T3I's `no error` is the absence of one.
-pub fn has_failed(process: usize, reason: &str) -> bool {
-    let none = if process == T3I { LinkFault::None.text() } else { "" };
+pub fn has_failed(process: ProcessId, reason: &str) -> bool {
+    let none = if process == ProcessId::T3i { LinkFault::None.text() } else { "" };
     reason != none
 }
 
@@ -81,7 +82,7 @@ fn report(history: &History, at: Root) -> Link {
             text += &format!("; new in this tick: {news}");
         }
     }
-    Link { tick: at.tick, process: process(at.process).name.to_owned(), text }
+    Link { tick: at.tick, process: info(at.process).name.to_owned(), text }
 }
 
 /// The conditions of a row that the row before did not ask for: what made it fire. Only if it fired for the
@@ -117,18 +118,14 @@ pub fn commands(history: &History, at: Root) -> Vec<Link> {
     let (mut links, mut next) = (Vec::new(), Some((at.process, at.tick)));
     while let Some((receiver, tick)) = next {
         let Some(command) = history.command(receiver, tick) else { break };
-        let commander = WIRING[receiver].commander;
+        let commander = receiver.commander();
         let by =
             commander.and_then(|commander| history.row(commander, command.tick).map(|row| (commander, row)));
-        let name = commander.map_or("HWSC", |commander| process(commander).name);
+        let name = commander.map_or("HWSC", |commander| info(commander).name);
         let reason =
             by.map_or_else(String::new, |(commander, fired)| format!(" ({})", row_words(commander, fired)));
-        let text = format!(
-            "commands {}: {}, number {}{reason}",
-            process(receiver).name,
-            command.text,
-            command.number
-        );
+        let text =
+            format!("commands {}: {}, number {}{reason}", info(receiver).name, command.text, command.number);
         links.push(Link { tick: command.tick, process: name.to_owned(), text });
         next = commander.map(|commander| (commander, command.tick));
     }
@@ -137,9 +134,9 @@ pub fn commands(history: &History, at: Root) -> Vec<Link> {
 }
 
 /// How the failure went up from a process to Task: who said so when.
-pub fn up(history: &History, from: usize, tick: u64) -> Vec<Link> {
+pub fn up(history: &History, from: ProcessId, tick: u64) -> Vec<Link> {
     let (mut links, mut at, mut tick) = (Vec::new(), from, tick);
-    while let Some(commander) = WIRING[at].commander {
+    while let Some(commander) = at.commander() {
         let Some(report) = (tick + 1..=tick + 3)
             .filter_map(|later| history.report(commander, later))
             .find(|report| report.tick > tick && !report.reason.is_empty())
@@ -203,8 +200,8 @@ mod tests {
 
     #[test]
     fn the_walk_goes_down_to_the_process_that_knows() {
-        let (root, links) = down(&missed(), 2, 6);
-        assert_eq!(root, Root { process: 3, tick: 5 });
+        let (root, links) = down(&missed(), ProcessId::Emove, 6);
+        assert_eq!(root, Root { process: ProcessId::Prim, tick: 5 });
         let said: Vec<_> = links.iter().map(|link| (link.tick, link.process.as_str())).collect();
         assert_eq!(said, [(6, "E-move"), (5, "Prim")]);
         assert!(
@@ -215,7 +212,7 @@ mod tests {
 
     #[test]
     fn commands_are_told_from_the_top() {
-        let links = commands(&missed(), Root { process: 3, tick: 5 });
+        let links = commands(&missed(), Root { process: ProcessId::Prim, tick: 5 });
         let said: Vec<_> = links.iter().map(|link| (link.tick, link.process.as_str())).collect();
         assert_eq!(said, [(1, "HWSC"), (2, "Task"), (3, "Subtask"), (4, "E-move")]);
         assert!(links[3].text.starts_with("commands Prim: , number 7"), "{links:?}");
@@ -223,7 +220,8 @@ mod tests {
 
     #[test]
     fn the_failure_goes_up_a_tick_a_level() {
-        let said: Vec<_> = up(&missed(), 2, 6).into_iter().map(|link| (link.tick, link.process)).collect();
+        let said: Vec<_> =
+            up(&missed(), ProcessId::Emove, 6).into_iter().map(|link| (link.tick, link.process)).collect();
         assert_eq!(said, [(7, "Subtask".to_owned()), (8, "Task".to_owned())]);
     }
 
@@ -234,8 +232,8 @@ mod tests {
             |_, memory| memory.subtask.header = Header { table: 6, row: 1, ..Header::default() },
             |_, memory| memory.subtask.header = Header { table: 3, row: 4, ..Header::default() },
         ]);
-        let fired = history.row(1, 2).unwrap();
-        let found = news(&history, Root { process: 1, tick: 2 }, fired);
+        let fired = history.row(ProcessId::Subtask, 2).unwrap();
+        let found = news(&history, Root { process: ProcessId::Subtask, tick: 2 }, fired);
         assert_eq!(found.as_deref(), Some("emove is Error or Joystick or Lost"));
     }
 

@@ -5,7 +5,7 @@
 //! the reading came, and how far the robot went meanwhile.
 
 use levels::{
-    ladder::LadderState,
+    ladder::{LadderState, ProcessId},
     prim::{sensors::Reading, tables},
 };
 use rcs_core::{
@@ -21,7 +21,6 @@ use record::{
 };
 use taskdata::files::{SensorPara, SensorSource};
 
-use super::history::{PRIM, WIRING};
 use crate::story::{Moment, moments};
 
 /// Changes of a switch that are told; a switch that chatters is told by its count.
@@ -46,8 +45,8 @@ struct Trace {
 }
 
 /// Look at the ticks from `from` to `until`, for a process.
-pub fn gather(log: &Log, process: usize, from: u64, until: u64) -> Evidence {
-    let wanted = |leaf: &Leaf| WIRING[process].devices.iter().any(|prefix| leaf.path.starts_with(prefix));
+pub fn gather(log: &Log, process: ProcessId, from: u64, until: u64) -> Evidence {
+    let wanted = |leaf: &Leaf| process.reads().iter().any(|prefix| leaf.path.starts_with(prefix));
     let mut traces: Vec<Trace> = layout::leaves(ExternalInputs::RECORD)
         .into_iter()
         .filter(wanted)
@@ -159,7 +158,7 @@ struct Guard {
 }
 
 impl Guard {
-    fn new(log: &Log, process: usize) -> Self {
+    fn new(log: &Log, process: ProcessId) -> Self {
         // Without task data nothing can be said of thresholds; the failure itself is told all the same.
         let sensors = generations(log).ok().and_then(|mut all| all.pop());
         let sensors = sensors.map_or_else(Vec::new, |store| store.view().sensors.to_vec());
@@ -170,7 +169,7 @@ impl Guard {
             number: 0,
             nearest: None,
             met: false,
-            is_prim: process == PRIM,
+            is_prim: process == ProcessId::Prim,
         }
     }
 

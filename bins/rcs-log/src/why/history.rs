@@ -1,81 +1,14 @@
-//! What every process did over a whole run, kept by change: its commands, rows and reports. And the wiring of the ladder:
-//! who commands whom, and who looks at which devices.
+//! What every process did over a whole run, kept by change: its commands, rows and reports.
 
-use executive::failure::{self, PROCESSES};
-use levels::ladder::{Ladder, ProcessInfo};
+use executive::failure;
+use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
-    interface::{CommonMemory, ExternalInputs, Header},
+    interface::Header,
     name::Name16,
     table::{Condition, Row, Table},
 };
 
 use crate::story::Moment;
-
-/// Position of Prim among the processes.
-pub const PRIM: usize = 3;
-/// Position of the T3 Interface.
-pub const T3I: usize = 4;
-
-/// What surrounds a process.
-pub struct Wiring {
-    /// Who commands it; none for Task, which the workstation controller commands.
-    pub commander: Option<usize>,
-    /// Whose statuses it reads.
-    pub below: &'static [usize],
-    /// Inputs that it looks at: beginnings of their names in `ExternalInputs`.
-    pub devices: &'static [&'static str],
-}
-
-/// The wiring of all processes, in the order of common memory (docs/design/ownership.md "Commands", III.1).
-pub const WIRING: [Wiring; PROCESSES] = [
-    Wiring { commander: None, below: &[1], devices: &["data_base"] },
-    Wiring { commander: Some(0), below: &[2, 9], devices: &["devices.quick_change", "pedestal.answers"] },
-    Wiring {
-        commander: Some(1),
-        below: &[3, 5, 6, 7, 8],
-        devices: &["devices.vision", "devices.holsters", "devices.quick_change", "devices.grip.beams"],
-    },
-    Wiring {
-        commander: Some(2),
-        below: &[4],
-        devices: &["devices.force.valid", "devices.holsters", "devices.grip.beams", "devices.joystick"],
-    },
-    Wiring {
-        commander: Some(3),
-        below: &[],
-        devices: &[
-            "devices.link_ready",
-            "devices.link_rx.length",
-            "devices.link_unsent",
-            "devices.resolvers.valid",
-        ],
-    },
-    Wiring { commander: Some(2), below: &[], devices: &["devices.quick_change", "devices.holsters"] },
-    Wiring { commander: Some(2), below: &[], devices: &["devices.grip"] },
-    Wiring { commander: Some(2), below: &[], devices: &["devices.grip", "devices.quick_change"] },
-    Wiring { commander: Some(2), below: &[], devices: &["devices.grip", "devices.quick_change"] },
-    Wiring { commander: Some(1), below: &[10, 11], devices: &["devices.pedestal"] },
-    Wiring {
-        commander: Some(9),
-        below: &[],
-        devices: &[
-            "devices.pedestal.potentiometer",
-            "devices.pedestal.strain_left",
-            "devices.pedestal.strain_right",
-        ],
-    },
-    Wiring {
-        commander: Some(9),
-        below: &[],
-        devices: &[
-            "devices.pedestal.table_potentiometer",
-            "devices.pedestal.limit_plus",
-            "devices.pedestal.limit_minus",
-            "devices.pedestal.motor_moving",
-            "devices.pedestal.motor_counter",
-        ],
-    },
-];
 
 /// A command from the tick on in which it was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -115,29 +48,30 @@ pub struct Report {
 /// The history of a run.
 #[derive(Default)]
 pub struct History {
-    commands: [Vec<Command>; PROCESSES],
-    rows: [Vec<Fired>; PROCESSES],
-    reports: [Vec<Report>; PROCESSES],
+    commands: [Vec<Command>; PROCESS_COUNT],
+    rows: [Vec<Fired>; PROCESS_COUNT],
+    reports: [Vec<Report>; PROCESS_COUNT],
 }
 
 impl History {
     /// Take a tick in.
     pub fn note(&mut self, moment: &Moment) {
         let tick = moment.tick.0;
-        let (headers, reports) = (failure::headers(&moment.after), reports(&moment.after));
-        let numbers = numbers(&moment.external, &moment.after);
-        for process in 0..PROCESSES {
-            let Header { table, row, step, .. } = headers[process];
-            let rows = &mut self.rows[process];
+        for process in ProcessId::ALL.iter().copied() {
+            let at = process.position();
+            let Header { table, row, step, .. } = *moment.after.header(process);
+            let rows = &mut self.rows[at];
             if rows.last().is_none_or(|last| (last.table, last.row, last.step) != (table, row, step)) {
                 rows.push(Fired { tick, table, row, step });
             }
-            let (report, reason) = reports[process];
-            let said = &mut self.reports[process];
-            if said.last().is_none_or(|last| (last.report, last.reason) != (report, reason)) {
-                said.push(Report { tick, report, reason });
+            let said = moment.after.said(process);
+            let (report, reason) = (said.report, said.fault.text());
+            let reports = &mut self.reports[at];
+            if reports.last().is_none_or(|last| (last.report, last.reason) != (report, reason)) {
+                reports.push(Report { tick, report, reason });
             }
-            let (number, commands) = (numbers[process], &mut self.commands[process]);
+            let number = moment.after.command_number(process).unwrap_or(moment.external.hws.number);
+            let commands = &mut self.commands[at];
             if number != commands.last().map_or(0, |last| last.number) {
                 let text = failure::command(process, &moment.external.hws, &moment.after);
                 commands.push(Command { tick, number, text });
@@ -146,20 +80,20 @@ impl History {
     }
 
     /// The command that a process had in a tick.
-    pub fn command(&self, process: usize, tick: u64) -> Option<&Command> {
-        // Everybody but Task reads what was written a tick before.
-        let written = if process == 0 { tick } else { tick.saturating_sub(1) };
-        latest(&self.commands[process], written, |command| command.tick)
+    pub fn command(&self, process: ProcessId, tick: u64) -> Option<&Command> {
+        // Every process but Task reads what was written a tick before.
+        let written = if process == ProcessId::Task { tick } else { tick.saturating_sub(1) };
+        latest(&self.commands[process.position()], written, |command| command.tick)
     }
 
     /// The row that fired in a process in a tick, and since when it did.
-    pub fn row(&self, process: usize, tick: u64) -> Option<&Fired> {
-        latest(&self.rows[process], tick, |fired| fired.tick)
+    pub fn row(&self, process: ProcessId, tick: u64) -> Option<&Fired> {
+        latest(&self.rows[process.position()], tick, |fired| fired.tick)
     }
 
     /// What a process reported in a tick, and since when.
-    pub fn report(&self, process: usize, tick: u64) -> Option<&Report> {
-        latest(&self.reports[process], tick, |report| report.tick)
+    pub fn report(&self, process: ProcessId, tick: u64) -> Option<&Report> {
+        latest(&self.reports[process.position()], tick, |report| report.tick)
     }
 }
 
@@ -169,14 +103,14 @@ fn latest<T>(entries: &[T], tick: u64, tick_of: impl Fn(&T) -> u64) -> Option<&T
     entries.get(end.checked_sub(1)?)
 }
 
-/// The process at a position.
-pub fn process(at: usize) -> &'static ProcessInfo {
-    &Ladder::processes()[at]
+/// Name and tables of a process.
+pub fn info(process: ProcessId) -> &'static ProcessInfo {
+    &Ladder::processes()[process.position()]
 }
 
 /// Table and row that fired.
-pub fn row_of(at: usize, fired: &Fired) -> Option<(&'static Table, &'static Row)> {
-    let table = process(at).table(fired.table)?;
+pub fn row_of(process: ProcessId, fired: &Fired) -> Option<(&'static Table, &'static Row)> {
+    let table = info(process).table(fired.table)?;
     Some((table, table.row(fired.row)?))
 }
 
@@ -212,8 +146,8 @@ pub fn because(conditions: &[String]) -> String {
 }
 
 /// A row as one says it: `table QC-DETACH row 7: Unlock, then Unlocking, because step is Start`.
-pub fn row_words(at: usize, fired: &Fired) -> String {
-    match row_of(at, fired) {
+pub fn row_words(process: ProcessId, fired: &Fired) -> String {
+    match row_of(process, fired) {
         None => "by no row of a table".to_owned(),
         Some((table, row)) => {
             let (deed, because) = (deed(row, fired.step.as_str()), because(&conditions(row)));
@@ -222,61 +156,16 @@ pub fn row_words(at: usize, fired: &Fired) -> String {
     }
 }
 
-/// Numbers of the standing commands, by receiver.
-const fn numbers(external: &ExternalInputs, memory: &CommonMemory) -> [u32; PROCESSES] {
-    [
-        external.hws.number,
-        memory.task.subtask.number,
-        memory.subtask.emove.number,
-        memory.emove.prim.number,
-        memory.prim.t3i.number,
-        memory.emove.quick_change.number,
-        memory.emove.grip.number,
-        memory.emove.v_grip.number,
-        memory.emove.tool_grip.number,
-        memory.subtask.pedestal.number,
-        memory.pedestal.hand.number,
-        memory.pedestal.table.number,
-    ]
-}
-
-/// Report and reason of each process.
-const fn reports(memory: &CommonMemory) -> [(&'static str, &'static str); PROCESSES] {
-    let m = memory;
-    [
-        (m.task.status.report.text(), m.task.status.reason.text()),
-        (m.subtask.status.report.text(), m.subtask.status.reason.text()),
-        (m.emove.status.report.text(), m.emove.status.reason.text()),
-        (m.prim.status.report.text(), m.prim.status.reason.text()),
-        (m.t3i.status.report.text(), m.t3i.status.fault.text()),
-        (m.quick_change.status.report.text(), m.quick_change.status.reason.text()),
-        (m.grip.status.report.text(), m.grip.status.reason.text()),
-        (m.v_grip.status.report.text(), m.v_grip.status.reason.text()),
-        (m.tool_grip.status.report.text(), m.tool_grip.status.reason.text()),
-        (m.pedestal.status.report.text(), m.pedestal.status.reason.text()),
-        (m.hand.status.report.text(), m.hand.status.reason.text()),
-        (m.table.status.report.text(), m.table.status.reason.text()),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rcs_core::interface::ExternalInputs;
 
     #[test]
-    fn the_wiring_is_a_tree_below_task() {
-        for (at, wiring) in WIRING.iter().enumerate() {
-            assert_eq!(wiring.commander.is_none(), at == 0);
-            assert!(wiring.commander.is_none_or(|commander| WIRING[commander].below.contains(&at)), "{at}");
-            assert!(wiring.below.iter().all(|below| WIRING[*below].commander == Some(at)), "{at}");
-        }
-    }
-
-    #[test]
-    fn devices_of_the_wiring_are_inputs() {
+    fn what_processes_read_are_inputs() {
         let leaves = record::layout::leaves(ExternalInputs::RECORD);
-        for device in WIRING.iter().flat_map(|wiring| wiring.devices) {
-            assert!(leaves.iter().any(|leaf| leaf.path.starts_with(device)), "{device}");
+        for read in ProcessId::ALL.iter().flat_map(|process| process.reads()) {
+            assert!(leaves.iter().any(|leaf| leaf.path.starts_with(read)), "{read}");
         }
     }
 

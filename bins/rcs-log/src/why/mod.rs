@@ -11,7 +11,7 @@ mod history;
 use std::{fmt, path::PathBuf, process::ExitCode};
 
 use executive::failure::{self, Failure};
-use levels::ladder::Ladder;
+use levels::ladder::{Ladder, ProcessId};
 use rcs_core::tick::{TICK_S, Tick};
 use record::{Log, proto::foxglove::Level};
 use serde::Serialize;
@@ -19,7 +19,7 @@ use serde::Serialize;
 pub use self::{chain::Link, history::History};
 use self::{
     chain::Root,
-    history::{because, conditions, deed, process},
+    history::{because, conditions, deed, info},
 };
 use crate::{
     Answer, Error, print,
@@ -138,7 +138,7 @@ pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
 
 /// A failure that a process began to report in a tick, from its commands to its first cause.
 pub fn tell(log: &Log, history: &History, failure: &Failure) -> Option<Told> {
-    let at = Ladder::processes().iter().position(|process| process.name == failure.process)?;
+    let at = ProcessId::from_text(&failure.process)?;
     let (tick, text) = (failure.tick.0, failure.text.clone());
     let (root, causes) = chain::down(history, at, tick);
     let commands = chain::commands(history, root);
@@ -158,7 +158,7 @@ pub fn tell(log: &Log, history: &History, failure: &Failure) -> Option<Told> {
 
 /// Where the walk ended, in a sentence.
 fn first_cause(history: &History, root: Root, since: u64, found: &evidence::Evidence) -> String {
-    let name = process(root.process).name;
+    let name = info(root.process).name;
     let seconds = root.tick.saturating_sub(since) as f64 * TICK_S;
     let trying = format!("{seconds:.2} s after its command");
     match (&found.guard, history.report(root.process, root.tick)) {
@@ -190,9 +190,9 @@ fn find(log: &Log, arguments: &Arguments, tick: Option<u64>) -> Result<Moment, E
 }
 
 fn explain(log: &Log, moment: &Moment, told: Option<Told>) -> Explanation {
-    let headers = failure::headers(&moment.after);
-    let levels = Ladder::processes().iter().zip(headers).enumerate().map(|(index, (process, header))| {
-        let command = failure::command(index, &moment.external.hws, &moment.before);
+    let levels = Ladder::processes().iter().zip(ProcessId::ALL).map(|(process, id)| {
+        let header = moment.after.header(*id);
+        let command = failure::command(*id, &moment.external.hws, &moment.before);
         let table = process.table(header.table);
         let row = table.and_then(|table| table.row(header.row).map(|row| (table, row)));
         Rung {

@@ -3,9 +3,11 @@
 
 use levels::{
     emove::{
-        route::{Goal, LegGoal, Route},
-        state::{Sort, Stance},
+        robot_place::{GoneTo, ObjectGrip, RobotPlace},
+        route::{Goal, LegGoal, Planning, Route},
+        tables::{Action, Request, accept::accept},
     },
+    execution::Asked,
     prim::motion::{Motion, limits::Limits},
 };
 use rcs_core::{
@@ -18,6 +20,7 @@ use rcs_core::{
     kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
     name::Name16,
     pose::Pose,
+    table::{Decision, Verdict},
     tick::TICK_S,
 };
 use taskdata::{
@@ -46,29 +49,13 @@ const LONGEST: u32 = 15_000;
 pub struct Walk<'a> {
     store: &'a Store,
     data: TaskData<'a>,
-    stance: Stance,
+    place: RobotPlace,
 }
 
 impl<'a> Walk<'a> {
     /// Begin at a location as such.
     pub fn new(store: &'a Store, start: &Location) -> Self {
-        let mut walk = Self { store, data: store.view(), stance: Stance::default() };
-        walk.arrive(Sort::Location, start, Name16::EMPTY, 0, &start.frame);
-        walk
-    }
-
-    fn arrive(&mut self, sort: Sort, at: &Location, object: Name16, grip: i32, frame: &Frame) {
-        self.stance = Stance {
-            known: true,
-            sort,
-            location: at.name,
-            kind: at.place.kind,
-            record: at.place.locpt.number(),
-            array: at.place.array.number(),
-            object,
-            grip,
-            pose: Pose::from_frame(frame),
-        };
+        Self { store, data: store.view(), place: robot_at(GoneTo::Location, start, &start.frame) }
     }
 
     /// Make a step; what it consists of, or why it cannot be made. A step that cannot be made ends at its location all the
@@ -102,20 +89,24 @@ impl<'a> Walk<'a> {
         let command = self.command(verb, object, grip, location);
         let mut phase = Phase { what: described(&command, location), ..Phase::default() };
         self.location_entries(&mut phase, location);
-        let (sort, frame) = match self.goal_and_route(&command, location) {
+        let (gone_to, frame) = match self.goal_and_route(&command, location) {
             Ok((goal, route)) => {
                 self.route(&mut phase, &command, &goal, route);
-                (goal.sort, goal.frame)
+                (goal.gone_to, goal.frame)
             }
-            Err(reason) => {
-                let from = if self.stance.location.is_empty() { "?" } else { self.stance.location.as_str() };
-                phase.missing = Some(format!("from {from}: {}", reason.text()));
-                let sort = if object.is_empty() { Sort::Location } else { Sort::Object };
+            Err(planning) => {
+                let from = if self.place.location.is_empty() { "?" } else { self.place.location.as_str() };
+                phase.missing = Some(format!("from {from}: {}", refusal(verb, planning).text()));
+                let gone_to = if object.is_empty() {
+                    GoneTo::Location
+                } else {
+                    GoneTo::Object(ObjectGrip { object, grip })
+                };
                 let grips = self.data.grip_movetable(&object, grip, &location.place);
-                (sort, grips.map_or(location.frame, |by| self.data.moved(&location.frame, by)))
+                (gone_to, grips.map_or(location.frame, |by| self.data.moved(&location.frame, by)))
             }
         };
-        self.arrive(sort, location, object, grip, &frame);
+        self.place = robot_at(gone_to, location, &frame);
         phase
     }
 
@@ -134,21 +125,21 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn goal_and_route(&self, command: &EmoveCommand, at: &Location) -> Result<(Goal, Route), Reason> {
+    fn goal_and_route(&self, command: &EmoveCommand, at: &Location) -> Result<(Goal, Route), Planning> {
         let goal = Goal::new(command, &at.frame, &self.data)?;
-        let mut route = Route::plan(command, &goal, &self.stance, &self.data)?;
-        (route.departure, route.goal) = (DEPARTURE, GOAL);
+        let mut route = Route::plan(command, &goal, Some(&self.place), &self.data)?;
+        (route.departure.number, route.goal.number) = (DEPARTURE, GOAL);
         Ok((goal, route))
     }
 
     /// The legs of a route with their times, and the entries that it was made of.
     fn route(&self, phase: &mut Phase, command: &EmoveCommand, goal: &Goal, mut route: Route) {
-        let departure = self.stance.pose.to_frame().unwrap_or_else(|_| Frame::identity());
+        let departure = self.place.pose.to_frame().unwrap_or_else(|_| Frame::identity());
         let (depart, between, approach) = (route.depart, route.between, route.approach);
         self.path_entries(phase, command, depart, between, approach);
         let mut names = self.names(depart, between, approach).into_iter();
         let mut legs = Vec::new();
-        while let Some(leg) = route.leg(&departure, &self.data) {
+        while let Some(leg) = route.leg(&self.data) {
             let frame = match leg.at {
                 LegGoal::Record { pose, movetable } => {
                     let base = match pose {
@@ -166,9 +157,7 @@ impl<'a> Walk<'a> {
             route.advance(&self.data);
         }
         phase.legs = timed(&departure, legs);
-        if goal.opening >= 0 {
-            phase.opening_in = Some(f64::from(goal.opening) / 100.0);
-        }
+        phase.opening_in = goal.opening.map(|opening| f64::from(opening) / 100.0);
     }
 
     /// Part, name and entry of each point of a route but the goal.
@@ -236,7 +225,7 @@ impl<'a> Walk<'a> {
         };
         let position = self.data.relative_moves.iter().position(|other| std::ptr::eq(other, record));
         let at = position.and_then(|i| self.store.origins().relative_moves.get(i)).copied();
-        let here = self.stance.pose.to_frame().unwrap_or(location.frame);
+        let here = self.place.pose.to_frame().unwrap_or(location.frame);
         let base = match relative_move_named(name).map(|known| known.from) {
             Some(Beginning::After(_)) => here,
             _ => location.frame,
@@ -249,7 +238,7 @@ impl<'a> Walk<'a> {
         if !record.sensor.is_empty() {
             phase.what = format!("{} guarded by {}", phase.what, record.sensor);
         }
-        self.arrive(Sort::Location, location, Name16::EMPTY, 0, &frame);
+        self.place = robot_at(GoneTo::Location, location, &frame);
         phase
     }
 
@@ -298,6 +287,19 @@ impl<'a> Walk<'a> {
         let flown = data.trajectories.iter().position(|r| !between.is_null() && r.path == between);
         self.entry(phase, "trajectory", &origins.trajectories, flown);
         self.entry(phase, "approach", &origins.appr_depts, directed(approach));
+    }
+}
+
+/// The robot at a location.
+fn robot_at(gone_to: GoneTo, at: &Location, frame: &Frame) -> RobotPlace {
+    RobotPlace { gone_to, location: at.name, place: at.place, pose: Pose::from_frame(frame) }
+}
+
+/// The reason with which E-move refuses a command whose way cannot be planned.
+fn refusal(verb: EmoveVerb, route: Planning) -> Reason {
+    match accept((), &Request { asked: Asked::Now, verb, route, ..Request::default() }) {
+        Verdict::Decided(Decision { action: Action::Fail(reason), .. }) => reason,
+        Verdict::Decided(_) | Verdict::Passed(()) => Reason::None,
     }
 }
 

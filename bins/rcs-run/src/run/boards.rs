@@ -78,17 +78,17 @@ impl Levels<TaskData<'_>> for Controller {
         }
     }
 
-    /// Board 0 has no processes to rehearse; the other boards wake with the pulse and not before it.
-    fn understudy(&self) -> Option<Box<Self>> {
+    /// Board 0 has no processes to warm up; the other boards wake with the pulse and not before it.
+    fn shadow(&self) -> Option<Box<Self>> {
         match self {
             Self::One(ladder) => Some(Box::new(Self::One(ladder.clone()))),
             Self::Split(_) => None,
         }
     }
 
-    fn teach(&self, understudy: &mut Self) {
-        if let (Self::One(ladder), Self::One(understudy)) = (self, understudy) {
-            understudy.as_mut().clone_from(ladder);
+    fn copy_to(&self, shadow: &mut Self) {
+        if let (Self::One(ladder), Self::One(shadow)) = (self, shadow) {
+            shadow.as_mut().clone_from(ladder);
         }
     }
 

@@ -3,7 +3,7 @@
 //! One tick is, in this order: what has come over a serial line, the controller (timed, and its allocations
 //! counted), what goes over the line, the hand-off to the log, the cell, the workstation controller. Physics
 //! allocates and takes its time; it is outside of what is counted as the controller's. What the log is told of
-//! the next tick, and its rehearsal, come before that tick begins.
+//! the next tick, and its warm-up, come before that tick begins.
 
 pub mod boards;
 mod contacts;
@@ -35,9 +35,9 @@ use executive::{
     boards::Lost,
     failure::Failure,
     generations::Generations,
-    laps::Part,
     memory::{Mirror, Publisher, RunName},
     runner::Runner,
+    timing::Stage,
 };
 use levels::ladder::LadderState;
 use plant::CellEvent;
@@ -138,7 +138,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         result: &result,
         steps: run.neighbours.records(),
         log: &log_text,
-        slowest: &pace::slowest(run.runner.laps()),
+        slowest: &pace::slowest(run.runner.stage_times()),
         stopped: matches!(ending, Ending::Stopped),
     };
     print(&page, arguments.json)?;
@@ -210,19 +210,19 @@ impl Run {
         }
     }
 
-    /// Wait until the next tick is due, having rehearsed it if there is time.
+    /// Wait until the next tick is due, having warmed it up if there is time.
     fn wait(&mut self, generations: &Generations) {
         if self.pace.wake_early() {
             let external = self.external(generations);
-            self.runner.rehearse(&external, &generations.current().view());
+            self.runner.warm_up(&external, &generations.current().view());
         }
-        for (level, text) in self.pace.wait(self.runner.laps()) {
+        for (level, text) in self.pace.wait(self.runner.stage_times()) {
             self.progress.say(&format!("tick {}: {text}", self.runner.tick().next()));
             if let Some(log) = &mut self.log {
                 log.note(self.runner.tick().next(), level, "executive", &text);
             }
         }
-        self.runner.laps_mut().begin();
+        self.runner.stage_times_mut().begin();
     }
 
     /// What comes from outside for the next tick.
@@ -275,17 +275,17 @@ impl Run {
             };
             let outputs = memory.device_outputs();
             self.robot.send(&outputs);
-            self.runner.laps_mut().lap(Part::Line);
+            self.runner.stage_times_mut().mark(Stage::Line);
             if let Some(log) = &mut self.log {
                 if self.pace.is_real() {
                     log.timing(self.runner.last_ns(), self.pace.skipped());
                 }
                 log.tick(tick, &external, &memory, || self.runner.levels().state());
             }
-            self.runner.laps_mut().lap(Part::Log);
+            self.runner.stage_times_mut().mark(Stage::Log);
             self.advance(tick, &outputs);
             self.observe(tick, Commands::from(&memory));
-            self.runner.laps_mut().lap(Part::Cell);
+            self.runner.stage_times_mut().mark(Stage::Cell);
             self.progress.show(self.neighbours.records(), &external.hws, &memory);
             let progress = self.neighbours.step(
                 tick,
@@ -315,7 +315,7 @@ impl Run {
                 let text = format!("{overrun}; --overrun {} ends the run then", self.pace.policy());
                 return Ending::Failed(Failure { stopped: true, ..outside(tick, "executive", text) });
             }
-            self.runner.laps_mut().lap(Part::Workstation);
+            self.runner.stage_times_mut().mark(Stage::Workstation);
             if interrupted.load(Ordering::Relaxed) {
                 if self.neighbours.are_commanding() {
                     // There is no job that ends by itself.
@@ -328,9 +328,9 @@ impl Run {
             }
             self.reload(&mut generations, reloads);
             self.show_cell();
-            let laps = self.runner.laps_mut();
-            laps.lap(Part::Inputs);
-            laps.finish();
+            let stage_times = self.runner.stage_times_mut();
+            stage_times.mark(Stage::Inputs);
+            stage_times.finish();
         }
     }
 
@@ -417,7 +417,7 @@ impl Run {
             overruns_by: self.pace.overruns(),
             allocations_after_start: self.runner.allocations(),
             tick_us: self.runner.times().summary().into(),
-            part_us: pace::times(self.runner.laps()),
+            part_us: pace::times(self.runner.stage_times()),
             late_us: self.pace.late(),
             realtime: self.pace.verdict(),
             boards: self.runner.levels().results(),

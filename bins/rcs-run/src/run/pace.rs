@@ -5,10 +5,10 @@ use std::{collections::BTreeMap, fmt::Write as _};
 use executive::{
     clock::Clock,
     histogram::Histogram,
-    laps::{Laps, Part},
     machine::Machine,
     overrun::{Overrun, Overruns, PUNCTUAL, Policy},
     realtime::{self, RealTime},
+    timing::{Stage, StageTimes},
 };
 use rcs_core::interface::{CommonMemory, DeviceInputs};
 use record::Level;
@@ -59,17 +59,17 @@ impl Pace {
         (level, text)
     }
 
-    /// Sleep until shortly before the next tick; true if there is time for a rehearsal.
+    /// Sleep until shortly before the next tick; true if there is time for a warm-up.
     pub fn wake_early(&mut self) -> bool {
         self.clock.wake_early()
     }
 
     /// Wait until the tick is due. Returns what was skipped on the way, and what is done about it.
-    pub fn wait(&mut self, laps: &Laps) -> Vec<Remark> {
+    pub fn wait(&mut self, stage_times: &StageTimes) -> Vec<Remark> {
         let slots = self.clock.wait();
         let late = self.clock.late();
         self.late.add(u64::try_from(late.as_nanos()).unwrap_or(u64::MAX));
-        let overrun = self.overruns.observe(slots, laps, late);
+        let overrun = self.overruns.observe(slots, stage_times, late);
         let holding = self.overruns.is_holding();
         let (stops, changed) = (matches!(self.policy, Policy::Stop(_)), holding != self.was_holding);
         self.was_holding = holding;
@@ -137,23 +137,23 @@ impl Pace {
     /// Skipped slots by what is to blame: a part of a tick, or `waking`.
     #[must_use]
     pub fn overruns(&self) -> BTreeMap<String, u64> {
-        let name = |part: Option<Part>| part.map_or_else(|| "waking".to_owned(), |part| part.to_string());
+        let name = |part: Option<Stage>| part.map_or_else(|| "waking".to_owned(), |part| part.to_string());
         self.overruns.by_part().map(|(part, slots)| (name(part), slots)).collect()
     }
 }
 
 /// Times of all parts of a tick.
 #[must_use]
-pub fn times(laps: &Laps) -> BTreeMap<String, TickTimes> {
-    Part::all().map(|part| (part.to_string(), laps.summary(part).into())).collect()
+pub fn times(stage_times: &StageTimes) -> BTreeMap<String, TickTimes> {
+    Stage::all().map(|part| (part.to_string(), stage_times.summary(part).into())).collect()
 }
 
 /// The processes that take longest, in a line.
 #[must_use]
-pub fn slowest(laps: &Laps) -> String {
-    let mut processes: Vec<_> = Part::all()
-        .filter(|part| matches!(part, Part::Process(_)))
-        .map(|part| (laps.summary(part).p99, part))
+pub fn slowest(stage_times: &StageTimes) -> String {
+    let mut processes: Vec<_> = Stage::all()
+        .filter(|part| matches!(part, Stage::Process(_)))
+        .map(|part| (stage_times.summary(part).p99, part))
         .collect();
     processes.sort_by(|(a, _), (b, _)| b.total_cmp(a));
     let mut text = String::new();

@@ -7,7 +7,7 @@ use std::{
 
 use executive::failure;
 use indicatif::{ProgressBar, ProgressStyle};
-use levels::ladder::Ladder;
+use levels::ladder::ProcessId;
 use neighbours::workstation::player::Record;
 use rcs_core::interface::{CommonMemory, HwsCommand};
 
@@ -69,11 +69,13 @@ impl Progress {
 
 /// What Task, Subtask, E-move and Prim do.
 fn levels(hws: &HwsCommand, memory: &CommonMemory) -> String {
-    let names = Ladder::processes().iter().map(|process| process.name).enumerate().take(LEVELS);
-    let doing = names.filter_map(|(index, name)| {
+    let doing = ProcessId::ALL.iter().take(LEVELS).filter_map(|process| {
         // All of Task's command stands in the line of the job already.
-        let command = if index == 0 { hws.command.to_string() } else { failure::command(index, hws, memory) };
-        (!command.is_empty()).then(|| format!("{name}: {command}"))
+        let command = match process {
+            ProcessId::Task => hws.command.to_string(),
+            _ => failure::command(*process, hws, memory),
+        };
+        (!command.is_empty()).then(|| format!("{process}: {command}"))
     });
     doing.collect::<Vec<_>>().join(" | ")
 }

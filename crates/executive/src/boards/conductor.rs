@@ -361,7 +361,7 @@ impl Conductor {
             let epoch = self.pulse.epochs[board.index()];
             // Services that are not there are those of a board that has not come yet.
             let Ok(reports) = ReportReader::open(node, board, epoch) else { return Ok(false) };
-            let Ok(readers) = Readers::open(node, board.processes(), epoch) else { return Ok(false) };
+            let Ok(readers) = Readers::open(node, board, epoch) else { return Ok(false) };
             seat.ports = Some((readers, reports));
         }
         let Some((_, reports)) = &seat.ports else { return Ok(false) };

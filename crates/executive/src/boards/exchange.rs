@@ -16,19 +16,11 @@ use iceoryx2::{
     prelude::ipc,
 };
 use levels::{
-    emove::Emove,
-    grip::Grip,
-    jaws::{ToolGrip, VGrip},
     ladder::{LadderState, ProcessId},
-    pedestal::{Hand, Pedestal, Table},
-    prim::Prim,
-    quick_change::QuickChange,
-    subtask::Subtask,
-    t3i::T3i,
-    task::Task,
+    processes::*,
 };
 use rcs_core::{
-    Plain,
+    Plain, for_each_process,
     interface::CommonMemory,
     plain::{DecodeError, Reader, Writer},
     process::Process,
@@ -36,7 +28,7 @@ use rcs_core::{
 };
 use taskdata::files::TaskData;
 
-use super::BOARDS;
+use super::{BOARDS, Board};
 use crate::memory::{
     buffers::Epoch,
     runs::{SharedMemoryError, service_name},
@@ -185,15 +177,24 @@ impl<const N: usize, const S: usize, O: Plain, T: Plain> ProcessReader<N, S, O, 
     }
 }
 
-macro_rules! processes {
-    ($( $id:ident $field:ident $service:literal $process:ty; )+) => {
+macro_rules! exchange {
+    ($(
+        #[doc = $doc:literal]
+        $id:ident $text:literal {
+            buffers: $field:ident, $outputs:ty;
+            failure: $failure:ident;
+            board: $board:literal;
+            commander: $($commander:ident, $above:ident . $command:ident)?;
+            reads: $reads:expr;
+        }
+    )+) => {
         /// The writer's ends of a board's processes.
         pub struct Writers {
             $( $field: Option<ProcessWriter<
-                { entry_size::<OutputsOf<$process>>() },
-                { entry_size::<StateOf<$process>>() },
-                OutputsOf<$process>,
-                StateOf<$process>,
+                { entry_size::<OutputsOf<$id>>() },
+                { entry_size::<StateOf<$id>>() },
+                OutputsOf<$id>,
+                StateOf<$id>,
             >>, )+
         }
 
@@ -204,13 +205,12 @@ macro_rules! processes {
             /// What iceoryx2 says; a service that exists already belongs to the same board in another process.
             pub fn create(
                 node: &Node<ipc::Service>,
-                processes: &[ProcessId],
+                board: Board,
                 epoch: Epoch,
             ) -> Result<Self, SharedMemoryError> {
                 Ok(Self { $(
-                    $field: processes
-                        .contains(&ProcessId::$id)
-                        .then(|| ProcessWriter::create(node, $service, epoch))
+                    $field: (ProcessId::$id.board() == board.number())
+                        .then(|| ProcessWriter::create(node, concat!("exchange/", stringify!($field)), epoch))
                         .transpose()?,
                 )+ })
             }
@@ -226,10 +226,10 @@ macro_rules! processes {
         /// The readers' ends of a board's processes.
         pub struct Readers {
             $( $field: Option<ProcessReader<
-                { entry_size::<OutputsOf<$process>>() },
-                { entry_size::<StateOf<$process>>() },
-                OutputsOf<$process>,
-                StateOf<$process>,
+                { entry_size::<OutputsOf<$id>>() },
+                { entry_size::<StateOf<$id>>() },
+                OutputsOf<$id>,
+                StateOf<$id>,
             >>, )+
         }
 
@@ -240,13 +240,12 @@ macro_rules! processes {
             /// What iceoryx2 says; a service that does not exist may come yet.
             pub fn open(
                 node: &Node<ipc::Service>,
-                processes: &[ProcessId],
+                board: Board,
                 epoch: Epoch,
             ) -> Result<Self, SharedMemoryError> {
                 Ok(Self { $(
-                    $field: processes
-                        .contains(&ProcessId::$id)
-                        .then(|| ProcessReader::open(node, $service, epoch))
+                    $field: (ProcessId::$id.board() == board.number())
+                        .then(|| ProcessReader::open(node, concat!("exchange/", stringify!($field)), epoch))
                         .transpose()?,
                 )+ })
             }
@@ -283,17 +282,4 @@ macro_rules! processes {
     };
 }
 
-processes! {
-    Task task "exchange/task" Task;
-    Subtask subtask "exchange/subtask" Subtask;
-    Emove emove "exchange/emove" Emove;
-    Prim prim "exchange/prim" Prim;
-    T3i t3i "exchange/t3i" T3i;
-    QuickChange quick_change "exchange/quick_change" QuickChange;
-    Grip grip "exchange/grip" Grip;
-    VGrip v_grip "exchange/v_grip" VGrip;
-    ToolGrip tool_grip "exchange/tool_grip" ToolGrip;
-    Pedestal pedestal "exchange/pedestal" Pedestal;
-    Hand hand "exchange/hand" Hand;
-    RotaryTable table "exchange/table" Table;
-}
+for_each_process!(exchange);

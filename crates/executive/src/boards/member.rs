@@ -14,7 +14,7 @@ use std::{
 };
 
 use iceoryx2::{node::Node, prelude::ipc};
-use levels::ladder::Ladder;
+use levels::ladder::{Ladder, ProcessId};
 use rcs_core::{Plain, interface::CommonMemory, plain::DecodeError, tick::Tick};
 use rustix::process::{Pid, Signal, getppid, set_parent_process_death_signal};
 use taskdata::files::TaskData;
@@ -131,6 +131,7 @@ struct Ports {
 /// A board in a run. Dropping it leaves the run.
 pub struct Member {
     board: Board,
+    processes: Vec<ProcessId>,
     epoch: Epoch,
     name: RunName,
     // Taken out before the files are removed.
@@ -164,7 +165,7 @@ impl Member {
                 return Err(MemberError::RunIsOver(name.clone()));
             }
             let epoch = pulse.epochs[board.index()];
-            let created = Writers::create(&node, board.processes(), epoch)
+            let created = Writers::create(&node, board, epoch)
                 .and_then(|writers| Ok((writers, ReportWriter::create(&node, board, epoch)?)));
             match created {
                 Ok((writers, reports)) => break (pulse, writers, reports),
@@ -185,6 +186,7 @@ impl Member {
         let ports = Ports { taker, writers, reports, neighbours: [const { None }; BOARDS], node };
         Ok(Self {
             board,
+            processes: board.processes().collect(),
             epoch,
             name: name.clone(),
             ports: Some(ports),
@@ -276,7 +278,7 @@ impl Member {
                 continue;
             }
             // What cannot be opened is not there yet; until it is, whoever takes over may need what is open.
-            match Readers::open(&ports.node, board.processes(), epoch) {
+            match Readers::open(&ports.node, board, epoch) {
                 Ok(readers) => (*place, changed) = (Some((epoch, readers)), true),
                 Err(_) => complete = false,
             }
@@ -302,7 +304,7 @@ impl Member {
             // A process that has not written keeps its old stamp, by which the others know.
             let _complete: bool = readers.outputs(self.tick, before)?;
         }
-        self.ladder.step_in_order(self.board.processes(), tick, before, &pulse.external, data, after);
+        self.ladder.step_in_order(&self.processes, tick, before, &pulse.external, data, after);
         ports.writers.write(tick, after, &self.ladder.state());
         self.tick = tick;
         self.report.allocations = alloc::allocations() - self.allocations_at_start;
@@ -333,7 +335,7 @@ fn latch(
     let half = if last.0.is_multiple_of(2) { even } else { odd };
     for epoch in (FIRST_EPOCH..pulse.epochs[board.index()]).rev() {
         // One that never came to a tick may have left no services, or empty ones.
-        let Ok(predecessor) = Readers::open(node, board.processes(), epoch) else { continue };
+        let Ok(predecessor) = Readers::open(node, board, epoch) else { continue };
         if predecessor.outputs(last, half)? {
             return Ok(());
         }

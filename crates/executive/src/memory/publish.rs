@@ -4,19 +4,10 @@
 use std::sync::{Arc, Mutex, TryLockError};
 
 use iceoryx2::{node::Node, prelude::ipc};
-use rcs_core::{
-    Plain as _,
-    interface::{CommonMemory, ExternalInputs, Header},
-    tick::Tick,
-};
+use rcs_core::interface::{CommonMemory, ExternalInputs};
 
 use super::{
-    buffers::{
-        DataBaseOutputs, DataBaseWriter, DevicesOutputs, DevicesWriter, EmoveWriter, Epoch, ExecutiveOutputs,
-        ExecutiveWriter, GripWriter, HandWriter, HwscOutputs, HwscWriter, OutsidePedestalOutputs,
-        OutsidePedestalWriter, PedestalWriter, PrimWriter, Pulse, QuickChangeWriter, SubtaskWriter,
-        T3iWriter, TableWriter, TaskWriter, ToolGripWriter, VGripWriter,
-    },
+    buffers::{Epoch, Pulse, Writers},
     runs::{self, RunName, SharedMemoryError},
 };
 
@@ -59,23 +50,7 @@ pub struct Publisher {
 }
 
 struct Ports {
-    task: TaskWriter,
-    subtask: SubtaskWriter,
-    emove: EmoveWriter,
-    prim: PrimWriter,
-    t3i: T3iWriter,
-    quick_change: QuickChangeWriter,
-    grip: GripWriter,
-    v_grip: VGripWriter,
-    tool_grip: ToolGripWriter,
-    pedestal: PedestalWriter,
-    hand: HandWriter,
-    table: TableWriter,
-    hwsc: HwscWriter,
-    data_base: DataBaseWriter,
-    outside_pedestal: OutsidePedestalWriter,
-    devices: DevicesWriter,
-    executive: ExecutiveWriter,
+    writers: Writers,
     // Last: the services are closed before their node.
     _node: Node<ipc::Service>,
 }
@@ -98,27 +73,7 @@ impl Publisher {
         runs::clean()?;
         runs::have_room()?;
         let node = runs::node(name, "rcs-run")?;
-        let epoch = FIRST_EPOCH;
-        let ports = Ports {
-            task: TaskWriter::create(&node, epoch)?,
-            subtask: SubtaskWriter::create(&node, epoch)?,
-            emove: EmoveWriter::create(&node, epoch)?,
-            prim: PrimWriter::create(&node, epoch)?,
-            t3i: T3iWriter::create(&node, epoch)?,
-            quick_change: QuickChangeWriter::create(&node, epoch)?,
-            grip: GripWriter::create(&node, epoch)?,
-            v_grip: VGripWriter::create(&node, epoch)?,
-            tool_grip: ToolGripWriter::create(&node, epoch)?,
-            pedestal: PedestalWriter::create(&node, epoch)?,
-            hand: HandWriter::create(&node, epoch)?,
-            table: TableWriter::create(&node, epoch)?,
-            hwsc: HwscWriter::create(&node, epoch)?,
-            data_base: DataBaseWriter::create(&node, epoch)?,
-            outside_pedestal: OutsidePedestalWriter::create(&node, epoch)?,
-            devices: DevicesWriter::create(&node, epoch)?,
-            executive: ExecutiveWriter::create(&node, epoch)?,
-            _node: node,
-        };
+        let ports = Ports { writers: Writers::create(&node, FIRST_EPOCH)?, _node: node };
         runs::reserve(name)?;
         Ok(Self { name: name.clone(), ports: Some(ports), pulse: Pulse::default(), window: Arc::default() })
     }
@@ -137,39 +92,17 @@ impl Publisher {
     /// Does not allocate.
     pub fn publish(&mut self, external: &ExternalInputs, memory: &CommonMemory, pulse: Pulse) {
         let Some(ports) = &self.ports else { return };
-        let header = stamp(pulse.tick);
-        ports.hwsc.write(&HwscOutputs { header, command: external.hws });
-        ports.data_base.write(&DataBaseOutputs { header, status: external.data_base });
-        ports.outside_pedestal.write(&OutsidePedestalOutputs { header, sent: external.pedestal });
-        ports.devices.write(&DevicesOutputs { header, inputs: external.devices });
-        ports.task.write(&memory.task);
-        ports.subtask.write(&memory.subtask);
-        ports.emove.write(&memory.emove);
-        ports.prim.write(&memory.prim);
-        ports.t3i.write(&memory.t3i);
-        ports.quick_change.write(&memory.quick_change);
-        ports.grip.write(&memory.grip);
-        ports.v_grip.write(&memory.v_grip);
-        ports.tool_grip.write(&memory.tool_grip);
-        ports.pedestal.write(&memory.pedestal);
-        ports.hand.write(&memory.hand);
-        ports.table.write(&memory.table);
-        ports.executive.write(&ExecutiveOutputs { header, pulse });
+        ports.writers.write(external, memory, &pulse);
         self.pulse = pulse;
         // If it is being looked at, the next tick comes soon.
         let _ = self.window.with(|seen| *seen = Published { external: *external, memory: *memory, pulse });
     }
 }
 
-const fn stamp(tick: Tick) -> Header {
-    Header { stamp: tick, ..Header::ZERO }
-}
-
 impl Drop for Publisher {
     fn drop(&mut self) {
         if let Some(ports) = self.ports.take() {
-            let pulse = Pulse { over: true, ..self.pulse };
-            ports.executive.write(&ExecutiveOutputs { header: stamp(pulse.tick), pulse });
+            ports.writers.executive.write(&Pulse { over: true, ..self.pulse });
             drop(ports);
         }
         // Nothing can be done about a failure here; `rcs-run clean` tries again and reports.

@@ -2,22 +2,42 @@
 
 use rcs_core::{
     frame::Frame,
-    interface::{EmoveOutputs, Reason, device::Picture, emove::EmoveCommand, prim::PrimVerb},
+    interface::{EmoveOutputs, device::Picture, emove::EmoveCommand, prim::PrimVerb},
     pose::Pose,
     process::Inputs,
 };
-use taskdata::files::TaskData;
+use taskdata::files::{MovtabId, TaskData, TrajParaId};
 
 use super::{
-    Emove, Slot,
     locate::{centred, looked_at, part_frame, request, view_of},
-    sensing::present_frame,
-    state::{Located, Sort},
+    postprocess::Slot,
+    robot_place::{GoneTo, place_named, present_frame},
+    state::{Located, State},
     tables::Action,
 };
-use crate::places::place_of;
 
-impl Emove {
+/// From where the camera is moved next, and how.
+pub(super) struct Aim {
+    /// Where the tool is.
+    tool: Frame,
+    /// View movetable of the object.
+    view: MovtabId,
+    /// Parameters of the motion: those with which the view is approached last.
+    parameters: TrajParaId,
+}
+
+impl State {
+    /// From where the camera is moved next, and how; `None` if the resolvers or the task data do not say.
+    pub(super) fn aim(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Aim> {
+        let data = inputs.data;
+        let approach = data.view_approach(&command.object, command.grip, &place_named(command))?;
+        Some(Aim {
+            tool: present_frame(inputs.memory)?,
+            view: view_of(command, data)?.movetable,
+            parameters: data.path(approach).last()?.para,
+        })
+    }
+
     /// Ask vision for a picture.
     pub(super) fn take_picture(
         &mut self,
@@ -28,16 +48,15 @@ impl Emove {
         outputs: &mut EmoveOutputs,
     ) {
         let again = matches!(action, Action::FloodAgain | Action::PreciseAgain);
-        self.state.tries = if again { self.state.tries.saturating_add(1) } else { 0 };
+        self.tries = if again { self.tries.saturating_add(1) } else { 0 };
         match action {
-            Action::Flood => self.state.located = Located::default(),
-            Action::Precise => self.settle(command, Sort::View, outputs),
+            Action::Flood => self.located = None,
+            Action::Precise => self.settle(command, GoneTo::of(command), outputs),
             _ => {}
         }
-        let Some(view) = view_of(command, inputs.data) else {
-            return self.fail(Reason::BadRecord, inputs, outputs);
-        };
-        outputs.vision = request(self.state.vision.send(inputs.tick), picture, self.state.tries, view);
+        if let Some(view) = view_of(command, inputs.data) {
+            outputs.vision = request(self.vision.send(inputs.tick), picture, self.tries, view);
+        }
     }
 
     /// Move the camera over the centroid, and for [`Action::Align`] turn it with the part.
@@ -48,30 +67,24 @@ impl Emove {
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut EmoveOutputs,
     ) {
-        let place = place_of(command.location_kind, command.location_record, command.location_array);
-        let found = view_of(command, inputs.data).zip(present_frame(inputs.memory));
-        let approach = inputs.data.view_approach(&command.object, command.grip, &place);
-        let parameters = approach.and_then(|path| Some(inputs.data.path(path).last()?.para));
-        let (Some((view, tool)), Some(parameters)) = (found, parameters) else {
-            return self.fail(Reason::BadRecord, inputs, outputs);
-        };
+        let Some(Aim { tool, view, parameters }) = self.aim(command, inputs) else { return };
         let seen = &inputs.external.devices.vision;
-        let middle = looked_at(&tool, view.movetable, inputs.data);
-        let target: Frame = if action == Action::Align {
+        let middle = looked_at(&tool, view, inputs.data);
+        let target = if action == Action::Align {
             let part = part_frame(&middle, seen);
             let pose = Pose::from_frame(&part);
             self.publish(Slot::Located, pose, outputs);
-            self.state.located = Located {
+            self.located = Some(Located {
                 object: command.object,
                 record: command.location_record,
                 array: command.location_array,
                 pose,
-            };
+            });
             part
         } else {
             centred(&middle, seen)
         };
-        let goal = Pose::from_frame(&inputs.data.moved(&target, view.movetable));
+        let goal = Pose::from_frame(&inputs.data.moved(&target, view));
         let record = self.publish(Slot::Goal, goal, outputs);
         self.send_prim(PrimVerb::GotoPt, inputs, outputs);
         outputs.prim.pose = record;

@@ -1,22 +1,26 @@
 //! What the fingers are to do and what they have done: openings and sizes of the object forms (VII.7.1) as
 //! orders to the attached gripper, and its opening as state variables.
 
-use rcs_core::{handshake::Lower, interface::emove::EmoveCommand, name::Name16, process::Inputs};
+use rcs_core::{
+    handshake::Lower,
+    interface::{CommonMemory, emove::EmoveCommand},
+    name::Name16,
+    process::Inputs,
+};
 use taskdata::files::{EndEffId, EndEffPara, TaskData};
 
 use super::{
-    Emove,
     gripper::{Gripper, Order, Request},
     route::FULL_OPENING,
-    state::Held,
+    state::State,
     tables::{Action, Fingers, Opening, Spread},
 };
 
 /// Grip number of a holster object with the gripper on the robot; its approach size is the opening with which
 /// the gripper goes through the holster.
 const GRIPPER_ON: i32 = 1;
-/// Ticks in which neither finger may feel what is held (0.2 s): longer than it takes to push a part from one finger to the
-/// other.
+/// Ticks in which neither finger may feel what is held (0.2 s): longer than it takes to push a part from one
+/// finger to the other.
 const UNFELT_TICKS: u8 = 5;
 /// Force with which the joystick box closes the parts gripper, lb: the least of the usual ones (VIII.9.1;
 /// ASSUMED).
@@ -27,16 +31,34 @@ pub(super) fn gripper_on<'d>(object: &Name16, data: &TaskData<'d>) -> Option<&'d
     data.object(object, GRIPPER_ON).map(|(_, parameters)| parameters)
 }
 
-impl Emove {
-    /// Preprocess: is what was held still there?
+/// Parameters of the object of a command.
+pub(super) fn sizes<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
+    data.end_eff(EndEffId::new(command.object_parameters))
+}
+
+/// What the fingers have between them.
+pub(super) fn fingers(command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Fingers {
+    let grasp_size = sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size);
+    let gripper = Gripper::attached(inputs.memory);
+    match gripper.opening(inputs.memory) {
+        Some(opening) if gripper.grips(opening, grasp_size) => Fingers::Gripping,
+        _ => Fingers::Empty,
+    }
+}
+
+fn attached_stands_at(opening: i32, memory: &CommonMemory) -> bool {
+    let attached = Gripper::attached(memory);
+    attached != Gripper::None && attached.stands_at(opening, memory)
+}
+
+impl State {
+    /// Is what was held still there?
     pub(super) fn sense_held(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
-        let letting_go = self.state.grippers.order == Order::Release;
-        let held = &mut self.state.held;
-        if held.object.is_empty() {
-            return;
-        }
-        // A part that was held with little force leaves the fingers where they are when it falls: only the force tells.
+        let letting_go = self.grippers.order == Order::Release;
+        let Some(held) = &mut self.held else { return };
+        // A part that was held with little force leaves the fingers where they are when it falls: only the
+        // force tells.
         let felt = letting_go || !held.gripper.feels_nothing(memory);
         held.unfelt = if felt { 0 } else { held.unfelt.saturating_add(1) };
         // A gripper that was restarted knows no opening: what was held is not lost for that.
@@ -46,31 +68,32 @@ impl Emove {
             .is_some_and(|opening| !held.gripper.still_grips(opening, held.grasp_size, held.opening));
         let gone = Gripper::attached(memory) != held.gripper;
         let unfelt = held.unfelt > UNFELT_TICKS;
-        if slipped || unfelt || gone || self.state.grippers.has_let_go(inputs.tick, memory) {
-            self.state.held = Held::default();
-            self.state.gripper_gone = gone;
+        if slipped || unfelt || gone || self.grippers.has_let_go(inputs.tick, memory) {
+            self.held = None;
+            self.gripper_gone = gone;
         }
     }
 
     /// The opening to let go of what is held, or of the object of the command, 0.01 in.
     fn depart_opening(&self, command: &EmoveCommand, data: &TaskData<'_>) -> i32 {
-        let held = data.end_eff(self.state.held.parameters);
-        let named = data.end_eff(EndEffId::new(command.object_parameters));
-        held.or(named).map_or(FULL_OPENING, |parameters| parameters.depart_size)
+        let held = self.held.and_then(|held| data.end_eff(held.parameters));
+        held.or_else(|| sizes(command, data)).map_or(FULL_OPENING, |sizes| sizes.depart_size)
     }
 
-    /// The order that an action stands for.
+    /// The order to the gripper that an action stands for.
     pub(super) fn request(
         &self,
         action: Action,
         command: &EmoveCommand,
         inputs: &Inputs<'_, TaskData<'_>>,
     ) -> Request {
-        let parameters =
-            inputs.data.end_eff(EndEffId::new(command.object_parameters)).copied().unwrap_or_default();
+        let sizes = sizes(command, inputs.data).copied().unwrap_or_default();
         match action {
-            Action::Open => Request::to(Order::Stand, self.state.route.opening),
-            Action::OpenToApproach => Request::to(Order::Stand, parameters.appr_size),
+            Action::Open => {
+                let opening = self.route.and_then(|route| route.opening);
+                Request::to(Order::Stand, opening.unwrap_or_default())
+            }
+            Action::OpenToApproach => Request::to(Order::Stand, sizes.appr_size),
             Action::CloseForHolster => {
                 let opening = gripper_on(&command.object, inputs.data).map_or(0, |on| on.appr_size);
                 Request::to(Order::Stand, opening)
@@ -78,7 +101,7 @@ impl Emove {
             Action::OpenToDepart => Request::to(Order::Release, self.depart_opening(command, inputs.data)),
             Action::OpenByHand => Request::to(Order::Release, FULL_OPENING),
             Action::Close => {
-                Request { order: Order::Grasp, opening: parameters.grasp_size, force: parameters.grasp_force }
+                Request { order: Order::Grasp, opening: sizes.grasp_size, force: sizes.grasp_force }
             }
             Action::CloseByHand => {
                 let opening = Gripper::attached(inputs.memory).closed();
@@ -91,37 +114,21 @@ impl Emove {
 
     /// The opening for the goal of the route.
     pub(super) fn opening(&self, gripper: Lower, inputs: &Inputs<'_, TaskData<'_>>) -> Opening {
-        let route = &self.state.route;
-        if route.opening < 0 {
-            Opening::Set
-        } else if route.opening_sent {
+        let Some((route, opening)) = self.route.and_then(|route| Some((route, route.opening?))) else {
+            return Opening::Set;
+        };
+        if route.opening_sent {
             match gripper {
                 Lower::Pending | Lower::Executing => Opening::Moving,
                 Lower::Done => Opening::Set,
                 Lower::Error | Lower::Joystick | Lower::Lost => Opening::Failed,
             }
-        } else if gripper == Lower::Done && self.attached_stands_at(route.opening, inputs) {
+        } else if gripper == Lower::Done && attached_stands_at(opening, inputs.memory) {
             Opening::Set
         } else if route.departing(inputs.data) {
             Opening::Departing
         } else {
             Opening::Due
-        }
-    }
-
-    fn attached_stands_at(&self, opening: i32, inputs: &Inputs<'_, TaskData<'_>>) -> bool {
-        let attached = Gripper::attached(inputs.memory);
-        attached != Gripper::None && attached.stands_at(opening, inputs.memory)
-    }
-
-    /// What the fingers have between them.
-    pub(super) fn fingers(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Fingers {
-        let grasp_size =
-            inputs.data.end_eff(EndEffId::new(command.object_parameters)).map_or(0, |p| p.grasp_size);
-        let gripper = Gripper::attached(inputs.memory);
-        match gripper.opening(inputs.memory) {
-            Some(opening) if gripper.grips(opening, grasp_size) => Fingers::Gripping,
-            _ => Fingers::Empty,
         }
     }
 

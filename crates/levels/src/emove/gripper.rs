@@ -14,8 +14,7 @@
 //! | Grasp     | CLOSE-GRIP            | GRASP                                                      |
 //! | Calibrate | UP-INIT               | PAUSE: there is nothing to calibrate                       |
 //!
-//! Fingers that stop at the end that nobody sent them to end in `opened` or `closed` as well (VI.4.2): that
-//! is an error here.
+//! Fingers that stop at the wrong end report `opened` or `closed` as well (VI.4.2): that is an error here.
 
 use rcs_core::{
     Plain,
@@ -41,8 +40,8 @@ const PARTS_BAND: i32 = 2;
 const STILL: i32 = 10;
 /// Fingers of the parts gripper this much wider than at the grasp have let go, 0.01 in.
 const LET_GO: i32 = 25;
-/// A finger that feels less than this touches nothing, lb; reported forces are rounded to a pound, and no grasp is weaker
-/// than three (`levels::grip`).
+/// A finger that feels less than this touches nothing, lb; reported forces are rounded to a pound, and no
+/// grasp is weaker than three (`levels::grip`).
 const FELT: i32 = 1;
 /// v-gripper and tool gripper hold an object if the opening differs from the grasp size by no more than this,
 /// 0.01 in (ASSUMED).
@@ -132,7 +131,7 @@ impl Gripper {
 
     /// Must the gripper be calibrated before it can be commanded (VI.3.1 UP-INIT)?
     #[must_use]
-    pub fn is_raw(self, memory: &CommonMemory) -> bool {
+    pub fn is_uncalibrated(self, memory: &CommonMemory) -> bool {
         self == Self::Parts && !memory.grip.status.initialized
     }
 
@@ -271,7 +270,7 @@ impl Grippers {
         self.tool.start(memory.tool_grip.status.echo);
     }
 
-    /// Give the attached gripper an order; without a gripper there is nobody to give it to.
+    /// Give the attached gripper an order; without a gripper it only counts as given.
     pub fn send(&mut self, request: Request, tick: Tick, memory: &CommonMemory, outputs: &mut EmoveOutputs) {
         self.to = Gripper::attached(memory);
         self.order = request.order;

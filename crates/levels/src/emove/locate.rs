@@ -41,11 +41,13 @@ pub fn part_frame(place: &Frame, seen: &VisionResponse) -> Frame {
     centred(place, seen).turned(&Rotation::from_axis_angle(&Vector::x_axis(), radians(seen.angle)))
 }
 
-/// Half a turn about the tool's X changes nothing for two fingers: no answer needs more than a quarter, 0.01 degree.
+/// Half a turn about the tool's X changes nothing for two fingers: no answer needs more than a quarter, 0.01
+/// degree.
 const QUARTER_TURN: u32 = 9_000;
 
-/// False if no picture can show what vision answers: then the arm must not be sent there. The centroid lies at most half the
-/// expected range beside the optical axis (ASSUMED: as with a lens of 53 degrees), and the roll is within a quarter turn.
+/// False if no picture can show what vision answers: then the arm must not be sent there. The centroid lies
+/// at most half the expected range beside the optical axis (ASSUMED: as with a lens of 53 degrees), and the
+/// roll is within a quarter turn.
 #[must_use]
 pub fn is_plausible(request: &VisionRequest, answer: &VisionResponse) -> bool {
     let widest = f64::from(request.range_mm) / (2.0 * MM_PER_INCH);
@@ -53,7 +55,8 @@ pub fn is_plausible(request: &VisionRequest, answer: &VisionResponse) -> bool {
     inside(answer.y) && inside(answer.z) && answer.angle.unsigned_abs() <= QUARTER_TURN
 }
 
-/// True if vision has recognised another object than the one that it was asked for (V.2.1: it does so in the second picture).
+/// True if vision has recognised another object than the one that it was asked for (V.2.1: it does so in the
+/// second picture).
 #[must_use]
 pub fn is_another(request: &VisionRequest, answer: &VisionResponse) -> bool {
     request.picture == Picture::Precise && answer.recognised != request.object_id

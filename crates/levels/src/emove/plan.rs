@@ -3,137 +3,114 @@
 use rcs_core::{
     frame::Frame,
     interface::{
-        CommonMemory, Reason,
+        CommonMemory,
         emove::{EmoveCommand, EmoveVerb},
         pose_range,
     },
     process::Inputs,
 };
-use taskdata::files::{EndEffId, PoseId, TaskData};
+use taskdata::files::{PoseId, TaskData};
 
 use super::{
-    Emove, fingers,
+    fingers::{gripper_on, sizes},
     gripper::Gripper,
-    locate, relative,
-    route::{Goal, Route},
+    locate::view_of,
+    relative,
+    route::{Goal, Planning, Route},
+    state::State,
+    tables::{Attached, HolsterData, Knowledge, Ordered, Record, Request},
 };
+use crate::execution::Asked;
 
-/// What a motion command has planned: the way and its goal; `None` for commands without a route.
-pub(super) type Plan = Option<(Route, Goal)>;
-
-/// The gripper on the robot must be the one that the command needs.
-fn check_gripper(command: &EmoveCommand, memory: &CommonMemory) -> Result<(), Reason> {
-    let attached = Gripper::attached(memory);
-    let right = command.end_effector_id == 0 || command.end_effector_id == attached.code();
-    let good = match command.command {
-        // Quick change commands have rows for it; what is held is released, whatever holds it.
-        EmoveVerb::None
-        | EmoveVerb::Pause
-        | EmoveVerb::MovToLoc
-        | EmoveVerb::Release
-        | EmoveVerb::QcDetach
-        | EmoveVerb::QcAttach
-        | EmoveVerb::Withdraw => true,
-        EmoveVerb::MovToHol => attached == Gripper::None || right,
-        EmoveVerb::MovToObj
-        | EmoveVerb::MovObjTo
-        | EmoveVerb::MovToVu
-        | EmoveVerb::LocateObj
-        | EmoveVerb::GraspObj
-        | EmoveVerb::InsertTool
-        | EmoveVerb::ReleaseTool
-        | EmoveVerb::AcquireTool
-        | EmoveVerb::RemoveTool => attached != Gripper::None && right,
-    };
-    if good { Ok(()) } else { Err(Reason::WrongGripper) }
-}
-
-/// What is grasped must have its sizes in the task data: without them anything between the fingers would do.
-fn check_sizes(command: &EmoveCommand, data: &TaskData<'_>) -> Result<(), Reason> {
-    let found = data.end_eff(EndEffId::new(command.object_parameters));
-    found.map(|_| ()).ok_or(Reason::UnknownGrip)
-}
-
-/// A quick change command needs a gripper with a holster, and the opening with which it goes through it.
-fn check_holster(command: &EmoveCommand, data: &TaskData<'_>) -> Result<(), Reason> {
-    if Gripper::of(command.end_effector_id) == Gripper::None {
-        return Err(Reason::NoHolster);
+/// The gripper on the robot, seen from the command.
+fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
+    match Gripper::attached(memory) {
+        Gripper::None => Attached::None,
+        _ if command.end_effector_id == 0 => Attached::Right,
+        attached if command.end_effector_id == attached.code() => Attached::Right,
+        Gripper::Parts | Gripper::V | Gripper::Tool => Attached::Wrong,
     }
-    fingers::gripper_on(&command.object, data).map(|_| ()).ok_or(Reason::UnknownGrip)
 }
 
-impl Emove {
-    /// Look up all that a command needs.
-    pub(super) fn plan(
+/// A gripper with a holster, and the opening with which it goes through it.
+fn holster(command: &EmoveCommand, data: &TaskData<'_>) -> HolsterData {
+    if Gripper::of(command.end_effector_id) == Gripper::None {
+        HolsterData::NoGripper
+    } else if gripper_on(&command.object, data).is_none() {
+        HolsterData::NoOpening
+    } else {
+        HolsterData::Found
+    }
+}
+
+const fn record(found: bool) -> Record {
+    if found { Record::Found } else { Record::Missing }
+}
+
+impl State {
+    /// A new command: look up all that it needs. What is found is kept.
+    pub(super) fn look_up(&mut self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
+        let (memory, data) = (inputs.memory, inputs.data);
+        let route = self.plan(command, inputs);
+        self.route = route.ok().flatten();
+        (self.ordered, self.uses_prim) = (Ordered::Nothing, false);
+        (self.tries, self.undetected) = (0, 0);
+        self.carrying = self.held.is_some();
+        Request {
+            asked: Asked::Now,
+            verb: command.command,
+            gripper: attached(command, memory),
+            start: if self.place.is_some() { Knowledge::Known } else { Knowledge::Unknown },
+            sizes: record(sizes(command, data).is_some()),
+            view: record(view_of(command, data).is_some()),
+            holster: holster(command, data),
+            moves: relative::look_up(command, memory, data),
+            route: route.err().unwrap_or(Planning::Planned),
+        }
+    }
+
+    /// The way of a motion command.
+    fn plan(
         &self,
         command: &EmoveCommand,
         inputs: &Inputs<'_, TaskData<'_>>,
-    ) -> Result<Plan, Reason> {
-        check_gripper(command, inputs.memory)?;
+    ) -> Result<Option<Route>, Planning> {
         match command.command {
-            EmoveVerb::None => return Err(Reason::UnknownCommand),
-            EmoveVerb::Pause | EmoveVerb::Release => {}
-            EmoveVerb::GraspObj => check_sizes(command, inputs.data)?,
-            EmoveVerb::LocateObj => {
-                locate::view_of(command, inputs.data).ok_or(Reason::BadRecord)?;
-            }
-            EmoveVerb::QcDetach | EmoveVerb::QcAttach => {
-                check_holster(command, inputs.data)?;
-                relative::check(command, inputs)?;
-            }
-            EmoveVerb::Withdraw => relative::check(command, inputs)?,
-            EmoveVerb::InsertTool
-            | EmoveVerb::ReleaseTool
-            | EmoveVerb::AcquireTool
-            | EmoveVerb::RemoveTool => {
-                if !self.state.stance.known {
-                    return Err(Reason::UnknownStart);
-                }
-                if command.command == EmoveVerb::AcquireTool {
-                    check_sizes(command, inputs.data)?;
-                }
-                relative::check(command, inputs)?;
-            }
             EmoveVerb::MovToLoc
             | EmoveVerb::MovToObj
             | EmoveVerb::MovObjTo
             | EmoveVerb::MovToVu
-            | EmoveVerb::MovToHol => return self.plan_route(command, inputs).map(Some),
+            | EmoveVerb::MovToHol => {
+                let base = self.base_frame(command, inputs)?;
+                let goal = Goal::new(command, &base, inputs.data)?;
+                let route = Route::plan(command, &goal, self.place.as_ref(), inputs.data)?;
+                let bare = Gripper::attached(inputs.memory) == Gripper::None;
+                Ok(Some(if bare { Route { opening: None, ..route } } else { route }))
+            }
+            _ => Ok(None),
         }
-        Ok(None)
-    }
-
-    fn plan_route(
-        &self,
-        command: &EmoveCommand,
-        inputs: &Inputs<'_, TaskData<'_>>,
-    ) -> Result<(Route, Goal), Reason> {
-        let base = self.base_frame(command, inputs)?;
-        let goal = Goal::new(command, &base, inputs.data)?;
-        let mut route = Route::plan(command, &goal, &self.state.stance, inputs.data)?;
-        if Gripper::attached(inputs.memory) == Gripper::None {
-            route.opening = -1;
-        }
-        Ok((route, goal))
     }
 
     /// The pose of a command, or where vision has found the object.
-    fn base_frame(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Frame, Reason> {
-        let located = &self.state.located;
-        let found = command.command == EmoveVerb::MovToObj
-            && located.object == command.object
-            && !located.object.is_empty()
-            && located.record == command.location_record
-            && located.array == command.location_array;
-        if !found && command.pose < pose_range::CHANGING {
-            let record = inputs.data.pose(PoseId::new(command.pose)).ok_or(Reason::NoDestination)?;
-            return Ok(record.frame);
-        }
-        let pose = if found {
-            &located.pose
-        } else {
-            inputs.memory.changing_pose(command.pose).ok_or(Reason::NoDestination)?
+    fn base_frame(
+        &self,
+        command: &EmoveCommand,
+        inputs: &Inputs<'_, TaskData<'_>>,
+    ) -> Result<Frame, Planning> {
+        let located = self.located.filter(|located| {
+            command.command == EmoveVerb::MovToObj
+                && located.object == command.object
+                && located.record == command.location_record
+                && located.array == command.location_array
+        });
+        let pose = match located {
+            Some(located) => located.pose,
+            None if command.pose < pose_range::CHANGING => {
+                let record = inputs.data.pose(PoseId::new(command.pose)).ok_or(Planning::NoPose)?;
+                return Ok(record.frame);
+            }
+            None => *inputs.memory.changing_pose(command.pose).ok_or(Planning::NoPose)?,
         };
-        pose.to_frame().map_err(|_| Reason::BadRecord)
+        pose.to_frame().map_err(|_| Planning::BadPose)
     }
 }

@@ -8,19 +8,15 @@
 use rcs_core::{
     Plain,
     interface::{
-        EmoveOutputs, Reason,
+        CommonMemory,
         emove::{EmoveCommand, EmoveVerb},
         pose_range,
-        prim::PrimVerb,
     },
     name::Name10,
-    pose::Pose,
-    process::Inputs,
 };
 use taskdata::files::{PoseId, RelativeMove, TaskData};
 
-use super::{Emove, Slot, sensing::present_frame};
-use crate::places::place_of;
+use super::robot_place::place_named;
 
 /// The relative moves by their names in task data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -127,20 +123,24 @@ impl Relative {
         )
     }
 
-    /// The move's record for a place.
-    ///
-    /// # Errors
-    /// [`Reason::NoRelativeMove`] if task data have none, [`Reason::UnknownSensor`] if it is to be guarded
-    /// and is not.
-    pub fn record<'d>(self, command: &EmoveCommand, data: &TaskData<'d>) -> Result<&'d RelativeMove, Reason> {
-        let place = place_of(command.location_kind, command.location_record, command.location_array);
-        let found =
-            data.relative_move(&Name10::clipped(self.text()), &place).ok_or(Reason::NoRelativeMove)?;
-        if self.is_guarded() && data.sensor(&found.sensor).is_none() {
-            return Err(Reason::UnknownSensor);
-        }
-        Ok(found)
+    /// The move's record for the place of a command.
+    #[must_use]
+    pub fn record<'d>(self, command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d RelativeMove> {
+        data.relative_move(&Name10::clipped(self.text()), &place_named(command))
     }
+}
+
+/// What the relative moves of a command lack, the first of them that lacks anything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum RelativeMoves {
+    /// Nothing; or the command makes none.
+    Found,
+    /// A record for the place of the command.
+    Missing,
+    /// The sensor that is to guard the move.
+    Unguarded,
+    /// The pose of the location from which the move leads.
+    NoPose,
 }
 
 /// The relative moves of a command, in their order.
@@ -171,60 +171,24 @@ pub const fn moves_of(verb: EmoveVerb) -> &'static [Relative] {
     }
 }
 
-/// Look up all that the relative moves of a command need, before anything moves.
-///
-/// # Errors
-/// The [`Reason`] why the command cannot be executed.
-pub fn check(command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<(), Reason> {
-    for relative in moves_of(command.command) {
-        relative.record(command, inputs.data)?;
-        let located = if command.pose < pose_range::CHANGING {
-            inputs.data.pose(PoseId::new(command.pose)).is_some()
-        } else {
-            inputs.memory.changing_pose(command.pose).is_some()
-        };
-        if relative.reference() == Reference::Location && !located {
-            return Err(Reason::NoDestination);
+/// Look up all that the relative moves of a command need.
+#[must_use]
+pub fn look_up(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> RelativeMoves {
+    let located = if command.pose < pose_range::CHANGING {
+        data.pose(PoseId::new(command.pose)).is_some()
+    } else {
+        memory.changing_pose(command.pose).is_some()
+    };
+    let of_move = |relative: &Relative| match relative.record(command, data) {
+        None => RelativeMoves::Missing,
+        Some(found) if relative.is_guarded() && data.sensor(&found.sensor).is_none() => {
+            RelativeMoves::Unguarded
         }
-    }
-    Ok(())
-}
-
-impl Emove {
-    /// DELTA-MOVE, GO-UNTIL or GO-WHILE to Prim.
-    pub(super) fn send_relative(
-        &mut self,
-        verb: PrimVerb,
-        relative: Relative,
-        command: &EmoveCommand,
-        inputs: &Inputs<'_, TaskData<'_>>,
-        outputs: &mut EmoveOutputs,
-    ) {
-        let pose = match relative.reference() {
-            Reference::Location => Some(command.pose),
-            Reference::Stand => {
-                commanded_pose(inputs).map(|pose| self.publish(Slot::Departure, pose, outputs))
-            }
-        };
-        let (Some(pose), Ok(found)) = (pose, relative.record(command, inputs.data)) else {
-            return self.fail(Reason::BadRecord, inputs, outputs);
-        };
-        self.send_prim(verb, inputs, outputs);
-        outputs.prim.pose = pose;
-        outputs.prim.movetable = found.movetable.number();
-        outputs.prim.trajectory_parameters = found.para.number();
-        if relative.is_guarded() {
-            outputs.prim.sensor = found.sensor;
-        }
-        self.state.undetected = 0;
-        self.state.stance.known = false;
-    }
-}
-
-/// Where the robot was last told to be; where the resolvers say that it is, if Prim commands nothing.
-pub(super) fn commanded_pose(inputs: &Inputs<'_, TaskData<'_>>) -> Option<Pose> {
-    let commanded = inputs.memory.changing_pose(inputs.memory.prim.status.present_pose).copied();
-    commanded.or_else(|| present_frame(inputs.memory).map(|frame| Pose::from_frame(&frame)))
+        Some(_) if relative.reference() == Reference::Location && !located => RelativeMoves::NoPose,
+        Some(_) => RelativeMoves::Found,
+    };
+    let mut moves = moves_of(command.command).iter().map(of_move);
+    moves.find(|found| *found != RelativeMoves::Found).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -233,8 +197,9 @@ mod tests {
 
     use super::{Reference, Relative};
 
-    /// The checker of task data has its own list: it must ask for what E-move looks for, and no more. A move that E-move makes
-    /// from where the robot stands may begin anywhere for the checker, one from the location only there.
+    /// The checker of task data has its own list: it must ask for what E-move looks for, and no more. A move
+    /// that E-move makes from where the robot stands may begin anywhere for the checker, one from the
+    /// location only there.
     #[test]
     fn the_checker_of_task_data_knows_the_same_moves() {
         let mut ours: Vec<&str> = Relative::ALL.iter().map(|relative| relative.text()).collect();

@@ -2,23 +2,23 @@
 //! trajectory, approach points, stop.
 //!
 //! ```text
-//!   stance --depart--> . --trajectory--> . --approach--> . --stop--> goal
-//!   data of the object      by the pair       data of the new
-//!   that was gone to        of locations      object and grip
+//!   departure --depart--> . --trajectory--> . --approach--> . --stop--> goal
+//!   data of the object         by the pair       data of the new
+//!   that was gone to           of locations      object and grip
 //! ```
 
 use rcs_core::{
     Plain,
     frame::Frame,
     interface::{
-        Reason,
+        ChangingPose,
         emove::{EmoveCommand, EmoveVerb},
     },
+    pose::Pose,
 };
 use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Place, Target, TaskData, TrajParaId, VisionId};
 
-use super::state::{Sort, Stance};
-use crate::places::place_of;
+use super::robot_place::{GoneTo, ObjectGrip, RobotPlace, place_named};
 
 /// Opening, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU).
 /// The parts gripper opens as wide; the others open to their stop.
@@ -28,15 +28,44 @@ pub const THERE_INCHES: f64 = 0.02;
 /// … and this many radians (0.1 degree) of it.
 pub const THERE_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0;
 
+/// What planning the way of a motion command came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Planning {
+    /// There is a way, or the command needs none.
+    Planned,
+    /// No record holds the pose of the command.
+    NoPose,
+    /// The pose of the command is no frame.
+    BadPose,
+    /// Object and grip have no record of END-EFF-PARA.
+    NoSizes,
+    /// Object, grip and location have no grip movetable.
+    NoGrip,
+    /// The object has no record of VISION-PARA.
+    NoView,
+    /// Nothing is written on the approach of object and grip at the location.
+    NoApproach,
+    /// It is not known where the robot is.
+    NoStart,
+    /// The fingers are around a tool in the drum.
+    InDrum,
+    /// No trajectory leads from where the robot is to the location of the goal.
+    NoTrajectory,
+    /// Nothing says how fast the goal is approached.
+    NoSpeed,
+}
+
 /// What lies ahead on the route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ahead {
-    /// Nothing: the robot is at the goal.
+    /// Nothing: the robot is at the goal, or has been sent there.
     Nothing,
     /// A point to go through.
     Through,
     /// The goal, to stop at.
     Stop,
+    /// A point whose record is missing.
+    Missing,
 }
 
 /// A planned way and how far it has been commanded.
@@ -54,14 +83,14 @@ pub struct Route {
     pub commanded: u16,
     /// The goal has been commanded, or need not be.
     pub complete: bool,
-    /// Opening of the fingers at the goal, 0.01 in; negative if it does not matter.
-    pub opening: i32,
+    /// Opening of the fingers at the goal, 0.01 in; `None` if it does not matter.
+    pub opening: Option<i32>,
     /// The opening has been commanded.
     pub opening_sent: bool,
-    /// The pose departed from (changing record).
-    pub departure: u32,
-    /// The goal (changing record).
-    pub goal: u32,
+    /// The pose departed from; without a number until it is published.
+    pub departure: ChangingPose,
+    /// The goal; without a number until it is published.
+    pub goal: ChangingPose,
 }
 
 /// A point of a route that Prim is to be sent to.
@@ -94,67 +123,49 @@ pub struct Goal {
     pub frame: Frame,
     /// How it is approached; null if nothing is written.
     pub approach: PathId,
-    /// Opening of the fingers, 0.01 in; negative if it does not matter.
-    pub opening: i32,
+    /// Opening of the fingers, 0.01 in; `None` if it does not matter.
+    pub opening: Option<i32>,
     /// What is gone to.
-    pub sort: Sort,
+    pub gone_to: GoneTo,
 }
 
 impl Goal {
     /// The goal of a motion command. `base` is the pose of the command, or where vision found the object.
     ///
     /// # Errors
-    /// The [`Reason`] why there is none.
-    pub fn new(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Result<Self, Reason> {
-        let place = place_of(command.location_kind, command.location_record, command.location_array);
+    /// What is missing.
+    pub fn new(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Result<Self, Planning> {
+        let (place, gone_to) = (place_named(command), GoneTo::of(command));
         let grip_frame = || {
-            let movetable =
-                data.grip_movetable(&command.object, command.grip, &place).ok_or(Reason::NoGripMovetable)?;
-            Ok(data.moved(base, movetable))
+            let movetable = data.grip_movetable(&command.object, command.grip, &place);
+            Ok(data.moved(base, movetable.ok_or(Planning::NoGrip)?))
         };
-        let approach = || data.approach(&command.object, command.grip, &place).ok_or(Reason::NoApproach);
+        let approach = || data.approach(&command.object, command.grip, &place).ok_or(Planning::NoApproach);
         match command.command {
             EmoveVerb::MovToObj | EmoveVerb::MovToHol => {
-                let parameters =
-                    data.end_eff(EndEffId::new(command.object_parameters)).ok_or(Reason::UnknownGrip)?;
-                Ok(Self {
-                    frame: grip_frame()?,
-                    approach: approach()?,
-                    opening: parameters.appr_size,
-                    sort: Sort::Object,
-                })
+                let sizes =
+                    data.end_eff(EndEffId::new(command.object_parameters)).ok_or(Planning::NoSizes)?;
+                let opening = Some(sizes.appr_size);
+                Ok(Self { frame: grip_frame()?, approach: approach()?, opening, gone_to })
             }
             EmoveVerb::MovObjTo => {
-                Ok(Self { frame: grip_frame()?, approach: approach()?, opening: -1, sort: Sort::Object })
+                Ok(Self { frame: grip_frame()?, approach: approach()?, opening: None, gone_to })
             }
             EmoveVerb::MovToVu => {
-                let view = data.vision_para(VisionId::new(command.object_vision)).ok_or(Reason::BadRecord)?;
+                let view = data.vision_para(VisionId::new(command.object_vision)).ok_or(Planning::NoView)?;
+                let approach = data.view_approach(&command.object, command.grip, &place);
                 Ok(Self {
                     frame: data.moved(base, view.movetable),
-                    approach: data
-                        .view_approach(&command.object, command.grip, &place)
-                        .ok_or(Reason::NoApproach)?,
-                    opening: FULL_OPENING,
-                    sort: Sort::View,
+                    approach: approach.ok_or(Planning::NoApproach)?,
+                    opening: Some(FULL_OPENING),
+                    gone_to,
                 })
             }
-            EmoveVerb::None
-            | EmoveVerb::Pause
-            | EmoveVerb::MovToLoc
-            | EmoveVerb::LocateObj
-            | EmoveVerb::GraspObj
-            | EmoveVerb::Release
-            | EmoveVerb::QcDetach
-            | EmoveVerb::QcAttach
-            | EmoveVerb::Withdraw
-            | EmoveVerb::InsertTool
-            | EmoveVerb::ReleaseTool
-            | EmoveVerb::AcquireTool
-            | EmoveVerb::RemoveTool => Ok(Self {
+            _ => Ok(Self {
                 frame: *base,
                 approach: data.approach_location(&place).unwrap_or(PathId::NULL),
-                opening: -1,
-                sort: Sort::Location,
+                opening: None,
+                gone_to,
             }),
         }
     }
@@ -174,40 +185,43 @@ pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
 }
 
 impl Route {
-    /// Plan the way to `goal` from where the robot is.
+    /// Plan the way to `goal` from where the robot is, if that is known.
     ///
     /// # Errors
-    /// [`Reason::UnknownStart`] if it is not known where the robot is, [`Reason::NotPrepared`] if its fingers
-    /// are around a tool in the drum, [`Reason::NoTrajectory`] if no trajectory leads from there to the
-    /// goal's location, [`Reason::NoApproach`] if nothing says how fast the goal is approached.
+    /// Why there is no way.
     pub fn plan(
         command: &EmoveCommand,
         goal: &Goal,
-        stance: &Stance,
+        from: Option<&RobotPlace>,
         data: &TaskData<'_>,
-    ) -> Result<Self, Reason> {
-        if !stance.known {
-            return Err(Reason::UnknownStart);
-        }
-        let from = stance.place();
-        let to = place_of(command.location_kind, command.location_record, command.location_array);
-        let start = stance.pose.to_frame().map_err(|_| Reason::UnknownStart)?;
-        let here = same_location(&from, &to);
+    ) -> Result<Self, Planning> {
+        let from = from.ok_or(Planning::NoStart)?;
+        let to = place_named(command);
+        let start = from.pose.to_frame().map_err(|_| Planning::NoStart)?;
+        let here = same_location(&from.place, &to);
+        let route = Self {
+            opening: goal.opening,
+            departure: ChangingPose { number: 0, pose: from.pose },
+            goal: ChangingPose { number: 0, pose: Pose::from_frame(&goal.frame) },
+            ..Self::default()
+        };
         if here && near(&start, &goal.frame, THERE_INCHES, THERE_RADIANS) {
-            return Ok(Self { complete: true, opening: goal.opening, ..Self::default() });
+            return Ok(Self { complete: true, ..route });
         }
-        let depart = match stance.sort {
-            Sort::Drum => return Err(Reason::NotPrepared),
-            Sort::Location => data.depart_location(&from),
-            Sort::Object => data.depart(&stance.object, stance.grip, &from),
-            Sort::View => data.view_depart(&stance.object, stance.grip, &from),
-        }
-        .unwrap_or(PathId::NULL);
-        let between =
-            if here { PathId::NULL } else { data.trajectory(&from, &to).ok_or(Reason::NoTrajectory)? };
-        let mut route =
-            Self { depart, between, approach: goal.approach, opening: goal.opening, ..Self::default() };
-        route.stop = route.stop_parameters(data).ok_or(Reason::NoApproach)?;
+        let depart = match from.gone_to {
+            GoneTo::Drum => return Err(Planning::InDrum),
+            GoneTo::Location => data.depart_location(&from.place),
+            GoneTo::Object(ObjectGrip { object, grip }) => data.depart(&object, grip, &from.place),
+            GoneTo::View(ObjectGrip { object, grip }) => data.view_depart(&object, grip, &from.place),
+        };
+        let between = if here { Some(PathId::NULL) } else { data.trajectory(&from.place, &to) };
+        let mut route = Self {
+            depart: depart.unwrap_or(PathId::NULL),
+            between: between.ok_or(Planning::NoTrajectory)?,
+            approach: goal.approach,
+            ..route
+        };
+        route.stop = route.stop_parameters(data).ok_or(Planning::NoSpeed)?;
         Ok(route)
     }
 
@@ -219,24 +233,27 @@ impl Route {
             .find_map(|path| Some(data.path(path).last()?.para))
     }
 
-    /// The points to go through, in order.
-    fn points<'a>(&self, data: &TaskData<'a>) -> impl Iterator<Item = (Part, &'a PathPoint)> + use<'a> {
+    /// The next point to go through; `None` if the goal is next, or the route is complete.
+    fn next_point<'a>(&self, data: &TaskData<'a>) -> Option<(Part, &'a PathPoint)> {
+        if self.complete {
+            return None;
+        }
         let part = |part, path| data.path(path).iter().map(move |point| (part, point));
         part(Part::Depart, self.depart)
             .chain(part(Part::Between, self.between))
             .chain(part(Part::Approach, self.approach))
             .filter(|(_, point)| point.target != Target::Stop)
+            .nth(usize::from(self.commanded))
     }
 
     /// What lies ahead.
     #[must_use]
     pub fn ahead(&self, data: &TaskData<'_>) -> Ahead {
-        if self.complete {
-            Ahead::Nothing
-        } else if self.points(data).nth(usize::from(self.commanded)).is_some() {
-            Ahead::Through
-        } else {
-            Ahead::Stop
+        match self.next_point(data) {
+            Some(_) if self.leg(data).is_some() => Ahead::Through,
+            Some(_) => Ahead::Missing,
+            None if self.complete => Ahead::Nothing,
+            None => Ahead::Stop,
         }
     }
 
@@ -244,31 +261,26 @@ impl Route {
     /// (docs/design/motion.md "Finger opening").
     #[must_use]
     pub fn departing(&self, data: &TaskData<'_>) -> bool {
-        !self.complete
-            && matches!(self.points(data).nth(usize::from(self.commanded)), Some((Part::Depart, _)))
+        matches!(self.next_point(data), Some((Part::Depart, _)))
     }
 
-    /// The next leg; `departure` is the frame departed from. `None` if a record is missing or the route is
-    /// complete.
+    /// The next leg. `None` if a record is missing or the route is complete.
     #[must_use]
-    pub fn leg(&self, departure: &Frame, data: &TaskData<'_>) -> Option<Leg> {
-        if self.complete {
-            return None;
-        }
-        let Some((part, point)) = self.points(data).nth(usize::from(self.commanded)) else {
-            let at = LegGoal::Record { pose: self.goal, movetable: MovtabId::NULL.number() };
-            return Some(Leg { at, parameters: self.stop });
-        };
+    pub fn leg(&self, data: &TaskData<'_>) -> Option<Leg> {
         let record = |pose: u32, movetable: MovtabId| LegGoal::Record { pose, movetable: movetable.number() };
+        let Some((part, point)) = self.next_point(data) else {
+            let at = record(self.goal.number, MovtabId::NULL);
+            return (!self.complete).then_some(Leg { at, parameters: self.stop });
+        };
         let at = match (point.target, part) {
             (Target::Pose(id), _) => record(id.number(), MovtabId::NULL),
             (Target::LocationPoint(id), _) => {
                 let locpt = data.locpt(id)?;
                 record(locpt.pose.number(), locpt.movetable)
             }
-            (Target::Movetable(id), Part::Depart) => record(self.departure, id),
-            (Target::Movetable(id), Part::Approach) => record(self.goal, id),
-            (Target::Movetable(_), Part::Between) => LegGoal::Computed(self.between_frame(departure, data)?),
+            (Target::Movetable(id), Part::Depart) => record(self.departure.number, id),
+            (Target::Movetable(id), Part::Approach) => record(self.goal.number, id),
+            (Target::Movetable(_), Part::Between) => LegGoal::Computed(self.between_frame(data)?),
             (Target::Stop, _) => return None,
         };
         Some(Leg { at, parameters: point.para })
@@ -276,19 +288,20 @@ impl Route {
 
     /// The frame of the next trajectory point, each relative to the one before it (VII.6), the first to the
     /// departure.
-    fn between_frame(&self, departure: &Frame, data: &TaskData<'_>) -> Option<Frame> {
+    fn between_frame(&self, data: &TaskData<'_>) -> Option<Frame> {
+        let departure = self.departure.pose.to_frame().ok()?;
         let points = data.path(self.between);
         let before = data.path(self.depart).len();
         let last = usize::from(self.commanded).checked_sub(before)?;
-        points.get(..=last)?.iter().try_fold(*departure, |frame, point| data.point_frame(point, &frame))
+        points.get(..=last)?.iter().try_fold(departure, |frame, point| data.point_frame(point, &frame))
     }
 
     /// Note that the next leg has been commanded.
     pub fn advance(&mut self, data: &TaskData<'_>) {
-        if self.ahead(data) == Ahead::Stop {
-            self.complete = true;
-        } else {
+        if self.next_point(data).is_some() {
             self.commanded = self.commanded.saturating_add(1);
+        } else {
+            self.complete = true;
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Postprocess: carry out the action of the row that fired, and fill the output buffers.
+//! Postprocess of V-Grip and Tool-Grip: the valves, and the status to E-move.
 
 use rcs_core::{
     interface::{
@@ -11,64 +11,59 @@ use rcs_core::{
 };
 
 use super::{
-    preprocess::Seen,
     state::State,
-    tables::{Action, Gripper},
+    tables::{Action, Gripper, Seen},
 };
-use crate::old_execution::Outcome;
+use crate::execution::Outcome;
 
-/// Carry out `action` and report.
-pub(super) fn perform(state: &mut State, seen: &Seen, action: Action, tick: Tick) -> JawsOutputs {
-    conclude(state, action);
-    let air = air(state, seen.gripper, action);
-    if air != state.valves {
-        (state.valves, state.air_ticks) = (air, 0);
+impl State {
+    /// Carry out what a row asks for. Air stays on when the fingers have arrived: a part is held as long as
+    /// they press. Without the gripper there is none.
+    pub(super) fn act(&mut self, action: Action, seen: &Seen) {
+        const NONE: JawValves = JawValves { open: false, close: false };
+        match action {
+            Action::Close | Action::Open | Action::Wait => {}
+            Action::Report(report) => {
+                self.found = Some(report);
+                self.execution.finish();
+            }
+            Action::Wrong(report) => {
+                self.found = Some(report);
+                self.execution.fail(Reason::JawsStuck);
+            }
+            Action::Refuse(reason) | Action::Fail(reason) => self.execution.fail(reason),
+        }
+        let air = match (seen.situation.gripper, action) {
+            (Gripper::Detached, _) | (Gripper::Attached, Action::Fail(_)) => NONE,
+            (Gripper::Attached, Action::Close) => JawValves { close: true, ..NONE },
+            (Gripper::Attached, Action::Open) => JawValves { open: true, ..NONE },
+            (Gripper::Attached, Action::Wait | Action::Report(_) | Action::Wrong(_) | Action::Refuse(_)) => {
+                self.valves
+            }
+        };
+        if air != self.valves {
+            (self.valves, self.air_ticks) = (air, 0);
+        }
     }
-    let mut status = JawsStatus {
-        echo: state.execution.receiver.echo,
-        report: state.report,
-        reason: state.execution.reason,
-        ..JawsStatus::default()
-    };
-    if seen.gripper == Gripper::Attached {
-        status.size = hundredths(seen.opening);
-        status.velocity = hundredths(seen.velocity);
-    }
-    JawsOutputs { header: state.execution.header(tick), status, valves: state.valves }
-}
 
-/// How the command stands after this action. Of the words of VI.4.2 only `jaws-stuck` is bad news, so it stands for every
-/// failure; the reason says which.
-fn conclude(state: &mut State, action: Action) {
-    state.report = match action {
-        Action::Keep if state.execution.outcome == Outcome::Idle => JawsReport::Idle,
-        Action::Keep => state.report,
-        Action::Close | Action::Open | Action::Wait => JawsReport::Executing,
-        Action::Report(report) => {
-            state.execution.finish();
-            report
+    /// The outputs of this tick. Of the words of VI.4.2 only `jaws-stuck` is bad news, so it stands for every
+    /// failure that finds the fingers nowhere; the reason says which.
+    pub(super) fn report(&self, seen: &Seen, tick: Tick) -> JawsOutputs {
+        let report = match self.execution.outcome {
+            Outcome::Idle => JawsReport::Idle,
+            Outcome::Executing => JawsReport::Executing,
+            Outcome::Done | Outcome::Error | Outcome::Joystick => self.found.unwrap_or(JawsReport::Stuck),
+        };
+        let mut status = JawsStatus {
+            echo: self.execution.receiver.echo,
+            report,
+            reason: self.execution.reason,
+            ..JawsStatus::default()
+        };
+        if seen.situation.gripper == Gripper::Attached {
+            status.size = hundredths(seen.opening);
+            status.velocity = hundredths(seen.velocity);
         }
-        Action::Wrong(report) => {
-            state.execution.fail(Reason::JawsStuck);
-            report
-        }
-        Action::Fail(reason) => {
-            state.execution.fail(reason);
-            JawsReport::Stuck
-        }
-        Action::Refuse => JawsReport::Stuck,
-    };
-}
-
-/// Air to the fingers. It stays on when they have arrived: a part is held as long as they press.
-fn air(state: &State, gripper: Gripper, action: Action) -> JawValves {
-    const NONE: JawValves = JawValves { open: false, close: false };
-    match (gripper, action) {
-        (Gripper::Detached, _) | (_, Action::Fail(_)) => NONE,
-        (_, Action::Close) => JawValves { close: true, ..NONE },
-        (_, Action::Open) => JawValves { open: true, ..NONE },
-        (_, Action::Keep | Action::Refuse | Action::Wait | Action::Report(_) | Action::Wrong(_)) => {
-            state.valves
-        }
+        JawsOutputs { header: self.execution.header(tick, self.step.text()), status, valves: self.valves }
     }
 }

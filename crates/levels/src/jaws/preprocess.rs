@@ -1,23 +1,22 @@
-//! Preprocess: read the command and the sensors, and set the state variables that the tables look at.
+//! Preprocess of V-Grip and Tool-Grip: their state variables, from the command and the sensors.
 
 use rcs_core::{
-    interface::{
-        Reason,
-        device::{DeviceInputs, QuickChangeSensors},
-        jaws::{JawsCommand, JawsVerb},
-    },
+    handshake::Arrival,
+    interface::{JawsOutputs, device::QuickChangeSensors, jaws::JawsCommand},
+    process::Inputs,
     tick::{TICK_S, Tick},
     units::inches,
 };
 
 use super::{
-    Parameters,
+    kind::{Kind, Parameters},
     state::{State, WINDOW},
-    tables::{Gripper, Motion, Size, Stop},
+    tables::{Addressee, Gripper, Motion, Request, Seen, Situation, Size, Stop},
 };
-use crate::old_execution::Course;
+use crate::execution::Asked;
 
-/// Counts of the potentiometer at opening 0. ASSUMED; all grippers use the same connections (III.3.7, III.3.8).
+/// Counts of the potentiometer at opening 0. ASSUMED; all grippers use the same connections (III.3.7,
+/// III.3.8).
 pub const POTENTIOMETER_OFFSET: f64 = 205.0;
 /// Counts of the potentiometer an inch. ASSUMED.
 pub const POTENTIOMETER_SCALE: f64 = 600.0;
@@ -35,57 +34,69 @@ const BEYOND: f64 = 0.15;
 /// So near to `commanded-size` the fingers are there, in.
 const SIZE_BAND: f64 = 0.10;
 
-/// State variables of a tick, and what the sensors say in inches.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
-    /// What the upper table says.
-    pub course: Course,
-    /// Is the gripper of this process there?
-    pub gripper: Gripper,
-    /// What do the fingers do?
-    pub motion: Motion,
-    /// Where are they on their way?
-    pub stop: Stop,
-    /// Where are they seen from the commanded size?
-    pub size: Size,
-    /// Opening by the mean of the last readings, in.
-    pub opening: f64,
-    /// Opening velocity, in/s.
-    pub velocity: f64,
-}
-
-impl Seen {
-    /// Read the inputs of a tick. `woken`: the process was dormant in the tick before.
-    pub fn preprocess(
-        state: &mut State,
-        parameters: &Parameters,
-        command: &JawsCommand,
-        devices: &DeviceInputs,
-        woken: bool,
-        tick: Tick,
-    ) -> Self {
-        let gripper = gripper(&devices.quick_change, parameters);
-        if woken {
-            state.execution.wake();
+impl State {
+    /// Read the inputs of a tick. A process whose outputs were republished was dormant in the tick before.
+    pub(super) fn sense<K: Kind, Data: ?Sized>(
+        &mut self,
+        inputs: &Inputs<'_, Data>,
+        outputs: &JawsOutputs,
+    ) -> Seen {
+        let command = K::command(inputs.memory);
+        let devices = &inputs.external.devices;
+        let gripper = gripper(&devices.quick_change, &K::PARAMETERS);
+        if outputs.header.republished {
+            self.execution.wake();
+            self.found = None;
         }
-        let course = state.execution.consult(command.number, || fault(command, gripper, parameters));
-        if course == Course::Begin {
-            (state.verb, state.since) = (command.command, tick);
-            if command.size != 0 {
-                state.size = command.size;
-            }
+        let arrival = self.execution.receiver.observe(command.number);
+        if arrival == Arrival::New {
+            (self.verb, self.since, self.found) = (command.command, inputs.tick, None);
         }
-        sample(state, gripper, devices.grip.potentiometer);
-        let [newest, second, third, oldest] = state.window.map(f64::from);
+        let named = (arrival == Arrival::New && command.size != 0).then_some(command.size);
+        let size = named.or(self.size);
+        let window = self.sample(gripper, devices.grip.potentiometer);
+        let [newest, second, third, oldest] = window.map(f64::from);
         let opening = opening_at((newest + second + third + oldest) / 4.0);
-        Self {
-            course,
-            gripper,
-            motion: motion(state, tick),
-            stop: stop(opening, parameters),
-            size: size(opening, state.size),
+        Seen {
+            arrival,
+            request: Request {
+                asked: Asked::of(arrival),
+                verb: command.command,
+                addressee: addressee(command, &K::PARAMETERS),
+                gripper,
+            },
+            situation: Situation {
+                gripper,
+                motion: self.motion(&window, inputs.tick),
+                stop: stop(opening, &K::PARAMETERS),
+                size: self::size(opening, size),
+            },
+            size,
             opening,
             velocity: (newest - oldest) / POTENTIOMETER_SCALE / (3.0 * TICK_S),
+        }
+    }
+
+    /// Take the reading of this tick.
+    fn sample(&mut self, gripper: Gripper, counts: u16) -> [u16; WINDOW] {
+        self.window = match (gripper, self.window) {
+            (Gripper::Detached, _) => None,
+            (Gripper::Attached, None) => Some([counts; WINDOW]),
+            (Gripper::Attached, Some([newest, second, third, _])) => Some([counts, newest, second, third]),
+        };
+        self.air_ticks = self.air_ticks.saturating_add(1);
+        self.window.unwrap_or_default()
+    }
+
+    fn motion(&self, window: &[u16; WINDOW], tick: Tick) -> Motion {
+        let (least, most) =
+            window.iter().fold((u16::MAX, 0), |(least, most), &c| (least.min(c), most.max(c)));
+        if most.abs_diff(least) <= STILL_COUNTS && self.air_ticks >= START_TICKS {
+            Motion::Stopped
+        } else if tick.since(self.since) > LIMIT_TICKS {
+            Motion::Endless
+        } else {
+            Motion::Moving
         }
     }
 }
@@ -103,42 +114,11 @@ fn gripper(quick_change: &QuickChangeSensors, parameters: &Parameters) -> Grippe
     }
 }
 
-/// Why a command cannot be executed, if so.
-fn fault(command: &JawsCommand, gripper: Gripper, parameters: &Parameters) -> Option<Reason> {
-    let meant = command.end_effector_id == 0 || command.end_effector_id == parameters.end_effector_id;
-    match command.command {
-        JawsVerb::None => Some(Reason::UnknownCommand),
-        JawsVerb::Pause => None,
-        JawsVerb::Grasp | JawsVerb::Release | JawsVerb::Pose => {
-            (!meant || gripper == Gripper::Detached).then_some(Reason::WrongGripper)
-        }
-    }
-}
-
-/// Take the reading of this tick.
-fn sample(state: &mut State, gripper: Gripper, counts: u16) {
-    state.window = match gripper {
-        Gripper::Attached if state.attached => {
-            let [newest, second, third, _] = state.window;
-            [counts, newest, second, third]
-        }
-        Gripper::Attached => [counts; WINDOW],
-        Gripper::Detached => [0; WINDOW],
-    };
-    state.attached = gripper == Gripper::Attached;
-    state.air_ticks = state.air_ticks.saturating_add(1);
-}
-
-fn motion(state: &State, tick: Tick) -> Motion {
-    let (least, most) =
-        state.window.iter().fold((u16::MAX, 0), |(least, most), &c| (least.min(c), most.max(c)));
-    let still = most.abs_diff(least) <= STILL_COUNTS && state.air_ticks >= START_TICKS;
-    if still {
-        Motion::Stopped
-    } else if tick.since(state.since) > LIMIT_TICKS {
-        Motion::Endless
+const fn addressee(command: &JawsCommand, parameters: &Parameters) -> Addressee {
+    if command.end_effector_id == 0 || command.end_effector_id == parameters.end_effector_id {
+        Addressee::This
     } else {
-        Motion::Moving
+        Addressee::Other
     }
 }
 
@@ -153,7 +133,7 @@ fn stop(opening: f64, parameters: &Parameters) -> Stop {
     }
 }
 
-fn size(opening: f64, commanded: i32) -> Size {
-    let there = commanded != 0 && (opening - inches(commanded)).abs() <= SIZE_BAND;
+fn size(opening: f64, commanded: Option<i32>) -> Size {
+    let there = commanded.is_some_and(|size| (opening - inches(size)).abs() <= SIZE_BAND);
     if there { Size::Commanded } else { Size::Other }
 }

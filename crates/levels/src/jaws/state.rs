@@ -9,28 +9,30 @@ use rcs_core::{
     tick::Tick,
 };
 
-use crate::old_execution::Execution;
+use super::tables::Step;
+use crate::execution::Execution;
 
 /// Readings that are kept: fingers that stand still read the same in all of them.
 pub(super) const WINDOW: usize = 4;
 
-/// Everything that V-Grip or Tool-Grip remembers.
+/// State of V-Grip or Tool-Grip.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The current command number, its outcome and its step.
+    /// The command of E-move and how far it has come.
     pub execution: Execution,
+    /// Step of its table.
+    pub step: Step,
     /// The current command: a copy, because the buffer of a commander that restarts is empty.
     pub verb: JawsVerb,
-    /// `commanded-size` of the last command that had one, 0.01 in; 0 before.
-    pub size: i32,
-    /// When the current command began.
+    /// When it came.
     pub since: Tick,
-    /// How the current command ended, or the status while it executes.
-    pub report: JawsReport,
-    /// The gripper was attached in the last tick.
-    pub attached: bool,
-    /// Potentiometer readings of the last ticks, the newest first.
-    pub window: [u16; WINDOW],
+    /// `commanded-size` of the last command that had one, 0.01 in.
+    pub size: Option<i32>,
+    /// Where the current command has found the fingers at its end.
+    pub found: Option<JawsReport>,
+    /// Potentiometer readings of the last ticks, the newest first, if the gripper was attached in the last
+    /// tick.
+    pub window: Option<[u16; WINDOW]>,
     /// Air.
     pub valves: JawValves,
     /// Ticks for which the valves have been as they are.

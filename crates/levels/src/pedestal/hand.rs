@@ -1,4 +1,5 @@
-//! The hand of the pedestal (III.9.2): "nearly identical" to the parts gripper, so that the servo of Grip serves it.
+//! The hand of the pedestal (III.9.2): "nearly identical" to the parts gripper, so that the servo of Grip
+//! serves it.
 
 use rcs_core::interface::{
     CommonMemory,
@@ -6,9 +7,10 @@ use rcs_core::interface::{
     grip::GripCommand,
 };
 
-use crate::grip::{Servo, Site, tables::Gripper};
+use crate::grip::{Servo, site::Site, tables::Gripper};
 
-/// The gripper on the rotary table. It has finger position and force sensing and nothing else, and is always there.
+/// The gripper on the rotary table. It has finger position and force sensing and nothing else, and is always
+/// there.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PedestalHand;
 

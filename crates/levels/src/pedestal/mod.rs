@@ -10,9 +10,9 @@
 //!   8 valves   rotary table controller
 //! ```
 //!
-//! The manual gives the interface of the upper process; the two below are "transparent to the RCS-II/T3 controller". Both
-//! calibrate themselves when they are booted (IV.5.1 steps 7 and 10). None of the three opens the hand unless it is told to,
-//! whatever fails.
+//! The manual gives the interface of the upper process; the two below are "transparent to the RCS-II/T3
+//! controller". Both calibrate themselves when they are booted (IV.5.1 steps 7 and 10). None of the three
+//! opens the hand unless it is told to, whatever fails.
 
 pub mod control;
 pub mod hand;

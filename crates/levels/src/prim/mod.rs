@@ -8,6 +8,10 @@
 //!   is done, and ramps down when a command failed;
 //! * the *path clock* ([`tables::path_clock`]), which stands while T3I has points enough.
 //!
+//! So three tables are consulted in every tick, whatever the command: ATTEND says whether the tables of the
+//! command are consulted; PATH-CLOCK and RECORD-POSE look at the motion as the row of the command has left
+//! it.
+//!
 //! ```text
 //!                        ROBOT-INIT: RESTART, link runs, frame-feedback taken over
 //!   +--------------+ ------------------------------------------------------------> +------------+
@@ -27,10 +31,10 @@
 //! T3I queues up to four points. Prim reads in tick k+2 what T3I says to the point of tick k, so that T3I
 //! must say `Executing` while it has room for fewer than two. With that the queue cannot overrun.
 
-mod acting;
 pub mod manual;
 pub mod motion;
-mod preprocess;
+pub mod postprocess;
+pub mod preprocess;
 pub mod sensors;
 pub mod state;
 pub mod tables;
@@ -38,7 +42,7 @@ pub mod tables;
 mod tests;
 
 use rcs_core::{
-    interface::{PrimOutputs, t3i::T3iVerb},
+    interface::{PrimOutputs, Reason},
     process::{Inputs, Process},
     table::Table,
 };
@@ -46,9 +50,11 @@ use taskdata::files::TaskData;
 
 use self::{
     state::State,
-    tables::path_clock::{Flow, path_clock},
+    tables::{
+        Action, Attendance, Kind, Seen, Step,
+        attend::{Attention, attend},
+    },
 };
-use crate::old_execution::EXECUTE;
 
 /// The Prim process.
 #[derive(Clone, Debug, Default)]
@@ -57,71 +63,61 @@ pub struct Prim {
 }
 
 impl<'d> Process<TaskData<'d>> for Prim {
-    type Outputs = PrimOutputs;
     type State = State;
-    type Seen = ();
-    type Action = ();
+    type Outputs = PrimOutputs;
+    type Seen = Seen;
+    type Action = Action;
 
     const NAME: &'static str = "Prim";
-    const TABLES: &'static [&'static Table] = &[
-        &EXECUTE,
-        &tables::pause::PAUSE,
-        &tables::robot_init::ROBOT_INIT,
-        &tables::go_thru::GO_THRU,
-        &tables::goto_pt::GOTO_PT,
-        &tables::go_until::GO_UNTIL,
-        &tables::go_while::GO_WHILE,
-        &tables::delta_move::DELTA_MOVE,
-        &tables::cal_sensor::CAL_SENSOR,
-        &tables::attend::ATTEND,
-        &tables::path_clock::PATH_CLOCK,
-        &tables::record_pose::RECORD_POSE,
-    ];
+    const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn step(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &mut PrimOutputs) {
-        if !self.state.t3i.started {
-            self.state.t3i.start(inputs.memory.t3i.status.echo);
-            self.command_t3i(T3iVerb::Pause, inputs.tick, &mut outputs.t3i);
-        }
-        self.wake(inputs);
-        let course = self.take_command(inputs, outputs);
-        let situation = preprocess::situation(&mut self.state, inputs, &outputs.t3i);
-        self.state.manual.release();
-        if self.attends(course, &situation) {
-            let choice = tables::decide(self.state.target.verb, self.state.execution.step, &situation);
-            let tables = <Self as Process<TaskData<'d>>>::TABLES;
-            self.state.execution.note(tables, choice.table, choice.row, choice.step);
-            self.act(choice.action, inputs, outputs);
-        }
-        let posture = preprocess::posture(&self.state, situation.pace);
-        let flow = path_clock(posture, situation.health, situation.pace);
-        let [_, row, _] = &mut self.state.rows;
-        *row = flow.row;
-        self.state.clock = flow.next;
-        match flow.action {
-            Flow::Repeat => {}
-            Flow::Advance => self.advance(inputs, &mut outputs.t3i),
-            Flow::Abandon => self.abandon(inputs, &mut outputs.t3i),
-        }
-        let record = self.records(&inputs.external.devices.joystick, posture);
-        self.postprocess(inputs, record, outputs);
+    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &PrimOutputs) -> Seen {
+        self.state.sense(inputs, outputs)
     }
 
-    fn preprocess(&mut self, _: &Inputs<'_, TaskData<'d>>, _: &PrimOutputs) {}
+    fn decide(&mut self, seen: &Seen) -> Action {
+        let state = &mut self.state;
+        let attendance = Attendance {
+            course: state.execution.course(seen.arrival),
+            kind: Kind::of(seen.verb),
+            switches: seen.situation.switches,
+        };
+        let attention = attend(state.execution.outcome, &attendance);
+        (state.rows.attend, state.execution.outcome) = (attention.row, attention.next);
+        match attention.action {
+            Attention::Leave => return Action::Wait,
+            Attention::Halt => return Action::Halt,
+            Attention::Begin => state.step = Step::first(seen.verb),
+            Attention::Continue => {}
+            Attention::Resume => state.execution.reason = Reason::None,
+        }
+        let choice = tables::decide(state.step, seen);
+        state.execution.note(&choice);
+        state.step = choice.next;
+        choice.action
+    }
 
-    fn decide(&mut self, (): &()) {}
-
-    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, TaskData<'d>>, _: &mut PrimOutputs) {}
-
-    fn state_mut(&mut self) -> &mut State {
-        &mut self.state
+    fn postprocess(
+        &mut self,
+        action: Action,
+        seen: &Seen,
+        inputs: &Inputs<'_, TaskData<'d>>,
+        outputs: &mut PrimOutputs,
+    ) {
+        let state = &mut self.state;
+        if state.execution.begins(seen.arrival) {
+            state.begin(outputs);
+        }
+        state.act(action, seen, inputs, outputs);
+        let recording = state.follow_path(seen, inputs, outputs);
+        state.report(recording, seen, inputs, outputs);
     }
 
     fn state(&self) -> &State {
         &self.state
     }
 
-    fn restore(&mut self, state: State) {
-        self.state = state;
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 }

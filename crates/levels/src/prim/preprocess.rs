@@ -1,11 +1,14 @@
-//! Preprocess: input buffers become state variables.
+//! Preprocess of Prim: its state variables, from the statuses of T3I and E-move, the resolvers, the sensors
+//! and the joystick box.
+
+use core::mem;
 
 use rcs_core::{
     frame::Frame,
-    handshake::{Lower, successor},
+    handshake::{Arrival, Lower, successor},
     interface::{
-        Reason,
-        device::JoystickBox,
+        PrimOutputs,
+        device::{JoystickBox, single_step},
         pose_range,
         prim::{PrimCommand, PrimVerb},
         t3i::{LinkFault, T3iCommand, T3iReport, T3iVerb},
@@ -13,15 +16,19 @@ use rcs_core::{
     process::Inputs,
     units::{inches, rounded},
 };
-use taskdata::files::{MovtabId, PoseId, TaskData, TrajParaId};
+use taskdata::files::{MovtabId, PoseId, SensorPara, TaskData, TrajParaId};
 
 use super::{
-    manual::Coordinates,
+    manual::{Coordinates, Manual},
     motion::{limits::Limits, segment::FrameData},
     sensors::Reading,
-    state::{State, Target},
-    tables::{Arrival, Guard, Health, Link, Pace, Passage, Posture, Samples, Situation, attend::Switches},
+    state::{Goal, Standstill, State, Target},
+    tables::{
+        Above, Button, Guard, Interface, Kind, Link, Missing, Passage, Posture, Request, Rest, Samples, Seen,
+        Situation, Switches,
+    },
 };
+use crate::execution::Asked;
 
 /// Ticks in a row that the robot must rest at the goal (docs/design/motion.md "Rest").
 const SETTLED: u32 = 3;
@@ -32,68 +39,228 @@ const AT_GOAL_INCHES: f64 = 0.02;
 /// Radians that count as at the goal, and as no motion: 0.1 degree.
 const AT_GOAL_RADIANS: f64 = 0.1 * core::f64::consts::PI / 180.0;
 
-/// Look the records of a command up.
-///
-/// # Errors
-/// The reason why the command cannot be executed.
-pub fn look_up(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Target, Reason> {
-    let plain =
-        Target { verb: command.command, end_effector_id: command.end_effector_id, ..Target::default() };
-    match command.command {
-        PrimVerb::None => Err(Reason::UnknownCommand),
-        PrimVerb::Pause | PrimVerb::RobotInit | PrimVerb::CalSensor => Ok(plain),
-        PrimVerb::GoThru | PrimVerb::GotoPt | PrimVerb::DeltaMove => motion(plain, command, inputs),
-        PrimVerb::GoUntil | PrimVerb::GoWhile => {
-            let sensor = *inputs.data.sensor(&command.sensor).ok_or(Reason::UnknownSensor)?;
-            motion(Target { sensor, ..plain }, command, inputs)
+impl State {
+    /// Read the inputs of a tick. `outputs` holds what was written in the tick before.
+    pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &PrimOutputs) -> Seen {
+        let (t3i, devices) = (&inputs.memory.t3i.status, &inputs.external.devices);
+        self.t3i.start(t3i.echo);
+        self.resume_from_rest(inputs);
+        let command = &inputs.memory.emove.prim;
+        let arrival = self.execution.receiver.observe(command.number);
+        let request =
+            if arrival == Arrival::New { self.look_up(command, inputs) } else { Request::default() };
+        let verb = if arrival == Arrival::New { command.command } else { self.target.verb };
+        let interface = self.interface(inputs, &outputs.t3i);
+        let answered = matches!(interface, Interface::Ready | Interface::Finished);
+        let feedback = Some(&t3i.frame_feedback).filter(|_| answered && t3i.link_running);
+        let feedback = feedback.and_then(|frame| frame.to_frame().ok());
+        let resolvers = t3i.resolver_frame.to_frame().ok().filter(|_| t3i.resolver_valid);
+        let posture = self.posture(interface);
+        let (goal, rest) = self.ends(inputs, posture, resolvers);
+        let situation = Situation {
+            t3i: interface,
+            emove: above(inputs),
+            switches: switches(&devices.joystick),
+            posture,
+            link: if feedback.is_some() { Link::Running } else { Link::Down },
+            passage: match &self.motion {
+                Some(motion) if motion.is_passing() => Passage::Passing,
+                Some(_) | None => Passage::UnderWay,
+            },
+            goal,
+            rest,
+            guard: self.guard(inputs),
+            samples: self.samples(inputs, rest),
+        };
+        let button = self.button(&devices.joystick);
+        Seen { arrival, verb, request, situation, button, feedback, resolvers }
+    }
+
+    /// After a time in which Prim was held or suspended the motion goes on from rest, because T3I has stopped
+    /// the robot dead. A Prim that is stepped singly goes on from point to point.
+    fn resume_from_rest(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
+        let held = inputs.external.devices.joystick.hold & single_step::PRIM != 0;
+        let before = mem::replace(&mut self.single_step, held);
+        if !held && (before || inputs.memory.prim.header.republished) {
+            if let Some(motion) = &mut self.motion {
+                motion.stand();
+            }
+            self.manual = Manual::default();
+        }
+    }
+
+    /// Look up the records that a new command names. What is complete is kept.
+    fn look_up(&mut self, command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
+        let missing = match target(command, inputs) {
+            Ok(target) => {
+                self.target = target;
+                self.standstill = Standstill::default();
+                Missing::Nothing
+            }
+            Err(missing) => missing,
+        };
+        Request { asked: Asked::Now, missing }
+    }
+
+    /// What the robot was told to do.
+    pub(super) fn posture(&self, t3i: Interface) -> Posture {
+        match &self.motion {
+            None => Posture::Unpositioned,
+            Some(motion) if !motion.is_at_rest() || self.manual.is_moving() => Posture::Moving,
+            Some(_) if t3i != Interface::Finished => Posture::Ending,
+            Some(_) => Posture::Standing,
+        }
+    }
+
+    /// What T3I says, as far as it answers what was `sent`.
+    ///
+    /// A point is sent each tick, and its echo comes back two ticks later: while points flow, the echo of the
+    /// point before counts as well. Any other command must be echoed itself, so that an error from before a
+    /// RESTART is not taken for one of it.
+    fn interface(&self, inputs: &Inputs<'_, TaskData<'_>>, sent: &T3iCommand) -> Interface {
+        let t3i = &inputs.memory.t3i;
+        let (number, echo) = (self.t3i.number, t3i.status.echo);
+        let flowing = sent.command == T3iVerb::Point
+            && successor(echo) == number
+            && self.t3i.sent == inputs.tick.previous();
+        let heard = if flowing { number } else { echo };
+        match self.t3i.read(inputs.tick, &t3i.header, heard, Lower::Executing) {
+            Lower::Lost => return Interface::Silent,
+            Lower::Pending => return Interface::Busy,
+            Lower::Executing | Lower::Done | Lower::Error | Lower::Joystick => {}
+        }
+        match t3i.status.report {
+            T3iReport::Error => fault(t3i.status.fault),
+            _ if self.motion.is_some() && !t3i.status.link_running => Interface::LinkOff,
+            // A T3I that is held reads nothing: what is sent to it would be lost.
+            _ if t3i.header.republished => Interface::Busy,
+            T3iReport::Executing => Interface::Busy,
+            T3iReport::Finished if echo == number => Interface::Finished,
+            T3iReport::Finished | T3iReport::Ready => Interface::Ready,
+        }
+    }
+
+    /// Watch the resolvers after the last point: does the robot rest at the goal, and does it rest at all?
+    /// Without them the report of T3I must do.
+    fn ends(
+        &mut self,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        posture: Posture,
+        resolvers: Option<Frame>,
+    ) -> (Rest, Rest) {
+        let before = mem::replace(&mut self.resolver_frame, inputs.memory.t3i.status.resolver_frame);
+        let ended = &mut self.standstill;
+        if posture != Posture::Standing {
+            *ended = Standstill::default();
+            return (Rest::UnderWay, Rest::UnderWay);
+        }
+        let near = |other: Option<Frame>| match (resolvers, other) {
+            (Some(here), Some(other)) => {
+                let off = here.distance(&other);
+                off.inches <= AT_GOAL_INCHES && off.radians <= AT_GOAL_RADIANS
+            }
+            (None, _) => true,
+            (Some(_), None) => false,
+        };
+        let at_goal = near(self.target.goal.map(|goal| goal.frame.frame()));
+        let unmoved = near(before.to_frame().ok());
+        ended.finished = ended.finished.saturating_add(1);
+        ended.settled = if at_goal { ended.settled.saturating_add(1) } else { 0 };
+        ended.still = if unmoved { ended.still.saturating_add(1) } else { 0 };
+        (ended.rest(ended.settled), ended.rest(ended.still))
+    }
+
+    /// The sensor of a guarded move.
+    fn guard(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> Guard {
+        let (devices, end_effector) = (&inputs.external.devices, self.target.end_effector_id);
+        let read = |sensor: SensorPara| self.calibration.read(&sensor, devices, end_effector);
+        let Reading { guard, value } = self.target.sensor.map(read).unwrap_or_default();
+        self.sensed = rounded(value);
+        guard
+    }
+
+    /// The readings of CAL-SENSOR: only those of one rest count together.
+    fn samples(&mut self, inputs: &Inputs<'_, TaskData<'_>>, rest: Rest) -> Samples {
+        let force = &inputs.external.devices.force;
+        self.calibration.watch_power(force);
+        if rest != Rest::Arrived {
+            self.calibration.begin();
+        }
+        self.calibration.progress(force)
+    }
+
+    /// The record button.
+    fn button(&mut self, joystick: &JoystickBox) -> Button {
+        let before = mem::replace(&mut self.record_button, joystick.record);
+        if joystick.record && !before { Button::Pressed } else { Button::Idle }
+    }
+}
+
+impl Standstill {
+    /// Has the robot rested for so many `ticks`?
+    const fn rest(&self, ticks: u32) -> Rest {
+        if ticks >= SETTLED {
+            Rest::Arrived
+        } else if self.finished >= PATIENCE {
+            Rest::Late
+        } else {
+            Rest::Settling
         }
     }
 }
 
+impl Kind {
+    /// What a command is.
+    pub(super) const fn of(verb: PrimVerb) -> Self {
+        match verb {
+            PrimVerb::Pause => Self::Lasting,
+            PrimVerb::GoThru
+            | PrimVerb::GotoPt
+            | PrimVerb::GoUntil
+            | PrimVerb::GoWhile
+            | PrimVerb::DeltaMove => Self::Motion,
+            PrimVerb::None | PrimVerb::RobotInit | PrimVerb::CalSensor => Self::Single,
+        }
+    }
+}
+
+/// A command with its records, or the first of them that is missing.
+fn target(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Target, Missing> {
+    let verb = command.command;
+    let sensor = match verb {
+        PrimVerb::None => return Err(Missing::Command),
+        PrimVerb::GoUntil | PrimVerb::GoWhile => {
+            Some(*inputs.data.sensor(&command.sensor).ok_or(Missing::Sensor)?)
+        }
+        _ => None,
+    };
+    let goal = if Kind::of(verb) == Kind::Motion { Some(goal(command, inputs)?) } else { None };
+    Ok(Target { verb, goal, sensor, end_effector_id: command.end_effector_id })
+}
+
 /// Goal and limits of a motion.
-fn motion(plain: Target, command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Target, Reason> {
-    let goal = goal(command, inputs).ok_or(Reason::BadRecord)?;
+fn goal(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Goal, Missing> {
+    let pose = pose(command, inputs).ok_or(Missing::Pose)?;
+    let by = MovtabId::new(command.movetable);
+    if !by.is_null() && inputs.data.movetable(by).is_none() {
+        return Err(Missing::Movetable);
+    }
     let id = TrajParaId::new(command.trajectory_parameters);
-    let para = inputs.data.traj_para(id).ok_or(Reason::BadRecord)?;
-    let limits = Limits::from_counts(para.acc_fac, para.vel_max, para.smooth);
-    Ok(Target {
-        goal: FrameData::from(&goal),
-        limits: limits.ok_or(Reason::BadParameters)?,
-        brake_distance: inches(para.brk_dst),
-        ..plain
+    let para = inputs.data.traj_para(id).ok_or(Missing::Parameters)?;
+    let limits = Limits::from_counts(para.acc_fac, para.vel_max, para.smooth).ok_or(Missing::Limits)?;
+    Ok(Goal {
+        frame: FrameData::from(&inputs.data.moved(&pose, by)),
+        limits,
+        through: (command.command == PrimVerb::GoThru).then(|| inches(para.brk_dst)),
     })
 }
 
-/// The pose of a command, static or changing, with its movetable applied; `None` if a record is missing.
-fn goal(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Frame> {
-    let pose = if command.pose >= pose_range::CHANGING {
-        inputs.memory.changing_pose(command.pose)?.to_frame().ok()?
+/// The pose of a command, static or changing.
+fn pose(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Frame> {
+    if command.pose >= pose_range::CHANGING {
+        inputs.memory.changing_pose(command.pose)?.to_frame().ok()
     } else {
-        inputs.data.pose(PoseId::new(command.pose))?.frame
-    };
-    let by = MovtabId::new(command.movetable);
-    if by.is_null() { Some(pose) } else { Some(inputs.data.movetable(by)?.apply(&pose)) }
-}
-
-/// The state variables of a tick. `sent` is the command to T3I as it was left in the tick before.
-pub fn situation(state: &mut State, inputs: &Inputs<'_, TaskData<'_>>, sent: &T3iCommand) -> Situation {
-    let (health, pace) = interface(state, inputs, sent);
-    let switches = switches(&inputs.external.devices.joystick);
-    let posture = posture(state, pace);
-    let status = &inputs.memory.t3i.status;
-    let running = status.link_running && pace != Pace::Busy && status.frame_feedback.to_frame().is_ok();
-    let (arrival, rest) = ends(state, inputs, posture);
-    Situation {
-        health: if health == Health::Good && switches != Switches::Off { Health::Operator } else { health },
-        pace,
-        posture,
-        link: if running { Link::Running } else { Link::Down },
-        passage: if state.motion.is_passing() { Passage::Passing } else { Passage::UnderWay },
-        arrival,
-        rest,
-        guard: guard(state, inputs),
-        samples: samples(state, inputs, rest),
-        switches,
+        inputs.data.pose(PoseId::new(command.pose)).map(|record| record.frame)
     }
 }
 
@@ -106,119 +273,18 @@ fn switches(joystick: &JoystickBox) -> Switches {
     }
 }
 
-/// The sensor of a guarded move.
-fn guard(state: &mut State, inputs: &Inputs<'_, TaskData<'_>>) -> Guard {
-    let Target { sensor, end_effector_id, .. } = &state.target;
-    let reading = if state.target.is_guarded() {
-        state.calibration.read(sensor, &inputs.external.devices, *end_effector_id)
-    } else {
-        Reading::default()
-    };
-    state.sensed = rounded(reading.value);
-    reading.guard
+/// Does E-move write its buffers?
+fn above(inputs: &Inputs<'_, TaskData<'_>>) -> Above {
+    if inputs.memory.emove.header.stamp == inputs.tick.previous() { Above::Live } else { Above::Lost }
 }
 
-/// The readings of CAL-SENSOR: only those of one rest count together.
-fn samples(state: &mut State, inputs: &Inputs<'_, TaskData<'_>>, rest: Arrival) -> Samples {
-    let force = &inputs.external.devices.force;
-    state.calibration.watch_power(force);
-    if rest != Arrival::Arrived {
-        state.calibration.begin();
-    }
-    state.calibration.progress(force)
-}
-
-/// What the robot was told to do.
-pub fn posture(state: &State, pace: Pace) -> Posture {
-    if !state.positioned {
-        Posture::Unpositioned
-    } else if !state.motion.is_at_rest() || state.manual.is_moving() {
-        Posture::Moving
-    } else if pace != Pace::Finished {
-        Posture::Ending
-    } else {
-        Posture::Standing
-    }
-}
-
-/// What T3I says, as far as it answers what was sent.
-///
-/// A point is sent each tick, and its echo comes back two ticks later: while points flow, the echo of the
-/// point before counts as well. Any other command must be echoed itself, so that an error from before a
-/// RESTART is not taken for one of it.
-fn interface(state: &State, inputs: &Inputs<'_, TaskData<'_>>, sent: &T3iCommand) -> (Health, Pace) {
-    let t3i = &inputs.memory.t3i;
-    let (number, echo) = (state.t3i.number, t3i.status.echo);
-    let flowing = sent.command == T3iVerb::Point
-        && successor(echo) == number
-        && state.t3i.sent == inputs.tick.previous();
-    let heard = if flowing { number } else { echo };
-    match state.t3i.read(inputs.tick, &t3i.header, heard, Lower::Executing) {
-        Lower::Lost => return (Health::Silent, Pace::Busy),
-        Lower::Pending => return (orphaned(inputs), Pace::Busy),
-        Lower::Executing | Lower::Done | Lower::Error | Lower::Joystick => {}
-    }
-    let pace = match t3i.status.report {
-        T3iReport::Error => return (fault(t3i.status.fault), Pace::Busy),
-        // A T3I that is held reads nothing: what is sent to it would be lost.
-        _ if t3i.header.republished => Pace::Busy,
-        T3iReport::Executing => Pace::Busy,
-        T3iReport::Finished if echo == number => Pace::Finished,
-        T3iReport::Finished | T3iReport::Ready => Pace::Wanted,
-    };
-    if state.positioned && !t3i.status.link_running {
-        return (Health::LinkOff, Pace::Busy);
-    }
-    (orphaned(inputs), pace)
-}
-
-/// The health that a fault of T3I stands for.
-const fn fault(fault: LinkFault) -> Health {
+/// What a fault of T3I stands for.
+const fn fault(fault: LinkFault) -> Interface {
     match fault {
-        LinkFault::NotResponding => Health::LinkOff,
-        LinkFault::InvalidCommand => Health::Refused,
+        LinkFault::NotResponding => Interface::LinkOff,
+        LinkFault::InvalidCommand => Interface::Refused,
         LinkFault::None | LinkFault::DepcError | LinkFault::Checksum | LinkFault::NotTransmitted => {
-            Health::LinkError
+            Interface::LinkError
         }
     }
-}
-
-/// Good, unless nobody commands Prim any more.
-fn orphaned(inputs: &Inputs<'_, TaskData<'_>>) -> Health {
-    if inputs.memory.emove.header.stamp == inputs.tick.previous() { Health::Good } else { Health::Orphaned }
-}
-
-/// Watch the resolvers after the last point: does the robot rest at the goal, and does it rest at all?
-/// Without them the word of T3I must do.
-fn ends(state: &mut State, inputs: &Inputs<'_, TaskData<'_>>, posture: Posture) -> (Arrival, Arrival) {
-    let status = &inputs.memory.t3i.status;
-    let before = core::mem::replace(&mut state.seen, status.resolver_frame);
-    if posture != Posture::Standing {
-        state.forget_rest();
-        return (Arrival::UnderWay, Arrival::UnderWay);
-    }
-    let seen = status.resolver_frame.to_frame().ok().filter(|_| status.resolver_valid);
-    let near = |other: Option<Frame>| match (seen, other) {
-        (Some(seen), Some(other)) => {
-            let off = seen.distance(&other);
-            off.inches <= AT_GOAL_INCHES && off.radians <= AT_GOAL_RADIANS
-        }
-        (None, _) => true,
-        (Some(_), None) => false,
-    };
-    let at_goal = near(Some(state.target.goal.frame()));
-    let unmoved = near(before.to_frame().ok());
-    state.finished = state.finished.saturating_add(1);
-    state.settled = if at_goal { state.settled.saturating_add(1) } else { 0 };
-    state.still = if unmoved { state.still.saturating_add(1) } else { 0 };
-    let end = |ticks: u32| {
-        if ticks >= SETTLED {
-            Arrival::Arrived
-        } else if state.finished >= PATIENCE {
-            Arrival::Late
-        } else {
-            Arrival::Settling
-        }
-    };
-    (end(state.settled), end(state.still))
 }

@@ -35,10 +35,8 @@ const SEATED: u8 = 0x0C;
 /// The bias of the force sensor and how it is taken. Counts, in the order tool Fx, Fy, Fz, My.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Calibration {
-    /// What is read without a force of interest.
-    pub bias: [f64; AXES],
-    /// `bias` has been taken, and the sensor has had power ever since.
-    pub valid: bool,
+    /// What is read without a force of interest, if that was taken and the sensor has had power ever since.
+    pub bias: Option<[f64; AXES]>,
     /// Sum of the readings taken so far.
     pub sum: [f64; AXES],
     /// How many.
@@ -117,16 +115,15 @@ impl Calibration {
     /// The mean of the readings is the bias from now on.
     pub fn finish(&mut self) {
         if self.samples > 0 {
-            self.bias = self.sum.map(|sum| sum / f64::from(self.samples));
-            self.valid = true;
+            self.bias = Some(self.sum.map(|sum| sum / f64::from(self.samples)));
         }
         self.begin();
     }
 
     /// Force along, or moment about, an axis of the tool: lb or in lb. `None` if it cannot be trusted.
     fn force(&self, axis: usize, counts_per_unit: i32, force: &ForceSensor) -> Option<f64> {
-        let counts = *tool_axes(force)?.get(axis)? - *self.bias.get(axis)?;
-        self.valid.then(|| counts / f64::from(counts_per_unit))
+        let counts = *tool_axes(force)?.get(axis)? - *self.bias?.get(axis)?;
+        Some(counts / f64::from(counts_per_unit))
     }
 
     /// What a sensor says in this tick. `end_effector` is the id of the gripper that is on.
@@ -201,7 +198,7 @@ mod tests {
     fn axes_are_those_of_the_tool_and_the_bias_is_taken_off() {
         let rest = ForceSensor { x: 2148, y: 1948, z: 2248, moment: 2088, valid: true };
         let calibration = calibrated(&rest);
-        assert_eq!(calibration.bias, [200.0, 100.0, 100.0, 40.0]);
+        assert_eq!(calibration.bias, Some([200.0, 100.0, 100.0, 40.0]));
         let pushed = ForceSensor { x: 2148 + 160, y: 1948 + 320, z: 2248 - 480, moment: 2088 - 40, ..rest };
         for (source, value) in [
             (SensorSource::Fx, -30.0),

@@ -1,4 +1,4 @@
-//! What Prim remembers.
+//! What Prim remembers from tick to tick.
 
 use rcs_core::{Plain, handshake::Commander, interface::prim::PrimVerb, pose::WireFrame};
 use taskdata::files::SensorPara;
@@ -7,85 +7,85 @@ use super::{
     manual::Manual,
     motion::{Motion, limits::Limits, segment::FrameData},
     sensors::Calibration,
-    tables::{path_clock::Clock, record_pose::Recording},
+    tables::Step,
 };
-use crate::old_execution::Execution;
+use crate::execution::Execution;
 
-/// The current command with its records looked up.
+/// Where a motion goes.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Goal {
+    /// `^-pose` with `^-movtab` applied.
+    pub frame: FrameData,
+    /// Limits of `^-traj-para`.
+    pub limits: Limits,
+    /// GO-THRU: brk-dst of `^-traj-para`, inches of path. The robot is not to stop at the goal.
+    pub through: Option<f64>,
+}
+
+/// The last command that was accepted, with its records looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Target {
     /// What to do.
     pub verb: PrimVerb,
-    /// `^-pose` with `^-movtab` applied; unused by PAUSE and ROBOT-INIT.
-    pub goal: FrameData,
-    /// Limits of `^-traj-para`.
-    pub limits: Limits,
-    /// brk-dst of `^-traj-para`, inches of path.
-    pub brake_distance: f64,
+    /// The goal of a motion.
+    pub goal: Option<Goal>,
     /// `"sensor"` of a guarded move.
-    pub sensor: SensorPara,
+    pub sensor: Option<SensorPara>,
     /// `endeff-id#-in`.
     pub end_effector_id: u8,
 }
 
-impl Target {
-    /// The robot is not to stop at the goal.
-    #[must_use]
-    pub fn is_through(&self) -> bool {
-        self.verb == PrimVerb::GoThru
-    }
-
-    /// A sensor is watched.
-    #[must_use]
-    pub fn is_guarded(&self) -> bool {
-        matches!(self.verb, PrimVerb::GoUntil | PrimVerb::GoWhile)
-    }
-}
-
-/// Everything that Prim remembers.
+/// How long the robot has stood since T3I finished the last point of a motion, ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct State {
-    /// The current command and how far it has come.
-    pub execution: Execution,
-    /// The command to T3I.
-    pub t3i: Commander,
-    /// What is to be done.
-    pub target: Target,
-    /// The robot is commanded by Prim: `motion` holds where it was told to be.
-    pub positioned: bool,
-    /// The commanded motion.
-    pub motion: Motion,
-    /// The motion of the joystick box.
-    pub manual: Manual,
-    /// Did the path clock run in the last tick?
-    pub clock: Clock,
-    /// Ticks since T3I finished the last point of a motion.
+pub struct Standstill {
+    /// Since T3I finished the last point.
     pub finished: u32,
     /// The last ticks of them at the goal.
     pub settled: u32,
     /// The last ticks of them without motion.
     pub still: u32,
-    /// Where the resolvers saw the robot in the tick before.
-    pub seen: WireFrame,
+}
+
+/// Rows of the tables of every tick that fired last; the header names those of the command only.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct TickRows {
+    /// Row of ATTEND.
+    pub attend: u8,
+    /// Row of PATH-CLOCK.
+    pub path_clock: u8,
+    /// Row of RECORD-POSE.
+    pub record_pose: u8,
+}
+
+/// State of Prim.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct State {
+    /// The command of E-move and how far it has come.
+    pub execution: Execution,
+    /// Step of its table.
+    pub step: Step,
+    /// Rows of the tables of every tick.
+    pub rows: TickRows,
+    /// Commands to T3I.
+    pub t3i: Commander,
+    /// What is to be done.
+    pub target: Target,
+    /// The commanded motion, if Prim commands the robot.
+    pub motion: Option<Motion>,
+    /// The motion of the joystick box.
+    pub manual: Manual,
+    /// The end of a motion.
+    pub standstill: Standstill,
+    /// The resolver frame of the tick before.
+    pub resolver_frame: WireFrame,
     /// The force sensor.
     pub calibration: Calibration,
     /// What the sensor of the guarded move reads.
     pub sensed: i32,
-    /// A recorded pose is being looked at.
-    pub recording: Recording,
     /// The record button was pressed in the tick before.
     pub record_button: bool,
     /// The process is stepped singly: its switch on the joystick box was on in the tick before.
     pub single_step: bool,
     /// Number of the newest pose record.
     pub newest_pose: u32,
-    /// Rows of the tables of every tick that fired last: ATTEND, PATH-CLOCK, RECORD-POSE.
-    pub rows: [u8; 3],
-}
-
-impl State {
-    /// What has been seen of the end of a motion does not count any more.
-    pub fn forget_rest(&mut self) {
-        (self.finished, self.settled, self.still) = (0, 0, 0);
-    }
 }

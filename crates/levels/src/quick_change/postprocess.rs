@@ -1,8 +1,8 @@
-//! Postprocess: fill the output buffers.
+//! Postprocess of Quick Change: the valves, and the status to E-move.
 
 use rcs_core::{
     interface::{
-        QuickChangeOutputs, Reason,
+        QuickChangeOutputs,
         device::QuickChangeValves,
         quick_change::{QuickChangeReport, QuickChangeStatus},
     },
@@ -10,37 +10,36 @@ use rcs_core::{
 };
 
 use super::{state::State, tables::Action};
-use crate::old_execution::Outcome;
+use crate::execution::Outcome;
 
-/// Carry out the action of the row that fired.
-pub(super) fn perform(state: &mut State, action: Action, tick: Tick) -> QuickChangeOutputs {
-    let report = match action {
-        Action::Report(report) => {
-            if report != QuickChangeReport::Executing && state.execution.outcome == Outcome::Executing {
-                state.execution.finish();
+impl State {
+    /// Set the outputs that a row asks for.
+    pub(super) fn act(&mut self, action: Action, tick: Tick) -> QuickChangeOutputs {
+        let report = match action {
+            Action::Wait | Action::Lock | Action::Unlock => QuickChangeReport::Executing,
+            Action::Report(report) => {
+                if self.execution.outcome == Outcome::Executing {
+                    self.execution.finish();
+                }
+                report
             }
-            report
+            Action::Fail(failure) => {
+                self.execution.fail(failure.reason());
+                failure.report()
+            }
+        };
+        let (lock, unlock) = (action == Action::Lock, action == Action::Unlock);
+        QuickChangeOutputs {
+            header: self.execution.header(tick, self.step.text()),
+            status: QuickChangeStatus {
+                echo: self.execution.receiver.echo,
+                report,
+                reason: self.execution.reason,
+                end_effector_id: self.end_effector_id,
+            },
+            // With the port disabled the ring cannot move, whatever the two air lines do (VI.2.1 QC-LOCK): it
+            // is enabled only while the ring is to turn.
+            valves: QuickChangeValves { lock, unlock, port: lock || unlock },
         }
-        Action::Lock | Action::Unlock => QuickChangeReport::Executing,
-        Action::Fail(report) => {
-            state.execution.fail(match report {
-                QuickChangeReport::Stuck => Reason::QuickChangeStuck,
-                _ => Reason::QuickChangeFault,
-            });
-            report
-        }
-    };
-    let (lock, unlock) = (action == Action::Lock, action == Action::Unlock);
-    QuickChangeOutputs {
-        header: state.execution.header(tick),
-        status: QuickChangeStatus {
-            echo: state.execution.receiver.echo,
-            report,
-            reason: state.execution.reason,
-            end_effector_id: state.end_effector_id,
-        },
-        // With the port disabled the ring cannot move, whatever the two air lines do (VI.2.1 QC-LOCK): it is enabled only while
-        // the ring is to turn.
-        valves: QuickChangeValves { lock, unlock, port: lock || unlock },
     }
 }

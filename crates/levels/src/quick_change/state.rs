@@ -2,31 +2,19 @@
 
 use rcs_core::{Plain, interface::quick_change::QuickChangeVerb, tick::Tick};
 
-use crate::old_execution::Execution;
+use super::tables::{Ring, Step};
+use crate::execution::Execution;
 
-/// Where the locking ring is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Ring {
-    /// No reading has counted yet.
-    Unread,
-    /// Locked.
-    Locked,
-    /// Unlocked.
-    Unlocked,
-    /// Seen by neither sensor: on its way, or stuck.
-    Between,
-    /// Seen by both sensors, which cannot be.
-    Both,
-}
-
-/// Everything that Quick Change remembers.
+/// State of Quick Change.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The current command number, its outcome and its step.
+    /// The command of E-move and how far it has come.
     pub execution: Execution,
+    /// Step of its table.
+    pub step: Step,
     /// The current command: a copy, because the buffer of a commander that restarts is empty.
     pub command: QuickChangeVerb,
-    /// When it was begun.
+    /// When it came.
     pub since: Tick,
     /// The reading that counts.
     pub ring: Ring,
@@ -34,7 +22,7 @@ pub struct State {
     pub reading: Ring,
     /// Ticks for which it has been the same.
     pub reading_ticks: u8,
-    /// The last legal id of the mated gripper.
+    /// The last legal `endeff-id#` of the mated gripper.
     pub end_effector_id: u8,
     /// Ticks for which the id has been illegal.
     pub illegal_ticks: u8,

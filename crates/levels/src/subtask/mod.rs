@@ -37,8 +37,6 @@ use self::{
     state::State,
     tables::{Action, Seen, Step},
 };
-use crate::execution::Course;
-
 /// The Subtask process.
 #[derive(Clone, Debug, Default)]
 pub struct Subtask {
@@ -59,16 +57,10 @@ impl<'d> Process<TaskData<'d>> for Subtask {
     }
 
     fn decide(&mut self, seen: &Seen) -> Action {
-        let state = &mut self.state;
-        match state.execution.course(seen.arrival) {
-            Course::Rest | Course::Refuse => return Action::Wait,
-            Course::Begin => state.step = Step::first(seen.verb),
-            Course::Continue => {}
-        }
-        let choice = tables::decide(state.step, seen);
-        state.execution.note(&choice);
-        state.step = choice.next;
-        choice.action
+        let State { execution, step, .. } = &mut self.state;
+        let decided =
+            execution.decide(seen.arrival, Step::first(seen.verb), step, |step| tables::decide(step, seen));
+        decided.unwrap_or(Action::Wait)
     }
 
     fn postprocess(

@@ -7,22 +7,23 @@ use depc::{
 };
 use rcs_core::{Plain, handshake::Receiver, interface::t3i::T3iVerb, pose::WireFrame};
 
-use super::tables::Refusal;
+use super::tables::{Step, receive::ReceiveStep};
 
-/// Points that wait for the line
-/// (docs/design/link.md "Queue"): one that is being sent, one that was allowed, one that is on
-/// its way, and one to spare.
+/// Points that wait for the line (docs/design/link.md "Queue"): one that is being sent, one that was allowed,
+/// one that is on its way, and one to spare.
 pub const QUEUE_POINTS: usize = 4;
 
-/// Everything that T3I remembers.
+/// State of T3I.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
     /// The command number and its adoption.
     pub receiver: Receiver,
     /// The current command.
     pub command: T3iVerb,
-    /// A command was refused.
-    pub refusal: Refusal,
+    /// Step of its table.
+    pub step: Step,
+    /// Step of RECEIVE: was a command refused?
+    pub receive: ReceiveStep,
     /// The host's end of the link.
     pub host: Host,
     /// The velocity limits.
@@ -38,7 +39,7 @@ pub struct State {
     /// Row of it.
     pub row: u8,
     /// Row of RECEIVE that fired last: the header names it for refusals only.
-    pub intake_row: u8,
+    pub receive_row: u8,
 }
 
 impl State {

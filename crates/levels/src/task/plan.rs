@@ -3,18 +3,18 @@
 
 use rcs_core::{
     Plain,
-    interface::{HwsCommand, Reason, subtask::LocationKind},
+    interface::{ChangingPose, HwsCommand, subtask::LocationKind},
     name::{Name10, Name16},
     pose::Pose,
 };
-use taskdata::files::{Reference, TaskData};
+use taskdata::files::{LocptId, Reference, TaskData};
 
-use crate::places::{named, reason_of};
+use crate::places::{Missing, named};
 
 /// Commands of Task (V.4.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskVerb {
-    /// None yet.
+    /// None yet, or a word that is no command.
     #[text = ""]
     None,
     /// Do nothing.
@@ -58,11 +58,76 @@ pub enum TaskVerb {
 /// `endeff-id#` of the tool gripper (VII.7.2).
 pub const TOOL_GRIPPER: u8 = 3;
 
-/// One of the three locations of a command.
+/// Is an object to be handled (V.4.1)?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Handling {
+    /// The command names no object.
+    NoObject,
+    /// It does.
+    Object,
+}
+
+/// Is a location named?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Named {
+    /// The command does not name it.
+    Null,
+    /// It does.
+    Named,
+}
+
+/// A grip of the object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Grip {
+    /// The task data have it, or no object is named.
+    Known,
+    /// The object has no such grip.
+    None,
+}
+
+/// Source and destination grip numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Grips {
+    /// The object stays as it is gripped.
+    Same,
+    /// It must be regripped on the way.
+    Different,
+}
+
+/// `endeff-id#` of the gripper for the object (VII.7.2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Gripper {
+    /// It can be one of a gripper, or no object is named.
+    Valid,
+    /// It cannot.
+    Invalid,
+}
+
+/// The object as a tool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum ToolData {
+    /// It is for the tool gripper and has the source grip or the destination grip, or no object is named.
+    Fit,
+    /// It is for another gripper.
+    Unfit,
+    /// It has neither of the two grips.
+    NoGrip,
+}
+
+/// The PED-PARA record of the object (VII.7.4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum PedestalData {
+    /// It is there, or no object is named.
+    Found,
+    /// The object has none.
+    Missing,
+}
+
+/// A location, looked up.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Site {
-    /// Name; empty if the command does not name the location.
-    pub location: Name10,
+pub struct Location {
+    /// Name.
+    pub name: Name10,
     /// Its type.
     pub kind: LocationKind,
     /// Record of LOCPT.
@@ -71,12 +136,19 @@ pub struct Site {
     pub array: u32,
     /// Sector from 1, or 0.
     pub sector: i32,
-    /// Record number of its T-POSE.
-    pub pose: u32,
+    /// Its T-POSE.
+    pub pose: ChangingPose,
+}
+
+/// One of the three locations of a command, with the grip there.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Site {
+    /// The location, if the command names it.
+    pub location: Option<Location>,
     /// Grip of the object there.
     pub grip: i32,
-    /// Record of END-EFF-PARA for the object with that grip.
-    pub parameters: u32,
+    /// Record of END-EFF-PARA, if the object has that grip.
+    pub parameters: Option<u32>,
 }
 
 /// A command, looked up.
@@ -84,11 +156,11 @@ pub struct Site {
 pub struct Plan {
     /// What to do.
     pub verb: TaskVerb,
-    /// The object; empty for none.
-    pub object: Name16,
+    /// The object, if the command names one.
+    pub object: Option<Name16>,
     /// Its serial number.
     pub serial: Name16,
-    /// Gripper for the object; 0 if any will do.
+    /// `obj-endeff-id#` for Subtask (V.3.2): gripper for the object; 0 if any will do.
     pub end_effector_id: u8,
     /// Where the object is.
     pub source: Site,
@@ -96,17 +168,21 @@ pub struct Plan {
     pub destination: Site,
     /// Where the robot is to be at the end.
     pub end_at: Site,
-    /// The object is moved from or to the MBD, of which the data base keeps account.
-    pub concerns_mbd: bool,
-    /// Poses of the three sites.
-    pub poses: [Pose; 3],
+    /// The data base is still to be told that the object is moved from or to the MBD.
+    pub update_due: bool,
 }
 
-/// Which fields a command must have.
-struct Needs {
-    object: bool,
-    source: bool,
-    destination: bool,
+/// What the look-up of a command has found.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Found {
+    /// The command, with all that was found.
+    pub plan: Plan,
+    /// What was not found of the object, or else of the first location that lacks something.
+    pub missing: Missing,
+    /// `endeff-id#` of the gripper for the object.
+    pub gripper: Gripper,
+    /// How the pedestal takes the object.
+    pub pedestal: PedestalData,
 }
 
 impl TaskVerb {
@@ -118,25 +194,6 @@ impl TaskVerb {
         Self::ALL.iter().copied().find(|verb| *verb != Self::None && Name10::clipped(verb.text()) == word)
     }
 
-    /// Which fields the command must have; an object that is moved must be somewhere.
-    const fn needs(self, handles_object: bool) -> Needs {
-        let (object, source, destination) = match self {
-            Self::None
-            | Self::Pause
-            | Self::Startup
-            | Self::Shutdown
-            | Self::Position
-            | Self::InsertTool
-            | Self::ReleaseTool
-            | Self::RemoveTool => (false, false, false),
-            Self::Transfer | Self::Refixture => (true, true, true),
-            Self::Move => (false, handles_object, true),
-            Self::Acquire => (true, true, false),
-            Self::AcquireTool => (true, false, true),
-        };
-        Needs { object, source, destination }
-    }
-
     /// True if the fields of the command mean nothing.
     const fn is_bare(self) -> bool {
         matches!(self, Self::None | Self::Pause | Self::Startup | Self::Shutdown)
@@ -146,145 +203,136 @@ impl TaskVerb {
     const fn is_for_tools(self) -> bool {
         matches!(self, Self::InsertTool | Self::ReleaseTool | Self::AcquireTool | Self::RemoveTool)
     }
-
-    /// True if the object is carried from the source to the destination.
-    const fn carries(self) -> bool {
-        matches!(self, Self::Transfer | Self::Move | Self::Refixture)
-    }
 }
 
 impl Plan {
     /// Look a command up.
-    ///
-    /// # Errors
-    /// The [`Reason`] why it cannot be executed.
-    pub fn new(command: &HwsCommand, data: &TaskData<'_>) -> Result<Self, Reason> {
-        let verb = TaskVerb::of(&command.command).ok_or(Reason::UnknownCommand)?;
-        let mut plan = Self { verb, ..Self::default() };
+    #[must_use]
+    pub fn look_up(command: &HwsCommand, data: &TaskData<'_>) -> Found {
+        let verb = TaskVerb::of(&command.command).unwrap_or(TaskVerb::None);
+        let bare = Self { verb, ..Self::default() };
         if verb.is_bare() {
-            return Ok(plan);
+            return Found { plan: bare, ..Found::default() };
         }
-        (plan.object, plan.serial) = (command.object, command.serial);
-        let handles_object = !command.object.is_empty();
-        if handles_object && data.object_named(&command.object).is_none() {
-            return Err(Reason::UnknownObject);
-        }
-        let gripper = data.obj_grips(&command.object).map_or(0, |grips| grips.endeff_id);
-        plan.end_effector_id = u8::try_from(gripper).map_err(|_| Reason::WrongGripper)?;
-        if verb.is_for_tools() && !handles_object {
-            plan.end_effector_id = TOOL_GRIPPER;
-        }
-
-        let [source, destination, end_at] = &mut plan.poses;
-        plan.source =
-            Site::new(command, &command.source, command.source_sector, command.source_grip, data, source)?;
-        plan.destination = Site::new(
-            command,
-            &command.destination,
-            command.destination_sector,
-            command.destination_grip,
-            data,
-            destination,
-        )?;
-        plan.end_at = Site::new(command, &command.end_at, command.end_at_sector, 0, data, end_at)?;
-        plan.concerns_mbd = handles_object
-            && matches!(verb, TaskVerb::Transfer | TaskVerb::Move)
-            && (plan.source.is_in_mbd(data) || plan.destination.is_in_mbd(data));
-        plan.check(verb.needs(handles_object), data)
+        let object = Some(command.object).filter(|object| !object.is_empty());
+        let (end_effector_id, gripper) = gripper(verb, object.as_ref(), data);
+        let locations = [
+            (&command.source, command.source_sector),
+            (&command.destination, command.destination_sector),
+            (&command.end_at, command.end_at_sector),
+        ]
+        .map(|(name, sector)| Location::look_up(name, sector, object.as_ref(), data));
+        let missing = match object {
+            Some(object) if data.object_named(&object).is_none() => Missing::Object,
+            _ => locations.iter().find_map(|location| location.err()).unwrap_or(Missing::Nothing),
+        };
+        let [source, destination, end_at] = locations.map(|location| location.unwrap_or(None));
+        let is_in_mbd =
+            |location: Option<Location>| location.is_some_and(|location| location.is_in_mbd(data));
+        let site = |location, grip| {
+            let parameters = object.and_then(|object| data.object(&object, grip));
+            Site { location, grip, parameters: parameters.map(|(id, _)| id.number()) }
+        };
+        let plan = Self {
+            object,
+            serial: command.serial,
+            end_effector_id,
+            source: site(source, command.source_grip),
+            destination: site(destination, command.destination_grip),
+            end_at: site(end_at, 0),
+            update_due: object.is_some() && (is_in_mbd(source) || is_in_mbd(destination)),
+            ..bare
+        };
+        let pedestal = object.is_none_or(|object| data.ped_para(&object).is_some());
+        let pedestal = if pedestal { PedestalData::Found } else { PedestalData::Missing };
+        Found { plan, missing, gripper, pedestal }
     }
 
-    /// All that the command needs is there.
-    fn check(self, needs: Needs, data: &TaskData<'_>) -> Result<Self, Reason> {
-        let handles_object = !self.object.is_empty();
-        if needs.object && !handles_object {
-            return Err(Reason::NoObjectNamed);
-        }
-        for (needed, site) in [(needs.source, &self.source), (needs.destination, &self.destination)] {
-            if needed && site.location.is_empty() {
-                return Err(Reason::NoDestination);
-            }
-            if needed && handles_object && site.parameters == 0 && !self.verb.is_for_tools() {
-                return Err(Reason::UnknownGrip);
-            }
-        }
-        if self.verb == TaskVerb::Position {
-            self.check_position()?;
-        }
-        if self.verb.is_for_tools() && handles_object {
-            if self.end_effector_id != TOOL_GRIPPER {
-                return Err(Reason::WrongGripper);
-            }
-            if self.tool_grip().1 == 0 {
-                return Err(Reason::UnknownGrip);
-            }
-        }
-        let regrip = handles_object && self.verb.carries() && self.source.grip != self.destination.grip;
-        if regrip && data.ped_para(&self.object).is_none() {
-            return Err(Reason::NoPedestalData);
-        }
-        Ok(self)
+    /// Is an object to be handled?
+    #[must_use]
+    pub const fn handling(&self) -> Handling {
+        if self.object.is_some() { Handling::Object } else { Handling::NoObject }
     }
 
-    fn check_position(&self) -> Result<(), Reason> {
-        let site = self.position_site();
-        if site.location.is_empty() {
-            Err(Reason::NoDestination)
-        } else if !self.object.is_empty() && site.parameters == 0 {
-            Err(Reason::UnknownGrip)
+    /// Are the source and destination grips the same?
+    #[must_use]
+    pub const fn grips(&self) -> Grips {
+        if self.source.grip == self.destination.grip { Grips::Same } else { Grips::Different }
+    }
+
+    /// Does the object have the grip of a site?
+    #[must_use]
+    pub const fn grip(&self, site: &Site) -> Grip {
+        if self.object.is_some() && site.parameters.is_none() { Grip::None } else { Grip::Known }
+    }
+
+    /// The object as a tool.
+    #[must_use]
+    pub const fn tool(&self) -> ToolData {
+        if self.end_effector_id != TOOL_GRIPPER {
+            ToolData::Unfit
+        } else if matches!(self.grip(self.tool_site()), Grip::None) {
+            ToolData::NoGrip
         } else {
-            Ok(())
+            ToolData::Fit
         }
     }
 
-    /// Where POSITION goes: the source location, an object where it is; the destination if the source is null
-    /// (SPECNOTES.md, contradiction 24).
+    /// The site with the grip of a tool command's tool: the source if the tool has its grip, else the
+    /// destination.
     #[must_use]
-    pub const fn position_site(&self) -> Site {
-        if self.source.record == 0 && self.source.array == 0 { self.destination } else { self.source }
+    pub const fn tool_site(&self) -> &Site {
+        if self.source.parameters.is_some() { &self.source } else { &self.destination }
     }
+}
 
-    /// The grip of a tool command's tool, and its record of END-EFF-PARA: those of the source if it has one,
-    /// else those of the destination.
-    #[must_use]
-    pub const fn tool_grip(&self) -> (i32, u32) {
-        let site = if self.source.parameters == 0 { &self.destination } else { &self.source };
-        (site.grip, site.parameters)
+/// The number of the gripper for an object. The tool commands need the tool gripper also if no object is
+/// named.
+fn gripper(verb: TaskVerb, object: Option<&Name16>, data: &TaskData<'_>) -> (u8, Gripper) {
+    let id = match object {
+        None if verb.is_for_tools() => TOOL_GRIPPER.into(),
+        _ => object.and_then(|object| data.obj_grips(object)).map_or(0, |grips| grips.endeff_id),
+    };
+    match u8::try_from(id) {
+        Ok(id) => (id, Gripper::Valid),
+        Err(_) => (0, Gripper::Invalid),
     }
 }
 
 impl Site {
-    /// Look a location up; an empty name gives a site without one. The pose goes to `pose`.
-    fn new(
-        command: &HwsCommand,
+    /// Is the location named?
+    #[must_use]
+    pub const fn named(&self) -> Named {
+        if self.location.is_some() { Named::Named } else { Named::Null }
+    }
+}
+
+impl Location {
+    /// Look a location up; an empty name gives none.
+    fn look_up(
         name: &Name16,
         sector: i32,
-        grip: i32,
+        object: Option<&Name16>,
         data: &TaskData<'_>,
-        pose: &mut Pose,
-    ) -> Result<Self, Reason> {
-        let parameters = data.object(&command.object, grip).map_or(0, |(id, _)| id.number());
+    ) -> Result<Option<Self>, Missing> {
         if name.is_empty() {
-            return Ok(Self { grip, parameters, ..Self::default() });
+            return Ok(None);
         }
-        let object = if command.object.is_empty() { None } else { Some(&command.object) };
-        let location = data.resolve_location(name, sector, object).map_err(|e| reason_of(&e))?;
-        *pose = Pose::from_frame(&location.frame);
-        Ok(Self {
-            location: location.name,
-            kind: location.place.kind,
-            record: location.place.locpt.number(),
-            array: location.place.array.number(),
-            sector: location.sector,
-            pose: 0,
-            grip,
-            parameters,
-        })
+        let found = data.resolve_location(name, sector, object)?;
+        Ok(Some(Self {
+            name: found.name,
+            kind: found.place.kind,
+            record: found.place.locpt.number(),
+            array: found.place.array.number(),
+            sector: found.sector,
+            pose: ChangingPose { number: 0, pose: Pose::from_frame(&found.frame) },
+        }))
     }
 
     /// True if the location is one of the MBD's.
     fn is_in_mbd(&self, data: &TaskData<'_>) -> bool {
-        let owner = data.owner_named(&Name10::clipped(named::MBD));
-        let point = crate::places::place_of(self.kind, self.record, self.array).locpt;
-        owner.is_some_and(|owner| !point.is_null() && data.is_member(owner, Reference::location_point(point)))
+        let point = LocptId::new(self.record);
+        let owner = data.owner_named(&Name10::clipped(named::MBD)).filter(|_| !point.is_null());
+        owner.is_some_and(|owner| data.is_member(owner, Reference::location_point(point)))
     }
 }

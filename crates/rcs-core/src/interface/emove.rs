@@ -1,5 +1,7 @@
 //! Subtask and E-move (V.2.2).
 
+use core::fmt;
+
 use crate::{
     Plain,
     interface::{
@@ -8,6 +10,8 @@ use crate::{
     },
     name::{Name10, Name16},
 };
+
+use super::words::{Place, words};
 
 /// Commands of E-move (V.2.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -154,4 +158,11 @@ pub struct EmoveOutputs {
     pub vision: VisionRequest,
     /// Departure, goal, point between, located object.
     pub poses: [ChangingPose; EMOVE_POSES],
+}
+
+/// `MOV-TO-OBJ LINKBAR1 at TRAY`.
+impl fmt::Display for EmoveCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        words(f, self.command.text(), &[&self.object, &Place("at", &self.location, 0)])
+    }
 }

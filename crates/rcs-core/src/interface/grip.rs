@@ -1,10 +1,14 @@
 //! E-move and Grip, the parts gripper (VI.3.2).
 
+use core::fmt;
+
 use crate::{
     Plain,
     handshake::Lower,
     interface::{Header, Reason, device::GripValves},
 };
+
+use super::words::Inches;
 
 /// Commands of Grip (VI.3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -107,4 +111,14 @@ pub struct GripOutputs {
     pub status: GripStatus,
     /// To the valves.
     pub valves: GripValves,
+}
+
+/// `CLOSE-GRIP (opening 1.20 in, force 30 lb)`.
+impl fmt::Display for GripCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.command {
+            GripVerb::None => Ok(()),
+            verb => write!(f, "{verb} (opening {}, force {} lb)", Inches(self.position), self.force),
+        }
+    }
 }

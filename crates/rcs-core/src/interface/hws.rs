@@ -1,10 +1,15 @@
 //! Task and the workstation controller, HWSC (V.4.2).
 
+use core::fmt;
+
 use crate::{
     Plain,
+    handshake::Lower,
     interface::{ChangingPose, Header, Reason, data_base::DataBaseCommand, subtask::SubtaskCommand},
     name::Name16,
 };
+
+use super::words::{Place, words};
 
 /// Command from the HWSC to Task. Words are text, since they come from outside; Task checks them.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -80,4 +85,26 @@ pub struct TaskOutputs {
     pub data_base: DataBaseCommand,
     /// T-POSE-1 …: poses that the commands name.
     pub poses: [ChangingPose; TASK_POSES],
+}
+
+/// `TRANSFER LINKBAR1 at TRAY sector 3 to PFIXTURE`.
+impl fmt::Display for HwsCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let source = Place("at", &self.source, self.source_sector);
+        let destination = Place("to", &self.destination, self.destination_sector);
+        words(f, self.command.as_str(), &[&self.object, &source, &destination])
+    }
+}
+
+impl HwsReport {
+    /// The report as a state variable of a process above.
+    #[must_use]
+    pub const fn lower(self) -> Lower {
+        match self {
+            Self::Idle | Self::Finished => Lower::Done,
+            Self::Executing => Lower::Executing,
+            Self::Error => Lower::Error,
+            Self::JoystickOn => Lower::Joystick,
+        }
+    }
 }

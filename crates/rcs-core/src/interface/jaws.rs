@@ -2,11 +2,15 @@
 //!
 //! TG-LEVEL is VG-LEVEL with other parameters and "TG" for "VG", so that both have the same buffers.
 
+use core::fmt;
+
 use crate::{
     Plain,
     handshake::Lower,
     interface::{Header, Reason, device::JawValves},
 };
+
+use super::words::Inches;
 
 /// Commands of V-Grip and Tool-Grip (VI.4.1), without the prefix VG or TG.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -104,3 +108,19 @@ pub struct JawsOutputs {
     /// To the valves.
     pub valves: JawValves,
 }
+
+/// V-Grip's VG-GRASP, VG-RELEASE, VGRIP-POSE, VG-PAUSE, and Tool-Grip's with TG (VI.4.1, VI.5): `TG-GRASP (size 1.20 in)`.
+impl fmt::Display for JawsCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let prefix = if self.end_effector_id == TOOL_GRIPPER { "TG" } else { "VG" };
+        match self.command {
+            JawsVerb::None => Ok(()),
+            JawsVerb::Pose => write!(f, "{prefix}RIP-{}", self.command),
+            JawsVerb::Pause => write!(f, "{prefix}-{}", self.command),
+            verb => write!(f, "{prefix}-{verb} (size {})", Inches(self.size)),
+        }
+    }
+}
+
+/// `endeff-id#` of the tool gripper (VII.7.2).
+pub const TOOL_GRIPPER: u8 = 3;

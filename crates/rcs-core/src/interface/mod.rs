@@ -13,9 +13,11 @@ pub mod hws;
 pub mod jaws;
 pub mod pedestal;
 pub mod prim;
+pub mod processes;
 pub mod quick_change;
 pub mod subtask;
 pub mod t3i;
+mod words;
 
 use crate::{Plain, handshake::Lower, name::Name16, pose::Pose, tick::Tick};
 
@@ -28,6 +30,7 @@ pub use self::{
     jaws::JawsOutputs,
     pedestal::{OutsidePedestal, PedestalOutputs, TableOutputs},
     prim::PrimOutputs,
+    processes::{CommonMemory, Fault, PROCESS_COUNT, ProcessId, Said},
     quick_change::QuickChangeOutputs,
     subtask::SubtaskOutputs,
     t3i::T3iOutputs,
@@ -293,35 +296,6 @@ pub struct ChangingPose {
     pub number: u32,
     /// The pose.
     pub pose: Pose,
-}
-
-/// Common memory (II.2.4): the output buffers of all processes, in the order of the digest.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct CommonMemory {
-    /// Task.
-    pub task: TaskOutputs,
-    /// Subtask.
-    pub subtask: SubtaskOutputs,
-    /// E-move.
-    pub emove: EmoveOutputs,
-    /// Prim.
-    pub prim: PrimOutputs,
-    /// T3 Interface.
-    pub t3i: T3iOutputs,
-    /// Quick Change.
-    pub quick_change: QuickChangeOutputs,
-    /// Grip.
-    pub grip: GripOutputs,
-    /// V-Grip.
-    pub v_grip: JawsOutputs,
-    /// Tool-Grip.
-    pub tool_grip: JawsOutputs,
-    /// Active Pedestal.
-    pub pedestal: PedestalOutputs,
-    /// Hand of the pedestal.
-    pub hand: GripOutputs,
-    /// Rotary table of the pedestal.
-    pub table: TableOutputs,
 }
 
 impl CommonMemory {

@@ -3,12 +3,16 @@
 //! The Active Pedestal is a small RCS of its own. The manual gives the interface of its upper process; those of hand and
 //! table are ours. The hand is nearly identical to the parts gripper (III.9.2) and has the buffers of Grip.
 
+use core::fmt;
+
 use crate::{
     Plain,
     handshake::Lower,
     interface::{GripOutputs, Header, Reason, device::MotorCommand, grip::GripCommand},
     tick::Tick,
 };
+
+use super::words::{Degrees, Inches};
 
 /// Commands of the Active Pedestal (VI.7.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -179,4 +183,28 @@ pub struct OutsidePedestal {
     pub hand: GripOutputs,
     /// Output buffers of its table process; the stamp does not count.
     pub table: TableOutputs,
+}
+
+/// `FLIP by 180.0 degrees`.
+impl fmt::Display for PedestalCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (verb, size, angle) = (self.command, Inches(self.grasp_size), Degrees(self.table_angle));
+        match verb {
+            PedestalVerb::None | PedestalVerb::Pause => verb.fmt(f),
+            PedestalVerb::PreGrip => write!(f, "{verb} (opening {size}, table at {angle})"),
+            PedestalVerb::Grip => write!(f, "{verb} (size {size}, force {} lb)", self.grasp_force),
+            PedestalVerb::Flip => write!(f, "{verb} by {angle}"),
+            PedestalVerb::Release => write!(f, "{verb} (opening {size})"),
+        }
+    }
+}
+
+/// `TURN to 90.0 degrees`.
+impl fmt::Display for TableCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.command {
+            TableVerb::Turn => write!(f, "{} to {}", self.command, Degrees(self.angle)),
+            verb => verb.fmt(f),
+        }
+    }
 }

@@ -1,11 +1,15 @@
 //! E-move and Prim (V.1.2).
 
+use core::fmt;
+
 use crate::{
     Plain,
     handshake::Lower,
     interface::{ChangingPose, Header, Reason, t3i::T3iCommand},
     name::Name10,
 };
+
+use super::words::words;
 
 /// Commands of Prim (V.1.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -171,4 +175,11 @@ pub struct PrimOutputs {
     pub joystick_leds: u8,
     /// Present, sensor, detected and recorded pose.
     pub poses: [ChangingPose; PRIM_POSES],
+}
+
+/// `GO-UNTIL SEAT-F`.
+impl fmt::Display for PrimCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        words(f, self.command.text(), &[&self.sensor])
+    }
 }

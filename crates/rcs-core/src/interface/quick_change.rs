@@ -1,5 +1,7 @@
 //! E-move and Quick Change (VI.2.2).
 
+use core::fmt;
+
 use crate::{
     Plain,
     handshake::Lower,
@@ -87,4 +89,11 @@ pub struct QuickChangeOutputs {
     pub status: QuickChangeStatus,
     /// To the valves.
     pub valves: QuickChangeValves,
+}
+
+/// `QC-LOCK`.
+impl fmt::Display for QuickChangeCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.command.fmt(f)
+    }
 }

@@ -1,10 +1,14 @@
 //! Task and Subtask (V.3.2).
 
+use core::fmt;
+
 use crate::{
     Plain,
     interface::{ChangingPose, Header, Reason, Report, emove::EmoveCommand, pedestal::PedestalCommand},
     name::{Name10, Name16},
 };
+
+use super::words::{Place, words};
 
 /// Commands of Subtask (V.3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -139,4 +143,11 @@ pub struct SubtaskOutputs {
     pub pedestal: PedestalCommand,
     /// Poses of locations that no Task command names.
     pub poses: [ChangingPose; SUBTASK_POSES],
+}
+
+/// `GET-OBJECT LINKBAR1 at TRAY`.
+impl fmt::Display for SubtaskCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        words(f, self.command.text(), &[&self.object, &Place("at", &self.location, 0)])
+    }
 }

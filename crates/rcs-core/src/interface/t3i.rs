@@ -1,7 +1,10 @@
 //! Prim and the T3 Interface (VI.1.2).
 
+use core::fmt;
+
 use crate::{
     Plain,
+    handshake::Lower,
     interface::{Header, device::LinkBytes},
     pose::WireFrame,
     tick::Tick,
@@ -135,4 +138,23 @@ pub struct T3iOutputs {
     pub status: T3iStatus,
     /// To the DEPC line.
     pub link_tx: LinkBytes,
+}
+
+/// `POINT`.
+impl fmt::Display for T3iCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.command.fmt(f)
+    }
+}
+
+impl T3iReport {
+    /// The report as a state variable of the process above.
+    #[must_use]
+    pub const fn lower(self) -> Lower {
+        match self {
+            Self::Executing => Lower::Executing,
+            Self::Ready | Self::Finished => Lower::Done,
+            Self::Error => Lower::Error,
+        }
+    }
 }

@@ -1,32 +1,167 @@
-//! Decision tables of E-move: a file a command, MOV-TO-VU with MOV-TO-OBJ.
+//! Decision tables of E-move: what a new command needs, what is common to all commands, and a file a command.
+//! The motion commands share one table, each with its own above it.
 
+pub mod accept;
 pub mod acquire_tool;
+pub mod attend;
+pub mod carried;
+pub mod e_pause;
 pub mod grasp_obj;
 pub mod insert_tool;
 pub mod locate_obj;
+pub mod motion;
 pub mod mov_obj_to;
 pub mod mov_to_hol;
-pub mod mov_to_loc;
 pub mod mov_to_obj;
-pub mod pause;
+pub mod ordered;
 pub mod qc_attach;
 pub mod qc_detach;
 pub mod release;
 pub mod release_tool;
 pub mod remove_tool;
+pub mod search;
 mod variables;
 pub mod withdraw;
 
-use rcs_core::interface::{Reason, emove::EmoveVerb};
+use rcs_core::{
+    Actions, Variables, commands,
+    handshake::{Arrival, Lower},
+    interface::{Reason, emove::EmoveVerb, prim::JoystickGrip},
+    table::Choice,
+};
 
 pub use self::variables::{
-    Fingers, Held, Holster, Link, Load, Mate, Motion, Opening, Readiness, Ring, Sight, Situation, Spread,
-    Station, Tooling, Travel, Tries, Whereabouts,
+    At, Attached, Contact, Fingers, Held, Holster, HolsterData, Knowledge, Link, Load, Mate, Opening,
+    Ordered, Pause, Readiness, Record, Ring, Sight, Spread, Tooling, Tries, Vision, Whereabouts,
 };
-use super::{relative::Relative, route::Ahead};
+use self::{accept::accept, carried::carried, ordered::ordered};
+use super::{
+    relative::{Relative, RelativeMoves},
+    route::{Ahead, Planning},
+};
+use crate::execution::{Asked, EXECUTE, Outcome, Work};
+
+/// What a new command needs, for [`accept::ACCEPT`].
+#[derive(Clone, Copy, Debug, Default, Variables)]
+pub struct Request {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The command.
+    pub verb: EmoveVerb,
+    /// The gripper on the robot.
+    pub gripper: Attached,
+    /// Where the robot is.
+    pub start: Knowledge,
+    /// Sizes of object and grip: END-EFF-PARA.
+    pub sizes: Record,
+    /// How the object is seen: VISION-PARA.
+    pub view: Record,
+    /// The gripper's holster.
+    pub holster: HolsterData,
+    /// The relative moves of the command.
+    pub moves: RelativeMoves,
+    /// The way to its goal.
+    pub route: Planning,
+}
+
+/// What goes on whatever the command, for [`attend::ATTEND`] and [`search::SEARCH`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Watch {
+    /// Is the command E-PAUSE?
+    pub pause: Pause,
+    /// How far it has come.
+    pub outcome: Outcome,
+    /// Is it known where the robot is?
+    pub place: Whereabouts,
+    /// Where the resolvers say that it is.
+    pub resolvers: Knowledge,
+}
+
+/// What the command carries and how its last order stands, for [`carried::CARRIED`] and [`ordered::ORDERED`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Orders {
+    /// The command.
+    pub verb: EmoveVerb,
+    /// Is still held what was held?
+    pub load: Load,
+    /// The process that has the last order.
+    pub ordered: Ordered,
+    /// Status of Prim; done as long as the command does not need it.
+    pub prim: Lower,
+    /// The condition of a GO-UNTIL.
+    pub contact: Contact,
+    /// The opening of the fingers for the goal.
+    pub opening: Opening,
+    /// Status of the attached gripper.
+    pub gripper: Lower,
+    /// The locking ring.
+    pub ring: Ring,
+    /// Vision.
+    pub vision: Vision,
+}
+
+/// The state variables of a tick, for the tables of the commands.
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Situation {
+    /// The last order.
+    pub work: Work,
+    /// What lies ahead on the route.
+    pub ahead: Ahead,
+    /// The opening of the fingers for the goal.
+    pub opening: Opening,
+    /// Is the object held?
+    pub held: Held,
+    /// What the fingers have between them.
+    pub fingers: Fingers,
+    /// Are they wide open?
+    pub spread: Spread,
+    /// The gripper after its last order.
+    pub readiness: Readiness,
+    /// What is mated.
+    pub mate: Mate,
+    /// The locking ring.
+    pub ring: Ring,
+    /// The holster.
+    pub holster: Holster,
+    /// Is the robot at the command's location?
+    pub at: At,
+    /// What vision has answered.
+    pub sight: Sight,
+    /// Where the camera is to go next.
+    pub aim: Knowledge,
+    /// May a picture be taken again?
+    pub tries: Tries,
+    /// The link.
+    pub link: Link,
+    /// Status of Prim; done as long as the command does not need it.
+    pub prim: Lower,
+    /// Quick change and gripper.
+    pub tooling: Tooling,
+    /// Is it known where the robot is?
+    pub place: Whereabouts,
+    /// A gripper button of the joystick box that has just been pressed.
+    pub button: JoystickGrip,
+}
+
+/// What preprocess has found in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// What the command buffer holds.
+    pub arrival: Arrival,
+    /// The command in it.
+    pub verb: EmoveVerb,
+    /// What a new command needs.
+    pub request: Request,
+    /// What goes on whatever the command.
+    pub watch: Watch,
+    /// How the last order of the command stands.
+    pub orders: Orders,
+    /// The state variables of the command's table; [`Orders`] decide on `work`.
+    pub situation: Situation,
+}
 
 /// What a row can ask for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Nothing new.
     Wait,
@@ -96,8 +231,6 @@ pub enum Action {
     Finish,
     /// Stop the robot and report an error.
     Fail(Reason),
-    /// Stop the robot and report how the object was lost: from the fingers, or with the gripper.
-    FailLost,
     /// Stop the robot and report what the gripper reports.
     FailGrip,
     /// Stop the robot and report what Quick Change reports.
@@ -106,27 +239,34 @@ pub enum Action {
     PassUp,
 }
 
-/// What the table of the current command decided.
-pub type Choice = crate::old_execution::Choice<Action>;
-
-/// Consult the table of a command. A step that the command does not have counts as its first.
-#[must_use]
-pub fn decide(verb: EmoveVerb, step: u8, s: &Situation) -> Choice {
-    match verb {
-        EmoveVerb::None | EmoveVerb::Pause => pause::consult(step, s),
-        EmoveVerb::MovToLoc => mov_to_loc::consult(step, s),
-        EmoveVerb::MovToObj | EmoveVerb::MovToVu => mov_to_obj::consult(step, s),
-        EmoveVerb::MovObjTo => mov_obj_to::consult(step, s),
-        EmoveVerb::MovToHol => mov_to_hol::consult(step, s),
-        EmoveVerb::LocateObj => locate_obj::consult(step, s),
-        EmoveVerb::GraspObj => grasp_obj::consult(step, s),
-        EmoveVerb::Release => release::consult(step, s),
-        EmoveVerb::QcDetach => qc_detach::consult(step, s),
-        EmoveVerb::QcAttach => qc_attach::consult(step, s),
-        EmoveVerb::Withdraw => withdraw::consult(step, s),
-        EmoveVerb::InsertTool => insert_tool::consult(step, s),
-        EmoveVerb::ReleaseTool => release_tool::consult(step, s),
-        EmoveVerb::AcquireTool => acquire_tool::consult(step, s),
-        EmoveVerb::RemoveTool => remove_tool::consult(step, s),
+commands! {
+    /// Consult the tables of a command.
+    pub fn of_command(EmoveVerb, enum Step, Situation) -> Action {
+        others: EXECUTE, accept::ACCEPT, attend::ATTEND, search::SEARCH, carried::CARRIED, ordered::ORDERED;
+        None | Pause            => e_pause::e_pause;
+        MovToLoc                => motion::motion;
+        MovToObj | MovToVu      => mov_to_obj::mov_to_obj then motion::motion;
+        MovObjTo                => mov_obj_to::mov_obj_to then motion::motion;
+        MovToHol                => mov_to_hol::mov_to_hol then motion::motion;
+        LocateObj               => locate_obj::locate_obj;
+        GraspObj                => grasp_obj::grasp_obj;
+        Release                 => release::release;
+        QcDetach                => qc_detach::qc_detach;
+        QcAttach                => qc_attach::qc_attach;
+        Withdraw                => withdraw::withdraw;
+        InsertTool              => insert_tool::insert_tool;
+        ReleaseTool             => release_tool::release_tool;
+        AcquireTool             => acquire_tool::acquire_tool;
+        RemoveTool              => remove_tool::remove_tool;
     }
+}
+
+/// Consult the tables in turn until a row decides.
+#[must_use]
+pub fn decide(step: Step, seen: &Seen) -> Choice<Action, Step> {
+    let of_command = |work| of_command(seen.verb, step, &Situation { work, ..seen.situation });
+    accept(step, &seen.request).then(number::ACCEPT, |()| {
+        carried(step, &seen.orders)
+            .then(number::CARRIED, |()| ordered(step, &seen.orders).then(number::ORDERED, of_command))
+    })
 }

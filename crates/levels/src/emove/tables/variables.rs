@@ -1,18 +1,86 @@
-//! The state variables that the tables look up, and the steps that the motion commands share.
+//! Values of the state variables.
 
-use rcs_core::{Plain, handshake::Lower, interface::prim::JoystickGrip};
+use rcs_core::Plain;
 
-use crate::emove::route::Ahead;
-
-/// Steps of a motion command: the reference action of all MOV-… commands.
+/// The gripper on the robot, for a command that needs one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Motion {
-    /// Nothing commanded yet.
-    Start,
-    /// On the way through points.
-    Moving,
-    /// On the final motion.
-    Stopping,
+pub enum Attached {
+    /// The one that the command names, or any if it names none.
+    Right,
+    /// Another one.
+    Wrong,
+    /// None: the robot is bare.
+    None,
+}
+
+/// A record of the task data that a command names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Record {
+    /// It is there.
+    Found,
+    /// It is not.
+    Missing,
+}
+
+/// What the task data say of the holster of a gripper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum HolsterData {
+    /// All that is needed.
+    Found,
+    /// No gripper has the number that the command names.
+    NoGripper,
+    /// Nothing says with which opening the gripper goes through its holster.
+    NoOpening,
+}
+
+/// Is it known?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Knowledge {
+    /// It is.
+    Known,
+    /// It is not.
+    Unknown,
+}
+
+/// Is the command E-PAUSE?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Pause {
+    /// It is another one.
+    Other,
+    /// The processes below do not pause yet.
+    UnderWay,
+    /// They do.
+    Standing,
+}
+
+/// The process that has the last order of the current command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Ordered {
+    /// Nothing was ordered yet.
+    Nothing,
+    /// Prim. Fingers that open on the way are not waited for here.
+    Prim,
+    /// Prim, with a GO-UNTIL that may be in vain.
+    GoUntil,
+    /// The attached gripper.
+    Gripper,
+    /// The attached gripper, in a holster: Prim holds the robot there.
+    GripperInHolster,
+    /// Quick Change. If the command has moved the robot, Prim holds it.
+    QuickChange,
+    /// Vision.
+    Vision,
+    /// All, with a pause: E-PAUSE waits for each of them itself.
+    All,
+}
+
+/// The condition of a GO-UNTIL.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Contact {
+    /// It may still come.
+    Awaited,
+    /// The robot stands at the goal, and the condition has not come for a second.
+    Missed,
 }
 
 /// The opening of the fingers for the goal.
@@ -46,8 +114,10 @@ pub enum Held {
 pub enum Load {
     /// It is held still, or nothing was.
     Kept,
-    /// It is held no more.
+    /// It is no longer between the fingers.
     Lost,
+    /// The gripper has gone, and it with the gripper.
+    GripperGone,
 }
 
 /// What closed fingers have between them.
@@ -85,10 +155,8 @@ pub enum Tooling {
     /// Read, and calibrated if it must be.
     Ready,
     /// The quick change reports an error.
-    #[text = "ring faulty"]
     RingFaulty,
     /// The gripper reports an error.
-    #[text = "grip faulty"]
     GripFaulty,
 }
 
@@ -97,7 +165,7 @@ pub enum Tooling {
 pub enum Whereabouts {
     /// It is at a known location.
     Known,
-    /// The location points are being looked through.
+    /// Not all location points have been looked at yet.
     Searching,
     /// It is at none of them.
     Unknown,
@@ -105,13 +173,12 @@ pub enum Whereabouts {
 
 /// Where the robot is, seen from the location of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Station {
-    /// Elsewhere, or nobody knows.
+pub enum At {
+    /// Elsewhere, or at no known location.
     Elsewhere,
     /// There.
     There,
     /// There, with the fingers around a tool in the drum.
-    #[text = "in drum"]
     InDrum,
 }
 
@@ -129,13 +196,13 @@ pub enum Mate {
 /// What Quick Change says of its locking ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ring {
-    /// It turns, or has not answered yet.
+    /// It turns, or Quick Change has not answered yet.
     Busy,
     /// It is locked.
     Locked,
     /// It is unlocked.
     Unlocked,
-    /// It is stuck, its sensors fail, or nobody answers.
+    /// It is stuck, its sensors fail, or Quick Change does not answer.
     Faulty,
 }
 
@@ -150,38 +217,31 @@ pub enum Holster {
     Full,
 }
 
-/// How the last motion stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Travel {
-    /// The robot is on its way, or Prim has not answered yet.
-    #[text = "under way"]
-    UnderWay,
-    /// It stands at the goal of a GO-UNTIL, and the condition has not come for a second.
-    Missed,
-    /// It has come to its end.
-    Over,
-    /// It was given up.
-    Failed,
-}
-
 /// The attached gripper after an order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Readiness {
-    /// It has not done what was ordered yet.
-    Busy,
-    /// It has.
+    /// It has done what was ordered.
     Ready,
     /// It has, and must be calibrated: the parts gripper, attached for the first time (VI.3.1 UP-INIT).
-    Raw,
-    /// It cannot.
+    Uncalibrated,
+    /// It has not.
     Faulty,
 }
 
-/// What vision says to the last request.
+/// Has vision answered the last request?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Vision {
+    /// Not yet.
+    Waiting,
+    /// It has.
+    Answered,
+    /// It has not for four seconds.
+    Silent,
+}
+
+/// What vision has answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Sight {
-    /// Nothing yet.
-    Waiting,
     /// It sees the object.
     Seen,
     /// It sees nothing.
@@ -190,8 +250,6 @@ pub enum Sight {
     Unrecognised,
     /// It says what cannot be.
     Implausible,
-    /// It does not answer.
-    Silent,
 }
 
 /// May a picture be taken again?
@@ -201,49 +259,4 @@ pub enum Tries {
     Left,
     /// No.
     Spent,
-}
-
-/// The state variables of a tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Situation {
-    /// What lies ahead on the route.
-    pub ahead: Ahead,
-    /// Status of Prim; `Done` as long as the current command has sent it nothing.
-    pub prim: Lower,
-    /// The same, with a GO-UNTIL that is in vain.
-    pub travel: Travel,
-    /// Status of the attached gripper.
-    pub gripper: Lower,
-    /// The same, with its calibration.
-    pub readiness: Readiness,
-    /// The opening of the fingers.
-    pub opening: Opening,
-    /// Is the object held?
-    pub held: Held,
-    /// Is still held what was held?
-    pub load: Load,
-    /// What the fingers have between them.
-    pub fingers: Fingers,
-    /// Are they wide open?
-    pub spread: Spread,
-    /// A gripper button of the joystick box that has just been pressed.
-    pub button: JoystickGrip,
-    /// The link.
-    pub link: Link,
-    /// Quick change and gripper.
-    pub tooling: Tooling,
-    /// What is mated.
-    pub mate: Mate,
-    /// The locking ring.
-    pub ring: Ring,
-    /// The holster.
-    pub holster: Holster,
-    /// Is it known where the robot is?
-    pub whereabouts: Whereabouts,
-    /// Is it at the command's location?
-    pub station: Station,
-    /// What vision says.
-    pub sight: Sight,
-    /// May a picture be taken again?
-    pub tries: Tries,
 }

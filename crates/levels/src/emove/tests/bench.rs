@@ -1,6 +1,6 @@
 //! E-move with doubles of its neighbours, tick by tick. The test is Subtask.
 
-use std::{cell::RefCell, collections::BTreeSet, sync::OnceLock};
+use std::{cell::RefCell, sync::OnceLock};
 
 use rcs_core::{
     frame::Frame,
@@ -26,11 +26,11 @@ use super::{
     doubles::{Grip, Jaws, Mishap, Prim, Ring, Vision, World},
     together::Real,
 };
-use crate::emove::Emove;
+use crate::{coverage::Coverage, emove::Emove};
 
 thread_local! {
-    /// The rows that have fired in this thread: table and number.
-    pub static ROWS: RefCell<BTreeSet<(&'static str, u8)>> = const { RefCell::new(BTreeSet::new()) };
+    /// The rows that have fired in this thread.
+    pub static ROWS: RefCell<Coverage> = RefCell::new(Coverage::default());
 }
 
 /// The task data of the tests.
@@ -185,11 +185,7 @@ impl Bench {
     }
 
     fn note_row(&self) {
-        let header = self.memory.emove.header;
-        let tables = <Emove as Process<TaskData<'_>>>::TABLES;
-        if let Some(table) = usize::from(header.table).checked_sub(1).and_then(|at| tables.get(at)) {
-            ROWS.with_borrow_mut(|rows| rows.insert((table.name, header.row)));
-        }
+        ROWS.with_borrow_mut(|rows| rows.note(&self.memory.emove.header));
     }
 
     pub fn steps(&mut self, ticks: u32) {

@@ -1,7 +1,7 @@
 //! MOV-TO-HOL, QC-DETACH and QC-ATTACH.
 
 use rcs_core::interface::{
-    Reason,
+    Reason, Report,
     emove::EmoveVerb::{MovToHol, MovToLoc, MovToObj, Pause, QcAttach, QcDetach, Release},
     jaws::JawsReport,
     prim::PrimReport,
@@ -48,12 +48,12 @@ fn bare(gripper: u8) -> Bench {
     bench
 }
 
-fn detach(bench: &mut Bench, gripper: u8) -> (rcs_core::interface::Report, Reason) {
+fn detach(bench: &mut Bench, gripper: u8) -> (Report, Reason) {
     let (_, object, holster) = GRIPPERS[usize::from(gripper) - 1];
     bench.run(QcDetach, object, 1, holster, gripper)
 }
 
-fn attach(bench: &mut Bench, gripper: u8) -> (rcs_core::interface::Report, Reason) {
+fn attach(bench: &mut Bench, gripper: u8) -> (Report, Reason) {
     let (_, object, holster) = GRIPPERS[usize::from(gripper) - 1];
     bench.run(QcAttach, object, 2, holster, gripper)
 }
@@ -213,6 +213,14 @@ fn a_quick_change_that_fails_is_named() {
         bench.spoil("QC-UNLOCK", Mishap::Ring(report));
         assert_eq!(attach(&mut bench, 1), error(reason));
     }
+    for (word, locked, report) in
+        [("QC-UNLOCK", true, QuickChangeReport::Locked), ("QC-LOCK", false, QuickChangeReport::Unlocked)]
+    {
+        let mut bench = bare(1);
+        bench.world.locked = locked;
+        bench.spoil(word, Mishap::Ring(report));
+        assert_eq!(attach(&mut bench, 1), error(Reason::QuickChangeFault), "{word} has no effect");
+    }
     let mut bench = above(1);
     bench.spoil("QC-UNLOCK", Mishap::Ring(QuickChangeReport::Locked));
     assert_eq!(detach(&mut bench, 1), error(Reason::QuickChangeFault), "it says done and is locked");
@@ -288,6 +296,13 @@ fn motions_that_fail_end_the_command() {
         assert_eq!(attach(&mut bench, 2), error(Reason::NotAtGoal), "{word}");
     }
     let mut bench = bare(2);
+    bench.command(QcAttach, "GRIPPER-2", 2, "HOLSTER-L", 2);
+    while !bench.log().contains(&"QC-LOCK") {
+        bench.step();
+    }
+    bench.dead.push("Prim");
+    assert_eq!(bench.finish(), error(Reason::NeighbourLost), "Prim holds the robot while the ring turns");
+    let mut bench = bare(2);
     bench.spoil("GRASP", Mishap::Jaws(JawsReport::Opened));
     assert_eq!(attach(&mut bench, 2), error(Reason::JawsStuck), "it does not close");
     let mut bench = bare(2);
@@ -309,6 +324,14 @@ fn the_parts_gripper_is_calibrated_when_it_comes() {
     bench.grip.initialized = false;
     bench.spoil("UP-INIT", Mishap::Grip(Reason::GripNotCalibrated));
     assert_eq!(attach(&mut bench, 1), error(Reason::GripNotCalibrated));
+    let mut bench = bare(1);
+    bench.grip.initialized = false;
+    bench.command(QcAttach, "GRIPPER-1", 2, "HOLSTER-R", 1);
+    for _ in 0..200 {
+        bench.step();
+        bench.memory.grip.status.initialized = false;
+    }
+    assert_eq!(bench.memory.emove.status.reason, Reason::GripUnattainable, "UP-INIT has no effect");
 }
 
 #[test]

@@ -5,8 +5,8 @@ use rcs_core::{
         Reason, Report,
         device::VisionStatus,
         emove::EmoveVerb::{
-            GraspObj, LocateObj, MovObjTo, MovToHol, MovToLoc, MovToObj, MovToVu, Release, RemoveTool,
-            Withdraw,
+            GraspObj, InsertTool, LocateObj, MovObjTo, MovToHol, MovToLoc, MovToObj, MovToVu, Release,
+            RemoveTool, Withdraw,
         },
         jaws::JawsReport,
         pose_range,
@@ -14,6 +14,7 @@ use rcs_core::{
     },
     name::Name16,
 };
+use taskdata::files::{LocptId, PathPoint, Target};
 
 use super::{
     bench::{Bench, DONE, data, error, frame_of, moved},
@@ -206,7 +207,7 @@ fn what_prim_reports_goes_up() {
             let location = if verb == MovToHol { "HOLSTER-R" } else { "BENCH" };
             bench.spoil("GO-THRU", Mishap::Prim(report, reason));
             assert_eq!(bench.run(verb, object, 1, location, gripper), error(reason), "{verb}");
-            assert!(bench.memory.emove.status.at.is_empty(), "nobody knows where the robot is");
+            assert!(bench.memory.emove.status.at.is_empty(), "it is not known where the robot is");
         }
     }
     let mut bench = Bench::ready("HOME", 0);
@@ -274,6 +275,7 @@ fn the_wrong_gripper_is_refused() {
         (MovToVu, "BENCH"),
         (LocateObj, "BENCH"),
         (GraspObj, "BENCH"),
+        (InsertTool, "TOOL-TRNS"),
         (RemoveTool, "TOOL-TRNS"),
     ] {
         for attached in [0, 2, 3] {
@@ -353,6 +355,14 @@ fn vision_that_fails_is_asked_again_and_given_up() {
     bench.dead.push("vision");
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::VisionSilent));
     let mut bench = Bench::ready("HOME", 1);
+    bench.dead.push("Prim");
+    bench.memory.prim.status.sensor_pose = 0;
+    assert_eq!(
+        bench.run(LocateObj, "BLOCK", 1, "BENCH", 1),
+        error(Reason::BadRecord),
+        "the resolvers do not say from where the camera looks"
+    );
+    let mut bench = Bench::ready("HOME", 1);
     bench.spoil("GOTO-PT", Mishap::Prim(PrimReport::Error, Reason::NotAtGoal));
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::NotAtGoal));
 }
@@ -405,6 +415,7 @@ fn missing_data_are_named() {
     assert_eq!(bench.run(MovToLoc, "", 0, "", 0), error(Reason::NoDestination));
     assert_eq!(bench.run(MovToObj, "BLOCK", 7, "BENCH", 1), error(Reason::UnknownGrip));
     assert_eq!(bench.run(MovToObj, "PIN", 1, "VISE", 1), error(Reason::NoApproach));
+    assert_eq!(bench.run(MovToHol, "GRIPPER-1", 1, "BENCH", 1), error(Reason::NoGripMovetable));
     assert_eq!(bench.run(LocateObj, "PIN", 1, "VISE", 1), error(Reason::BadRecord));
     bench.command(MovToLoc, "", 0, "BENCH", 0);
     bench.memory.subtask.emove.pose = 4_000_000;
@@ -419,4 +430,9 @@ fn missing_data_are_named() {
     bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
     bench.steps(2);
     assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), error(Reason::UnknownStart));
+    let mut bench = Bench::ready("VISE", 0);
+    let nowhere = Target::LocationPoint(LocptId::new(9_999));
+    let points: Vec<_> = data().path_points.iter().map(|p| PathPoint { target: nowhere, ..*p }).collect();
+    bench.data.path_points = points.leak();
+    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::BadRecord), "a point of the way");
 }

@@ -1,19 +1,30 @@
 //! E-PAUSE: the start, the dormancy of the gripper processes, and the joystick box.
 
-use rcs_core::interface::{
-    Reason, Report,
-    emove::{
-        Dormancy,
-        EmoveVerb::{GraspObj, MovToLoc, Pause},
+use rcs_core::{
+    interface::{
+        Reason, Report,
+        emove::{
+            Dormancy,
+            EmoveVerb::{GraspObj, MovToLoc, Pause},
+        },
+        jaws::JawsReport,
+        prim::{JoystickGrip, PrimReport},
+        quick_change::QuickChangeReport,
     },
-    jaws::JawsReport,
-    prim::{JoystickGrip, PrimReport},
-    quick_change::QuickChangeReport,
+    table::Verdict,
 };
 
 use super::{
     bench::{Bench, DONE, error, frame_of, moved},
     doubles::Mishap,
+};
+use crate::{
+    emove::tables::{
+        self, Knowledge, Watch, Whereabouts,
+        attend::attend,
+        search::{Look, search},
+    },
+    execution::Outcome,
 };
 
 pub const SCENARIOS: &[fn()] = &[
@@ -94,6 +105,11 @@ fn a_pause_that_fails_says_why() {
     bench.steps(10);
     bench.dead.push("gripper");
     assert_eq!(bench.finish(), error(Reason::NeighbourLost));
+    let mut bench = Bench::ready("HOME", 1);
+    bench.command(Pause, "", 0, "", 0);
+    bench.steps(3);
+    bench.dead.push("Prim");
+    assert_eq!(bench.finish(), error(Reason::NeighbourLost));
     let mut bench = Bench::new("HOME", 1);
     bench.spoil("ROBOT-INIT", Mishap::Prim(PrimReport::T3LinkOff, Reason::LinkOff));
     assert_eq!(bench.pause(), error(Reason::LinkOff));
@@ -115,6 +131,43 @@ fn the_robot_is_found_where_it_stands() {
     bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
     assert_eq!(bench.pause(), DONE, "it need not be anywhere");
     assert!(bench.memory.emove.status.at.is_empty());
+}
+
+/// Only E-PAUSE looks for the robot, and only while it is done or under way.
+#[test]
+fn the_search_belongs_to_the_pause() {
+    let rows = |watch: Watch| (search((), &watch).row, search((), &watch).action);
+    let looking = Watch {
+        pause: tables::Pause::UnderWay,
+        outcome: Outcome::Executing,
+        place: Whereabouts::Searching,
+        resolvers: Knowledge::Known,
+    };
+    for place in [Whereabouts::Known, Whereabouts::Unknown] {
+        assert_eq!(rows(Watch { place, ..looking }), (1, Look::Rest));
+    }
+    assert_eq!(rows(Watch { pause: tables::Pause::Other, ..looking }), (2, Look::Rest));
+    assert_eq!(rows(Watch { resolvers: Knowledge::Unknown, ..looking }), (3, Look::Rest));
+    for outcome in [Outcome::Idle, Outcome::Error] {
+        assert_eq!(rows(Watch { outcome, ..looking }), (4, Look::Rest));
+    }
+    for outcome in [Outcome::Executing, Outcome::Done, Outcome::Joystick] {
+        assert_eq!(rows(Watch { outcome, ..looking }), (5, Look::Look));
+        assert_eq!(rows(Watch { outcome, pause: tables::Pause::Standing, ..looking }), (5, Look::Look));
+    }
+}
+
+/// A pause that stands goes on; a command that has ended does not.
+#[test]
+fn only_a_standing_pause_goes_on() {
+    for &pause in tables::Pause::ALL {
+        for &outcome in Outcome::ALL {
+            let watch = Watch { pause, outcome, place: Whereabouts::Known, resolvers: Knowledge::Known };
+            let goes_on =
+                pause == tables::Pause::Standing && matches!(outcome, Outcome::Done | Outcome::Joystick);
+            assert_eq!(attend((), &watch) == Verdict::Passed(()), goes_on, "{pause} {outcome}");
+        }
+    }
 }
 
 #[test]

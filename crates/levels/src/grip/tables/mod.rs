@@ -1,20 +1,72 @@
-//! Decision tables of Grip: a file a command.
+//! Decision tables of Grip: what a new command needs, the calibration, what commands have in common, and a
+//! file a command.
 
-mod close_grip;
-mod pause;
-mod position;
-mod up_init;
+pub mod accept;
+pub mod close_grip;
+pub mod pause;
+pub mod position;
+pub mod servo;
+pub mod up_init;
 
-use rcs_core::{Plain, interface::Reason};
-
-pub use self::{
-    close_grip::{CLOSE_GRIP, close_grip},
-    pause::{PAUSE, pause},
-    position::{POSITION, position},
-    up_init::{UP_INIT, up_init},
+use rcs_core::{
+    Actions, Plain, Variables, commands,
+    handshake::Arrival,
+    interface::{Reason, grip::GripVerb},
 };
 
-/// Is the parts gripper there?
+use crate::execution::{Asked, Course, EXECUTE};
+
+/// Step of all commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Not begun: the command is new, or waits for the calibration.
+    Start,
+    /// The servo moves the fingers, or presses.
+    Move,
+    /// The valves are off; the readings settle.
+    Settle,
+}
+
+/// Step of UP-INIT: how far the calibration has come. It outlasts the commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Phase {
+    /// Never done: begins at once, since the gripper is there when the system is booted (VI.3.1).
+    Missing,
+    /// Never done, or interrupted: waits for UP-INIT or another command that moves the fingers. So begins a
+    /// process whose gripper comes later, which is then still in its holster, and one that was started in the
+    /// middle of a job: a part may be held.
+    Deferred,
+    /// The fingers close, until the readings are steady.
+    Closing,
+    /// The fingers open, until the readings are steady.
+    Opening,
+    /// The air is let out, until the readings are steady.
+    Venting,
+    /// Scale and offset of all sensors are known.
+    Valid,
+    /// The last attempt failed; the next command that moves the fingers tries again.
+    Failed,
+}
+
+/// For which gripper a command is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Addressee {
+    /// For this one, or the commander did not say.
+    This,
+    /// For another one.
+    Other,
+}
+
+/// Can a gripper of this sort reach the opening and the force of a command?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Reach {
+    /// Yes, or the command names none.
+    Within,
+    /// No.
+    Beyond,
+}
+
+/// Is the gripper there?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Gripper {
     /// It is mated and the quick change is locked.
@@ -23,7 +75,52 @@ pub enum Gripper {
     Detached,
 }
 
-/// Time of the command that has the duty.
+/// The command that is being executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Command {
+    /// None: nothing was commanded yet, or it has ended.
+    Nothing,
+    /// None: it was refused, or found at the start and not executed.
+    Refused,
+    /// PAUSE.
+    Pause,
+    /// UP-INIT.
+    UpInit,
+    /// POSITION, OPEN-GRIP or CLOSE-GRIP.
+    Motion,
+}
+
+impl Command {
+    /// What EXECUTE and ACCEPT leave of a command.
+    #[must_use]
+    pub const fn of(course: Course, accepted: bool, verb: GripVerb) -> Self {
+        match course {
+            Course::Rest => Self::Nothing,
+            Course::Begin | Course::Continue if accepted => match verb {
+                GripVerb::None => Self::Refused,
+                GripVerb::Pause => Self::Pause,
+                GripVerb::UpInit => Self::UpInit,
+                GripVerb::Position | GripVerb::OpenGrip | GripVerb::CloseGrip => Self::Motion,
+            },
+            Course::Refuse | Course::Begin | Course::Continue => Self::Refused,
+        }
+    }
+}
+
+/// What the sensors read while calibrating.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Calibrating {
+    /// Something changes.
+    Unsteady,
+    /// Steady for long enough.
+    Steady,
+    /// Steady, and the sensors do not tell the ends of travel apart.
+    Implausible,
+    /// The calibration takes longer than its limit.
+    Late,
+}
+
+/// Time of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Clock {
     /// Within its limit.
@@ -32,26 +129,31 @@ pub enum Clock {
     Expired,
 }
 
+/// Have the readings settled since the valves went off?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Rest {
+    /// Not yet.
+    Waiting,
+    /// Yes.
+    Rested,
+}
+
 /// Opening of the fingers, seen from the commanded one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Opening {
     /// Much too narrow: a coarse flow cannot overshoot.
-    #[text = "very narrow"]
     VeryNarrow,
     /// Too narrow: a medium flow cannot overshoot.
     Narrow,
     /// A little too narrow.
-    #[text = "bit narrow"]
     BitNarrow,
     /// Within the dead band.
     Right,
     /// A little too wide.
-    #[text = "bit wide"]
     BitWide,
     /// Too wide: a medium flow cannot overshoot.
     Wide,
     /// Much too wide: a coarse flow cannot overshoot.
-    #[text = "very wide"]
     VeryWide,
 }
 
@@ -65,7 +167,6 @@ pub enum Grasp {
     /// Nothing for some ticks, though the grasp size is passed: there is no object.
     Missed,
     /// One finger touches, the other does not.
-    #[text = "one finger"]
     OneFinger,
     /// Both touch, force much too low: a medium flow cannot overshoot.
     Loose,
@@ -79,28 +180,8 @@ pub enum Grasp {
     Crushing,
 }
 
-/// Have the readings settled since the valves went off?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Rest {
-    /// Not yet.
-    Waiting,
-    /// Yes.
-    Rested,
-}
-
-/// What the sensors read while calibrating.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Calibrating {
-    /// Something changes.
-    Unsteady,
-    /// Steady for long enough.
-    Steady,
-    /// Steady, and the sensors do not tell the ends of travel apart.
-    Implausible,
-}
-
 /// How much air flows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Plain)]
 pub enum Flow {
     /// 0.25 in/s.
     Fine,
@@ -110,25 +191,102 @@ pub enum Flow {
     Coarse,
 }
 
-/// What a row wants of the valves and the status.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What a new command needs, for [`accept::ACCEPT`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Request {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The command.
+    pub verb: GripVerb,
+    /// For which gripper is it?
+    pub addressee: Addressee,
+    /// Is the gripper there?
+    pub gripper: Gripper,
+    /// Are opening and force attainable?
+    pub reach: Reach,
+}
+
+/// The state variables of a tick, for the tables of calibration and commands.
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Situation {
+    /// The command that is being executed.
+    pub command: Command,
+    /// Is the gripper there?
+    pub gripper: Gripper,
+    /// What the sensors read while calibrating.
+    pub readings: Calibrating,
+    /// Time of the command.
+    pub clock: Clock,
+    /// Have the readings settled?
+    pub rest: Rest,
+    /// The opening, seen from the commanded one.
+    pub opening: Opening,
+    /// What the fingers feel.
+    pub grasp: Grasp,
+}
+
+/// What the sensors say in inches and pounds; 0 before the first calibration and without the gripper.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Measured {
+    /// Opening by the newest reading, in.
+    pub opening: f64,
+    /// Opening by the mean of the last readings, in.
+    pub mean_opening: f64,
+    /// Opening velocity, in/s.
+    pub velocity: f64,
+    /// Force of the left finger, lb.
+    pub left: f64,
+    /// Force of the right finger, lb.
+    pub right: f64,
+}
+
+/// What preprocess has found in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// What the command buffer holds.
+    pub arrival: Arrival,
+    /// What a new command needs.
+    pub request: Request,
+    /// The state variables; EXECUTE and ACCEPT decide on `command`.
+    pub situation: Situation,
+    /// Opening and forces.
+    pub measured: Measured,
+}
+
+/// What [`up_init::UP_INIT`] leaves to decide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Duty {
+    /// Nothing: the valves stay as they are.
+    Nothing,
+    /// Nothing: the valves go off with a command that is refused.
+    Refused,
+    /// The table of the command decides.
+    Command,
+}
+
+/// What a row can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
+    /// The valves stay as they are.
+    Keep,
+    /// All valves off: a refused command ends what was under way.
+    Refuse,
     /// All valves off: trapped air holds opening and force.
     Stop,
-    /// All valves off; the command is done.
+    /// All valves off; report done.
     Finish,
-    /// The valves stay as they were.
-    Keep,
-    /// The valves stay as they were; the command is done.
+    /// The valves stay as they are; report done.
     Pause,
     /// Open with a flow, or a smaller one if the commanded speed asks for that.
     Open(Flow),
     /// Close with a flow, or a smaller one if the commanded speed asks for that.
     Close(Flow),
-    /// Close on with one finger in contact; reports `paused`.
+    /// Close on with one finger in contact; report `paused`.
     AwaitFinger,
-    /// All valves off; the command has failed.
+    /// All valves off; report an error.
     Fail(Reason),
+    /// The calibration begins: all close flows.
+    Begin,
     /// All close flows.
     CloseFully,
     /// The readings are those of the closed end; all open flows.
@@ -139,6 +297,20 @@ pub enum Action {
     NoteOpen,
     /// Vent both sides.
     Vent,
-    /// The readings are those without force: set scale and offset of the sensors; valves off.
+    /// The readings are those without force: set scale and offset of the sensors; all valves off.
     Calibrate,
+    /// The same, and report done.
+    CalibrateAndFinish,
+    /// All valves off: there is no calibration, and no command that fails with it.
+    GiveUp,
+}
+
+commands! {
+    /// Consult the table of a command.
+    pub fn of_command(GripVerb, Step, Situation) -> Action {
+        others: EXECUTE, accept::ACCEPT, up_init::UP_INIT;
+        Position | OpenGrip     => servo::servo then position::position;
+        CloseGrip               => servo::servo then close_grip::close_grip;
+        None | Pause | UpInit   => pause::pause;
+    }
 }

@@ -1,15 +1,11 @@
-//! PAUSE: do nothing.
+//! PAUSE (VI.3.1).
 
-use rcs_core::old_table;
+use rcs_core::decision_table;
 
-use super::{Action, Gripper};
-use crate::grip::Step;
-
-old_table! {
-    /// PAUSE (VI.3.1): the valves stay as they were; without the gripper they are off.
-    pub PAUSE: fn pause(gripper: Gripper) -> (Action, Step) {
-        //   gripper       action   next
-        1: ( Attached ) => Pause  , Start ;
-        2: ( Detached ) => Finish , Start ;
+decision_table! {
+    /// PAUSE (VI.3.1): the valves stay as they are; without the gripper they are off.
+    pub PAUSE: fn pause(super::Situation) -> super::Action {
+        1:  gripper: Attached       => Pause;
+        2:  gripper: Detached       => Finish;
     }
 }

@@ -1,7 +1,5 @@
 //! The Grip process and a simulated gripper, tick by tick.
 
-use std::collections::BTreeSet;
-
 use rcs_core::{
     interface::{
         CommonMemory, ExternalInputs, GripOutputs,
@@ -14,6 +12,7 @@ use rcs_core::{
 };
 
 use super::{Grip, gripper::Gripper};
+use crate::coverage::Coverage;
 
 const OPEN: u8 = valve::OPEN_COARSE | valve::OPEN_MEDIUM | valve::OPEN_FINE;
 const CLOSE: u8 = valve::CLOSE_COARSE | valve::CLOSE_MEDIUM | valve::CLOSE_FINE;
@@ -26,14 +25,14 @@ pub struct Bench {
     pub gripper: Gripper,
     pub tick: Tick,
     /// Tables and rows that fired.
-    pub rows: BTreeSet<(u8, u8)>,
+    pub rows: Coverage,
     /// Valve patterns of the current command in the order in which they came, without repetitions.
     pub patterns: Vec<u8>,
 }
 
 impl Bench {
-    /// A bench with the gripper attached, after one tick in which nothing was commanded: a command that stands in the buffer
-    /// in the first tick is one of the time before a restart.
+    /// A bench with the gripper attached, after one tick in which nothing was commanded: a command that
+    /// stands in the buffer in the first tick is one of the time before a restart.
     pub fn new(gripper: Gripper) -> Self {
         Self::boot(gripper, true)
     }
@@ -50,7 +49,7 @@ impl Bench {
             external: ExternalInputs::default(),
             gripper,
             tick: Tick::BEFORE_START,
-            rows: BTreeSet::new(),
+            rows: Coverage::default(),
             patterns: Vec::new(),
         };
         bench.attach(attached);
@@ -101,7 +100,7 @@ impl Bench {
         assert!(bits & OPEN == 0 || bits & CLOSE == 0, "opens and closes at once: {bits:#04x}");
         assert_eq!(bits, outputs.status.valves);
         assert!(self.process.attached(&self.external) || bits == 0, "valves without a gripper: {bits:#04x}");
-        self.rows.insert((outputs.header.table, outputs.header.row));
+        self.rows.note(&outputs.header);
         if self.patterns.last() != Some(&bits) {
             self.patterns.push(bits);
         }

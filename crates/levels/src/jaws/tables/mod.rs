@@ -1,19 +1,42 @@
-//! Decision tables of V-Grip and Tool-Grip: a file a command.
+//! Decision tables of V-Grip and Tool-Grip: what a new command needs, what commands have in common, and a
+//! file a command.
 
-mod grasp;
-mod pause;
-mod release;
+pub mod accept;
+pub mod air;
+pub mod grasp;
+pub mod pause;
+pub mod release;
 
 use rcs_core::{
-    Plain,
-    interface::{Reason, jaws::JawsReport},
+    Actions, Plain, Variables, commands,
+    handshake::Arrival,
+    interface::{
+        Reason,
+        jaws::{JawsReport, JawsVerb},
+    },
+    table::Choice,
 };
 
-pub use self::{
-    grasp::{GRASP, Step, grasp},
-    pause::{PAUSE, pause},
-    release::{RELEASE, release},
-};
+use self::accept::accept;
+use crate::execution::{Asked, EXECUTE};
+
+/// Step of all commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// Not begun.
+    Start,
+    /// The fingers have air.
+    Move,
+}
+
+/// For which gripper a command is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Addressee {
+    /// For that of this process, or the commander did not say.
+    This,
+    /// For another one.
+    Other,
+}
 
 /// Is the gripper of this process there?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -51,27 +74,85 @@ pub enum Stop {
 pub enum Size {
     /// There.
     Commanded,
-    /// Elsewhere, or nothing was commanded.
+    /// Elsewhere, or no size was commanded.
     Other,
 }
 
-/// What a row wants of the valves and the status; the first two are for ticks in which no table of a command is consulted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What a new command needs, for [`accept::ACCEPT`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Request {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The command.
+    pub verb: JawsVerb,
+    /// For which gripper is it?
+    pub addressee: Addressee,
+    /// Is the gripper there?
+    pub gripper: Gripper,
+}
+
+/// The state variables of a tick, for the tables of the commands.
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Situation {
+    /// Is the gripper there?
+    pub gripper: Gripper,
+    /// What the fingers do.
+    pub motion: Motion,
+    /// Where they are on their way.
+    pub stop: Stop,
+    /// Where they are, seen from the commanded size.
+    pub size: Size,
+}
+
+/// What preprocess has found in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// What the command buffer holds.
+    pub arrival: Arrival,
+    /// What a new command needs.
+    pub request: Request,
+    /// The state variables of the command's table.
+    pub situation: Situation,
+    /// `commanded-size` that counts once the command is accepted, 0.01 in.
+    pub size: Option<i32>,
+    /// Opening by the mean of the last readings, in.
+    pub opening: f64,
+    /// Opening velocity, in/s.
+    pub velocity: f64,
+}
+
+/// What a row can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
-    /// Everything stays as it is.
-    Keep,
-    /// The valves stay as they are; the command is refused.
-    Refuse,
-    /// Air to the side that closes; executing.
-    Close,
-    /// Air to the side that opens; executing.
-    Open,
-    /// The valves stay as they are; executing.
+    /// The valves stay as they are.
     Wait,
-    /// The valves stay as they are; the command has ended with this status.
+    /// Air to the side that closes.
+    Close,
+    /// Air to the side that opens.
+    Open,
+    /// The valves stay as they are; the command is done, with this status.
     Report(JawsReport),
-    /// The valves stay as they are; the fingers ended where the command did not send them.
+    /// The valves stay as they are; the fingers stopped where the command did not send them: an error, with
+    /// this status.
     Wrong(JawsReport),
-    /// No air; the command has failed.
+    /// The valves stay as they are; report an error.
+    Refuse(Reason),
+    /// No air; report an error.
     Fail(Reason),
+}
+
+commands! {
+    /// Consult the table of a command.
+    pub fn of_command(JawsVerb, Step, Situation) -> Action {
+        others: EXECUTE, accept::ACCEPT;
+        Grasp           => air::air then grasp::grasp;
+        Release | Pose  => air::air then release::release;
+        None | Pause    => pause::pause;
+    }
+}
+
+/// Consult the tables in turn until a row decides.
+#[must_use]
+pub fn decide(verb: JawsVerb, step: Step, seen: &Seen) -> Choice<Action, Step> {
+    accept(step, &seen.request).then(number::ACCEPT, |()| of_command(verb, step, &seen.situation))
 }

@@ -8,31 +8,42 @@
 //! | RELEASE  | opens to `grasp-size` |                                |
 //! | PAUSE    |                       | stops                          |
 //!
+//! ```text
+//!               ACCEPT               ORDERED: hand, table
+//!   a command ----------> Start ------> Moving ------> done
+//!       |                                  |
+//!       | it cannot be executed            | hand or table failed, or the object came loose
+//!       v                                  v
+//!     can't-do                           error
+//! ```
+//!
 //! A failure sends nothing to the hand: what it holds, it goes on holding.
+//!
+//! * [`state`]: what the process remembers;
+//! * [`orders`]: what a command asks of hand and table;
+//! * [`preprocess`]: the state variables;
+//! * [`tables`]: the decision tables, a file a command;
+//! * [`postprocess`]: commands to hand and table, and the status.
 
-mod postprocess;
-mod preprocess;
-mod state;
+pub mod orders;
+pub mod postprocess;
+pub mod preprocess;
+pub mod state;
 pub mod tables;
 #[cfg(test)]
 mod tests;
 
-pub use self::state::State;
-
 use rcs_core::{
-    interface::{PedestalOutputs, pedestal::PedestalVerb},
+    interface::PedestalOutputs,
     process::{Inputs, Process},
     table::Table,
 };
 
 use self::{
-    preprocess::Seen,
-    tables::{Action, FLIP, GRIP, PAUSE, PRE_GRIP, RELEASE, Step, flip, grip, pause, pre_grip, release},
+    state::State,
+    tables::{Action, Seen, Step},
 };
-use crate::old_execution::{Course, EXECUTE};
-
-/// Decision tables, the upper one first.
-const TABLES: &[&Table] = &[&EXECUTE, &PRE_GRIP, &GRIP, &FLIP, &RELEASE, &PAUSE];
+use crate::execution::Course;
 
 /// The pedestal process.
 #[derive(Clone, Debug, Default)]
@@ -40,57 +51,49 @@ pub struct Pedestal {
     state: State,
 }
 
-impl Pedestal {
-    /// Look up the state variables in the table of the command.
-    fn decide(&mut self, seen: &Seen) -> Action {
-        let state = &mut self.state;
-        if !matches!(seen.course, Course::Begin | Course::Continue) {
-            return Action::Wait;
-        }
-        let step = Step::from_code(state.execution.step).unwrap_or_default();
-        let Seen { hand, table, object, .. } = *seen;
-        let (rows, decision) = match state.command.command {
-            PedestalVerb::PreGrip => (&PRE_GRIP, pre_grip(step, hand, table)),
-            PedestalVerb::Grip => (&GRIP, grip(step, hand, object)),
-            PedestalVerb::Flip => (&FLIP, flip(step, table, object)),
-            PedestalVerb::Release => (&RELEASE, release(step, hand)),
-            PedestalVerb::Pause | PedestalVerb::None => (&PAUSE, pause(step, table)),
-        };
-        state.execution.note(TABLES, rows, decision.row, decision.next.code());
-        decision.action
-    }
-}
-
 impl<Data: ?Sized> Process<Data> for Pedestal {
     type State = State;
-    type Seen = ();
-    type Action = ();
     type Outputs = PedestalOutputs;
+    type Seen = Seen;
+    type Action = Action;
 
     const NAME: &'static str = "Active Pedestal";
-    const TABLES: &'static [&'static Table] = TABLES;
+    const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn step(&mut self, inputs: &Inputs<'_, Data>, outputs: &mut PedestalOutputs) {
-        let seen = Seen::preprocess(&mut self.state, inputs);
-        let action = self.decide(&seen);
-        postprocess::perform(&mut self.state, &seen, action, inputs, outputs);
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, _: &PedestalOutputs) -> Seen {
+        self.state.sense(inputs)
     }
 
-    fn preprocess(&mut self, _: &Inputs<'_, Data>, _: &PedestalOutputs) {}
+    fn decide(&mut self, seen: &Seen) -> Action {
+        let state = &mut self.state;
+        let verb = state.command.command;
+        match state.execution.course(seen.arrival) {
+            Course::Rest | Course::Refuse => return Action::Wait,
+            Course::Begin => state.step = Step::first(verb),
+            Course::Continue => {}
+        }
+        let choice = tables::decide(verb, state.step, seen);
+        state.execution.note(&choice);
+        state.step = choice.next;
+        choice.action
+    }
 
-    fn decide(&mut self, (): &()) {}
-
-    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, Data>, _: &mut PedestalOutputs) {}
-
-    fn state_mut(&mut self) -> &mut State {
-        &mut self.state
+    fn postprocess(
+        &mut self,
+        action: Action,
+        seen: &Seen,
+        inputs: &Inputs<'_, Data>,
+        outputs: &mut PedestalOutputs,
+    ) {
+        self.state.act(action, seen, inputs, outputs);
+        self.state.report(inputs, outputs);
     }
 
     fn state(&self) -> &State {
         &self.state
     }
 
-    fn restore(&mut self, state: State) {
-        self.state = state;
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 }

@@ -1,4 +1,4 @@
-//! Postprocess: commands to hand and table, and the status to Subtask.
+//! Postprocess of the pedestal process: commands to hand and table, and the status to Subtask.
 
 use rcs_core::{
     handshake::Lower,
@@ -13,78 +13,86 @@ use rcs_core::{
 };
 
 use super::{
-    preprocess::{Seen, angle, hand_command},
+    orders::{hand_command, table_angle},
     state::State,
-    tables::Action,
+    tables::{Action, Ordered, Seen},
 };
-use crate::pedestal::table::report;
+use crate::pedestal::table::report_of;
 
-/// Carry out `action` and report.
-pub(super) fn perform<Data: ?Sized>(
-    state: &mut State,
-    seen: &Seen,
-    action: Action,
-    inputs: &Inputs<'_, Data>,
-    outputs: &mut PedestalOutputs,
-) {
-    let memory = inputs.memory;
-    match action {
-        Action::Wait => {}
-        Action::OpenAndTurn => {
-            open(state, inputs.tick, outputs);
-            turn(state, state.command.table_angle, inputs.tick, outputs);
-        }
-        Action::Close => send_hand(state, inputs.tick, outputs),
-        Action::TurnOver => {
-            turn(state, angle(&state.command, &memory.table.status), inputs.tick, outputs);
-        }
-        Action::Open => open(state, inputs.tick, outputs),
-        Action::StopTable => {
-            let number = state.table.send(inputs.tick);
-            outputs.table = TableCommand { number, command: TableVerb::Pause, angle: 0 };
-        }
-        Action::Finish => state.execution.finish(),
-        Action::Gripped => {
-            state.held_size = state.command.grasp_size;
-            state.execution.finish();
-        }
-        Action::Fail(reason) => {
-            if reason == Reason::ObjectLost {
-                state.held_size = 0;
+impl State {
+    /// Set the outputs that a row asks for.
+    pub(super) fn act<Data: ?Sized>(
+        &mut self,
+        action: Action,
+        seen: &Seen,
+        inputs: &Inputs<'_, Data>,
+        outputs: &mut PedestalOutputs,
+    ) {
+        let (memory, tick) = (inputs.memory, inputs.tick);
+        let angle = table_angle(&self.command, &memory.table.status);
+        match action {
+            Action::Wait => {}
+            Action::OpenAndTurn => {
+                self.open(tick, outputs);
+                self.command_table(TableVerb::Turn, angle, tick, outputs);
+                self.ordered = Ordered::Both;
             }
-            state.execution.fail(reason);
+            Action::Close => self.command_hand(tick, outputs),
+            Action::Turn => self.command_table(TableVerb::Turn, angle, tick, outputs),
+            Action::Open => self.open(tick, outputs),
+            Action::StopTable => self.command_table(TableVerb::Pause, 0, tick, outputs),
+            Action::Finish => self.execution.finish(),
+            Action::Hold => {
+                self.held_size = Some(self.command.grasp_size);
+                self.execution.finish();
+            }
+            Action::Lose => {
+                self.held_size = None;
+                self.execution.fail(Reason::ObjectLost);
+            }
+            Action::Fail(reason) => self.execution.fail(reason),
+            Action::PassUpHand => self.pass_up(seen.orders.hand, memory.hand.status.reason),
+            Action::PassUpTable => self.pass_up(seen.orders.table, memory.table.status.reason),
         }
-        Action::FailHand => state.execution.fail(reason_of(seen.hand, memory.hand.status.reason)),
-        Action::FailTable => state.execution.fail(reason_of(seen.table, memory.table.status.reason)),
     }
-    let hand = &memory.hand.status;
-    let force = f64::midpoint(f64::from(hand.left_force), f64::from(hand.right_force));
-    outputs.header = state.execution.header(inputs.tick);
-    outputs.status = PedestalStatus {
-        cycle_echo: state.cycle,
-        echo: state.execution.receiver.echo,
-        report: report(state.execution.outcome, state.execution.reason),
-        reason: state.execution.reason,
-        grip_size: hand.position,
-        grip_force: rounded(force),
-        table_position: memory.table.status.position,
-    };
-}
 
-fn reason_of(lower: Lower, below: Reason) -> Reason {
-    if lower == Lower::Lost || below == Reason::None { Reason::NeighbourLost } else { below }
-}
+    /// A process below has failed; one that does not answer gives no reason.
+    fn pass_up(&mut self, lower: Lower, below: Reason) {
+        let silent = lower == Lower::Lost || below == Reason::None;
+        self.execution.fail(if silent { Reason::NeighbourLost } else { below });
+    }
 
-/// Open the hand: what it holds is let go.
-fn open(state: &mut State, tick: Tick, outputs: &mut PedestalOutputs) {
-    state.held_size = 0;
-    send_hand(state, tick, outputs);
-}
+    /// Open the hand: what it holds is let go.
+    fn open(&mut self, tick: Tick, outputs: &mut PedestalOutputs) {
+        self.held_size = None;
+        self.command_hand(tick, outputs);
+    }
 
-fn send_hand(state: &mut State, tick: Tick, outputs: &mut PedestalOutputs) {
-    outputs.hand = GripCommand { number: state.hand.send(tick), ..hand_command(&state.command) };
-}
+    fn command_hand(&mut self, tick: Tick, outputs: &mut PedestalOutputs) {
+        self.ordered = Ordered::Hand;
+        outputs.hand = GripCommand { number: self.hand.send(tick), ..hand_command(&self.command) };
+    }
 
-fn turn(state: &mut State, angle: i32, tick: Tick, outputs: &mut PedestalOutputs) {
-    outputs.table = TableCommand { number: state.table.send(tick), command: TableVerb::Turn, angle };
+    /// A command to the table; the absolute angle in 0.1 degree.
+    fn command_table(&mut self, command: TableVerb, angle: i32, tick: Tick, outputs: &mut PedestalOutputs) {
+        self.ordered = Ordered::Table;
+        outputs.table = TableCommand { number: self.table.send(tick), command, angle };
+    }
+
+    /// Write the status to Subtask.
+    pub(super) fn report<Data: ?Sized>(&self, inputs: &Inputs<'_, Data>, outputs: &mut PedestalOutputs) {
+        let execution = &self.execution;
+        let hand = &inputs.memory.hand.status;
+        let force = f64::midpoint(f64::from(hand.left_force), f64::from(hand.right_force));
+        outputs.header = execution.header(inputs.tick, self.step.text());
+        outputs.status = PedestalStatus {
+            cycle_echo: self.cycle,
+            echo: execution.receiver.echo,
+            report: report_of(execution.outcome, execution.reason),
+            reason: execution.reason,
+            grip_size: hand.position,
+            grip_force: rounded(force),
+            table_position: inputs.memory.table.status.position,
+        };
+    }
 }

@@ -2,21 +2,26 @@
 
 use rcs_core::{Plain, handshake::Commander, interface::pedestal::PedestalCommand, tick::Tick};
 
-use crate::old_execution::Execution;
+use super::tables::{Ordered, Step};
+use crate::execution::Execution;
 
-/// Everything that the pedestal process remembers.
+/// State of the pedestal process.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The current command number, its outcome and its step.
+    /// The command of Subtask and how far it has come.
     pub execution: Execution,
+    /// Step of its table.
+    pub step: Step,
     /// The current command: a copy, because the buffer of a commander that restarts is empty.
     pub command: PedestalCommand,
     /// `cycle-cnt` of the command that is echoed, executed or not.
     pub cycle: Tick,
-    /// Numbers of the commands to the hand.
+    /// Who has its orders.
+    pub ordered: Ordered,
+    /// Commands to the hand.
     pub hand: Commander,
-    /// Numbers of the commands to the table.
+    /// Commands to the table.
     pub table: Commander,
-    /// `grasp-size` of the object that the hand holds, 0.01 in; 0 if it holds none.
-    pub held_size: i32,
+    /// `grasp-size` of the object that the hand holds, 0.01 in, if it holds one.
+    pub held_size: Option<i32>,
 }

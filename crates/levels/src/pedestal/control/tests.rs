@@ -1,6 +1,5 @@
-//! Scenarios of the pedestal process: against statuses by hand, and together with hand and table and their devices.
-
-use std::collections::BTreeSet;
+//! Scenarios of the pedestal process: against statuses by hand, and together with hand and table and their
+//! devices.
 
 use proptest::prelude::*;
 use rcs_core::{
@@ -15,8 +14,9 @@ use rcs_core::{
     tick::Tick,
 };
 
-use super::{Pedestal, State, TABLES};
+use super::{Pedestal, state::State, tables::TABLES};
 use crate::{
+    coverage::Coverage,
     grip::tests::gripper::{Gripper, Object},
     pedestal::{Hand, Table, table::tests::Rotary},
 };
@@ -27,7 +27,7 @@ struct Bench {
     process: Pedestal,
     memory: CommonMemory,
     tick: Tick,
-    rows: BTreeSet<(u8, u8)>,
+    rows: Coverage,
 }
 
 impl Bench {
@@ -59,7 +59,7 @@ impl Bench {
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &external, data: &() };
         self.process.step(&inputs, &mut outputs);
         assert_eq!(outputs.status.cycle_echo, self.memory.subtask.pedestal.cycle);
-        self.rows.insert((outputs.header.table, outputs.header.row));
+        self.rows.note(&outputs.header);
         self.memory.pedestal = outputs;
         outputs
     }
@@ -283,16 +283,20 @@ fn every_row_fires() {
     }
     play(PedestalVerb::Flip, &[(GripReport::Done, 10)], &tables);
     play(PedestalVerb::Release, &hands, &tables);
-    // The upper table notes refusals only.
+    // ACCEPT 2 to 5, EXECUTE 2.
     play(PedestalVerb::None, &[(GripReport::Done, 10)], &[PedestalReport::Done]);
+    for (calibrated, verb, size, angle) in [
+        (false, PedestalVerb::Flip, 0, 10),
+        (true, PedestalVerb::Flip, 0, 9000),
+        (true, PedestalVerb::Release, 501, 0),
+    ] {
+        bench.memory.table.status.calibrated = calibrated;
+        bench.send(verb, size, 0, angle);
+        bench.step();
+    }
     bench.process = Pedestal::default();
     bench.step();
-    let all = TABLES.iter().zip(1_u8..).flat_map(|(table, number)| {
-        let noted = move |row: &u8| number > 1 || matches!(row, 2 | 3);
-        table.rows.iter().map(|row| row.number).filter(noted).map(move |row| (number, row))
-    });
-    let missing: Vec<_> = all.filter(|row| !bench.rows.contains(row)).collect();
-    assert!(missing.is_empty(), "never fired: {missing:?}");
+    assert_eq!(bench.rows.missing(TABLES), [""; 0]);
 }
 
 /// All three processes with a simulated hand and a simulated table.
@@ -424,8 +428,8 @@ fn the_object_stays_gripped_whatever_fails() {
 }
 
 proptest! {
-    /// Whatever is commanded and whatever the neighbours say: no panic, the hand is opened only for PRE-GRIP and RELEASE, and the
-    /// same inputs give the same bits.
+    /// Whatever is commanded and whatever the neighbours say: no panic, the hand is opened only for PRE-GRIP
+    /// and RELEASE, and the same inputs give the same bits.
     #[test]
     fn nonsense(ticks in prop::collection::vec((0_u8..20, any::<i32>(), any::<i32>(), 0_u8..5, any::<bool>()), 1..200)) {
         let (mut bench, mut twin) = (Bench::new(), Bench::new());

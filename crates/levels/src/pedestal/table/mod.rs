@@ -1,8 +1,8 @@
 //! Rotary table of the pedestal (III.9.1, III.10): a step motor behind a controller that counts its steps.
 //!
-//! The controller takes orders by number over a serial link: turn by so many steps, give the counter a value, stop. Its
-//! counter means an angle only after it has been set where the angle is known: at the + limit. So the table calibrates
-//! first, by itself when it is booted, and before the first turn it is asked for.
+//! The controller takes orders by number over a serial link: turn by so many steps, give the counter a value,
+//! stop. Its counter means an angle only after it has been set where the angle is known: at the + limit. So
+//! the table calibrates first, by itself when it is booted, and before the first turn it is asked for.
 //!
 //! ```text
 //!   Missing, Deferred, Failed                    a command TURN
@@ -21,36 +21,37 @@
 //!          Valid                                     Done
 //! ```
 //!
-//! An angle is believed if counter and potentiometer agree. If they do not, steps were lost, and the table has to find
-//! its + limit again.
+//! An angle is believed if counter and potentiometer agree. If they do not, steps were lost, and the table
+//! has to find its + limit again.
+//!
+//! * [`state`]: what the process remembers;
+//! * [`preprocess`]: the state variables;
+//! * [`tables`]: the decision tables, a file a command;
+//! * [`postprocess`]: orders to the motor, and the status.
 
-mod postprocess;
-mod preprocess;
-mod state;
+pub mod postprocess;
+pub mod preprocess;
+pub mod state;
 pub mod tables;
 #[cfg(test)]
 pub(super) mod tests;
 
-pub(super) use self::{postprocess::report, preprocess::within_limits};
+pub(super) use self::{postprocess::report_of, preprocess::is_within_limits};
 pub use self::{
     preprocess::{LIMIT_MINUS, LIMIT_PLUS},
-    state::{Phase, State},
+    state::State,
 };
 
 use rcs_core::{
-    interface::{TableOutputs, pedestal::TableVerb},
+    interface::TableOutputs,
     process::{Inputs, Process},
-    table::Table as DecisionTable,
+    table::{Table as DecisionTable, Verdict},
 };
 
-use self::{
-    preprocess::Seen,
-    tables::{Action, CALIBRATE, PAUSE, Step, TURN, calibrate, pause, turn},
+use self::tables::{
+    Action, Command, Duty, Seen, Situation, Step, accept::accept, calibrate::calibrate, number, of_command,
 };
-use crate::old_execution::{Course, EXECUTE};
-
-/// Decision tables, the upper one first.
-const TABLES: &[&DecisionTable] = &[&EXECUTE, &CALIBRATE, &TURN, &PAUSE];
+use crate::execution::Course;
 
 /// The table process.
 #[derive(Clone, Debug, Default)]
@@ -58,64 +59,67 @@ pub struct Table {
     state: State,
 }
 
-impl Table {
-    /// Look up the state variables in the table that has the duty.
-    fn decide(&mut self, seen: &Seen) -> Action {
-        let state = &mut self.state;
-        if seen.calibrate {
-            let decision = calibrate(state.phase, seen.motor, seen.place, seen.clock);
-            state.phase = decision.next;
-            let step = state.execution.step;
-            state.execution.note(TABLES, &CALIBRATE, decision.row, step);
-            return decision.action;
-        }
-        if !matches!(seen.course, Course::Begin | Course::Continue) {
-            return Action::Wait;
-        }
-        let step = Step::from_code(state.execution.step).unwrap_or_default();
-        let (table, decision) = match state.command.command {
-            TableVerb::Turn => (&TURN, turn(step, seen.motor, seen.place, seen.clock)),
-            TableVerb::Pause | TableVerb::Calibrate | TableVerb::None => {
-                (&PAUSE, pause(seen.motor, seen.clock))
-            }
-        };
-        state.execution.note(TABLES, table, decision.row, decision.next.code());
-        decision.action
-    }
-}
-
 impl<Data: ?Sized> Process<Data> for Table {
     type State = State;
-    type Seen = ();
-    type Action = ();
     type Outputs = TableOutputs;
+    type Seen = Seen;
+    type Action = Action;
 
     const NAME: &'static str = "Rotary Table";
-    const TABLES: &'static [&'static DecisionTable] = TABLES;
+    const TABLES: &'static [&'static DecisionTable] = tables::TABLES;
 
-    fn step(&mut self, inputs: &Inputs<'_, Data>, outputs: &mut TableOutputs) {
-        let command = &inputs.memory.pedestal.table;
-        let sensors = &inputs.external.devices.pedestal;
-        let seen = Seen::preprocess(&mut self.state, command, sensors, inputs.tick);
-        let action = self.decide(&seen);
-        *outputs = postprocess::perform(&mut self.state, &seen, action, sensors, inputs.tick);
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, _: &TableOutputs) -> Seen {
+        self.state.sense(inputs)
     }
 
-    fn preprocess(&mut self, _: &Inputs<'_, Data>, _: &TableOutputs) {}
+    /// A calibration goes on in the tick of a refusal, and while a command waits for it.
+    fn decide(&mut self, seen: &Seen) -> Action {
+        let state = &mut self.state;
+        let course = state.execution.course(seen.arrival);
+        if course == Course::Begin {
+            state.step = Step::Start;
+        }
+        let accepted = state.execution.accepts(&accept(state.step, &seen.request));
+        let command = Command::of(course, accepted, state.command.command);
+        let situation = Situation { command, ..seen.situation };
+        match calibrate(state.phase, &situation) {
+            Verdict::Decided(decision) => {
+                state.phase = decision.next;
+                if accepted {
+                    state.execution.note(&decision.of(number::CALIBRATE));
+                }
+                decision.action
+            }
+            Verdict::Passed(Duty::Nothing) => Action::Wait,
+            Verdict::Passed(Duty::Command) => {
+                let choice = of_command(state.command.command, state.step, &situation);
+                state.execution.note(&choice);
+                state.step = choice.next;
+                choice.action
+            }
+        }
+    }
 
-    fn decide(&mut self, (): &()) {}
-
-    fn postprocess(&mut self, (): (), (): &(), _: &Inputs<'_, Data>, _: &mut TableOutputs) {}
-
-    fn state_mut(&mut self) -> &mut State {
-        &mut self.state
+    fn postprocess(
+        &mut self,
+        action: Action,
+        seen: &Seen,
+        inputs: &Inputs<'_, Data>,
+        outputs: &mut TableOutputs,
+    ) {
+        let (state, sensors) = (&mut self.state, &inputs.external.devices.pedestal);
+        if state.execution.begins(seen.arrival) {
+            state.since = inputs.tick;
+        }
+        state.act(action, sensors, inputs.tick);
+        *outputs = state.report(sensors, inputs.tick);
     }
 
     fn state(&self) -> &State {
         &self.state
     }
 
-    fn restore(&mut self, state: State) {
-        self.state = state;
+    fn state_mut(&mut self) -> &mut State {
+        &mut self.state
     }
 }

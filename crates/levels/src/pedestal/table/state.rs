@@ -7,36 +7,21 @@ use rcs_core::{
     tick::Tick,
 };
 
-use crate::old_execution::Execution;
+use super::tables::{Phase, Step};
+use crate::execution::Execution;
 
-/// How far the calibration has come: the reference action of CALIBRATE.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Phase {
-    /// Never done: begins at once, since the table was booted just now (IV.5.1 step 10).
-    Missing,
-    /// Never done by this process, which was started in the middle of a job: the table may stand beside the robot, so it
-    /// waits for a command that turns it.
-    Deferred,
-    /// The table turns towards its + limit.
-    Seeking,
-    /// The counter is being set.
-    Setting,
-    /// The counter shows the angle.
-    Valid,
-    /// The last attempt failed, or steps were lost; the next command that turns the table tries again.
-    Failed,
-}
-
-/// Everything that the table process remembers.
+/// State of the table process.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct State {
-    /// The current command number, its outcome and its step.
+    /// The command and how far it has come.
     pub execution: Execution,
+    /// Step of its table.
+    pub step: Step,
     /// The current command: a copy, because the buffer of a commander that restarts is empty.
     pub command: TableCommand,
-    /// When the table of the command, or that of the calibration, was consulted first.
+    /// When it came, or when the calibration began or ended, whatever was last.
     pub since: Tick,
-    /// How far the calibration has come.
+    /// Step of CALIBRATE.
     pub phase: Phase,
     /// Potentiometer at the + limit, counts.
     pub at_limit: u16,
@@ -52,7 +37,7 @@ pub struct State {
 
 impl State {
     /// A calibration is under way.
-    pub(super) fn calibrating(&self) -> bool {
+    pub(super) fn is_calibrating(&self) -> bool {
         matches!(self.phase, Phase::Seeking | Phase::Setting)
     }
 }

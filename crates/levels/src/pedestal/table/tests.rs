@@ -1,7 +1,5 @@
 //! Scenarios of the table process with a simulated rotary table.
 
-use std::collections::BTreeSet;
-
 use proptest::prelude::*;
 use rcs_core::{
     Plain,
@@ -15,7 +13,12 @@ use rcs_core::{
     tick::Tick,
 };
 
-use super::{LIMIT_MINUS, LIMIT_PLUS, Phase, State, TABLES, Table, preprocess::LIMIT_TICKS};
+use super::{
+    LIMIT_MINUS, LIMIT_PLUS, State, Table,
+    preprocess::LIMIT_TICKS,
+    tables::{Phase, TABLES},
+};
+use crate::coverage::Coverage;
 
 /// Motor, controller, switches and potentiometer.
 #[derive(Clone, Debug)]
@@ -129,7 +132,7 @@ struct Bench {
     external: ExternalInputs,
     table: Rotary,
     tick: Tick,
-    rows: BTreeSet<(u8, u8)>,
+    rows: Coverage,
 }
 
 impl Bench {
@@ -140,7 +143,7 @@ impl Bench {
             external: ExternalInputs::default(),
             table,
             tick: Tick::BEFORE_START,
-            rows: BTreeSet::new(),
+            rows: Coverage::default(),
         };
         bench.step();
         bench
@@ -164,7 +167,7 @@ impl Bench {
         let mut outputs = self.memory.table;
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
         self.process.step(&inputs, &mut outputs);
-        self.rows.insert((outputs.header.table, outputs.header.row));
+        self.rows.note(&outputs.header);
         self.table.advance(&outputs.motor);
         self.memory.table = outputs;
         outputs
@@ -208,9 +211,8 @@ fn a_table_that_is_booted_calibrates_itself() {
         );
         assert_eq!((status.position, status.echo), (LIMIT_PLUS, 0));
         assert!((bench.table.angle() + 20.0).abs() < 0.05, "{}", bench.table.angle());
-        let rows = bench.rows.clone();
-        bench.wait(100);
-        assert_eq!(bench.rows, rows, "once is enough");
+        let order = bench.memory.table.motor;
+        assert_eq!(bench.wait(100).motor, order, "once is enough");
     }
 }
 
@@ -337,7 +339,7 @@ fn a_restarted_process_turns_nothing_until_it_must() {
 #[test]
 fn every_row_fires() {
     let mut bench = Bench::calibrated();
-    // TURN 2 to 8, PAUSE 1 to 4.
+    // REST 3 to 5, TURN 2 to 4, PAUSE 1, CALIBRATE 2, 9: a calibration for a turn.
     bench.table.delay = 3;
     bench.execute(TableVerb::Turn, -1000);
     bench.send(TableVerb::Turn, -3000);
@@ -350,41 +352,48 @@ fn every_row_fires() {
     bench.execute(TableVerb::Turn, -300);
     bench.table.slip = 0;
     bench.execute(TableVerb::Turn, -300);
-    // TURN 2, PAUSE 3: the motor turns for ever.
+    // REST 2: the motor turns for ever.
     for verb in [TableVerb::Turn, TableVerb::Pause] {
         bench.execute(TableVerb::Turn, -300);
         bench.table.runs_on = true;
         bench.execute(verb, -1000);
         bench.table.runs_on = false;
     }
-    // A table that does not answer: CALIBRATE 2, TURN 1.
+    // A table that does not answer: TURN 1, CALIBRATE 10.
     bench.execute(TableVerb::Turn, -1000);
     bench.table.off = true;
     bench.execute(TableVerb::Turn, -300);
     bench.execute(TableVerb::Turn, -300);
     bench.table.off = false;
-    // CALIBRATE 8: it stops before the limit. CALIBRATE 5: it never stops.
+    // CALIBRATE 10, 11: it stops before the limit; it never stops, while no command needs it.
     bench.send(TableVerb::Calibrate, 0);
     bench.wait(10);
     bench.table.goal = bench.table.position;
     bench.finish();
     bench.table.speed = 0;
-    bench.execute(TableVerb::Calibrate, 0);
-    // The upper table notes refusals only.
+    bench.send(TableVerb::Calibrate, 0);
+    bench.wait(10);
+    bench.execute(TableVerb::Pause, 0);
+    // ACCEPT 2, 3, EXECUTE 2, CALIBRATE 1.
     bench.execute(TableVerb::Turn, 0);
+    bench.execute(TableVerb::None, 0);
     bench.process = Table::default();
     bench.step();
-    let all = TABLES.iter().zip(1_u8..).flat_map(|(table, number)| {
-        let noted = move |row: &u8| number > 1 || matches!(row, 2 | 3);
-        table.rows.iter().map(|row| row.number).filter(noted).map(move |row| (number, row))
-    });
-    let missing: Vec<_> = all.filter(|row| !bench.rows.contains(row)).collect();
-    assert!(missing.is_empty(), "never fired: {missing:?}");
+    assert_eq!(bench.rows.missing(TABLES), [""; 0]);
+}
+
+#[test]
+fn a_calibration_goes_on_beside_a_command_that_is_refused() {
+    let mut bench = Bench::new(Rotary::new(-1200));
+    assert_eq!(bench.execute(TableVerb::Turn, 0), (PedestalReport::CannotDo, Reason::TableLimit));
+    let status = bench.wait(600).status;
+    assert_eq!((status.calibrated, status.position), (true, LIMIT_PLUS));
+    assert_eq!((status.report, status.reason), (PedestalReport::CannotDo, Reason::TableLimit));
 }
 
 proptest! {
-    /// From any angle to any other, over lines of any delay: reached to 0.06 degree, and the same bits twice. At 25 steps a
-    /// tick the whole way takes 1280 of the 1500 ticks that a turn has.
+    /// From any angle to any other, over lines of any delay: reached to 0.06 degree, and the same bits twice.
+    /// At 25 steps a tick the whole way takes 1280 of the 1500 ticks that a turn has.
     #[test]
     fn turns(
         start in LIMIT_MINUS..=LIMIT_PLUS,
@@ -407,7 +416,8 @@ proptest! {
         prop_assert_eq!(run()?, run()?);
     }
 
-    /// Whatever is commanded and whatever the sensors read: no panic, and every order has a number of its own.
+    /// Whatever is commanded and whatever the sensors read: no panic, and every order has a number of its
+    /// own.
     #[test]
     fn nonsense(ticks in prop::collection::vec((0_u8..30, any::<i32>(), any::<u32>()), 1..200)) {
         let mut bench = Bench::new(Rotary::new(-1200));

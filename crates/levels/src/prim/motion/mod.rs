@@ -51,14 +51,12 @@ pub struct Motion {
     pub at: FrameData,
     /// Goal of the last order; the commanded frame after a halt.
     pub goal: FrameData,
-    /// The last order is a GO-THRU with this brake distance, inches.
-    pub brake_distance: f64,
     /// The segment before, braking into its through point.
-    pub residual: Segment,
+    pub residual: Option<Segment>,
     /// The segment under way.
-    pub current: Segment,
+    pub current: Option<Segment>,
     /// What comes after it.
-    pub next: Order,
+    pub next: Option<Order>,
     /// Everything is to come to rest before the next segment starts.
     pub halting: bool,
 }
@@ -86,16 +84,16 @@ impl Motion {
     /// Nothing moves and nothing waits to move.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
-        !(self.current.active || self.residual.active || self.next.given || self.halting)
+        self.current.is_none() && self.residual.is_none() && self.next.is_none() && !self.halting
     }
 
     /// The last order was a GO-THRU and the next one may be given: no older residual is left, and the point
     /// is nearer than the brake distance.
     #[must_use]
     pub fn is_passing(&self) -> bool {
-        let alone = !(self.residual.active || self.next.given || self.halting);
-        alone
-            && (!self.current.active || (self.current.order.through && self.distance() < self.brake_distance))
+        let alone = self.residual.is_none() && self.next.is_none() && !self.halting;
+        let near = |segment: &Segment| segment.order.through.is_some_and(|brake| self.distance() < brake);
+        alone && self.current.as_ref().is_none_or(near)
     }
 
     /// Go to a goal, by the shortest way that is continuous: on from a through point that
@@ -104,20 +102,13 @@ impl Motion {
         self.halting = !self.is_passing();
         let goal = FrameData::from(goal);
         self.goal = goal;
-        self.brake_distance = through.unwrap_or(0.0);
-        self.next = Order {
-            given: true,
-            goal,
-            through: through.is_some(),
-            brake_distance: self.brake_distance,
-            limits: *limits,
-        };
+        self.next = Some(Order { goal, through, limits: *limits });
     }
 
     /// Come to rest as soon as the limits allow, and forget the goal.
     pub fn halt(&mut self) {
-        self.next = Order::default();
-        self.halting = self.current.active || self.residual.active;
+        self.next = None;
+        self.halting = self.current.is_some() || self.residual.is_some();
         if !self.halting {
             self.goal = self.at;
         }
@@ -126,7 +117,7 @@ impl Motion {
     /// The robot has been put elsewhere by other means while nothing moved; what waits to move starts there.
     pub fn put(&mut self, frame: &Frame) {
         self.at = FrameData::from(frame);
-        if !self.next.given {
+        if self.next.is_none() {
             self.goal = self.at;
         }
     }
@@ -134,33 +125,24 @@ impl Motion {
     /// The robot has stood for a while, wherever the motion had come to: go on from rest at the last point,
     /// straight to the goal of the last order.
     pub fn stand(&mut self) {
-        let order = if self.next.given {
-            self.next
-        } else if self.current.active && !self.halting {
-            self.current.order
-        } else {
-            Order::default()
-        };
+        let under_way = self.current.filter(|_| !self.halting).map(|segment| segment.order);
+        let next = self.next.or(under_way);
         let rested = Self::at_rest(&self.frame());
-        *self = if order.given {
-            Self { goal: self.goal, brake_distance: self.brake_distance, next: order, ..rested }
-        } else {
-            rested
-        };
+        *self = if next.is_some() { Self { goal: self.goal, next, ..rested } } else { rested };
     }
 
     /// Let a tick pass on the path clock; `knob` is the velocity knob, 0 to 1000.
     pub fn step(&mut self, knob: u16) {
-        if self.next.given && !self.current.active && !self.residual.active {
-            self.start_from_rest(knob);
+        if let (Some(order), None, None) = (self.next, &self.current, &self.residual) {
+            self.start_from_rest(&order, knob);
         }
         self.follow(knob);
-        let before = self.current.profile.clock;
-        for segment in [&mut self.residual, &mut self.current] {
+        let before = self.current.map_or(0.0, |current| current.profile.clock);
+        for segment in [&mut self.residual, &mut self.current].into_iter().flatten() {
             segment.profile.clock += TICK_S;
         }
-        if self.next.given && !self.halting {
-            self.hand_over(before, knob);
+        if let (Some(order), Some(current), false) = (self.next, self.current, self.halting) {
+            self.hand_over(&order, current, before, knob);
         }
         self.at = FrameData::from(&self.superposed());
         self.retire();
@@ -168,98 +150,96 @@ impl Motion {
 
     /// The frame on the current line, displaced by what the residual lacks.
     fn superposed(&self) -> Frame {
-        let mut frame = self.at.frame();
-        if self.current.active {
-            frame = self.current.order.goal.frame();
-            frame = self.current.missing().apply(&frame);
-        }
-        if self.residual.active {
-            frame = self.residual.missing().apply(&frame);
-        }
-        frame
+        let frame = self
+            .current
+            .as_ref()
+            .map_or_else(|| self.at.frame(), |current| current.missing().apply(&current.order.goal.frame()));
+        self.residual.as_ref().map_or(frame, |residual| residual.missing().apply(&frame))
     }
 
     /// Take up the next order at rest, with all of its limits.
-    fn start_from_rest(&mut self, knob: u16) {
-        self.current = Segment::new(&self.at.frame(), &self.next);
-        self.next = Order::default();
+    fn start_from_rest(&mut self, order: &Order, knob: u16) {
+        self.current = Some(Segment::new(&self.at.frame(), order));
+        self.next = None;
         self.halting = false;
         self.plan(&Along::default(), knob);
     }
 
     /// Plan the current profile anew if the velocity is another than it was planned for.
     fn follow(&mut self, knob: u16) {
-        let current = &self.current;
-        if current.active && !current.profile.is_braking() && self.velocity(knob) != current.velocity {
-            self.plan(&current.profile.now(), knob);
+        let current = self.current.as_ref().filter(|current| {
+            !current.profile.is_braking() && self.velocity(&current.order, knob) != current.velocity
+        });
+        if let Some(now) = current.map(|current| current.profile.now()) {
+            self.plan(&now, knob);
         }
     }
 
-    /// Velocity that the current segment may have now.
-    fn velocity(&self, knob: u16) -> f64 {
-        if self.halting { 0.0 } else { self.current.order.limits.velocity_at(knob) }
+    /// Velocity that the current segment may have now, in/s.
+    fn velocity(&self, order: &Order, knob: u16) -> f64 {
+        if self.halting { 0.0 } else { order.limits.velocity_at(knob) }
     }
 
     /// Plan the current segment from a state on it. What cannot be planned is left as it was: it ends at the
     /// goal, and the next tick tries again.
     fn plan(&mut self, from: &Along, knob: u16) {
-        let velocity = self.velocity(knob);
-        let order = &self.current.order;
-        let (up, overlap) = if self.residual.active {
-            let share = order.limits.share().within(&self.residual.order.limits.share());
-            (share, self.residual.profile.remaining())
-        } else {
-            (order.limits, 0.0)
+        let Some(current) = &self.current else { return };
+        let (order, length) = (current.order, current.length);
+        let velocity = self.velocity(&order, knob);
+        let (up, overlap) = match &self.residual {
+            Some(residual) => {
+                let share = order.limits.share().within(&residual.order.limits.share());
+                (share, residual.profile.remaining())
+            }
+            None => (order.limits, 0.0),
         };
-        let length = self.current.length;
         let plan = if velocity > 0.0 {
             let stop = |down: &Limits| Profile::to_goal(from, length, velocity, &up, down);
             // All of the limits for a last stop, unless the residual still needs its share when it begins.
-            let whole = if order.through { None } else { stop(&order.limits) };
+            let whole = if order.through.is_some() { None } else { stop(&order.limits) };
             whole
                 .filter(|plan| plan.braking_point().is_some_and(|begin| begin >= overlap))
                 .or_else(|| stop(&order.limits.share()))
         } else {
             Profile::to_rest(from, length, &up)
         };
-        if let Some(profile) = plan {
-            self.current.profile = profile;
-            self.current.velocity = velocity;
+        if let (Some(profile), Some(current)) = (plan, &mut self.current) {
+            (current.profile, current.velocity) = (profile, velocity);
         }
     }
 
-    /// Start the next segment as soon as the current one brakes. `before` is the clock of the current one a
-    /// tick ago.
-    fn hand_over(&mut self, before: f64, knob: u16) {
-        let old = &self.current;
-        let Some(braking_point) = old.profile.braking_point().filter(|begin| old.profile.clock >= *begin)
-        else {
+    /// Start the segment of the next order as soon as the `old` one brakes. `before` is the clock of the old
+    /// one a tick ago.
+    fn hand_over(&mut self, order: &Order, old: Segment, before: f64, knob: u16) {
+        let clock = old.profile.clock;
+        let Some(braking_point) = old.profile.braking_point().filter(|begin| clock >= *begin) else {
             return;
         };
         let begin = before.max(braking_point);
-        let late = old.profile.clock - begin;
-        self.residual = *old;
-        self.current = Segment::new(&old.order.goal.frame(), &self.next);
-        self.next = Order::default();
+        let late = clock - begin;
+        let at =
+            |clock, segment: Segment| Segment { profile: Profile { clock, ..segment.profile }, ..segment };
         // Plan for the moment at which the new segment begins, which may lie between two ticks.
-        self.residual.profile.clock = begin;
+        self.residual = Some(at(begin, old));
+        self.current = Some(Segment::new(&old.order.goal.frame(), order));
+        self.next = None;
         self.plan(&Along::default(), knob);
-        self.residual.profile.clock = begin + late;
-        self.current.profile.clock = late;
+        self.residual = Some(at(begin + late, old));
+        self.current = self.current.map(|current| at(late, current));
     }
 
-    /// Let go of what has come to rest.
+    /// Forget the segments that have come to rest.
     fn retire(&mut self) {
-        self.residual.active &= !self.residual.is_at_rest();
-        if self.residual.active || !self.current.active || !self.current.is_at_rest() {
+        self.residual = self.residual.filter(|residual| !residual.is_at_rest());
+        let Some(current) = &self.current else { return };
+        let ended = current.is_at_rest() && (current.profile.to_goal || self.halting);
+        if self.residual.is_some() || !ended {
             return;
         }
-        if self.current.profile.to_goal || self.halting {
-            self.current.active = false;
-            self.halting &= self.next.given;
-            if !self.next.given {
-                self.goal = self.at;
-            }
+        self.current = None;
+        self.halting &= self.next.is_some();
+        if self.next.is_none() {
+            self.goal = self.at;
         }
     }
 }

@@ -45,14 +45,11 @@ impl FrameData {
 /// Where to go, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Order {
-    /// There is one.
-    pub given: bool,
     /// The goal.
     pub goal: FrameData,
-    /// GO-THRU: the next segment may start before this one has ended.
-    pub through: bool,
-    /// Path to a through point at which the next segment may be given, inches; 0 for at the point itself.
-    pub brake_distance: f64,
+    /// GO-THRU: the next segment may start before this one has ended. Path to the through point at which it
+    /// may be given, inches; 0 for at the point itself.
+    pub through: Option<f64>,
     /// Limits of TRAJ-PARA.
     pub limits: Limits,
 }
@@ -60,8 +57,6 @@ pub struct Order {
 /// A segment under way.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Segment {
-    /// There is one.
-    pub active: bool,
     /// Where it goes.
     pub order: Order,
     /// From start to goal, inches.
@@ -102,7 +97,6 @@ impl Segment {
         let translation = goal.position - start.position;
         let rotation = rotation_vector(&(goal.rotation * start.rotation.inverse()));
         Self {
-            active: true,
             order: *order,
             translation: translation.into(),
             rotation: rotation.into(),

@@ -1,4 +1,4 @@
-//! Random moves, watched from outside: only the sampled frames are judged, as T3I sees them.
+//! Random moves, watched from outside: only the sampled frames are checked, as T3I sees them.
 
 use std::collections::VecDeque;
 
@@ -99,7 +99,7 @@ impl Allowed {
     }
 }
 
-/// Judges samples.
+/// Checks samples.
 struct Watch {
     frames: VecDeque<Frame>,
     allowed: VecDeque<Allowed>,
@@ -119,25 +119,23 @@ impl Watch {
         let before = *motion;
         motion.step(knob);
         let mut allowed = Allowed::default();
-        for segment in [&before.residual, &before.current, &motion.residual, &motion.current] {
-            if segment.active {
-                allowed = allowed.with(&segment.order.limits);
-            }
+        for segment in [before.residual, before.current, motion.residual, motion.current].iter().flatten() {
+            allowed = allowed.with(&segment.order.limits);
         }
-        if before.next.given && !motion.next.given {
+        if let (Some(next), None) = (before.next, motion.next) {
             // A short move may be over in the tick in which it starts.
-            allowed = allowed.with(&before.next.limits);
+            allowed = allowed.with(&next.limits);
         }
-        allowed.superposed = before.residual.active || motion.residual.active;
+        allowed.superposed = before.residual.is_some() || motion.residual.is_some();
         self.frames.pop_front();
         self.frames.push_back(motion.frame());
         self.allowed.pop_front();
         self.allowed.push_back(allowed);
         self.ticks += 1;
-        self.judge().and_then(|()| on_the_line(motion)).map_err(|text| format!("{text} in {motion:#?}"))
+        self.check().and_then(|()| on_the_line(motion)).map_err(|text| format!("{text} in {motion:#?}"))
     }
 
-    fn judge(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), String> {
         let allowed = self.allowed.iter().fold(Allowed::default(), |all, one| all.and(one));
         let f = &self.frames;
         let v = [Rate::between(&f[0], &f[1]), Rate::between(&f[1], &f[2]), Rate::between(&f[2], &f[3])];
@@ -169,10 +167,7 @@ impl Watch {
 
 /// While one segment is under way alone, the tool point is on its line and not beyond its goal.
 fn on_the_line(motion: &Motion) -> Result<(), String> {
-    let segment = &motion.current;
-    if motion.residual.active || !segment.active {
-        return Ok(());
-    }
+    let (None, Some(segment)) = (&motion.residual, &motion.current) else { return Ok(()) };
     let line = Vector::from(segment.translation);
     let missing = segment.order.goal.frame().position - motion.frame().position;
     let length = norm(&line);
@@ -247,7 +242,7 @@ fn run(seed: u64, moves: u32) -> Result<u64, String> {
 /// After a halt everything comes to rest, soon, and stays.
 fn rest(motion: &mut Motion, watch: &mut Watch, knob: u16) -> Result<(), String> {
     let all = [&motion.residual, &motion.current];
-    let longest = all.iter().filter(|s| s.active).map(|s| {
+    let longest = all.into_iter().flatten().map(|s| {
         let slow = s.order.limits.share();
         slow.velocity / slow.acceleration + 2.0 * slow.acceleration / slow.jerk
     });

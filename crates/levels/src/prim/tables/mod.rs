@@ -1,55 +1,56 @@
-//! Decision tables of Prim: a file a command, and those of every tick: what becomes of finished commands,
-//! the path clock, the record button.
+//! Decision tables of Prim: what a new command needs, what hinders a motion, a file a command, and those of
+//! every tick: what becomes of finished commands, the path clock, the record button.
 
+pub mod accept;
 pub mod attend;
 pub mod cal_sensor;
-pub mod delta_move;
 pub mod go_thru;
 pub mod go_until;
 pub mod go_while;
 pub mod goto_pt;
+pub mod hindrance;
 pub mod path_clock;
 pub mod pause;
 pub mod record_pose;
 pub mod robot_init;
 
 use rcs_core::{
-    Plain,
+    Actions, Plain, Variables, commands,
+    frame::Frame,
+    handshake::Arrival,
     interface::{Reason, prim::PrimVerb},
+    table::Choice,
 };
 
-use self::attend::Switches;
+use self::accept::accept;
+use crate::execution::{Asked, Course, EXECUTE};
 
-/// What hinders a command.
+/// What T3I says of the last command to it (VI.1.2 status-report, status-arg-out).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Health {
-    /// Nothing.
-    Good,
-    /// T3I reports that the DEPC link does not respond.
-    #[text = "link off"]
-    LinkOff,
-    /// T3I reports an error of the DEPC link.
-    #[text = "link error"]
-    LinkError,
-    /// T3I refused a command.
-    Refused,
-    /// T3I does not answer.
-    Silent,
-    /// E-move does not write its buffers.
-    Orphaned,
-    /// The operator has turned a frame switch of the joystick box on.
-    Operator,
-}
-
-/// Does T3I want a point (VI.1.2 status-report)?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Pace {
-    /// It has enough points, or has not answered yet.
+pub enum Interface {
+    /// It has points enough, has not echoed the command yet, or is held.
     Busy,
     /// It is ready for a new point.
-    Wanted,
+    Ready,
     /// It has finished all points.
     Finished,
+    /// It does not answer.
+    Silent,
+    /// The DEPC link does not respond, or does not run any more although Prim commands the robot.
+    LinkOff,
+    /// The DEPC link has another error.
+    LinkError,
+    /// It refused a command.
+    Refused,
+}
+
+/// E-move, which commands Prim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Above {
+    /// It wrote its buffers in the last tick.
+    Live,
+    /// It did not: nothing commands Prim any more.
+    Lost,
 }
 
 /// What the robot was told to do.
@@ -78,23 +79,21 @@ pub enum Link {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Passage {
     /// On the way.
-    #[text = "under way"]
     UnderWay,
     /// Nearer than the brake distance: the next goal is welcome.
     Passing,
 }
 
-/// The end of a motion: at the goal (docs/design/motion.md "Rest"), or wherever the robot stands.
+/// How a motion comes to rest (docs/design/motion.md "Rest").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Arrival {
-    /// On the way.
-    #[text = "under way"]
+pub enum Rest {
+    /// The robot does not stand where it was told to be.
     UnderWay,
     /// All points are finished; the resolvers are watched.
     Settling,
-    /// The resolvers say that the robot rests there.
+    /// The resolvers say that the robot rests.
     Arrived,
-    /// It should have come to rest there long ago.
+    /// It should have come to rest long ago.
     Late,
 }
 
@@ -120,33 +119,144 @@ pub enum Samples {
     Faulty,
 }
 
-/// The state variables of a tick.
-#[derive(Clone, Copy, Debug)]
+/// The frame switches of the joystick box (III.3.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Switches {
+    /// None is on.
+    Off,
+    /// One: the box may move the robot.
+    One,
+    /// Two or more, or one that the box does not have: no frame is selected.
+    Several,
+}
+
+/// What a command is, for the joystick box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Kind {
+    /// ROBOT-INIT, CAL-SENSOR: it ends, and moves nothing afterwards.
+    Single,
+    /// GO-THRU, GOTO-PT, GO-UNTIL, GO-WHILE, DELTA-MOVE: it moves the robot.
+    Motion,
+    /// PAUSE: it never ends.
+    Lasting,
+}
+
+/// PAUSE to T3I after a start of Prim: a command of the time before may still stand in the buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum FirstPause {
+    /// Prim has sent nothing since its start.
+    Due,
+    /// It is sent.
+    Sent,
+}
+
+/// Push-button X of the joystick box (III.3.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Button {
+    /// Not pressed, or held down since an earlier tick.
+    Idle,
+    /// Pressed in this tick.
+    Pressed,
+}
+
+/// What a new command lacks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Missing {
+    /// Nothing: it can be executed.
+    Nothing,
+    /// A command word.
+    Command,
+    /// The sensor of a guarded move.
+    Sensor,
+    /// The record of the pose.
+    Pose,
+    /// The record of the movetable.
+    Movetable,
+    /// The record of TRAJ-PARA.
+    Parameters,
+    /// Limits above 0 in that record.
+    Limits,
+}
+
+/// What a new command needs, for [`accept::ACCEPT`].
+#[derive(Clone, Copy, Debug, Default, Variables)]
+pub struct Request {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The first thing that it lacks.
+    pub missing: Missing,
+}
+
+/// The state variables of [`attend::ATTEND`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Attendance {
+    /// What EXECUTE says.
+    pub course: Course,
+    /// What the command is.
+    pub kind: Kind,
+    /// The frame switches of the joystick box.
+    pub switches: Switches,
+}
+
+/// The state variables of a tick, for the tables of the commands.
+#[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
-    /// What hinders the command.
-    pub health: Health,
-    /// Does T3I want a point?
-    pub pace: Pace,
+    /// T3I.
+    pub t3i: Interface,
+    /// E-move.
+    pub emove: Above,
+    /// The frame switches of the joystick box.
+    pub switches: Switches,
     /// What the robot was told to do.
     pub posture: Posture,
     /// The link after a RESTART.
     pub link: Link,
     /// The through point of a GO-THRU.
     pub passage: Passage,
-    /// The goal of a motion that stops there.
-    pub arrival: Arrival,
-    /// Wherever the robot stands.
-    pub rest: Arrival,
+    /// Rest at the goal of the command.
+    pub goal: Rest,
+    /// Rest wherever the robot is.
+    pub rest: Rest,
     /// The sensor of a guarded move.
     pub guard: Guard,
     /// The bias of the force sensor.
     pub samples: Samples,
-    /// The frame switches of the joystick box.
-    pub switches: Switches,
+}
+
+/// The state variables of [`path_clock::PATH_CLOCK`] and [`record_pose::RECORD_POSE`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Path {
+    /// The first command to T3I.
+    pub first_pause: FirstPause,
+    /// What the robot was told to do, by the command's row of this tick too.
+    pub posture: Posture,
+    /// T3I.
+    pub t3i: Interface,
+    /// The record button.
+    pub button: Button,
+}
+
+/// What preprocess has found in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// What the command buffer holds.
+    pub arrival: Arrival,
+    /// The new command, or the one that was accepted last.
+    pub verb: PrimVerb,
+    /// What a new command needs.
+    pub request: Request,
+    /// The state variables.
+    pub situation: Situation,
+    /// The record button.
+    pub button: Button,
+    /// The frame that T3I feeds back over a link that runs.
+    pub feedback: Option<Frame>,
+    /// Where the resolvers see the robot, if they can be believed.
+    pub resolvers: Option<Frame>,
 }
 
 /// What a row can ask for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Nothing new; a motion goes on.
     Wait,
@@ -154,7 +264,7 @@ pub enum Action {
     Go,
     /// Ramp down and stop.
     Halt,
-    /// RESTART to T3I.
+    /// RESTART to T3I; the position is forgotten.
     Restart,
     /// Take the frame that T3I feeds back as the commanded one; report done.
     TakePosition,
@@ -176,20 +286,23 @@ pub enum Action {
     Fail(Reason),
 }
 
-/// What the table of the current command decided.
-pub type Choice = crate::old_execution::Choice<Action>;
-
-/// Consult the table of a command. A step that the command does not have counts as its first.
-#[must_use]
-pub fn decide(verb: PrimVerb, step: u8, s: &Situation) -> Choice {
-    match verb {
-        PrimVerb::None | PrimVerb::Pause => pause::consult(step, s),
-        PrimVerb::RobotInit => robot_init::consult(step, s),
-        PrimVerb::GoThru => go_thru::consult(step, s),
-        PrimVerb::GotoPt => goto_pt::consult(step, s),
-        PrimVerb::GoUntil => go_until::consult(step, s),
-        PrimVerb::GoWhile => go_while::consult(step, s),
-        PrimVerb::DeltaMove => delta_move::consult(step, s),
-        PrimVerb::CalSensor => cal_sensor::consult(step, s),
+commands! {
+    /// Consult the tables of a command.
+    pub fn of_command(PrimVerb, enum Step, Situation) -> Action {
+        others: EXECUTE, accept::ACCEPT, attend::ATTEND, path_clock::PATH_CLOCK, record_pose::RECORD_POSE,
+            hindrance::HINDRANCE;
+        None | Pause            => pause::pause;
+        RobotInit               => robot_init::robot_init;
+        GoThru                  => hindrance::hindrance then go_thru::go_thru;
+        GotoPt | DeltaMove      => hindrance::hindrance then goto_pt::goto_pt;
+        GoUntil                 => hindrance::hindrance then go_until::go_until;
+        GoWhile                 => hindrance::hindrance then go_while::go_while then goto_pt::goto_pt;
+        CalSensor               => hindrance::hindrance then cal_sensor::cal_sensor;
     }
+}
+
+/// Consult the tables in turn until a row decides.
+#[must_use]
+pub fn decide(step: Step, seen: &Seen) -> Choice<Action, Step> {
+    accept(step, &seen.request).then(number::ACCEPT, |()| of_command(seen.verb, step, &seen.situation))
 }

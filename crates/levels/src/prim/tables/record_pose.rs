@@ -1,43 +1,22 @@
-//! The record button of the joystick box: the table of every tick, whatever the command.
+//! The record button of the joystick box: a table of every tick, whatever the command.
 
-use rcs_core::{Plain, old_table};
-
-use super::Posture;
-
-/// Push-button X.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Button {
-    /// Not pressed, or held down since an earlier tick.
-    Idle,
-    /// Pressed in this tick.
-    Pressed,
-}
-
-/// A pose was recorded, and Prim and E-move wait for the operator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Recording {
-    /// No.
-    Off,
-    /// Yes.
-    On,
-}
+use rcs_core::{Actions, Plain, decision_table};
 
 /// What happens to the record of the recorded pose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Note {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
+pub enum Recording {
     /// It stays as it is.
     Keep,
-    /// The commanded pose is put into it.
+    /// The commanded pose is put into it; Prim and E-move are suspended until the operator goes on.
     Record,
 }
 
-old_table! {
-    /// RECORD-POSE (III.3.3): record the pose, and suspend Prim and E-move until the operator goes on. A
-    /// Prim that is stepped is not suspended any more.
-    pub RECORD_POSE: fn record_pose(button: Button, posture: Posture) -> (Note, Recording) {
-        //   button    posture                        note     recording
-        1: ( Pressed , Moving | Ending | Standing ) => Record , On  ;
-        2: ( Pressed , Unpositioned               ) => Keep   , Off ;
-        3: ( Idle    , _                          ) => Keep   , Off ;
+decision_table! {
+    /// RECORD-POSE (III.3.3): is the commanded pose recorded? A Prim that is stepped is not suspended any
+    /// more.
+    pub RECORD_POSE: fn record_pose(super::Path) -> Recording {
+        1: button: Idle                                     => Keep;
+        2: button: Pressed, posture: Unpositioned           => Keep;
+        3: button: Pressed, posture: Moving | Ending | Standing => Record;
     }
 }

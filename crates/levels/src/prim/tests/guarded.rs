@@ -67,7 +67,7 @@ fn go_until_ramps_down_where_it_trips_and_says_where_that_was() {
         assert_eq!(rig.memory.changing_pose(status.detected_pose).copied(), seen);
         assert_eq!(status.report, PrimReport::Executing, "done when it stands, not before");
         assert_eq!(rig.until_over(), PrimReport::Done);
-        assert!(rig.prim.state().motion.is_at_rest());
+        assert!(rig.at_rest());
         assert_eq!(rig.t3i.output, WireFrame::from_frame(&rig.commanded()));
         let beyond = rig.commanded().distance(&trip).path();
         assert!(beyond > 0.5 && beyond <= stopping_path(10.0, 10.0, 500.0), "{beyond}");
@@ -140,7 +140,7 @@ fn go_while_reaches_its_goal_or_stops_with_an_error() {
     rig.external.devices.force = pushed(0);
     rig.steps(80);
     assert_eq!(rig.report(), PrimReport::DetectedErr);
-    assert!(rig.prim.state().motion.is_at_rest());
+    assert!(rig.at_rest());
     assert!(rig.commanded().distance(&at).path() < stopping_path(10.0, 10.0, 500.0));
     rig.check_path(&start());
 }
@@ -159,7 +159,7 @@ fn a_force_sensor_that_cannot_be_trusted_stops_the_robot() {
             assert_eq!(rig.until_over(), PrimReport::SensorError);
             assert_eq!(rig.reason(), Reason::SensorError);
             rig.steps(80);
-            assert!(rig.prim.state().motion.is_at_rest() && rig.moved() < 30.0);
+            assert!(rig.at_rest() && rig.moved() < 30.0);
             rig.check_path(&start());
         }
         // Without a calibration nothing moves.
@@ -181,14 +181,14 @@ fn cal_sensor_stops_the_robot_first_and_takes_the_mean() {
     for _ in 0..300 {
         // What is read while the robot moves does not count; at rest the readings swing by 2 lb.
         noise = 2 - noise;
-        if rig.prim.state().motion.is_at_rest() {
+        if rig.at_rest() {
             rig.external.devices.force = pushed(noise);
         }
         rig.step();
     }
     assert_eq!(rig.report(), PrimReport::Done);
     rig.check_path(&start());
-    let bias = rig.prim.state().calibration.bias;
+    let bias = rig.prim.state().calibration.bias.unwrap();
     let expected = f64::from(LOADED.z) - 2048.0 + f64::from(FORCE_COUNTS_PER_LB);
     assert!((bias[0] - expected).abs() < 1e-9, "{bias:?}");
     // 1 lb of the bias is noise: 25 lb are reached at 26.

@@ -200,7 +200,7 @@ fn a_switch_stops_every_motion_and_the_commander_hears_of_it() {
             (PrimReport::JoystickOn, Reason::JoystickOn)
         );
         rig.steps(80);
-        assert!(rig.prim.state().motion.is_at_rest());
+        assert!(rig.at_rest());
         assert_eq!(rig.leds(), 0, "the box moves nothing before PAUSE");
         let held = rig.commanded();
         rig.frame_switch(0);
@@ -229,7 +229,7 @@ fn a_switch_is_heard_of_after_a_motion_is_done() {
     rig.step();
     assert_eq!(rig.report(), PrimReport::JoystickOn);
     rig.steps(80);
-    assert!(rig.prim.state().motion.is_at_rest());
+    assert!(rig.at_rest());
     assert!(rig.commanded().distance(&flying).path() < 10.0);
     rig.check_path(&start());
 }

@@ -163,7 +163,7 @@ impl Bench {
 fn robot_init_brings_the_line_up_where_the_robot_is() {
     let bench = Bench::initialized();
     assert!(bench.memory.prim.status.link_running);
-    assert!(bench.prim.state().motion.frame().distance(&home()).path() < 0.05);
+    assert!(bench.prim.state().motion.unwrap().frame().distance(&home()).path() < 0.05);
     assert!(bench.off(&home()) < 0.05);
 }
 

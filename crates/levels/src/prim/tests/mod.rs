@@ -7,10 +7,7 @@ mod line;
 mod random;
 mod rows;
 
-use std::{
-    collections::{BTreeSet, VecDeque},
-    sync::LazyLock,
-};
+use std::{collections::VecDeque, sync::LazyLock};
 
 use rcs_core::{
     frame::{Frame, Vector, norm},
@@ -31,7 +28,8 @@ use taskdata::{
     load::{Source, Store},
 };
 
-use super::Prim;
+use super::{Prim, tables::number};
+use crate::coverage::Coverage;
 
 /// Points that T3I can queue.
 const QUEUE: usize = 4;
@@ -211,7 +209,7 @@ struct Rig {
     /// Prim is not stepped; its last outputs are republished.
     held: bool,
     /// Tables and rows that fired.
-    rows: BTreeSet<(u8, u8)>,
+    rows: Coverage,
 }
 
 impl Rig {
@@ -230,7 +228,7 @@ impl Rig {
             noise: 1,
             emove_dead: false,
             held: false,
-            rows: BTreeSet::new(),
+            rows: Coverage::default(),
         }
     }
 
@@ -252,8 +250,15 @@ impl Rig {
             (prim.header.stamp, prim.header.republished) = (self.tick, true);
         } else {
             self.prim.step(&inputs, &mut prim);
-            self.rows.insert((prim.header.table, prim.header.row));
-            self.rows.extend((rows::EVERY_TICK..).zip(self.prim.state().rows));
+            self.rows.note(&prim.header);
+            let of_tick = self.prim.state().rows;
+            for (table, row) in [
+                (number::ATTEND, of_tick.attend),
+                (number::PATH_CLOCK, of_tick.path_clock),
+                (number::RECORD_POSE, of_tick.record_pose),
+            ] {
+                self.rows.note(&Header { table, row, ..Header::default() });
+            }
         }
         let t3i = self.t3i.step(self.tick, &self.memory, stalled);
         self.memory.prim = prim;
@@ -307,7 +312,12 @@ impl Rig {
 
     /// The commanded frame, without rounding.
     fn commanded(&self) -> Frame {
-        self.prim.state().motion.frame()
+        self.prim.state().motion.expect("Prim commands the robot").frame()
+    }
+
+    /// Prim commands the robot, and the path has ended.
+    fn at_rest(&self) -> bool {
+        self.prim.state().motion.is_some_and(|motion| motion.is_at_rest())
     }
 
     fn initialized() -> Self {
@@ -449,7 +459,7 @@ fn missing_records_and_bad_parameters_are_refused_and_stop_the_robot() {
     assert_eq!(rig.run(PrimVerb::GotoPt, 9), PrimReport::Error);
     assert_eq!(rig.memory.prim.status.reason, Reason::BadRecord);
     rig.steps(100);
-    assert!(rig.prim.state().motion.is_at_rest());
+    assert!(rig.at_rest());
     assert_ne!(rig.t3i.output, WireFrame::from_frame(&shifted(40.0, 3.0)));
     rig.check_path(&start());
     for (pose, movetable, parameters, reason) in [
@@ -525,7 +535,7 @@ fn a_last_point_that_is_not_echoed_is_noticed() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 2);
     rig.steps(5);
-    while !rig.prim.state().motion.is_at_rest() {
+    while !rig.at_rest() {
         rig.step();
     }
     rig.t3i.deaf = true;
@@ -579,7 +589,7 @@ fn without_e_move_the_robot_stops() {
     rig.emove_dead = true;
     rig.steps(80);
     assert_eq!((rig.report(), rig.memory.prim.status.reason), (PrimReport::Error, Reason::NeighbourLost));
-    assert!(rig.prim.state().motion.is_at_rest() && rig.prim.state().positioned);
+    assert!(rig.at_rest());
     assert_ne!(rig.t3i.output, WireFrame::from_frame(&shifted(40.0, 3.0)));
     rig.check_path(&start());
 }

@@ -1,12 +1,9 @@
 //! Every row of every table fires.
 
 use rcs_core::interface::device::{ForceSensor, joystick_frame};
-use taskdata::files::TaskData;
 
 use super::*;
-
-/// Number of ATTEND, behind which PATH-CLOCK and RECORD-POSE stand.
-pub const EVERY_TICK: u8 = 10;
+use crate::prim::tables::TABLES;
 
 const MOTIONS: [PrimVerb; 5] =
     [PrimVerb::GoThru, PrimVerb::GotoPt, PrimVerb::GoUntil, PrimVerb::GoWhile, PrimVerb::DeltaMove];
@@ -15,7 +12,7 @@ const GOOD: ForceSensor = ForceSensor { x: 2048, y: 2048, z: 2048, moment: 2048,
 
 /// Scenarios; the rows that fired in them.
 #[derive(Default)]
-struct Fired(BTreeSet<(u8, u8)>);
+struct Fired(Coverage);
 
 impl Fired {
     /// Run a scenario on a rig; afterwards it is over.
@@ -103,6 +100,21 @@ fn calibrations(fired: &mut Fired) {
     });
 }
 
+/// Commands that are refused, and a ROBOT-INIT that finds the link in error.
+fn refusals(fired: &mut Fired) {
+    for (pose, sensor, parameters) in [(1, "NOSE", 1), (99, "NEAR-R", 1), (1, "NEAR-R", 2)] {
+        fired.run(Rig::initialized(), |rig| {
+            rig.guard(PrimVerb::GoUntil, pose, sensor);
+            rig.memory.emove.prim.trajectory_parameters = parameters;
+        });
+    }
+    fired.during(PrimVerb::GotoPt, 4, |rig| {
+        rig.t3i.fault = LinkFault::NotResponding;
+        rig.steps(4);
+        rig.command(PrimVerb::RobotInit, 0);
+    });
+}
+
 /// PAUSE, the joystick box and the record button.
 fn pauses(fired: &mut Fired) {
     let both = joystick_frame::WORLD | joystick_frame::TOOL;
@@ -147,13 +159,6 @@ fn every_row_fires() {
     motions(&mut fired);
     calibrations(&mut fired);
     pauses(&mut fired);
-    let tables = <Prim as Process<TaskData<'_>>>::TABLES;
-    assert_eq!(tables[usize::from(EVERY_TICK) - 1].name, "attend");
-    let all = tables.iter().zip(1_u8..).flat_map(|(table, number)| {
-        // The header names the upper table when a command is refused; otherwise that of the command.
-        let noted = move |row: &u8| number > 1 || matches!(row, 2 | 3);
-        table.rows.iter().map(|row| row.number).filter(noted).map(move |row| (number, row))
-    });
-    let missing: Vec<_> = all.filter(|row| !fired.0.contains(row)).collect();
-    assert!(missing.is_empty(), "never fired: {missing:?}");
+    refusals(&mut fired);
+    assert_eq!(fired.0.missing(TABLES), [""; 0]);
 }

@@ -1,28 +1,47 @@
-//! Decision tables of Quick Change: a file a command.
+//! Decision tables of Quick Change: what a new command needs, and a file a command.
 
-mod qc_lock;
-mod qc_pause;
-mod qc_unlock;
+pub mod accept;
+pub mod qc_lock;
+pub mod qc_pause;
+pub mod qc_unlock;
 
-use rcs_core::{Plain, interface::quick_change::QuickChangeReport};
-
-pub use self::{
-    qc_lock::{QC_LOCK, qc_lock},
-    qc_pause::{QC_PAUSE, qc_pause},
-    qc_unlock::{QC_UNLOCK, qc_unlock},
+use rcs_core::{
+    Actions, Plain, Variables, commands,
+    handshake::Arrival,
+    interface::{
+        Reason,
+        quick_change::{QuickChangeReport, QuickChangeVerb},
+    },
 };
 
-/// Reference action of all commands: it outlasts the command, so that a failure is reported until the next one.
+use crate::execution::{Asked, EXECUTE};
+
+/// Step of all commands: it outlasts the command, so that a failure is reported until the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Step {
-    /// Watching the sensors.
+    /// The ring is to turn, or nothing was commanded yet.
+    Start,
+    /// The command has ended: the sensors are watched.
     Watch,
-    /// The ring turns.
-    Turn,
     /// The ring did not arrive in time.
     Stuck,
     /// The sensors failed on the way.
     Faulty,
+}
+
+/// Where the locking ring is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Ring {
+    /// No reading has counted yet.
+    Unread,
+    /// Locked.
+    Locked,
+    /// Unlocked.
+    Unlocked,
+    /// Seen by neither sensor: on its way, or stuck.
+    Between,
+    /// Seen by both sensors, which cannot be.
+    Both,
 }
 
 /// What the id pins of the mated gripper are worth.
@@ -43,15 +62,87 @@ pub enum Clock {
     Expired,
 }
 
-/// What a row wants of the valves and the status.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What a new command needs, for [`accept::ACCEPT`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Request {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The command.
+    pub verb: QuickChangeVerb,
+}
+
+/// The state variables of a tick, for the tables of the commands.
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Situation {
+    /// Where the ring is.
+    pub ring: Ring,
+    /// What the id is worth.
+    pub id: Id,
+    /// Time of the command.
+    pub clock: Clock,
+}
+
+/// What preprocess has found in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// What the command buffer holds.
+    pub arrival: Arrival,
+    /// What a new command needs.
+    pub request: Request,
+    /// The state variables of the command's table.
+    pub situation: Situation,
+}
+
+/// How the ring fails a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Failure {
+    /// It did not arrive in time: `qc-stuck`.
+    Stuck,
+    /// Its sensors, or the id pins, failed: `qc-sens-malf`.
+    SensorMalfunction,
+}
+
+impl Failure {
+    /// `status-report`.
+    #[must_use]
+    pub const fn report(self) -> QuickChangeReport {
+        match self {
+            Self::Stuck => QuickChangeReport::Stuck,
+            Self::SensorMalfunction => QuickChangeReport::SensorMalfunction,
+        }
+    }
+
+    /// `status-para-out`.
+    #[must_use]
+    pub const fn reason(self) -> Reason {
+        match self {
+            Self::Stuck => Reason::QuickChangeStuck,
+            Self::SensorMalfunction => Reason::QuickChangeFault,
+        }
+    }
+}
+
+/// What a row can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
-    /// Leave the ring as it is and report.
+    /// Leave the ring as it is until a reading counts.
+    Wait,
+    /// Leave the ring as it is and report what the sensors say; a command that is under way is done.
     Report(QuickChangeReport),
     /// Enable the port and turn the ring towards locked.
     Lock,
     /// Enable the port and turn the ring towards unlocked.
     Unlock,
-    /// Disable the port: the command has failed with this status.
-    Fail(QuickChangeReport),
+    /// Disable the port; report an error.
+    Fail(Failure),
+}
+
+commands! {
+    /// Consult the table of a command, and that of QC-PAUSE once the command has ended.
+    pub fn of_command(QuickChangeVerb, Step, Situation) -> Action {
+        others: EXECUTE, accept::ACCEPT;
+        Lock            => qc_lock::qc_lock then qc_pause::qc_pause;
+        Unlock          => qc_unlock::qc_unlock then qc_pause::qc_pause;
+        None | Pause    => qc_pause::qc_pause;
+    }
 }

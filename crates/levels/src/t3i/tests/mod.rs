@@ -4,17 +4,16 @@ use nalgebra::Rotation3;
 
 mod rows;
 
-use std::collections::BTreeSet;
-
 use depc::{
     Limits, Plate,
     controller::{Controller, ControllerInputs, ControllerState, Warning},
+    step::Position,
     wire::DataCommand,
 };
 use rcs_core::{
     frame::{Frame, Vector},
     interface::{
-        CommonMemory, ExternalInputs, T3iOutputs,
+        CommonMemory, ExternalInputs, Header, T3iOutputs,
         device::{LinkBytes, RESOLVER_COUNTS},
         t3i::{LinkFault, T3iReport, T3iVerb},
     },
@@ -25,7 +24,7 @@ use rcs_core::{
 };
 
 use super::{T3i, tables};
-use crate::exact_robot::Exact;
+use crate::{coverage::Coverage, exact_robot::Exact};
 
 /// T3I, the line, the controller; the test is Prim.
 struct Bench {
@@ -41,7 +40,7 @@ struct Bench {
     connected: bool,
     hold: bool,
     /// Tables and rows that fired.
-    rows: BTreeSet<(u8, u8)>,
+    rows: Coverage,
 }
 
 fn home() -> Frame {
@@ -68,7 +67,7 @@ impl Bench {
             prim_runs: true,
             connected: true,
             hold: false,
-            rows: BTreeSet::new(),
+            rows: Coverage::default(),
         };
         bench.external.devices.resolvers.valid = true;
         bench.cell(&LinkBytes::default(), true);
@@ -108,7 +107,10 @@ impl Bench {
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
         Process::<()>::step(&mut self.t3i, &inputs, &mut outputs);
         self.memory.t3i = outputs;
-        self.rows.extend([(1, self.t3i.state.intake_row), (outputs.header.table, outputs.header.row)]);
+        let received = (tables::number::RECEIVE, self.t3i.state.receive_row);
+        for (table, row) in [received, (outputs.header.table, outputs.header.row)] {
+            self.rows.note(&Header { table, row, ..Header::default() });
+        }
         self.cell(&outputs.link_tx, false);
         &self.memory.t3i
     }
@@ -166,7 +168,7 @@ fn restart_brings_the_link_up_and_holds_the_reported_position() {
     assert_eq!(bench.sent(), Some(bench.robot.at));
     for _ in 0..10 {
         bench.tick();
-        assert_eq!((bench.sent(), bench.row()), (Some(bench.robot.at), ("restart", 4)));
+        assert_eq!((bench.sent(), bench.row()), (Some(bench.robot.at), ("RESTART", 4)));
     }
 }
 
@@ -180,7 +182,7 @@ fn one_point_a_tick_is_sustained() {
         reports.push(bench.report());
         // Read in the tick after it was written, sent in the same, executed by the cell before the next.
         assert!((bench.robot_tool().position.x - 0.1 * f64::from(n)).abs() < 0.01, "point {n}");
-        assert_eq!(bench.row(), ("point", 2));
+        assert_eq!(bench.row(), ("POINT", 8));
     }
     assert!(reports.iter().all(|report| *report == T3iReport::Ready));
     bench.tick();
@@ -244,14 +246,14 @@ fn a_gap_in_the_numbers_is_an_invalid_command_until_pause() {
     bench.tick();
     assert_eq!(
         (bench.report(), bench.fault(), bench.row()),
-        (T3iReport::Error, LinkFault::InvalidCommand, ("receive", 8))
+        (T3iReport::Error, LinkFault::InvalidCommand, ("RECEIVE", 8))
     );
     // The next point was on its way already.
     bench.point(&beside(0.4));
     bench.tick();
     assert_eq!(
         (bench.report(), bench.fault(), bench.row()),
-        (T3iReport::Error, LinkFault::InvalidCommand, ("receive", 5))
+        (T3iReport::Error, LinkFault::InvalidCommand, ("RECEIVE", 10))
     );
     assert!((bench.robot_tool().position.x - 0.1).abs() < 0.01);
     bench.command(T3iVerb::Pause);
@@ -275,6 +277,34 @@ fn a_frame_without_words_is_an_invalid_command() {
     }
 }
 
+/// A robot near the largest word, and a goal behind it: the tool turns half around on the way, and the end
+/// plate would leave the words.
+fn beside_the_end_of_the_words() -> (Bench, Frame) {
+    let turned = |degrees: f64| Frame {
+        position: Vector::new(320.0, 0.0, 0.0),
+        rotation: Rotation3::from_axis_angle(&Vector::z_axis(), degrees.to_radians()),
+    };
+    let mut bench = Bench::running();
+    let at = Plate::from_tool(&turned(100.0), &T3, &Plate::default()).unwrap();
+    bench.t3i.state.position = Position::reported(at, &T3);
+    (bench, turned(260.0))
+}
+
+#[test]
+fn a_way_without_words_is_an_invalid_command() {
+    let (mut bench, goal) = beside_the_end_of_the_words();
+    let at = bench.t3i.state.position.plate;
+    bench.point(&goal);
+    bench.tick();
+    assert_eq!(
+        (bench.sent(), bench.fault(), bench.row()),
+        (Some(at), LinkFault::InvalidCommand, ("POINT", 10))
+    );
+    bench.point(&goal);
+    bench.tick();
+    assert_eq!((bench.report(), bench.fault()), (T3iReport::Error, LinkFault::InvalidCommand));
+}
+
 #[test]
 fn points_before_the_report_are_refused() {
     let mut bench = Bench::new();
@@ -285,7 +315,7 @@ fn points_before_the_report_are_refused() {
     bench.tick();
     assert_eq!(
         (bench.report(), bench.fault(), bench.row()),
-        (T3iReport::Error, LinkFault::InvalidCommand, ("receive", 7))
+        (T3iReport::Error, LinkFault::InvalidCommand, ("RECEIVE", 7))
     );
 }
 
@@ -345,7 +375,7 @@ fn a_cut_line_is_noticed_reported_and_mended_only_by_restart() {
     assert!(bench.memory.t3i.status.link_running);
     bench.point(&beside(5.0));
     bench.tick();
-    assert_eq!((bench.report(), bench.row(), bench.robot.at), (T3iReport::Error, ("receive", 6), at));
+    assert_eq!((bench.report(), bench.row(), bench.robot.at), (T3iReport::Error, ("RECEIVE", 6), at));
     bench.command(T3iVerb::Restart);
     for _ in 0..3 {
         bench.tick();

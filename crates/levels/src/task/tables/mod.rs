@@ -1,10 +1,13 @@
-//! Decision tables of Task: a file a command, and one for the joystick box.
+//! Decision tables of Task: the joystick box, what a new command needs, what has become of its last order,
+//! and a file a command.
 
+pub mod accept;
 pub mod acquire;
 pub mod acquire_tool;
 pub mod insert_tool;
 pub mod joystick;
 pub mod mov;
+pub mod ordered;
 pub mod pause;
 pub mod position;
 pub mod refixture;
@@ -14,39 +17,29 @@ pub mod shutdown;
 pub mod startup;
 pub mod transfer;
 
-use rcs_core::{Plain, handshake::Lower, interface::Reason};
+use rcs_core::{
+    Actions, Plain, Variables, commands,
+    handshake::{Arrival, Lower},
+    interface::Reason,
+    table::Choice,
+};
 
-use super::plan::TaskVerb;
-
-/// Is an object to be handled (V.4.1)?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Handling {
-    /// The command names no object.
-    #[text = "no object"]
-    NoObject,
-    /// It does.
-    Object,
-}
+use self::{accept::accept, joystick::Control, ordered::ordered};
+use super::plan::{Grip, Gripper, Grips, Handling, Named, PedestalData, Plan, TaskVerb, ToolData};
+use crate::{
+    execution::{Asked, EXECUTE, Outcome, Work},
+    places::Missing,
+};
 
 /// Object status (V.4.1): does the gripper hold something?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Holding {
     /// Nothing.
-    #[text = "not held"]
     NotHeld,
     /// The object of the command.
     Held,
     /// Something else.
     Other,
-}
-
-/// Source and destination grip numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Grips {
-    /// The object stays as it is gripped.
-    Same,
-    /// It must be regripped on the way.
-    Different,
 }
 
 /// Where the robot is to be at the end.
@@ -75,15 +68,15 @@ pub enum DataBase {
     Silent,
 }
 
-/// What the Data System is to be told.
+/// Pending update of the data base.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Books {
-    /// Nothing: the object is not moved from or to the MBD, it has been told, or no Data System is
+pub enum Update {
+    /// None: the object is not moved from or to the MBD, its move has been told, or no Data System is
     /// connected (DB-DONE, IV.3.2).
-    Closed,
-    /// The move of this command.
-    Open,
-    /// An update that was written and is not taken yet.
+    None,
+    /// The move of this command, from or to the MBD, is to be told once it is made.
+    Due,
+    /// An update was told and has not been taken yet.
     Owed,
 }
 
@@ -109,31 +102,136 @@ pub enum Station {
     Transfer,
 }
 
-/// The state variables of a tick.
-#[derive(Clone, Copy, Debug)]
-pub struct Situation {
+/// A location of the command, to which POSITION goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Goal {
+    /// The source location.
+    Source,
+    /// The destination.
+    Destination,
+}
+
+/// The neighbour that has the last order of the current command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Ordered {
+    /// Nothing was ordered yet.
+    Nothing,
+    /// Subtask.
+    Subtask,
+    /// The Data System.
+    DataSystem,
+}
+
+/// What is done about the joystick box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain, Actions)]
+pub enum Takeover {
+    /// Nothing: the operator does not have the robot.
+    None,
+    /// The operator takes it: S-PAUSE to Subtask, and the command that is executing ends.
+    Interrupt,
+    /// The operator takes it: S-PAUSE to Subtask, and the finished command is reported no longer.
+    Clear,
+    /// The operator takes it: S-PAUSE to Subtask.
+    Pause,
+    /// The operator has it: no command but PAUSE is accepted.
+    Refuse,
+    /// The operator gives it back: the next command is awaited.
+    Resume,
+}
+
+/// Does the operator take the robot or give it back? For [`joystick::JOYSTICK`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Operator {
     /// Status of Subtask.
     pub subtask: Lower,
+    /// How far the current command has come.
+    pub outcome: Outcome,
+}
+
+/// What a new command needs, for [`accept::ACCEPT`].
+#[derive(Clone, Copy, Debug, Default, Variables)]
+pub struct Request {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The command.
+    pub verb: TaskVerb,
+    /// Which name the task data lack: the object's, or that of the first location.
+    pub missing: Missing,
+    /// `endeff-id#` of the gripper for the object.
+    pub gripper: Gripper,
+    /// Is an object named?
+    pub handling: Handling,
+    /// Is the source location named?
+    pub source: Named,
+    /// Does the object have the source grip?
+    pub source_grip: Grip,
+    /// Is the destination named?
+    pub destination: Named,
+    /// Does the object have the destination grip?
+    pub destination_grip: Grip,
+    /// The object as a tool.
+    pub tool: ToolData,
+    /// Are the source and destination grips the same?
+    pub grips: Grips,
+    /// The PED-PARA record of the object (VII.7.4).
+    pub pedestal: PedestalData,
+    /// What has the robot.
+    pub control: Control,
+}
+
+/// How the last order of the command stands, for [`ordered::ORDERED`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Orders {
+    /// What is done about the joystick box.
+    pub takeover: Takeover,
+    /// The neighbour that has it.
+    pub ordered: Ordered,
+    /// Status of Subtask.
+    pub subtask: Lower,
+    /// State of the data base.
+    pub data_base: DataBase,
+}
+
+/// The state variables of a tick, for the tables of the commands.
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Situation {
+    /// The last order.
+    pub work: Work,
     /// Is an object to be handled?
     pub handling: Handling,
     /// Does the gripper hold something?
     pub holding: Holding,
-    /// Source and destination grips.
+    /// Are the source and destination grips the same?
     pub grips: Grips,
+    /// Is the source location named?
+    pub source: Named,
     /// Is there an end-at location, and is the robot there?
     pub ends: Ends,
-    /// State of the data base.
-    pub data_base: DataBase,
-    /// What it is to be told.
-    pub books: Books,
+    /// Pending update of the data base.
+    pub update: Update,
     /// The tool gripper.
     pub tool: Tool,
     /// Where the robot is.
     pub station: Station,
 }
 
+/// What preprocess has found in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// What the command buffer holds.
+    pub arrival: Arrival,
+    /// The new command looked up, or the current one.
+    pub plan: Plan,
+    /// What a new command needs; [`joystick::JOYSTICK`] decides on `control`.
+    pub request: Request,
+    /// How the last order of the command stands; [`joystick::JOYSTICK`] decides on `takeover`.
+    pub orders: Orders,
+    /// The state variables of the command's table; [`ordered::ORDERED`] decides on `work`.
+    pub situation: Situation,
+}
+
 /// What a row can ask for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// Nothing new.
     Wait,
@@ -154,7 +252,7 @@ pub enum Action {
     /// GOTO-ENDPT to Subtask.
     GotoEndpt,
     /// >POSITION to Subtask.
-    Position,
+    Position(Goal),
     /// RELEASE to Subtask.
     Release,
     /// INSERT-TOOL to Subtask.
@@ -185,6 +283,8 @@ pub enum Action {
     Update,
     /// Tell the Data System where the object now is, and GOTO-ENDPT to Subtask.
     UpdateAndGotoEndpt,
+    /// Wait for the Data System, which has been told.
+    AwaitUpdate,
     /// Report finished.
     Finish,
     /// Report an error.
@@ -193,24 +293,31 @@ pub enum Action {
     PassUp,
 }
 
-/// What the table of the current command decided.
-pub type Choice = crate::old_execution::Choice<Action>;
-
-/// Consult the table of a command. A step that the command does not have counts as its first.
-#[must_use]
-pub fn decide(verb: TaskVerb, step: u8, s: &Situation) -> Choice {
-    match verb {
-        TaskVerb::None | TaskVerb::Pause => pause::consult(step, s),
-        TaskVerb::Transfer => transfer::consult(step, s),
-        TaskVerb::Move => mov::consult(step, s),
-        TaskVerb::Position => position::consult(step, s),
-        TaskVerb::Acquire => acquire::consult(step, s),
-        TaskVerb::Refixture => refixture::consult(step, s),
-        TaskVerb::InsertTool => insert_tool::consult(step, s),
-        TaskVerb::ReleaseTool => release_tool::consult(step, s),
-        TaskVerb::AcquireTool => acquire_tool::consult(step, s),
-        TaskVerb::RemoveTool => remove_tool::consult(step, s),
-        TaskVerb::Startup => startup::consult(step, s),
-        TaskVerb::Shutdown => shutdown::consult(step, s),
+commands! {
+    /// Consult the table of a command.
+    pub fn of_command(TaskVerb, enum Step, Situation) -> Action {
+        others: EXECUTE, accept::ACCEPT, joystick::JOYSTICK, ordered::ORDERED;
+        None | Pause    => pause::pause;
+        Transfer        => transfer::transfer;
+        Move            => mov::r#move;
+        Position        => position::position;
+        Acquire         => acquire::acquire;
+        Refixture       => refixture::refixture;
+        InsertTool      => insert_tool::insert_tool;
+        ReleaseTool     => release_tool::release_tool;
+        AcquireTool     => acquire_tool::acquire_tool;
+        RemoveTool      => remove_tool::remove_tool;
+        Startup         => startup::startup;
+        Shutdown        => shutdown::shutdown;
     }
+}
+
+/// Consult the tables of the current command in turn until a row decides.
+#[must_use]
+pub fn decide(step: Step, seen: &Seen) -> Choice<Action, Step> {
+    accept(step, &seen.request).then(number::ACCEPT, |()| {
+        ordered(step, &seen.orders).then(number::ORDERED, |work| {
+            of_command(seen.plan.verb, step, &Situation { work, ..seen.situation })
+        })
+    })
 }

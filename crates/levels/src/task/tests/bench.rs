@@ -1,7 +1,5 @@
 //! Task with doubles of its neighbours: a Subtask that does at once what it is told, and a Data System.
 
-use std::collections::BTreeSet;
-
 use rcs_core::{
     handshake::{Arrival, Receiver},
     interface::{
@@ -17,7 +15,7 @@ use rcs_core::{
 };
 use taskdata::files::TaskData;
 
-use crate::{subtask::tests::data::data, task::Task};
+use crate::{coverage::Coverage, subtask::tests::data::data, task::Task};
 
 /// Ticks that a double takes for a command.
 const WORK: u32 = 3;
@@ -171,7 +169,7 @@ pub struct Bench<'d> {
     pub data_system: DataSystem,
     pub tick: Tick,
     /// Tables and rows that fired.
-    pub rows: BTreeSet<(u8, u8)>,
+    pub rows: Coverage,
 }
 
 impl Default for Bench<'static> {
@@ -191,7 +189,7 @@ impl<'d> Bench<'d> {
             subtask: SubtaskDouble::default(),
             data_system: DataSystem::default(),
             tick: Tick::BEFORE_START,
-            rows: BTreeSet::new(),
+            rows: Coverage::default(),
         };
         bench.subtask.outputs.status.end_effector_id = 1;
         bench.step();
@@ -242,7 +240,7 @@ impl<'d> Bench<'d> {
         let inputs =
             Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &self.data };
         self.process.step(&inputs, &mut outputs);
-        self.rows.insert((outputs.header.table, outputs.header.row));
+        self.rows.note(&outputs.header);
         self.subtask.step(self.tick, &self.memory.task.subtask);
         self.data_system.step(self.tick, &outputs.data_base);
         self.memory.task = outputs;

@@ -9,7 +9,7 @@ use super::{
     bench::{Answer, Bench, FINISHED},
     error,
 };
-use crate::task::ledger::{ANSWER_LIMIT, MAX_TRIES};
+use crate::task::data_system::{ANSWER_LIMIT, MAX_TRIES};
 
 const STARTUP: &str = "STARTUP -- 0 -- 0 0 -- 0 -- 0";
 const SHUTDOWN: &str = "SHUTDOWN -- 0 -- 0 0 -- 0 -- 0";

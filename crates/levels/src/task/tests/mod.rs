@@ -184,34 +184,53 @@ fn a_tool_command_that_is_not_prepared_is_refused() {
     }
 }
 
+/// Commands that lack something, and why they are refused.
+const REFUSED: &[(&str, Reason)] = &[
+    ("DANCE -- 0 -- 0 0 -- 0 -- 0", Reason::UnknownCommand),
+    ("MOVE NOBODY +1 UNIT_1 1 +1 SAFE 0 -- 0", Reason::UnknownObject),
+    ("MOVE -- 0 -- 0 0 NOWHERE 0 -- 0", Reason::UnknownLocation),
+    ("MOVE -- 0 -- 0 0 HOLSTER 1 -- 0", Reason::NoObjectNamed),
+    ("MOVE -- 0 -- 0 0 -- 0 -- 0", Reason::NoDestination),
+    ("MOVE PART +1 -- 0 +1 SAFE 0 -- 0", Reason::NoDestination),
+    ("MOVE PART +1 UNIT_1 9 +1 SAFE 0 -- 0", Reason::SectorOutOfRange),
+    ("MOVE PART +7 UNIT_1 1 +7 SAFE 0 -- 0", Reason::UnknownGrip),
+    ("TRANSFER -- 0 UNIT_1 0 0 SAFE 0 -- 0", Reason::NoObjectNamed),
+    ("TRANSFER PART +1 PFIXTURE 0 +7 UNIT_1 2 SAFE 0", Reason::UnknownGrip),
+    ("TRANSFER BAR +1 PFIXTURE 0 +2 UNIT_1 2 SAFE 0", Reason::NoPedestalData),
+    ("POSITION -- 0 -- 0 0 -- 0 -- 0", Reason::NoDestination),
+    ("POSITION PART 0 -- 0 +7 SAFE 0 -- 0", Reason::UnknownGrip),
+    ("POSITION PART +7 PFIXTURE 0 +1 SAFE 0 -- 0", Reason::UnknownGrip),
+    ("REFIXTURE PART +1 PFIXTURE 0 -1 -- 0 -- 0", Reason::NoDestination),
+    ("ACQUIRE -- 0 PFIXTURE 0 0 -- 0 -- 0", Reason::NoObjectNamed),
+    ("ACQUIRE PART +1 -- 0 0 -- 0 -- 0", Reason::NoDestination),
+    ("ACQUIRE-TOOL -- 0 -- 0 0 TOOL-SAFE 0 -- 0", Reason::NoObjectNamed),
+    ("ACQUIRE-TOOL TOOL-1 0 -- 0 +1 -- 0 -- 0", Reason::NoDestination),
+    ("ACQUIRE-TOOL TOOL-1 0 -- 0 +4 TOOL-SAFE 0 -- 0", Reason::UnknownGrip),
+    ("ACQUIRE-TOOL PART 0 -- 0 +1 TOOL-SAFE 0 -- 0", Reason::WrongGripper),
+    ("INSERT-TOOL PART +1 TOOL-SAFE 0 0 -- 0 -- 0", Reason::WrongGripper),
+];
+
 #[test]
 fn a_command_with_a_bad_name_is_refused_before_anything_moves() {
-    for (line, reason) in [
-        ("DANCE -- 0 -- 0 0 -- 0 -- 0", Reason::UnknownCommand),
-        ("MOVE NOBODY +1 UNIT_1 1 +1 SAFE 0 -- 0", Reason::UnknownObject),
-        ("MOVE -- 0 -- 0 0 NOWHERE 0 -- 0", Reason::UnknownLocation),
-        ("MOVE -- 0 -- 0 0 -- 0 -- 0", Reason::NoDestination),
-        ("MOVE PART +1 -- 0 +1 SAFE 0 -- 0", Reason::NoDestination),
-        ("MOVE PART +1 UNIT_1 9 +1 SAFE 0 -- 0", Reason::SectorOutOfRange),
-        ("MOVE PART +7 UNIT_1 1 +7 SAFE 0 -- 0", Reason::UnknownGrip),
-        ("TRANSFER -- 0 UNIT_1 0 0 SAFE 0 -- 0", Reason::NoObjectNamed),
-        ("POSITION -- 0 -- 0 0 -- 0 -- 0", Reason::NoDestination),
-        ("POSITION PART 0 -- 0 +7 SAFE 0 -- 0", Reason::UnknownGrip),
-        ("REFIXTURE PART +1 PFIXTURE 0 -1 -- 0 -- 0", Reason::NoDestination),
-        ("ACQUIRE -- 0 PFIXTURE 0 0 -- 0 -- 0", Reason::NoObjectNamed),
-        ("ACQUIRE-TOOL -- 0 -- 0 0 TOOL-SAFE 0 -- 0", Reason::NoObjectNamed),
-        ("ACQUIRE-TOOL TOOL-1 0 -- 0 +1 -- 0 -- 0", Reason::NoDestination),
-        ("ACQUIRE-TOOL TOOL-1 0 -- 0 +4 TOOL-SAFE 0 -- 0", Reason::UnknownGrip),
-        ("ACQUIRE-TOOL PART 0 -- 0 +1 TOOL-SAFE 0 -- 0", Reason::WrongGripper),
-        ("INSERT-TOOL PART +1 TOOL-SAFE 0 0 -- 0 -- 0", Reason::WrongGripper),
-    ] {
+    for (line, reason) in REFUSED {
         let mut bench = Bench::default();
-        assert_eq!(bench.run(line), error(reason), "{line}");
+        assert_eq!(bench.run(line), error(*reason), "{line}");
         assert!(bench.sent().is_empty());
     }
     let store = without(&["-o-loc- PART"]);
     let mut bench = Bench::with(store.view());
     assert_eq!(bench.run("MOVE PART +1 UNIT_1 1 +1 SAFE 0 -- 0"), error(Reason::NoArrayForObject));
+}
+
+#[test]
+fn a_refused_command_leaves_the_poses_of_the_one_before() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
+    let poses = bench.memory.task.poses;
+    for (line, _) in REFUSED {
+        bench.run(line);
+        assert_eq!(bench.memory.task.poses, poses, "{line}");
+    }
 }
 
 #[test]
@@ -287,6 +306,27 @@ fn the_operator_can_take_the_robot_between_two_commands() {
 }
 
 #[test]
+fn a_command_that_comes_when_the_operator_takes_the_robot_is_not_executed() {
+    for (line, reason) in [
+        ("MOVE -- 0 -- 0 0 HOME 0 -- 0", Reason::JoystickOn),
+        ("MOVE -- 0 -- 0 0 NOWHERE 0 -- 0", Reason::UnknownLocation),
+        ("PAUSE -- 0 -- 0 0 -- 0 -- 0", Reason::JoystickOn),
+    ] {
+        let mut bench = Bench::default();
+        bench.subtask.joystick = true;
+        bench.step();
+        bench.command(line);
+        bench.wait(30);
+        assert_eq!(bench.sent(), ["S-PAUSE"], "{line}");
+        assert_eq!(bench.memory.task.status.report, HwsReport::JoystickOn);
+        bench.subtask.joystick = false;
+        bench.wait(5);
+        let status = bench.step();
+        assert_eq!((status.report, status.reason), error(reason), "{line}");
+    }
+}
+
+#[test]
 fn a_pause_is_accepted_while_the_operator_has_the_robot() {
     let mut bench = Bench::default();
     bench.subtask.joystick = true;
@@ -315,8 +355,11 @@ fn a_restarted_task_executes_nothing_old_and_is_not_connected() {
 fn each_location_of_a_command_has_a_pose_of_its_own() {
     let mut bench = Bench::default();
     assert_eq!(bench.run("TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0"), FINISHED);
-    let plan = Plan::new(&bench.external.hws, &bench.data).unwrap();
-    for (command, pose) in bench.subtask.received[1..].iter().zip(plan.poses) {
-        assert_eq!(bench.memory.changing_pose(command.pose), Some(&pose), "{}", command.command);
+    let plan = Plan::look_up(&bench.external.hws, &bench.data).plan;
+    for (command, site) in
+        bench.subtask.received[1..].iter().zip([plan.source, plan.destination, plan.end_at])
+    {
+        let pose = site.location.map(|location| location.pose.pose);
+        assert_eq!(bench.memory.changing_pose(command.pose).copied(), pose, "{}", command.command);
     }
 }

@@ -1,28 +1,55 @@
-//! Decision tables of the pedestal process: a file a command.
+//! Decision tables of the pedestal process: what a new command needs, what has become of its orders, and a
+//! file a command.
 
-mod flip;
-mod grip;
-mod pause;
-mod pre_grip;
-mod release;
+pub mod accept;
+pub mod flip;
+pub mod grip;
+pub mod ordered;
+pub mod pause;
+pub mod pre_grip;
+pub mod release;
 
-use rcs_core::{Plain, interface::Reason};
-
-pub use self::{
-    flip::{FLIP, flip},
-    grip::{GRIP, grip},
-    pause::{PAUSE, pause},
-    pre_grip::{PRE_GRIP, pre_grip},
-    release::{RELEASE, release},
+use rcs_core::{
+    Actions, Plain, Variables, commands,
+    handshake::{Arrival, Lower},
+    interface::{Reason, pedestal::PedestalVerb},
+    table::Choice,
 };
 
-/// Reference action of all commands.
+use self::{accept::accept, ordered::ordered};
+use crate::execution::{Asked, EXECUTE};
+
+/// Can the table turn as a command asks?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Step {
-    /// Nothing sent yet.
-    Start,
-    /// Hand, table or both have their commands.
-    Move,
+pub enum Angle {
+    /// Yes, or it is not to turn.
+    Within,
+    /// The angle is beyond the limits.
+    Beyond,
+    /// The table is not calibrated: a relative angle leads nowhere.
+    Unknown,
+}
+
+/// Can the hand do what a command asks?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Opening {
+    /// Yes, or it is not to move.
+    Within,
+    /// Opening or force are beyond its range.
+    Beyond,
+}
+
+/// The processes that have the orders of the current command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Ordered {
+    /// Nothing was ordered yet.
+    Nothing,
+    /// The hand.
+    Hand,
+    /// The table.
+    Table,
+    /// Both.
+    Both,
 }
 
 /// What the hand holds.
@@ -36,29 +63,99 @@ pub enum Object {
     Lost,
 }
 
-/// What a row wants of hand, table and status.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What a new command needs, for [`accept::ACCEPT`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Request {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The command.
+    pub verb: PedestalVerb,
+    /// Can the table turn as it asks?
+    pub angle: Angle,
+    /// Can the hand do what it asks?
+    pub opening: Opening,
+}
+
+/// How the orders of the command stand, for [`ordered::ORDERED`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Orders {
+    /// The command.
+    pub verb: PedestalVerb,
+    /// The processes that have its orders.
+    pub ordered: Ordered,
+    /// Status of the hand.
+    pub hand: Lower,
+    /// Status of the table.
+    pub table: Lower,
+    /// What the hand holds.
+    pub object: Object,
+}
+
+/// The state variables of a tick, for the tables of the commands.
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Situation {
+    /// What the hand holds.
+    pub object: Object,
+}
+
+/// What preprocess has found in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// What the command buffer holds.
+    pub arrival: Arrival,
+    /// What a new command needs.
+    pub request: Request,
+    /// How the orders of the command stand.
+    pub orders: Orders,
+    /// The state variables of the command's table.
+    pub situation: Situation,
+}
+
+/// What a row can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
-    /// No new command.
+    /// Nothing new.
     Wait,
-    /// Open the hand, turn the table to the angle.
+    /// OPEN-GRIP to the hand, TURN to the table.
     OpenAndTurn,
-    /// Close the hand on the object.
+    /// CLOSE-GRIP to the hand.
     Close,
-    /// Turn the table by the angle.
-    TurnOver,
-    /// Open the hand.
+    /// TURN to the table.
+    Turn,
+    /// OPEN-GRIP to the hand.
     Open,
-    /// Stop the table.
+    /// PAUSE to the table.
     StopTable,
-    /// The command is done.
+    /// Report done.
     Finish,
-    /// The command is done: the hand holds the object.
-    Gripped,
-    /// The command has failed.
+    /// Report done: from now on the hand holds the object.
+    Hold,
+    /// Report an error: the hand has lost the object.
+    Lose,
+    /// Report an error.
     Fail(Reason),
-    /// The hand has failed; pass its reason up.
-    FailHand,
-    /// The table has failed; pass its reason up.
-    FailTable,
+    /// Report an error with the hand's reason.
+    PassUpHand,
+    /// Report an error with the table's reason.
+    PassUpTable,
+}
+
+commands! {
+    /// Consult the table of a command.
+    pub fn of_command(PedestalVerb, enum Step, Situation) -> Action {
+        others: EXECUTE, accept::ACCEPT, ordered::ORDERED;
+        None | Pause    => pause::pause;
+        PreGrip         => pre_grip::pre_grip;
+        Grip            => grip::grip;
+        Flip            => flip::flip;
+        Release         => release::release;
+    }
+}
+
+/// Consult the tables in turn until a row decides.
+#[must_use]
+pub fn decide(verb: PedestalVerb, step: Step, seen: &Seen) -> Choice<Action, Step> {
+    accept(step, &seen.request).then(number::ACCEPT, |()| {
+        ordered(step, &seen.orders).then(number::ORDERED, |()| of_command(verb, step, &seen.situation))
+    })
 }

@@ -1,22 +1,37 @@
-//! CALIBRATE: find the + limit and set the counter.
+//! CALIBRATE (IV.1 step 3, IV.5.1 step 10).
 
-use rcs_core::{interface::Reason::TableStuck, old_table};
+use rcs_core::decision_table;
 
-use super::{Action, Clock, Motor, Place};
-use crate::pedestal::table::Phase;
-
-old_table! {
-    /// CALIBRATE (IV.1 step 3, IV.5.1 step 10): turn to the + limit and give the counter the angle of the limit. Runs by itself
-    /// when the table is booted, and before the first command that turns it.
-    pub CALIBRATE: fn calibrate(phase: Phase, motor: Motor, place: Place, clock: Clock) -> (Action, Phase) {
-        //   phase                                motor               place       clock        action              next
-        1: ( Missing | Deferred | Valid | Failed , _                 , _         , _       ) => SeekLimit        , Seeking ;
-        2: ( Seeking | Setting                   , Silent            , _         , _       ) => Lose(TableStuck) , Failed  ;
-        3: ( Seeking                             , Pending | Turning , _         , Running ) => Wait             , Seeking ;
-        4: ( Setting                             , Pending | Turning , _         , Running ) => Wait             , Setting ;
-        5: ( Seeking | Setting                   , Pending | Turning , _         , Expired ) => Lose(TableStuck) , Failed  ;
-        6: ( Seeking                             , Standing          , There     , _       ) => SetCounter       , Setting ;
-        7: ( Setting                             , Standing          , There     , _       ) => Calibrated       , Valid   ;
-        8: ( Seeking | Setting                   , Standing          , Elsewhere , _       ) => Lose(TableStuck) , Failed  ;
+decision_table! {
+    /// CALIBRATE (IV.1 step 3, IV.5.1 step 10): turn to the + limit and give the counter the angle of the
+    /// limit. Runs by itself when the table is booted, and before the first command that turns it. Commands
+    /// wait for it. A motor that does not take its order, does not come to rest in time or stands elsewhere
+    /// ends it.
+    pub CALIBRATE: fn calibrate(super::Phase, super::Situation) -> super::Action or super::Duty {
+        Missing {
+            1:  command: Nothing                                    => SeekLimit            -> Seeking;
+        }
+        Missing | Deferred | Failed {
+            2:  command: Turn                                       => SeekLimit            -> Seeking;
+        }
+        Missing | Deferred | Failed | Valid {
+            3:  command: Calibrate                                  => SeekLimit            -> Seeking;
+            4:  command: Pause | Turn                               => consult(Command);
+            5:  command: Nothing | Refused                          => consult(Nothing);
+        }
+        Seeking | Setting {
+            6:  motor: Pending | Turning, clock: Running            => Wait;
+        }
+        Seeking {
+            7:  motor: Standing, place: There                       => SetCounter           -> Setting;
+        }
+        Setting {
+            8:  motor: Standing, place: There, command: Calibrate   => Finish               -> Valid;
+            9:  motor: Standing, place: There                       => EndCalibration       -> Valid;
+        }
+        Seeking | Setting {
+            10: command: Calibrate | Turn                           => Lose(TableStuck)     -> Failed;
+            11: command: Nothing | Refused | Pause                  => GiveUp               -> Failed;
+        }
     }
 }

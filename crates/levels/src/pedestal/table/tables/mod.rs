@@ -1,16 +1,87 @@
-//! Decision tables of the table process: a file a command.
+//! Decision tables of the table process: what a new command needs, the calibration, what commands have in
+//! common, and a file a command.
 
-mod calibrate;
-mod pause;
-mod turn;
+pub mod accept;
+pub mod calibrate;
+pub mod pause;
+pub mod rest;
+pub mod turn;
 
-use rcs_core::{Plain, interface::Reason};
-
-pub use self::{
-    calibrate::{CALIBRATE, calibrate},
-    pause::{PAUSE, pause},
-    turn::{Step, TURN, turn},
+use rcs_core::{
+    Actions, Plain, Variables, commands,
+    handshake::Arrival,
+    interface::{Reason, pedestal::TableVerb},
 };
+
+use crate::execution::{Asked, Course, EXECUTE};
+
+/// Step of all commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Step {
+    /// No turn ordered yet: the table comes to rest, or the command waits for the calibration.
+    Start,
+    /// The turn is ordered.
+    Turning,
+}
+
+/// Step of CALIBRATE: how far the calibration has come. It outlasts the commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Phase {
+    /// Never done: begins at once, since the table was booted just now (IV.5.1 step 10).
+    Missing,
+    /// Never done by this process, which was started in the middle of a job: the table may stand beside the
+    /// robot, so it waits for a command that turns it.
+    Deferred,
+    /// The table turns towards its + limit.
+    Seeking,
+    /// The counter is being set.
+    Setting,
+    /// The counter shows the angle.
+    Valid,
+    /// The last attempt failed, or steps were lost; the next command that turns the table tries again.
+    Failed,
+}
+
+/// Can the table turn to the commanded angle?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Angle {
+    /// Yes, or none is commanded.
+    Within,
+    /// It is beyond a limit.
+    Beyond,
+}
+
+/// The command that is being executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Command {
+    /// None: nothing was commanded yet, or it has ended.
+    Nothing,
+    /// None: it was refused, or found at the start and not executed.
+    Refused,
+    /// PAUSE.
+    Pause,
+    /// CALIBRATE.
+    Calibrate,
+    /// TURN.
+    Turn,
+}
+
+impl Command {
+    /// What EXECUTE and ACCEPT leave of a command.
+    #[must_use]
+    pub const fn of(course: Course, accepted: bool, verb: TableVerb) -> Self {
+        match course {
+            Course::Rest => Self::Nothing,
+            Course::Begin | Course::Continue if accepted => match verb {
+                TableVerb::None => Self::Refused,
+                TableVerb::Pause => Self::Pause,
+                TableVerb::Calibrate => Self::Calibrate,
+                TableVerb::Turn => Self::Turn,
+            },
+            Course::Refuse | Course::Begin | Course::Continue => Self::Refused,
+        }
+    }
+}
 
 /// What the motor does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -34,7 +105,7 @@ pub enum Place {
     Elsewhere,
 }
 
-/// Time of what has the duty.
+/// Time of the command, or of the calibration while one is under way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Clock {
     /// Within its limit.
@@ -43,23 +114,79 @@ pub enum Clock {
     Expired,
 }
 
-/// What a row wants of the motor and the status.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What a new command needs, for [`accept::ACCEPT`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Request {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The command.
+    pub verb: TableVerb,
+    /// Can the table turn to the angle?
+    pub angle: Angle,
+}
+
+/// The state variables of a tick, for the tables of calibration and commands.
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Situation {
+    /// The command that is being executed.
+    pub command: Command,
+    /// What the motor does.
+    pub motor: Motor,
+    /// Is the table where it should be?
+    pub place: Place,
+    /// Time of the command.
+    pub clock: Clock,
+}
+
+/// What preprocess has found in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// What the command buffer holds.
+    pub arrival: Arrival,
+    /// What a new command needs.
+    pub request: Request,
+    /// The state variables; EXECUTE and ACCEPT decide on `command`.
+    pub situation: Situation,
+}
+
+/// What [`calibrate::CALIBRATE`] leaves to decide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Duty {
+    /// Nothing.
+    Nothing,
+    /// The table of the command decides.
+    Command,
+}
+
+/// What a row can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Action {
     /// No new order.
     Wait,
-    /// Turn towards the + limit.
+    /// The calibration begins: turn towards the + limit.
     SeekLimit,
     /// The table stands at the + limit: give the counter the angle of the limit.
     SetCounter,
-    /// The counter is set: the table is calibrated.
-    Calibrated,
+    /// The table is calibrated: the time of a command that has waited begins.
+    EndCalibration,
     /// Turn to the commanded angle.
     Turn,
     /// Stop.
     Stop,
-    /// The command is done.
+    /// Report done.
     Finish,
-    /// Stop; the command has failed, and the angle is not known any more.
+    /// Stop; report an error. The angle is not known any more.
     Lose(Reason),
+    /// Stop: there is no calibration, and no command that fails with it. The time of one that has waited
+    /// begins.
+    GiveUp,
+}
+
+commands! {
+    /// Consult the table of a command.
+    pub fn of_command(TableVerb, Step, Situation) -> Action {
+        others: EXECUTE, accept::ACCEPT, calibrate::CALIBRATE;
+        Turn                        => rest::rest then turn::turn;
+        None | Pause | Calibrate    => rest::rest then pause::pause;
+    }
 }

@@ -1,8 +1,8 @@
 //! Where the time of a tick goes: each part of it, timed.
 //!
-//! A tick is a chain of parts, one after the other; whoever has finished one calls [`Laps::lap`], which takes
-//! the time since the part before. Nothing is summed up until the tick is over ([`Laps::finish`]), so that
-//! measuring costs a look at the clock a part. If slots of the grid were skipped, [`Laps::worst`] says which
+//! A tick is a chain of parts, one after the other; whoever has finished one calls [`StageTimes::mark`], which takes
+//! the time since the part before. Nothing is summed up until the tick is over ([`StageTimes::finish`]), so that
+//! measuring costs a look at the clock a part. If slots of the grid were skipped, [`StageTimes::worst`] says which
 //! part is to blame.
 
 use std::{fmt, time::Instant};
@@ -13,7 +13,7 @@ use crate::histogram::{Histogram, Summary};
 
 /// A part of a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum Stage {
     /// What came over a serial line, task data that are to be taken up, and what the log is told before the
     /// controller runs.
     Inputs,
@@ -34,12 +34,19 @@ pub enum Part {
 }
 
 /// Parts that are not control processes.
-const OTHERS: [Part; 7] =
-    [Part::Inputs, Part::Buffers, Part::Bookkeeping, Part::Line, Part::Log, Part::Cell, Part::Workstation];
+const OTHERS: [Stage; 7] = [
+    Stage::Inputs,
+    Stage::Buffers,
+    Stage::Bookkeeping,
+    Stage::Line,
+    Stage::Log,
+    Stage::Cell,
+    Stage::Workstation,
+];
 /// How many parts there are.
 pub const PARTS: usize = PROCESS_COUNT + OTHERS.len();
 
-impl Part {
+impl Stage {
     /// All parts: control processes first, in their order.
     pub fn all() -> impl Iterator<Item = Self> {
         ProcessId::ALL.iter().map(|&process| Self::Process(process)).chain(OTHERS)
@@ -59,7 +66,7 @@ impl Part {
     }
 }
 
-impl fmt::Display for Part {
+impl fmt::Display for Stage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::Process(process) => process.text(),
@@ -75,19 +82,19 @@ impl fmt::Display for Part {
 }
 
 /// Stopwatch of the parts of a tick, and a histogram of each.
-pub struct Laps {
+pub struct StageTimes {
     last: Instant,
     tick: [u64; PARTS],
     times: Box<[Histogram]>,
 }
 
-impl Default for Laps {
+impl Default for StageTimes {
     fn default() -> Self {
         Self { last: Instant::now(), tick: [0; PARTS], times: vec![Histogram::default(); PARTS].into() }
     }
 }
 
-impl Laps {
+impl StageTimes {
     /// A tick begins.
     pub fn begin(&mut self) {
         self.tick = [0; PARTS];
@@ -96,7 +103,7 @@ impl Laps {
 
     /// A part of the tick is over; it took from the end of the part before until now. Returns how long, in
     /// nanoseconds. A part may come several times in a tick.
-    pub fn lap(&mut self, part: Part) -> u64 {
+    pub fn mark(&mut self, part: Stage) -> u64 {
         let now = Instant::now();
         let taken = u64::try_from(now.duration_since(self.last).as_nanos()).unwrap_or(u64::MAX);
         self.last = now;
@@ -113,15 +120,15 @@ impl Laps {
 
     /// The part that took longest in this tick, with its time and that of the whole tick, nanoseconds.
     #[must_use]
-    pub fn worst(&self) -> (Part, u64, u64) {
-        let all = Part::all().map(|part| (part, self.tick[part.index()]));
-        let (part, taken) = all.max_by_key(|(_, taken)| *taken).unwrap_or((Part::Inputs, 0));
+    pub fn worst(&self) -> (Stage, u64, u64) {
+        let all = Stage::all().map(|part| (part, self.tick[part.index()]));
+        let (part, taken) = all.max_by_key(|(_, taken)| *taken).unwrap_or((Stage::Inputs, 0));
         (part, taken, self.tick.iter().sum())
     }
 
     /// Times of a part in all ticks.
     #[must_use]
-    pub fn summary(&self, part: Part) -> Summary {
+    pub fn summary(&self, part: Stage) -> Summary {
         self.times[part.index()].summary()
     }
 }
@@ -133,27 +140,27 @@ mod tests {
 
     #[test]
     fn every_part_has_a_place_of_its_own() {
-        let places: Vec<_> = Part::all().map(Part::index).collect();
+        let places: Vec<_> = Stage::all().map(Stage::index).collect();
         assert_eq!(places, (0..PARTS).collect::<Vec<_>>());
-        assert_eq!(Part::Process(ProcessId::QuickChange).to_string(), "Quick Change");
+        assert_eq!(Stage::Process(ProcessId::QuickChange).to_string(), "Quick Change");
     }
 
     #[test]
     fn the_part_that_takes_longest_is_to_blame() {
-        let mut laps = Laps::default();
-        laps.begin();
-        laps.lap(Part::Process(ProcessId::Task));
+        let mut stage_times = StageTimes::default();
+        stage_times.begin();
+        stage_times.mark(Stage::Process(ProcessId::Task));
         thread::sleep(Duration::from_millis(3));
-        let before = laps.lap(Part::Process(ProcessId::Prim));
+        let before = stage_times.mark(Stage::Process(ProcessId::Prim));
         thread::sleep(Duration::from_millis(2));
-        let again = laps.lap(Part::Process(ProcessId::Prim));
-        laps.lap(Part::Cell);
-        laps.finish();
-        let (part, taken, all) = laps.worst();
-        assert_eq!((part, taken), (Part::Process(ProcessId::Prim), before + again));
+        let again = stage_times.mark(Stage::Process(ProcessId::Prim));
+        stage_times.mark(Stage::Cell);
+        stage_times.finish();
+        let (part, taken, all) = stage_times.worst();
+        assert_eq!((part, taken), (Stage::Process(ProcessId::Prim), before + again));
         assert!(taken >= 5_000_000 && taken <= all);
-        assert!(laps.summary(part).max >= 5_000.0);
-        laps.begin();
-        assert!(laps.worst().2 == 0, "the next tick begins at nothing");
+        assert!(stage_times.summary(part).max >= 5_000.0);
+        stage_times.begin();
+        assert!(stage_times.worst().2 == 0, "the next tick begins at nothing");
     }
 }

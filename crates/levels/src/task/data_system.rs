@@ -6,6 +6,8 @@
 //! so that the data base is never more than one move behind.
 
 use rcs_core::{
+    Plain,
+    handshake::Commander,
     interface::{
         DataBaseCommand, DataBaseStatus, TaskOutputs,
         data_base::{DataBaseReport, DataBaseVerb},
@@ -16,8 +18,7 @@ use rcs_core::{
 
 use super::{
     plan::{Plan, TaskVerb},
-    state::Ledger,
-    tables::{Books, DataBase},
+    tables::{DataBase, Update},
 };
 
 /// Ticks in which the Data System is expected to finish a command: 10 s, on a factory network.
@@ -27,12 +28,27 @@ pub const MAX_TRIES: u8 = 3;
 /// `STORAGE-POS` of what the robot holds, which is also the name of the client (IX.2).
 pub const IN_HAND: &str = "H_ROBOT";
 
-impl Ledger {
+/// What Task knows of the Data System.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct DataSystem {
+    /// Numbers of the commands to it.
+    pub commander: Commander,
+    /// The command that was written last.
+    pub request: DataBaseCommand,
+    /// How often it was written.
+    pub tries: u8,
+    /// A STARTUP has succeeded, and no SHUTDOWN came since.
+    pub connected: bool,
+    /// The last update, until it is taken.
+    pub owed: Option<DataBaseCommand>,
+}
+
+impl DataSystem {
     /// Once a tick, before anything else: an update that is taken is owed no longer.
     pub fn observe(&mut self, status: &DataBaseStatus, tick: Tick) {
         self.commander.start(status.echo);
         if self.request.command == DataBaseVerb::Update && self.status(status, tick) == DataBase::Done {
-            self.owed = false;
+            self.owed = None;
         }
     }
 
@@ -49,16 +65,16 @@ impl Ledger {
         }
     }
 
-    /// What is to be told.
+    /// The pending update.
     #[must_use]
-    pub const fn books(&self, plan: &Plan) -> Books {
-        let connecting = matches!(plan.verb, TaskVerb::Startup);
-        if self.owed && (self.connected || connecting) {
-            Books::Owed
-        } else if self.connected && plan.concerns_mbd && !self.told {
-            Books::Open
+    pub fn update(&self, plan: &Plan) -> Update {
+        let connecting = plan.verb == TaskVerb::Startup;
+        if self.owed.is_some() && (self.connected || connecting) {
+            Update::Owed
+        } else if self.connected && plan.update_due {
+            Update::Due
         } else {
-            Books::Closed
+            Update::None
         }
     }
 
@@ -82,34 +98,33 @@ impl Ledger {
         self.ask(DataBaseCommand { command, ..DataBaseCommand::default() }, tick, outputs);
     }
 
-    /// REPORT-ITEM (IX.2): where the object of a command now is.
+    /// REPORT-ITEM (IX.2): write where the object of a command now is, and keep it until it is taken.
     pub fn tell(&mut self, plan: &Plan, in_hand: bool, tick: Tick, outputs: &mut TaskOutputs) {
-        let (position, sector) = if in_hand {
-            (Name10::clipped(IN_HAND), 0)
-        } else {
-            (plan.destination.location, plan.destination.sector)
+        let (position, sector) = match &plan.destination.location {
+            Some(location) if !in_hand => (location.name, location.sector),
+            _ => (Name10::clipped(IN_HAND), 0),
         };
-        self.update = DataBaseCommand {
+        self.owed = Some(DataBaseCommand {
             number: 0,
             command: DataBaseVerb::Update,
-            item: plan.object,
+            item: plan.object.unwrap_or_default(),
             serial: plan.serial,
             position,
             sector,
-        };
-        self.told = true;
+        });
         self.tell_owed(tick, outputs);
     }
 
-    /// Write the last update.
+    /// Write the update that has not been taken.
     pub fn tell_owed(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
-        self.owed = true;
-        self.ask(self.update, tick, outputs);
+        if let Some(update) = self.owed {
+            self.ask(update, tick, outputs);
+        }
     }
 
-    /// The Data System is gone, and with it what was owed to it.
+    /// The Data System is disconnected, and what was owed to it is dropped.
     pub fn disconnect(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
-        self.owed = false;
+        self.owed = None;
         self.reconfigure(DataBaseVerb::Abort, tick, outputs);
     }
 }

@@ -1,0 +1,303 @@
+//! Postprocess of E-move: commands to Prim, the gripper and Quick Change, and the status to Subtask.
+
+use rcs_core::{
+    handshake::Lower,
+    interface::{
+        ChangingPose, EmoveOutputs, Reason, Report,
+        device::Picture,
+        emove::{EmoveCommand, EmoveStatus},
+        pose_range,
+        prim::{PrimCommand, PrimReport, PrimVerb},
+        quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
+    },
+    name::Name10,
+    pose::Pose,
+    process::Inputs,
+};
+use taskdata::files::{MovtabId, TaskData, TrajParaId};
+
+use super::{
+    gripper::{Gripper, Order, Request},
+    relative::{Reference, Relative},
+    robot_place::{GoneTo, commanded_pose},
+    route::LegGoal,
+    state::State,
+    tables::{Action, Ordered, Seen},
+};
+use crate::execution::Outcome;
+
+/// Which changing pose stands where in the outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Slot {
+    Departure,
+    Goal,
+    Between,
+    Located,
+}
+
+/// The process to which an action gives an order. Fingers that open on the way to a goal are not waited for,
+/// but the motion before must have come to its end.
+const fn ordered(action: Action) -> Option<Ordered> {
+    match action {
+        Action::RobotInit
+        | Action::Open
+        | Action::GoThru
+        | Action::GotoPt
+        | Action::DeltaMove(_)
+        | Action::GoWhile(_)
+        | Action::CalSensor
+        | Action::Centre
+        | Action::Align => Some(Ordered::Prim),
+        Action::GoUntil(_) => Some(Ordered::GoUntil),
+        Action::OpenToApproach | Action::Close | Action::OpenToDepart | Action::Calibrate => {
+            Some(Ordered::Gripper)
+        }
+        Action::CloseForHolster => Some(Ordered::GripperInHolster),
+        Action::Lock | Action::Unlock => Some(Ordered::QuickChange),
+        Action::Flood | Action::FloodAgain | Action::Precise | Action::PreciseAgain => Some(Ordered::Vision),
+        Action::Pause => Some(Ordered::All),
+        _ => None,
+    }
+}
+
+impl State {
+    /// Set the outputs that a row asks for.
+    pub(super) fn act(
+        &mut self,
+        action: Action,
+        seen: &Seen,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut EmoveOutputs,
+    ) {
+        let command = &inputs.memory.subtask.emove;
+        if let Some(ordered) = ordered(action) {
+            self.ordered = ordered;
+            self.uses_prim |= matches!(ordered, Ordered::Prim | Ordered::GoUntil | Ordered::All);
+        }
+        match action {
+            Action::Wait => {}
+            Action::RobotInit => self.send_prim(PrimVerb::RobotInit, inputs, outputs),
+            Action::Pause => self.pause_all(inputs, outputs),
+            Action::Manual => {
+                self.searched = 0;
+                self.execution.pass_up(Lower::Joystick, Reason::JoystickOn);
+            }
+            Action::GoThru => self.send_leg(PrimVerb::GoThru, inputs, outputs),
+            Action::GotoPt => self.send_leg(PrimVerb::GotoPt, inputs, outputs),
+            Action::DeltaMove(by) => self.send_relative(PrimVerb::DeltaMove, by, command, inputs, outputs),
+            Action::GoUntil(by) => self.send_relative(PrimVerb::GoUntil, by, command, inputs, outputs),
+            Action::GoWhile(by) => self.send_relative(PrimVerb::GoWhile, by, command, inputs, outputs),
+            Action::CalSensor => self.send_prim(PrimVerb::CalSensor, inputs, outputs),
+            Action::Lock => self.send_quick_change(QuickChangeVerb::Lock, inputs, outputs),
+            Action::Unlock => self.send_quick_change(QuickChangeVerb::Unlock, inputs, outputs),
+            Action::Open
+            | Action::OpenToApproach
+            | Action::CloseForHolster
+            | Action::Close
+            | Action::OpenToDepart
+            | Action::Calibrate
+            | Action::OpenByHand
+            | Action::CloseByHand => self.order(action, command, inputs, outputs),
+            Action::Arrive | Action::Located => self.arrive(command, outputs),
+            Action::Stand => self.stand(GoneTo::Location, command, inputs),
+            Action::StandInDrum => self.stand(GoneTo::Drum, command, inputs),
+            Action::Grasped => self.grasped(command, inputs),
+            Action::Acquired => {
+                self.grasped(command, inputs);
+                self.stand(GoneTo::Drum, command, inputs);
+            }
+            Action::Flood | Action::FloodAgain => {
+                self.take_picture(Picture::FastFlood, action, command, inputs, outputs);
+            }
+            Action::Precise | Action::PreciseAgain => {
+                self.take_picture(Picture::Precise, action, command, inputs, outputs);
+            }
+            Action::Centre | Action::Align => self.move_camera(action, command, inputs, outputs),
+            Action::Finish => self.finish(),
+            Action::Fail(reason) => self.fail(reason, inputs, outputs),
+            Action::FailGrip => self.fail(self.grippers.fault(inputs.tick, inputs.memory), inputs, outputs),
+            Action::FailRing => self.fail(self.ring_fault(inputs), inputs, outputs),
+            Action::PassUp => {
+                self.execution.pass_up(seen.orders.prim, inputs.memory.prim.status.reason);
+            }
+        }
+    }
+
+    /// Report done.
+    pub(super) fn finish(&mut self) {
+        self.execution.reason = Reason::None;
+        self.execution.finish();
+    }
+
+    /// Stop the robot and report an error.
+    fn fail(&mut self, reason: Reason, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
+        self.send_prim(PrimVerb::Pause, inputs, outputs);
+        self.execution.fail(reason);
+    }
+
+    /// What is wrong with the quick change.
+    fn ring_fault(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Reason {
+        let ring = &inputs.memory.quick_change;
+        let report = ring.status.report;
+        match self.quick_change.read(inputs.tick, &ring.header, ring.status.echo, report.lower()) {
+            Lower::Lost => Reason::NeighbourLost,
+            _ if report == QuickChangeReport::Stuck => Reason::QuickChangeStuck,
+            _ => Reason::QuickChangeFault,
+        }
+    }
+
+    /// PAUSE to Prim, the gripper and Quick Change: ramp down and hold, and leave everything as it is.
+    fn pause_all(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
+        self.searched = 0;
+        self.send_prim(PrimVerb::Pause, inputs, outputs);
+        let request = Request { order: Order::Pause, ..Request::default() };
+        self.grippers.send(request, inputs.tick, inputs.memory, outputs);
+        self.send_quick_change(QuickChangeVerb::Pause, inputs, outputs);
+    }
+
+    fn send_quick_change(
+        &mut self,
+        verb: QuickChangeVerb,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut EmoveOutputs,
+    ) {
+        outputs.quick_change =
+            QuickChangeCommand { number: self.quick_change.send(inputs.tick), command: verb };
+    }
+
+    /// A command to Prim that names no goal.
+    pub(super) fn send_prim(
+        &mut self,
+        verb: PrimVerb,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut EmoveOutputs,
+    ) {
+        outputs.prim = PrimCommand {
+            number: self.prim.send(inputs.tick),
+            command: verb,
+            sensor: Name10::EMPTY,
+            pose: 0,
+            movetable: MovtabId::NULL.number(),
+            trajectory_parameters: TrajParaId::NULL.number(),
+            end_effector_id: inputs.memory.quick_change.status.end_effector_id,
+        };
+    }
+
+    /// GO-THRU or GOTO-PT with the next point of the route.
+    fn send_leg(&mut self, verb: PrimVerb, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
+        let leg = self.route.as_mut().and_then(|route| {
+            let leg = route.leg(inputs.data);
+            route.advance(inputs.data);
+            leg
+        });
+        let Some(leg) = leg else { return };
+        let (pose, movetable) = match leg.at {
+            LegGoal::Record { pose, movetable } => (pose, movetable),
+            LegGoal::Computed(frame) => (self.publish(Slot::Between, Pose::from_frame(&frame), outputs), 0),
+        };
+        self.send_prim(verb, inputs, outputs);
+        outputs.prim.pose = pose;
+        outputs.prim.movetable = movetable;
+        outputs.prim.trajectory_parameters = leg.parameters.number();
+        self.place = None;
+    }
+
+    /// DELTA-MOVE, GO-UNTIL or GO-WHILE to Prim. If nothing says where the robot stands, the command fails.
+    fn send_relative(
+        &mut self,
+        verb: PrimVerb,
+        relative: Relative,
+        command: &EmoveCommand,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut EmoveOutputs,
+    ) {
+        let pose = match relative.reference() {
+            Reference::Location => Some(command.pose),
+            Reference::Stand => {
+                commanded_pose(inputs.memory).map(|pose| self.publish(Slot::Departure, pose, outputs))
+            }
+        };
+        let (Some(pose), Some(found)) = (pose, relative.record(command, inputs.data)) else {
+            return self.fail(Reason::BadRecord, inputs, outputs);
+        };
+        self.send_prim(verb, inputs, outputs);
+        outputs.prim.pose = pose;
+        outputs.prim.movetable = found.movetable.number();
+        outputs.prim.trajectory_parameters = found.para.number();
+        if relative.is_guarded() {
+            outputs.prim.sensor = found.sensor;
+        }
+        self.undetected = 0;
+        self.place = None;
+    }
+
+    /// Give the attached gripper the order that an action stands for.
+    fn order(
+        &mut self,
+        action: Action,
+        command: &EmoveCommand,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut EmoveOutputs,
+    ) {
+        let request = self.request(action, command, inputs);
+        if let Some(route) = &mut self.route {
+            route.opening_sent |= action == Action::Open;
+        }
+        self.grippers.send(request, inputs.tick, inputs.memory, outputs);
+    }
+
+    /// Give a changing pose a new record number and value.
+    pub(super) fn publish(&mut self, slot: Slot, pose: Pose, outputs: &mut EmoveOutputs) -> u32 {
+        self.last_pose = pose_range::next(pose_range::EMOVE, self.last_pose);
+        let [departure, goal, between, located] = &mut outputs.poses;
+        let record = match slot {
+            Slot::Departure => departure,
+            Slot::Goal => goal,
+            Slot::Between => between,
+            Slot::Located => located,
+        };
+        *record = ChangingPose { number: self.last_pose, pose };
+        self.last_pose
+    }
+
+    /// Give the ends of the route of a new command record numbers.
+    pub(super) fn publish_route(&mut self, outputs: &mut EmoveOutputs) {
+        if let Some(mut route) = self.route {
+            route.departure.number = self.publish(Slot::Departure, route.departure.pose, outputs);
+            route.goal.number = self.publish(Slot::Goal, route.goal.pose, outputs);
+            self.route = Some(route);
+        }
+    }
+
+    /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was
+    /// done before; a command that was given up for it ends in an error and is not resumed
+    /// (docs/design/ownership.md "Joystick box").
+    fn outcome(&self, inputs: &Inputs<'_, TaskData<'_>>) -> (Report, Reason) {
+        let execution = &self.execution;
+        let prim = &inputs.memory.prim;
+        let taken =
+            prim.status.report == PrimReport::JoystickOn && prim.header.stamp == inputs.tick.previous();
+        match (taken, execution.outcome) {
+            (true, Outcome::Done | Outcome::Joystick) => (Report::JoystickOn, Reason::JoystickOn),
+            (false, Outcome::Joystick) => (Report::Error, Reason::JoystickOn),
+            _ => (execution.report(), execution.reason),
+        }
+    }
+
+    /// Write the status to Subtask and the flags of the gripper processes.
+    pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
+        let (report, reason) = self.outcome(inputs);
+        outputs.header = self.execution.header(inputs.tick, self.step.text());
+        outputs.dormant = Gripper::attached(inputs.memory).dormancy();
+        outputs.status = EmoveStatus {
+            echo: self.execution.receiver.echo,
+            report,
+            reason,
+            reference_pose: inputs.memory.prim.status.sensor_pose,
+            object_held: self.held.is_some(),
+            end_effector_id: inputs.memory.quick_change.status.end_effector_id,
+            held_object: self.held.map(|held| held.object).unwrap_or_default(),
+            at: self.place.map(|place| place.location).unwrap_or_default(),
+        };
+    }
+}

@@ -1,0 +1,307 @@
+//! Preprocess of E-move: what is held, where the robot is, and the state variables of the tables.
+
+use rcs_core::{
+    frame::Frame,
+    handshake::{Arrival, Lower},
+    interface::{
+        CommonMemory,
+        device::VisionStatus,
+        emove::{EmoveCommand, EmoveVerb},
+        prim::{JoystickGrip, PrimReport},
+        quick_change::QuickChangeReport,
+        subtask::LocationKind,
+    },
+    pose::Pose,
+    process::Inputs,
+};
+use taskdata::files::{LocptId, TaskData};
+
+use super::{
+    fingers::fingers,
+    gripper::Gripper,
+    locate::{is_another, is_plausible},
+    robot_place::{GoneTo, RobotPlace, place_named, present_frame},
+    route::{Ahead, near, same_location},
+    state::State,
+    tables::{
+        At, Contact, Held, Holster, Knowledge, Link, Load, Mate, Orders, Pause, Readiness, Request, Ring,
+        Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch, Whereabouts,
+        e_pause::EPauseStep,
+        search::{Look, search},
+    },
+};
+use crate::{execution::Work, places::place_of};
+
+/// The robot is no longer where its last move ended if it is more than this many inches …
+/// (docs/design/motion.md "Where the robot is")
+const LOST_INCHES: f64 = 0.5;
+/// … or radians (2 degrees) off.
+const LOST_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
+/// Location points that are looked at in a tick to find out where the robot is.
+const SEARCH_PER_TICK: u32 = 64;
+/// Ticks after which vision counts as silent (4 s).
+const VISION_LIMIT: u64 = 100;
+/// Pictures of a kind that are taken in vain before LOCATE-OBJ gives up.
+const MAX_TRIES: u8 = 3;
+/// Ticks for which a GO-UNTIL may stay not-detected (1 s): the robot stands, and what has not come by then
+/// does not come.
+const PATIENCE: u32 = 25;
+/// Bits of the four sensors of a holster (V.1.2).
+const HOLSTER_SENSORS: u8 = 0x0F;
+
+/// What the sensors of a gripper's own holster see: parts gripper right, v-gripper left, tool gripper centre
+/// (ASSUMED).
+fn holster(gripper: u8, memory: &CommonMemory) -> Holster {
+    let status = &memory.prim.status;
+    let bits = match Gripper::of(gripper) {
+        Gripper::None => return Holster::Empty,
+        Gripper::Parts => status.holster_right,
+        Gripper::V => status.holster_left,
+        Gripper::Tool => status.holster_centre,
+    };
+    match bits & HOLSTER_SENSORS {
+        0 => Holster::Empty,
+        HOLSTER_SENSORS => Holster::Full,
+        _ => Holster::Partial,
+    }
+}
+
+const fn known(known: bool) -> Knowledge {
+    if known { Knowledge::Known } else { Knowledge::Unknown }
+}
+
+impl State {
+    /// Read the inputs of a tick.
+    pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> Seen {
+        let command = &inputs.memory.subtask.emove;
+        self.sense_neighbours(inputs);
+        self.sense_held(inputs);
+        let watch = self.sense_place(command, inputs);
+        let arrival = self.execution.receiver.observe(command.number);
+        let request =
+            if arrival == Arrival::New { self.look_up(command, inputs) } else { Request::default() };
+        let orders = self.orders(command, inputs);
+        let seen = Seen {
+            arrival,
+            verb: command.command,
+            request,
+            watch,
+            orders,
+            situation: self.situation(command, &orders, inputs),
+        };
+        self.button = inputs.memory.prim.status.joystick_grip;
+        seen
+    }
+
+    /// Follow the echoes until the first command, and count how long Prim has not detected anything.
+    fn sense_neighbours(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
+        let memory = inputs.memory;
+        self.prim.start(memory.prim.status.echo);
+        self.grippers.start(memory);
+        self.quick_change.start(memory.quick_change.status.echo);
+        self.vision.start(inputs.external.devices.vision.echo);
+        let prim = &memory.prim.status;
+        let undetected = prim.echo == self.prim.number && prim.report == PrimReport::NotDetected;
+        self.undetected = if undetected { self.undetected.saturating_add(1) } else { 0 };
+    }
+
+    /// Is the robot still where its last move ended? If [`search`] says so, look where else it is.
+    fn sense_place(&mut self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Watch {
+        let present = present_frame(inputs.memory);
+        if let Some(present) = &present {
+            let there = |pose: &Pose| {
+                pose.to_frame().is_ok_and(|frame| near(&frame, present, LOST_INCHES, LOST_RADIANS))
+            };
+            self.place = self.place.filter(|place| there(&place.pose));
+        }
+        let watch = Watch {
+            pause: match (command.command, self.step) {
+                (EmoveVerb::Pause, Step::EPause(EPauseStep::Standing)) => Pause::Standing,
+                (EmoveVerb::Pause, _) => Pause::UnderWay,
+                _ => Pause::Other,
+            },
+            outcome: self.execution.outcome,
+            place: self.whereabouts(inputs.data),
+            resolvers: known(present.is_some()),
+        };
+        match (search(self.step, &watch).action, &present) {
+            (Look::Look, Some(present)) => self.search(present, inputs.data),
+            (Look::Look, None) | (Look::Rest, _) => {}
+        }
+        watch
+    }
+
+    /// Look through some more location points for the one at which the robot stands.
+    fn search(&mut self, present: &Frame, data: &TaskData<'_>) {
+        for _ in 0..SEARCH_PER_TICK {
+            let next = LocptId::new(self.searched.saturating_add(1));
+            let Some(locpt) = data.locpt(next) else { return };
+            self.searched = next.number();
+            if near(&locpt.frame, present, LOST_INCHES, LOST_RADIANS) {
+                self.place = Some(RobotPlace {
+                    gone_to: GoneTo::Location,
+                    location: locpt.name,
+                    place: place_of(LocationKind::Point, next.number(), 0),
+                    pose: Pose::from_frame(present),
+                });
+                return;
+            }
+        }
+    }
+
+    /// Is it known where the robot is?
+    fn whereabouts(&self, data: &TaskData<'_>) -> Whereabouts {
+        if self.place.is_some() {
+            Whereabouts::Known
+        } else if data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
+            Whereabouts::Searching
+        } else {
+            Whereabouts::Unknown
+        }
+    }
+
+    /// How the last order stands.
+    fn orders(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Orders {
+        let (tick, memory) = (inputs.tick, inputs.memory);
+        let prim = &memory.prim;
+        let gripper = self.grippers.status(tick, memory);
+        Orders {
+            verb: command.command,
+            load: match self.held {
+                None if self.carrying && self.gripper_gone => Load::GripperGone,
+                None if self.carrying => Load::Lost,
+                _ => Load::Kept,
+            },
+            ordered: self.ordered,
+            prim: if self.uses_prim {
+                self.prim.read(tick, &prim.header, prim.status.echo, prim.status.report.lower())
+            } else {
+                Lower::Done
+            },
+            contact: if self.undetected > PATIENCE { Contact::Missed } else { Contact::Awaited },
+            opening: self.opening(gripper, inputs),
+            gripper,
+            ring: self.ring(inputs),
+            vision: self.vision(inputs),
+        }
+    }
+
+    /// Set the state variables of the commands.
+    fn situation(
+        &self,
+        command: &EmoveCommand,
+        orders: &Orders,
+        inputs: &Inputs<'_, TaskData<'_>>,
+    ) -> Situation {
+        let memory = inputs.memory;
+        let &Orders { prim, opening, gripper, ring, .. } = orders;
+        Situation {
+            work: Work::Busy,
+            ahead: self.route.map_or(Ahead::Nothing, |route| route.ahead(inputs.data)),
+            opening,
+            held: match self.held {
+                None => Held::Nothing,
+                Some(held) if held.object == command.object => Held::Right,
+                Some(_) => Held::Other,
+            },
+            fingers: fingers(command, inputs),
+            spread: self.spread(gripper, command, inputs),
+            readiness: match gripper {
+                Lower::Done if Gripper::attached(memory).is_uncalibrated(memory) => Readiness::Uncalibrated,
+                Lower::Done => Readiness::Ready,
+                _ => Readiness::Faulty,
+            },
+            mate: match memory.quick_change.status.end_effector_id {
+                0 => Mate::None,
+                id if id == command.end_effector_id => Mate::Right,
+                _ => Mate::Wrong,
+            },
+            ring,
+            holster: holster(command.end_effector_id, memory),
+            at: self.at(command),
+            sight: sight(inputs),
+            aim: known(self.aim(command, inputs).is_some()),
+            tries: if self.tries.saturating_add(1) < MAX_TRIES { Tries::Left } else { Tries::Spent },
+            link: if memory.prim.status.link_running { Link::Up } else { Link::Down },
+            prim,
+            tooling: self.tooling(ring, gripper, memory),
+            place: self.whereabouts(inputs.data),
+            button: match memory.prim.status.joystick_grip {
+                pressed if pressed == self.button => JoystickGrip::None,
+                pressed => pressed,
+            },
+        }
+    }
+
+    /// Where the robot is, seen from the command's location.
+    fn at(&self, command: &EmoveCommand) -> At {
+        match self.place {
+            Some(at) if same_location(&at.place, &place_named(command)) => match at.gone_to {
+                GoneTo::Drum => At::InDrum,
+                GoneTo::Location | GoneTo::Object(_) | GoneTo::View(_) => At::There,
+            },
+            _ => At::Elsewhere,
+        }
+    }
+
+    /// What Quick Change says of its ring to the last command.
+    fn ring(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Ring {
+        let ring = &inputs.memory.quick_change;
+        let report = ring.status.report;
+        match self.quick_change.read(inputs.tick, &ring.header, ring.status.echo, report.lower()) {
+            Lower::Pending | Lower::Executing => Ring::Busy,
+            Lower::Error | Lower::Joystick | Lower::Lost => Ring::Faulty,
+            Lower::Done => match report {
+                QuickChangeReport::Locked => Ring::Locked,
+                QuickChangeReport::Unlocked => Ring::Unlocked,
+                QuickChangeReport::Idle
+                | QuickChangeReport::Executing
+                | QuickChangeReport::SensorMalfunction
+                | QuickChangeReport::Stuck => Ring::Busy,
+            },
+        }
+    }
+
+    /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is
+    /// (VI.3.1 UP-INIT); with no gripper, or one that has come since, there is nothing to wait for.
+    fn tooling(&self, ring: Ring, gripper: Lower, memory: &CommonMemory) -> Tooling {
+        let asked = self.grippers.to == Gripper::attached(memory);
+        match (ring, gripper) {
+            (Ring::Faulty, _) => Tooling::RingFaulty,
+            (Ring::Busy, _) => Tooling::Busy,
+            (Ring::Locked | Ring::Unlocked, Lower::Error | Lower::Joystick | Lower::Lost) if asked => {
+                Tooling::GripFaulty
+            }
+            (Ring::Locked | Ring::Unlocked, Lower::Pending | Lower::Executing) => Tooling::Busy,
+            (Ring::Locked | Ring::Unlocked, _) => Tooling::Ready,
+        }
+    }
+
+    /// Has vision answered?
+    fn vision(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Vision {
+        let answer = &inputs.external.devices.vision;
+        let over = matches!(
+            answer.status,
+            VisionStatus::Done | VisionStatus::NothingSeen | VisionStatus::NotRecognised
+        );
+        if over && answer.echo == self.vision.number {
+            Vision::Answered
+        } else if inputs.tick.since(self.vision.sent) > VISION_LIMIT {
+            Vision::Silent
+        } else {
+            Vision::Waiting
+        }
+    }
+}
+
+/// What vision has answered.
+fn sight(inputs: &Inputs<'_, TaskData<'_>>) -> Sight {
+    let (request, answer) = (&inputs.memory.emove.vision, &inputs.external.devices.vision);
+    match answer.status {
+        VisionStatus::NotRecognised => Sight::Unrecognised,
+        VisionStatus::Done if !is_plausible(request, answer) => Sight::Implausible,
+        VisionStatus::Done if is_another(request, answer) => Sight::Unrecognised,
+        VisionStatus::Done => Sight::Seen,
+        _ => Sight::Missing,
+    }
+}

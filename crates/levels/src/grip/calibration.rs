@@ -1,0 +1,124 @@
+//! From counts to inches and pounds: scale and offset of the sensors, found by UP-INIT.
+
+use rcs_core::{
+    Plain,
+    interface::device::{ADC_FULL_SCALE, GripSensors},
+};
+
+use super::goal::{CLOSED_END, OPEN_END, SUPPLY_FORCE};
+
+/// Readings that differ by more than this from the last ones are not steady, counts: the noise, and less than
+/// a fine flow.
+const STEADY_COUNTS: u16 = 6;
+/// Least difference of the potentiometer between the ends of travel, counts.
+const LEAST_TRAVEL: f64 = 1000.0;
+/// Least difference of a strain gage between the supply force and none, counts.
+const LEAST_STRAIN: f64 = 400.0;
+
+/// A sensor that is linear: `value = (counts - zero) * gain`.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Scale {
+    /// Counts at value 0.
+    pub zero: f64,
+    /// Inches or pounds a count.
+    pub gain: f64,
+}
+
+impl Scale {
+    /// The line through a value at some counts and another at `span` counts more.
+    fn through(counts: f64, value: f64, span: f64, further: f64) -> Self {
+        let gain = (further - value) / span;
+        Self { zero: counts - value / gain, gain }
+    }
+
+    /// Inches or pounds.
+    pub(super) fn value(&self, counts: f64) -> f64 {
+        (counts - self.zero) * self.gain
+    }
+}
+
+/// Scale and offset of each sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Calibration {
+    /// Potentiometer: inches.
+    pub potentiometer: Scale,
+    /// Left strain gage: pounds.
+    pub left: Scale,
+    /// Right strain gage: pounds.
+    pub right: Scale,
+}
+
+/// Steady readings, counts.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Readings {
+    /// Potentiometer.
+    pub potentiometer: f64,
+    /// Left strain gage.
+    pub left: f64,
+    /// Right strain gage.
+    pub right: f64,
+}
+
+/// Sums over the ticks since the readings have been steady.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Steady {
+    /// Ticks in the sums.
+    pub ticks: u32,
+    /// Sum of the potentiometer's counts.
+    pub potentiometer: u32,
+    /// Sum of the left strain gage's counts.
+    pub left: u32,
+    /// Sum of the right strain gage's counts.
+    pub right: u32,
+}
+
+impl Calibration {
+    /// From the readings at both ends of travel and without force.
+    pub(super) fn new(closed: &Readings, open: &Readings, free: &Readings) -> Self {
+        let travel = open.potentiometer - closed.potentiometer;
+        let (left, right) = (closed.left - free.left, closed.right - free.right);
+        Self {
+            potentiometer: Scale::through(closed.potentiometer, CLOSED_END, travel, OPEN_END),
+            left: Scale::through(free.left, 0.0, left, SUPPLY_FORCE),
+            right: Scale::through(free.right, 0.0, right, SUPPLY_FORCE),
+        }
+    }
+}
+
+/// Do the readings tell the ends of travel and the supply force from none, without a converter at its end?
+pub(super) fn is_plausible(closed: &Readings, open: &Readings, free: &Readings) -> bool {
+    let full = f64::from(ADC_FULL_SCALE);
+    let unsaturated = |r: &Readings| r.potentiometer < full && r.left < full && r.right < full;
+    open.potentiometer - closed.potentiometer >= LEAST_TRAVEL
+        && closed.left - free.left >= LEAST_STRAIN
+        && closed.right - free.right >= LEAST_STRAIN
+        && unsaturated(closed)
+        && unsaturated(open)
+}
+
+impl Steady {
+    /// Take in the readings of a tick; those of the tick before tell whether they are steady.
+    pub(super) fn note(&mut self, now: &GripSensors, before: &GripSensors) {
+        let still = |now: u16, before: u16| now.abs_diff(before) <= STEADY_COUNTS;
+        let steady = still(now.potentiometer, before.potentiometer)
+            && still(now.strain_left, before.strain_left)
+            && still(now.strain_right, before.strain_right);
+        let sums = if steady { *self } else { Self::default() };
+        *self = Self {
+            ticks: sums.ticks.saturating_add(1),
+            potentiometer: sums.potentiometer.saturating_add(u32::from(now.potentiometer)),
+            left: sums.left.saturating_add(u32::from(now.strain_left)),
+            right: sums.right.saturating_add(u32::from(now.strain_right)),
+        };
+    }
+
+    /// The mean of the steady readings.
+    pub(super) fn mean(&self) -> Readings {
+        let ticks = f64::from(self.ticks.max(1));
+        Readings {
+            potentiometer: f64::from(self.potentiometer) / ticks,
+            left: f64::from(self.left) / ticks,
+            right: f64::from(self.right) / ticks,
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! What a command asks of the fingers.
+
+use rcs_core::{
+    Plain,
+    interface::grip::{GripCommand, GripVerb},
+    units::inches,
+};
+
+use super::tables::Flow;
+
+/// Opening at the closed end of travel, in (VIII.9.1: a closed gripper has 0.10 in).
+pub(super) const CLOSED_END: f64 = 0.10;
+/// Opening at the open end of travel, in.
+pub(super) const OPEN_END: f64 = 5.00;
+/// Force on each finger with the whole supply pressure behind it, lb: what the strain gages feel when the
+/// fingers are shut on each other. ASSUMED: the pads meet at the closed end of travel.
+pub(super) const SUPPLY_FORCE: f64 = 80.0;
+
+/// What the current command asks for: a copy, because the buffer of a commander that restarts is empty.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Goal {
+    /// What to do.
+    pub verb: GripVerb,
+    /// Opening, or the grasp size, in.
+    pub opening: f64,
+    /// Force, lb.
+    pub force: f64,
+    /// Greatest speed, in/s, if one is commanded.
+    pub speed: Option<f64>,
+}
+
+impl From<&GripCommand> for Goal {
+    fn from(command: &GripCommand) -> Self {
+        Self {
+            verb: command.command,
+            opening: inches(command.position),
+            force: f64::from(command.force),
+            speed: (command.velocity != 0).then(|| inches(command.velocity)),
+        }
+    }
+}
+
+impl Goal {
+    /// Can a gripper of this sort reach opening and force?
+    #[must_use]
+    pub fn is_attainable(&self) -> bool {
+        let reachable =
+            (CLOSED_END..=OPEN_END).contains(&self.opening) && self.speed.is_none_or(|s| s >= 0.0);
+        match self.verb {
+            GripVerb::Position | GripVerb::OpenGrip => reachable,
+            GripVerb::CloseGrip => reachable && (0.0..=SUPPLY_FORCE).contains(&self.force),
+            GripVerb::UpInit | GripVerb::Pause | GripVerb::None => true,
+        }
+    }
+
+    /// The greatest flow that is not faster than the commanded speed; the fine flow is the slowest.
+    pub(super) fn greatest_flow(&self) -> Flow {
+        match self.speed {
+            None => Flow::Coarse,
+            Some(speed) if speed >= 4.0 => Flow::Coarse,
+            Some(speed) if speed >= 1.0 => Flow::Medium,
+            Some(_) => Flow::Fine,
+        }
+    }
+}

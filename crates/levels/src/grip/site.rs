@@ -1,0 +1,44 @@
+//! Where a gripper that is servoed has its sensor words and its command.
+
+use rcs_core::interface::{
+    CommonMemory,
+    device::{DeviceInputs, GripSensors},
+    grip::GripCommand,
+};
+
+use super::tables::Gripper;
+
+/// Where a gripper that is servoed has its sensor words and its command.
+///
+/// The hand of the Active Pedestal is nearly identical to the parts gripper (III.9.2): one servo serves both.
+pub trait Site {
+    /// The name of the process.
+    const NAME: &'static str;
+    /// `endeff-id#` of the gripper; 0 for one that is not on the quick change.
+    const END_EFFECTOR_ID: u8;
+
+    /// The command buffer.
+    fn command(memory: &CommonMemory) -> &GripCommand;
+    /// The sensor words, and whether the gripper that they come from is there.
+    fn sensors(devices: &DeviceInputs) -> (Gripper, GripSensors);
+}
+
+/// The parts gripper, end effector 1, on the quick change (III.3.6).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PartsGripper;
+
+impl Site for PartsGripper {
+    const NAME: &'static str = "Grip";
+    const END_EFFECTOR_ID: u8 = 1;
+
+    fn command(memory: &CommonMemory) -> &GripCommand {
+        &memory.emove.grip
+    }
+
+    fn sensors(devices: &DeviceInputs) -> (Gripper, GripSensors) {
+        let quick_change = &devices.quick_change;
+        let locked = quick_change.locked && !quick_change.unlocked;
+        let attached = locked && quick_change.end_effector_id == Self::END_EFFECTOR_ID;
+        (if attached { Gripper::Attached } else { Gripper::Detached }, devices.grip)
+    }
+}

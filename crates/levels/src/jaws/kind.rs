@@ -1,0 +1,53 @@
+//! What makes one gripper that opens and closes differ from another.
+
+use rcs_core::interface::{CommonMemory, jaws::JawsCommand};
+
+/// What makes one gripper differ from another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    /// `endeff-id#`.
+    pub end_effector_id: u8,
+    /// Opening at the closed end of the fingers' way, in.
+    pub closed: f64,
+    /// Opening at the open end of the fingers' way, in.
+    pub opened: f64,
+}
+
+/// A gripper that opens and closes.
+pub trait Kind {
+    /// The manual's name of its process.
+    const NAME: &'static str;
+    /// Its parameters.
+    const PARAMETERS: Parameters;
+
+    /// Its command buffer.
+    fn command(memory: &CommonMemory) -> &JawsCommand;
+}
+
+/// The gripper for cylindrical parts, end effector 2 (III.3.7).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CylindricalPartGripper;
+
+impl Kind for CylindricalPartGripper {
+    const NAME: &'static str = "V-Grip";
+    /// The way of the fingers is ASSUMED.
+    const PARAMETERS: Parameters = Parameters { end_effector_id: 2, closed: 0.50, opened: 3.50 };
+
+    fn command(memory: &CommonMemory) -> &JawsCommand {
+        &memory.emove.v_grip
+    }
+}
+
+/// The gripper for tools, end effector 3 (III.3.8).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ToolGripper;
+
+impl Kind for ToolGripper {
+    const NAME: &'static str = "Tool-Grip";
+    /// The way of the fingers is ASSUMED.
+    const PARAMETERS: Parameters = Parameters { end_effector_id: 3, closed: 1.00, opened: 4.00 };
+
+    fn command(memory: &CommonMemory) -> &JawsCommand {
+        &memory.emove.tool_grip
+    }
+}

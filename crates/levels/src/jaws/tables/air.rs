@@ -1,0 +1,21 @@
+//! What the commands that move the fingers have in common.
+
+use rcs_core::decision_table;
+
+decision_table! {
+    /// AIR: fingers that have air are waited for until they stop. Without the gripper, or if they never stop,
+    /// there is no air.
+    pub AIR: fn air(super::Step, super::Situation) -> super::Action or () {
+        any {
+            1:  gripper: Detached       => Fail(WrongGripper);
+        }
+        Start {
+            2:                          => consult;
+        }
+        Move {
+            3:  motion: Moving          => Wait;
+            4:  motion: Endless         => Fail(JawsStuck);
+            5:  motion: Stopped         => consult;
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! What a command asks of hand and table.
+
+use rcs_core::interface::{
+    grip::{GripCommand, GripVerb},
+    pedestal::{PedestalCommand, PedestalVerb, TableStatus},
+};
+
+use super::tables::{Angle, Opening};
+use crate::{grip::goal::Goal, pedestal::table::is_within_limits};
+
+/// The command to the hand that opens or closes it as the pedestal is told; the number is missing.
+pub(super) fn hand_command(command: &PedestalCommand) -> GripCommand {
+    let (verb, force) = match command.command {
+        PedestalVerb::PreGrip | PedestalVerb::Release => (GripVerb::OpenGrip, 0),
+        PedestalVerb::Grip => (GripVerb::CloseGrip, command.grasp_force),
+        PedestalVerb::None | PedestalVerb::Pause | PedestalVerb::Flip => (GripVerb::Pause, 0),
+    };
+    GripCommand { command: verb, force, position: command.grasp_size, ..GripCommand::default() }
+}
+
+/// The absolute angle that a command leads to, 0.1 degree.
+pub(super) const fn table_angle(command: &PedestalCommand, table: &TableStatus) -> i32 {
+    match command.command {
+        PedestalVerb::Flip => table.position.saturating_add(command.table_angle),
+        PedestalVerb::PreGrip
+        | PedestalVerb::Grip
+        | PedestalVerb::Release
+        | PedestalVerb::Pause
+        | PedestalVerb::None => command.table_angle,
+    }
+}
+
+/// Can the table turn as a command asks?
+pub(super) fn angle(command: &PedestalCommand, table: &TableStatus) -> Angle {
+    match command.command {
+        PedestalVerb::Flip if !table.calibrated => Angle::Unknown,
+        PedestalVerb::PreGrip | PedestalVerb::Flip if !is_within_limits(table_angle(command, table)) => {
+            Angle::Beyond
+        }
+        PedestalVerb::PreGrip
+        | PedestalVerb::Flip
+        | PedestalVerb::Grip
+        | PedestalVerb::Release
+        | PedestalVerb::Pause
+        | PedestalVerb::None => Angle::Within,
+    }
+}
+
+/// Can the hand do what a command asks?
+pub(super) fn opening(command: &PedestalCommand) -> Opening {
+    if Goal::from(&hand_command(command)).is_attainable() { Opening::Within } else { Opening::Beyond }
+}

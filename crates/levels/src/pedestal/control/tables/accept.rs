@@ -1,0 +1,16 @@
+//! What a command must have before anything moves.
+
+use rcs_core::decision_table;
+
+decision_table! {
+    /// ACCEPT: a command that hand or table cannot execute is refused before anything moves. Half of a
+    /// PRE-GRIP would be worse than none.
+    pub ACCEPT: fn accept(super::Request) -> super::Action or () {
+        1:  asked: Before           => consult;
+        2:  verb: None              => Fail(UnknownCommand);
+        3:  angle: Unknown          => Fail(NotPrepared);
+        4:  angle: Beyond           => Fail(TableLimit);
+        5:  opening: Beyond         => Fail(GripUnattainable);
+        6:  opening: Within         => consult;
+    }
+}

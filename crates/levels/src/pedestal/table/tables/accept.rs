@@ -1,0 +1,14 @@
+//! What a command must be before the table turns.
+
+use rcs_core::decision_table;
+
+decision_table! {
+    /// ACCEPT: the table turns to no angle beyond its limits. A calibration that is under way goes on beside
+    /// a refusal.
+    pub ACCEPT: fn accept(super::Request) -> crate::execution::Refusal or () {
+        1:  asked: Before           => consult;
+        2:  verb: None              => Fail(UnknownCommand);
+        3:  angle: Beyond           => Fail(TableLimit);
+        4:  angle: Within           => consult;
+    }
+}

@@ -1,0 +1,21 @@
+//! What TURN and PAUSE have in common.
+
+use rcs_core::decision_table;
+
+decision_table! {
+    /// REST: nothing is decided before the motor has taken its order and stands. A table that turns already
+    /// is stopped first.
+    pub REST: fn rest(super::Step, super::Situation) -> super::Action or () {
+        any {
+            1:  motor: Standing | Silent    => consult;
+            2:  clock: Expired              => Lose(TableStuck);
+            3:  motor: Pending              => Wait;
+        }
+        Start {
+            4:  motor: Turning              => Stop;
+        }
+        Turning {
+            5:  motor: Turning              => Wait;
+        }
+    }
+}

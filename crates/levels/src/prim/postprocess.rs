@@ -1,0 +1,245 @@
+//! Postprocess of Prim: the motion, the command to T3I, and the status to E-move.
+
+use rcs_core::{
+    handshake::Lower,
+    interface::{
+        ChangingPose, PrimOutputs, Reason,
+        device::JoystickBox,
+        pose_range,
+        prim::{JoystickGrip, PrimReport, PrimStatus, PrimVerb},
+        t3i::{T3iCommand, T3iVerb},
+    },
+    pose::{Pose, WireFrame},
+    process::Inputs,
+    tick::Tick,
+    units::hundredths,
+};
+use taskdata::files::TaskData;
+
+use super::{
+    manual::Manual,
+    motion::Motion,
+    state::{Standstill, State},
+    tables::{
+        Action, FirstPause, Path, Seen,
+        path_clock::{Flow, path_clock},
+        record_pose::{Recording, record_pose},
+    },
+};
+use crate::execution::Outcome;
+
+impl State {
+    /// Do what only an accepted command asks for: the detected pose is that of the last GO-UNTIL.
+    pub(super) fn begin(&self, outputs: &mut PrimOutputs) {
+        if self.target.verb == PrimVerb::GoUntil {
+            let [_, _, detected, _] = &mut outputs.poses;
+            *detected = ChangingPose::default();
+        }
+    }
+
+    /// Carry out the action of the command's row.
+    pub(super) fn act(
+        &mut self,
+        action: Action,
+        seen: &Seen,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut PrimOutputs,
+    ) {
+        let devices = &inputs.external.devices;
+        self.manual.release();
+        match action {
+            Action::Wait => {}
+            Action::Go => self.go(),
+            Action::Halt => self.halt(),
+            Action::Restart => {
+                self.drop_position();
+                self.command_t3i(T3iVerb::Restart, inputs.tick, &mut outputs.t3i);
+            }
+            Action::TakePosition => {
+                self.motion = seen.feedback.as_ref().map(Motion::at_rest);
+                self.execution.finish();
+            }
+            Action::Yield => {
+                self.execution.pass_up(Lower::Joystick, Reason::JoystickOn);
+                self.halt();
+            }
+            Action::Drive => {
+                self.execution.pass_up(Lower::Joystick, Reason::JoystickOn);
+                self.manual.ask(&devices.joystick);
+            }
+            Action::Detect => {
+                self.execution.reason = Reason::None;
+                self.detect(seen, outputs);
+            }
+            Action::Miss => self.execution.reason = Reason::NotDetected,
+            Action::Sample => self.calibration.sample(&devices.force),
+            Action::Calibrate => {
+                self.calibration.finish();
+                self.execution.finish();
+            }
+            Action::Finish => self.execution.finish(),
+            Action::Fail(reason) => {
+                self.execution.fail(reason);
+                self.halt();
+            }
+        }
+    }
+
+    /// Give the goal of the command to the motion.
+    fn go(&mut self) {
+        if let (Some(motion), Some(goal)) = (&mut self.motion, &self.target.goal) {
+            motion.go(&goal.frame.frame(), &goal.limits, goal.through);
+        }
+        self.standstill = Standstill::default();
+    }
+
+    fn halt(&mut self) {
+        if let Some(motion) = &mut self.motion {
+            motion.halt();
+        }
+    }
+
+    /// The condition has come: publish where the resolvers see the robot, or without them where it was sent,
+    /// and stop it.
+    fn detect(&mut self, seen: &Seen, outputs: &mut PrimOutputs) {
+        let commanded = self.motion.as_ref().map(Motion::frame);
+        let [_, _, detected, _] = &mut outputs.poses;
+        self.publish(detected, seen.resolvers.or(commanded).as_ref().map(Pose::from_frame));
+        self.halt();
+        self.standstill = Standstill::default();
+    }
+
+    fn drop_position(&mut self) {
+        self.motion = None;
+        self.manual = Manual::default();
+    }
+
+    /// Write a command with a new number to T3I.
+    fn command_t3i(&mut self, command: T3iVerb, tick: Tick, t3i: &mut T3iCommand) {
+        let frame = match (command, &self.motion) {
+            (T3iVerb::Point, Some(motion)) => WireFrame::from_frame(&motion.frame()),
+            _ => WireFrame::default(),
+        };
+        *t3i = T3iCommand { cycle: tick, number: self.t3i.send(tick), command, frame };
+    }
+
+    /// Consult the tables that look at the motion as the command's row has left it, and do what they ask for.
+    /// True if the commanded pose is recorded.
+    pub(super) fn follow_path(
+        &mut self,
+        seen: &Seen,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut PrimOutputs,
+    ) -> Recording {
+        let path = Path {
+            first_pause: if self.t3i.started { FirstPause::Sent } else { FirstPause::Due },
+            posture: self.posture(seen.situation.t3i),
+            t3i: seen.situation.t3i,
+            button: seen.button,
+        };
+        let (clock, record) = (path_clock((), &path), record_pose((), &path));
+        (self.rows.path_clock, self.rows.record_pose) = (clock.row, record.row);
+        match clock.action {
+            Flow::Repeat => {}
+            Flow::Advance => {
+                self.advance(inputs.external.devices.joystick.velocity);
+                self.command_t3i(T3iVerb::Point, inputs.tick, &mut outputs.t3i);
+            }
+            Flow::Abandon => {
+                self.drop_position();
+                self.command_t3i(T3iVerb::Pause, inputs.tick, &mut outputs.t3i);
+            }
+        }
+        record.action
+    }
+
+    /// Let a tick pass on the path; `knob` is the velocity knob, 0 to 1000.
+    fn advance(&mut self, knob: u16) {
+        let Some(motion) = &mut self.motion else { return };
+        if self.manual.is_moving() {
+            let frame = self.manual.step(&motion.frame(), knob);
+            motion.put(&frame);
+        } else {
+            motion.step(knob);
+        }
+    }
+
+    /// Write the pose records, the status to E-move, and the LEDs of the joystick box.
+    pub(super) fn report(
+        &mut self,
+        recording: Recording,
+        seen: &Seen,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut PrimOutputs,
+    ) {
+        let devices = &inputs.external.devices;
+        let commanded = self.motion.as_ref().map(|motion| Pose::from_frame(&motion.frame()));
+        let [present, sensor, detected, recorded] = &mut outputs.poses;
+        self.publish(present, commanded);
+        self.publish(sensor, seen.resolvers.as_ref().map(Pose::from_frame));
+        if recording == Recording::Record {
+            self.publish(recorded, commanded);
+        }
+        let execution = &self.execution;
+        let engaged = self.manual.engaged;
+        outputs.header = execution.header(inputs.tick, self.step.text());
+        outputs.status = PrimStatus {
+            echo: execution.receiver.echo,
+            report: report(execution.outcome, execution.reason),
+            reason: execution.reason,
+            restarting: execution.outcome == Outcome::Executing && outputs.t3i.command == T3iVerb::Restart,
+            link_running: self.motion.is_some() && inputs.memory.t3i.status.link_running,
+            present_pose: present.number,
+            sensor_pose: sensor.number,
+            detected_pose: detected.number,
+            holster_right: devices.holsters.right,
+            holster_left: devices.holsters.left,
+            holster_centre: devices.holsters.centre,
+            joystick_grip: if engaged { gripper_buttons(&devices.joystick) } else { JoystickGrip::None },
+            recorded_pose: recorded.number,
+            recording: recording == Recording::Record,
+            sensed: self.sensed,
+            distance: self.motion.as_ref().map_or(0, |motion| hundredths(motion.distance())),
+        };
+        outputs.joystick_leds = if engaged { devices.joystick.frame } else { 0 };
+    }
+
+    /// Write a pose record, under a new number if the pose is another; no pose empties the record.
+    fn publish(&mut self, record: &mut ChangingPose, pose: Option<Pose>) {
+        match pose {
+            None => *record = ChangingPose::default(),
+            Some(pose) if record.number != 0 && record.pose == pose => {}
+            Some(pose) => {
+                self.newest_pose = pose_range::next(pose_range::PRIM, self.newest_pose);
+                *record = ChangingPose { number: self.newest_pose, pose };
+            }
+        }
+    }
+}
+
+/// Push-buttons F and H (III.3.3); both together mean nothing.
+const fn gripper_buttons(joystick: &JoystickBox) -> JoystickGrip {
+    match (joystick.open, joystick.close) {
+        (true, false) => JoystickGrip::Open,
+        (false, true) => JoystickGrip::Close,
+        (true, true) | (false, false) => JoystickGrip::None,
+    }
+}
+
+/// The outcome as `status-report` (V.1.2).
+const fn report(outcome: Outcome, reason: Reason) -> PrimReport {
+    match (outcome, reason) {
+        (Outcome::Idle, _) => PrimReport::Idle,
+        (Outcome::Executing, Reason::NotDetected) => PrimReport::NotDetected,
+        (Outcome::Executing, _) => PrimReport::Executing,
+        (Outcome::Done, _) => PrimReport::Done,
+        (Outcome::Joystick, _) => PrimReport::JoystickOn,
+        (Outcome::Error, Reason::LinkOff) => PrimReport::T3LinkOff,
+        (Outcome::Error, Reason::LinkError) => PrimReport::T3LinkErr,
+        (Outcome::Error, Reason::InterfaceSilent) => PrimReport::NoRespT3i,
+        (Outcome::Error, Reason::InterfaceRefused) => PrimReport::T3BadCommand,
+        (Outcome::Error, Reason::SensorError) => PrimReport::SensorError,
+        (Outcome::Error, Reason::Detected) => PrimReport::DetectedErr,
+        (Outcome::Error, _) => PrimReport::Error,
+    }
+}

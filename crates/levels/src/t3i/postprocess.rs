@@ -1,0 +1,145 @@
+//! Postprocess of T3I: the queue, the frame on the line, and the status to Prim.
+
+use core::f64::consts::PI;
+
+use depc::{
+    host::Intent,
+    step::Position,
+    wire::{DataCommand, NO_FUNCTION},
+};
+use rcs_core::{
+    handshake::Arrival,
+    interface::{
+        Header, T3iOutputs,
+        device::{LinkBytes, RESOLVER_COUNTS, Resolvers},
+        t3i::{LinkFault, T3iReport, T3iStatus},
+    },
+    kinematics::T3,
+    name::Name16,
+    pose::WireFrame,
+    process::Inputs,
+};
+
+use super::{
+    state::State,
+    tables::{
+        Action, Seen, Step,
+        receive::{Intake, ReceiveStep},
+    },
+};
+
+impl State {
+    /// Do with the command in the buffer what RECEIVE says.
+    pub(super) fn take(&mut self, intake: Intake, seen: &Seen) {
+        let arrival = seen.request.arrival;
+        if matches!(arrival, Arrival::New | Arrival::Restarted) {
+            self.command = seen.command.command;
+        }
+        if arrival == Arrival::New {
+            self.step = Step::first(self.command);
+        }
+        match intake {
+            Intake::Keep | Intake::Ignore => {}
+            Intake::Restart => {
+                self.empty();
+                self.host.forgive();
+            }
+            Intake::Pause | Intake::Refuse => self.empty(),
+            Intake::Append => self.append(seen.command.frame),
+        }
+    }
+
+    /// Put the frame of this tick on the line.
+    pub(super) fn send(&mut self, action: Action, seen: &Seen) -> LinkBytes {
+        let mut tx = LinkBytes::default();
+        let command = |position: &Position| {
+            Intent::Position(DataCommand { function: NO_FUNCTION, plate: position.plate })
+        };
+        match action {
+            Action::Nothing(_) => drop(self.host.transmit(&Intent::Idle, &mut tx)),
+            Action::Restart(_) => drop(self.host.transmit(&Intent::Restart, &mut tx)),
+            Action::Repeat(_) => drop(self.host.transmit(&command(&self.position), &mut tx)),
+            Action::Advance(_) => {
+                if let Some(next) = seen.advance
+                    && self.host.transmit(&command(&next.position), &mut tx)
+                {
+                    self.position = next.position;
+                    if next.reached {
+                        self.remove_first();
+                    } else {
+                        self.host.count_limited();
+                    }
+                }
+            }
+            Action::Refuse(_) => {
+                self.empty();
+                self.receive = ReceiveStep::Refusing;
+                self.host.transmit(&command(&self.position), &mut tx);
+            }
+        }
+        tx
+    }
+
+    /// The output buffers.
+    pub(super) fn outputs<Data: ?Sized>(
+        &self,
+        action: Action,
+        link_tx: LinkBytes,
+        inputs: &Inputs<'_, Data>,
+    ) -> T3iOutputs {
+        let resolvers = &inputs.external.devices.resolvers;
+        let resolver_frame = resolver_frame(resolvers);
+        let running = self.host.is_running();
+        let header = Header {
+            stamp: inputs.tick,
+            republished: false,
+            table: self.table,
+            row: self.row,
+            step: Name16::clipped(self.step.text()),
+        };
+        let status = T3iStatus {
+            cycle: inputs.tick,
+            cycle_echo: inputs.memory.prim.t3i.cycle,
+            echo: self.receiver.echo,
+            command: self.command,
+            report: action.report(),
+            fault: match self.host.fault() {
+                LinkFault::None if self.receive == ReceiveStep::Refusing => LinkFault::InvalidCommand,
+                fault => fault,
+            },
+            frame_feedback: if running {
+                WireFrame::from_frame(&self.position.plate.to_tool(&T3))
+            } else {
+                resolver_frame
+            },
+            scale_factor: i32::try_from(RESOLVER_COUNTS).unwrap_or(i32::MAX),
+            joint_limit: 0,
+            resolver_frame,
+            resolver_valid: resolvers.valid,
+            link_running: running,
+            counters: *self.host.counters(),
+        };
+        T3iOutputs { header, status, link_tx }
+    }
+}
+
+impl Action {
+    /// What is reported to Prim.
+    const fn report(self) -> T3iReport {
+        match self {
+            Self::Nothing(report)
+            | Self::Restart(report)
+            | Self::Repeat(report)
+            | Self::Advance(report)
+            | Self::Refuse(report) => report,
+        }
+    }
+}
+
+/// The tool frame at the angles of the resolvers; counts beyond 17 bits are turns too many and do not matter.
+fn resolver_frame(resolvers: &Resolvers) -> WireFrame {
+    let turn = 2.0 * PI / f64::from(RESOLVER_COUNTS);
+    WireFrame::from_frame(
+        &T3.forward(&resolvers.counts.map(|counts| f64::from(counts % RESOLVER_COUNTS) * turn)),
+    )
+}

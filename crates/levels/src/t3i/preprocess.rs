@@ -1,0 +1,115 @@
+//! Preprocess of T3I: what came over the line, and the state variables.
+
+use depc::{
+    Plate,
+    host::HostEvent,
+    step::{Position, Step, step},
+};
+use rcs_core::{
+    handshake::{Arrival, successor},
+    interface::t3i::{LinkFault, T3iCommand, T3iVerb},
+    kinematics::T3,
+    pose::WireFrame,
+    process::Inputs,
+};
+
+use super::{
+    state::State,
+    tables::{Above, Line, Link, Point, Queue, Request, Seen, Situation, Trouble, Way, receive::ReceiveStep},
+};
+
+impl State {
+    /// Read the line and the command buffer.
+    pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> Seen {
+        self.receive_bytes(inputs);
+        let prim = &inputs.memory.prim;
+        let command = prim.t3i;
+        let point = self.point(&command);
+        let arrival = self.receiver.observe(command.number);
+        let live = prim.header.stamp == inputs.tick.previous() && !prim.header.republished;
+        let line = if self.host.can_send() {
+            Line::Free
+        } else if self.host.is_running() {
+            Line::Busy
+        } else {
+            Line::Down
+        };
+        Seen {
+            request: Request { arrival, command: command.command, point, link: self.link() },
+            command,
+            prim: if live { Above::Live } else { Above::Still },
+            line,
+            advance: if line == Line::Free && live { self.advance(arrival, &command) } else { None },
+        }
+    }
+
+    /// Give the host's end of the link the bytes that have arrived. The queue does not outlive the link.
+    fn receive_bytes<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) {
+        let devices = &inputs.external.devices;
+        // First, because a port that has taken a part of a frame is not ready either, and this says more.
+        let torn = if devices.link_unsent { self.host.unsent() } else { HostEvent::None };
+        match self.host.receive(&devices.link_rx, devices.link_ready).max(torn) {
+            HostEvent::Started => {
+                self.position = Position::reported(self.host.position(), &T3);
+                self.empty();
+            }
+            HostEvent::Lost => self.empty(),
+            HostEvent::None | HostEvent::Acknowledged => {}
+        }
+    }
+
+    /// What the point of a new command is worth.
+    fn point(&self, command: &T3iCommand) -> Point {
+        if command.number != successor(self.receiver.echo) {
+            Point::Gap
+        } else if !self.has_room() {
+            Point::Full
+        } else if has_words(&command.frame, &self.position.plate) {
+            Point::Next
+        } else {
+            Point::Unsendable
+        }
+    }
+
+    fn link(&self) -> Link {
+        match self.host.fault() {
+            LinkFault::None if self.host.is_running() => Link::Running,
+            LinkFault::None => Link::Starting,
+            _ => Link::Failed,
+        }
+    }
+
+    /// As far as the limits allow towards the oldest point, or towards a new one that finds the queue empty.
+    fn advance(&self, arrival: Arrival, command: &T3iCommand) -> Option<Step> {
+        let new =
+            Some(&command.frame).filter(|_| arrival == Arrival::New && command.command == T3iVerb::Point);
+        let goal = self.first().or(new)?.to_frame().ok()?;
+        step(&self.position, &goal, &T3, &self.limits).ok()
+    }
+
+    /// The state variables of the command's table, once RECEIVE has decided.
+    pub(super) fn situation(&self, seen: &Seen) -> Situation {
+        Situation {
+            trouble: if self.host.fault() != LinkFault::None {
+                Trouble::Fault
+            } else if self.receive == ReceiveStep::Refusing {
+                Trouble::Refusal
+            } else {
+                Trouble::None
+            },
+            line: seen.line,
+            prim: seen.prim,
+            queue: match self.queued {
+                0 => Queue::Empty,
+                1 => Queue::One,
+                _ => Queue::More,
+            },
+            way: if seen.advance.is_some() { Way::Sendable } else { Way::Unsendable },
+        }
+    }
+}
+
+/// True if the frame is one and its end plate has words on the line.
+fn has_words(frame: &WireFrame, near: &Plate) -> bool {
+    frame.to_frame().is_ok_and(|tool| Plate::from_tool(&tool, &T3, near).is_ok())
+}

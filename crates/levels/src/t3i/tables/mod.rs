@@ -1,0 +1,157 @@
+//! Decision tables of T3I: what comes from Prim, what all commands have in common, and a file a command.
+
+pub mod pause;
+pub mod point;
+pub mod receive;
+pub mod restart;
+pub mod trouble;
+
+use depc::step::Step as Advance;
+use rcs_core::{
+    Actions, Plain, Variables, commands,
+    handshake::Arrival,
+    interface::t3i::{T3iCommand, T3iReport, T3iVerb},
+};
+
+/// What a new POINT is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Point {
+    /// It is the next in order, and the line can carry its frame.
+    Next,
+    /// A number was left out: a point is missing, and the path would have a jump.
+    Gap,
+    /// The frame is none, or has no words on the line.
+    Unsendable,
+    /// The queue is full.
+    Full,
+}
+
+/// The link, as a precondition of points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Link {
+    /// It runs.
+    Running,
+    /// No report has come yet.
+    Starting,
+    /// It has failed since the last RESTART.
+    Failed,
+}
+
+/// What there is to report as an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Trouble {
+    /// Nothing.
+    None,
+    /// A command was refused.
+    Refusal,
+    /// The link has failed since the last RESTART.
+    Fault,
+}
+
+/// What the line can take in this tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Line {
+    /// No position is known: nothing but a restart.
+    Down,
+    /// A frame is outstanding.
+    Busy,
+    /// A frame.
+    Free,
+}
+
+/// Does Prim work?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Above {
+    /// It has run in the last tick.
+    Live,
+    /// It is held, dormant or lost.
+    Still,
+}
+
+/// Points that wait, before this tick's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Queue {
+    /// None: the output is the goal.
+    Empty,
+    /// One: another may come.
+    One,
+    /// More than one: none may come.
+    More,
+}
+
+/// The position to send on the way to the oldest point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Way {
+    /// It has words on the line.
+    Sendable,
+    /// It has none, or nothing is to be sent.
+    Unsendable,
+}
+
+/// What is in the command buffer, for [`receive::RECEIVE`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Request {
+    /// Is it new?
+    pub arrival: Arrival,
+    /// The command.
+    pub command: T3iVerb,
+    /// The point of a POINT.
+    pub point: Point,
+    /// The link.
+    pub link: Link,
+}
+
+/// The state variables of a tick, for the tables of the commands.
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Situation {
+    /// What there is to report as an error.
+    pub trouble: Trouble,
+    /// The line.
+    pub line: Line,
+    /// Prim.
+    pub prim: Above,
+    /// The queue.
+    pub queue: Queue,
+    /// The way to the oldest point.
+    pub way: Way,
+}
+
+/// What preprocess has found in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// What is in the command buffer.
+    pub request: Request,
+    /// The command.
+    pub command: T3iCommand,
+    /// Does Prim work?
+    pub prim: Above,
+    /// The line.
+    pub line: Line,
+    /// As far as the limits allow towards the oldest point, the new one included.
+    pub advance: Option<Advance>,
+}
+
+/// What a row can ask for; each with the report to Prim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+pub enum Action {
+    /// Nothing goes out, or what the link itself has to repeat.
+    Nothing(T3iReport),
+    /// A restart goes out.
+    Restart(T3iReport),
+    /// The last position once more, so that the loss of the link is noticed.
+    Repeat(T3iReport),
+    /// The next point, or as much of the way to it as the limits allow.
+    Advance(T3iReport),
+    /// The last position once more. The queue is emptied, and the command counts as invalid from now on.
+    Refuse(T3iReport),
+}
+
+commands! {
+    /// Consult the tables of a command.
+    pub fn of_command(T3iVerb, enum Step, Situation) -> Action {
+        others: receive::RECEIVE, trouble::TROUBLE;
+        None | Pause    => trouble::trouble then pause::pause;
+        Restart         => trouble::trouble then restart::restart;
+        Point           => trouble::trouble then point::point;
+    }
+}

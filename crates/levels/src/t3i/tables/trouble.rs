@@ -1,0 +1,12 @@
+//! What all commands have in common: errors.
+
+use rcs_core::decision_table;
+
+decision_table! {
+    /// TROUBLE: after a refusal or a failure of the link the last position is repeated, whatever the command.
+    pub TROUBLE: fn trouble(super::Situation) -> super::Action or () {
+        1: trouble: Refusal | Fault, line: Free             => Repeat(Error);
+        2: trouble: Refusal | Fault, line: Busy | Down      => Nothing(Error);
+        3: trouble: None                                    => consult;
+    }
+}

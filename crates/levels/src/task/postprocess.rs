@@ -1,0 +1,180 @@
+//! Postprocess of Task: commands to Subtask and to the Data System, and the status to the HWSC.
+
+use rcs_core::{
+    interface::{
+        ChangingPose, Reason, TaskOutputs,
+        data_base::DataBaseVerb,
+        hws::{HwsReport, HwsStatus},
+        pose_range,
+        subtask::{SubtaskCommand, SubtaskVerb},
+    },
+    process::Inputs,
+};
+use taskdata::files::TaskData;
+
+use super::{
+    data_system::DataSystem,
+    plan::{Plan, Site},
+    state::State,
+    tables::{Action, Goal, Ordered, Seen, Takeover, joystick::Control},
+};
+use crate::execution::Outcome;
+
+impl State {
+    /// Take over a command that was accepted, and give its poses new record numbers: T-POSE-1 source,
+    /// T-POSE-2 destination, T-POSE-3 end-at.
+    pub(super) fn begin(&mut self, plan: &Plan, outputs: &mut TaskOutputs) {
+        self.plan = *plan;
+        let sites = [&mut self.plan.source, &mut self.plan.destination, &mut self.plan.end_at];
+        for (slot, site) in outputs.poses.iter_mut().zip(sites) {
+            self.last_pose = pose_range::next(pose_range::TASK, self.last_pose);
+            *slot = ChangingPose { number: self.last_pose, ..ChangingPose::default() };
+            if let Some(location) = &mut site.location {
+                slot.pose = location.pose.pose;
+                location.pose = *slot;
+            }
+        }
+    }
+
+    /// Do what is to be done about the joystick box.
+    pub(super) fn take_over(
+        &mut self,
+        takeover: Takeover,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut TaskOutputs,
+    ) {
+        match takeover {
+            Takeover::None | Takeover::Refuse | Takeover::Resume => return,
+            Takeover::Clear => self.execution.outcome = Outcome::Idle,
+            Takeover::Interrupt | Takeover::Pause => {}
+        }
+        self.send(SubtaskVerb::Pause, &Site::default(), inputs, outputs);
+    }
+
+    /// Set the outputs that a row asks for.
+    pub(super) fn act(
+        &mut self,
+        action: Action,
+        seen: &Seen,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut TaskOutputs,
+    ) {
+        let (plan, tick) = (self.plan, inputs.tick);
+        match action {
+            Action::Wait => {}
+            Action::Pause => self.send(SubtaskVerb::Pause, &Site::default(), inputs, outputs),
+            Action::GetEndeff => self.send(SubtaskVerb::GetEndeff, &plan.source, inputs, outputs),
+            Action::GetObject => self.send(SubtaskVerb::GetObject, &plan.source, inputs, outputs),
+            Action::FixGrip => self.send(SubtaskVerb::FixGrip, &plan.source, inputs, outputs),
+            Action::PlaceObj => self.send(SubtaskVerb::PlaceObj, &plan.destination, inputs, outputs),
+            Action::MoveObjToDest => {
+                self.send(SubtaskVerb::MoveObjToDest, &plan.destination, inputs, outputs);
+            }
+            Action::GotoDest => self.send(SubtaskVerb::GotoDest, &plan.destination, inputs, outputs),
+            Action::GotoEndpt => self.send(SubtaskVerb::GotoEndpt, &plan.end_at, inputs, outputs),
+            Action::Position(Goal::Source) => {
+                self.send(SubtaskVerb::Position, &plan.source, inputs, outputs);
+            }
+            Action::Position(Goal::Destination) => {
+                self.send(SubtaskVerb::Position, &plan.destination, inputs, outputs);
+            }
+            Action::Release => self.send(SubtaskVerb::Release, &plan.source, inputs, outputs),
+            Action::InsertTool => self.send_tool(SubtaskVerb::InsertTool, inputs, outputs),
+            Action::ReleaseTool => self.send_tool(SubtaskVerb::ReleaseTool, inputs, outputs),
+            Action::AcquireTool => self.send_tool(SubtaskVerb::AcquireTool, inputs, outputs),
+            Action::RemoveTool => self.send_tool(SubtaskVerb::RemoveTool, inputs, outputs),
+            Action::Abort => self.order().reconfigure(DataBaseVerb::Abort, tick, outputs),
+            Action::Initiate => self.order().reconfigure(DataBaseVerb::Initiate, tick, outputs),
+            Action::Startup => self.order().reconfigure(DataBaseVerb::Startup, tick, outputs),
+            Action::Disconnect => self.order().disconnect(tick, outputs),
+            Action::Connect => {
+                self.data_system.connected = true;
+                self.execution.finish();
+            }
+            Action::ConnectAndTell => {
+                self.data_system.connected = true;
+                self.order().tell_owed(tick, outputs);
+            }
+            Action::TellOwed => self.order().tell_owed(tick, outputs),
+            Action::AskAgain => self.order().ask_again(tick, outputs),
+            Action::Update => self.tell(inputs, outputs),
+            Action::UpdateAndGotoEndpt => {
+                self.tell(inputs, outputs);
+                self.send(SubtaskVerb::GotoEndpt, &plan.end_at, inputs, outputs);
+            }
+            Action::AwaitUpdate => self.ordered = Ordered::DataSystem,
+            Action::Finish => self.execution.finish(),
+            Action::Fail(reason) => self.execution.fail(reason),
+            Action::PassUp => {
+                self.execution.pass_up(seen.orders.subtask, inputs.memory.subtask.status.reason);
+            }
+        }
+    }
+
+    /// The Data System, which has the last order from now on.
+    const fn order(&mut self) -> &mut DataSystem {
+        self.ordered = Ordered::DataSystem;
+        &mut self.data_system
+    }
+
+    /// Tell the data base where the object now is.
+    fn tell(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
+        let below = &inputs.memory.subtask.status;
+        let in_hand = below.object_held && self.plan.object == Some(below.held_object);
+        self.plan.update_due = false;
+        let plan = self.plan;
+        self.order().tell(&plan, in_hand, inputs.tick, outputs);
+    }
+
+    /// A command to Subtask for the object of the plan at one of its locations.
+    fn send(
+        &mut self,
+        verb: SubtaskVerb,
+        site: &Site,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut TaskOutputs,
+    ) {
+        self.ordered = Ordered::Subtask;
+        let (plan, location) = (&self.plan, site.location.unwrap_or_default());
+        outputs.subtask = SubtaskCommand {
+            number: self.subtask.send(inputs.tick),
+            command: verb,
+            object: plan.object.unwrap_or_default(),
+            end_effector_id: plan.end_effector_id,
+            source_grip: plan.source.grip,
+            destination_grip: plan.destination.grip,
+            object_parameters: site.parameters.unwrap_or_default(),
+            location: location.name,
+            location_kind: location.kind,
+            location_record: location.record,
+            location_array: location.array,
+            pose: location.pose.number,
+        };
+    }
+
+    /// A tool command to Subtask, which names the location itself. A tool that the command does not name is
+    /// the one that is held.
+    fn send_tool(&mut self, verb: SubtaskVerb, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
+        let Site { grip, parameters, .. } = *self.plan.tool_site();
+        self.send(verb, &Site { location: None, grip, parameters }, inputs, outputs);
+        (outputs.subtask.source_grip, outputs.subtask.destination_grip) = (grip, grip);
+        if self.plan.object.is_none() {
+            outputs.subtask.object = inputs.memory.subtask.status.held_object;
+        }
+    }
+
+    /// Write the status to the HWSC.
+    pub(super) fn report(&self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
+        let execution = &self.execution;
+        let (report, reason) = match (self.control, execution.outcome) {
+            (Control::Manual, _) => (HwsReport::JoystickOn, Reason::JoystickOn),
+            (Control::Automatic, Outcome::Idle) => (HwsReport::Idle, execution.reason),
+            (Control::Automatic, Outcome::Executing) => (HwsReport::Executing, execution.reason),
+            (Control::Automatic, Outcome::Done) => (HwsReport::Finished, execution.reason),
+            (Control::Automatic, Outcome::Error | Outcome::Joystick) => (HwsReport::Error, execution.reason),
+        };
+        outputs.header = execution.header(inputs.tick, self.step.text());
+        outputs.status =
+            HwsStatus { echo: execution.receiver.echo, command: inputs.external.hws.command, report, reason };
+    }
+}

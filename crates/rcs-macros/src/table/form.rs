@@ -1,0 +1,215 @@
+//! The form of a decision table, and what is wrong with one as it was written.
+
+use syn::{
+    Attribute, Error, Ident, LitInt, Path, Result, Token, Visibility, braced, parenthesized,
+    parse::{Parse, ParseStream},
+    punctuated::Punctuated,
+    spanned::Spanned as _,
+    token,
+};
+
+/// A table as written.
+pub struct Table {
+    pub attributes: Vec<Attribute>,
+    pub vis: Visibility,
+    pub name: Ident,
+    pub decide: Ident,
+    pub step: Option<Step>,
+    pub situation: Path,
+    pub action: Path,
+    /// What a row that does not decide passes on.
+    pub passed: Option<Passed>,
+    pub groups: Vec<StepGroup>,
+}
+
+/// The type of the steps: declared by the groups of the table, or named.
+pub enum Step {
+    Declared(Ident),
+    Named(Path),
+}
+
+pub enum Passed {
+    Nothing,
+    Value(Path),
+}
+
+/// Rows for some steps; for any if none is named.
+pub struct StepGroup {
+    pub attributes: Vec<Attribute>,
+    pub steps: Vec<Ident>,
+    pub rows: Vec<Row>,
+}
+
+pub struct Row {
+    pub number: LitInt,
+    pub conditions: Vec<Condition>,
+    pub action: Ident,
+    pub argument: Option<Ident>,
+    pub next: Option<Ident>,
+}
+
+pub struct Condition {
+    pub variable: Ident,
+    pub values: Vec<Ident>,
+}
+
+mod word {
+    syn::custom_keyword!(or);
+    syn::custom_keyword!(any);
+    syn::custom_keyword!(consult);
+}
+
+impl Parse for Table {
+    fn parse(input: ParseStream<'_>) -> Result<Self> {
+        let attributes = input.call(Attribute::parse_outer)?;
+        let vis = input.parse()?;
+        let name = input.parse()?;
+        input.parse::<Token![:]>()?;
+        input.parse::<Token![fn]>()?;
+        let decide = input.parse()?;
+        let parameters;
+        parenthesized!(parameters in input);
+        let (step, situation) = head(&parameters)?;
+        input.parse::<Token![->]>()?;
+        let action = input.call(Path::parse_mod_style)?;
+        let passed = if input.parse::<Option<word::or>>()?.is_none() {
+            None
+        } else if input.peek(token::Paren) {
+            let nothing;
+            parenthesized!(nothing in input);
+            if !nothing.is_empty() {
+                return Err(nothing.error("`()` or a type is expected"));
+            }
+            Some(Passed::Nothing)
+        } else {
+            Some(Passed::Value(input.call(Path::parse_mod_style)?))
+        };
+        let body;
+        braced!(body in input);
+        let mut groups = Vec::new();
+        if step.is_some() {
+            while !body.is_empty() {
+                groups.push(body.parse()?);
+            }
+        } else {
+            groups.push(StepGroup { attributes: Vec::new(), steps: Vec::new(), rows: rows(&body)? });
+        }
+        let table = Self { attributes, vis, name, decide, step, situation, action, passed, groups };
+        table.check()?;
+        Ok(table)
+    }
+}
+
+/// `enum NewStep, Situation`, `OldStep, Situation` or `Situation`.
+fn head(input: ParseStream<'_>) -> Result<(Option<Step>, Path)> {
+    let step = if input.parse::<Option<Token![enum]>>()?.is_some() {
+        Step::Declared(input.parse()?)
+    } else {
+        let first = input.call(Path::parse_mod_style)?;
+        if input.is_empty() {
+            return Ok((None, first));
+        }
+        Step::Named(first)
+    };
+    input.parse::<Token![,]>()?;
+    let situation = input.call(Path::parse_mod_style)?;
+    if input.is_empty() { Ok((Some(step), situation)) } else { Err(input.error("`)` is expected")) }
+}
+
+fn rows(input: ParseStream<'_>) -> Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    while !input.is_empty() {
+        rows.push(input.parse()?);
+    }
+    Ok(rows)
+}
+
+/// `A | B`.
+fn alternatives(input: ParseStream<'_>) -> Result<Vec<Ident>> {
+    Ok(Punctuated::<Ident, Token![|]>::parse_separated_nonempty(input)?.into_iter().collect())
+}
+
+impl Parse for StepGroup {
+    fn parse(input: ParseStream<'_>) -> Result<Self> {
+        let attributes = input.call(Attribute::parse_outer)?;
+        let steps =
+            if input.parse::<Option<word::any>>()?.is_some() { Vec::new() } else { alternatives(input)? };
+        let body;
+        braced!(body in input);
+        Ok(Self { attributes, steps, rows: rows(&body)? })
+    }
+}
+
+impl Parse for Row {
+    fn parse(input: ParseStream<'_>) -> Result<Self> {
+        let number = input.parse()?;
+        input.parse::<Token![:]>()?;
+        let mut conditions = Vec::new();
+        while !input.peek(Token![=>]) {
+            let variable = input.parse()?;
+            input.parse::<Token![:]>()?;
+            conditions.push(Condition { variable, values: alternatives(input)? });
+            if !input.peek(Token![=>]) {
+                input.parse::<Token![,]>()?;
+            }
+        }
+        input.parse::<Token![=>]>()?;
+        let action = input.parse()?;
+        let argument = if input.peek(token::Paren) {
+            let content;
+            parenthesized!(content in input);
+            let argument = content.parse()?;
+            if !content.is_empty() {
+                return Err(content.error("`)` is expected: an action has one argument"));
+            }
+            Some(argument)
+        } else {
+            None
+        };
+        let next = if input.parse::<Option<Token![->]>>()?.is_some() { Some(input.parse()?) } else { None };
+        input.parse::<Token![;]>()?;
+        Ok(Self { number, conditions, action, argument, next })
+    }
+}
+
+impl Row {
+    /// The row does not decide: the next table is consulted.
+    pub fn is_passed(&self) -> bool {
+        self.action == "consult"
+    }
+}
+
+impl Table {
+    /// All rows, each with its group.
+    pub fn rows(&self) -> impl Iterator<Item = (&StepGroup, &Row)> {
+        self.groups.iter().flat_map(|group| group.rows.iter().map(move |row| (group, row)))
+    }
+
+    /// What the compiler would not say well.
+    fn check(&self) -> Result<()> {
+        for ((_, row), expected) in self.rows().zip(1_u8..) {
+            if row.number.base10_parse::<u8>()? != expected {
+                let found = &row.number;
+                let text = format!("rows are numbered in order: {expected} is expected, {found} is found");
+                return Err(Error::new(found.span(), text));
+            }
+            if row.is_passed() && self.passed.is_none() {
+                let text = "this table has to decide: `consult` needs `-> Action or Type` in its head";
+                return Err(Error::new(row.action.span(), text));
+            }
+            if row.is_passed() && row.next.is_some() {
+                return Err(Error::new(row.next.span(), "the next table decides on the step"));
+            }
+            if row.next.is_some() && self.step.is_none() {
+                return Err(Error::new(row.next.span(), "this table has no steps"));
+            }
+            let twice = row.conditions.iter().enumerate().find(|(at, condition)| {
+                row.conditions.iter().take(*at).any(|other| other.variable == condition.variable)
+            });
+            if let Some((_, condition)) = twice {
+                return Err(Error::new(condition.variable.span(), "the row asks for this variable already"));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,360 @@
+//! Compares the traces of two versions, tick by tick and field by field.
+//!
+//! What a restructuring changes on purpose stands in a file of [`Renames`]: other paths, other texts of
+//! values, fields that only one version has. Everything else that is not equal is a difference. The rows of
+//! decision tables are not compared: a [`RowMap`] says which row of the new version fired where a row of the
+//! old version did, for review.
+
+mod read;
+mod renames;
+mod rows;
+
+use std::{
+    collections::{BTreeSet, HashMap},
+    fmt,
+    io::{self, BufRead},
+};
+
+use self::{read::Lines, renames::Rule, rows::learn};
+pub use self::{
+    read::Moment,
+    renames::{NewText, Only, Renamed, Renames},
+    rows::{Pair, Pairs, Row, RowMap, Seen},
+};
+use crate::trace::{FIRED, TICKS};
+
+/// Differences of a scenario that are written out; the others are counted.
+const WRITTEN: usize = 12;
+
+/// Why two traces cannot be compared.
+#[derive(Debug, thiserror::Error)]
+pub enum CompareError {
+    /// The renames cannot be read.
+    #[error(transparent)]
+    Toml(#[from] toml::de::Error),
+    /// A rename does not say what a star stands for.
+    #[error("at most as many stars as in old = {old:?} were expected, found new = {new:?}")]
+    Stars {
+        /// The text in the old version.
+        old: String,
+        /// The text in the new version.
+        new: String,
+    },
+    /// The trace cannot be read.
+    #[error("the {0} trace: {1}")]
+    Unreadable(&'static str, io::Error),
+    /// A line is not one of a trace, or of an earlier tick than the line before it.
+    #[error("the {which} trace, line {line}: tick, path and value in order were expected, found {found:?}")]
+    Line {
+        /// The old or the new one.
+        which: &'static str,
+        /// The line, from 1.
+        line: usize,
+        /// What stands there.
+        found: String,
+    },
+    /// The trace has no end.
+    #[error("the {0} trace ends without saying how the run ended: make it again")]
+    NoEnd(&'static str),
+    /// Two fields of the old version are to be one of the new version.
+    #[error("{first} and {second} of the old version both become {new}")]
+    Twice {
+        /// One of them.
+        first: String,
+        /// The other one.
+        second: String,
+        /// The path in the new version.
+        new: String,
+    },
+}
+
+/// A field that is not as it was.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// When it first differs.
+    pub first: Moment,
+    /// The field, by its path in the new version.
+    pub path: String,
+    /// Its value in the old version at that moment; none if there is no such field.
+    pub was: Option<String>,
+    /// Its value in the new version.
+    pub is: Option<String>,
+    /// In how many ticks it differs.
+    pub ticks: u64,
+}
+
+/// What the comparison of two traces found.
+#[derive(Clone, Debug, Default)]
+pub struct Comparison {
+    /// Fields that differ, in the order in which they first do.
+    pub differences: Vec<Difference>,
+    /// Rows of the new version for those of the old one, up to the first difference.
+    pub rows: Pairs,
+    /// Ticks of the old and the new run.
+    pub ticks: (u64, u64),
+    used: BTreeSet<Rule>,
+}
+
+/// Compare the trace of an old version with that of a new one.
+///
+/// # Errors
+/// [`CompareError`] if one of them is not a complete trace, or two old fields become one. A difference is no
+/// error: it is in the result.
+pub fn compare(was: impl BufRead, is: impl BufRead, renames: &Renames) -> Result<Comparison, CompareError> {
+    let (mut was, mut is) = (Lines::new("old", was)?, Lines::new("new", is)?);
+    let mut comparer = Comparer::new(renames);
+    while let Some(mut moment) = was.moment().min(is.moment()) {
+        // Where only one run goes on there is nothing to compare.
+        let last = was.last_tick().into_iter().chain(is.last_tick()).min();
+        if last.is_some_and(|last| moment > Moment::Tick(last)) {
+            moment = Moment::End;
+            was.skip_to_end()?;
+            is.skip_to_end()?;
+        }
+        comparer.begin(moment);
+        while let Some((path, value)) = was.take(moment)? {
+            comparer.was(&path, value)?;
+        }
+        while let Some((path, value)) = is.take(moment)? {
+            comparer.is(&path, value);
+        }
+        comparer.settle(moment);
+    }
+    Ok(comparer.finish())
+}
+
+/// A field of both versions, by its path in the new one.
+struct Slot {
+    path: String,
+    /// Path in the old version.
+    old_path: Option<String>,
+    was: Option<String>,
+    is: Option<String>,
+    /// Rules on its values.
+    values: Vec<usize>,
+    kind: Kind,
+    /// A value came in this tick.
+    touched: bool,
+}
+
+enum Kind {
+    /// Its values are compared.
+    Compared {
+        /// Position among the differences, and since when the values differ.
+        difference: Option<usize>,
+        since: Option<u64>,
+    },
+    /// A row that fired: the pair that fires, and since when.
+    Row(Option<(Pair, u64)>),
+    /// Only the new version has it.
+    Added,
+}
+
+impl Kind {
+    const COMPARED: Self = Self::Compared { difference: None, since: None };
+}
+
+struct Comparer<'a> {
+    renames: &'a Renames,
+    slots: Vec<Slot>,
+    /// Slots by path in the old version; none for fields that are dropped.
+    old: HashMap<String, Option<usize>>,
+    /// Slots by path in the new version.
+    new: HashMap<String, usize>,
+    touched: Vec<usize>,
+    /// The last tick so far.
+    tick: u64,
+    /// First tick with a difference: rows are learned up to there.
+    diverged: Option<u64>,
+    found: Comparison,
+}
+
+impl<'a> Comparer<'a> {
+    fn new(renames: &'a Renames) -> Self {
+        Self {
+            renames,
+            slots: Vec::new(),
+            old: HashMap::new(),
+            new: HashMap::new(),
+            touched: Vec::new(),
+            tick: 0,
+            diverged: None,
+            found: Comparison::default(),
+        }
+    }
+
+    fn begin(&mut self, moment: Moment) {
+        if let Moment::Tick(tick) = moment {
+            self.tick = tick;
+        }
+    }
+
+    /// A field of the old version has a value.
+    fn was(&mut self, path: &str, value: String) -> Result<(), CompareError> {
+        let slot = match self.old.get(path) {
+            Some(slot) => *slot,
+            None => self.old_slot(path)?,
+        };
+        if let Some(slot) = slot {
+            self.touch(slot).was = Some(value);
+        }
+        Ok(())
+    }
+
+    /// A field of the new version has a value.
+    fn is(&mut self, path: &str, value: String) {
+        let slot = self.new_slot(path);
+        self.touch(slot).is = Some(value);
+    }
+
+    fn touch(&mut self, at: usize) -> &mut Slot {
+        let slot = &mut self.slots[at];
+        if !std::mem::replace(&mut slot.touched, true) {
+            self.touched.push(at);
+        }
+        slot
+    }
+
+    fn old_slot(&mut self, path: &str) -> Result<Option<usize>, CompareError> {
+        let new = self.renames.new_path(path, &mut self.found.used);
+        let slot = new.map(|new| self.new_slot(&new));
+        if let Some(at) = slot {
+            let slot = &mut self.slots[at];
+            if let Some(first) = slot.old_path.replace(path.to_owned()) {
+                let (second, new) = (path.to_owned(), slot.path.clone());
+                return Err(CompareError::Twice { first, second, new });
+            }
+        }
+        self.old.insert(path.to_owned(), slot);
+        Ok(slot)
+    }
+
+    fn new_slot(&mut self, path: &str) -> usize {
+        if let Some(slot) = self.new.get(path) {
+            return *slot;
+        }
+        let values = self.renames.values_of(path);
+        let kind = match path.ends_with(FIRED) {
+            _ if self.renames.is_added(path, &mut self.found.used) => Kind::Added,
+            true => Kind::Row(None),
+            false => Kind::COMPARED,
+        };
+        let path = path.to_owned();
+        self.new.insert(path.clone(), self.slots.len());
+        let slot = Slot { path, old_path: None, was: None, is: None, values, kind, touched: false };
+        self.slots.push(slot);
+        self.slots.len() - 1
+    }
+
+    /// Compare the fields that got a value in this moment.
+    fn settle(&mut self, moment: Moment) {
+        let mut touched = std::mem::take(&mut self.touched);
+        // Differences first: they end what is learned of rows.
+        touched.sort_by_key(|at| (matches!(self.slots[*at].kind, Kind::Row(_)), *at));
+        for at in touched.drain(..) {
+            let slot = &mut self.slots[at];
+            slot.touched = false;
+            match (&slot.kind, &slot.was, &slot.is) {
+                (Kind::Row(_), Some(_), Some(_)) => {}
+                // A process that one version does not have, and a field that is not added.
+                (Kind::Row(_), ..) | (Kind::Added, Some(_), _) => slot.kind = Kind::COMPARED,
+                _ => {}
+            }
+            match slot.kind {
+                Kind::Compared { .. } => self.compare_field(at, moment),
+                Kind::Row(_) => self.change_row(at),
+                Kind::Added => {}
+            }
+        }
+        self.touched = touched;
+    }
+
+    fn compare_field(&mut self, at: usize, moment: Moment) {
+        let slot = &mut self.slots[at];
+        let Kind::Compared { difference, since } = &mut slot.kind else { return };
+        let (was, is) = (slot.was.as_deref(), slot.is.as_deref());
+        let equal = self.renames.agree(was, is, &slot.values, &mut self.found.used);
+        match (equal, *since) {
+            (true, Some(first)) => {
+                *since = None;
+                let known = difference.and_then(|at| self.found.differences.get_mut(at));
+                known.into_iter().for_each(|known| known.ticks += self.tick - first);
+            }
+            (false, None) => {
+                if moment != Moment::End {
+                    *since = Some(self.tick);
+                    self.diverged.get_or_insert(self.tick);
+                }
+                difference.get_or_insert_with(|| {
+                    self.found.differences.push(Difference {
+                        first: moment,
+                        path: slot.path.clone(),
+                        was: slot.was.clone(),
+                        is: slot.is.clone(),
+                        ticks: 0,
+                    });
+                    self.found.differences.len() - 1
+                });
+            }
+            (true, None) | (false, Some(_)) => {}
+        }
+    }
+
+    /// If another pair of rows fires, count the pair that fired up to now.
+    fn change_row(&mut self, at: usize) {
+        let slot = &mut self.slots[at];
+        let (Kind::Row(firing), Some(was), Some(is)) = (&mut slot.kind, &slot.was, &slot.is) else { return };
+        let process = slot.path.trim_end_matches(FIRED).to_owned();
+        let pair = Pair { process, old: Row::new(was), new: Row::new(is) };
+        if firing.as_ref().is_none_or(|(before, _)| *before != pair) {
+            let until = self.diverged.unwrap_or(self.tick);
+            if let Some((pair, since)) = firing.replace((pair, self.tick)) {
+                learn(&mut self.found.rows, pair, since, until);
+            }
+        }
+    }
+
+    /// Count the differences and pairs that lasted to the end.
+    fn finish(mut self) -> Comparison {
+        let ticks = self.new.get(TICKS).and_then(|at| self.slots.get(*at));
+        let number = |text: Option<&String>| text.and_then(|text| text.parse().ok()).unwrap_or(self.tick);
+        let ticks = ticks.map(|slot| (number(slot.was.as_ref()), number(slot.is.as_ref())));
+        self.found.ticks = ticks.unwrap_or((self.tick, self.tick));
+        let end = self.found.ticks.0.min(self.found.ticks.1) + 1;
+        for slot in self.slots {
+            match slot.kind {
+                Kind::Compared { difference: Some(at), since: Some(since) } => {
+                    self.found.differences[at].ticks += end.saturating_sub(since);
+                }
+                Kind::Row(Some((pair, since))) => {
+                    learn(&mut self.found.rows, pair, since, self.diverged.unwrap_or(end));
+                }
+                _ => {}
+            }
+        }
+        self.found
+    }
+}
+
+impl fmt::Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let text = |value: &Option<String>| {
+            value.as_ref().map_or("no such field".to_owned(), |value| format!("{value:?}"))
+        };
+        // How the run ended is always written: it comes last.
+        let (ends, ticks): (Vec<_>, Vec<_>) = self.differences.iter().partition(|d| d.first == Moment::End);
+        let (written, more) = ticks.split_at(WRITTEN.min(ticks.len()));
+        for Difference { first, path, was, is, ticks } in written.iter().chain(&ends) {
+            write!(f, "  {first:<11}  {path}: was {}, is {}", text(was), text(is))?;
+            match ticks {
+                0 | 1 => writeln!(f)?,
+                _ => writeln!(f, "; differs in {ticks} ticks")?,
+            }
+        }
+        if !more.is_empty() {
+            let ticks: u64 = more.iter().map(|difference| difference.ticks).sum();
+            writeln!(f, "  and {} fields more, in {ticks} ticks together", more.len())?;
+        }
+        Ok(())
+    }
+}

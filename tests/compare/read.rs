@@ -1,0 +1,102 @@
+//! Reads a trace line by line.
+
+use std::{
+    fmt,
+    io::{self, BufRead},
+};
+
+use super::CompareError;
+use crate::trace::{END, TICKS};
+
+/// When a field has a value: in a tick, or at the end, which is after all ticks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Moment {
+    /// In a tick.
+    Tick(u64),
+    /// When the run had ended.
+    End,
+}
+
+impl fmt::Display for Moment {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tick(tick) => f.pad(&format!("tick {tick}")),
+            Self::End => f.pad(END),
+        }
+    }
+}
+
+/// The lines of a trace, one ahead.
+pub(super) struct Lines<R> {
+    which: &'static str,
+    lines: io::Lines<R>,
+    number: usize,
+    next: Option<(Moment, String, String)>,
+}
+
+impl<R: BufRead> Lines<R> {
+    /// The lines of the trace that messages call `which`.
+    pub(super) fn new(which: &'static str, input: R) -> Result<Self, CompareError> {
+        let mut lines = Self { which, lines: input.lines(), number: 0, next: None };
+        lines.advance()?;
+        lines.next.is_some().then_some(lines).ok_or(CompareError::NoEnd(which))
+    }
+
+    /// When the next line is; none after the last one.
+    pub(super) fn moment(&self) -> Option<Moment> {
+        self.next.as_ref().map(|(moment, ..)| *moment)
+    }
+
+    /// The last tick of the run, if the next line is the first one of the end.
+    pub(super) fn last_tick(&self) -> Option<u64> {
+        match &self.next {
+            Some((Moment::End, path, value)) if path == TICKS => value.parse().ok(),
+            _ => None,
+        }
+    }
+
+    /// The path and value of the next line, if it is of this moment.
+    pub(super) fn take(&mut self, moment: Moment) -> Result<Option<(String, String)>, CompareError> {
+        let Some((_, path, value)) = self.next.as_mut().filter(|(next, ..)| *next == moment) else {
+            return Ok(None);
+        };
+        // The moment stays for `advance`, which checks the order of the lines.
+        let taken = (std::mem::take(path), std::mem::take(value));
+        self.advance()?;
+        Ok(Some(taken))
+    }
+
+    /// Go on to the first line of the end.
+    pub(super) fn skip_to_end(&mut self) -> Result<(), CompareError> {
+        while self.moment().is_some_and(|moment| moment < Moment::End) {
+            self.advance()?;
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self) -> Result<(), CompareError> {
+        let (which, before) = (self.which, self.moment());
+        self.next = match self.lines.next() {
+            Some(line) => {
+                let line = line.map_err(|error| CompareError::Unreadable(which, error))?;
+                self.number += 1;
+                let next = parse(&line).filter(|(moment, ..)| before.is_none_or(|before| before <= *moment));
+                Some(next.ok_or(CompareError::Line { which, line: self.number, found: line })?)
+            }
+            None if before.is_some_and(|before| before < Moment::End) => {
+                return Err(CompareError::NoEnd(which));
+            }
+            None => None,
+        };
+        Ok(())
+    }
+}
+
+fn parse(line: &str) -> Option<(Moment, String, String)> {
+    let mut columns = line.splitn(3, '\t');
+    let moment = match columns.next()? {
+        END => Moment::End,
+        tick => Moment::Tick(tick.parse().ok()?),
+    };
+    Some((moment, columns.next()?.to_owned(), columns.next()?.to_owned()))
+}

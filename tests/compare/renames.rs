@@ -1,0 +1,184 @@
+//! What a restructuring changes on purpose: paths, and texts of values.
+
+use std::collections::BTreeSet;
+
+use serde::Deserialize;
+
+use super::CompareError;
+use crate::trace::ABSENT;
+
+/// What differs on purpose: a TOML file.
+///
+/// In a path `*` stands for any part of one segment, at the end of the path for all that follows:
+/// `emove.poses[*].pose.*`. In a value it stands for any text. The first `*` of `new` is replaced by what the
+/// first `*` of `old` stands for, and so on.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Renames {
+    /// Fields with another path; the first entry that fits counts.
+    pub renamed: Vec<Renamed>,
+    /// Fields that only the old version has.
+    pub dropped: Vec<Only>,
+    /// Fields that only the new version has. A field that both versions have is compared nevertheless.
+    pub added: Vec<Only>,
+    /// Values with another text.
+    pub value: Vec<NewText>,
+}
+
+/// A field with another path.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Renamed {
+    /// Its path in the old version.
+    pub old: String,
+    /// Its path in the new version.
+    pub new: String,
+}
+
+/// A field that one version does not have.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Only {
+    /// Its path in the version that has it.
+    pub path: String,
+    /// Why its values need not be compared.
+    pub reason: String,
+}
+
+/// A value with another text: where the old version has `old`, the new one may have `new`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NewText {
+    /// Path of the field in the new version.
+    pub path: String,
+    /// The text in the old version.
+    pub old: String,
+    /// The text in the new version; [`ABSENT`] if there is no such field in that tick.
+    pub new: String,
+}
+
+/// An entry of [`Renames`], by its position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Rule {
+    Renamed(usize),
+    Dropped(usize),
+    Added(usize),
+    Value(usize),
+}
+
+impl Renames {
+    /// Read the text of a file.
+    ///
+    /// # Errors
+    /// [`CompareError::Toml`], [`CompareError::Stars`].
+    pub fn parse(text: &str) -> Result<Self, CompareError> {
+        let renames: Self = toml::from_str(text)?;
+        let paths = renames.renamed.iter().map(|rule| (&rule.old, &rule.new));
+        let values = renames.value.iter().map(|rule| (&rule.old, &rule.new));
+        for (old, new) in paths.chain(values) {
+            if new.matches('*').count() > old.matches('*').count() {
+                return Err(CompareError::Stars { old: old.clone(), new: new.clone() });
+            }
+        }
+        Ok(renames)
+    }
+
+    /// The path in the new version of a field of the old one; none if the field is dropped.
+    pub(super) fn new_path(&self, old: &str, used: &mut BTreeSet<Rule>) -> Option<String> {
+        if let Some(at) = self.dropped.iter().position(|rule| path_matches(&rule.path, old)) {
+            used.insert(Rule::Dropped(at));
+            return None;
+        }
+        let rules = self.renamed.iter().enumerate();
+        let mut fitting =
+            rules.filter_map(|(at, rule)| Some((at, translate(&rule.old, &rule.new, old, '.')?)));
+        let Some((at, new)) = fitting.next() else { return Some(old.to_owned()) };
+        used.insert(Rule::Renamed(at));
+        Some(new)
+    }
+
+    /// Whether only the new version has a field.
+    pub(super) fn is_added(&self, path: &str, used: &mut BTreeSet<Rule>) -> bool {
+        let rule = self.added.iter().position(|rule| path_matches(&rule.path, path));
+        used.extend(rule.map(Rule::Added));
+        rule.is_some()
+    }
+
+    /// Positions of the entries on the values of a field.
+    pub(super) fn values_of(&self, path: &str) -> Vec<usize> {
+        let rules = self.value.iter().enumerate();
+        rules.filter(|(_, rule)| path_matches(&rule.path, path)).map(|(at, _)| at).collect()
+    }
+
+    /// Whether a value is what it was, or what one of `rules` makes of it.
+    pub(super) fn agree(
+        &self,
+        was: Option<&str>,
+        is: Option<&str>,
+        rules: &[usize],
+        used: &mut BTreeSet<Rule>,
+    ) -> bool {
+        if was == is {
+            return true;
+        }
+        // A field that was not written yet is one of a variant that was not used yet: see `trace::changes`.
+        let (was, is) = (was.unwrap_or(ABSENT), is.unwrap_or(ABSENT));
+        let fits = |at: &usize| {
+            self.value.get(*at).is_some_and(|NewText { old, new, .. }| {
+                translate(old, new, was, '\n').is_some_and(|expected| expected == is)
+            })
+        };
+        let rule = rules.iter().copied().find(fits);
+        used.extend(rule.map(Rule::Value));
+        rule.is_some()
+    }
+
+    /// The entries that are not in `used`, as text.
+    pub(super) fn unused(&self, used: &BTreeSet<Rule>) -> Vec<String> {
+        let renamed = self.renamed.iter().map(|r| format!("renamed {} to {}", r.old, r.new));
+        let dropped = self.dropped.iter().map(|r| format!("dropped {}: {}", r.path, r.reason));
+        let added = self.added.iter().map(|r| format!("added {}: {}", r.path, r.reason));
+        let value = self.value.iter().map(|r| format!("value of {}: {:?} to {:?}", r.path, r.old, r.new));
+        let renamed = renamed.enumerate().map(|(at, text)| (Rule::Renamed(at), text));
+        let dropped = dropped.enumerate().map(|(at, text)| (Rule::Dropped(at), text));
+        let added = added.enumerate().map(|(at, text)| (Rule::Added(at), text));
+        let value = value.enumerate().map(|(at, text)| (Rule::Value(at), text));
+        let all = renamed.chain(dropped).chain(added).chain(value);
+        all.filter(|(rule, _)| !used.contains(rule)).map(|(_, text)| text).collect()
+    }
+}
+
+fn path_matches(pattern: &str, path: &str) -> bool {
+    captures(pattern, path, '.').is_some()
+}
+
+/// What `text` becomes by a rule from `old` to `new`; none if it does not match `old`.
+fn translate(old: &str, new: &str, text: &str, border: char) -> Option<String> {
+    let stars = captures(old, text, border)?;
+    let mut pieces = new.split('*');
+    let mut result = pieces.next().unwrap_or_default().to_owned();
+    for (star, piece) in stars.into_iter().zip(pieces) {
+        result.push_str(star);
+        result.push_str(piece);
+    }
+    Some(result)
+}
+
+/// What the stars of a pattern stand for; none if `text` does not match. A star does not extend over
+/// `border`, unless it ends the pattern.
+fn captures<'a>(pattern: &str, text: &'a str, border: char) -> Option<Vec<&'a str>> {
+    let Some((front, rest)) = pattern.split_once('*') else {
+        return (pattern == text).then(Vec::new);
+    };
+    let text = text.strip_prefix(front)?;
+    if rest.is_empty() {
+        return Some(vec![text]);
+    }
+    let longest = text.find(border).unwrap_or(text.len());
+    (0..=longest).rev().filter(|at| text.is_char_boundary(*at)).find_map(|at| {
+        let (star, behind) = text.split_at(at);
+        let mut found = captures(rest, behind, border)?;
+        found.insert(0, star);
+        Some(found)
+    })
+}
