@@ -1,7 +1,7 @@
 //! Every file and every test that a rule of docs/design names is there.
 //!
-//! Under the text of a rule stand `- code:` and `- test:`, which may go on over indented lines. What is in backquotes is a
-//! reference; the words between are for people.
+//! Under the text of a rule stand `- code:` and `- test:`, which may go on over indented lines. What is in
+//! backquotes is a reference; the words between are for people.
 //!
 //! | under   | reference                  | must be there                                                   |
 //! |---------|----------------------------|-----------------------------------------------------------------|

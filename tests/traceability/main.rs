@@ -1,7 +1,8 @@
-//! Compares pages of docs with the code: docs/traceability.md, docs/reasons.md, and the design pages ([`design`]).
+//! Compares pages of docs with the code: docs/traceability.md, docs/reasons.md, and the design pages
+//! ([`design`]).
 //!
-//! Every command, variable and status value of chapters V and VI that docs/traceability.md names is there and has a
-//! test, and everything that the interfaces have is on the page.
+//! Every command, variable and status value of chapters V and VI that docs/traceability.md names is there and
+//! has a test, and everything that the interfaces have is on the page.
 
 mod design;
 mod sources;
@@ -131,8 +132,8 @@ impl Interfaces {
         self.enums[name].named(variant).expect("it is in the code")
     }
 
-    /// `Type::Variant` and `Record.field` of everything that the interfaces have. A variant that carries something goes by its
-    /// text.
+    /// `Type::Variant` and `Record.field` of everything that the interfaces have. A variant that carries
+    /// something goes by its text.
     fn everything(&self) -> BTreeSet<String> {
         let mut all = BTreeSet::new();
         for (name, of) in &self.enums {

@@ -34,7 +34,8 @@ impl Sources {
         self.0.get(Path::new(path)).map(String::as_str)
     }
 
-    /// True if there is a test of this name, as `cargo test` prints it with its crate in front: `levels::task::tests::name`.
+    /// True if there is a test of this name, as `cargo test` prints it with its crate in front:
+    /// `levels::task::tests::name`.
     pub fn has_unit_test(&self, name: &str) -> bool {
         let Some((modules, test)) = name.rsplit_once("::") else { return false };
         self.module(modules).is_some_and(|(text, inline)| {

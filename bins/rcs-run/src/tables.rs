@@ -1,8 +1,8 @@
 //! `rcs-run tables`: every decision table as Markdown, with the meaning of what stands in it.
 //!
-//! The steps of a table are explained below it, and so are state variables and actions that no other table of the process has.
-//! What several tables share is explained once, under *Values* at the end of the process. A table that an earlier process has
-//! too is not printed again.
+//! The steps of a table are explained below it, and so are state variables and actions that no other table of
+//! the process has. What several tables share is explained once, under *Values* at the end of the process. A
+//! table that an earlier process has too is not printed again.
 
 #[cfg(test)]
 mod tests;
@@ -269,7 +269,8 @@ fn meaning(value: &VariantSchema) -> String {
     prose(value.doc)
 }
 
-/// What an argument means: its text if that is a sentence, as people read it in the log; else its doc comment.
+/// What an argument means: its text if that is a sentence, as people read it in the log; else its doc
+/// comment.
 fn sentence(value: &VariantSchema) -> String {
     if value.text.contains(' ') { value.text.to_owned() } else { meaning(value) }
 }

@@ -3,8 +3,8 @@
 //!
 //! The outputs of a process are a header and buffers. Each buffer gets a channel `/process/buffer`, a command
 //! `/process/buffer_command`; the header gets `/process/row`, the row of the decision table that fired as
-//! text, and the step of the command after it. A message is written when its buffer changes, and every ten seconds anyway, so that a viewer that jumps
-//! into the middle finds a value soon.
+//! text, and the step of the command after it. A message is written when its buffer changes, and every ten
+//! seconds anyway, so that a viewer that jumps into the middle finds a value soon.
 
 use std::{
     collections::BTreeMap,

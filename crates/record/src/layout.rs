@@ -4,14 +4,14 @@
 //! Everything here walks the [`Schema`] trees that `#[derive(Plain)]` makes, so that a field that is added
 //! to a buffer is described, compared and versioned without another line being written.
 //!
-//! | in the schema                              | leaves                                        | as text                  |
-//! |--------------------------------------------|-----------------------------------------------|--------------------------|
-//! | number, flag, name, enum, array of bytes   | one                                           | `7`, `true`, `"HOME"`    |
-//! | record, other array                        | those of its fields, of its elements          |                          |
-//! | option of what is one leaf                 | one                                           | `none`, or the value     |
-//! | other option                               | one `x` for the flag, and those of the value  | `none` or `some`         |
-//! | union whose variants carry at most a leaf  | one                                           | `"candle"`, `"candle" 7` |
-//! | other union                                | one `x` for the variant, and `x.variant` ...  | the variant's text       |
+//! | in the schema                              | leaves                                | as text           |
+//! |--------------------------------------------|---------------------------------------|-------------------|
+//! | number, flag, name, enum, array of bytes   | one                                   | `7`, `"HOME"`     |
+//! | record, other array                        | those of its fields, of its elements  |                   |
+//! | option of what is one leaf                 | one                                   | `none`, `7`       |
+//! | other option                               | `x` for the flag, those of the value  | `none`, `some`    |
+//! | union whose variants carry at most a leaf  | one                                   | `"candle" 7`      |
+//! | other union                                | `x` for the variant, `x.variant` ...  | `"candle"`        |
 //!
 //! A leaf of a value that an image does not hold is `none` there.
 
@@ -38,7 +38,7 @@ pub struct Leaf {
     pub size: usize,
     /// What it holds.
     pub schema: &'static Schema,
-    /// Bytes that have a certain value in each image that holds the leaf: flags of options, codes of variants.
+    /// Bytes with their value in each image that holds the leaf: flags of options, codes of variants.
     pub given: Vec<(usize, u8)>,
 }
 
@@ -174,8 +174,8 @@ pub struct Piece {
     pub number: bool,
 }
 
-/// The pieces of a record: each byte of its image is in one of them. What the variants of a union carry stands in the same bytes, so it
-/// is one piece.
+/// The pieces of a record: each byte of its image is in one of them. What the variants of a union carry
+/// stands in the same bytes, so it is one piece.
 #[must_use]
 pub fn pieces(record: &'static RecordSchema) -> Vec<Piece> {
     let mut found = Vec::new();

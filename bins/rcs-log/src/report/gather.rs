@@ -122,7 +122,7 @@ impl Run {
             let header = moment.after.header(*process);
             let command = |memory| failure::command(*process, &moment.external.hws, memory);
             let text = command(&moment.after);
-            // A command that was written in this tick is not read yet: the step is that of the command before it.
+            // A command that was written in this tick is not read yet: the step is that of the one before.
             let step = if text == command(&moment.before) { header.step } else { Name16::EMPTY };
             extend(lane, tick, text, &step);
         }

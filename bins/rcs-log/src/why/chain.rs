@@ -7,7 +7,10 @@
 //! again: who commanded it, when, by which row.
 
 use levels::ladder::{PROCESS_COUNT, ProcessId};
-use rcs_core::{interface::t3i::LinkFault, table::Row};
+use rcs_core::{
+    interface::t3i::LinkFault,
+    table::{Condition, Row},
+};
 use serde::Serialize;
 
 use super::history::{Fired, History, condition, info, row_of, row_words};
@@ -82,8 +85,8 @@ fn report(history: &History, at: Root) -> Link {
     Link { tick: at.tick, process: info(at.process).name.to_owned(), text }
 }
 
-/// The conditions of a row that the row before did not ask for: what made it fire. Only if it fired for the first time, and its command
-/// is that of the tick before.
+/// The conditions of a row that the row before did not ask for: what made it fire. Only if it fired for the
+/// first time, and its command is that of the tick before.
 fn news(history: &History, at: Root, fired: &Fired) -> Option<String> {
     if fired.tick != at.tick {
         return None;
@@ -93,15 +96,21 @@ fn news(history: &History, at: Root, fired: &Fired) -> Option<String> {
     if command(at.tick) != command(seen) {
         return None;
     }
-    let ((_, now), (_, before)) =
-        (row_of(at.process, fired)?, row_of(at.process, history.row(at.process, seen)?)?);
-    let changed = changed(before, now);
+    let last = history.row(at.process, seen)?;
+    let ((table, now), (_, before)) = (row_of(at.process, fired)?, row_of(at.process, last)?);
+    // A table above, which decides now, has passed the decision on before, by a row that no header names.
+    let passed = table.rows.iter().filter(|row| last.table != fired.table && row.action == CONSULT);
+    let changed = changed(passed.chain([before]), now);
     (!changed.is_empty()).then(|| changed.join(", "))
 }
 
-/// The step is the table's own memory, not news.
-fn changed(before: &Row, now: &Row) -> Vec<String> {
-    now.when.iter().filter(|asked| !before.when.contains(asked)).map(condition).collect()
+/// The action of rows that do not decide.
+const CONSULT: &str = "consult";
+
+/// What a row asks for and none of the rows before it. The step is the table's own memory, not news.
+fn changed<'a>(before: impl Iterator<Item = &'a Row>, now: &Row) -> Vec<String> {
+    let known: Vec<&Condition> = before.flat_map(|row| row.when).collect();
+    now.when.iter().filter(|asked| !known.contains(asked)).map(condition).collect()
 }
 
 /// The commands that led to a process, from the workstation controller down: when each was given, and by which row.
@@ -146,7 +155,6 @@ mod tests {
     use crate::story::Moment;
     use rcs_core::{
         interface::{CommonMemory, ExternalInputs, Header, Reason, Report, prim::PrimReport},
-        table::Condition,
         tick::Tick,
     };
 
@@ -217,6 +225,18 @@ mod tests {
         assert_eq!(said, [(7, "Subtask".to_owned()), (8, "Task".to_owned())]);
     }
 
+    /// ORDERED has passed the decision on as long as E-move was busy: that E-move has the order is not new.
+    #[test]
+    fn a_table_above_tells_what_it_did_not_pass_on() {
+        let history = history(&[
+            |_, memory| memory.subtask.header = Header { table: 6, row: 1, ..Header::default() },
+            |_, memory| memory.subtask.header = Header { table: 3, row: 4, ..Header::default() },
+        ]);
+        let fired = history.row(ProcessId::Subtask, 2).unwrap();
+        let found = news(&history, Root { process: ProcessId::Subtask, tick: 2 }, fired);
+        assert_eq!(found.as_deref(), Some("emove is Error or Joystick or Lost"));
+    }
+
     #[test]
     fn what_a_row_asks_for_and_the_one_before_did_not_is_news() {
         const fn row(number: u8, when: &'static [Condition]) -> Row {
@@ -227,7 +247,7 @@ mod tests {
         }
         const BEFORE: Row = row(1, &[asked("hand", &["Empty"]), asked("held", &["No"])]);
         const NOW: Row = row(2, &[asked("hand", &["Empty"]), asked("held", &["Yes", "Maybe"])]);
-        assert_eq!(changed(&BEFORE, &NOW), ["held is Yes or Maybe"]);
-        assert!(changed(&NOW, &NOW).is_empty());
+        assert_eq!(changed([&BEFORE].into_iter(), &NOW), ["held is Yes or Maybe"]);
+        assert!(changed([&BEFORE, &NOW].into_iter(), &NOW).is_empty());
     }
 }

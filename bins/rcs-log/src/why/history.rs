@@ -125,7 +125,8 @@ pub fn condition(asked: &Condition) -> String {
     format!("{} is {}", asked.variable, asked.values.join(" or "))
 }
 
-/// What a row did, as words: `GraspObj, then Grasping`. A row that fires in any step says in which one it did: `Wait in step moving`.
+/// What a row did, as words: `GraspObj, then Grasping`. A row that fires in any step says in which one it
+/// did: `Wait in step moving`.
 pub fn deed(row: &Row, step: &str) -> String {
     let at = if row.steps.is_empty() && row.next.is_none() && !step.is_empty() {
         format!(" in step {step}")
@@ -144,7 +145,7 @@ pub fn because(conditions: &[String]) -> String {
     }
 }
 
-/// A row as one says it: `table QC-DETACH row 7: Unlock, then Unlocking, because step is Start, station is There`.
+/// A row as one says it: `table QC-DETACH row 7: Unlock, then Unlocking, because step is Start`.
 pub fn row_words(process: ProcessId, fired: &Fired) -> String {
     match row_of(process, fired) {
         None => "by no row of a table".to_owned(),

@@ -16,12 +16,13 @@
 //!   40    2    grip               command bits to the eight air valves
 //!   42    2    table#             extension: decision table of the hand process that was used last, 0 for none
 //!   44    2    row#               extension: its row that fired
-//!   46    4    incr-cmnd#         number of the command from the pedestal process, 0 for none
-//!   50   10    command            PAUSE, OPEN-GRIP, CLOSE-GRIP, POSITION, UP-INIT; blank for none
-//!   60    4    force              lb
-//!   64    4    position           0.01 in
-//!   68    4    velocity           0.01 in/s; 0 is full speed
-//!   72    2    end-effector       0: it is on no quick change
+//!   46   16    step               extension: step of its command after that row, blank for none
+//!   62    4    incr-cmnd#         number of the command from the pedestal process, 0 for none
+//!   66   10    command            PAUSE, OPEN-GRIP, CLOSE-GRIP, POSITION, UP-INIT; blank for none
+//!   76    4    force              lb
+//!   80    4    position           0.01 in
+//!   84    4    velocity           0.01 in/s; 0 is full speed
+//!   88    2    end-effector       0: it is on no quick change
 //! ```
 
 use rcs_core::interface::{
@@ -34,7 +35,7 @@ use super::{LayoutError, WORD, fields, put_row, reason, take_row, word};
 use crate::fields::Packer;
 
 /// Bytes of a status.
-pub const STATUS: usize = 74;
+pub const STATUS: usize = 90;
 
 /// The bytes of the hand's status and command.
 #[must_use]

@@ -39,6 +39,8 @@ use crate::fields::{FieldError, Packer, Unpacker};
 
 /// Characters of a command or a status.
 const WORD: usize = 10;
+/// Characters of a step.
+const STEP: usize = 16;
 
 /// Why data cannot be what stands in a mailbox of the pedestal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -88,13 +90,15 @@ fn reason(fields: &mut Unpacker<'_>, field: &'static str) -> Result<Reason, Fiel
     code.ok_or_else(|| FieldError::Code { field, found: u16::try_from(found).unwrap_or(u16::MAX) })
 }
 
-/// Decision table and row of a process: two bytes each.
+/// Decision table and row of a process, two bytes each, and the step of its command after that row.
 fn put_row<const N: usize>(fields: &mut Packer<N>, header: &Header) {
     fields.word(header.table.into());
     fields.word(header.row.into());
+    fields.text(STEP, &header.step);
 }
 
 /// The header of a process, without a stamp.
 fn take_row(fields: &mut Unpacker<'_>) -> Result<Header, FieldError> {
-    Ok(Header { table: fields.byte("table#")?, row: fields.byte("row#")?, ..Header::default() })
+    let (table, row) = (fields.byte("table#")?, fields.byte("row#")?);
+    Ok(Header { table, row, step: fields.name::<STEP>("step")?, ..Header::default() })
 }

@@ -11,9 +11,10 @@
 //!   34    4    table-position    0.1 degree, signed
 //!   38    2    table#            extension: decision table of the pedestal process that was used last, 0 for none
 //!   40    2    row#              extension: its row that fired
-//!   42    2    mailgram-echo     extension: mailgram number of the command mailbox that was read last
-//!   44    2    verdict           extension: 0 that mailgram was taken, 1 it is no command, 2 the sensor words cannot be read
-//!   46  160    reason            extension: the same in a sentence
+//!   42   16    step              extension: step of its command after that row, blank for none
+//!   58    2    mailgram-echo     extension: mailgram number of the command mailbox that was read last
+//!   60    2    verdict           extension: 0 that mailgram was taken, 1 it is no command, 2 the sensor words cannot be read
+//!   62  160    reason            extension: the same in a sentence
 //! ```
 //!
 //! The extensions are CHOSEN. `status-code` is "not currently used" by the manual; here it is the code of [`Reason`].
@@ -33,7 +34,7 @@ use super::{LayoutError, WORD, fields, put_row, reason, take_row, word};
 use crate::fields::{FieldError, Packer};
 
 /// Bytes of a status.
-pub const STATUS: usize = 206;
+pub const STATUS: usize = 222;
 /// Bytes of `reason`.
 pub const REASON: usize = 160;
 
@@ -55,7 +56,7 @@ pub enum Verdict {
 pub struct Status<'a> {
     /// The variables of VI.7.2.
     pub status: PedestalStatus,
-    /// `table#` and `row#`; no stamp.
+    /// `table#`, `row#` and `step`; no stamp.
     pub header: Header,
     /// `mailgram-echo`.
     pub mailgram_echo: u16,

@@ -10,9 +10,10 @@
 //!   20    4    table-position     0.1 degree, signed
 //!   24    2    table#             decision table of the table process that was used last, 0 for none
 //!   26    2    row#               its row that fired
-//!   28    4    incr-cmnd#         number of the command from the pedestal process, 0 for none
-//!   32   10    command            PAUSE, CALIBRATE, TURN; blank for none
-//!   42    4    table-angle        0.1 degree, absolute, signed
+//!   28   16    step               step of its command after that row, blank for none
+//!   44    4    incr-cmnd#         number of the command from the pedestal process, 0 for none
+//!   48   10    command            PAUSE, CALIBRATE, TURN; blank for none
+//!   58    4    table-angle        0.1 degree, absolute, signed
 //! ```
 
 use rcs_core::interface::{
@@ -25,7 +26,7 @@ use super::{LayoutError, WORD, fields, put_row, reason, take_row, word};
 use crate::fields::Packer;
 
 /// Bytes of a status.
-pub const STATUS: usize = 46;
+pub const STATUS: usize = 62;
 
 /// The bytes of the table's status and command.
 #[must_use]

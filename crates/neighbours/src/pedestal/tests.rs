@@ -2,7 +2,6 @@
 
 use proptest::prelude::*;
 use rcs_core::{
-    Plain as _,
     interface::{
         GripOutputs, Header, Reason, TableOutputs,
         device::{GripValves, MotorCommand, MotorOrder, PedestalSensors},
@@ -12,6 +11,7 @@ use rcs_core::{
             TableVerb,
         },
     },
+    name::Name16,
     tick::Tick,
 };
 
@@ -36,7 +36,10 @@ fn flip(number: u32) -> PedestalCommand {
     }
 }
 
-const ROW: Header = Header { table: 3, row: 9, ..Header::ZERO };
+/// After row 9 of table 3.
+fn row() -> Header {
+    Header { table: 3, row: 9, step: Name16::clipped("letting-go"), ..Header::default() }
+}
 
 #[test]
 fn a_command_stands_at_its_bytes() {
@@ -63,12 +66,12 @@ fn a_status_stands_at_its_bytes() {
         grip_force: -1,
         table_position: -200,
     };
-    let sent = Status { status, header: ROW, mailgram_echo: 4, verdict: Verdict::NoCommand, reason: "why" };
+    let sent = Status { status, header: row(), mailgram_echo: 4, verdict: Verdict::NoCommand, reason: "why" };
     let expected = [
         &b"\x02\x01\x00\x00\x00\x00\x00\x00\x07\x00\x00\x00can't-do  "[..],
         &[Reason::TableLimit.code(), 0, 0, 0],
         b"\xFA\x00\x00\x00\xFF\xFF\xFF\xFF\x38\xFF\xFF\xFF",
-        b"\x03\x00\x09\x00\x04\x00\x01\x00",
+        b"\x03\x00\x09\x00letting-go      \x04\x00\x01\x00",
         format!("{:160}", "why").as_bytes(),
     ]
     .concat();
@@ -79,7 +82,7 @@ fn a_status_stands_at_its_bytes() {
 #[test]
 fn the_statuses_for_diagnostics_stand_at_their_bytes() {
     let hand = GripOutputs {
-        header: ROW,
+        header: row(),
         status: GripStatus {
             echo: 2,
             report: GripReport::Serror,
@@ -106,14 +109,14 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
         &b"\x02\x00\x00\x00serror    "[..],
         &[Reason::GripTimeout.code(), 0, 0, 0, 1, 0],
         b"\x01\x00\x00\x00\x02\x00\x00\x00\x03\x00\x00\x00\xFC\xFF\xFF\xFF\x05\x00\x00\x00\x81\x00",
-        b"\x03\x00\x09\x00\x03\x00\x00\x00CLOSE-GRIP",
+        b"\x03\x00\x09\x00letting-go      \x03\x00\x00\x00CLOSE-GRIP",
         b"\x1E\x00\x00\x00\x3C\x00\x00\x00\x00\x00\x00\x00\x00\x00",
     ]
     .concat();
     assert_eq!(gripper::encode(&hand, &order), &expected[..]);
     assert_eq!(gripper::decode(&expected), Ok((hand, order)));
     let turned = TableOutputs {
-        header: ROW,
+        header: row(),
         status: TableStatus {
             echo: 5,
             report: PedestalReport::Executing,
@@ -125,7 +128,7 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
     };
     let turn = TableCommand { number: 5, command: TableVerb::Turn, angle: -2035 };
     let expected = [
-        &b"\x05\x00\x00\x00executing \x00\x00\x00\x00\x01\x00\x38\xFF\xFF\xFF\x03\x00\x09\x00"[..],
+        &b"\x05\x00\x00\x00executing \x00\x00\x00\x00\x01\x00\x38\xFF\xFF\xFF\x03\x00\x09\x00letting-go      "[..],
         b"\x05\x00\x00\x00TURN      \x0D\xF8\xFF\xFF",
     ]
     .concat();

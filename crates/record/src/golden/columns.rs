@@ -1,8 +1,8 @@
 //! Images of many ticks, turned on their side: a column a field.
 //!
 //! A column is a list of changes: ticks since the change before, and the difference as a number (or, for
-//! names, frames on the line and what larger unions carry, the new bytes). A field that never changes is an empty column, the noise of a
-//! converter two small bytes a change, alike enough to be packed to a few bits.
+//! names, frames on the line and what larger unions carry, the new bytes). A field that never changes is an
+//! empty column, the noise of a converter two small bytes a change, alike enough to be packed to a few bits.
 
 use rcs_core::plain::RecordSchema;
 
