@@ -28,7 +28,8 @@ fn finish(result: syn::Result<proc_macro2::TokenStream>) -> TokenStream {
 /// Both get `Default`, which is the value before anything was written: all fields zero, or the first variant.
 ///
 /// An enum without data is one byte in the image, the position of its variant from 0. It also gets `ALL`, `text`, `code`, `from_code`,
-/// `from_text` and `Display`. The text of a variant is its name in lower case with hyphens, or what `#[text = "..."]` says.
+/// `from_text` and `Display`. The text of a variant is its name in lower case with hyphens, or what `#[text = "..."]` says. On the enum,
+/// `#[text(upper)]` asks for upper case, and `#[text(doc)]` for the doc comment as part of a sentence.
 ///
 /// An enum with data is a byte for the variant, then as many bytes as its largest variant needs, zero where a variant needs fewer. Each
 /// variant has at most one field.

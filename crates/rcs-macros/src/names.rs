@@ -38,6 +38,21 @@ pub fn text(attributes: &[Attribute]) -> Option<String> {
     attributes.iter().find_map(|attribute| text_of(attribute, "text"))
 }
 
+/// How the texts of an enum follow from its variants: the word in `#[text(doc)]` or `#[text(upper)]`; empty for none.
+pub fn text_style(attributes: &[Attribute]) -> String {
+    let style = attributes.iter().find_map(|attribute| match &attribute.meta {
+        Meta::List(list) if list.path.is_ident("text") => Some(list.tokens.to_string()),
+        _ => None,
+    });
+    style.unwrap_or_default()
+}
+
+/// A doc comment as part of a sentence: `The fingers are stuck.` is `the fingers are stuck`.
+pub fn clause(doc: &str) -> String {
+    let mut letters = doc.trim_end_matches('.').chars();
+    letters.next().map(|first| first.to_lowercase().chain(letters).collect()).unwrap_or_default()
+}
+
 /// The lines of the doc comment.
 pub fn doc(attributes: &[Attribute]) -> Vec<String> {
     attributes
@@ -49,7 +64,7 @@ pub fn doc(attributes: &[Attribute]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{camel, words};
+    use super::{camel, clause, words};
 
     #[test]
     fn names_are_spelt_in_both_ways() {
@@ -57,5 +72,6 @@ mod tests {
         assert_eq!(words("Start", '-'), "start");
         assert_eq!(camel("get_object"), "GetObject");
         assert_eq!(camel("goto"), "Goto");
+        assert_eq!(clause("The fingers are stuck."), "the fingers are stuck");
     }
 }

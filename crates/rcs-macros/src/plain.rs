@@ -18,7 +18,7 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
             return Err(Error::new_spanned(name, "plain data has a value: an enum needs a variant"));
         }
         Data::Enum(data) if data.variants.iter().all(|variant| variant.fields.is_empty()) => {
-            of_enum(name, data)
+            of_enum(input, data)?
         }
         Data::Enum(data) => of_union(name, data)?,
         Data::Union(_) => return Err(Error::new_spanned(name, "plain data is a struct or an enum")),
@@ -73,19 +73,35 @@ fn text_of(variant: &Variant) -> String {
     names::text(&variant.attrs).unwrap_or_else(|| names::words(&variant.ident.to_string(), '-'))
 }
 
+/// The texts of an enum without data.
+fn texts_of(input: &DeriveInput, data: &DataEnum) -> Result<Vec<String>> {
+    let style = names::text_style(&input.attrs);
+    let styled = |variant: &Variant| match style.as_str() {
+        "doc" => Ok(names::clause(&names::doc(&variant.attrs).join(" "))),
+        "upper" => Ok(names::words(&variant.ident.to_string(), '-').to_uppercase()),
+        "" => Ok(text_of(variant)),
+        _ => Err(Error::new_spanned(&input.ident, "`#[text(doc)]` or `#[text(upper)]` is expected")),
+    };
+    data.variants
+        .iter()
+        .map(|variant| names::text(&variant.attrs).map_or_else(|| styled(variant), Ok))
+        .collect()
+}
+
 fn codes() -> impl Iterator<Item = Literal> {
     (0_u8..=u8::MAX).map(Literal::u8_suffixed)
 }
 
-fn of_enum(name: &Ident, data: &DataEnum) -> TokenStream {
+fn of_enum(input: &DeriveInput, data: &DataEnum) -> Result<TokenStream> {
+    let name = &input.ident;
     let text = name.to_string();
     let variants: Vec<_> = data.variants.iter().map(|variant| &variant.ident).collect();
     let idents: Vec<_> = variants.iter().map(ToString::to_string).collect();
-    let texts: Vec<_> = data.variants.iter().map(text_of).collect();
+    let texts = texts_of(input, data)?;
     let docs: Vec<_> = data.variants.iter().map(|variant| names::doc(&variant.attrs).join(" ")).collect();
     let codes: Vec<_> = codes().take(variants.len()).collect();
     let first = variants.first();
-    quote! {
+    Ok(quote! {
         #[allow(dead_code, reason = "not every enum needs every conversion")]
         impl #name {
             /// All variants in the order of their codes.
@@ -145,7 +161,7 @@ fn of_enum(name: &Ident, data: &DataEnum) -> TokenStream {
                 Self::from_code(found).ok_or(::rcs_core::plain::DecodeError::BadCode { of: #text, found })
             }
         }
-    }
+    })
 }
 
 /// The one field of a variant, if it has one.

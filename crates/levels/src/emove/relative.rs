@@ -20,57 +20,41 @@ use super::robot_place::place_named;
 
 /// The relative moves by their names in task data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
 pub enum Relative {
     /// QC-DETACH: down into the holster until its large sensors see the ears.
-    #[text = "QCD-DOWN"]
     QcdDown,
     /// QC-DETACH: forward until the small sensors see the ears at the seat.
-    #[text = "QCD-SEAT"]
     QcdSeat,
     /// QC-DETACH: up out of the gripper.
-    #[text = "QCD-UP"]
     QcdUp,
     /// QC-ATTACH: fairly rapidly close to the gripper.
-    #[text = "QCA-FAST"]
     QcaFast,
     /// QC-ATTACH: slowly onto the gripper.
-    #[text = "QCA-SLOW"]
     QcaSlow,
     /// QC-ATTACH: back out of the seat.
-    #[text = "QCA-BACK"]
     QcaBack,
     /// QC-ATTACH: a distance out of the holster.
-    #[text = "QCA-LIFT"]
     QcaLift,
     /// QC-ATTACH: completely out of the holster.
-    #[text = "QCA-UP"]
     QcaUp,
     /// WITHDRAW.
-    #[text = "WITHDRAW"]
     Withdraw,
     /// INSERT-TOOL: to the drum.
-    #[text = "INS-NEAR"]
     InsNear,
     /// INSERT-TOOL: in, unless the insertion force is too great.
-    #[text = "INS-IN"]
     InsIn,
     /// RELEASE-TOOL: to the right until the strike plate gives a moment.
-    #[text = "REL-SLIDE"]
     RelSlide,
     /// RELEASE-TOOL: back from the machine tool.
-    #[text = "REL-BACK"]
     RelBack,
     /// ACQUIRE-TOOL: towards the machine tool.
-    #[text = "ACQ-NEAR"]
     AcqNear,
     /// ACQUIRE-TOOL: on until the strike plate is touched.
-    #[text = "ACQ-STRIKE"]
     AcqStrike,
     /// ACQUIRE-TOOL: to the left until the fingers are around the tool.
-    #[text = "ACQ-SLIDE"]
     AcqSlide,
     /// REMOVE-TOOL: out, unless the extraction force is too great.
-    #[text = "REM-OUT"]
     RemOut,
 }
 

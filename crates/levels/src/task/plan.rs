@@ -13,45 +13,34 @@ use crate::places::{Missing, named};
 
 /// Commands of Task (V.4.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
 pub enum TaskVerb {
     /// None yet, or a word that is no command.
     #[text = ""]
     None,
     /// Do nothing.
-    #[text = "PAUSE"]
     Pause,
     /// Move an object from one location to another.
-    #[text = "TRANSFER"]
     Transfer,
     /// Move an object to a location and hold it there, or move the robot.
-    #[text = "MOVE"]
     Move,
     /// Release what is held and move to a position.
-    #[text = "POSITION"]
     Position,
     /// Move to an object and grasp it.
-    #[text = "ACQUIRE"]
     Acquire,
     /// Take an object, regrip it on the pedestal and move it to a location.
-    #[text = "REFIXTURE"]
     Refixture,
     /// Insert a tool into the tool drum.
-    #[text = "INSERT-TOOL"]
     InsertTool,
     /// Let go of a tool in the drum.
-    #[text = "RELEASE-TOOL"]
     ReleaseTool,
     /// Move to a tool in the drum and grasp it.
-    #[text = "ACQUIRE-TOOL"]
     AcquireTool,
     /// Pull a tool out of the drum.
-    #[text = "REMOVE-TOOL"]
     RemoveTool,
     /// Connect the Data System.
-    #[text = "STARTUP"]
     Startup,
     /// Disconnect it.
-    #[text = "SHUTDOWN"]
     Shutdown,
 }
 

@@ -8,21 +8,18 @@ use crate::{
 
 /// What Task asks of the Data System.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
 pub enum DataBaseVerb {
     /// Nothing yet.
     #[text = ""]
     None,
     /// End whatever transaction is open (reconfiguration command).
-    #[text = "ABORT"]
     Abort,
     /// Make this client known (reconfiguration command).
-    #[text = "INITIATE"]
     Initiate,
     /// Begin to take commands (reconfiguration command).
-    #[text = "STARTUP"]
     Startup,
     /// UPDATE EQUIP_ITEM_ACTION: where an item now is.
-    #[text = "UPDATE"]
     Update,
 }
 

@@ -15,6 +15,7 @@ use super::words::{Place, words};
 
 /// Commands of E-move (V.2.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
 pub enum EmoveVerb {
     /// None yet.
     #[text = ""]
@@ -23,49 +24,34 @@ pub enum EmoveVerb {
     #[text = "E-PAUSE"]
     Pause,
     /// Move to a location.
-    #[text = "MOV-TO-LOC"]
     MovToLoc,
     /// Move to an object at a location, fingers open for it.
-    #[text = "MOV-TO-OBJ"]
     MovToObj,
     /// Move the held object to a location.
-    #[text = "MOV-OBJ-TO"]
     MovObjTo,
     /// Move to where pictures are taken.
-    #[text = "MOV-TO-VU"]
     MovToVu,
     /// Find the object with the vision system.
-    #[text = "LOCATE-OBJ"]
     LocateObj,
     /// Close the fingers on the object.
-    #[text = "GRASP-OBJ"]
     GraspObj,
     /// Open the fingers.
-    #[text = "RELEASE"]
     Release,
     /// Move to a holster, fingers closed for it.
-    #[text = "MOV-TO-HOL"]
     MovToHol,
     /// Put the attached gripper into the holster and leave it there.
-    #[text = "QC-DETACH"]
     QcDetach,
     /// Take the gripper out of the holster.
-    #[text = "QC-ATTACH"]
     QcAttach,
     /// A DELTA-MOVE from above.
-    #[text = "WITHDRAW"]
     Withdraw,
     /// Insert a tool into the tool drum.
-    #[text = "INSERT-TOOL"]
     InsertTool,
     /// Let go of a tool in the drum.
-    #[text = "RELEASE-TOOL"]
     ReleaseTool,
     /// Move to a tool in the drum and grasp it.
-    #[text = "ACQUIRE-TOOL"]
     AcquireTool,
     /// Pull a tool out of the drum.
-    #[text = "REMOVE-TOOL"]
     RemoveTool,
 }
 

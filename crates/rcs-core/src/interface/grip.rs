@@ -12,24 +12,20 @@ use super::words::Inches;
 
 /// Commands of Grip (VI.3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
 pub enum GripVerb {
     /// None yet.
     #[text = ""]
     None,
     /// Leave the valves as they are.
-    #[text = "PAUSE"]
     Pause,
     /// Open or close to an opening.
-    #[text = "POSITION"]
     Position,
     /// The same, where "open" says better what is meant.
-    #[text = "OPEN-GRIP"]
     OpenGrip,
     /// Close with a commanded force.
-    #[text = "CLOSE-GRIP"]
     CloseGrip,
     /// Calibrate position and force sensors.
-    #[text = "UP-INIT"]
     UpInit,
 }
 

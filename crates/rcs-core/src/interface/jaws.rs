@@ -14,21 +14,18 @@ use super::words::Inches;
 
 /// Commands of V-Grip and Tool-Grip (VI.4.1), without the prefix VG or TG.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
 pub enum JawsVerb {
     /// None yet.
     #[text = ""]
     None,
     /// VG-PAUSE, TG-PAUSE: leave the valves as they are and read the potentiometer.
-    #[text = "PAUSE"]
     Pause,
     /// VG-GRASP, TG-GRASP: close.
-    #[text = "GRASP"]
     Grasp,
     /// VG-RELEASE, TG-RELEASE: open.
-    #[text = "RELEASE"]
     Release,
     /// VGRIP-POSE, TGRIP-POSE: open, as RELEASE.
-    #[text = "POSE"]
     Pose,
 }
 

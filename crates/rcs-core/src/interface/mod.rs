@@ -83,186 +83,128 @@ impl Report {
 /// Why a command failed: `status-para-out`, passed up the ladder unchanged
 /// (extension, docs/design/failures.md "Reason").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(doc)]
 pub enum Reason {
     /// It did not fail.
     #[text = ""]
     None,
-    /// The process was restarted and did not execute the command that stood in its buffer.
-    #[text = "the process was restarted and does not know how far the command had come"]
+    /// The process was restarted and does not know how far the command had come.
     Restarted,
     /// A process below does not answer.
-    #[text = "a process below does not answer"]
     NeighbourLost,
-    /// A command word that the process does not have.
-    #[text = "the command is not known"]
+    /// The command is not known.
     UnknownCommand,
-    /// The operator has the robot.
-    #[text = "the joystick box is on"]
+    /// The joystick box is on.
     JoystickOn,
-    /// No such object in the task data.
-    #[text = "the object is not in the task data"]
+    /// The object is not in the task data.
     UnknownObject,
-    /// No such location in the task data.
-    #[text = "the location is not in the task data"]
+    /// The location is not in the task data.
     UnknownLocation,
-    /// The sector is not one of the array's.
-    #[text = "the sector is not in the array"]
+    /// The sector is not in the array.
     SectorOutOfRange,
-    /// The object has no array assigned at this location.
-    #[text = "the object has no array at the location"]
+    /// The object has no array at the location.
     NoArrayForObject,
-    /// The object form has no entry for this grip.
-    #[text = "the object has no such grip"]
+    /// The object has no such grip.
     UnknownGrip,
-    /// No grip movetable for object, grip and location.
-    #[text = "no grip movetable for the object at the location"]
+    /// No grip movetable for the object at the location.
     NoGripMovetable,
-    /// No intermediate trajectory from here to there.
-    #[text = "no trajectory from the present location to the destination"]
+    /// No trajectory from the present location to the destination.
     NoTrajectory,
-    /// It is not known where the robot is.
-    #[text = "the robot is at no known location"]
+    /// The robot is at no known location.
     UnknownStart,
-    /// An approach is missing.
-    #[text = "no approach trajectory for the object at the location"]
+    /// No approach trajectory for the object at the location.
     NoApproach,
-    /// A record number that no file has.
-    #[text = "a record number is in no file"]
+    /// A record number is in no file.
     BadRecord,
-    /// A command needs a location and has none.
-    #[text = "the command names no location"]
+    /// The command names no location.
     NoDestination,
-    /// A command needs an object and has none.
-    #[text = "the command names no object"]
+    /// The command names no object.
     NoObjectNamed,
-    /// An object is held that must not be.
-    #[text = "another object is held already"]
+    /// Another object is held already.
     AlreadyHolding,
-    /// Nothing is held though something must be.
-    #[text = "no object is held"]
+    /// No object is held.
     NothingHeld,
-    /// The fingers closed without holding anything.
-    #[text = "the fingers closed on nothing"]
+    /// The fingers closed on nothing.
     GraspMissed,
     /// The object was lost on the way.
-    #[text = "the object was lost on the way"]
     ObjectLost,
-    /// The wrong gripper, or none, is attached, and it cannot be changed.
-    #[text = "the attached gripper is not the one for the object"]
+    /// The attached gripper is not the one for the object.
     WrongGripper,
-    /// The object is held with another grip than the one with which it is to be placed: FIX-GRIP comes first.
-    #[text = "the object is held with another grip than the destination needs"]
+    /// The object is held with another grip than the destination needs.
     RegripNeeded,
-    /// Vision saw nothing.
-    #[text = "vision sees no object"]
+    /// Vision sees no object.
     NothingSeen,
-    /// Vision saw something else.
-    #[text = "vision does not recognise the object"]
+    /// Vision does not recognise the object.
     NotRecognised,
     /// Vision does not answer.
-    #[text = "vision does not answer"]
     VisionSilent,
-    /// The gripper cannot do what it is asked.
-    #[text = "the gripper cannot reach the commanded opening or force"]
+    /// The gripper cannot reach the commanded opening or force.
     GripUnattainable,
     /// The gripper does not finish.
-    #[text = "the gripper does not finish"]
     GripTimeout,
     /// The gripper is not calibrated.
-    #[text = "the gripper is not calibrated"]
     GripNotCalibrated,
-    /// The quick change sensors contradict each other.
-    #[text = "the quick change is not locked or its sensors fail"]
+    /// The quick change is not locked or its sensors fail.
     QuickChangeFault,
-    /// The DEPC link is off or does not respond.
-    #[text = "the link to the robot controller is off"]
+    /// The link to the robot controller is off.
     LinkOff,
-    /// The DEPC link detected an error.
-    #[text = "the link to the robot controller reports an error"]
+    /// The link to the robot controller reports an error.
     LinkError,
-    /// T3I does not answer.
-    #[text = "the T3 interface does not answer"]
+    /// The T3 interface does not answer.
     InterfaceSilent,
-    /// T3I refused a command.
-    #[text = "the T3 interface refused a command"]
+    /// The T3 interface refused a command.
     InterfaceRefused,
     /// The robot did not come to rest at the goal.
-    #[text = "the robot did not come to rest at the goal"]
     NotAtGoal,
-    /// The sensors of a guarded move failed.
-    #[text = "a sensor is overloaded or fails"]
+    /// A sensor is overloaded or fails.
     SensorError,
-    /// The data base refused.
-    #[text = "the data base does not accept the update"]
+    /// The data base does not accept the update.
     DataBase,
-    /// A TRAJ-PARA record with a count that is not positive.
-    #[text = "the trajectory parameters allow no motion"]
+    /// The trajectory parameters allow no motion.
     BadParameters,
-    /// The locking ring is neither locked nor unlocked.
-    #[text = "the locking ring of the quick change is stuck"]
+    /// The locking ring of the quick change is stuck.
     QuickChangeStuck,
-    /// The gripper did not come off.
-    #[text = "the gripper did not come off in the holster"]
+    /// The gripper did not come off in the holster.
     NotDetached,
-    /// No gripper came on.
-    #[text = "no gripper was attached in the holster"]
+    /// No gripper was attached in the holster.
     NotAttached,
-    /// The gripper that came on is another one than was expected.
-    #[text = "the gripper in the holster is not the one expected"]
+    /// The gripper in the holster is not the one expected.
     WrongGripperId,
-    /// There is a gripper in a holster that must be empty.
-    #[text = "the holster is not empty"]
+    /// The holster is not empty.
     HolsterOccupied,
-    /// There is none in a holster that must be full.
-    #[text = "no gripper is seated in the holster"]
+    /// No gripper is seated in the holster.
     HolsterEmpty,
-    /// No holster object for the gripper in the task data.
-    #[text = "the task data have no holster for the gripper"]
+    /// The task data have no holster for the gripper.
     NoHolster,
-    /// The task data lack a move of the command at the location.
-    #[text = "the task data lack a relative move of the command"]
+    /// The task data lack a relative move of the command.
     NoRelativeMove,
-    /// No such sensor in the task data.
-    #[text = "the sensor of the guarded move is not in the task data"]
+    /// The sensor of the guarded move is not in the task data.
     UnknownSensor,
-    /// The condition of a GO-UNTIL did not come.
-    #[text = "the sensor condition did not come on the way to the goal"]
+    /// The sensor condition did not come on the way to the goal.
     NotDetected,
-    /// The condition of a GO-WHILE came.
-    #[text = "the sensor condition came before the goal was reached"]
+    /// The sensor condition came before the goal was reached.
     Detected,
-    /// The fingers stand where nothing wanted them.
-    #[text = "the fingers of the gripper are stuck"]
+    /// The fingers of the gripper are stuck.
     JawsStuck,
-    /// The pedestal cannot execute its command.
-    #[text = "the Active Pedestal cannot do what it is asked"]
+    /// The Active Pedestal cannot do what it is asked.
     PedestalCannot,
-    /// The pedestal reports an error.
-    #[text = "the Active Pedestal reports an error"]
+    /// The Active Pedestal reports an error.
     PedestalError,
-    /// The pedestal does not answer.
-    #[text = "the Active Pedestal does not answer"]
+    /// The Active Pedestal does not answer.
     PedestalSilent,
-    /// No PED-PARA record for the object.
-    #[text = "the task data do not say how the pedestal takes the object"]
+    /// The task data do not say how the pedestal takes the object.
     NoPedestalData,
-    /// The robot does not hold, or is not where, what the command begins with.
-    #[text = "what must precede the command has not been done"]
+    /// What must precede the command has not been done.
     NotPrepared,
     /// The Data System does not answer.
-    #[text = "the Data System does not answer"]
     DataBaseSilent,
-    /// The table of the pedestal does not turn as it should.
-    #[text = "the rotary table of the pedestal does not reach its angle"]
+    /// The rotary table of the pedestal does not reach its angle.
     TableStuck,
-    /// The angle is beyond a limit of the table.
-    #[text = "the angle is beyond a limit of the rotary table"]
+    /// The angle is beyond a limit of the rotary table.
     TableLimit,
-    /// The gripper that held the object is no longer seen on the robot.
-    #[text = "the gripper with the object is off the robot, or its id pins or the sensors of the ring say so"]
+    /// The gripper with the object is off the robot, or its id pins or the sensors of the ring say so.
     GripperGone,
-    /// Vision measured a place or an angle that its camera does not see.
-    #[text = "vision answers what its camera cannot have seen"]
+    /// Vision answers what its camera cannot have seen.
     VisionImplausible,
 }
 

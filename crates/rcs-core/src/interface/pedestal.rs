@@ -16,24 +16,20 @@ use super::words::{Degrees, Inches};
 
 /// Commands of the Active Pedestal (VI.7.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
 pub enum PedestalVerb {
     /// None yet.
     #[text = ""]
     None,
     /// Do nothing.
-    #[text = "PAUSE"]
     Pause,
     /// Open the hand and turn the table to an absolute angle, to receive an object.
-    #[text = "PRE-GRIP"]
     PreGrip,
     /// Close the hand on the object.
-    #[text = "GRIP"]
     Grip,
     /// Turn the table by a relative angle.
-    #[text = "FLIP"]
     Flip,
     /// Open the hand and let the object go.
-    #[text = "RELEASE"]
     Release,
 }
 
@@ -103,18 +99,16 @@ pub struct PedestalStatus {
 
 /// Commands of the table process (ours).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
 pub enum TableVerb {
     /// None yet.
     #[text = ""]
     None,
     /// Do nothing; a turning table stops.
-    #[text = "PAUSE"]
     Pause,
     /// Find the + limit and set the counter (IV.1 step 3, IV.5.1 step 10).
-    #[text = "CALIBRATE"]
     Calibrate,
     /// Turn to an absolute angle.
-    #[text = "TURN"]
     Turn,
 }
 

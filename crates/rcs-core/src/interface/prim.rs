@@ -13,33 +13,26 @@ use super::words::words;
 
 /// Commands of Prim (V.1.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
 pub enum PrimVerb {
     /// None yet.
     #[text = ""]
     None,
     /// Do nothing: hold position.
-    #[text = "PAUSE"]
     Pause,
     /// Initialize the DEPC link.
-    #[text = "ROBOT-INIT"]
     RobotInit,
     /// Move near a point on the way to the next.
-    #[text = "GO-THRU"]
     GoThru,
     /// Move to a point and stop.
-    #[text = "GOTO-PT"]
     GotoPt,
     /// Guarded move: move until a sensor condition comes.
-    #[text = "GO-UNTIL"]
     GoUntil,
     /// Move unless a sensor condition comes.
-    #[text = "GO-WHILE"]
     GoWhile,
     /// Move relative to a pose.
-    #[text = "DELTA-MOVE"]
     DeltaMove,
     /// Take the force sensor's reading as no force.
-    #[text = "CAL-SENSOR"]
     CalSensor,
 }
 

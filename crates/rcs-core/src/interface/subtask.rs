@@ -12,6 +12,7 @@ use super::words::{Place, words};
 
 /// Commands of Subtask (V.3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
 pub enum SubtaskVerb {
     /// None yet.
     #[text = ""]
@@ -20,19 +21,14 @@ pub enum SubtaskVerb {
     #[text = "S-PAUSE"]
     Pause,
     /// Connect the proper gripper.
-    #[text = "GET-ENDEFF"]
     GetEndeff,
     /// Move to an object and grasp it.
-    #[text = "GET-OBJECT"]
     GetObject,
     /// Move an object to a location and release it.
-    #[text = "PLACE-OBJ"]
     PlaceObj,
     /// Move to the end-at location.
-    #[text = "GOTO-ENDPT"]
     GotoEndpt,
     /// Move to the destination.
-    #[text = "GOTO-DEST"]
     GotoDest,
     /// Move an object to the destination and hold it there.
     #[text = "MOVE-OBJ>D"]
@@ -41,22 +37,16 @@ pub enum SubtaskVerb {
     #[text = ">POSITION"]
     Position,
     /// Open the gripper.
-    #[text = "RELEASE"]
     Release,
     /// Regrip the object with the Active Pedestal.
-    #[text = "FIX-GRIP"]
     FixGrip,
     /// Insert a tool into the tool drum.
-    #[text = "INSERT-TOOL"]
     InsertTool,
     /// Let go of a tool in the drum.
-    #[text = "RELEASE-TOOL"]
     ReleaseTool,
     /// Move to a tool in the drum and grasp it.
-    #[text = "ACQUIRE-TOOL"]
     AcquireTool,
     /// Pull a tool out of the drum.
-    #[text = "REMOVE-TOOL"]
     RemoveTool,
 }
 

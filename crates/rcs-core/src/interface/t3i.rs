@@ -12,18 +12,16 @@ use crate::{
 
 /// Commands of T3I (VI.1.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
 pub enum T3iVerb {
     /// None yet.
     #[text = ""]
     None,
     /// Clear errors and initialize the link.
-    #[text = "RESTART"]
     Restart,
     /// Move to a frame.
-    #[text = "POINT"]
     Point,
     /// Repeat the last position.
-    #[text = "PAUSE"]
     Pause,
 }
 
