@@ -11,9 +11,7 @@ use std::{
     },
 };
 
-use executive::memory::{
-    Attached, Publisher, ReadError, RunName, SharedMemoryError, buffers::Pulse, list, runs,
-};
+use executive::memory::{Attached, Publisher, RunName, SharedMemoryError, buffers::Pulse, list, runs};
 use rcs_core::{
     Plain,
     interface::{CommonMemory, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport},
