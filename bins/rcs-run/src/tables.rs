@@ -30,8 +30,9 @@ first one that fits decides. A row fits if the command is in one of the row's st
 and if each variable that the row names has one of the values behind it. It names one action, and the next
 step where the step changes.
 
-`consult` is no decision: the next table of the process is consulted, with the value in brackets. Each process
-begins with table 1, and ends with the table of its command.
+`consult` is no decision: the process goes on to another table, with the value in brackets, until a row
+decides. First come the tables that all commands have in common, then the one of the command, and last one
+that several commands share.
 
 The log, `rcs-run status` and the sentence about a failure name a row by table and number, and write a step
 in small letters: `letting-go` for `LettingGo`.
@@ -77,13 +78,18 @@ fn append_process(text: &mut String, process: &ProcessInfo, earlier: &[ProcessIn
     };
     let own: Vec<&'static Table> =
         process.tables.iter().copied().filter(|table| printed(table).is_none()).collect();
+    if own.is_empty() {
+        text.push('\n');
+    }
     for (number, table) in (1..).zip(process.tables) {
-        let _ = write!(text, "\n### {number}. {}\n\n", table.name);
-        match printed(table) {
-            Some((other, number)) => {
-                let _ = writeln!(text, "Table {number} of {}.", link(other));
-            }
-            None => append_table(text, table, &own),
+        let heading = format!("{number}. {}", table.name);
+        let _ = match printed(table) {
+            Some((other, at)) if own.is_empty() => writeln!(text, "{heading}: table {at} of {}", link(other)),
+            Some((other, at)) => write!(text, "\n### {heading}\n\nTable {at} of {}.\n", link(other)),
+            None => write!(text, "\n### {heading}\n\n"),
+        };
+        if printed(table).is_none() {
+            append_table(text, table, &own);
         }
     }
     let shared = Groups::of(&own, |tables| tables > 1);

@@ -186,9 +186,7 @@ Actions:
 
 ## Gate
 
-### 1. PAUSE
-
-Table 3 of [Front Door](#front-door).
+1. PAUSE: table 3 of [Front Door](#front-door)
 "
     );
     let passed = accept((), &Request { lamp: Lamp::On });
