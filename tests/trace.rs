@@ -23,7 +23,7 @@ use std::{
 use rcs_core::{
     Plain,
     interface::{CommonMemory, DeviceOutputs, Header},
-    plain::{RecordSchema, Schema, Writer, from_bytes},
+    plain::{Schema, StructSchema, Writer, from_bytes},
     tick::Tick,
 };
 use record::{
@@ -199,7 +199,7 @@ fn changes(
         return Ok(());
     }
     match schema {
-        Schema::Record(record) => record_changes(record, path, was, is, visit),
+        Schema::Struct(record) => record_changes(record, path, was, is, visit),
         // Bytes are one word: a frame on the line, not 64 numbers.
         Schema::Array(of, _) if **of == Schema::U8 => visit(path, &hex(is)),
         Schema::Array(of, _) => {
@@ -262,7 +262,7 @@ fn carried_changes(
     };
     let same = was.filter(|(before, _)| *before == code);
     // A value that stands alone is its own text.
-    let alone = |schema: &Schema| !matches!(schema, Schema::Record(_) | Schema::Option(_) | Schema::Union(_));
+    let alone = |schema: &Schema| !matches!(schema, Schema::Struct(_) | Schema::Option(_) | Schema::Union(_));
     let now = carried(*code);
     if same.is_none() && now.as_ref().is_none_or(|schema| !alone(schema)) {
         visit(path, text)?;
@@ -284,13 +284,13 @@ fn carried_changes(
 }
 
 fn record_changes(
-    record: &RecordSchema,
+    record: &StructSchema,
     path: &mut String,
     was: Option<&[u8]>,
     is: &[u8],
     visit: &mut Visit<'_>,
 ) -> io::Result<()> {
-    let is_header = record.name == Header::RECORD.name;
+    let is_header = record.name == Header::STRUCT.name;
     let mut start = 0;
     for field in record.fields {
         let bytes = start..start + field.schema.size();

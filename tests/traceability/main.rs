@@ -18,7 +18,7 @@ use neighbours::{mailbox::TABLE, network::Role};
 use rcs_core::{
     Plain,
     interface::{CommonMemory, ExternalInputs, Reason},
-    plain::{EnumSchema, RecordSchema, Schema, UnionSchema, VariantSchema},
+    plain::{EnumSchema, Schema, StructSchema, UnionSchema, VariantSchema},
 };
 use whole_system_tests::root;
 
@@ -96,7 +96,7 @@ fn page() -> Page {
 struct Interfaces {
     enums: BTreeMap<&'static str, &'static EnumSchema>,
     unions: BTreeMap<&'static str, &'static UnionSchema>,
-    records: BTreeMap<&'static str, &'static RecordSchema>,
+    records: BTreeMap<&'static str, &'static StructSchema>,
 }
 
 impl Interfaces {
@@ -118,7 +118,7 @@ impl Interfaces {
                 of.variants.iter().filter_map(|variant| variant.payload.as_ref()).for_each(|of| self.add(of));
             }
             Schema::Array(of, _) | Schema::Option(of) => self.add(of),
-            Schema::Record(of) => {
+            Schema::Struct(of) => {
                 self.records.insert(of.name, of);
                 of.fields.iter().for_each(|field| self.add(&field.schema));
             }

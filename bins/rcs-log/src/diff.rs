@@ -169,8 +169,8 @@ struct Comparison {
 impl Comparison {
     fn new() -> Self {
         Self {
-            external: layout::leaves(ExternalInputs::RECORD),
-            memory: layout::leaves(CommonMemory::RECORD),
+            external: layout::leaves(ExternalInputs::STRUCT),
+            memory: layout::leaves(CommonMemory::STRUCT),
             fields: BTreeMap::new(),
             first: None,
             compared: 0,

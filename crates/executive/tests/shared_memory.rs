@@ -193,7 +193,7 @@ fn some_value(schema: &Schema, numbers: &mut Numbers, image: &mut Vec<u8>) {
             );
         }
         Schema::Array(of, length) => (0..*length).for_each(|_| some_value(of, numbers, image)),
-        Schema::Record(of) => of.fields.iter().for_each(|field| some_value(&field.schema, numbers, image)),
+        Schema::Struct(of) => of.fields.iter().for_each(|field| some_value(&field.schema, numbers, image)),
         number => image.extend((0..number.size()).map(|_| u8::try_from(numbers.below(256)).unwrap())),
     }
 }

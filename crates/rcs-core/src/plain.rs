@@ -47,7 +47,7 @@ pub enum Schema {
     /// So many of the same.
     Array(&'static Schema, usize),
     /// A struct.
-    Record(&'static RecordSchema),
+    Struct(&'static StructSchema),
     /// One byte, 0 for none or 1, then the value, zero for none.
     Option(&'static Schema),
     /// One byte, the code of a variant, then what it carries, then zeros to the size of the largest variant.
@@ -98,7 +98,7 @@ pub struct UnionVariant {
 
 /// A struct: its name and fields in the order of the byte image.
 #[derive(Debug, PartialEq)]
-pub struct RecordSchema {
+pub struct StructSchema {
     /// Rust name of the struct.
     pub name: &'static str,
     /// The fields.
@@ -125,7 +125,7 @@ impl Schema {
             Self::U64 | Self::F64 => 8,
             Self::Text(n) => *n,
             Self::Array(of, n) => of.size().saturating_mul(*n),
-            Self::Record(record) => record.size(),
+            Self::Struct(record) => record.size(),
             Self::Option(of) => of.size().saturating_add(1),
             Self::Union(of) => of.payload_size().saturating_add(1),
         }
@@ -157,7 +157,7 @@ impl UnionSchema {
     }
 }
 
-impl RecordSchema {
+impl StructSchema {
     /// Bytes of the image.
     #[must_use]
     pub const fn size(&self) -> usize {

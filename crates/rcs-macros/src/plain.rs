@@ -44,7 +44,7 @@ fn of_struct(name: &Ident, data: &DataStruct) -> Result<TokenStream> {
     Ok(quote! {
         impl #name {
             /// The fields of the byte image.
-            pub const RECORD: &'static ::rcs_core::plain::RecordSchema = &::rcs_core::plain::RecordSchema {
+            pub const STRUCT: &'static ::rcs_core::plain::StructSchema = &::rcs_core::plain::StructSchema {
                 name: #text,
                 fields: &[ #( ::rcs_core::plain::FieldSchema {
                     name: #texts,
@@ -54,7 +54,7 @@ fn of_struct(name: &Ident, data: &DataStruct) -> Result<TokenStream> {
         }
 
         impl ::rcs_core::Plain for #name {
-            const SCHEMA: ::rcs_core::plain::Schema = ::rcs_core::plain::Schema::Record(Self::RECORD);
+            const SCHEMA: ::rcs_core::plain::Schema = ::rcs_core::plain::Schema::Struct(Self::STRUCT);
             const ZERO: Self = Self { #( #names: <#types as ::rcs_core::Plain>::ZERO, )* };
 
             fn encode(&self, w: &mut ::rcs_core::plain::Writer<'_>) {

@@ -17,7 +17,7 @@ use mcap::{McapResult, records::MessageHeader};
 use prost_types::field_descriptor_proto::Type;
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs, Header},
-    plain::{self, RecordSchema, Schema},
+    plain::{self, Schema, StructSchema},
     table::{Row, Table},
     tick::Tick,
 };
@@ -88,7 +88,7 @@ struct Buffer {
     bytes: Range<usize>,
     /// Where the image is looked at for changes: all but the [`CLOCKS`].
     compared: Vec<Range<usize>>,
-    schema: RecordSchema,
+    schema: StructSchema,
 }
 
 /// The buffers of one image.
@@ -98,23 +98,23 @@ pub struct Buffers(Vec<Buffer>);
 struct Place {
     topic: String,
     bytes: Range<usize>,
-    schema: RecordSchema,
+    schema: StructSchema,
 }
 
 /// The buffers of a record: its fields but for the header, named after `prefix`.
-fn places(prefix: &str, record: &'static RecordSchema, mut offset: usize) -> Vec<Place> {
+fn places(prefix: &str, record: &'static StructSchema, mut offset: usize) -> Vec<Place> {
     let mut found = Vec::new();
     for field in record.fields {
         let size = field.schema.size();
         let (name, fields) = match &field.schema {
-            Schema::Record(of) => (of.name, of.fields),
+            Schema::Struct(of) => (of.name, of.fields),
             // An array is a message with itself as its only field.
             _ => (field.name, std::slice::from_ref(field)),
         };
-        if name != Header::RECORD.name {
+        if name != Header::STRUCT.name {
             let command = name.ends_with("Command") && !field.name.ends_with("command");
             let topic = format!("{prefix}/{}{}", field.name, if command { "_command" } else { "" });
-            found.push(Place { topic, bytes: offset..offset + size, schema: RecordSchema { name, fields } });
+            found.push(Place { topic, bytes: offset..offset + size, schema: StructSchema { name, fields } });
         }
         offset += size;
     }
@@ -122,14 +122,14 @@ fn places(prefix: &str, record: &'static RecordSchema, mut offset: usize) -> Vec
 }
 
 fn external_places() -> Vec<Place> {
-    places("/external", ExternalInputs::RECORD, 0)
+    places("/external", ExternalInputs::STRUCT, 0)
 }
 
 fn memory_places() -> Vec<Place> {
     let mut offset = 0;
     let mut found = Vec::new();
-    for process in CommonMemory::RECORD.fields {
-        if let Schema::Record(outputs) = &process.schema {
+    for process in CommonMemory::STRUCT.fields {
+        if let Schema::Struct(outputs) = &process.schema {
             found.extend(places(&format!("/{}", process.name), outputs, offset));
         }
         offset += process.schema.size();
@@ -138,7 +138,7 @@ fn memory_places() -> Vec<Place> {
 }
 
 /// Stretches of a buffer at `offset` that hold no [`CLOCKS`].
-fn compared(schema: &RecordSchema, offset: usize) -> Vec<Range<usize>> {
+fn compared(schema: &StructSchema, offset: usize) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::new();
     for leaf in layout::leaves_of(schema.fields) {
         let start = offset + leaf.offset;
@@ -229,7 +229,7 @@ impl HeaderPlace {
 pub fn headers() -> Vec<HeaderPlace> {
     let mut offset = 0;
     let mut found = Vec::new();
-    for (field, process) in CommonMemory::RECORD.fields.iter().zip(Ladder::processes()) {
+    for (field, process) in CommonMemory::STRUCT.fields.iter().zip(Ladder::processes()) {
         found.push(HeaderPlace { field: field.name, offset, process });
         offset += field.schema.size();
     }
@@ -339,7 +339,7 @@ mod tests {
         let mut image = vec![0; CommonMemory::SIZE];
         memory.encode(&mut plain::Writer::new(&mut image));
         let headers = headers();
-        assert_eq!(headers.len(), CommonMemory::RECORD.fields.len());
+        assert_eq!(headers.len(), CommonMemory::STRUCT.fields.len());
         let prim = headers.iter().find(|place| place.field == "prim").unwrap();
         assert_eq!(prim.read(&image), memory.prim.header);
         assert!(prim.process.name.eq_ignore_ascii_case("prim"));

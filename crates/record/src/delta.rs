@@ -12,7 +12,7 @@
 //! hardly differ from tick to tick, which is what a compressor is good at. Names and frames on the line are
 //! bytes, not numbers: their difference is a list of runs. A full image is a delta from zeros.
 
-use rcs_core::plain::RecordSchema;
+use rcs_core::plain::StructSchema;
 
 use crate::{
     layout::{self, Piece},
@@ -32,7 +32,7 @@ pub struct Codec {
 impl Codec {
     /// The codec of a record.
     #[must_use]
-    pub fn new(record: &'static RecordSchema) -> Self {
+    pub fn new(record: &'static StructSchema) -> Self {
         Self { pieces: layout::pieces(record), size: record.size() }
     }
 
@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn a_small_change_is_a_few_bytes() {
-        let codec = Codec::new(ExternalInputs::RECORD);
+        let codec = Codec::new(ExternalInputs::STRUCT);
         let mut was = ExternalInputs::default();
         was.devices.resolvers.counts = [65_535; 6];
         let mut is = was;
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn numbers_of_every_width_come_back_over_their_ends() {
-        let codec = Codec::new(CommonMemory::RECORD);
+        let codec = Codec::new(CommonMemory::STRUCT);
         let (mut was, mut is) = (vec![0xFF; codec.size()], vec![0x80; codec.size()]);
         for _ in 0..2 {
             let mut delta = Vec::new();
@@ -213,7 +213,7 @@ mod tests {
 
     #[test]
     fn a_delta_that_does_not_fit_is_refused() {
-        let codec = Codec::new(ExternalInputs::RECORD);
+        let codec = Codec::new(ExternalInputs::STRUCT);
         let mut image = vec![0; codec.size()];
         assert!(!codec.apply(&[], &mut image), "no count");
         assert!(!codec.apply(&[0, 1], &mut image), "bytes left over");
@@ -228,7 +228,7 @@ mod tests {
         fn what_was_encoded_comes_back(
             changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..60),
         ) {
-            for record in [CommonMemory::RECORD, LadderState::RECORD] {
+            for record in [CommonMemory::STRUCT, LadderState::STRUCT] {
                 let codec = Codec::new(record);
                 let from = vec![0; codec.size()];
                 let mut to = from.clone();
@@ -246,7 +246,7 @@ mod tests {
 
         #[test]
         fn no_bytes_are_too_strange(delta in prop::collection::vec(any::<u8>(), 0..200)) {
-            let codec = Codec::new(ExternalInputs::RECORD);
+            let codec = Codec::new(ExternalInputs::STRUCT);
             // What it says does not matter here, that it ends does.
             let _ = codec.apply(&delta, &mut vec![0; codec.size()]);
         }

@@ -21,7 +21,7 @@ use levels::ladder::LadderState;
 use rcs_core::{
     digest::Digest,
     interface::{CommonMemory, ExternalInputs},
-    plain::{FieldSchema, RecordSchema, Schema, UnionSchema},
+    plain::{FieldSchema, Schema, StructSchema, UnionSchema},
 };
 
 use crate::proto::descriptor;
@@ -73,7 +73,7 @@ const NONE: &str = "none";
 
 /// All leaves of a record in the order of the image.
 #[must_use]
-pub fn leaves(record: &'static RecordSchema) -> Vec<Leaf> {
+pub fn leaves(record: &'static StructSchema) -> Vec<Leaf> {
     leaves_of(record.fields)
 }
 
@@ -105,7 +105,7 @@ impl Walk {
 
     fn schema(&mut self, schema: &'static Schema, path: String, offset: usize) {
         match schema {
-            Schema::Record(record) => self.fields(record.fields, &path, offset),
+            Schema::Struct(record) => self.fields(record.fields, &path, offset),
             Schema::Array(of, count) if !is_leaf(schema) => {
                 for index in 0..*count {
                     self.schema(of, format!("{path}[{index}]"), offset + index * of.size());
@@ -142,7 +142,7 @@ impl Walk {
 /// True if people read the value as one word.
 fn is_leaf(schema: &Schema) -> bool {
     match schema {
-        Schema::Record(_) => false,
+        Schema::Struct(_) => false,
         // Bytes are read as one word: a frame on the line, not 64 numbers.
         Schema::Array(of, _) => **of == Schema::U8,
         Schema::Option(of) => is_leaf(of),
@@ -177,13 +177,13 @@ pub struct Piece {
 /// The pieces of a record: each byte of its image is in one of them. What the variants of a union carry
 /// stands in the same bytes, so it is one piece.
 #[must_use]
-pub fn pieces(record: &'static RecordSchema) -> Vec<Piece> {
+pub fn pieces(record: &'static StructSchema) -> Vec<Piece> {
     let mut found = Vec::new();
     record_pieces(record, 0, &mut found);
     found
 }
 
-fn record_pieces(record: &RecordSchema, mut offset: usize, found: &mut Vec<Piece>) {
+fn record_pieces(record: &StructSchema, mut offset: usize, found: &mut Vec<Piece>) {
     for field in record.fields {
         schema_pieces(&field.schema, offset, found);
         offset += field.schema.size();
@@ -193,7 +193,7 @@ fn record_pieces(record: &RecordSchema, mut offset: usize, found: &mut Vec<Piece
 fn schema_pieces(schema: &Schema, offset: usize, found: &mut Vec<Piece>) {
     let mut piece = |offset, size, number| found.push(Piece { offset, size, number });
     match schema {
-        Schema::Record(record) => record_pieces(record, offset, found),
+        Schema::Struct(record) => record_pieces(record, offset, found),
         Schema::Text(_) | Schema::Array(Schema::U8, _) => piece(offset, schema.size(), false),
         Schema::Array(of, count) => {
             (0..*count).for_each(|index| schema_pieces(of, offset + index * of.size(), found));
@@ -234,7 +234,7 @@ pub fn value_text(schema: &Schema, bytes: &[u8]) -> String {
             Some((_, value)) => value_text(of, value),
         },
         Schema::Union(of) => union_text(of, bytes),
-        Schema::Array(..) | Schema::Record(_) => bytes.iter().map(|byte| format!("{byte:02X}")).collect(),
+        Schema::Array(..) | Schema::Struct(_) => bytes.iter().map(|byte| format!("{byte:02X}")).collect(),
     }
 }
 
@@ -284,7 +284,7 @@ pub fn first_difference<'a>(leaves: &'a [Leaf], was: &[u8], is: &[u8]) -> Option
 /// The layout of a record for people and for the version: a line a leaf with its offset, size, kind and path,
 /// and a line for each enum and union with its codes.
 #[must_use]
-pub fn describe(name: &str, record: &'static RecordSchema) -> String {
+pub fn describe(name: &str, record: &'static StructSchema) -> String {
     let mut lines = format!("{name}: {}, {} bytes\n", record.name, record.size());
     for leaf in leaves(record) {
         let kind = kind_name(leaf.schema);
@@ -322,7 +322,7 @@ fn define(schema: &Schema, lines: &mut Vec<String>) {
             add(format!("union {}: {}\n", of.name, codes.join(", ")));
             payloads().flatten().for_each(|payload| define(payload, lines));
         }
-        Schema::Record(of) => of.fields.iter().for_each(|field| define(&field.schema, lines)),
+        Schema::Struct(of) => of.fields.iter().for_each(|field| define(&field.schema, lines)),
         Schema::Array(of, _) | Schema::Option(of) => define(of, lines),
         _ => {}
     }
@@ -341,7 +341,7 @@ fn kind_name(schema: &Schema) -> String {
         Schema::Text(length) => format!("text {length}"),
         Schema::Enum(of) => of.name.into(),
         Schema::Array(of, count) => format!("{}[{count}]", kind_name(of)),
-        Schema::Record(of) => of.name.into(),
+        Schema::Struct(of) => of.name.into(),
         Schema::Option(of) => format!("option {}", kind_name(of)),
         Schema::Union(of) => of.name.into(),
     }
@@ -355,9 +355,9 @@ const FORMAT: &str = "format 2: differences by field\n";
 pub fn description() -> String {
     [
         FORMAT.to_owned(),
-        describe("external", ExternalInputs::RECORD),
-        describe("memory", CommonMemory::RECORD),
-        describe("state", LadderState::RECORD),
+        describe("external", ExternalInputs::STRUCT),
+        describe("memory", CommonMemory::STRUCT),
+        describe("state", LadderState::STRUCT),
     ]
     .concat()
 }
@@ -366,8 +366,8 @@ pub fn description() -> String {
 #[must_use]
 pub fn interface_version() -> String {
     let mut digest = Digest::new();
-    digest.add(describe("external", ExternalInputs::RECORD).as_bytes());
-    digest.add(describe("memory", CommonMemory::RECORD).as_bytes());
+    digest.add(describe("external", ExternalInputs::STRUCT).as_bytes());
+    digest.add(describe("memory", CommonMemory::STRUCT).as_bytes());
     digest.to_string()
 }
 
@@ -420,7 +420,7 @@ mod tests {
         bytes
     }
 
-    fn texts<T: Plain>(record: &'static RecordSchema, value: &T) -> Vec<(String, String)> {
+    fn texts<T: Plain>(record: &'static StructSchema, value: &T) -> Vec<(String, String)> {
         let image = image(value);
         leaves(record).into_iter().map(|leaf| (leaf.path.clone(), leaf.text(&image))).collect()
     }
@@ -437,7 +437,7 @@ mod tests {
 
     #[test]
     fn pieces_cover_every_byte_once() {
-        for record in [ExternalInputs::RECORD, CommonMemory::RECORD, LadderState::RECORD, Order::RECORD] {
+        for record in [ExternalInputs::STRUCT, CommonMemory::STRUCT, LadderState::STRUCT, Order::STRUCT] {
             let mut next = 0;
             for piece in pieces(record) {
                 assert_eq!(piece.offset, next);
@@ -449,7 +449,7 @@ mod tests {
 
     #[test]
     fn leaves_cover_every_byte_and_have_paths_of_their_own() {
-        for record in [ExternalInputs::RECORD, CommonMemory::RECORD, LadderState::RECORD, Order::RECORD] {
+        for record in [ExternalInputs::STRUCT, CommonMemory::STRUCT, LadderState::STRUCT, Order::STRUCT] {
             let (leaves, mut covered) = (leaves(record), vec![false; record.size()]);
             for (at, leaf) in leaves.iter().enumerate() {
                 covered[leaf.offset..leaf.offset + leaf.size].fill(true);
@@ -464,7 +464,7 @@ mod tests {
         let was = CommonMemory::default();
         let mut is = was;
         is.prim.poses[2].pose.tool[1] = -7145;
-        let leaves = leaves(CommonMemory::RECORD);
+        let leaves = leaves(CommonMemory::STRUCT);
         let (was, is) = (image(&was), image(&is));
         let leaf = first_difference(&leaves, &was, &is).unwrap();
         assert_eq!(leaf.path, "prim.poses[2].pose.tool[1]");
@@ -489,7 +489,7 @@ mod tests {
     #[test]
     fn a_value_that_is_absent_is_none() {
         let told = |order: &Order| {
-            let found = texts(Order::RECORD, order);
+            let found = texts(Order::STRUCT, order);
             found.iter().map(|(path, text)| format!("{path} {text}")).collect::<Vec<_>>()
         };
         let expected = [
@@ -527,7 +527,7 @@ mod tests {
             1, 3, 0, b'U', b'N', b'I', b'T', 0, 0, 0, 0, 0, 0, // to
         ];
         assert_eq!(image(&ordered()), expected);
-        let places: Vec<_> = leaves(Order::RECORD).iter().map(|leaf| (leaf.offset, leaf.size)).collect();
+        let places: Vec<_> = leaves(Order::STRUCT).iter().map(|leaf| (leaf.offset, leaf.size)).collect();
         assert_eq!(
             places,
             [(0, 3), (3, 2), (5, 1), (6, 2), (8, 10), (18, 1), (19, 2), (21, 10), (19, 4)],
@@ -538,7 +538,7 @@ mod tests {
     /// The bytes of a variant that is not there are no difference.
     #[test]
     fn a_difference_is_one_of_the_variant_that_is_there() {
-        let (was, leaves) = (Order { to: Goal::Kind(1), ..Order::default() }, leaves(Order::RECORD));
+        let (was, leaves) = (Order { to: Goal::Kind(1), ..Order::default() }, leaves(Order::STRUCT));
         let first = |is: &Order| {
             let (was, is) = (image(&was), image(is));
             let leaf = first_difference(&leaves, &was, &is).unwrap();
@@ -553,7 +553,7 @@ mod tests {
 
     #[test]
     fn the_description_tells_what_a_union_carries() {
-        let text = describe("order", Order::RECORD);
+        let text = describe("order", Order::STRUCT);
         let expected = "\
 order: Order, 31 bytes
      0    3 option u16   number

@@ -145,9 +145,9 @@ pub(crate) struct Codecs {
 impl Codecs {
     pub(crate) fn new() -> Self {
         Self {
-            external: Codec::new(ExternalInputs::RECORD),
-            memory: Codec::new(CommonMemory::RECORD),
-            state: Codec::new(LadderState::RECORD),
+            external: Codec::new(ExternalInputs::STRUCT),
+            memory: Codec::new(CommonMemory::STRUCT),
+            state: Codec::new(LadderState::STRUCT),
         }
     }
 }

@@ -47,7 +47,7 @@ struct Trace {
 /// Look at the ticks from `from` to `until`, for a process.
 pub fn gather(log: &Log, process: ProcessId, from: u64, until: u64) -> Evidence {
     let wanted = |leaf: &Leaf| process.reads().iter().any(|prefix| leaf.path.starts_with(prefix));
-    let mut traces: Vec<Trace> = layout::leaves(ExternalInputs::RECORD)
+    let mut traces: Vec<Trace> = layout::leaves(ExternalInputs::STRUCT)
         .into_iter()
         .filter(wanted)
         .map(|leaf| Trace { leaf, changes: Vec::new(), least: u64::MAX, most: 0 })

@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn what_processes_read_are_inputs() {
-        let leaves = record::layout::leaves(ExternalInputs::RECORD);
+        let leaves = record::layout::leaves(ExternalInputs::STRUCT);
         for read in ProcessId::ALL.iter().flat_map(|process| process.reads()) {
             assert!(leaves.iter().any(|leaf| leaf.path.starts_with(read)), "{read}");
         }

@@ -259,7 +259,7 @@ fn add_schema(digest: &mut Digest, schema: &Schema) {
             }
             digest.add(&[0]);
         }
-        Schema::Record(of) => {
+        Schema::Struct(of) => {
             add_text(digest, of.name);
             for field in of.fields {
                 add_text(digest, field.name);

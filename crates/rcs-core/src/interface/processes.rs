@@ -327,7 +327,7 @@ mod tests {
     #[test]
     fn positions_are_those_of_the_buffers() {
         for process in ProcessId::ALL {
-            assert_eq!(CommonMemory::RECORD.fields[process.position()].name, process.field());
+            assert_eq!(CommonMemory::STRUCT.fields[process.position()].name, process.field());
         }
         assert_eq!(
             ProcessId::Pedestal.below().collect::<Vec<_>>(),

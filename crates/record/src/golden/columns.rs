@@ -4,7 +4,7 @@
 //! names, frames on the line and what larger unions carry, the new bytes). A field that never changes is an
 //! empty column, the noise of a converter two small bytes a change, alike enough to be packed to a few bits.
 
-use rcs_core::plain::RecordSchema;
+use rcs_core::plain::StructSchema;
 
 use crate::{
     layout::{self, Piece},
@@ -20,7 +20,7 @@ struct Column {
 }
 
 /// A column for each field of a record.
-fn columns(record: &'static RecordSchema) -> Vec<Column> {
+fn columns(record: &'static StructSchema) -> Vec<Column> {
     let column = |piece: Piece| Column { last: vec![0; piece.size], piece, changed: 0 };
     layout::pieces(record).into_iter().map(column).collect()
 }
@@ -33,7 +33,7 @@ pub struct Columns {
 
 impl Columns {
     /// No images yet; what comes before the first is zeros.
-    pub fn new(record: &'static RecordSchema) -> Self {
+    pub fn new(record: &'static StructSchema) -> Self {
         Self { columns: columns(record).into_iter().map(|column| (column, Vec::new())).collect(), tick: 0 }
     }
 
@@ -75,7 +75,7 @@ pub struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     /// A reader of columns that [`Columns`] made for the same record.
-    pub fn new(record: &'static RecordSchema, bytes: &'a [Vec<u8>]) -> Self {
+    pub fn new(record: &'static StructSchema, bytes: &'a [Vec<u8>]) -> Self {
         let columns = columns(record);
         let sound = columns.len() == bytes.len();
         let next = |(column, mut rest): (Column, &'a [u8])| {
@@ -131,7 +131,7 @@ mod tests {
             changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0_usize..4), 0..200),
         ) {
             let mut image = vec![0; ExternalInputs::SIZE];
-            let (mut images, mut columns) = (Vec::new(), Columns::new(ExternalInputs::RECORD));
+            let (mut images, mut columns) = (Vec::new(), Columns::new(ExternalInputs::STRUCT));
             for (at, byte, quiet) in changes {
                 let at = at.index(image.len());
                 image[at] = byte;
@@ -141,7 +141,7 @@ mod tests {
                 }
             }
             let bytes = columns.finish();
-            let mut reader = Reader::new(ExternalInputs::RECORD, &bytes);
+            let mut reader = Reader::new(ExternalInputs::STRUCT, &bytes);
             for image in images {
                 prop_assert_eq!(reader.next_image(), Some(image.as_slice()));
             }
@@ -151,8 +151,8 @@ mod tests {
         fn damaged_columns_are_noticed_or_harmless(
             bytes in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..9), 0..300),
         ) {
-            let mut reader = Reader::new(ExternalInputs::RECORD, &bytes);
-            let whole = layout::pieces(ExternalInputs::RECORD).len() == bytes.len();
+            let mut reader = Reader::new(ExternalInputs::STRUCT, &bytes);
+            let whole = layout::pieces(ExternalInputs::STRUCT).len() == bytes.len();
             for _ in 0..300 {
                 let image = reader.next_image();
                 prop_assert!(whole || image.is_none());
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_field_that_never_changes_costs_nothing() {
-        let mut columns = Columns::new(ExternalInputs::RECORD);
+        let mut columns = Columns::new(ExternalInputs::STRUCT);
         for _ in 0..1000 {
             columns.add(&vec![0; ExternalInputs::SIZE]);
         }

@@ -198,7 +198,7 @@ pub fn from_log(log: &Log) -> Result<Golden, GoldenError> {
     if !log.complete {
         return Err(GoldenError::NotWhole("it has no end"));
     }
-    let mut columns = Columns::new(ExternalInputs::RECORD);
+    let mut columns = Columns::new(ExternalInputs::STRUCT);
     let (mut digest, mut digests, mut ticks) = (Digest::new(), Vec::new(), 0_u64);
     for logged in log.ticks() {
         let logged = logged?;
@@ -276,7 +276,7 @@ impl Golden {
 
     /// What the ladder read in each tick, from the first on.
     pub fn inputs(&self) -> impl Iterator<Item = Result<(Tick, ExternalInputs), GoldenError>> {
-        let mut reader = Reader::new(ExternalInputs::RECORD, &self.0.columns);
+        let mut reader = Reader::new(ExternalInputs::STRUCT, &self.0.columns);
         (1..=self.0.ticks).map(move |tick| {
             let image = reader.next_image().ok_or(GoldenError::Damaged { tick })?;
             let external = from_bytes(image).map_err(|_| GoldenError::Damaged { tick })?;

@@ -25,7 +25,7 @@ use prost_types::{
     FileDescriptorProto, FileDescriptorSet, OneofDescriptorProto,
     field_descriptor_proto::{Label, Type},
 };
-use rcs_core::plain::{EnumSchema, RecordSchema, Schema, UnionSchema};
+use rcs_core::plain::{EnumSchema, Schema, StructSchema, UnionSchema};
 
 use crate::layout;
 
@@ -37,13 +37,13 @@ pub const KIND: &str = "kind";
 
 /// Full name of the message of a record.
 #[must_use]
-pub fn message_name(record: &RecordSchema) -> String {
+pub fn message_name(record: &StructSchema) -> String {
     format!("{PACKAGE}.{}", record.name)
 }
 
 /// The encoded `FileDescriptorSet` that describes the message of a record and all that it holds.
 #[must_use]
-pub fn descriptor_set(record: &RecordSchema) -> Vec<u8> {
+pub fn descriptor_set(record: &StructSchema) -> Vec<u8> {
     let mut messages = Vec::new();
     add_record(record, &mut messages);
     encode_set(vec![file("rcs.proto", PACKAGE, &[], messages)])
@@ -140,7 +140,7 @@ fn known(name: &str, messages: &[DescriptorProto]) -> bool {
     messages.iter().any(|message| message.name() == name)
 }
 
-fn add_record(record: &RecordSchema, messages: &mut Vec<DescriptorProto>) {
+fn add_record(record: &StructSchema, messages: &mut Vec<DescriptorProto>) {
     if known(record.name, messages) {
         return;
     }
@@ -154,7 +154,7 @@ fn add_record(record: &RecordSchema, messages: &mut Vec<DescriptorProto>) {
 
 fn add_schema(schema: &'static Schema, messages: &mut Vec<DescriptorProto>) {
     match schema {
-        Schema::Record(record) => add_record(record, messages),
+        Schema::Struct(record) => add_record(record, messages),
         Schema::Array(of, _) => {
             if matches!(of, Schema::Option(_)) && !known(&element_name(of), messages) {
                 messages.push(message(&element_name(of), vec![schema_field("value", 1, of)]));
@@ -201,7 +201,7 @@ fn element_name(option: &Schema) -> String {
     fn type_name(schema: &Schema) -> String {
         match schema {
             Schema::Enum(of) => of.name.to_owned(),
-            Schema::Record(of) => of.name.to_owned(),
+            Schema::Struct(of) => of.name.to_owned(),
             Schema::Union(of) => of.name.to_owned(),
             Schema::Text(_) => "Text".to_owned(),
             Schema::Array(of, _) => format!("ArrayOf{}", type_name(of)),
@@ -221,7 +221,7 @@ fn schema_field(name: &str, number: i32, schema: &'static Schema) -> FieldDescri
         Schema::Bool => field(name, number, Type::Bool),
         Schema::Text(_) => field(name, number, Type::String),
         Schema::Enum(of) => typed_field(name, number, Type::Enum, &format!("{PACKAGE}.{}.Value", of.name)),
-        Schema::Record(of) => typed_field(name, number, Type::Message, &message_name(of)),
+        Schema::Struct(of) => typed_field(name, number, Type::Message, &message_name(of)),
         Schema::Union(of) => typed_field(name, number, Type::Message, &format!("{PACKAGE}.{}", of.name)),
         Schema::Option(of) => optional(schema_field(name, number, of)),
         Schema::Array(of, _) if **of == Schema::U8 => field(name, number, Type::Bytes),
@@ -301,13 +301,13 @@ mod tests {
         last: Option<Goal>,
     }
 
-    fn decoded(record: &'static RecordSchema) -> FileDescriptorProto {
+    fn decoded(record: &'static StructSchema) -> FileDescriptorProto {
         FileDescriptorSet::decode(descriptor_set(record).as_slice()).unwrap().file.remove(0)
     }
 
     #[test]
     fn a_command_has_its_fields_and_enums() {
-        let file = decoded(EmoveCommand::RECORD);
+        let file = decoded(EmoveCommand::STRUCT);
         let command = &file.message_type[0];
         assert_eq!(command.name(), "EmoveCommand");
         let verb = command.field.iter().find(|field| field.name() == "command").unwrap();
@@ -319,7 +319,7 @@ mod tests {
 
     #[test]
     fn every_type_is_there_and_every_identifier_is_legal() {
-        for record in [CommonMemory::RECORD, ExternalInputs::RECORD, Order::RECORD] {
+        for record in [CommonMemory::STRUCT, ExternalInputs::STRUCT, Order::STRUCT] {
             let file = decoded(record);
             for message in &file.message_type {
                 for field in message.field.iter().filter(|field| field.type_name.is_some()) {
@@ -348,14 +348,14 @@ mod tests {
         fn walk(schema: &'static Schema, seen: &mut BTreeMap<&'static str, String>) {
             let (name, content) = match schema {
                 Schema::Array(of, _) | Schema::Option(of) => return walk(of, seen),
-                Schema::Record(of) => (of.name, format!("{of:?}")),
+                Schema::Struct(of) => (of.name, format!("{of:?}")),
                 Schema::Enum(of) => (of.name, format!("{of:?}")),
                 Schema::Union(of) => (of.name, format!("{of:?}")),
                 _ => return,
             };
             assert_eq!(*seen.entry(name).or_insert_with(|| content.clone()), content, "{name}");
             match schema {
-                Schema::Record(of) => of.fields.iter().for_each(|field| walk(&field.schema, seen)),
+                Schema::Struct(of) => of.fields.iter().for_each(|field| walk(&field.schema, seen)),
                 Schema::Union(of) => {
                     let payloads = of.variants.iter().filter_map(|variant| variant.payload.as_ref());
                     payloads.for_each(|payload| walk(payload, seen));
@@ -364,7 +364,7 @@ mod tests {
             }
         }
         let mut seen = BTreeMap::new();
-        for record in [CommonMemory::RECORD, ExternalInputs::RECORD] {
+        for record in [CommonMemory::STRUCT, ExternalInputs::STRUCT] {
             record.fields.iter().for_each(|field| walk(&field.schema, &mut seen));
         }
         assert!(seen.len() > 20);
@@ -386,7 +386,7 @@ mod tests {
 
     #[test]
     fn what_can_be_absent_is_optional() {
-        let file = decoded(Order::RECORD);
+        let file = decoded(Order::STRUCT);
         let expected = [
             ("number", 1, "TYPE_UINT32", "optional"),
             ("light", 2, ".rcs.Light.Value", "optional"),
@@ -403,7 +403,7 @@ mod tests {
 
     #[test]
     fn a_union_is_its_kind_and_a_field_for_what_a_variant_carries() {
-        let file = decoded(Order::RECORD);
+        let file = decoded(Order::STRUCT);
         let goal = file.message_type.iter().find(|message| message.name() == "Goal").unwrap();
         let expected = [
             ("kind", 1, ".rcs.Goal.Kind", ""),

@@ -1,12 +1,12 @@
 //! A record's byte image as a protobuf message, described by [`super::descriptor`].
 
-use rcs_core::plain::{RecordSchema, Schema, UnionSchema};
+use rcs_core::plain::{Schema, StructSchema, UnionSchema};
 
 use super::{descriptor, wire};
 use crate::layout;
 
 /// Append the message of `record`, whose image is `image`.
-pub fn encode(record: &RecordSchema, mut image: &[u8], out: &mut Vec<u8>) {
+pub fn encode(record: &StructSchema, mut image: &[u8], out: &mut Vec<u8>) {
     for (number, field) in (1..).zip(record.fields) {
         let (bytes, rest) = image.split_at_checked(field.schema.size()).unwrap_or((image, &[]));
         encode_field(number, &field.schema, bytes, out);
@@ -25,7 +25,7 @@ fn encode_field(number: u32, schema: &Schema, bytes: &[u8], out: &mut Vec<u8>) {
             let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
             wire::bytes(number, bytes.get(..end).unwrap_or_default(), out);
         }
-        Schema::Record(record) => wire::nested(number, out, |out| encode(record, bytes, out)),
+        Schema::Struct(record) => wire::nested(number, out, |out| encode(record, bytes, out)),
         Schema::Option(of) => match bytes.split_first() {
             None | Some((0, _)) => {}
             Some((_, value)) => encode_field(number, of, value, out),
@@ -38,7 +38,7 @@ fn encode_field(number: u32, schema: &Schema, bytes: &[u8], out: &mut Vec<u8>) {
             }
         }
         Schema::Array(
-            of @ (Schema::Text(_) | Schema::Record(_) | Schema::Union(_) | Schema::Array(..)),
+            of @ (Schema::Text(_) | Schema::Struct(_) | Schema::Union(_) | Schema::Array(..)),
             _,
         ) => {
             bytes.chunks_exact(of.size().max(1)).for_each(|item| encode_field(number, of, item, out));
@@ -115,7 +115,7 @@ mod tests {
         let mut image = vec![0xA5; Lamp::SIZE];
         lamp.encode(&mut Writer::new(&mut image));
         let mut out = Vec::new();
-        encode(Lamp::RECORD, &image, &mut out);
+        encode(Lamp::STRUCT, &image, &mut out);
         let expected: &[&[u8]] = &[
             &[0x08, 0xAC, 0x02],             // number
             &[0x10, 0x01],                   // light
@@ -152,7 +152,7 @@ mod tests {
         let mut image = vec![0xA5; Order::SIZE];
         order.encode(&mut Writer::new(&mut image));
         let mut out = Vec::new();
-        encode(Order::RECORD, &image, &mut out);
+        encode(Order::STRUCT, &image, &mut out);
         out
     }
 
