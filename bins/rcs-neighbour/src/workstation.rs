@@ -40,7 +40,7 @@ pub fn play(arguments: &WorkstationArguments) -> Result<(), Error> {
                 Progress::Running => {}
                 Progress::Over => return Ok(()),
                 Progress::Failed(failure) => {
-                    let line = hwsc.records().last().map_or("", |record| record.text.as_str());
+                    let line = hwsc.begun_steps().last().map_or("", |step| step.text.as_str());
                     return Err(Error::Job(format!("`{line}` failed: {failure}")));
                 }
             }
@@ -72,9 +72,9 @@ fn job(arguments: &WorkstationArguments) -> Result<Job, Error> {
 
 /// One line on standard output for every step that is over.
 fn tell(hwsc: &Hwsc, told: &mut usize, over: bool) {
-    let finished = if over { hwsc.records().len() } else { hwsc.records().len().saturating_sub(1) };
-    for record in hwsc.records().get(*told..finished).unwrap_or_default() {
-        println!("{}: {} after {} ticks", record.text, record.outcome.text(), record.ticks);
+    let finished = if over { hwsc.begun_steps().len() } else { hwsc.begun_steps().len().saturating_sub(1) };
+    for step in hwsc.begun_steps().get(*told..finished).unwrap_or_default() {
+        println!("{}: {} after {} ticks", step.text, step.outcome.text(), step.ticks);
     }
     *told = finished.max(*told);
 }

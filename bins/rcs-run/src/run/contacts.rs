@@ -1,4 +1,4 @@
-//! Judges what the robot touches: the cell says what touches, common memory which command is executed, and the list of the cell
+//! Checks what the robot touches: the cell says what touches, common memory which command is executed, and the list of the cell
 //! description what may touch then.
 //!
 //! A contact that is not permitted does not end the run at once: no sensor of the cell would notice it, and what the
@@ -124,7 +124,7 @@ struct Allowance {
 
 /// Watches a run.
 #[derive(Debug)]
-pub struct Judge {
+pub struct ContactCheck {
     permits: Permits,
     allowed: BTreeMap<(String, String), Allowance>,
     /// Collisions that go on: index in `collisions`.
@@ -133,8 +133,8 @@ pub struct Judge {
     nearest: Option<NearMiss>,
 }
 
-impl Judge {
-    /// A judge who goes by this list.
+impl ContactCheck {
+    /// A check against this list.
     #[must_use]
     pub fn new(permits: Permits) -> Self {
         Self {
@@ -296,9 +296,9 @@ mod tests {
     const GRASP: Commands = Commands { emove: "GRASP-OBJ", subtask: "GET-OBJECT" };
 
     /// Fingers may touch parts, 0.1 in deep, while they grasp.
-    fn judge() -> Judge {
+    fn new_check() -> ContactCheck {
         let pattern = |text: &str| vec![Pattern(text.into())];
-        Judge::new(Permits(vec![Permit {
+        ContactCheck::new(Permits(vec![Permit {
             mover: pattern("fingers"),
             obstacle: pattern("parts"),
             during: vec!["GRASP-OBJ".into()],
@@ -323,18 +323,18 @@ mod tests {
         [contact("left_finger", Kind::Finger, depth)]
     }
 
-    /// Show the judge a finger at these depths, tick by tick; the lines that come of it.
-    fn play(judge: &mut Judge, ticks: &[(f64, Commands)]) -> Vec<String> {
+    /// Show the check a finger at these depths, tick by tick; gives the lines of the log.
+    fn play(check: &mut ContactCheck, ticks: &[(f64, Commands)]) -> Vec<String> {
         let ticks = (1..).zip(ticks);
         ticks
-            .flat_map(|(tick, (depth, commands))| judge.look(Tick(tick), &finger(*depth), *commands))
+            .flat_map(|(tick, (depth, commands))| check.look(Tick(tick), &finger(*depth), *commands))
             .collect()
     }
 
     #[test]
     fn a_collision_is_told_when_it_begins_and_when_it_ends_with_its_greatest_depth() {
-        let mut judge = judge();
-        let lines = play(&mut judge, &[(-0.2, MOVE), (0.3, MOVE), (0.7, MOVE), (0.2, GRASP), (-0.2, MOVE)]);
+        let mut check = new_check();
+        let lines = play(&mut check, &[(-0.2, MOVE), (0.3, MOVE), (0.7, MOVE), (0.2, GRASP), (-0.2, MOVE)]);
         assert_eq!(
             lines,
             [
@@ -342,9 +342,9 @@ mod tests {
                 "left_finger comes free of BAR after 3 ticks; it was 0.700 in deep",
             ]
         );
-        let [one] = judge.collisions() else { panic!("{:?}", judge.collisions()) };
+        let [one] = check.collisions() else { panic!("{:?}", check.collisions()) };
         assert_eq!((one.tick, one.ticks, one.depth_in, one.commands), (2, 3, 0.7, MOVE));
-        let verdict = judge.verdict().unwrap();
+        let verdict = check.verdict().unwrap();
         assert_eq!(verdict.tick, Tick(2));
         assert_eq!(
             verdict.text,
@@ -355,61 +355,61 @@ mod tests {
 
     #[test]
     fn a_contact_that_trembles_is_one() {
-        let mut judge = judge();
-        play(&mut judge, &[(0.01, MOVE), (-0.01, MOVE), (0.01, MOVE), (-0.06, MOVE), (0.01, MOVE)]);
-        assert_eq!(judge.collisions().len(), 2);
-        assert!(judge.verdict().unwrap().text.ends_with("; and one contact more, 0.010 in deep"));
+        let mut check = new_check();
+        play(&mut check, &[(0.01, MOVE), (-0.01, MOVE), (0.01, MOVE), (-0.06, MOVE), (0.01, MOVE)]);
+        assert_eq!(check.collisions().len(), 2);
+        assert!(check.verdict().unwrap().text.ends_with("; and one contact more, 0.010 in deep"));
     }
 
     #[test]
     fn what_is_permitted_is_no_collision_and_what_is_too_deep_is_one() {
-        let mut permitted = judge();
+        let mut permitted = new_check();
         assert!(play(&mut permitted, &[(0.05, GRASP), (0.1, GRASP), (-0.5, GRASP)]).is_empty());
         assert_eq!(permitted.verdict(), None);
-        let mut deep = judge();
+        let mut deep = new_check();
         assert_eq!(play(&mut deep, &[(0.05, GRASP), (0.11, GRASP)]).len(), 1);
-        let mut other = judge();
+        let mut other = new_check();
         other.look(Tick(1), &[contact("wrist", Kind::Arm, 0.05)], GRASP);
         assert!(other.verdict().is_some(), "the wrist is no finger");
     }
 
     #[test]
     fn the_next_command_may_lead_away_from_what_the_last_one_touched() {
-        let mut leaving = judge();
+        let mut leaving = new_check();
         assert!(play(&mut leaving, &[(0.08, GRASP), (0.08, MOVE), (0.03, MOVE), (-0.5, MOVE)]).is_empty());
-        let mut going_on = judge();
+        let mut going_on = new_check();
         assert_eq!(play(&mut going_on, &[(0.03, GRASP), (0.08, MOVE)]).len(), 1, "deeper is not away");
-        let mut coming_back = judge();
+        let mut coming_back = new_check();
         let again = play(&mut coming_back, &[(0.08, GRASP), (-0.06, MOVE), (0.03, MOVE)]);
         assert_eq!(again.len(), 1, "it had come free");
     }
 
     #[test]
     fn the_nearest_miss_is_of_what_may_never_be_touched() {
-        let mut judge = judge();
-        assert_eq!(judge.margin(), MARGIN);
+        let mut check = new_check();
+        assert_eq!(check.margin(), MARGIN);
         let mut pass = |tick: u64, distance: f64| {
-            judge.look(Tick(tick), &[contact("wrist", Kind::Arm, -distance)], MOVE);
-            let nearest = judge.nearest().map(|nearest| (nearest.distance_in, nearest.tick));
-            (nearest, judge.margin())
+            check.look(Tick(tick), &[contact("wrist", Kind::Arm, -distance)], MOVE);
+            let nearest = check.nearest().map(|nearest| (nearest.distance_in, nearest.tick));
+            (nearest, check.margin())
         };
         assert_eq!(pass(1, 0.5), (Some((0.5, 1)), 0.5));
         assert_eq!(pass(2, 0.3), (Some((0.3, 2)), 0.3));
         assert_eq!(pass(3, 0.4), (Some((0.3, 2)), 0.3));
         assert_eq!(pass(4, 0.01), (Some((0.01, 4)), FREE), "that something comes free is still seen");
-        assert_eq!(judge.verdict(), None);
-        play(&mut judge, &[(-0.001, MOVE)]);
-        assert_eq!(judge.nearest().map(|nearest| nearest.tick), Some(4), "fingers touch parts now and then");
+        assert_eq!(check.verdict(), None);
+        play(&mut check, &[(-0.001, MOVE)]);
+        assert_eq!(check.nearest().map(|nearest| nearest.tick), Some(4), "fingers touch parts now and then");
     }
 
     #[test]
     fn a_robot_that_is_led_through_something_is_stuck() {
-        let mut judge = judge();
-        judge.look(Tick(1), &[contact("BLANK", Kind::HeldPart, 2.0)], MOVE);
-        assert!(!judge.is_stuck(), "a part gives way");
-        judge.look(Tick(2), &[contact("wrist", Kind::Arm, 0.9)], MOVE);
-        assert!(!judge.is_stuck());
-        judge.look(Tick(3), &[contact("wrist", Kind::Arm, 1.1)], MOVE);
-        assert!(judge.is_stuck());
+        let mut check = new_check();
+        check.look(Tick(1), &[contact("BLANK", Kind::HeldPart, 2.0)], MOVE);
+        assert!(!check.is_stuck(), "a part gives way");
+        check.look(Tick(2), &[contact("wrist", Kind::Arm, 0.9)], MOVE);
+        assert!(!check.is_stuck());
+        check.look(Tick(3), &[contact("wrist", Kind::Arm, 1.1)], MOVE);
+        assert!(check.is_stuck());
     }
 }

@@ -51,7 +51,7 @@ use taskdata::load::{Job, job::Reload};
 
 use self::{
     boards::Controller,
-    contacts::{Commands, Judge},
+    contacts::{Commands, ContactCheck},
     log::Log,
     neighbours::Neighbours,
     pace::Pace,
@@ -86,7 +86,7 @@ struct Run {
     pace: Pace,
     progress: Progress,
     /// What the robot touches.
-    judge: Judge,
+    check: ContactCheck,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<(Level, &'static str, String)>,
     /// What has happened, for the result.
@@ -117,7 +117,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         log,
         progress: Progress::new(job.steps.len() + 1),
         pace: Pace::fast(arguments.overrun),
-        judge: Judge::new(description.contact),
+        check: ContactCheck::new(description.contact),
         fresh: Vec::new(),
         events: Events::default(),
     };
@@ -130,13 +130,13 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     }
     let ending = run.play(Generations::new(store), &job.reloads, arguments, &interrupted);
     let wall_s = started.elapsed().as_secs_f64();
-    let ending = ending.judged(&run.judge);
+    let ending = ending.checked(&run.check);
     run.progress.end();
     let mut result = run.result(&job, &ending, wall_s);
     let log_text = run.finish_log(&ending, &mut result, log_path);
     let page = Page {
         result: &result,
-        steps: run.neighbours.records(),
+        steps: run.neighbours.begun_steps(),
         log: &log_text,
         slowest: &pace::slowest(run.runner.stage_times()),
         stopped: matches!(ending, Ending::Stopped),
@@ -286,7 +286,7 @@ impl Run {
             self.advance(tick, &outputs);
             self.observe(tick, Commands::from(&memory));
             self.runner.stage_times_mut().mark(Stage::Cell);
-            self.progress.show(self.neighbours.records(), &external.hws, &memory);
+            self.progress.show(self.neighbours.begun_steps(), &external.hws, &memory);
             let progress = self.neighbours.step(
                 tick,
                 &memory,
@@ -307,8 +307,8 @@ impl Run {
                 player::Progress::Running => {}
             }
             // An arm that sinks without pressure is stopped by what it meets, and the emergency is the verdict.
-            let stuck = self.judge.is_stuck() && !self.workstation.is_settling(tick);
-            if let Some(failure) = self.judge.verdict().filter(|_| stuck) {
+            let stuck = self.check.is_stuck() && !self.workstation.is_settling(tick);
+            if let Some(failure) = self.check.verdict().filter(|_| stuck) {
                 return Ending::Failed(failure);
             }
             if let Some(overrun) = self.pace.ends(&memory) {
@@ -358,13 +358,13 @@ impl Run {
 
     /// What has happened in the cell in a tick, for the log, for the page and for the verdict.
     fn observe(&mut self, tick: Tick, commands: Commands) {
-        // Whether a contact is worth a word is the judge's affair.
+        // The check decides which contacts are worth a line.
         let events = self.workstation.events(tick).into_iter();
         let events = events.filter(|event| !matches!(event, CellEvent::Contact(_)));
         self.fresh = events.map(|event| (Level::Warning, source(&event), event.to_string())).collect();
-        let lines = self.judge.look(tick, self.workstation.cell.contacts(), commands);
+        let lines = self.check.look(tick, self.workstation.cell.contacts(), commands);
         self.fresh.extend(lines.into_iter().map(|line| (Level::Error, "cell", line)));
-        self.workstation.cell.watch_clearance(self.judge.margin());
+        self.workstation.cell.watch_clearance(self.check.margin());
         for (_, _, event) in &self.fresh {
             self.events.push(tick, event);
         }
@@ -401,10 +401,10 @@ impl Run {
         let ticks = self.runner.tick().0;
         let simulated_s = ticks as f64 * TICK_S;
         let commands =
-            self.neighbours.records().iter().filter(|record| record.is_command).map(|record| CommandResult {
-                text: record.text.trim_start_matches("==").trim_start().to_owned(),
-                status: record.outcome.text(),
-                ticks: record.ticks,
+            self.neighbours.begun_steps().iter().filter(|step| step.is_command).map(|step| CommandResult {
+                text: step.text.trim_start_matches("==").trim_start().to_owned(),
+                status: step.outcome.text(),
+                ticks: step.ticks,
             });
         RunResult {
             job: job.name.clone(),
@@ -429,8 +429,8 @@ impl Run {
             digest: self.runner.digest().to_string(),
             parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
             data_base: self.items(),
-            contacts: self.judge.collisions().to_vec(),
-            clearance: self.judge.nearest().cloned(),
+            contacts: self.check.collisions().to_vec(),
+            clearance: self.check.nearest().cloned(),
             events: std::mem::take(&mut self.events),
             log: None,
             failure: match ending {

@@ -18,7 +18,7 @@ use neighbours::{
     vision::{self, picture::Part},
     workstation::{
         Gate, TaskState,
-        player::{Hwsc, JobFailure, Outcome, Progress, Record},
+        player::{BegunStep, Hwsc, JobFailure, Outcome, Progress},
         status,
     },
 };
@@ -46,8 +46,8 @@ pub fn network_note(news: &News) -> Note {
     (level, "network", news.to_string())
 }
 
-/// Who commands Task.
-pub enum Chief {
+/// The workstation controller of a run: what commands Task.
+pub enum WorkstationSource {
     /// The emulator, with a job.
     Emulator {
         /// The emulator.
@@ -59,7 +59,7 @@ pub enum Chief {
     Outside(Box<OutsideWorkstation>),
 }
 
-impl Chief {
+impl WorkstationSource {
     /// The emulator plays a job.
     #[must_use]
     pub fn emulator(hwsc: Hwsc) -> Self {
@@ -84,7 +84,7 @@ pub struct Network {
 /// The neighbours of a run.
 pub struct Neighbours {
     gate: Gate,
-    chief: Chief,
+    workstation: WorkstationSource,
     data_system: DataSystem,
     /// None: the pedestal's processes are among the controller's.
     pedestal: Option<Box<pedestal::Agent>>,
@@ -99,13 +99,13 @@ impl Neighbours {
     /// Whoever commands, the Data System, and pedestal and vision if they are other processes.
     #[must_use]
     pub fn new(
-        chief: Chief,
+        workstation: WorkstationSource,
         data_system: DataSystem,
         pedestal: Option<Box<pedestal::Agent>>,
         vision: Option<vision::Port>,
         network: Option<Network>,
     ) -> Self {
-        Self { gate: Gate::default(), chief, data_system, pedestal, vision, network, notes: Vec::new() }
+        Self { gate: Gate::default(), workstation, data_system, pedestal, vision, network, notes: Vec::new() }
     }
 
     /// Wait for those who are other processes: for so many seconds at most, and not beyond an interruption, of which the run will
@@ -144,7 +144,7 @@ impl Neighbours {
     /// Another process commands.
     #[must_use]
     pub const fn are_commanding(&self) -> bool {
-        matches!(self.chief, Chief::Outside(_))
+        matches!(self.workstation, WorkstationSource::Outside(_))
     }
 
     /// What stands in Task's command buffer.
@@ -194,17 +194,17 @@ impl Neighbours {
 
     /// Steps of the job so far, or commands of whoever commands.
     #[must_use]
-    pub fn records(&self) -> &[Record] {
-        match &self.chief {
-            Chief::Emulator { hwsc, .. } => hwsc.records(),
-            Chief::Outside(outside) => outside.records(),
+    pub fn begun_steps(&self) -> &[BegunStep] {
+        match &self.workstation {
+            WorkstationSource::Emulator { hwsc, .. } => hwsc.begun_steps(),
+            WorkstationSource::Outside(outside) => outside.begun_steps(),
         }
     }
 
     /// The line that a failure is of: the last step of a job, or the command that whoever commands waits for.
     #[must_use]
     pub fn last_line(&self) -> Option<&str> {
-        let last = self.records().last()?;
+        let last = self.begun_steps().last()?;
         let is_meant = !self.are_commanding() || last.outcome == Outcome::Executing;
         is_meant.then_some(last.text.as_str())
     }
@@ -229,14 +229,14 @@ impl Neighbours {
         }));
         self.step_vision(tick, memory, workstation);
         self.gate.write(&memory.task, task_state(&memory.task.header, tick));
-        let progress = match &mut self.chief {
-            Chief::Emulator { hwsc, command_box } => {
+        let progress = match &mut self.workstation {
+            WorkstationSource::Emulator { hwsc, command_box } => {
                 let progress = emulate(hwsc, command_box, &mut self.gate, tick, workstation);
                 // What the gate refuses comes back to the emulator by its status.
                 self.gate.read(command_box);
                 progress
             }
-            Chief::Outside(outside) => {
+            WorkstationSource::Outside(outside) => {
                 outside.step(tick, &mut self.gate, &memory.task, workstation, store, &mut self.notes)
             }
         };

@@ -10,7 +10,7 @@ use neighbours::{
     workstation::{
         Gate,
         cell::{self, CellStatus, Line, Trouble},
-        player::{JobFailure, Outcome, Progress, Record, Workstation as _},
+        player::{BegunStep, JobFailure, Outcome, Progress, Workstation as _},
     },
 };
 use rcs_core::{
@@ -38,7 +38,7 @@ pub struct OutsideWorkstation {
     line: u16,
     /// Why it was refused.
     refused: Option<String>,
-    records: Vec<Record>,
+    begun_steps: Vec<BegunStep>,
     began: Tick,
     /// It has been there in a tick.
     came: bool,
@@ -55,7 +55,7 @@ impl OutsideWorkstation {
             line_read: 0,
             line: 0,
             refused: None,
-            records: Vec::new(),
+            begun_steps: Vec::new(),
             began: Tick::BEFORE_START,
             came: false,
             parting: None,
@@ -64,8 +64,8 @@ impl OutsideWorkstation {
 
     /// The commands that were taken, as far as they are remembered.
     #[must_use]
-    pub fn records(&self) -> &[Record] {
-        &self.records
+    pub fn begun_steps(&self) -> &[BegunStep] {
+        &self.begun_steps
     }
 
     /// Once a tick, after controller and cell.
@@ -135,21 +135,21 @@ impl OutsideWorkstation {
 
     fn begin(&mut self, tick: Tick, command: &HwsCommand) {
         self.began = tick;
-        if self.records.len() < REMEMBERED {
-            let record =
-                Record { text: spelled(command), is_command: true, outcome: Outcome::Executing, ticks: 0 };
-            self.records.push(record);
+        if self.begun_steps.len() < REMEMBERED {
+            let step =
+                BegunStep { text: spelled(command), is_command: true, outcome: Outcome::Executing, ticks: 0 };
+            self.begun_steps.push(step);
         }
     }
 
     /// What has become of the last command.
     fn follow(&mut self, tick: Tick, command: &HwsCommand, task: &TaskOutputs) {
-        let Some(record) = self.records.last_mut() else { return };
-        if record.outcome != Outcome::Executing || task.status.echo != command.number {
+        let Some(step) = self.begun_steps.last_mut() else { return };
+        if step.outcome != Outcome::Executing || task.status.echo != command.number {
             return;
         }
-        record.ticks = tick.since(self.began);
-        record.outcome = match task.status.report {
+        step.ticks = tick.since(self.began);
+        step.outcome = match task.status.report {
             HwsReport::Finished => Outcome::Finished,
             HwsReport::Error | HwsReport::JoystickOn => Outcome::Failed,
             HwsReport::Idle | HwsReport::Executing => Outcome::Executing,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use neighbours::workstation::player::Record;
+use neighbours::workstation::player::BegunStep;
 use rcs_core::tick::{TICK_MS, TICK_S};
 
 use super::result::{EmergencyResult, RunResult, TickTimes};
@@ -15,7 +15,7 @@ pub struct Page<'a> {
     /// The result.
     pub result: &'a RunResult,
     /// All steps, those of the workstation included.
-    pub steps: &'a [Record],
+    pub steps: &'a [BegunStep],
     /// Lines about the log.
     pub log: &'a str,
     /// The processes that took longest.

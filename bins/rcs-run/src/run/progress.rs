@@ -8,7 +8,7 @@ use std::{
 use executive::failure;
 use indicatif::{ProgressBar, ProgressStyle};
 use levels::ladder::ProcessId;
-use neighbours::workstation::player::Record;
+use neighbours::workstation::player::BegunStep;
 use rcs_core::interface::{CommonMemory, HwsCommand};
 
 /// Time between two pictures.
@@ -39,14 +39,14 @@ impl Progress {
     }
 
     /// Show where the run is, at most ten times a second.
-    pub fn show(&mut self, steps: &[Record], hws: &HwsCommand, memory: &CommonMemory) {
+    pub fn show(&mut self, steps: &[BegunStep], hws: &HwsCommand, memory: &CommonMemory) {
         let Some(bar) = &self.bar else { return };
         if self.shown.elapsed() < PERIOD {
             return;
         }
         self.shown = Instant::now();
         bar.set_position(steps.len() as u64);
-        let line = steps.last().map_or("", |record| record.text.as_str());
+        let line = steps.last().map_or("", |step| step.text.as_str());
         bar.set_prefix(line.to_owned());
         bar.set_message(levels(hws, memory));
     }

@@ -22,7 +22,7 @@ use plant::{
 use taskdata::load::{Job, Report, Source, Store};
 
 use super::{
-    neighbours::{Chief, Neighbours, Network},
+    neighbours::{Neighbours, Network, WorkstationSource},
     robot::{Port, Robot},
 };
 use crate::{
@@ -183,13 +183,13 @@ fn neighbours(
             DataSystem::new(items, ANSWER_TICKS, pace)
         }
     };
-    let chief = match commands {
-        Some(desk) => Chief::outside(desk),
-        None => Chief::emulator(Hwsc::new(job.steps.clone(), TIME_LIMIT)),
+    let workstation = match commands {
+        Some(desk) => WorkstationSource::outside(desk),
+        None => WorkstationSource::emulator(Hwsc::new(job.steps.clone(), TIME_LIMIT)),
     };
     let pedestal = regrips.map(|desk| Box::new(pedestal::Agent::new(desk)));
     let vision = sees.map(|desk| vision::Port::new(desk, arguments.seed, Analysis::fingerprint(description)));
-    Ok(Neighbours::new(chief, data_system, pedestal, vision, network))
+    Ok(Neighbours::new(workstation, data_system, pedestal, vision, network))
 }
 
 /// Where updates wait for a Data System in another process.

@@ -8,7 +8,7 @@ use rcs_core::{
     tick::Tick,
 };
 
-use super::{Run, contacts::Judge, robot::Port};
+use super::{Run, contacts::ContactCheck, robot::Port};
 
 /// How a run ended.
 pub enum Ending {
@@ -22,8 +22,8 @@ pub enum Ending {
 
 impl Ending {
     /// A job in which the robot ran into something has not finished; one that failed may have failed because of it.
-    pub fn judged(self, judge: &Judge) -> Self {
-        let Some(verdict) = judge.verdict() else { return self };
+    pub fn checked(self, check: &ContactCheck) -> Self {
+        let Some(verdict) = check.verdict() else { return self };
         match self {
             Self::Finished | Self::Stopped => Self::Failed(verdict),
             Self::Failed(failure) if failure.text == verdict.text => Self::Failed(failure),

@@ -80,7 +80,7 @@ impl Outcome {
 
 /// A step that was begun.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Record {
+pub struct BegunStep {
     /// The line as it stands in the job; `PAUSE` for the first one.
     pub text: String,
     /// It was a command for Task, not an action of the workstation.
@@ -149,7 +149,7 @@ pub struct Hwsc {
     repeated: bool,
     /// The command is to be sent.
     to_send: bool,
-    records: Vec<Record>,
+    begun_steps: Vec<BegunStep>,
     progress: Progress,
     time_limit: u64,
     later: Vec<Later>,
@@ -177,7 +177,7 @@ impl Hwsc {
     /// An emulator that will play `steps`, each within `time_limit` ticks.
     #[must_use]
     pub fn new(steps: Vec<JobLine>, time_limit: u64) -> Self {
-        let records = Vec::with_capacity(steps.len() + 1);
+        let begun_steps = Vec::with_capacity(steps.len() + 1);
         Self {
             steps,
             current: 0,
@@ -187,7 +187,7 @@ impl Hwsc {
             answer_ticks: ECHO_LIMIT,
             repeated: false,
             to_send: false,
-            records,
+            begun_steps,
             progress: Progress::Running,
             time_limit,
             later: Vec::new(),
@@ -215,8 +215,8 @@ impl Hwsc {
 
     /// All steps that were begun, the first PAUSE included.
     #[must_use]
-    pub fn records(&self) -> &[Record] {
-        &self.records
+    pub fn begun_steps(&self) -> &[BegunStep] {
+        &self.begun_steps
     }
 
     /// Where the job stands.
@@ -300,8 +300,8 @@ impl Hwsc {
         workstation: &impl Workstation,
     ) -> Option<Result<(), JobFailure>> {
         let ticks = tick.since(began);
-        if let Some(record) = self.records.last_mut() {
-            record.ticks = ticks;
+        if let Some(step) = self.begun_steps.last_mut() {
+            step.ticks = ticks;
         }
         if let Some(fault) = workstation.fault() {
             return Some(Err(JobFailure::Workstation(fault)));
@@ -403,7 +403,7 @@ impl Hwsc {
                 (text, None, None)
             }
         };
-        self.records.push(Record {
+        self.begun_steps.push(BegunStep {
             text,
             is_command: command.is_some(),
             outcome: Outcome::Executing,
@@ -425,8 +425,8 @@ impl Hwsc {
     }
 
     fn finish(&mut self, outcome: Outcome) {
-        if let Some(record) = self.records.last_mut() {
-            record.outcome = outcome;
+        if let Some(step) = self.begun_steps.last_mut() {
+            step.outcome = outcome;
         }
     }
 }

@@ -168,7 +168,8 @@ fn a_job_is_played_in_order_and_pause_comes_first() {
     assert_eq!(*hwsc.progress(), Progress::Over);
     assert_eq!(task.received, ["PAUSE", "MOVE", "MOVE"]);
     assert_eq!(jaws.told, [partial, close]);
-    let texts: Vec<_> = hwsc.records().iter().map(|r| (r.text.as_str(), r.is_command, r.outcome)).collect();
+    let texts: Vec<_> =
+        hwsc.begun_steps().iter().map(|r| (r.text.as_str(), r.is_command, r.outcome)).collect();
     let finished = Outcome::Finished;
     assert_eq!(
         texts,
@@ -182,8 +183,16 @@ fn a_job_is_played_in_order_and_pause_comes_first() {
     );
     // A command is written in one tick, read in the next, executed for four, and its end is seen in the
     // tick that writes it.
-    assert!(hwsc.records().iter().filter(|r| r.is_command).all(|r| r.ticks == 5), "{:?}", hwsc.records());
-    assert!(hwsc.records().iter().filter(|r| !r.is_command).all(|r| r.ticks == 6), "{:?}", hwsc.records());
+    assert!(
+        hwsc.begun_steps().iter().filter(|r| r.is_command).all(|r| r.ticks == 5),
+        "{:?}",
+        hwsc.begun_steps()
+    );
+    assert!(
+        hwsc.begun_steps().iter().filter(|r| !r.is_command).all(|r| r.ticks == 6),
+        "{:?}",
+        hwsc.begun_steps()
+    );
 }
 
 #[test]
@@ -203,7 +212,7 @@ fn an_error_of_task_ends_the_job_with_its_reason_and_nothing_more_is_sent() {
     let last = play(&mut hwsc, &mut task, &mut Vise::default());
     assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Command(Reason::GraspMissed)));
     assert_eq!(task.received, ["PAUSE", "MOVE"]);
-    assert_eq!(hwsc.records().last().map(|r| r.outcome), Some(Outcome::Failed));
+    assert_eq!(hwsc.begun_steps().last().map(|r| r.outcome), Some(Outcome::Failed));
     let number = hwsc.command().number;
     let outputs = task.step(&mut hwsc);
     hwsc.step(Tick(last + 1), &outputs, &mut Vise::default());
@@ -261,7 +270,7 @@ fn time_runs_out_for_a_command_and_for_an_action() {
     let mut hwsc = Hwsc::new(vec![vise(ViseOpening::Close)], 5);
     play(&mut hwsc, &mut Task::default(), &mut Vise::default());
     assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::TimeLimit(5)));
-    assert_eq!(hwsc.records().len(), 2, "PAUSE is finished within five ticks");
+    assert_eq!(hwsc.begun_steps().len(), 2, "PAUSE is finished within five ticks");
 }
 
 #[test]
@@ -271,7 +280,7 @@ fn a_wait_takes_its_ticks_and_no_more() {
     let mut hwsc = Hwsc::new(vec![wait, command("MOVE")], 10);
     play(&mut hwsc, &mut Task::default(), &mut Vise::default());
     assert_eq!(*hwsc.progress(), Progress::Over, "the time limit is not for waiting");
-    assert_eq!(hwsc.records()[1].ticks, 30);
+    assert_eq!(hwsc.begun_steps()[1].ticks, 30);
 }
 
 #[test]
@@ -285,7 +294,7 @@ fn what_is_to_happen_later_happens_while_the_command_goes_on() {
         assert_eq!(*hwsc.step(Tick(tick), &outputs, &mut jaws), Progress::Running);
     }
     assert_eq!(task.received, ["PAUSE", "MOVE"]);
-    assert_eq!(hwsc.records().last().map(|r| (r.outcome, r.ticks)), Some((Outcome::Executing, 2)));
+    assert_eq!(hwsc.begun_steps().last().map(|r| (r.outcome, r.ticks)), Some((Outcome::Executing, 2)));
     play_on(&mut hwsc, &mut task, &mut jaws, tick + 1);
     assert_eq!(*hwsc.progress(), Progress::Over);
 }
@@ -346,7 +355,7 @@ fn a_job_that_resets_an_emergency_goes_on_without_what_failed() {
     play(&mut hwsc, &mut task, &mut jaws);
     assert_eq!(*hwsc.progress(), Progress::Over);
     assert_eq!(task.received, ["PAUSE", "MOVE", "ACQUIRE"]);
-    let outcomes: Vec<_> = hwsc.records().iter().map(|record| record.outcome).collect();
+    let outcomes: Vec<_> = hwsc.begun_steps().iter().map(|step| step.outcome).collect();
     let (finished, failed) = (Outcome::Finished, Outcome::Failed);
     assert_eq!(outcomes, [finished, failed, finished, finished]);
 }
