@@ -9,6 +9,7 @@ use crate::{
         prim::PrimCommand, quick_change::QuickChangeCommand, subtask::LocationKind,
     },
     name::{Name10, Name16},
+    pose::Pose,
 };
 
 use super::words::{Place, words};
@@ -107,6 +108,136 @@ pub struct EmoveStatus {
     pub at: Name10,
 }
 
+/// An object and how it is gripped: approach and depart points belong to both.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ObjectGrip {
+    /// The object.
+    pub object: Name16,
+    /// Its grip number.
+    pub grip: i32,
+}
+
+/// What a move goes to. It decides which data lead there, and away from there.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub enum GoneTo {
+    /// A location as such.
+    Location,
+    /// An object at a location, or a held object's destination.
+    Object(ObjectGrip),
+    /// The place from which pictures of an object are taken.
+    View(ObjectGrip),
+    /// The tool drum, with the fingers around a tool in it: only the tool commands lead away from there.
+    Drum,
+}
+
+/// A place of the robot: where a move ended, or where one leads.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct RobotPlace {
+    /// What is gone to.
+    pub gone_to: GoneTo,
+    /// Name of the location.
+    pub location: Name10,
+    /// What the location is.
+    pub kind: LocationKind,
+    /// Its record of LOCPT.
+    pub record: u32,
+    /// Its record of ARRAY-TABLE.
+    pub array: u32,
+    /// Where the tool is there.
+    pub pose: Pose,
+}
+
+/// Part of a way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Leg {
+    /// The depart points of the place left.
+    Depart,
+    /// The points of the intermediate trajectory.
+    Trajectory,
+    /// The approach points of the goal, and the goal.
+    Approach,
+}
+
+/// Which way the robot goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Direction {
+    /// To the goal.
+    Forward,
+    /// Back to the end of the depart leg.
+    Back,
+}
+
+/// The way that the robot is on: published so that an interrupted move can go on (docs/design/recovery.md).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Way {
+    /// The place left.
+    pub from: RobotPlace,
+    /// The goal.
+    pub to: RobotPlace,
+    /// The next point in the direction of the goal, from 0, through all legs; the goal is the last.
+    pub next: u16,
+    /// The leg of that point.
+    pub leg: Leg,
+    /// Which way the robot went last.
+    pub direction: Direction,
+    /// Where the robot was commanded to be last.
+    pub rest: Pose,
+    /// The joystick box has moved the robot since.
+    pub by_hand: bool,
+}
+
+/// What the gripper holds, or has tried to grasp.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Grasped {
+    /// The object and its grip.
+    pub object: ObjectGrip,
+    /// Its record of END-EFF-PARA.
+    pub parameters: u32,
+    /// `endeff-id#` of the gripper that holds it.
+    pub gripper: u8,
+    /// Grasp size of the object, 0.01 in.
+    pub grasp_size: i32,
+    /// Opening when it was grasped, 0.01 in.
+    pub opening: i32,
+    /// Where the robot stood.
+    pub pose: Pose,
+}
+
+/// An object that vision has located and that nothing has moved since.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Located {
+    /// The object.
+    pub object: Name16,
+    /// Record of LOCPT where it is.
+    pub record: u32,
+    /// Record of ARRAY-TABLE where it is.
+    pub array: u32,
+    /// Its part frame.
+    pub pose: Pose,
+}
+
+/// What E-move believes of the world and cannot read from a sensor alone. It is an output, so that E-move has
+/// it again after a restart; each belief counts only as long as the sensors do not contradict it.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Beliefs {
+    /// Where the robot stands.
+    pub place: Option<RobotPlace>,
+    /// The way that it is on.
+    pub way: Option<Way>,
+    /// What the gripper holds.
+    pub held: Option<Grasped>,
+    /// What it was told last to grasp.
+    pub grasping: Option<Grasped>,
+    /// The fingers were told to close, and have not been seen to be empty since.
+    pub closed: bool,
+    /// The object that the gripper has let go, and where.
+    pub placed: Option<RobotPlace>,
+    /// What vision has located.
+    pub located: Option<Located>,
+    /// The place of the holster in which the robot changes a gripper.
+    pub exchange: Option<RobotPlace>,
+}
+
 /// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Dormancy {
@@ -142,6 +273,8 @@ pub struct EmoveOutputs {
     pub dormant: Dormancy,
     /// To the vision system.
     pub vision: VisionRequest,
+    /// What E-move believes (extension).
+    pub beliefs: Beliefs,
     /// Departure, goal, point between, located object.
     pub poses: [ChangingPose; EMOVE_POSES],
 }
