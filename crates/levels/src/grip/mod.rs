@@ -44,11 +44,13 @@
 //! * [`state`]: what the process remembers;
 //! * [`goal`]: what a command asks of the fingers;
 //! * [`calibration`]: from counts to inches and pounds;
+//! * [`felt`]: what is between the fingers, as the sensors tell it;
 //! * [`preprocess`]: the state variables;
 //! * [`tables`]: the decision tables, a file a command;
 //! * [`postprocess`]: valves and status.
 
 pub mod calibration;
+pub mod felt;
 pub mod goal;
 pub mod postprocess;
 pub mod preprocess;

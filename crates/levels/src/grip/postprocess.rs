@@ -4,7 +4,7 @@ use rcs_core::{
     interface::{
         GripOutputs,
         device::{GripValves, valve},
-        grip::{GripReport, GripStatus},
+        grip::{Felt, GripReport, GripStatus},
     },
     tick::Tick,
     units::{hundredths, rounded},
@@ -89,6 +89,7 @@ impl State {
     fn calibrate(&mut self) {
         let free = self.take_readings();
         self.calibration = Some(Calibration::new(&self.closed, &self.open, &free));
+        self.feel_nothing();
     }
 
     /// The outputs of this tick.
@@ -107,6 +108,7 @@ impl State {
             reason: execution.reason,
             initialized: self.phase == Phase::Valid,
             finger_height: FINGER_HEIGHT,
+            felt: if self.phase == Phase::Valid { self.felt } else { Felt::NotKnown },
             valves: self.valves,
             ..GripStatus::default()
         };

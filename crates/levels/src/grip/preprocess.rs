@@ -35,7 +35,7 @@ const DEAD_BAND: f64 = 0.010;
 const REST_BAND: f64 = 0.016;
 
 /// A finger that feels more than this touches something, lb.
-const CONTACT: f64 = 1.0;
+pub(super) const CONTACT: f64 = 1.0;
 /// The least force that the servo aims at, lb: below it contact comes and goes.
 const LEAST_FORCE: f64 = 3.0;
 /// Farther than this from the commanded force a medium flow is used, lb.
@@ -48,7 +48,7 @@ const FORCE_REST_BAND: f64 = 2.0;
 /// rounded to 0.01 in, and "nothing held" must read at or below the grasp size.
 const MISSED_BELOW: f64 = 0.02;
 /// The same near the closed end, where no opening is below: in above the closed end.
-const MISSED_AT_END: f64 = 0.02;
+pub(super) const MISSED_AT_END: f64 = 0.02;
 /// Ticks in which force must build up if there is anything between the fingers.
 const MISSED_TICKS: u8 = 3;
 
@@ -77,8 +77,10 @@ impl State {
         if arrival == Arrival::New {
             self.goal = goal;
         }
+        let before = self.sensed.map(|sensed| sensed.last);
         self.sample(gripper, &sensors);
         let measured = self.measure();
+        self.feel(before.as_ref(), &measured);
         let step = if arrival == Arrival::New { Step::Start } else { self.step };
         self.count(arrival, step, &measured, inputs.tick);
         Seen {
@@ -108,7 +110,7 @@ impl State {
     fn observe(&mut self, number: u32, gripper: Gripper, woken: bool) -> Arrival {
         if woken {
             self.execution.wake();
-            self.valves = 0;
+            (self.valves, self.sensed) = (0, None);
         }
         let starting = !self.execution.receiver.started;
         let arrival = self.execution.receiver.observe(number);

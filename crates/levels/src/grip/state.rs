@@ -1,9 +1,14 @@
 //! What Grip remembers from tick to tick.
 
-use rcs_core::{Plain, interface::device::GripSensors, tick::Tick};
+use rcs_core::{
+    Plain,
+    interface::{device::GripSensors, grip::Felt},
+    tick::Tick,
+};
 
 use super::{
     calibration::{Calibration, Readings, Steady},
+    felt::Touch,
     goal::Goal,
     tables::{Phase, Step},
 };
@@ -48,6 +53,12 @@ pub struct State {
     pub steady: Steady,
     /// The last readings, if the gripper was attached in the last tick.
     pub sensed: Option<Sensed>,
+    /// What is between the fingers.
+    pub felt: Felt,
+    /// What they touched in the last tick.
+    pub touch: Touch,
+    /// Ticks for which that has been the same.
+    pub touch_ticks: u8,
     /// Command bits to the valves.
     pub valves: u8,
 }

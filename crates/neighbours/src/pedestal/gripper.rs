@@ -23,19 +23,20 @@
 //!   80    4    position           0.01 in
 //!   84    4    velocity           0.01 in/s; 0 is full speed
 //!   88    2    end-effector       0: it is on no quick change
+//!   90    2    felt               extension: what is between the fingers: 0 not known, 1 nothing, 2 something
 //! ```
 
 use rcs_core::interface::{
     GripOutputs,
     device::GripValves,
-    grip::{GripCommand, GripReport, GripStatus, GripVerb},
+    grip::{Felt, GripCommand, GripReport, GripStatus, GripVerb},
 };
 
-use super::{LayoutError, WORD, fields, put_row, reason, take_row, word};
+use super::{LayoutError, WORD, felt, fields, put_row, reason, take_row, word};
 use crate::fields::Packer;
 
 /// Bytes of a status.
-pub const STATUS: usize = 90;
+pub const STATUS: usize = 92;
 
 /// The bytes of the hand's status and command.
 #[must_use]
@@ -59,6 +60,7 @@ pub fn encode(hand: &GripOutputs, command: &GripCommand) -> [u8; STATUS] {
     fields.long_integer(command.position);
     fields.long_integer(command.velocity);
     fields.word(command.end_effector_id.into());
+    fields.word(status.felt.code().into());
     fields.finish()
 }
 
@@ -68,7 +70,7 @@ pub fn encode(hand: &GripOutputs, command: &GripCommand) -> [u8; STATUS] {
 /// [`LayoutError`] for the first thing that cannot be.
 pub fn decode(data: &[u8]) -> Result<(GripOutputs, GripCommand), LayoutError> {
     let mut fields = fields("a status of the gripper", STATUS, data)?;
-    let status = GripStatus {
+    let mut status = GripStatus {
         echo: fields.long("incr-cmnd#-echo")?,
         report: word::<WORD, _>(&mut fields, "status", GripReport::from_text)?,
         reason: reason(&mut fields, "status-code")?,
@@ -79,8 +81,9 @@ pub fn decode(data: &[u8]) -> Result<(GripOutputs, GripCommand), LayoutError> {
         velocity: fields.long_integer("vel")?,
         finger_height: fields.long_integer("finger-hgt")?,
         valves: fields.byte("grip")?,
+        felt: Felt::NotKnown,
     };
-    let hand = GripOutputs { header: take_row(&mut fields)?, status, valves: GripValves::default() };
+    let header = take_row(&mut fields)?;
     let command = GripCommand {
         number: fields.long("incr-cmnd#")?,
         command: word::<WORD, _>(&mut fields, "command", GripVerb::from_text)?,
@@ -89,5 +92,7 @@ pub fn decode(data: &[u8]) -> Result<(GripOutputs, GripCommand), LayoutError> {
         velocity: fields.long_integer("velocity")?,
         end_effector_id: fields.byte("end-effector")?,
     };
+    status.felt = felt(&mut fields)?;
+    let hand = GripOutputs { header, status, valves: GripValves::default() };
     Ok((hand, command))
 }

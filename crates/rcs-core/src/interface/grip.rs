@@ -73,6 +73,21 @@ impl GripReport {
     }
 }
 
+/// What a gripper has between its fingers, as its sensors tell it, whatever was commanded
+/// (docs/design/ownership.md "Felt"; extension).
+///
+/// While a process is dormant it stays what it was, and the header says that the outputs were republished: it
+/// counts only for the gripper that is on the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Felt {
+    /// The sensors cannot tell: they are not calibrated, implausible, or have not settled. Counts as held.
+    NotKnown,
+    /// Nothing.
+    Nothing,
+    /// Something: a part, or whatever else keeps the fingers apart.
+    Something,
+}
+
 /// Status from Grip to E-move.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripStatus {
@@ -94,6 +109,8 @@ pub struct GripStatus {
     pub velocity: i32,
     /// `finger-hgt`: 0.01 in.
     pub finger_height: i32,
+    /// What is between the fingers, by strain gages and potentiometer (extension).
+    pub felt: Felt,
     /// `grip`: command bits to the air valves.
     pub valves: u8,
 }

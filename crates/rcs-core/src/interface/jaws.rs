@@ -7,7 +7,7 @@ use core::fmt;
 use crate::{
     Plain,
     handshake::Lower,
-    interface::{Header, Reason, device::JawValves},
+    interface::{Header, Reason, device::JawValves, grip::Felt},
 };
 
 use super::words::Inches;
@@ -93,6 +93,8 @@ pub struct JawsStatus {
     pub right_force: i32,
     /// `vgrip-vel`: 0.01 in/s, positive opening.
     pub velocity: i32,
+    /// What is between the fingers, by the potentiometer alone (extension).
+    pub felt: Felt,
 }
 
 /// Output buffers of V-Grip or Tool-Grip.

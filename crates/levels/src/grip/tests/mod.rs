@@ -9,7 +9,7 @@ use rcs_core::{
     interface::{
         GripOutputs, Reason,
         device::valve,
-        grip::{GripReport, GripVerb},
+        grip::{Felt, GripReport, GripVerb},
     },
     plain::to_bytes,
     process::Process,
@@ -29,6 +29,15 @@ use super::{
 fn calibrated(seed: u64) -> Bench {
     let mut bench = Bench::new(Gripper::new(1.0, seed));
     bench.done(GripVerb::UpInit, 0.0, 0);
+    bench
+}
+
+/// A bench with a calibrated gripper that holds a part with 30 lb.
+fn holding(seed: u64) -> Bench {
+    let mut bench = calibrated(seed);
+    bench.done(GripVerb::OpenGrip, 3.0, 0);
+    bench.gripper.object = Some(Object { size: 0.625, off_centre: 0.0 });
+    bench.done(GripVerb::CloseGrip, 0.60, 30);
     bench
 }
 
@@ -313,6 +322,68 @@ fn sensors_that_tell_nothing_are_not_calibrated() {
         bench.gripper = Gripper::new(1.0, 16);
         bench.done(GripVerb::Position, 0.6, 0);
     }
+}
+
+#[test]
+fn what_is_held_is_felt_whatever_was_commanded() {
+    let mut bench = Bench::new(Gripper::new(1.0, 23));
+    assert_eq!(bench.wait(5).status.felt, Felt::NotKnown, "not calibrated");
+    assert_eq!(bench.done(GripVerb::UpInit, 0.0, 0).1.status.felt, Felt::Nothing, "open and vented");
+    for (size, felt) in [(0.625, Felt::Something), (0.05, Felt::Nothing), (0.10, Felt::Nothing)] {
+        bench.gripper.object = Some(Object { size, off_centre: 0.0 });
+        assert_eq!(bench.done(GripVerb::OpenGrip, 3.0, 0).1.status.felt, Felt::Nothing);
+        assert_eq!(bench.done(GripVerb::CloseGrip, 0.10, 5).1.status.felt, felt, "{size} in");
+        assert_eq!(bench.done(GripVerb::Pause, 0.0, 0).1.status.felt, felt, "the report does not count");
+    }
+    // Shut on each other with force.
+    bench.gripper.object = None;
+    bench.gripper.force = 80.0;
+    assert_eq!(bench.wait(20).status.felt, Felt::Nothing);
+    // A pause in the middle of a grasp: the fingers close on, and what they close on is felt.
+    bench.done(GripVerb::OpenGrip, 3.0, 0);
+    bench.gripper.object = Some(Object { size: 0.625, off_centre: 0.0 });
+    bench.command(GripVerb::CloseGrip, 0.60, 30);
+    bench.wait(5);
+    bench.done(GripVerb::Pause, 0.0, 0);
+    assert_eq!(bench.wait(40).status.felt, Felt::Something);
+}
+
+#[test]
+fn what_is_felt_settles_for_five_ticks_and_never_becomes_nothing_at_once() {
+    let mut bench = holding(24);
+    // It falls: neither finger feels anything.
+    bench.gripper.force = 0.0;
+    let felt: Vec<_> = (0..6).map(|_| bench.step().status.felt).collect();
+    assert_eq!(felt, [[Felt::Something; 4].as_slice(), &[Felt::Nothing; 2]].concat());
+    // It is pushed between the fingers.
+    bench.gripper.force = 20.0;
+    let felt: Vec<_> = (0..6).map(|_| bench.step().status.felt).collect();
+    assert_eq!(felt, [[Felt::NotKnown; 4].as_slice(), &[Felt::Something; 2]].concat());
+    // One finger alone tells nothing.
+    bench.gripper.strain[0].1 = 0.0;
+    assert_eq!(bench.wait(10).status.felt, Felt::NotKnown);
+    bench.gripper.strain[0].1 = 40.5;
+    assert_eq!(bench.wait(10).status.felt, Felt::Something);
+    // Sensors that fail.
+    for breakage in [
+        (|g: &mut Gripper| g.strain[1] = (0.0, 0.0)) as fn(&mut Gripper),
+        |g| g.strain[1] = (5000.0, 0.0),
+        |g| g.potentiometer = (0.0, 0.0),
+        |g| g.opening = 5.5,
+        |g| (g.force, g.strain[0].0) = (0.0, 20.0),
+    ] {
+        let mut broken = holding(24);
+        breakage(&mut broken.gripper);
+        broken.gripper.noise = 0;
+        assert_eq!(broken.step().status.felt, Felt::NotKnown);
+        assert_eq!(broken.wait(20).status.felt, Felt::NotKnown);
+    }
+    // A gripper that comes back may hold another thing.
+    bench.attach(false);
+    assert_eq!(bench.step().status.felt, Felt::NotKnown);
+    bench.attach(true);
+    let felt: Vec<_> = (0..7).map(|_| bench.step().status.felt).collect();
+    assert_eq!(felt, [[Felt::NotKnown; 5].as_slice(), &[Felt::Something; 2]].concat());
 }
 
 /// Random work for one bench; returns the images of all outputs.
