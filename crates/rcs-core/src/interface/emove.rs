@@ -178,12 +178,27 @@ pub struct Way {
     pub next: u16,
     /// The leg of that point.
     pub leg: Leg,
+    /// It leads straight from one pose to the other, without points, as that of the camera over a part.
+    pub straight: bool,
     /// Which way the robot went last.
     pub direction: Direction,
     /// Where the robot was commanded to be last.
     pub rest: Pose,
     /// The joystick box has moved the robot since.
     pub by_hand: bool,
+}
+
+/// What the attached gripper holds, by its sensors.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub enum Holding {
+    /// Nothing.
+    Nothing,
+    /// An object that was grasped and is still felt.
+    Object(ObjectGrip),
+    /// Something that was not grasped by name.
+    Something,
+    /// The sensors cannot tell. Counts as held.
+    NotKnown,
 }
 
 /// What the gripper holds, or has tried to grasp.
@@ -228,8 +243,8 @@ pub struct Beliefs {
     pub held: Option<Grasped>,
     /// What it was told last to grasp.
     pub grasping: Option<Grasped>,
-    /// The fingers were told to close, and have not been seen to be empty since.
-    pub closed: bool,
+    /// The fingers were empty, and have not been told to close since.
+    pub empty: bool,
     /// The object that the gripper has let go, and where.
     pub placed: Option<RobotPlace>,
     /// What vision has located.

@@ -206,6 +206,14 @@ pub enum Reason {
     GripperGone,
     /// Vision answers what its camera cannot have seen.
     VisionImplausible,
+    /// It is not known whether the gripper holds something: calibrate it, or open it by RELEASE.
+    HeldNotKnown,
+    /// The robot changes a gripper in a holster: send the command that does so again.
+    InHolster,
+    /// A gripper is mated and the locking ring is not locked: send the gripper change again.
+    RingNotLocked,
+    /// The robot was stopped where it can only go on: send the interrupted command again.
+    ForwardOnly,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.
