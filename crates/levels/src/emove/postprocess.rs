@@ -5,7 +5,7 @@ use rcs_core::{
     interface::{
         ChangingPose, EmoveOutputs, Reason, Report,
         device::Picture,
-        emove::{EmoveCommand, EmoveStatus},
+        emove::{EmoveCommand, EmoveStatus, HeldObject, Holding},
         pose_range,
         prim::{PrimCommand, PrimReport, PrimVerb},
         quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
@@ -18,9 +18,9 @@ use taskdata::files::{TaskData, TrajParaId};
 use super::{
     gripper::{Gripper, Order, Request},
     relative::{Reference, Relative},
-    robot_place::{GoneTo, commanded_pose},
+    robot_place::{GoneTo, RobotPlace, commanded_pose, standing},
     route::LegGoal,
-    state::State,
+    state::{Held, State},
     tables::{Action, Ordered, Seen},
 };
 use crate::execution::Outcome;
@@ -295,9 +295,16 @@ impl State {
             report,
             reason,
             reference_pose: inputs.memory.prim.status.sensor_pose,
-            held: self.held.map(|held| held.object),
+            held: match self.held {
+                Some(Held { object, grip, .. }) => Holding::Object(HeldObject { object, grip }),
+                None => Holding::Nothing,
+            },
+            placed: None,
+            located: None,
             end_effector_id: inputs.memory.quick_change.status.end_effector_id,
-            at: self.place.map(|place| place.location),
+            at: self.place.as_ref().map(standing),
+            exchange: None,
+            drum: matches!(self.place, Some(RobotPlace { gone_to: GoneTo::Drum, .. })),
         };
     }
 }

@@ -6,7 +6,7 @@ use rcs_core::{
     frame::Frame,
     interface::{
         CommonMemory,
-        emove::{EmoveCommand, EmoveVerb},
+        emove::{EmoveCommand, EmoveVerb, Standing},
     },
     name::{Name10, Name16},
     pose::Pose,
@@ -80,6 +80,17 @@ impl RobotPlace {
     pub const fn at(command: &EmoveCommand, gone_to: GoneTo, pose: Pose) -> Self {
         Self { gone_to, location: command.location, place: place_named(command), pose }
     }
+}
+
+/// Where the robot stands, for the status.
+#[must_use]
+pub const fn standing(place: &RobotPlace) -> Standing {
+    let grip = match place.gone_to {
+        GoneTo::Object(ObjectGrip { grip, .. }) => Some(grip),
+        GoneTo::Location | GoneTo::View(_) | GoneTo::Drum => None,
+    };
+    let Place { locpt, array, .. } = place.place;
+    Standing { location: place.location, record: locpt.to_option(), array: array.to_option(), grip }
 }
 
 /// The place that a command names.

@@ -16,6 +16,8 @@ use crate::execution::Execution;
 pub struct Held {
     /// The object.
     pub object: Name16,
+    /// Its grip number.
+    pub grip: i32,
     /// Its record of END-EFF-PARA.
     pub parameters: EndEffId,
     /// The gripper that holds it.

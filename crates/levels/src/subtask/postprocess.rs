@@ -150,8 +150,11 @@ impl State {
             reason,
             reference_pose: below.reference_pose,
             held: below.held,
+            placed: below.placed,
             end_effector_id: below.end_effector_id,
             at: below.at,
+            drum: below.drum,
+            pedestal_part: false,
         };
     }
 }

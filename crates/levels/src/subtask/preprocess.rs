@@ -53,8 +53,8 @@ impl State {
         let emove = &inputs.memory.emove.status;
         let taken = matches!(outputs.emove.command, EmoveVerb::GraspObj | EmoveVerb::AcquireTool)
             && self.emove(inputs) == Lower::Done
-            && emove.held == Some(outputs.emove.object);
-        if emove.held.is_none() {
+            && emove.held.object() == Some(outputs.emove.object);
+        if !emove.held.is_held() {
             self.grasp = None;
         } else if taken {
             let EmoveCommand { object, grip, .. } = outputs.emove;
@@ -92,7 +92,7 @@ impl State {
         let view = inputs.data.view(&command.object, &place).is_some_and(|(_, view)| view.enabled);
         Situation {
             work: Work::Busy,
-            held: match emove.held {
+            held: match emove.held.object() {
                 None => Held::Nothing,
                 Some(held) if held == command.object => Held::Right,
                 Some(_) => Held::Other,

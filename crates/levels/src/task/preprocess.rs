@@ -56,29 +56,29 @@ impl State {
     /// Set the state variables for a command.
     fn situation(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Situation {
         let below = &inputs.memory.subtask.status;
-        let right = below.held.is_some() && plan.object == below.held;
+        let right = below.held.is_held() && plan.object == below.held.object();
         Situation {
             work: Work::Busy,
             handling: plan.handling(),
-            holding: match (below.held, right) {
+            holding: match (below.held.object(), right) {
                 (None, _) => Holding::NotHeld,
                 (Some(_), true) => Holding::Held,
                 (Some(_), false) => Holding::Other,
             },
             grips: plan.grips(),
             source: plan.source.named(),
-            ends: ends(&plan.end_at, below.at),
+            ends: ends(&plan.end_at, below.at.map(|at| at.location)),
             update: self.data_system.update(plan),
             tool: if below.end_effector_id != TOOL_GRIPPER {
                 Tool::None
-            } else if below.held.is_none() {
+            } else if !below.held.is_held() {
                 Tool::Free
             } else if right || plan.object.is_none() {
                 Tool::Held
             } else {
                 Tool::None
             },
-            station: station(&plan.source, below.at),
+            station: station(&plan.source, below.at.map(|at| at.location)),
         }
     }
 }

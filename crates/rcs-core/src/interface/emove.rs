@@ -86,6 +86,84 @@ pub struct EmoveCommand {
     pub end_effector_id: u8,
 }
 
+/// An object that is held.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct HeldObject {
+    /// Its name.
+    pub object: Name16,
+    /// Grip number with which it was grasped.
+    pub grip: i32,
+}
+
+/// What the attached gripper holds, by its sensors (docs/design/recovery.md "Held"; extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub enum Holding {
+    /// Nothing.
+    Nothing,
+    /// Something is felt, and the last grasp that named an object was made here.
+    Object(HeldObject),
+    /// Something is felt, and nothing says what it is.
+    Something,
+    /// The gripper is not calibrated or not at rest: counts as held.
+    NotKnown,
+}
+
+impl Holding {
+    /// The object, if it is known.
+    #[must_use]
+    pub const fn object(&self) -> Option<Name16> {
+        match self {
+            Self::Object(held) => Some(held.object),
+            Self::Nothing | Self::Something | Self::NotKnown => None,
+        }
+    }
+
+    /// False only if the gripper is known to hold nothing.
+    #[must_use]
+    pub const fn is_held(&self) -> bool {
+        !matches!(self, Self::Nothing)
+    }
+}
+
+/// An object that has been let go at its place (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PlacedObject {
+    /// The object.
+    pub object: Name16,
+    /// Grip number with which it was held.
+    pub grip: i32,
+    /// Name of the location.
+    pub location: Name10,
+    /// Its record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Its record of ARRAY-TABLE if it is a sector.
+    pub array: Option<u32>,
+}
+
+/// An object that vision has found (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct LocatedObject {
+    /// The object.
+    pub object: Name16,
+    /// Record of LOCPT where it is; a static array has none.
+    pub record: Option<u32>,
+    /// Record of ARRAY-TABLE where it is, if it lies in a sector.
+    pub array: Option<u32>,
+}
+
+/// Where the robot stands: the end of its last completed move (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Standing {
+    /// Name of the location.
+    pub location: Name10,
+    /// Its record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Its record of ARRAY-TABLE if it is a sector.
+    pub array: Option<u32>,
+    /// Grip of the object that was gone to, for MOV-TO-OBJ, MOV-OBJ-TO and MOV-TO-HOL.
+    pub grip: Option<i32>,
+}
+
 /// Status from E-move to Subtask.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveStatus {
@@ -97,12 +175,21 @@ pub struct EmoveStatus {
     pub reason: Reason,
     /// `ref-pose-^`: the feedback pose, if the resolvers can be believed.
     pub reference_pose: Option<u32>,
-    /// `obj-held-status-out`: the object held (its name is an extension).
-    pub held: Option<Name16>,
+    /// `obj-held-status-out`: what is held (more than yes or no is an extension).
+    pub held: Holding,
+    /// The object that the last RELEASE has let go; none as soon as anything is grasped or held (extension).
+    pub placed: Option<PlacedObject>,
+    /// What vision has found and nothing has made invalid since (extension).
+    pub located: Option<LocatedObject>,
     /// `pres-endeff-id#-out`.
     pub end_effector_id: u8,
-    /// Where the robot is, if that is known: location of the last completed move (extension).
-    pub at: Option<Name10>,
+    /// Where the robot stands, if that is known (extension).
+    pub at: Option<Standing>,
+    /// Number of the gripper in whose holster the robot stands in the middle of an exchange: between the first and
+    /// the last point of QC-ATTACH or QC-DETACH (extension).
+    pub exchange: Option<u8>,
+    /// The fingers are around a tool in the tool drum (extension).
+    pub drum: bool,
 }
 
 /// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.

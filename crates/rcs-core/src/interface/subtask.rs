@@ -4,7 +4,11 @@ use core::fmt;
 
 use crate::{
     Plain,
-    interface::{ChangingPose, Header, Reason, Report, emove::EmoveCommand, pedestal::PedestalCommand},
+    interface::{
+        ChangingPose, Header, Reason, Report,
+        emove::{EmoveCommand, Holding, PlacedObject, Standing},
+        pedestal::PedestalCommand,
+    },
     name::{Name10, Name16},
 };
 
@@ -107,12 +111,18 @@ pub struct SubtaskStatus {
     pub reason: Reason,
     /// `ref-pose-^-out`: the feedback pose, as E-move reports it.
     pub reference_pose: Option<u32>,
-    /// `obj-held-status-out`: the object held (its name is an extension).
-    pub held: Option<Name16>,
+    /// `obj-held-status-out`: what is held, as E-move reports it (more than yes or no is an extension).
+    pub held: Holding,
+    /// The object that the last RELEASE has let go, as E-move reports it (extension).
+    pub placed: Option<PlacedObject>,
     /// `pres-endeff-id#-out`.
     pub end_effector_id: u8,
-    /// Where the robot is, if E-move knows it (extension).
-    pub at: Option<Name10>,
+    /// Where the robot stands, if E-move knows it (extension).
+    pub at: Option<Standing>,
+    /// The fingers are around a tool in the tool drum, as E-move reports it (extension).
+    pub drum: bool,
+    /// The part is in the pedestal's hand, alone or together with the robot (extension).
+    pub pedestal_part: bool,
 }
 
 /// Changing poses of Subtask: the location that it names itself (holster, pedestal), one after the other.

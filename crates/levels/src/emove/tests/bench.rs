@@ -143,7 +143,7 @@ impl Bench {
     pub fn ready(location: &str, gripper: u8) -> Self {
         let mut bench = Self::new(location, gripper);
         assert_eq!(bench.pause(), DONE);
-        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().as_str(), location);
+        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), location);
         bench.world.log.clear();
         bench
     }
@@ -267,7 +267,7 @@ impl Bench {
     pub fn hold(&mut self, object: &str, size: i32, gripper: u8) {
         self.world.object = Some(size);
         assert_eq!(self.run(EmoveVerb::GraspObj, object, 1, "", gripper), DONE);
-        assert_eq!(self.memory.emove.status.held.unwrap_or_default().as_str(), object);
+        assert_eq!(self.memory.emove.status.held.object().unwrap_or_default().as_str(), object);
     }
 
     pub fn log(&self) -> Vec<&str> {

@@ -6,7 +6,7 @@ mod data_system;
 
 use rcs_core::{
     interface::{Reason, hws::HwsReport, subtask::SubtaskVerb},
-    name::{Name10, Name16},
+    name::Name16,
 };
 
 use self::bench::{Bench, FINISHED, Mishap};
@@ -67,7 +67,7 @@ fn move_moves_an_object_or_the_robot() {
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "MOVE-OBJ>D"]);
     assert_eq!(bench.run("MOVE -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
     assert_eq!(bench.sent(), ["GOTO-DEST"]);
-    assert!(bench.subtask.outputs.status.held.is_some(), "what is held is kept");
+    assert!(bench.subtask.outputs.status.held.is_held(), "what is held is kept");
 }
 
 #[test]
@@ -80,7 +80,7 @@ fn position_releases_what_is_held_first() {
     }
     assert_eq!(bench.run("POSITION -- 0 -- 0 0 SAFE 0 -- 0"), FINISHED);
     assert_eq!(bench.sent(), [">POSITION"]);
-    assert_eq!(bench.subtask.outputs.status.at, Some(Name10::clipped("SAFE")));
+    assert_eq!(bench.subtask.outputs.status.at.unwrap().location.as_str(), "SAFE");
 }
 
 #[test]
