@@ -190,6 +190,12 @@ impl Execution {
         arrival == Arrival::New && self.table != ACCEPT_NUMBER
     }
 
+    /// True if a row of ACCEPT decided last: the command was refused.
+    #[must_use]
+    pub const fn is_refused(&self) -> bool {
+        self.table == ACCEPT_NUMBER
+    }
+
     /// The process was dormant in the tick before: the next command number it reads is adopted, not executed.
     pub fn wake(&mut self) {
         self.receiver = Receiver::default();

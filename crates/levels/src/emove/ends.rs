@@ -3,7 +3,7 @@
 use rcs_core::{
     interface::{
         EmoveOutputs,
-        emove::{EmoveCommand, Grasped, GoneTo, ObjectGrip},
+        emove::{EmoveCommand, GoneTo, Grasped, ObjectGrip},
     },
     process::Inputs,
 };

@@ -1,11 +1,13 @@
 //! What the fingers are to do and what they have done: openings and sizes of the object forms (VII.7.1) as
 //! orders to the attached gripper, and its opening as state variables.
 
+use core::mem;
+
 use rcs_core::{
     handshake::Lower,
     interface::{
         CommonMemory,
-        emove::{EmoveCommand, EmoveVerb, GoneTo, Grasped, Holding, RobotPlace},
+        emove::{EmoveCommand, EmoveVerb, Grasped, Holding, PlacedObject, RobotPlace},
         grip::Felt,
     },
     name::Name16,
@@ -40,7 +42,7 @@ pub(super) fn gripper_on<'d>(object: &Name16, data: &TaskData<'d>) -> Option<&'d
 
 /// Parameters of the object of a command.
 pub(super) fn sizes<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
-    data.end_eff(EndEffId::new(command.object_parameters))
+    data.end_eff(EndEffId::from_option(command.object_parameters))
 }
 
 /// What the fingers have between them.
@@ -64,6 +66,9 @@ impl State {
         let memory = inputs.memory;
         self.sense_loss(inputs);
         let attached = Gripper::attached(memory);
+        if attached.code() != mem::replace(&mut self.attached, attached.code()) {
+            (self.beliefs.empty, self.beliefs.grasping) = (false, None);
+        }
         match attached.felt(memory) {
             Felt::Nothing => self.beliefs.empty = true,
             Felt::Something if self.beliefs.held.is_none() && self.may_adopt(command, inputs) => {
@@ -111,7 +116,14 @@ impl State {
         if slipped || unfelt || gone || self.grippers.has_let_go(inputs.tick, memory) {
             self.beliefs.held = None;
             self.gripper_gone = gone;
-            let let_go = |place| RobotPlace { gone_to: GoneTo::Object(held.object), ..place };
+            self.beliefs.grasping = None;
+            let let_go = |at: RobotPlace| PlacedObject {
+                object: held.object.object,
+                grip: held.object.grip,
+                location: at.location,
+                record: at.record,
+                array: at.array,
+            };
             self.beliefs.placed = self.beliefs.place.filter(|_| self.releasing && !gone).map(let_go);
         }
     }
@@ -133,7 +145,7 @@ impl State {
 
     /// The opening to let go of what is held, or of the object of the command, 0.01 in.
     fn depart_opening(&self, command: &EmoveCommand, data: &TaskData<'_>) -> i32 {
-        let held = self.beliefs.held.and_then(|held| data.end_eff(EndEffId::new(held.parameters)));
+        let held = self.beliefs.held.and_then(|held| data.end_eff(EndEffId::from_option(held.parameters)));
         held.or_else(|| sizes(command, data)).map_or(FULL_OPENING, |sizes| sizes.depart_size)
     }
 

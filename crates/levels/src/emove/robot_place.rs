@@ -5,7 +5,7 @@ use rcs_core::{
     frame::Frame,
     interface::{
         CommonMemory,
-        emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace},
+        emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace, Standing},
     },
     pose::Pose,
 };
@@ -60,15 +60,25 @@ pub const fn place_named(command: &EmoveCommand) -> Place {
     place_of(command.location_kind, command.location_record, command.location_array)
 }
 
+/// Where the robot stands, for the status.
+#[must_use]
+pub const fn standing(at: &RobotPlace) -> Standing {
+    let grip = match at.gone_to {
+        GoneTo::Object(ObjectGrip { grip, .. }) => Some(grip),
+        GoneTo::Location | GoneTo::View(_) | GoneTo::Drum => None,
+    };
+    Standing { location: at.location, record: at.record, array: at.array, grip }
+}
+
 /// Where the resolvers say that the robot is.
 #[must_use]
 pub fn present_frame(memory: &CommonMemory) -> Option<Frame> {
-    memory.changing_pose(memory.prim.status.sensor_pose)?.to_frame().ok()
+    memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()
 }
 
 /// Where the robot was last told to be; where the resolvers say that it is, if Prim commands nothing.
 #[must_use]
 pub fn commanded_pose(memory: &CommonMemory) -> Option<Pose> {
-    let commanded = memory.changing_pose(memory.prim.status.present_pose).copied();
+    let commanded = memory.prim.status.present_pose.and_then(|number| memory.changing_pose(number)).copied();
     commanded.or_else(|| present_frame(memory).map(|frame| Pose::from_frame(&frame)))
 }

@@ -47,6 +47,10 @@ pub struct State {
     pub halting: bool,
     /// How many location points have been looked at to find out where the robot is.
     pub searched: u32,
+    /// `endeff-id#` of the gripper on the robot in the tick before.
+    pub attached: u8,
+    /// The fingers were told last to let go of what is held.
+    pub releasing: bool,
     /// Ticks in which neither finger has felt what is held.
     pub unfelt: u8,
     /// Something was held when the current command came.

@@ -18,6 +18,7 @@ use rcs_core::{
         emove::{Direction, EmoveCommand, GoneTo, Leg as Part, RobotPlace, Way},
         prim::{PrimReport, PrimVerb},
     },
+    pose::Pose,
     process::Inputs,
 };
 use taskdata::files::{TaskData, TrajParaId};
@@ -98,7 +99,7 @@ fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<boo
     let length = along.dot(&along);
     let share = if length > 0.0 { (along.dot(&offset) / length).clamp(0.0, 1.0) } else { 0.0 };
     let beside = norm(&(offset - along * share));
-    let cut = f64::from(data.traj_para(parameters)?.brk_dist.max(0)) / 100.0;
+    let cut = f64::from(data.traj_para(parameters)?.brk_dst.max(0)) / 100.0;
     let turn = start.distance(&end).radians;
     let (before, after) = (present.distance(&start).radians, present.distance(&end).radians);
     // On the shorter turn from one to the other, with the same tolerance.
@@ -109,13 +110,13 @@ fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<boo
 impl State {
     /// Follow the commanded pose while the robot moves, and note when the operator has moved it.
     pub(super) fn sense_way(&mut self, memory: &CommonMemory) {
-        let Some(way) = &mut self.way else { return };
+        let Some(way) = &mut self.beliefs.way else { return };
         let prim = &memory.prim.status;
         match prim.report {
             PrimReport::JoystickOn => way.by_hand = true,
             PrimReport::Executing if memory.emove.prim.command != PrimVerb::RobotInit => {
                 let commanded = commanded_pose(memory);
-                let follows = |pose: &rcs_core::pose::Pose| {
+                let follows = |pose: &Pose| {
                     let (Ok(now), Ok(before)) = (pose.to_frame(), way.rest.to_frame()) else { return false };
                     near(&now, &before, STEP_INCHES, STEP_RADIANS)
                 };
@@ -129,7 +130,7 @@ impl State {
 
     /// The way that the robot is on, if it has not left it.
     pub(super) fn on_way(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Way> {
-        let (way, present) = (self.way?, present_frame(inputs.memory)?);
+        let (way, present) = (self.beliefs.way?, present_frame(inputs.memory)?);
         let rest = way.rest.to_frame().ok()?;
         let at_rest = near(&rest, &present, AWAY_INCHES, AWAY_RADIANS);
         let moved = way.by_hand && is_in_corridor(&present, &way, inputs.data) == Some(true);
@@ -138,7 +139,7 @@ impl State {
 
     /// The state variables of RESUME for a goal.
     fn start(&self, goal: &RobotPlace, way: Option<&Way>, data: &TaskData<'_>) -> Start {
-        let robot = match (self.place, way) {
+        let robot = match (self.beliefs.place, way) {
             (Some(_), _) => Robot::AtPlace,
             (None, Some(_)) => Robot::OnWay,
             (None, None) => Robot::Lost,
@@ -173,8 +174,8 @@ impl State {
     ) -> Result<(Route, Option<Back>), Planning> {
         let data = inputs.data;
         let (to, way) = (goal.place(command), self.on_way(inputs));
-        let beginning = resume(&self.start(&to, way.as_ref(), data)).action;
-        match (beginning, self.place, way) {
+        let beginning = resume((), &self.start(&to, way.as_ref(), data)).action;
+        match (beginning, self.beliefs.place, way) {
             (Beginning::Depart, Some(from), _) => Ok((Route::plan(command, goal, &from, data)?, None)),
             (Beginning::GoOn, _, Some(way)) => {
                 let on = Route { commanded: way.next, opening: goal.opening, ..route_of(&way, data)? };
@@ -199,7 +200,11 @@ impl State {
     pub(super) fn ahead(&self, data: &TaskData<'_>) -> Ahead {
         match (&self.back, &self.route) {
             (Some(back), _) if !back.complete => {
-                if back.leg(data).is_some() { Ahead::Through } else { Ahead::Missing }
+                if back.leg(data).is_some() {
+                    Ahead::Through
+                } else {
+                    Ahead::Missing
+                }
             }
             (_, Some(route)) => route.ahead(data),
             (_, None) => Ahead::Nothing,
@@ -228,8 +233,8 @@ impl State {
         };
         if let Some(back) = self.back.as_mut().filter(|back| !back.complete) {
             let leg = back.leg(data);
-            self.way = Some(Way {
-                straight: self.way.is_some_and(|way| way.straight),
+            self.beliefs.way = Some(Way {
+                straight: self.beliefs.way.is_some_and(|way| way.straight),
                 ..way(&back.route, back.next, Direction::Back)
             });
             back.advance(data);
@@ -238,8 +243,25 @@ impl State {
         let route = self.route.as_mut()?;
         let leg = route.leg(data);
         route.advance(data);
-        self.way = Some(way(route, route.heading(), Direction::Forward));
+        self.beliefs.way = Some(way(route, route.heading(), Direction::Forward));
         leg
+    }
+}
+
+impl State {
+    /// The camera goes straight from one view to the next.
+    pub(super) fn leave_view(&mut self, to: RobotPlace, memory: &CommonMemory) {
+        let Some(from) = self.beliefs.place.take() else { return };
+        self.beliefs.way = Some(Way {
+            from,
+            to,
+            next: 0,
+            leg: Part::Approach,
+            straight: true,
+            direction: Direction::Forward,
+            rest: commanded_pose(memory).unwrap_or_default(),
+            by_hand: false,
+        });
     }
 }
 
@@ -248,6 +270,3 @@ fn is_same(a: &RobotPlace, b: &RobotPlace) -> bool {
     let (Ok(a_frame), Ok(b_frame)) = (a.pose.to_frame(), b.pose.to_frame()) else { return false };
     a.gone_to == b.gone_to && place(a) == place(b) && near(&a_frame, &b_frame, THERE_INCHES, THERE_RADIANS)
 }
-
-/// The leg of a straight way: there is but one.
-pub(super) const STRAIGHT: Part = Part::Approach;

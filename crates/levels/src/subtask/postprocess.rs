@@ -149,10 +149,12 @@ impl State {
             report,
             reason,
             reference_pose: below.reference_pose,
-            object_held: below.object_held,
-            held_object: below.held_object,
+            held: below.held,
+            placed: below.placed,
             end_effector_id: below.end_effector_id,
             at: below.at,
+            drum: below.drum,
+            pedestal_part: false,
         };
     }
 }

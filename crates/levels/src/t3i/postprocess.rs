@@ -114,8 +114,7 @@ impl State {
             },
             scale_factor: i32::try_from(RESOLVER_COUNTS).unwrap_or(i32::MAX),
             joint_limit: 0,
-            resolver_frame,
-            resolver_valid: resolvers.valid,
+            resolver_frame: Some(resolver_frame).filter(|_| resolvers.valid),
             link_running: running,
             counters: *self.host.counters(),
         };

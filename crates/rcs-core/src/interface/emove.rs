@@ -67,24 +67,102 @@ pub struct EmoveCommand {
     pub object: Name16,
     /// Grip number of the object (extension: the manual has it only in the records that `obj-para-^` names).
     pub grip: i32,
-    /// `obj-para-^`: record of END-EFF-PARA.
-    pub object_parameters: u32,
-    /// `obj-grip-loc-^`: record of OBJ-GRIPS.
-    pub object_grips: u32,
-    /// `obj-vision-para-^`: record of VISION-PARA, 0 if vision is not used.
-    pub object_vision: u32,
+    /// `obj-para-^`: record of END-EFF-PARA, if the object has that grip.
+    pub object_parameters: Option<u32>,
+    /// `obj-grip-loc-^`: record of OBJ-GRIPS, if an object is named.
+    pub object_grips: Option<u32>,
+    /// `obj-vision-para-^`: record of VISION-PARA, if vision is used.
+    pub object_vision: Option<u32>,
     /// `locpt-name`.
     pub location: Name10,
     /// `locpt-type`.
     pub location_kind: LocationKind,
-    /// `locpt-^-in`: record of LOCPT.
-    pub location_record: u32,
-    /// Record of ARRAY-TABLE if the location is a sector (extension); 0 for none.
-    pub location_array: u32,
+    /// `locpt-^-in`: record of LOCPT; a static array has none.
+    pub location_record: Option<u32>,
+    /// Record of ARRAY-TABLE if the location is a sector (extension).
+    pub location_array: Option<u32>,
     /// `pose-^-in`: the goal pose.
     pub pose: u32,
     /// `endeff-id#-in`.
     pub end_effector_id: u8,
+}
+
+/// An object and how it is gripped: approach and depart points belong to both.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ObjectGrip {
+    /// The object.
+    pub object: Name16,
+    /// Its grip number.
+    pub grip: i32,
+}
+
+/// What the attached gripper holds, by its sensors (docs/design/recovery.md "Held"; extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub enum Holding {
+    /// Nothing.
+    Nothing,
+    /// Something is felt, and the last grasp that named an object was made here.
+    Object(ObjectGrip),
+    /// Something is felt, and nothing says what it is.
+    Something,
+    /// The gripper is not calibrated or not at rest: counts as held.
+    NotKnown,
+}
+
+impl Holding {
+    /// The object, if it is known.
+    #[must_use]
+    pub const fn object(&self) -> Option<Name16> {
+        match self {
+            Self::Object(held) => Some(held.object),
+            Self::Nothing | Self::Something | Self::NotKnown => None,
+        }
+    }
+
+    /// False only if the gripper is known to hold nothing.
+    #[must_use]
+    pub const fn is_held(&self) -> bool {
+        !matches!(self, Self::Nothing)
+    }
+}
+
+/// An object that has been let go at its place (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PlacedObject {
+    /// The object.
+    pub object: Name16,
+    /// Grip number with which it was held.
+    pub grip: i32,
+    /// Name of the location.
+    pub location: Name10,
+    /// Its record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Its record of ARRAY-TABLE if it is a sector.
+    pub array: Option<u32>,
+}
+
+/// An object that vision has found (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct LocatedObject {
+    /// The object.
+    pub object: Name16,
+    /// Record of LOCPT where it is; a static array has none.
+    pub record: Option<u32>,
+    /// Record of ARRAY-TABLE where it is, if it lies in a sector.
+    pub array: Option<u32>,
+}
+
+/// Where the robot stands: the end of its last completed move (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Standing {
+    /// Name of the location.
+    pub location: Name10,
+    /// Its record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Its record of ARRAY-TABLE if it is a sector.
+    pub array: Option<u32>,
+    /// Grip of the object that was gone to, for MOV-TO-OBJ, MOV-OBJ-TO and MOV-TO-HOL.
+    pub grip: Option<i32>,
 }
 
 /// Status from E-move to Subtask.
@@ -96,25 +174,23 @@ pub struct EmoveStatus {
     pub report: Report,
     /// `status-para-out`.
     pub reason: Reason,
-    /// `ref-pose-^`: the feedback pose.
-    pub reference_pose: u32,
-    /// `obj-held-status-out`.
-    pub object_held: bool,
+    /// `ref-pose-^`: the feedback pose, if the resolvers can be believed.
+    pub reference_pose: Option<u32>,
+    /// `obj-held-status-out`: what is held (more than yes or no is an extension).
+    pub held: Holding,
+    /// The object that the last RELEASE has let go; none as soon as anything is grasped or held (extension).
+    pub placed: Option<PlacedObject>,
+    /// What vision has found and nothing has made invalid since (extension).
+    pub located: Option<LocatedObject>,
     /// `pres-endeff-id#-out`.
     pub end_effector_id: u8,
-    /// Name of the object held (extension).
-    pub held_object: Name16,
-    /// Where the robot is: location of the last completed move; empty if unknown (extension).
-    pub at: Name10,
-}
-
-/// An object and how it is gripped: approach and depart points belong to both.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct ObjectGrip {
-    /// The object.
-    pub object: Name16,
-    /// Its grip number.
-    pub grip: i32,
+    /// Where the robot stands, if that is known (extension).
+    pub at: Option<Standing>,
+    /// Number of the gripper in whose holster the robot stands in the middle of an exchange: between the first and
+    /// the last point of QC-ATTACH or QC-DETACH (extension).
+    pub exchange: Option<u8>,
+    /// The fingers are around a tool in the tool drum (extension).
+    pub drum: bool,
 }
 
 /// What a move goes to. It decides which data lead there, and away from there.
@@ -139,10 +215,10 @@ pub struct RobotPlace {
     pub location: Name10,
     /// What the location is.
     pub kind: LocationKind,
-    /// Its record of LOCPT.
-    pub record: u32,
-    /// Its record of ARRAY-TABLE.
-    pub array: u32,
+    /// Its record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Its record of ARRAY-TABLE if it is a sector.
+    pub array: Option<u32>,
     /// Where the tool is there.
     pub pose: Pose,
 }
@@ -188,26 +264,13 @@ pub struct Way {
     pub by_hand: bool,
 }
 
-/// What the attached gripper holds, by its sensors.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub enum Holding {
-    /// Nothing.
-    Nothing,
-    /// An object that was grasped and is still felt.
-    Object(ObjectGrip),
-    /// Something that was not grasped by name.
-    Something,
-    /// The sensors cannot tell. Counts as held.
-    NotKnown,
-}
-
 /// What the gripper holds, or has tried to grasp.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Grasped {
     /// The object and its grip.
     pub object: ObjectGrip,
     /// Its record of END-EFF-PARA.
-    pub parameters: u32,
+    pub parameters: Option<u32>,
     /// `endeff-id#` of the gripper that holds it.
     pub gripper: u8,
     /// Grasp size of the object, 0.01 in.
@@ -223,12 +286,21 @@ pub struct Grasped {
 pub struct Located {
     /// The object.
     pub object: Name16,
-    /// Record of LOCPT where it is.
-    pub record: u32,
-    /// Record of ARRAY-TABLE where it is.
-    pub array: u32,
+    /// Record of LOCPT where it is; a static array has none.
+    pub record: Option<u32>,
+    /// Record of ARRAY-TABLE where it is, if it lies in a sector.
+    pub array: Option<u32>,
     /// Its part frame.
     pub pose: Pose,
+}
+
+/// A holster in which the robot changes a gripper.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Exchange {
+    /// `endeff-id#` of its gripper.
+    pub gripper: u8,
+    /// Its place.
+    pub place: RobotPlace,
 }
 
 /// What E-move believes of the world and cannot read from a sensor alone. It is an output, so that E-move has
@@ -246,11 +318,11 @@ pub struct Beliefs {
     /// The fingers were empty, and have not been told to close since.
     pub empty: bool,
     /// The object that the gripper has let go, and where.
-    pub placed: Option<RobotPlace>,
+    pub placed: Option<PlacedObject>,
     /// What vision has located.
     pub located: Option<Located>,
-    /// The place of the holster in which the robot changes a gripper.
-    pub exchange: Option<RobotPlace>,
+    /// The holster in which the robot changes a gripper.
+    pub exchange: Option<Exchange>,
 }
 
 /// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.

@@ -212,6 +212,8 @@ pub enum Reason {
     InHolster,
     /// A gripper is mated and the locking ring is not locked: send the gripper change again.
     RingNotLocked,
+    /// A holster is gone to only in order to change the gripper.
+    HolsterOnly,
     /// The robot was stopped where it can only go on: send the interrupted command again.
     ForwardOnly,
 }
@@ -246,6 +248,14 @@ pub struct ChangingPose {
     pub number: u32,
     /// The pose.
     pub pose: Pose,
+}
+
+impl ChangingPose {
+    /// The record number; `None` while empty.
+    #[must_use]
+    pub const fn record(&self) -> Option<u32> {
+        if self.number == 0 { None } else { Some(self.number) }
+    }
 }
 
 impl CommonMemory {

@@ -5,7 +5,7 @@ use rcs_core::{
     handshake::{Arrival, Receiver},
     interface::{
         CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, Report,
-        emove::{EmoveCommand, EmoveVerb},
+        emove::{EmoveCommand, EmoveVerb, Holding, ObjectGrip, Standing},
         pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
         subtask::{SubtaskCommand, SubtaskStatus, SubtaskVerb},
     },
@@ -89,7 +89,7 @@ impl EmoveDouble {
             Some(Mishap::NoEffect) => {}
             Some(Mishap::Loss) => {
                 self.effect(command);
-                self.hold("");
+                self.hold("", 0);
             }
             Some(Mishap::OtherGripper(id)) => status.end_effector_id = id,
         }
@@ -97,21 +97,27 @@ impl EmoveDouble {
 
     fn effect(&mut self, command: &EmoveCommand) {
         match command.command {
-            EmoveVerb::GraspObj | EmoveVerb::AcquireTool => self.hold(command.object.as_str()),
-            EmoveVerb::Release | EmoveVerb::ReleaseTool => self.hold(""),
+            EmoveVerb::GraspObj | EmoveVerb::AcquireTool => self.hold(command.object.as_str(), command.grip),
+            EmoveVerb::Release | EmoveVerb::ReleaseTool => self.hold("", 0),
             EmoveVerb::QcDetach => self.outputs.status.end_effector_id = 0,
             EmoveVerb::QcAttach => self.outputs.status.end_effector_id = command.end_effector_id,
             EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => {
-                self.outputs.status.at = command.location;
+                self.outputs.status.at = Some(Standing {
+                    location: command.location,
+                    record: command.location_record,
+                    array: command.location_array,
+                    grip: Some(command.grip).filter(|_| command.command != EmoveVerb::MovToLoc),
+                });
             }
             _ => {}
         }
     }
 
     /// The gripper holds an object; an empty name for none.
-    pub fn hold(&mut self, object: &str) {
-        self.outputs.status.held_object = Name16::new(object).unwrap();
-        self.outputs.status.object_held = !object.is_empty();
+    pub fn hold(&mut self, object: &str, grip: i32) {
+        let object = Name16::new(object).unwrap();
+        let held = Holding::Object(ObjectGrip { object, grip });
+        self.outputs.status.held = if object.is_empty() { Holding::Nothing } else { held };
     }
 }
 
@@ -220,7 +226,7 @@ impl<'d> Bench<'d> {
             end_effector_id: self.data.obj_grips(&object).map_or(0, |grips| grips.endeff_id as u8),
             source_grip: grips.0,
             destination_grip: grips.1,
-            object_parameters: self.data.object(&object, grips.0).map_or(0, |(id, _)| id.number()),
+            object_parameters: self.data.object(&object, grips.0).map(|(id, _)| id.number()),
             ..SubtaskCommand::default()
         };
         if let Some(place) = place {
@@ -228,7 +234,7 @@ impl<'d> Bench<'d> {
             poses[0].pose = Pose::from_frame(&place.frame);
             command.location = place.name;
             command.location_kind = place.place.kind;
-            command.location_record = place.place.locpt.number();
+            command.location_record = place.place.locpt.to_option();
             command.pose = poses[0].number;
         }
         self.memory.task.poses = poses;

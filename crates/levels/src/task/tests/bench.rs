@@ -6,6 +6,7 @@ use rcs_core::{
         CommonMemory, DataBaseCommand, DataBaseStatus, ExternalInputs, Header, HwsCommand, Reason, Report,
         SubtaskOutputs,
         data_base::{DataBaseReport, DataBaseVerb},
+        emove::{Holding, ObjectGrip, Standing},
         hws::{HwsReport, HwsStatus},
         subtask::{SubtaskCommand, SubtaskVerb},
     },
@@ -106,13 +107,16 @@ impl SubtaskDouble {
 
     /// The gripper holds an object; an empty name for none.
     pub fn hold(&mut self, object: &str) {
-        self.outputs.status.held_object = Name16::new(object).unwrap();
-        self.outputs.status.object_held = !object.is_empty();
+        let object = Name16::new(object).unwrap();
+        let held = Holding::Object(ObjectGrip { object, grip: 1 });
+        self.outputs.status.held = if object.is_empty() { Holding::Nothing } else { held };
     }
 
     /// The robot stands at a location; an empty name for none that is known.
     pub fn stand(&mut self, location: &str) {
-        self.outputs.status.at = Name10::new(location).unwrap();
+        let location = Name10::new(location).unwrap();
+        let at = Standing { location, ..Standing::default() };
+        self.outputs.status.at = Some(at).filter(|at| !at.location.is_empty());
     }
 }
 
