@@ -29,8 +29,10 @@ use super::{
     tables::{Along, Shut},
 };
 
-/// The robot is at a point of the exchange within this, in: much less than a relative move is long.
+/// The robot is at the seat within this, in: much less than a relative move is long.
 const AT_POINT: f64 = 0.12;
+/// It is at the low point within this, in: QCD-DOWN may go a little further until the sensors see the ears.
+const AT_LOW: f64 = 0.3;
 /// It is clear of the holster within this of the upper points, or beyond them, in.
 const CLEAR: f64 = 0.3;
 /// It is on a segment within this, in …
@@ -79,7 +81,7 @@ impl Points {
         let turned = self.slow.distance(present).radians > TURNED;
         if at(&self.slow) <= AT_POINT && !turned {
             Along::Seat
-        } else if at(&self.back) <= AT_POINT && !turned {
+        } else if at(&self.back) <= AT_LOW && !turned {
             Along::Low
         } else if at(&self.above) <= CLEAR {
             Along::Above
@@ -133,6 +135,7 @@ impl State {
         let opening = gripper_on(&command.object, inputs.data).map(|on| on.appr_size);
         let attached = Gripper::attached(inputs.memory);
         match opening {
+            _ if attached.is_uncalibrated(inputs.memory) => Shut::Raw,
             Some(opening) if attached.stands_at(opening, inputs.memory) => Shut::Shut,
             _ => Shut::Open,
         }

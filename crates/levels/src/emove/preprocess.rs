@@ -262,18 +262,14 @@ impl State {
             },
             fingers: fingers(command, inputs),
             spread: self.spread(gripper, command, inputs),
-            readiness: match gripper {
-                Lower::Done if Gripper::attached(memory).is_uncalibrated(memory) => Readiness::Uncalibrated,
-                Lower::Done => Readiness::Ready,
-                _ => Readiness::Faulty,
-            },
+            readiness: self.readiness(gripper, memory),
             mate: match memory.quick_change.status.end_effector_id {
                 0 => Mate::None,
                 id if id == command.end_effector_id => Mate::Right,
                 _ => Mate::Wrong,
             },
             holster: holster(command.end_effector_id, memory),
-            lock: lock(memory),
+            lock: self.lock(inputs),
             along: self.along(command, inputs),
             shut: self.shut(command, inputs),
             at: self.at(command),
@@ -288,6 +284,17 @@ impl State {
                 pressed if pressed == self.button => JoystickGrip::None,
                 pressed => pressed,
             },
+        }
+    }
+
+    /// The attached gripper after its last order; one that has had none yet is as it came.
+    fn readiness(&self, gripper: Lower, memory: &CommonMemory) -> Readiness {
+        let attached = Gripper::attached(memory);
+        let idle = gripper == Lower::Done || self.grippers.to != attached;
+        match (idle, attached.is_uncalibrated(memory)) {
+            (true, true) => Readiness::Uncalibrated,
+            (true, false) => Readiness::Ready,
+            (false, _) => Readiness::Faulty,
         }
     }
 
@@ -307,6 +314,16 @@ impl State {
     fn ring_order(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
         let ring = &inputs.memory.quick_change;
         self.quick_change.read(inputs.tick, &ring.header, ring.status.echo, ring.status.report.lower())
+    }
+
+    /// Where the sensors see the locking ring.
+    fn lock(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lock {
+        match (self.ring_order(inputs), inputs.memory.quick_change.status.ring) {
+            (Lower::Lost, _) | (_, RingPosition::Implausible) => Lock::Faulty,
+            (_, RingPosition::Locked) => Lock::Locked,
+            (_, RingPosition::Unlocked) => Lock::Unlocked,
+            (_, RingPosition::Unread | RingPosition::Between) => Lock::Between,
+        }
     }
 
     /// What Quick Change says of its ring to the last command.
@@ -349,16 +366,6 @@ impl State {
         } else {
             Vision::Waiting
         }
-    }
-}
-
-/// Where the sensors see the locking ring.
-const fn lock(memory: &CommonMemory) -> Lock {
-    match memory.quick_change.status.ring {
-        RingPosition::Locked => Lock::Locked,
-        RingPosition::Unlocked => Lock::Unlocked,
-        RingPosition::Unread | RingPosition::Between => Lock::Between,
-        RingPosition::Implausible => Lock::Implausible,
     }
 }
 

@@ -10,51 +10,51 @@ decision_table! {
     pub QC_ATTACH: fn qc_attach(enum QcAttachStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                                                => Wait;
-            2: lock: Implausible                                                         => FailRing;
+            2: lock: Faulty                                                         => FailRing;
         }
         /// Nothing done yet.
         Start {
             3: mate: Wrong                                                               => Fail(WrongGripper);
-            4: mate: Right, along: Off, holster: Partial | Full                          => Fail(NotPrepared);
-            5: mate: Right, along: Off, holster: Empty, lock: Locked                     => Finish;
-            6: mate: Right, along: Off, holster: Empty, lock: Unlocked | Between         => Fail(RingNotLocked);
-            7: mate: None, along: Above | Out, holster: Empty | Partial                  => Fail(HolsterEmpty);
+            4: mate: Right, at: There, holster: Empty, lock: Locked                      => Finish;
+            5: mate: Right, along: Off, holster: Partial | Full                          => Fail(NotPrepared);
+            6: mate: Right, along: Off, holster: Empty, lock: Locked                     => Finish;
+            7: mate: Right, along: Off, holster: Empty, lock: Unlocked | Between         => Fail(RingNotLocked);
+            8: mate: None, along: Above | Out, holster: Empty | Partial                  => Fail(HolsterEmpty);
         }
         any {
-            8: mate: Wrong                                                               => Fail(WrongGripperId);
-            9: along: Off                                                                => Fail(NotPrepared);
-            10: mate: Right, along: Above | Out                                          => Fail(NotPrepared);
+            9: mate: Wrong                                                               => Fail(WrongGripperId);
+            10: along: Off                                                                => Fail(NotPrepared);
+            11: mate: Right, along: Above | Out                                          => Fail(NotPrepared);
         }
         /// The quick change of the bare robot is unlocking.
         Unlocking {
-            11: mate: None, along: Above | Out | Coming, lock: Locked | Between          => FailRing;
+            12: mate: None, along: Above | Out | Coming, lock: Locked | Between          => FailRing;
         }
         any {
-            12: mate: None, along: Above | Out | Coming, lock: Locked | Between          => Unlock -> Unlocking;
+            13: mate: None, along: Above | Out | Coming, lock: Locked | Between          => Unlock -> Unlocking;
         }
         /// The robot is moving close to the gripper.
         Approaching {
-            13: mate: None, along: Above | Out | Coming                                  => DeltaMove(QcaSlow) -> Mating;
+            14: mate: None, along: Above | Out | Coming                                  => DeltaMove(QcaSlow) -> Mating;
         }
         /// The seat was empty: the robot moves away from it.
         Undoing {
-            14: mate: None, along: Above | Out | Coming                                  => Fail(NotAttached);
+            15: mate: None, along: Above | Out | Coming                                  => Fail(NotAttached);
         }
         any {
-            15: mate: None, along: Above | Out                                           => DeltaMove(QcaFast) -> Approaching;
-            16: mate: None, along: Coming                                                => DeltaMove(QcaSlow) -> Mating;
-            17: mate: None, along: Seat                                                  => DeltaMove(QcaFast) -> Undoing;
-            18: mate: None, along: Sliding | Low                                         => Fail(NotAttached);
-            19: mate: None, along: Lifting | Raising | Clear                             => Fail(NotAttached);
-            20: mate: Right, along: Coming | Sliding | Low, lock: Unlocked               => DeltaMove(QcaSlow) -> Mating;
-            21: mate: Right, along: Coming, lock: Locked | Between                       => Fail(RingNotLocked);
-            22: mate: Right, along: Sliding | Low, lock: Between                         => DeltaMove(QcaSlow) -> Mating;
-            23: mate: Right, along: Lifting | Raising | Clear, lock: Unlocked | Between  => Fail(RingNotLocked);
+            16: mate: None, along: Above | Out                                           => DeltaMove(QcaFast) -> Approaching;
+            17: mate: None, along: Coming                                                => DeltaMove(QcaSlow) -> Mating;
+            18: mate: None, along: Seat                                                  => DeltaMove(QcaFast) -> Undoing;
+            19: mate: None, along: Sliding | Low                                         => Fail(NotAttached);
+            20: mate: None, along: Lifting | Raising | Clear                             => Fail(NotAttached);
+            21: mate: Right, along: Coming | Sliding | Low, lock: Unlocked               => DeltaMove(QcaSlow) -> Mating;
+            22: mate: Right, along: Coming, lock: Locked | Between                       => Fail(RingNotLocked);
+            23: mate: Right, along: Sliding | Low, lock: Between                         => DeltaMove(QcaSlow) -> Mating;
+            24: mate: Right, along: Lifting | Raising | Clear, lock: Unlocked | Between  => Fail(RingNotLocked);
         }
         /// The quick change is locking.
         Locking {
-            24: mate: Right, along: Seat, lock: Unlocked | Between                       => FailRing;
-            25: mate: Right, along: Seat, lock: Locked                                   => CloseForHolster -> Closing;
+            25: mate: Right, along: Seat, lock: Unlocked | Between                       => FailRing;
         }
         /// The robot is moving slowly onto the gripper.
         Mating {
@@ -67,7 +67,7 @@ decision_table! {
         any {
             28: mate: Right, along: Seat, lock: Unlocked | Between                       => Lock -> Locking;
             29: mate: Right, along: Seat | Sliding, lock: Locked, shut: Open             => CloseForHolster -> Closing;
-            30: mate: Right, along: Seat | Sliding, lock: Locked, shut: Shut             => DeltaMove(QcaBack) -> Backing;
+            30: mate: Right, along: Seat | Sliding, lock: Locked, shut: Shut | Raw       => DeltaMove(QcaBack) -> Backing;
         }
         /// The gripper is sliding back out of its seat.
         Backing {

@@ -279,8 +279,8 @@ pub enum Lock {
     Unlocked,
     /// In between.
     Between,
-    /// Both see it.
-    Implausible,
+    /// Both see it, or Quick Change does not answer.
+    Faulty,
 }
 
 /// Where the robot is in the exchange that the command asks for, by the resolvers.
@@ -315,6 +315,8 @@ pub enum Shut {
     Shut,
     /// They are not, or it is not known.
     Open,
+    /// They cannot be brought there: the gripper is not calibrated.
+    Raw,
 }
 
 /// What the four sensors of the command's holster see (V.1.2 hol-R-status …).

@@ -134,7 +134,7 @@ fn tool_commands_begin_only_when_they_can() {
     assert_eq!(bench.run(AcquireTool, "PIN", 1, "TOOL-TRNS", 3), error(Reason::AlreadyHolding));
     assert_eq!(bench.run(InsertTool, "PIN", 1, "TOOL-TRNS", 3), error(Reason::NothingHeld));
     // At the drum with closed fingers, or with a tool that is not in it, letting go may do anything.
-    let mut bench = Bench::ready("TOOL-TRNS", 3);
+    let mut bench = Bench::ready("TOOL-SAFE", 3);
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared));
     bench.hold("CUTTER", SIZE, 3);
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared));

@@ -110,6 +110,7 @@ fn jaws_take_and_leave_their_parts() {
         [(2, "SHAFT", 204, "POSE 350", 350), (3, "CUTTER", 246, "POSE 400", 400)]
     {
         let mut bench = Bench::ready("HOME", gripper);
+        (bench.v_grip.opening, bench.tool_grip.opening) = (50, 100);
         assert_eq!(bench.run(MovToObj, object, 1, "BENCH", gripper), DONE);
         assert_eq!(bench.log(), [opened, "GO-THRU", "GO-THRU", "GOTO-PT"]);
         bench.world.object = Some(size);
@@ -164,6 +165,7 @@ fn a_gripper_that_fails_stops_the_move() {
     bench.step();
     assert_eq!(bench.log().last(), Some(&"PAUSE"), "the robot stops");
     let mut bench = Bench::ready("HOME", 2);
+    bench.v_grip.opening = 50;
     bench.spoil("POSE", Mishap::Jaws(JawsReport::Closed));
     assert_eq!(bench.run(MovToObj, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck), "they went nowhere");
     let mut bench = Bench::ready("HOME", 2);
@@ -282,7 +284,7 @@ fn the_wrong_gripper_is_refused() {
             let mut bench = Bench::ready("HOME", attached);
             assert_eq!(bench.run(verb, "BLOCK", 1, location, 1), error(Reason::WrongGripper), "{verb}");
             bench.steps(3);
-            assert_eq!(bench.log(), ["PAUSE"], "a refused command stops what was under way");
+            assert!(bench.log().is_empty(), "nothing was under way");
         }
     }
     let mut bench = Bench::ready("HOME", 2);

@@ -90,7 +90,7 @@ impl Real {
     fn devices(&mut self, before: &CommonMemory, external: &mut ExternalInputs, world: &mut World) {
         if !self.started {
             (self.started, self.ring, self.openings) =
-                (true, if world.locked { 1.0 } else { 0.0 }, [2.0, 2.0, 2.0]);
+                (true, if world.locked { 1.0 } else { 0.0 }, [2.0, 3.5, 4.0]);
         }
         let outputs = before.device_outputs();
         let ring = &outputs.quick_change;
