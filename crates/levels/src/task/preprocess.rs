@@ -23,7 +23,8 @@ impl State {
     /// Read the inputs of a tick.
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> Seen {
         let (command, data_base) = (&inputs.external.hws, &inputs.external.data_base);
-        self.subtask.start(inputs.memory.subtask.status.echo);
+        let written = inputs.memory.task.subtask.number;
+        self.subtask.start_from(inputs.tick, written, inputs.memory.subtask.status.echo);
         self.data_system.observe(data_base, inputs.tick);
         let arrival = self.execution.receiver.observe(command.number);
         let (plan, request) = if arrival == Arrival::New {

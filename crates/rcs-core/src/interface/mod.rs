@@ -206,6 +206,18 @@ pub enum Reason {
     GripperGone,
     /// Vision answers what its camera cannot have seen.
     VisionImplausible,
+    /// An order has changed nothing: see what hinders it, then send the command again.
+    NoEffect,
+    /// The gripper holds something unknown: take it out, or let it go with POSITION.
+    UnknownHeld,
+    /// It is not known whether the gripper holds something: calibrate it, or open it by RELEASE.
+    HeldNotKnown,
+    /// The part is in the pedestal's hand: send the command that regrips it again, or open the hand at the pedestal.
+    PartInPedestal,
+    /// What is in the pedestal's hand is not the object of the command: open the hand at the pedestal.
+    PedestalHoldsOther,
+    /// The source and destination grips are equal: nothing is to be regripped.
+    EqualGrips,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

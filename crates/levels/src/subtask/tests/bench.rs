@@ -5,7 +5,7 @@ use rcs_core::{
     handshake::{Arrival, Receiver},
     interface::{
         CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, Report,
-        emove::{EmoveCommand, EmoveVerb, HeldObject, Holding, Standing},
+        emove::{EmoveCommand, EmoveVerb, HeldObject, Holding, PlacedObject, Standing},
         pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
         subtask::{SubtaskCommand, SubtaskStatus, SubtaskVerb},
     },
@@ -98,7 +98,19 @@ impl EmoveDouble {
     fn effect(&mut self, command: &EmoveCommand) {
         match command.command {
             EmoveVerb::GraspObj | EmoveVerb::AcquireTool => self.hold(command.object.as_str(), command.grip),
-            EmoveVerb::Release | EmoveVerb::ReleaseTool => self.hold("", 0),
+            EmoveVerb::Release => {
+                if let Some(held) = self.outputs.status.held.object() {
+                    self.outputs.status.placed = Some(PlacedObject {
+                        object: held,
+                        grip: command.grip,
+                        location: command.location,
+                        record: command.location_record,
+                        array: command.location_array,
+                    });
+                }
+                self.hold("", 0);
+            }
+            EmoveVerb::ReleaseTool => self.hold("", 0),
             EmoveVerb::QcDetach => self.outputs.status.end_effector_id = 0,
             EmoveVerb::QcAttach => self.outputs.status.end_effector_id = command.end_effector_id,
             EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => {
@@ -160,10 +172,14 @@ impl PedestalDouble {
                         _ => (PedestalReport::Done, Reason::None),
                     };
                     match command.command {
-                        PedestalVerb::PreGrip | PedestalVerb::Release => {
-                            status.grip_size = command.grasp_size
+                        _ if mishap == Some(Mishap::NoEffect) => {}
+                        PedestalVerb::PreGrip => {
+                            status.grip_size = command.grasp_size;
+                            status.table_position = command.table_angle;
                         }
+                        PedestalVerb::Release => status.grip_size = command.grasp_size,
                         PedestalVerb::Grip => status.grip_size = self.part.max(command.grasp_size),
+                        PedestalVerb::Flip if !self.slips => status.table_position += command.table_angle,
                         PedestalVerb::Flip if self.slips => status.grip_size = 0,
                         _ => {}
                     }
