@@ -198,13 +198,12 @@ impl Execution {
         Some(choice.action)
     }
 
-    /// Consult [`EXECUTE`], and [`HALT`](crate::halt::HALT) if it says so. What is to be done with the tables, `Begin` in the tick
-    /// in which a command is accepted or refused; or what HALT asks for.
+    /// Consult [`HALT`](crate::halt::HALT) about what [`EXECUTE`] has said. What is to be done with the tables: `Begin` in the tick in
+    /// which a command is accepted or refused.
     ///
     /// # Errors
     /// What HALT asks for: no other table is to be consulted.
-    pub fn admit(&mut self, arrival: Arrival, replaced: &Replaced) -> Result<Course, Halting> {
-        let course = self.course(arrival);
+    pub fn admit(&mut self, course: Course, replaced: &Replaced) -> Result<Course, Halting> {
         self.waiting |= course == Course::Begin;
         let intake = match course {
             Course::Refuse => Intake::Adopted,
@@ -237,7 +236,8 @@ impl Execution {
         step: &mut Step,
         tables: impl FnOnce(Step) -> Choice<Action, Step>,
     ) -> Option<Action> {
-        match self.admit(arrival, replaced) {
+        let course = self.course(arrival);
+        match self.admit(course, replaced) {
             Err(halting) => return Some(halting.into()),
             Ok(Course::Rest | Course::Refuse) => return None,
             Ok(Course::Begin) => *step = first,

@@ -218,6 +218,8 @@ pub enum Reason {
     PedestalHoldsOther,
     /// The source and destination grips are equal: nothing is to be regripped.
     EqualGrips,
+    /// A tool is acquired from TOOL-SAFE: name that as the destination.
+    NotNearDrum,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.
