@@ -49,6 +49,8 @@ pub struct EmoveDouble {
     pub outputs: EmoveOutputs,
     pub received: Vec<EmoveCommand>,
     pub mishap: Option<(EmoveVerb, Mishap)>,
+    /// It reports done and does nothing.
+    pub ignores: bool,
 }
 
 impl EmoveDouble {
@@ -82,6 +84,7 @@ impl EmoveDouble {
         let status = &mut self.outputs.status;
         status.report = Report::Done;
         match mishap {
+            _ if self.ignores => {}
             None => self.effect(command),
             Some(Mishap::Error(reason)) => (status.report, status.reason) = (Report::Error, reason),
             Some(Mishap::Special(reason)) => (status.report, status.reason) = (Report::JoystickOn, reason),
@@ -111,8 +114,13 @@ impl EmoveDouble {
                 self.hold("", 0);
             }
             EmoveVerb::ReleaseTool => self.hold("", 0),
-            EmoveVerb::QcDetach => self.outputs.status.end_effector_id = 0,
-            EmoveVerb::QcAttach => self.outputs.status.end_effector_id = command.end_effector_id,
+            EmoveVerb::QcDetach => {
+                (self.outputs.status.end_effector_id, self.outputs.status.exchange) = (0, None);
+            }
+            EmoveVerb::QcAttach => {
+                self.outputs.status.end_effector_id = command.end_effector_id;
+                self.outputs.status.exchange = None;
+            }
             EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => {
                 self.outputs.status.at = Some(Standing {
                     location: command.location,
@@ -145,6 +153,8 @@ pub struct PedestalDouble {
     pub part: i32,
     /// The hand loses the object while the table turns.
     pub slips: bool,
+    /// It reports done and does nothing.
+    pub ignores: bool,
 }
 
 impl PedestalDouble {
@@ -172,7 +182,7 @@ impl PedestalDouble {
                         _ => (PedestalReport::Done, Reason::None),
                     };
                     match command.command {
-                        _ if mishap == Some(Mishap::NoEffect) => {}
+                        _ if mishap == Some(Mishap::NoEffect) || self.ignores => {}
                         PedestalVerb::PreGrip => {
                             status.grip_size = command.grasp_size;
                             status.table_position = command.table_angle;
