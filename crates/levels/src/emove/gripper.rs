@@ -281,10 +281,11 @@ pub struct Grippers {
 
 impl Grippers {
     /// Before anything else in a tick: follow the echoes until the first command.
-    pub fn start(&mut self, memory: &CommonMemory) {
-        self.parts.start(memory.grip.status.echo);
-        self.v.start(memory.v_grip.status.echo);
-        self.tool.start(memory.tool_grip.status.echo);
+    pub fn start(&mut self, tick: Tick, memory: &CommonMemory) {
+        let written = &memory.emove;
+        self.parts.start_from(tick, written.grip.number, memory.grip.status.echo);
+        self.v.start_from(tick, written.v_grip.number, memory.v_grip.status.echo);
+        self.tool.start_from(tick, written.tool_grip.number, memory.tool_grip.status.echo);
     }
 
     /// Give the attached gripper an order; without a gripper it only counts as given.

@@ -145,9 +145,10 @@ impl State {
     /// Follow the echoes until the first command, and count how long Prim has not detected anything.
     fn sense_neighbours(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
-        self.prim.start(memory.prim.status.echo);
-        self.grippers.start(memory);
-        self.quick_change.start(memory.quick_change.status.echo);
+        let (tick, written) = (inputs.tick, &memory.emove);
+        self.prim.start_from(tick, written.prim.number, memory.prim.status.echo);
+        self.grippers.start(tick, memory);
+        self.quick_change.start_from(tick, written.quick_change.number, memory.quick_change.status.echo);
         self.vision.start(inputs.external.devices.vision.echo);
         let prim = &memory.prim.status;
         let undetected = prim.echo == self.prim.number && prim.report == PrimReport::NotDetected;

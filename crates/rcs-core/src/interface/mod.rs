@@ -216,6 +216,18 @@ pub enum Reason {
     HolsterOnly,
     /// The robot was stopped where it can only go on: send the interrupted command again.
     ForwardOnly,
+    /// An order has changed nothing: see what hinders it, then send the command again.
+    NoEffect,
+    /// The gripper holds something unknown: take it out, or let it go with POSITION.
+    UnknownHeld,
+    /// The part is in the pedestal's hand: send the command that regrips it again, or open the hand at the pedestal.
+    PartInPedestal,
+    /// What is in the pedestal's hand is not the object of the command: open the hand at the pedestal.
+    PedestalHoldsOther,
+    /// The source and destination grips are equal: nothing is to be regripped.
+    EqualGrips,
+    /// A tool is acquired from TOOL-SAFE: name that as the destination.
+    NotNearDrum,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

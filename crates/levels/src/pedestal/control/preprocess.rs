@@ -20,8 +20,9 @@ impl State {
     pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> Seen {
         let memory = inputs.memory;
         let command = &memory.subtask.pedestal;
-        self.hand.start(memory.hand.status.echo);
-        self.table.start(memory.table.status.echo);
+        let (tick, written) = (inputs.tick, &memory.pedestal);
+        self.hand.start_from(tick, written.hand.number, memory.hand.status.echo);
+        self.table.start_from(tick, written.table.number, memory.table.status.echo);
         if command.number != 0 {
             self.cycle = command.cycle;
         }

@@ -5,7 +5,7 @@ use rcs_core::{
     handshake::{Arrival, Receiver},
     interface::{
         CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, Report,
-        emove::{EmoveCommand, EmoveVerb, Holding, ObjectGrip, Standing},
+        emove::{EmoveCommand, EmoveVerb, Holding, ObjectGrip, PlacedObject, Standing},
         pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
         subtask::{SubtaskCommand, SubtaskStatus, SubtaskVerb},
     },
@@ -49,6 +49,8 @@ pub struct EmoveDouble {
     pub outputs: EmoveOutputs,
     pub received: Vec<EmoveCommand>,
     pub mishap: Option<(EmoveVerb, Mishap)>,
+    /// It reports done and does nothing.
+    pub ignores: bool,
 }
 
 impl EmoveDouble {
@@ -82,6 +84,7 @@ impl EmoveDouble {
         let status = &mut self.outputs.status;
         status.report = Report::Done;
         match mishap {
+            _ if self.ignores => {}
             None => self.effect(command),
             Some(Mishap::Error(reason)) => (status.report, status.reason) = (Report::Error, reason),
             Some(Mishap::Special(reason)) => (status.report, status.reason) = (Report::JoystickOn, reason),
@@ -98,9 +101,26 @@ impl EmoveDouble {
     fn effect(&mut self, command: &EmoveCommand) {
         match command.command {
             EmoveVerb::GraspObj | EmoveVerb::AcquireTool => self.hold(command.object.as_str(), command.grip),
-            EmoveVerb::Release | EmoveVerb::ReleaseTool => self.hold("", 0),
-            EmoveVerb::QcDetach => self.outputs.status.end_effector_id = 0,
-            EmoveVerb::QcAttach => self.outputs.status.end_effector_id = command.end_effector_id,
+            EmoveVerb::Release => {
+                if let Some(held) = self.outputs.status.held.object() {
+                    self.outputs.status.placed = Some(PlacedObject {
+                        object: held,
+                        grip: command.grip,
+                        location: command.location,
+                        record: command.location_record,
+                        array: command.location_array,
+                    });
+                }
+                self.hold("", 0);
+            }
+            EmoveVerb::ReleaseTool => self.hold("", 0),
+            EmoveVerb::QcDetach => {
+                (self.outputs.status.end_effector_id, self.outputs.status.exchange) = (0, None);
+            }
+            EmoveVerb::QcAttach => {
+                self.outputs.status.end_effector_id = command.end_effector_id;
+                self.outputs.status.exchange = None;
+            }
             EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => {
                 self.outputs.status.at = Some(Standing {
                     location: command.location,
@@ -133,6 +153,8 @@ pub struct PedestalDouble {
     pub part: i32,
     /// The hand loses the object while the table turns.
     pub slips: bool,
+    /// It reports done and does nothing.
+    pub ignores: bool,
 }
 
 impl PedestalDouble {
@@ -160,10 +182,14 @@ impl PedestalDouble {
                         _ => (PedestalReport::Done, Reason::None),
                     };
                     match command.command {
-                        PedestalVerb::PreGrip | PedestalVerb::Release => {
-                            status.grip_size = command.grasp_size
+                        _ if mishap == Some(Mishap::NoEffect) || self.ignores => {}
+                        PedestalVerb::PreGrip => {
+                            status.grip_size = command.grasp_size;
+                            status.table_position = command.table_angle;
                         }
+                        PedestalVerb::Release => status.grip_size = command.grasp_size,
                         PedestalVerb::Grip => status.grip_size = self.part.max(command.grasp_size),
+                        PedestalVerb::Flip if !self.slips => status.table_position += command.table_angle,
                         PedestalVerb::Flip if self.slips => status.grip_size = 0,
                         _ => {}
                     }
