@@ -137,6 +137,7 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
         outputs: &mut GripOutputs,
     ) {
         self.state.act(action, seen, inputs.tick);
+        self.state.execution.reason = S::reason(self.state.execution.reason);
         *outputs = self.state.report(action, seen, inputs.tick);
     }
 
