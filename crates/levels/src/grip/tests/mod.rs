@@ -1,6 +1,7 @@
 //! Scenarios of Grip with a simulated gripper.
 
 mod bench;
+mod ends;
 pub mod gripper;
 
 use proptest::prelude::*;

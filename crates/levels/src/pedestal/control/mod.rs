@@ -1,12 +1,12 @@
 //! The pedestal process (VI.7): coordinates hand and table for Subtask.
 //!
-//! | command  | hand                  | table                          |
-//! |----------|-----------------------|--------------------------------|
-//! | PRE-GRIP | opens to `grasp-size` | turns to `table-angle`         |
-//! | GRIP     | grasps                |                                |
-//! | FLIP     |                       | turns by `table-angle`         |
-//! | RELEASE  | opens to `grasp-size` |                                |
-//! | PAUSE    |                       | stops                          |
+//! | command  | hand | table |
+//! |----------|------|-------|
+//! | PRE-GRIP | opens to `grasp-size`, after UP-INIT if it is not calibrated | turns to `table-angle` |
+//! | GRIP     | grasps | |
+//! | FLIP     | | turns by `table-angle` |
+//! | RELEASE  | opens to `grasp-size` | |
+//! | PAUSE    | is waited for | stops |
 //!
 //! ```text
 //!               ACCEPT               ORDERED: hand, table
@@ -17,7 +17,8 @@
 //!     can't-do                           error
 //! ```
 //!
-//! A failure sends nothing to the hand: what it holds, it goes on holding.
+//! A failure sends nothing to the hand: what it holds, it goes on holding. A process that is restarted stops the
+//! table and leaves the hand alone.
 //!
 //! * [`state`]: what the process remembers;
 //! * [`orders`]: what a command asks of hand and table;

@@ -572,6 +572,53 @@ fn the_object_stays_gripped_whatever_fails() {
     }
 }
 
+/// Every pair of commands, the second at some ticks of the first, in worlds that obey and worlds that do not, with
+/// processes that are restarted in between: all end, with a reason if they fail.
+#[test]
+fn every_command_ends_whatever_it_interrupts_and_whatever_does_not_obey() {
+    let worlds: [fn(&mut Cell); 6] = [
+        |_| {},
+        |c| c.rotary.blocked = true,
+        |c| c.rotary.off = true,
+        |c| c.fingers.without_air = true,
+        |c| c.fingers.object = None,
+        |c| c.fingers.strain[0] = (0.0, 0.0),
+    ];
+    let restarts: [fn(&mut Cell); 4] = [
+        |_| {},
+        |c| c.pedestal = Pedestal::default(),
+        |c| c.hand = Hand::default(),
+        |c| c.table = Table::default(),
+    ];
+    let mut ends = [0; 2];
+    let mut end = |cell: &mut Cell, verb: PedestalVerb| {
+        let (report, reason) = cell.execute(verb, 250, if verb == PedestalVerb::Flip { 500 } else { -1000 });
+        assert_eq!(report == PedestalReport::Done, reason == Reason::None, "{verb}: {report} {reason}");
+        ends[usize::from(report == PedestalReport::Done)] += 1;
+    };
+    for first in PedestalVerb::ALL {
+        for second in PedestalVerb::ALL {
+            for world in worlds {
+                for restart in restarts {
+                    for later in [1, 12] {
+                        let mut cell = Cell::new(1.0, -1200);
+                        cell.take();
+                        world(&mut cell);
+                        cell.send(*first, 250, if *first == PedestalVerb::Flip { 500 } else { -1000 });
+                        (0..later).for_each(|_| cell.step());
+                        restart(&mut cell);
+                        (0..later).for_each(|_| cell.step());
+                        end(&mut cell, *second);
+                        end(&mut cell, PedestalVerb::Pause);
+                        end(&mut cell, *first);
+                    }
+                }
+            }
+        }
+    }
+    assert!(ends.iter().all(|count| *count > 100), "{ends:?}");
+}
+
 proptest! {
     /// Whatever is commanded and whatever the neighbours say: no panic, the hand is opened only for PRE-GRIP
     /// and RELEASE, and the same inputs give the same bits.

@@ -445,6 +445,36 @@ fn a_calibration_goes_on_beside_a_command_that_is_refused() {
     assert_eq!((status.report, status.reason), (PedestalReport::CannotDo, Reason::TableLimit));
 }
 
+/// From every state, with a table that turns, one that is blocked, one that takes no orders and one that never
+/// stops, at the limits, between them, and with a counter and a potentiometer that deny each other.
+#[test]
+fn every_command_ends_from_every_state_whether_the_table_obeys_or_not() {
+    let worlds: [fn(&mut Rotary); 5] =
+        [|_| {}, |t| t.blocked = true, |t| t.off = true, |t| t.runs_on = true, |t| t.slip = 4];
+    let mut ends = [0; 2];
+    for phase in Phase::ALL {
+        for step in super::tables::Step::ALL {
+            for world in worlds {
+                for (angle, at_limit) in
+                    [(-3400, Some(3950)), (-1000, Some(3950)), (-200, Some(100)), (0, None)]
+                {
+                    for verb in TableVerb::ALL {
+                        let mut bench = Bench::new(Rotary { offset: 0, ..Rotary::new(angle) });
+                        world(&mut bench.table);
+                        bench.process.state =
+                            State { phase: *phase, step: *step, at_limit, ..bench.process.state };
+                        let (report, reason) = bench.execute(*verb, -2135);
+                        let done = report == PedestalReport::Done;
+                        assert_eq!(done, reason == Reason::None, "{verb} in {phase} {step}");
+                        ends[usize::from(done)] += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(ends.iter().all(|count| *count > 100), "{ends:?}");
+}
+
 proptest! {
     /// From any angle to any other, over lines of any delay: reached to 0.06 degree, and the same bits twice.
     /// At 25 steps a tick the whole way takes 1360 of the 1500 ticks that a turn has.
