@@ -2,7 +2,6 @@
 
 use proptest::prelude::*;
 use rcs_core::{
-    Plain,
     interface::{
         CommonMemory, ExternalInputs, QuickChangeOutputs, Reason,
         device::{QuickChangeSensors, QuickChangeValves},

@@ -93,9 +93,8 @@ impl State {
         let header = Header {
             stamp: inputs.tick,
             republished: false,
-            table: self.table,
-            row: self.row,
-            step: Name16::clipped(self.step.text()),
+            decided: self.decided,
+            step: Some(Name16::clipped(self.step.text())).filter(|step| !step.is_empty()),
         };
         let status = T3iStatus {
             cycle: inputs.tick,
@@ -114,8 +113,7 @@ impl State {
             },
             scale_factor: i32::try_from(RESOLVER_COUNTS).unwrap_or(i32::MAX),
             joint_limit: 0,
-            resolver_frame,
-            resolver_valid: resolvers.valid,
+            resolver_frame: Some(resolver_frame).filter(|_| resolvers.valid),
             link_running: running,
             counters: *self.host.counters(),
         };

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use rcs_core::{
     interface::{
-        GripOutputs, Header, Reason, TableOutputs,
+        Decided, GripOutputs, Header, Reason, TableOutputs,
         device::{GripValves, MotorCommand, MotorOrder, PedestalSensors},
         grip::{Calibration, Felt, GripCommand, GripReport, GripStatus, GripVerb, Scale},
         pedestal::{
@@ -38,7 +38,8 @@ fn flip(number: u32) -> PedestalCommand {
 
 /// After row 9 of table 3.
 fn row() -> Header {
-    Header { table: 3, row: 9, step: Name16::clipped("letting-go"), ..Header::default() }
+    let decided = Some(Decided { table: 3, row: 9 });
+    Header { decided, step: Some(Name16::clipped("letting-go")), ..Header::default() }
 }
 
 #[test]

@@ -43,12 +43,19 @@ pub struct Header {
     pub stamp: Tick,
     /// The process was not stepped in that tick (dormant or held); its last outputs were republished for it.
     pub republished: bool,
-    /// Decision table that was used, from 1 in the order of the process's tables; 0 for none.
+    /// The row that decided last, if any has.
+    pub decided: Option<Decided>,
+    /// Step of the current command after that row: its reference action (V.1.1).
+    pub step: Option<Name16>,
+}
+
+/// A row of a decision table, by number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct Decided {
+    /// The table, from 1 in the order of the process's tables.
     pub table: u8,
-    /// Row of it that fired, from 1; 0 for none.
+    /// The row, from 1.
     pub row: u8,
-    /// Step of the current command after that row: its reference action (V.1.1); empty for none.
-    pub step: Name16,
 }
 
 /// `status-report` of Subtask and E-move (V.2.2, V.3.2).
@@ -252,6 +259,14 @@ pub struct ChangingPose {
     pub number: u32,
     /// The pose.
     pub pose: Pose,
+}
+
+impl ChangingPose {
+    /// The record number; `None` while empty.
+    #[must_use]
+    pub const fn record(&self) -> Option<u32> {
+        if self.number == 0 { None } else { Some(self.number) }
+    }
 }
 
 impl CommonMemory {

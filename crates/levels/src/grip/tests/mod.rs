@@ -131,7 +131,7 @@ fn a_gripper_that_is_attached_at_the_start_calibrates_by_itself() {
     assert_eq!((status.initialized, status.report, status.echo), (true, GripReport::Idle, 0));
     assert_eq!((status.position, bench.gripper.opening), (500, 5.0));
     bench.patterns.clear();
-    assert_eq!(bench.wait(500).header.step.as_str(), "start");
+    assert_eq!(bench.wait(500).header.step.unwrap().as_str(), "start");
     assert_eq!(bench.patterns, [0], "once is enough");
 }
 
