@@ -1,7 +1,7 @@
 //! Traces and their comparison: every change is in the trace, and every difference is found.
 
 use rcs_core::{
-    interface::{CommonMemory, Reason, emove::Holding},
+    interface::{CommonMemory, Decided, Reason, emove::Holding},
     name::Name16,
     tick::Tick,
 };
@@ -269,7 +269,7 @@ fn a_trace_has_all_fields_and_then_what_changes() {
         memory.t3i.link_tx.length = 1;
         memory.t3i.link_tx.bytes[0] = 0xA5;
         memory.quick_change.header.republished = true;
-        (memory.prim.header.table, memory.prim.header.row) = (1, 3);
+        memory.prim.header.decided = Some(Decided { table: 1, row: 3 });
     });
     for line in
         ["1\temove.status.reason\t", "1\ttask.header.age\t0", "1\tprim.header.age\t1", "1\tprim.fired\tnone"]
@@ -277,7 +277,7 @@ fn a_trace_has_all_fields_and_then_what_changes() {
         assert!(first.iter().any(|found| found == line), "{line:?} is not in {first:#?}");
     }
     assert!(first.iter().any(|line| line.starts_with("1\tdevice.link_tx.bytes\t0000")));
-    assert!(!first.iter().any(|line| line.contains(".stamp\t") || line.contains("header.row")));
+    assert!(!first.iter().any(|line| line.contains(".stamp\t") || line.contains("header.decided")));
     let prim = levels::ladder::Ladder::processes().iter().find(|process| process.name == "Prim");
     let table = prim.and_then(|prim| prim.table(1)).expect("Prim has a table").name;
     let bytes = format!("A5{}", "00".repeat(63));

@@ -22,7 +22,7 @@
 use rcs_core::{
     Actions, Plain, Variables, decision_table,
     handshake::{Arrival, Lower, Receiver},
-    interface::{Header, Reason, Report},
+    interface::{Decided, Header, Reason, Report},
     name::Name16,
     table::{Choice, Decision, Verdict},
     tick::Tick,
@@ -141,10 +141,8 @@ pub struct Execution {
     pub outcome: Outcome,
     /// Why it failed.
     pub reason: Reason,
-    /// Table that was used last, from 1; 0 for none.
-    pub table: u8,
-    /// Row of it.
-    pub row: u8,
+    /// The row that decided last, if any has.
+    pub decided: Option<Decided>,
     /// The command is new and neither accepted nor refused yet.
     pub waiting: bool,
     /// What is done so that it can be.
@@ -170,7 +168,7 @@ impl Execution {
         match decision.action {
             Course::Refuse => {
                 self.reason = Reason::Restarted;
-                (self.table, self.row) = (EXECUTE_NUMBER, decision.row);
+                self.decided = Some(Decided { table: EXECUTE_NUMBER, row: decision.row });
             }
             Course::Begin => self.reason = Reason::None,
             Course::Rest | Course::Continue => {}
@@ -277,7 +275,7 @@ impl Execution {
         match *verdict {
             Verdict::Passed(()) => true,
             Verdict::Decided(Decision { row, action: Refusal::Fail(reason), .. }) => {
-                (self.table, self.row) = (ACCEPT_NUMBER, row);
+                self.decided = Some(Decided { table: ACCEPT_NUMBER, row });
                 self.fail(reason);
                 false
             }
@@ -286,7 +284,7 @@ impl Execution {
 
     /// Note which row of which table fired.
     pub fn note<Action, Step>(&mut self, choice: &Choice<Action, Step>) {
-        (self.table, self.row) = (choice.table, choice.row);
+        self.decided = Some(Decided { table: choice.table, row: choice.row });
     }
 
     /// Is the command in the buffer to be accepted or refused, as soon as HALT allows it?
@@ -304,13 +302,13 @@ impl Execution {
     /// As [`Self::begins`], for a process that has HALT: `asked` is that of the tick.
     #[must_use]
     pub fn accepted(&self, asked: Asked) -> bool {
-        asked == Asked::Now && !self.waiting && self.table != ACCEPT_NUMBER
+        asked == Asked::Now && !self.waiting && !self.is_refused()
     }
 
     /// True if a row of ACCEPT decided last: the command was refused.
     #[must_use]
-    pub const fn is_refused(&self) -> bool {
-        self.table == ACCEPT_NUMBER
+    pub fn is_refused(&self) -> bool {
+        self.decided.is_some_and(|decided| decided.table == ACCEPT_NUMBER)
     }
 
     /// The process was dormant in the tick before: the next command number it reads is adopted, not executed.
@@ -359,9 +357,8 @@ impl Execution {
         Header {
             stamp: tick,
             republished: false,
-            table: self.table,
-            row: self.row,
-            step: Name16::clipped(step),
+            decided: self.decided,
+            step: Some(Name16::clipped(step)).filter(|step| !step.is_empty()),
         }
     }
 }
@@ -394,10 +391,11 @@ mod tests {
         let mut e = Execution::default();
         e.course(Arrival::New);
         assert!(e.accepts(&Verdict::<Refusal, (), ()>::Passed(())));
-        assert_eq!((e.report(), e.table), (Report::Executing, 0));
+        assert_eq!((e.report(), e.decided), (Report::Executing, None));
         let refusal = Decision { row: 2, action: Refusal::Fail(Reason::UnknownCommand), next: () };
         assert!(!e.accepts(&Verdict::Decided(refusal)));
-        assert_eq!((e.report(), e.reason, e.row), (Report::Error, Reason::UnknownCommand, 2));
+        assert_eq!((e.report(), e.reason), (Report::Error, Reason::UnknownCommand));
+        assert_eq!(e.decided, Some(Decided { table: ACCEPT_NUMBER, row: 2 }));
         assert!(!e.begins(Arrival::New));
     }
 
@@ -405,6 +403,7 @@ mod tests {
     fn a_restarted_process_refuses_what_stands_in_its_buffer() {
         let mut e = Execution::default();
         let arrival = e.receiver.observe(7);
-        assert_eq!((e.course(arrival), e.reason, e.row), (Course::Refuse, Reason::Restarted, 2));
+        assert_eq!((e.course(arrival), e.reason), (Course::Refuse, Reason::Restarted));
+        assert_eq!(e.decided, Some(Decided { table: EXECUTE_NUMBER, row: 2 }));
     }
 }

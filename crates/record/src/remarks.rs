@@ -126,7 +126,7 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
         }
     }
     // Only the first of a row of points: a fast move is limited in every tick.
-    if is.counters.limited > was.counters.limited && before.t3i.header.row != after.t3i.header.row {
+    if is.counters.limited > was.counters.limited && before.t3i.header.decided != after.t3i.header.decided {
         say(Level::Info, "the velocity limits hold a point back".to_owned());
     }
 }
@@ -224,7 +224,7 @@ mod tests {
     use crate::channels::headers;
     use rcs_core::{
         interface::{
-            Reason,
+            Decided, Reason,
             emove::ObjectGrip,
             jaws::JawsVerb,
             pedestal::{PedestalVerb, TableVerb},
@@ -335,7 +335,7 @@ mod tests {
         let before = CommonMemory::default();
         let mut after = before;
         after.subtask.status.reason = Reason::UnknownLocation;
-        (after.subtask.header.table, after.subtask.header.row) = (2, 5);
+        after.subtask.header.decided = Some(Decided { table: 2, row: 5 });
         let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
         assert_eq!(said.len(), 1, "{said:?}");
         assert_eq!(said[0].level, Level::Error);

@@ -16,7 +16,7 @@ use rcs_core::{
 use super::{
     goal::{CLOSED_END, OPEN_END},
     preprocess::{CONTACT, MISSED_AT_END},
-    state::State,
+    state::{Sensed, State},
     tables::{Measured, Phase},
 };
 
@@ -45,12 +45,16 @@ pub enum Touch {
 impl State {
     /// Take what the fingers touch in this tick; `before` are the readings of the tick before.
     pub(super) fn feel(&mut self, before: Option<&GripSensors>, measured: &Measured) {
+        let still = match (before, &self.sensed) {
+            (Some(before), Some(Sensed { last, .. })) => {
+                last.potentiometer.abs_diff(before.potentiometer) <= STILL_COUNTS
+            }
+            _ => false,
+        };
+        self.still_ticks = if still { self.still_ticks.saturating_add(1) } else { 0 };
         let touch = match (before, &self.sensed) {
-            (Some(before), Some(sensed))
-                if self.phase == Phase::Valid && is_plausible(&sensed.last, measured) =>
-            {
-                let way = sensed.last.potentiometer.abs_diff(before.potentiometer);
-                touch(measured, way <= STILL_COUNTS || self.felt == Felt::Something)
+            (Some(_), Some(sensed)) if self.phase == Phase::Valid && is_plausible(&sensed.last, measured) => {
+                touch(measured, still || self.felt == Felt::Something)
             }
             _ => {
                 (self.felt, self.touch, self.touch_ticks) = (Felt::NotKnown, Touch::Unclear, 0);

@@ -2,12 +2,15 @@
 
 use rcs_core::{
     Plain,
-    interface::{device::GripSensors, grip::Felt},
+    interface::{
+        device::GripSensors,
+        grip::{Calibration, Felt},
+    },
     tick::Tick,
 };
 
 use super::{
-    calibration::{Calibration, Readings, Steady},
+    calibration::{Readings, Steady},
     felt::Touch,
     goal::Goal,
     tables::{Phase, Step},
@@ -43,7 +46,7 @@ pub struct State {
     pub missed: u8,
     /// Step of UP-INIT.
     pub phase: Phase,
-    /// Scale and offset of the sensors, once they are known.
+    /// Scale and offset of the sensors, once they are known, or of the time before a restart.
     pub calibration: Option<Calibration>,
     /// Readings at the closed end, while calibrating.
     pub closed: Readings,
@@ -59,6 +62,8 @@ pub struct State {
     pub touch: Touch,
     /// Ticks for which that has been the same.
     pub touch_ticks: u8,
+    /// Ticks for which the fingers have stood still.
+    pub still_ticks: u8,
     /// Command bits to the valves.
     pub valves: u8,
 }

@@ -367,6 +367,39 @@ fn every_row_fires() {
     assert_eq!(bench.rows.missing(TABLES), [""; 0]);
 }
 
+/// From every state, with fingers that move and with fingers that do not, with and without the gripper.
+#[test]
+fn every_command_ends_from_every_state_whether_the_fingers_obey_or_not() {
+    let mut ends = [0; 2];
+    for step in super::tables::Step::ALL {
+        for (open, close) in [(false, false), (true, false), (false, true)] {
+            for place in [-0.3, 0.50, 1.50, 2.00, 3.50, 6.0] {
+                for (attached, speed, noise) in
+                    [(true, 3.0, 1), (true, 0.0, 1), (true, 3.0, 60), (false, 3.0, 1)]
+                {
+                    for object in [None, Some(2.0), Some(1.5)] {
+                        for verb in JawsVerb::ALL {
+                            let mut bench = VBench::new(place);
+                            bench.attach(attached);
+                            (bench.fingers.speed, bench.fingers.noise, bench.fingers.object) =
+                                (speed, noise, object);
+                            let state = &mut bench.process.state;
+                            (state.step, state.valves) = (*step, JawValves { open, close });
+                            let (report, reason) = bench.execute(*verb, 2.0);
+                            assert!(
+                                reason != Reason::None || report != JawsReport::Stuck,
+                                "{verb} at {place}"
+                            );
+                            ends[usize::from(reason == Reason::None)] += 1;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(ends.iter().all(|count| *count > 100), "failed and done: {ends:?}");
+}
+
 proptest! {
     /// Whatever is commanded and whatever the sensors read: no panic, no air both ways or without the
     /// gripper, every command ends, and the same inputs give the same bits, also after a restore.

@@ -15,7 +15,7 @@ use rcs_core::{
 use super::{
     QuickChange,
     preprocess::{MALFUNCTION_TICKS, STUCK_TICKS, TURN_TICKS},
-    tables::TABLES,
+    tables::{Step, TABLES},
 };
 use crate::coverage::Coverage;
 
@@ -316,6 +316,36 @@ fn a_restart_and_an_unknown_command_are_named_and_the_ring_still_reported() {
     assert_eq!(bench.step(true, false, 1).status.reason, Reason::None);
     bench.command(9, QuickChangeVerb::None);
     assert_eq!(bench.step(true, false, 1).status.reason, Reason::UnknownCommand);
+}
+
+/// From every step and reading, with a ring that turns, one that is stuck and sensors that fail.
+#[test]
+fn every_command_ends_from_every_state_whether_the_ring_obeys_or_not() {
+    let mut ends = std::collections::BTreeSet::new();
+    for step in Step::ALL {
+        for ring in RingPosition::ALL {
+            for place in [0.0, 0.3, 1.0] {
+                for (speed, id) in [(0.125, 1), (0.0, 1), (0.02, 1), (0.125, 9)] {
+                    for verb in QuickChangeVerb::ALL {
+                        let mut bench = Bench::default();
+                        bench.step(true, false, 1);
+                        (bench.process.state.step, bench.process.state.ring) = (*step, *ring);
+                        (bench.process.state.reading, bench.process.state.reading_ticks) = (*ring, 1);
+                        let mut model = RingModel { place, speed, jam: None };
+                        bench.command(1, *verb);
+                        let end = (0..TURN_TICKS + 2 + u64::from(STUCK_TICKS)).find_map(|_| {
+                            let outputs = bench.step(model.place >= 1.0, model.place <= 0.0, id);
+                            model.turn(outputs.valves);
+                            let report = outputs.status.report;
+                            (report != QuickChangeReport::Executing).then_some(report)
+                        });
+                        ends.insert(end.expect("it ends").code());
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(ends.len(), 4, "locked, unlocked, malfunction, stuck: {ends:?}");
 }
 
 proptest! {

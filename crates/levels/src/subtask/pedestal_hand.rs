@@ -59,14 +59,12 @@ impl State {
     }
 }
 
-/// Where the table stands for an object.
+/// Where the table stands for an object; an angle that is not known is neither of the two.
 pub(super) fn turn(status: &PedestalStatus, para: &PedPara) -> Turn {
-    if status.table_position.abs_diff(para.table_pos) <= AT_ANGLE {
-        Turn::Receive
-    } else if status.table_position.abs_diff(turned(para)) <= AT_ANGLE {
-        Turn::Turned
-    } else {
-        Turn::Between
+    match status.table_position {
+        Some(position) if position.abs_diff(para.table_pos) <= AT_ANGLE => Turn::Receive,
+        Some(position) if position.abs_diff(turned(para)) <= AT_ANGLE => Turn::Turned,
+        _ => Turn::Between,
     }
 }
 

@@ -72,7 +72,11 @@ impl State {
             Action::PedFlip(flip) => {
                 let angle = match flip {
                     Flip::Whole => ped.flip_angle,
-                    Flip::Rest => turned(&ped).saturating_sub(inputs.memory.pedestal.status.table_position),
+                    // From an angle that is not known nothing is turned: the table fails for that.
+                    Flip::Rest => {
+                        let position = inputs.memory.pedestal.status.table_position;
+                        position.map_or(0, |position| turned(&ped).saturating_sub(position))
+                    }
                 };
                 self.command_pedestal(PedestalVerb::Flip, 0, 0, angle, inputs, outputs);
             }

@@ -5,7 +5,12 @@ use depc::{
     host::{ANSWER_TICKS, Host},
     step::Position,
 };
-use rcs_core::{Plain, handshake::Receiver, interface::t3i::T3iVerb, pose::WireFrame};
+use rcs_core::{
+    Plain,
+    handshake::Receiver,
+    interface::{Decided, t3i::T3iVerb},
+    pose::WireFrame,
+};
 
 use super::tables::{Step, receive::ReceiveStep};
 
@@ -34,10 +39,8 @@ pub struct State {
     pub queue: [WireFrame; QUEUE_POINTS],
     /// How many.
     pub queued: u8,
-    /// Decision table that was used last, from 1.
-    pub table: u8,
-    /// Row of it.
-    pub row: u8,
+    /// The row that decided last, if any has.
+    pub decided: Option<Decided>,
     /// Row of RECEIVE that fired last: the header names it for refusals only.
     pub receive_row: u8,
 }

@@ -115,6 +115,26 @@ pub struct GripStatus {
     pub valves: u8,
 }
 
+/// A sensor that is linear: `value = (counts - zero) * gain`.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Scale {
+    /// Counts at value 0.
+    pub zero: f64,
+    /// Inches or pounds a count.
+    pub gain: f64,
+}
+
+/// Scale and offset of each sensor (VI.3.1 UP-INIT).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Calibration {
+    /// Potentiometer: inches.
+    pub potentiometer: Scale,
+    /// Left strain gage: pounds.
+    pub left: Scale,
+    /// Right strain gage: pounds.
+    pub right: Scale,
+}
+
 /// Output buffers of Grip.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripOutputs {
@@ -122,6 +142,8 @@ pub struct GripOutputs {
     pub header: Header,
     /// To E-move.
     pub status: GripStatus,
+    /// What UP-INIT has found: a process that is restarted adopts it if the sensors agree (extension).
+    pub calibration: Option<Calibration>,
     /// To the valves.
     pub valves: GripValves,
 }

@@ -13,7 +13,7 @@ use depc::{
 use rcs_core::{
     frame::{Frame, Vector},
     interface::{
-        CommonMemory, ExternalInputs, Header, T3iOutputs,
+        CommonMemory, Decided, ExternalInputs, Header, T3iOutputs,
         device::{LinkBytes, RESOLVER_COUNTS},
         t3i::{LinkFault, T3iReport, T3iVerb},
     },
@@ -107,10 +107,9 @@ impl Bench {
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
         Process::<()>::step(&mut self.t3i, &inputs, &mut outputs);
         self.memory.t3i = outputs;
-        let received = (tables::number::RECEIVE, self.t3i.state.receive_row);
-        for (table, row) in [received, (outputs.header.table, outputs.header.row)] {
-            self.rows.note(&Header { table, row, ..Header::default() });
-        }
+        let received = Decided { table: tables::number::RECEIVE, row: self.t3i.state.receive_row };
+        self.rows.note(&Header { decided: Some(received), ..Header::default() });
+        self.rows.note(&outputs.header);
         self.cell(&outputs.link_tx, false);
         &self.memory.t3i
     }
@@ -137,8 +136,8 @@ impl Bench {
 
     /// Row that fired, as table and number.
     fn row(&self) -> (&'static str, u8) {
-        let header = &self.memory.t3i.header;
-        (tables::TABLES[usize::from(header.table) - 1].name, header.row)
+        let Decided { table, row } = self.memory.t3i.header.decided.unwrap();
+        (tables::TABLES[usize::from(table) - 1].name, row)
     }
 
     fn sent(&self) -> Option<Plate> {
