@@ -206,6 +206,8 @@ pub enum Reason {
     GripperGone,
     /// Vision answers what its camera cannot have seen.
     VisionImplausible,
+    /// The robot is not where it was sent. Look where it is; PAUSE takes its position over.
+    RobotElsewhere,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.
