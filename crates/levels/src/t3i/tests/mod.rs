@@ -495,7 +495,9 @@ fn led(mut bench: Bench, words: i16) -> Bench {
 
 #[test]
 fn a_robot_that_took_the_last_words_or_not_or_is_between_is_where_it_was_sent() {
-    for (taken, words) in [(true, 0), (true, 2), (true, -15), (true, -32), (false, 0), (false, -2), (false, 32)] {
+    for (taken, words) in
+        [(true, 0), (true, 2), (true, -15), (true, -32), (false, 0), (false, -2), (false, 32)]
+    {
         let bench = restarted(led(cut_off(taken), words));
         assert_eq!(check(&bench), ReportCheck::AsSent, "{taken} {words}");
         let at = bench.robot.at.to_tool(&T3);
