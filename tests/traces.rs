@@ -262,7 +262,7 @@ fn traced(change: impl FnOnce(&mut CommonMemory)) -> (Vec<String>, Vec<String>) 
 fn a_trace_has_all_fields_and_then_what_changes() {
     let (first, later) = traced(|memory| {
         memory.emove.status.reason = Reason::ObjectLost;
-        memory.emove.status.held_object = Name16::new("LINKBAR1").expect("it is a name");
+        memory.emove.status.held = Some(Name16::new("LINKBAR1").expect("it is a name"));
         memory.prim.poses[2].pose.tool[1] = -7145;
         memory.grip.valves.bits = 0x82;
         memory.t3i.link_tx.length = 1;
@@ -282,7 +282,7 @@ fn a_trace_has_all_fields_and_then_what_changes() {
     let bytes = format!("A5{}", "00".repeat(63));
     let expected = [
         "2\temove.status.reason\tthe object was lost on the way".to_owned(),
-        "2\temove.status.held_object\tLINKBAR1".to_owned(),
+        "2\temove.status.held\tLINKBAR1".to_owned(),
         "2\tprim.poses[2].pose.tool[1]\t-7145".to_owned(),
         "2\tt3i.link_tx.length\t1".to_owned(),
         format!("2\tt3i.link_tx.bytes\t{bytes}"),

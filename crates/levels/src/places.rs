@@ -19,8 +19,12 @@ pub mod named {
 
 /// The place that a command names by type and record numbers.
 #[must_use]
-pub const fn place_of(kind: LocationKind, location_record: u32, location_array: u32) -> Place {
-    Place { kind, locpt: LocptId::new(location_record), array: ArrayId::new(location_array) }
+pub const fn place_of(
+    kind: LocationKind,
+    location_record: Option<u32>,
+    location_array: Option<u32>,
+) -> Place {
+    Place { kind, locpt: LocptId::from_option(location_record), array: ArrayId::from_option(location_array) }
 }
 
 /// What a look-up of task data did not find: a state variable of the tables ACCEPT.

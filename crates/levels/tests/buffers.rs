@@ -42,14 +42,14 @@ fn e_move_passes_the_feedback_pose_up_and_the_gripper_down() {
     let (mut process, mut memory, mut outputs) =
         (Emove::default(), CommonMemory::default(), EmoveOutputs::default());
     let (external, data) = (ExternalInputs::default(), TaskData::default());
-    memory.prim.status.sensor_pose = 0x8300_0007;
+    memory.prim.status.sensor_pose = Some(0x8300_0007);
     memory.quick_change.status.end_effector_id = 2;
     for (tick, number) in [(1, 0), (2, 1)] {
         memory.subtask.emove = EmoveCommand { number, command: EmoveVerb::Pause, ..EmoveCommand::default() };
         let inputs = Inputs { tick: Tick(tick), memory: &memory, external: &external, data: &data };
         process.step(&inputs, &mut outputs);
     }
-    assert_eq!(outputs.status.reference_pose, 0x8300_0007);
+    assert_eq!(outputs.status.reference_pose, Some(0x8300_0007));
     assert_eq!((outputs.prim.command, outputs.prim.end_effector_id), (PrimVerb::RobotInit, 2));
 }
 

@@ -41,12 +41,12 @@ fn command(verb: EmoveVerb, object: &str, grip: i32, at: &Location) -> EmoveComm
         command: verb,
         object,
         grip,
-        object_parameters: data().object(&object, grip).map_or(0, |(id, _)| id.number()),
-        object_vision: data().view(&object, &at.place).map_or(0, |(id, _)| id.number()),
+        object_parameters: data().object(&object, grip).map(|(id, _)| id.number()),
+        object_vision: data().view(&object, &at.place).map(|(id, _)| id.number()),
         location: at.name,
         location_kind: at.place.kind,
-        location_record: at.place.locpt.number(),
-        location_array: at.place.array.number(),
+        location_record: at.place.locpt.to_option(),
+        location_array: at.place.array.to_option(),
         ..EmoveCommand::default()
     }
 }
@@ -66,11 +66,12 @@ fn legs(mut route: Route) -> Vec<(String, i32)> {
     let mut all = Vec::new();
     while route.ahead(&data) != Ahead::Nothing {
         let leg = route.leg(&data).unwrap();
-        let name =
-            |id: u32| data.movetables.get(id as usize - 1).map_or(String::new(), |m| format!(" {}", m.name));
+        let name = |id: Option<u32>| {
+            MovtabId::from_option(id).of(data.movetables).map_or(String::new(), |m| format!(" {}", m.name))
+        };
         let text = match leg.at {
             LegGoal::Record { pose: 1_000_001, movetable } => format!("departure{}", name(movetable)),
-            LegGoal::Record { pose: 1_000_002, movetable: 0 } => "goal".to_owned(),
+            LegGoal::Record { pose: 1_000_002, movetable: None } => "goal".to_owned(),
             LegGoal::Record { pose: 1_000_002, movetable } => format!("goal{}", name(movetable)),
             LegGoal::Record { pose, .. } => data.poses[pose as usize - 1].name.to_string(),
             LegGoal::Computed(_) => "computed".to_owned(),

@@ -78,7 +78,7 @@ fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemo
     let (was, is) = (before.prim.status.report, after.prim.status.report);
     let guarded = matches!(before.emove.prim.command, PrimVerb::GoUntil | PrimVerb::GoWhile);
     if was != is && (guarded || is == PrimReport::JoystickOn) {
-        let (command, sensor) = (before.emove.prim.command, &before.emove.prim.sensor);
+        let (command, sensor) = (before.emove.prim.command, before.emove.prim.sensor.unwrap_or_default());
         match is {
             PrimReport::Done | PrimReport::DetectedErr | PrimReport::NotDetected => {
                 say("prim", format!("{command} {sensor}: {is}"));
@@ -88,12 +88,10 @@ fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemo
         }
     }
     let (was, is) = (&before.subtask.status, &after.subtask.status);
-    if was.held_object != is.held_object || was.object_held != is.object_held {
-        match is.object_held {
-            true => say("subtask", format!("holds {}", is.held_object)),
-            false if was.object_held => say("subtask", format!("no longer holds {}", was.held_object)),
-            false => {}
-        }
+    match (was.held, is.held) {
+        (was, Some(held)) if was != Some(held) => say("subtask", format!("holds {held}")),
+        (Some(held), None) => say("subtask", format!("no longer holds {held}")),
+        _ => {}
     }
     if was.end_effector_id != is.end_effector_id {
         match is.end_effector_id {
@@ -279,19 +277,18 @@ mod tests {
     fn what_the_robot_meets_is_told() {
         let mut before = CommonMemory::default();
         before.emove.prim.command = PrimVerb::GoUntil;
-        before.emove.prim.sensor = Name10::new("TOUCH").unwrap();
+        before.emove.prim.sensor = Name10::new("TOUCH").ok();
         before.prim.status.report = PrimReport::Executing;
         let mut after = before;
         after.prim.status.report = PrimReport::Done;
-        (after.subtask.status.object_held, after.subtask.status.end_effector_id) = (true, 1);
-        after.subtask.status.held_object = Name16::new("LINKBAR1").unwrap();
+        (after.subtask.status.held, after.subtask.status.end_effector_id) = (Name16::new("LINKBAR1").ok(), 1);
         let texts = |before, after| {
             let said = remarks(&headers(), &HwsCommand::default(), before, after);
             said.into_iter().map(|remark| remark.text).collect::<Vec<_>>()
         };
         assert_eq!(texts(&before, &after), ["GO-UNTIL TOUCH: done", "holds LINKBAR1", "gripper 1 is on"]);
         let mut later = after;
-        (later.subtask.status.object_held, later.subtask.status.end_effector_id) = (false, 0);
+        (later.subtask.status.held, later.subtask.status.end_effector_id) = (None, 0);
         later.prim.status.report = PrimReport::JoystickOn;
         assert_eq!(
             texts(&after, &later),

@@ -67,7 +67,7 @@ pub fn gather(log: &Log, process: ProcessId, from: u64, until: u64) -> Evidence 
         moment.external.encode(&mut Writer::new(&mut image));
         traces.iter_mut().for_each(|trace| trace.look(moment.tick.0, &image));
         guard.look(&moment);
-        frames.push(moment.after.t3i.status.resolver_frame);
+        frames.extend(moment.after.t3i.status.resolver_frame);
     }
     Evidence { guard: guard.tell(travel(&frames)), devices: tell(&traces) }
 }
@@ -182,7 +182,9 @@ impl Guard {
         if !self.is_prim || !matches!(command.command, PrimVerb::GoUntil | PrimVerb::GoWhile) {
             return;
         }
-        let Some(sensor) = self.sensors.iter().find(|sensor| sensor.name == command.sensor) else { return };
+        let Some(sensor) = self.sensors.iter().find(|sensor| Some(sensor.name) == command.sensor) else {
+            return;
+        };
         if self.number != command.number {
             (self.number, self.nearest, self.met) = (command.number, None, false);
         }

@@ -115,12 +115,12 @@ impl<'a> Walk<'a> {
             command: verb,
             object,
             grip,
-            object_parameters: self.data.object(&object, grip).map_or(0, |(id, _)| id.number()),
-            object_vision: self.data.view(&object, &at.place).map_or(0, |(id, _)| id.number()),
+            object_parameters: self.data.object(&object, grip).map(|(id, _)| id.number()),
+            object_vision: self.data.view(&object, &at.place).map(|(id, _)| id.number()),
             location: at.name,
             location_kind: at.place.kind,
-            location_record: at.place.locpt.number(),
-            location_array: at.place.array.number(),
+            location_record: at.place.locpt.to_option(),
+            location_array: at.place.array.to_option(),
             ..EmoveCommand::default()
         }
     }
@@ -147,7 +147,7 @@ impl<'a> Walk<'a> {
                         GOAL => Some(goal.frame),
                         number => self.data.pose(PoseId::new(number)).map(|record| record.frame),
                     };
-                    base.map(|base| self.data.moved(&base, MovtabId::new(movetable)))
+                    base.map(|base| self.data.moved(&base, MovtabId::from_option(movetable)))
                 }
                 LegGoal::Computed(frame) => Some(frame),
             };

@@ -44,7 +44,7 @@ impl State {
         let gripper = Gripper::attached(inputs.memory);
         self.held = Some(Held {
             object: command.object,
-            parameters: EndEffId::new(command.object_parameters),
+            parameters: EndEffId::from_option(command.object_parameters),
             gripper,
             grasp_size: sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size),
             opening: gripper.opening(inputs.memory).unwrap_or_default(),

@@ -33,7 +33,7 @@ pub(super) fn gripper_on<'d>(object: &Name16, data: &TaskData<'d>) -> Option<&'d
 
 /// Parameters of the object of a command.
 pub(super) fn sizes<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
-    data.end_eff(EndEffId::new(command.object_parameters))
+    data.end_eff(EndEffId::from_option(command.object_parameters))
 }
 
 /// What the fingers have between them.

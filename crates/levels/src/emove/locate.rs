@@ -20,7 +20,7 @@ const MM_PER_INCH: f64 = 25.4;
 /// View parameters that a command names (VII.7.6).
 #[must_use]
 pub fn view_of<'a>(command: &EmoveCommand, data: &TaskData<'a>) -> Option<&'a VisionPara> {
-    data.vision_para(VisionId::new(command.object_vision))
+    data.vision_para(VisionId::from_option(command.object_vision))
 }
 
 /// The place in the middle of a picture taken with the tool at `tool`.

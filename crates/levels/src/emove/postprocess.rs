@@ -10,11 +10,10 @@ use rcs_core::{
         prim::{PrimCommand, PrimReport, PrimVerb},
         quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
     },
-    name::Name10,
     pose::Pose,
     process::Inputs,
 };
-use taskdata::files::{MovtabId, TaskData, TrajParaId};
+use taskdata::files::{TaskData, TrajParaId};
 
 use super::{
     gripper::{Gripper, Order, Request},
@@ -175,9 +174,9 @@ impl State {
         outputs.prim = PrimCommand {
             number: self.prim.send(inputs.tick),
             command: verb,
-            sensor: Name10::EMPTY,
+            sensor: None,
             pose: 0,
-            movetable: MovtabId::NULL.number(),
+            movetable: None,
             trajectory_parameters: TrajParaId::NULL.number(),
             end_effector_id: inputs.memory.quick_change.status.end_effector_id,
         };
@@ -193,7 +192,9 @@ impl State {
         let Some(leg) = leg else { return };
         let (pose, movetable) = match leg.at {
             LegGoal::Record { pose, movetable } => (pose, movetable),
-            LegGoal::Computed(frame) => (self.publish(Slot::Between, Pose::from_frame(&frame), outputs), 0),
+            LegGoal::Computed(frame) => {
+                (self.publish(Slot::Between, Pose::from_frame(&frame), outputs), None)
+            }
         };
         self.send_prim(verb, inputs, outputs);
         outputs.prim.pose = pose;
@@ -222,10 +223,10 @@ impl State {
         };
         self.send_prim(verb, inputs, outputs);
         outputs.prim.pose = pose;
-        outputs.prim.movetable = found.movetable.number();
+        outputs.prim.movetable = found.movetable.to_option();
         outputs.prim.trajectory_parameters = found.para.number();
         if relative.is_guarded() {
-            outputs.prim.sensor = found.sensor;
+            outputs.prim.sensor = Some(found.sensor);
         }
         self.undetected = 0;
         self.place = None;
@@ -294,10 +295,9 @@ impl State {
             report,
             reason,
             reference_pose: inputs.memory.prim.status.sensor_pose,
-            object_held: self.held.is_some(),
+            held: self.held.map(|held| held.object),
             end_effector_id: inputs.memory.quick_change.status.end_effector_id,
-            held_object: self.held.map(|held| held.object).unwrap_or_default(),
-            at: self.place.map(|place| place.location).unwrap_or_default(),
+            at: self.place.map(|place| place.location),
         };
     }
 }

@@ -141,7 +141,7 @@ impl State {
                 self.place = Some(RobotPlace {
                     gone_to: GoneTo::Location,
                     location: locpt.name,
-                    place: place_of(LocationKind::Point, next.number(), 0),
+                    place: place_of(LocationKind::Point, next.to_option(), None),
                     pose: Pose::from_frame(present),
                 });
                 return;

@@ -91,12 +91,12 @@ pub const fn place_named(command: &EmoveCommand) -> Place {
 /// Where the resolvers say that the robot is.
 #[must_use]
 pub fn present_frame(memory: &CommonMemory) -> Option<Frame> {
-    memory.changing_pose(memory.prim.status.sensor_pose)?.to_frame().ok()
+    memory.changing_pose(memory.prim.status.sensor_pose?)?.to_frame().ok()
 }
 
 /// Where the robot was last told to be; where the resolvers say that it is, if Prim commands nothing.
 #[must_use]
 pub fn commanded_pose(memory: &CommonMemory) -> Option<Pose> {
-    let commanded = memory.changing_pose(memory.prim.status.present_pose).copied();
+    let commanded = memory.prim.status.present_pose.and_then(|number| memory.changing_pose(number)).copied();
     commanded.or_else(|| present_frame(memory).map(|frame| Pose::from_frame(&frame)))
 }

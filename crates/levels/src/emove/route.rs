@@ -109,8 +109,8 @@ pub enum LegGoal {
     Record {
         /// Record of POSE, or changing record.
         pose: u32,
-        /// Record of MOVTAB, 0 for none.
-        movetable: u32,
+        /// Record of MOVTAB, if there is one.
+        movetable: Option<u32>,
     },
     /// A frame that no record holds: a movetable on the trajectory point before it.
     Computed(Frame),
@@ -143,8 +143,9 @@ impl Goal {
         let approach = || data.approach(&command.object, command.grip, &place).ok_or(Planning::NoApproach);
         match command.command {
             EmoveVerb::MovToObj | EmoveVerb::MovToHol => {
-                let sizes =
-                    data.end_eff(EndEffId::new(command.object_parameters)).ok_or(Planning::NoSizes)?;
+                let sizes = data
+                    .end_eff(EndEffId::from_option(command.object_parameters))
+                    .ok_or(Planning::NoSizes)?;
                 let opening = Some(sizes.appr_size);
                 Ok(Self { frame: grip_frame()?, approach: approach()?, opening, gone_to })
             }
@@ -152,7 +153,8 @@ impl Goal {
                 Ok(Self { frame: grip_frame()?, approach: approach()?, opening: None, gone_to })
             }
             EmoveVerb::MovToVu => {
-                let view = data.vision_para(VisionId::new(command.object_vision)).ok_or(Planning::NoView)?;
+                let view =
+                    data.vision_para(VisionId::from_option(command.object_vision)).ok_or(Planning::NoView)?;
                 let approach = data.view_approach(&command.object, command.grip, &place);
                 Ok(Self {
                     frame: data.moved(base, view.movetable),
@@ -267,7 +269,8 @@ impl Route {
     /// The next leg. `None` if a record is missing or the route is complete.
     #[must_use]
     pub fn leg(&self, data: &TaskData<'_>) -> Option<Leg> {
-        let record = |pose: u32, movetable: MovtabId| LegGoal::Record { pose, movetable: movetable.number() };
+        let record =
+            |pose: u32, movetable: MovtabId| LegGoal::Record { pose, movetable: movetable.to_option() };
         let Some((part, point)) = self.next_point(data) else {
             let at = record(self.goal.number, MovtabId::NULL);
             return (!self.complete).then_some(Leg { at, parameters: self.stop });

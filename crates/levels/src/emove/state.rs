@@ -33,10 +33,10 @@ pub struct Held {
 pub struct Located {
     /// The object.
     pub object: Name16,
-    /// Record of LOCPT where it is.
-    pub record: u32,
-    /// Record of ARRAY-TABLE where it is.
-    pub array: u32,
+    /// Record of LOCPT where it is; a static array has none.
+    pub record: Option<u32>,
+    /// Record of ARRAY-TABLE where it is, if it lies in a sector.
+    pub array: Option<u32>,
     /// Its part frame.
     pub pose: Pose,
 }

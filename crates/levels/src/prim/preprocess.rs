@@ -54,7 +54,7 @@ impl State {
         let answered = matches!(interface, Interface::Ready | Interface::Finished);
         let feedback = Some(&t3i.frame_feedback).filter(|_| answered && t3i.link_running);
         let feedback = feedback.and_then(|frame| frame.to_frame().ok());
-        let resolvers = t3i.resolver_frame.to_frame().ok().filter(|_| t3i.resolver_valid);
+        let resolvers = t3i.resolver_frame.and_then(|frame| frame.to_frame().ok());
         let posture = self.posture(interface);
         let (goal, rest) = self.ends(inputs, posture, resolvers);
         let situation = Situation {
@@ -169,7 +169,7 @@ impl State {
             (Some(_), None) => false,
         };
         let at_goal = near(self.target.goal.map(|goal| goal.frame.frame()));
-        let unmoved = near(before.to_frame().ok());
+        let unmoved = near(before.and_then(|frame| frame.to_frame().ok()));
         ended.finished = ended.finished.saturating_add(1);
         ended.settled = if at_goal { ended.settled.saturating_add(1) } else { 0 };
         ended.still = if unmoved { ended.still.saturating_add(1) } else { 0 };
@@ -236,7 +236,7 @@ fn target(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Ta
     let sensor = match verb {
         PrimVerb::None => return Err(Missing::Command),
         PrimVerb::GoUntil | PrimVerb::GoWhile => {
-            Some(*inputs.data.sensor(&command.sensor).ok_or(Missing::Sensor)?)
+            Some(*command.sensor.and_then(|sensor| inputs.data.sensor(&sensor)).ok_or(Missing::Sensor)?)
         }
         _ => None,
     };
@@ -247,7 +247,7 @@ fn target(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Ta
 /// Goal and limits of a motion.
 fn goal(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Goal, Missing> {
     let pose = pose(command, inputs).ok_or(Missing::Pose)?;
-    let by = MovtabId::new(command.movetable);
+    let by = MovtabId::from_option(command.movetable);
     if !by.is_null() && inputs.data.movetable(by).is_none() {
         return Err(Missing::Movetable);
     }

@@ -110,8 +110,8 @@ pub struct State {
     pub manual: Manual,
     /// The end of a motion.
     pub standstill: Standstill,
-    /// The resolver frame of the tick before.
-    pub resolver_frame: WireFrame,
+    /// The resolver frame of the tick before, if it could be believed.
+    pub resolver_frame: Option<WireFrame>,
     /// The force sensor.
     pub calibration: Calibration,
     /// What the sensor of the guarded move reads.

@@ -31,18 +31,18 @@ pub struct Aim {
     pub object: Name16,
     /// Its grip.
     pub grip: i32,
-    /// Its record of END-EFF-PARA.
-    pub parameters: u32,
+    /// Its record of END-EFF-PARA, if it has that grip.
+    pub parameters: Option<u32>,
     /// Gripper that is needed.
     pub end_effector_id: u8,
     /// Name of the location.
     pub location: Name10,
     /// Its type.
     pub kind: LocationKind,
-    /// Record of LOCPT.
-    pub record: u32,
-    /// Record of ARRAY-TABLE.
-    pub array: u32,
+    /// Record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Record of ARRAY-TABLE, if it is a sector.
+    pub array: Option<u32>,
     /// Record number of its pose.
     pub pose: u32,
 }
@@ -89,12 +89,12 @@ impl Aim {
         Self {
             object: Name16::EMPTY,
             grip: 0,
-            parameters: 0,
+            parameters: None,
             end_effector_id,
             location: location.name,
             kind: location.place.kind,
-            record: location.place.locpt.number(),
-            array: location.place.array.number(),
+            record: location.place.locpt.to_option(),
+            array: location.place.array.to_option(),
             pose: 0,
         }
     }
@@ -102,7 +102,7 @@ impl Aim {
     /// The same location with an object in a grip.
     fn with_object(self, object: Name16, grip: i32, data: &TaskData<'_>) -> Result<Self, Missing> {
         let (id, _) = data.object(&object, grip).ok_or(Missing::Grip)?;
-        Ok(Self { object, grip, parameters: id.number(), ..self })
+        Ok(Self { object, grip, parameters: id.to_option(), ..self })
     }
 
     /// A command to E-move with this aim, its number still 0.
@@ -115,8 +115,8 @@ impl Aim {
             object: self.object,
             grip: self.grip,
             object_parameters: self.parameters,
-            object_grips: data.obj_grips_id(&self.object).map_or(0, |id| id.number()),
-            object_vision: data.view(&self.object, &place).map_or(0, |(id, _)| id.number()),
+            object_grips: data.obj_grips_id(&self.object).map(|id| id.number()),
+            object_vision: data.view(&self.object, &place).map(|(id, _)| id.number()),
             location: self.location,
             location_kind: self.kind,
             location_record: self.record,

@@ -149,8 +149,7 @@ impl State {
             report,
             reason,
             reference_pose: below.reference_pose,
-            object_held: below.object_held,
-            held_object: below.held_object,
+            held: below.held,
             end_effector_id: below.end_effector_id,
             at: below.at,
         };

@@ -4,7 +4,7 @@ use rcs_core::{
     handshake::{Arrival, Lower},
     interface::{
         SubtaskOutputs,
-        emove::EmoveVerb,
+        emove::{EmoveCommand, EmoveVerb},
         pedestal::PedestalReport,
         subtask::{SubtaskCommand, SubtaskVerb},
     },
@@ -53,11 +53,12 @@ impl State {
         let emove = &inputs.memory.emove.status;
         let taken = matches!(outputs.emove.command, EmoveVerb::GraspObj | EmoveVerb::AcquireTool)
             && self.emove(inputs) == Lower::Done
-            && emove.held_object == outputs.emove.object;
-        if !emove.object_held {
-            self.grasp = Grasp::default();
+            && emove.held == Some(outputs.emove.object);
+        if emove.held.is_none() {
+            self.grasp = None;
         } else if taken {
-            self.grasp = Grasp { object: emove.held_object, grip: outputs.emove.grip };
+            let EmoveCommand { object, grip, .. } = outputs.emove;
+            self.grasp = Some(Grasp { object, grip }).filter(|grasp| !grasp.object.is_empty());
         }
     }
 
@@ -91,12 +92,10 @@ impl State {
         let view = inputs.data.view(&command.object, &place).is_some_and(|(_, view)| view.enabled);
         Situation {
             work: Work::Busy,
-            held: if !emove.object_held {
-                Held::Nothing
-            } else if emove.held_object == command.object {
-                Held::Right
-            } else {
-                Held::Other
+            held: match emove.held {
+                None => Held::Nothing,
+                Some(held) if held == command.object => Held::Right,
+                Some(_) => Held::Other,
             },
             grip: self.grip_held(command),
             vision: if view { Vision::Needed } else { Vision::NotNeeded },
@@ -123,15 +122,17 @@ impl State {
     }
 
     fn grip_held(&self, command: &SubtaskCommand) -> GripHeld {
-        let Grasp { object, grip } = self.grasp;
-        if object.is_empty() || object != command.object {
-            GripHeld::Unknown
-        } else if grip == command.destination_grip {
-            GripHeld::Destination
-        } else if grip == command.source_grip {
-            GripHeld::Source
-        } else {
-            GripHeld::Neither
+        match self.grasp {
+            Some(Grasp { object, grip }) if object == command.object => {
+                if grip == command.destination_grip {
+                    GripHeld::Destination
+                } else if grip == command.source_grip {
+                    GripHeld::Source
+                } else {
+                    GripHeld::Neither
+                }
+            }
+            _ => GripHeld::Unknown,
         }
     }
 

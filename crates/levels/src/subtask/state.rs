@@ -13,7 +13,7 @@ use crate::execution::Execution;
 /// it was last taken.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Grasp {
-    /// The object; empty if nothing is held, or if Subtask has not seen how it was taken.
+    /// The object.
     pub object: Name16,
     /// Its grip number.
     pub grip: i32,
@@ -32,8 +32,8 @@ pub struct State {
     pub emove: Commander,
     /// Commands to the Active Pedestal.
     pub pedestal: Commander,
-    /// How the held object is gripped.
-    pub grasp: Grasp,
+    /// How the held object is gripped, if Subtask has seen how it was taken.
+    pub grasp: Option<Grasp>,
     /// What the current command names beside the location and the object that Task gave.
     pub aims: Aims,
     /// How the pedestal takes the object of the current FIX-GRIP.

@@ -119,10 +119,10 @@ pub struct Location {
     pub name: Name10,
     /// Its type.
     pub kind: LocationKind,
-    /// Record of LOCPT.
-    pub record: u32,
-    /// Record of ARRAY-TABLE.
-    pub array: u32,
+    /// Record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Record of ARRAY-TABLE, if it is a sector.
+    pub array: Option<u32>,
     /// Sector from 1, or 0.
     pub sector: i32,
     /// Its T-POSE.
@@ -311,8 +311,8 @@ impl Location {
         Ok(Some(Self {
             name: found.name,
             kind: found.place.kind,
-            record: found.place.locpt.number(),
-            array: found.place.array.number(),
+            record: found.place.locpt.to_option(),
+            array: found.place.array.to_option(),
             sector: found.sector,
             pose: ChangingPose { number: 0, pose: Pose::from_frame(&found.frame) },
         }))
@@ -320,7 +320,7 @@ impl Location {
 
     /// True if the location is one of the MBD's.
     fn is_in_mbd(&self, data: &TaskData<'_>) -> bool {
-        let point = LocptId::new(self.record);
+        let point = LocptId::from_option(self.record);
         let owner = data.owner_named(&Name10::clipped(named::MBD)).filter(|_| !point.is_null());
         owner.is_some_and(|owner| data.is_member(owner, Reference::location_point(point)))
     }

@@ -120,7 +120,7 @@ impl State {
     /// Tell the data base where the object now is.
     fn tell(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
         let below = &inputs.memory.subtask.status;
-        let in_hand = below.object_held && self.plan.object == Some(below.held_object);
+        let in_hand = below.held.is_some() && self.plan.object == below.held;
         self.plan.update_due = false;
         let plan = self.plan;
         self.order().tell(&plan, in_hand, inputs.tick, outputs);
@@ -143,7 +143,7 @@ impl State {
             end_effector_id: plan.end_effector_id,
             source_grip: plan.source.grip,
             destination_grip: plan.destination.grip,
-            object_parameters: site.parameters.unwrap_or_default(),
+            object_parameters: site.parameters,
             location: location.name,
             location_kind: location.kind,
             location_record: location.record,
@@ -159,7 +159,7 @@ impl State {
         self.send(verb, &Site { location: None, grip, parameters }, inputs, outputs);
         (outputs.subtask.source_grip, outputs.subtask.destination_grip) = (grip, grip);
         if self.plan.object.is_none() {
-            outputs.subtask.object = inputs.memory.subtask.status.held_object;
+            outputs.subtask.object = inputs.memory.subtask.status.held.unwrap_or_default();
         }
     }
 

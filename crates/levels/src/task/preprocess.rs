@@ -56,29 +56,29 @@ impl State {
     /// Set the state variables for a command.
     fn situation(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Situation {
         let below = &inputs.memory.subtask.status;
-        let right = plan.object == Some(below.held_object);
+        let right = below.held.is_some() && plan.object == below.held;
         Situation {
             work: Work::Busy,
             handling: plan.handling(),
-            holding: match (below.object_held, right) {
-                (false, _) => Holding::NotHeld,
-                (true, true) => Holding::Held,
-                (true, false) => Holding::Other,
+            holding: match (below.held, right) {
+                (None, _) => Holding::NotHeld,
+                (Some(_), true) => Holding::Held,
+                (Some(_), false) => Holding::Other,
             },
             grips: plan.grips(),
             source: plan.source.named(),
-            ends: ends(&plan.end_at, &below.at),
+            ends: ends(&plan.end_at, below.at),
             update: self.data_system.update(plan),
             tool: if below.end_effector_id != TOOL_GRIPPER {
                 Tool::None
-            } else if !below.object_held {
+            } else if below.held.is_none() {
                 Tool::Free
             } else if right || plan.object.is_none() {
                 Tool::Held
             } else {
                 Tool::None
             },
-            station: station(&plan.source, &below.at),
+            station: station(&plan.source, below.at),
         }
     }
 }
@@ -104,20 +104,20 @@ fn request(found: &Found) -> Request {
 }
 
 /// Where the robot is to be at the end. A sector is not known by its location's name alone.
-fn ends(end_at: &Site, at: &Name10) -> Ends {
+fn ends(end_at: &Site, at: Option<Name10>) -> Ends {
     match &end_at.location {
         None => Ends::Here,
-        Some(location) if location.name == *at && location.array == 0 => Ends::There,
+        Some(location) if Some(location.name) == at && location.array.is_none() => Ends::There,
         Some(_) => Ends::Elsewhere,
     }
 }
 
 /// Where the robot is, for the tool commands.
-fn station(source: &Site, at: &Name10) -> Station {
+fn station(source: &Site, at: Option<Name10>) -> Station {
+    let Some(at) = at else { return Station::Elsewhere };
     if at.as_str() == named::TOOL_TRNS {
         Station::Transfer
-    } else if at.as_str() == named::TOOL_SAFE || source.location.is_some_and(|location| location.name == *at)
-    {
+    } else if at.as_str() == named::TOOL_SAFE || source.location.is_some_and(|location| location.name == at) {
         Station::Safe
     } else {
         Station::Elsewhere

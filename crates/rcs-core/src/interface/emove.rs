@@ -66,20 +66,20 @@ pub struct EmoveCommand {
     pub object: Name16,
     /// Grip number of the object (extension: the manual has it only in the records that `obj-para-^` names).
     pub grip: i32,
-    /// `obj-para-^`: record of END-EFF-PARA.
-    pub object_parameters: u32,
-    /// `obj-grip-loc-^`: record of OBJ-GRIPS.
-    pub object_grips: u32,
-    /// `obj-vision-para-^`: record of VISION-PARA, 0 if vision is not used.
-    pub object_vision: u32,
+    /// `obj-para-^`: record of END-EFF-PARA, if the object has that grip.
+    pub object_parameters: Option<u32>,
+    /// `obj-grip-loc-^`: record of OBJ-GRIPS, if an object is named.
+    pub object_grips: Option<u32>,
+    /// `obj-vision-para-^`: record of VISION-PARA, if vision is used.
+    pub object_vision: Option<u32>,
     /// `locpt-name`.
     pub location: Name10,
     /// `locpt-type`.
     pub location_kind: LocationKind,
-    /// `locpt-^-in`: record of LOCPT.
-    pub location_record: u32,
-    /// Record of ARRAY-TABLE if the location is a sector (extension); 0 for none.
-    pub location_array: u32,
+    /// `locpt-^-in`: record of LOCPT; a static array has none.
+    pub location_record: Option<u32>,
+    /// Record of ARRAY-TABLE if the location is a sector (extension).
+    pub location_array: Option<u32>,
     /// `pose-^-in`: the goal pose.
     pub pose: u32,
     /// `endeff-id#-in`.
@@ -95,16 +95,14 @@ pub struct EmoveStatus {
     pub report: Report,
     /// `status-para-out`.
     pub reason: Reason,
-    /// `ref-pose-^`: the feedback pose.
-    pub reference_pose: u32,
-    /// `obj-held-status-out`.
-    pub object_held: bool,
+    /// `ref-pose-^`: the feedback pose, if the resolvers can be believed.
+    pub reference_pose: Option<u32>,
+    /// `obj-held-status-out`: the object held (its name is an extension).
+    pub held: Option<Name16>,
     /// `pres-endeff-id#-out`.
     pub end_effector_id: u8,
-    /// Name of the object held (extension).
-    pub held_object: Name16,
-    /// Where the robot is: location of the last completed move; empty if unknown (extension).
-    pub at: Name10,
+    /// Where the robot is, if that is known: location of the last completed move (extension).
+    pub at: Option<Name10>,
 }
 
 /// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.

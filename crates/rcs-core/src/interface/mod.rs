@@ -242,6 +242,14 @@ pub struct ChangingPose {
     pub pose: Pose,
 }
 
+impl ChangingPose {
+    /// The record number; `None` while empty.
+    #[must_use]
+    pub const fn record(&self) -> Option<u32> {
+        if self.number == 0 { None } else { Some(self.number) }
+    }
+}
+
 impl CommonMemory {
     /// A changing pose by its record number, from whichever process owns it.
     #[must_use]

@@ -44,11 +44,11 @@ pub struct PrimCommand {
     /// `"command"`.
     pub command: PrimVerb,
     /// `"sensor"` of a guarded move.
-    pub sensor: Name10,
+    pub sensor: Option<Name10>,
     /// `^-pose`: record of POSE, or a changing record.
     pub pose: u32,
-    /// `^-movtab`: record of MOVTAB applied to the pose; 0 for none.
-    pub movetable: u32,
+    /// `^-movtab`: record of MOVTAB applied to the pose, if there is one.
+    pub movetable: Option<u32>,
     /// `^-traj-para`: record of TRAJ-PARA.
     pub trajectory_parameters: u32,
     /// `endeff-id#-in`.
@@ -128,12 +128,13 @@ pub struct PrimStatus {
     pub restarting: bool,
     /// The DEPC link runs and Prim commands the robot (extension).
     pub link_running: bool,
-    /// `pres-pose-^-out`: the position commanded to T3I.
-    pub present_pose: u32,
-    /// `sensor-pose-^-out`: where the resolvers say that the robot is; the command from T3I to DEPC is `frame-feedback` of T3I.
-    pub sensor_pose: u32,
-    /// `detected-pose-^-out`: where the condition of a GO-UNTIL was detected; 0 for none.
-    pub detected_pose: u32,
+    /// `pres-pose-^-out`: the position commanded to T3I, if Prim commands the robot.
+    pub present_pose: Option<u32>,
+    /// `sensor-pose-^-out`: where the resolvers say that the robot is, if they can be believed; the command
+    /// from T3I to DEPC is `frame-feedback` of T3I.
+    pub sensor_pose: Option<u32>,
+    /// `detected-pose-^-out`: where the condition of the last GO-UNTIL was detected, if it was.
+    pub detected_pose: Option<u32>,
     /// `hol-R-status`.
     pub holster_right: u8,
     /// `hol-L-status`.
@@ -142,8 +143,9 @@ pub struct PrimStatus {
     pub holster_centre: u8,
     /// `joy-grip-status`.
     pub joystick_grip: JoystickGrip,
-    /// `pres-pose-^-out` when the record button of the joystick box was pressed last; 0 for never (extension).
-    pub recorded_pose: u32,
+    /// `pres-pose-^-out` when the record button of the joystick box was pressed last, if it ever was
+    /// (extension).
+    pub recorded_pose: Option<u32>,
     /// A pose has been recorded: Prim and E-move are suspended until the operator goes on (III.3.3; extension).
     pub recording: bool,
     /// What the sensor of the guarded move reads: lb, in lb, or 1 while a switch is on (extension).
@@ -173,6 +175,6 @@ pub struct PrimOutputs {
 /// `GO-UNTIL SEAT-F`.
 impl fmt::Display for PrimCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        words(f, self.command.text(), &[&self.sensor])
+        words(f, self.command.text(), &[&self.sensor.unwrap_or_default()])
     }
 }

@@ -82,16 +82,16 @@ pub struct SubtaskCommand {
     pub source_grip: i32,
     /// `dst-grip-#-in`.
     pub destination_grip: i32,
-    /// `obj-para-^`: record of END-EFF-PARA.
-    pub object_parameters: u32,
+    /// `obj-para-^`: record of END-EFF-PARA, if the object has that grip.
+    pub object_parameters: Option<u32>,
     /// `locpt-name-in`.
     pub location: Name10,
     /// `locpt-type-in`.
     pub location_kind: LocationKind,
-    /// `locpt-^-in`: record of LOCPT.
-    pub location_record: u32,
-    /// Record of ARRAY-TABLE if the location is a sector (extension); 0 for none.
-    pub location_array: u32,
+    /// `locpt-^-in`: record of LOCPT; a static array has none.
+    pub location_record: Option<u32>,
+    /// Record of ARRAY-TABLE if the location is a sector (extension).
+    pub location_array: Option<u32>,
     /// `pose-^-in`: the goal, a T-POSE of Task.
     pub pose: u32,
 }
@@ -105,16 +105,14 @@ pub struct SubtaskStatus {
     pub report: Report,
     /// `status-para-out`.
     pub reason: Reason,
-    /// `ref-pose-^-out`.
-    pub reference_pose: u32,
-    /// `obj-held-status-out`.
-    pub object_held: bool,
-    /// Name of the object held (extension).
-    pub held_object: Name16,
+    /// `ref-pose-^-out`: the feedback pose, as E-move reports it.
+    pub reference_pose: Option<u32>,
+    /// `obj-held-status-out`: the object held (its name is an extension).
+    pub held: Option<Name16>,
     /// `pres-endeff-id#-out`.
     pub end_effector_id: u8,
-    /// Where the robot is, as E-move reports it; empty if unknown (extension).
-    pub at: Name10,
+    /// Where the robot is, if E-move knows it (extension).
+    pub at: Option<Name10>,
 }
 
 /// Changing poses of Subtask: the location that it names itself (holster, pedestal), one after the other.

@@ -140,10 +140,8 @@ pub struct T3iStatus {
     pub scale_factor: i32,
     /// `joint-limit-dummy`: always 0. VI.1.2 has it for joint limits and does not use it; the line does not tell of them (A 2.3).
     pub joint_limit: i32,
-    /// Tool frame from the resolvers (extension).
-    pub resolver_frame: WireFrame,
-    /// The resolver frame can be believed (extension).
-    pub resolver_valid: bool,
+    /// Tool frame from the resolvers, if they can be believed (extension).
+    pub resolver_frame: Option<WireFrame>,
     /// The link runs: the last report was received and commands are acknowledged (extension).
     pub link_running: bool,
     /// The controller's DTR is on (extension).

@@ -28,6 +28,21 @@ macro_rules! record_numbers {
                 self.0
             }
 
+            /// The number; `None` if null.
+            #[must_use]
+            pub const fn to_option(self) -> Option<u32> {
+                if self.is_null() { None } else { Some(self.0) }
+            }
+
+            /// The record with a number; null without one.
+            #[must_use]
+            pub const fn from_option(number: Option<u32>) -> Self {
+                match number {
+                    Some(number) => Self(number),
+                    None => Self::NULL,
+                }
+            }
+
             /// True if there is no record.
             #[must_use]
             pub const fn is_null(self) -> bool {
@@ -121,6 +136,8 @@ mod tests {
     fn numbers_count_from_one_and_zero_is_null() {
         assert_eq!(PoseId::NULL.index(), None);
         assert_eq!(PoseId::at(0), PoseId::new(1));
+        assert_eq!([PoseId::NULL, PoseId::new(3)].map(PoseId::to_option), [None, Some(3)]);
+        assert_eq!([None, Some(3)].map(PoseId::from_option), [PoseId::NULL, PoseId::new(3)]);
         assert_eq!(PoseId::new(3).index(), Some(2));
         assert_eq!(PoseId::new(3).of(&['a', 'b', 'c']), Some(&'c'));
         assert_eq!(PoseId::new(4).of(&['a', 'b', 'c']), None);

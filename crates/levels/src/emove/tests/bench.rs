@@ -143,7 +143,7 @@ impl Bench {
     pub fn ready(location: &str, gripper: u8) -> Self {
         let mut bench = Self::new(location, gripper);
         assert_eq!(bench.pause(), DONE);
-        assert_eq!(bench.memory.emove.status.at.as_str(), location);
+        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().as_str(), location);
         bench.world.log.clear();
         bench
     }
@@ -211,7 +211,7 @@ impl Bench {
             command: verb,
             object,
             grip,
-            object_parameters: data.object(&object, grip).map_or(0, |(id, _)| id.number()),
+            object_parameters: data.object(&object, grip).map(|(id, _)| id.number()),
             end_effector_id: gripper,
             ..EmoveCommand::default()
         };
@@ -220,9 +220,9 @@ impl Bench {
             pose.pose = Pose::from_frame(&locpt.frame);
             command.location = locpt.name;
             command.location_kind = LocationKind::Point;
-            command.location_record = id.number();
+            command.location_record = id.to_option();
             command.pose = pose.number;
-            command.object_vision = data.view(&object, &data.place_of(id)).map_or(0, |(id, _)| id.number());
+            command.object_vision = data.view(&object, &data.place_of(id)).map(|(id, _)| id.number());
         }
         self.memory.subtask.emove = command;
     }
@@ -267,7 +267,7 @@ impl Bench {
     pub fn hold(&mut self, object: &str, size: i32, gripper: u8) {
         self.world.object = Some(size);
         assert_eq!(self.run(EmoveVerb::GraspObj, object, 1, "", gripper), DONE);
-        assert_eq!(self.memory.emove.status.held_object.as_str(), object);
+        assert_eq!(self.memory.emove.status.held.unwrap_or_default().as_str(), object);
     }
 
     pub fn log(&self) -> Vec<&str> {

@@ -144,11 +144,11 @@ pub struct Prim {
 impl Prim {
     fn text(memory: &CommonMemory, data: &TaskData<'_>) -> String {
         let command = &memory.emove.prim;
-        let table = MovtabId::new(command.movetable).of(data.movetables).map(|record| record.name);
+        let table = MovtabId::from_option(command.movetable).of(data.movetables).map(|record| record.name);
         let words = [
             command.command.text().to_owned(),
             table.map_or(String::new(), |n| n.to_string()),
-            command.sensor.to_string(),
+            command.sensor.unwrap_or_default().to_string(),
         ];
         words.iter().filter(|word| !word.is_empty()).cloned().collect::<Vec<_>>().join(" ")
     }
@@ -160,7 +160,7 @@ impl Prim {
         } else {
             memory.changing_pose(command.pose)?.to_frame().ok()?
         };
-        Some(data.moved(&base, MovtabId::new(command.movetable)))
+        Some(data.moved(&base, MovtabId::from_option(command.movetable)))
     }
 
     pub fn step(
@@ -220,7 +220,8 @@ impl Prim {
         status.echo = self.receiving.receiver.echo;
         (status.report, status.reason) = (self.report, self.reason);
         status.link_running = self.link;
-        (status.present_pose, status.sensor_pose) = (outputs.poses[0].number, outputs.poses[1].number);
+        (status.present_pose, status.sensor_pose) =
+            (Some(outputs.poses[0].number), Some(outputs.poses[1].number));
         [status.holster_right, status.holster_left, status.holster_centre] = world.holsters;
         status.joystick_grip = world.button;
         outputs

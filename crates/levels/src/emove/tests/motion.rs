@@ -55,7 +55,7 @@ fn a_robot_moves_with_any_gripper_and_with_none() {
         assert!(bench.off(&frame_of("VISE")) < 0.02);
         assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
         assert!(bench.off(&frame_of("HOME")) < 0.02);
-        assert_eq!(bench.memory.emove.status.at.as_str(), "HOME");
+        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().as_str(), "HOME");
     }
 }
 
@@ -86,7 +86,7 @@ fn a_part_is_taken_placed_and_left() {
     assert_eq!(bench.log(), ["CLOSE-GRIP"]);
     let command = bench.memory.emove.grip;
     assert_eq!((command.position, command.force, command.end_effector_id), (60, 30, 1));
-    assert!(bench.memory.emove.status.object_held);
+    assert!(bench.memory.emove.status.held.is_some());
     assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE, "it is held");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE, "so it has been gone to");
@@ -97,7 +97,7 @@ fn a_part_is_taken_placed_and_left() {
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(Release, "BLOCK", 1, "VISE", 1), DONE);
     assert_eq!(bench.log(), ["OPEN-GRIP"]);
-    assert_eq!((bench.memory.emove.grip.position, bench.memory.emove.status.object_held), (350, false));
+    assert_eq!((bench.memory.emove.grip.position, bench.memory.emove.status.held.is_some()), (350, false));
     assert_eq!(bench.run(Release, "BLOCK", 1, "VISE", 1), DONE, "nothing is held and the fingers are open");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "VISE", 1), DONE);
@@ -116,11 +116,11 @@ fn jaws_take_and_leave_their_parts() {
         assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), DONE);
         assert_eq!(bench.log(), [format!("GRASP {}", if gripper == 2 { 200 } else { 250 })]);
         assert_eq!(bench.pause(), DONE, "a pause leaves it held");
-        assert!(bench.memory.emove.status.object_held);
+        assert!(bench.memory.emove.status.held.is_some());
         assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), DONE);
         assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
         assert_eq!(bench.log(), [format!("RELEASE {}", if gripper == 2 { 350 } else { 400 })]);
-        assert!(!bench.memory.emove.status.object_held);
+        assert!(!bench.memory.emove.status.held.is_some());
         assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
         assert!(bench.log().is_empty());
         let opening = if gripper == 2 { bench.v_grip.opening } else { bench.tool_grip.opening };
@@ -153,7 +153,7 @@ fn fingers_do_not_open_over_a_held_part() {
     assert_eq!(bench.run(MovToVu, "PIN", 1, "BENCH", 1), error(Reason::BadRecord), "there is no view of it");
     assert_eq!(bench.run(GraspObj, "PIN", 1, "BENCH", 1), error(Reason::AlreadyHolding));
     assert_eq!(bench.run(MovToHol, "GRIPPER-1", 1, "HOLSTER-R", 1), error(Reason::NoTrajectory));
-    assert!(bench.memory.emove.status.object_held);
+    assert!(bench.memory.emove.status.held.is_some());
 }
 
 #[test]
@@ -207,7 +207,7 @@ fn what_prim_reports_goes_up() {
             let location = if verb == MovToHol { "HOLSTER-R" } else { "BENCH" };
             bench.spoil("GO-THRU", Mishap::Prim(report, reason));
             assert_eq!(bench.run(verb, object, 1, location, gripper), error(reason), "{verb}");
-            assert!(bench.memory.emove.status.at.is_empty(), "it is not known where the robot is");
+            assert!(bench.memory.emove.status.at.is_none(), "it is not known where the robot is");
         }
     }
     let mut bench = Bench::ready("HOME", 0);
@@ -236,7 +236,7 @@ fn a_lost_part_is_noticed_with_every_gripper() {
                 let reason =
                     if matches!(gone, Mishap::Slip) { Reason::ObjectLost } else { Reason::GripperGone };
                 assert_eq!(bench.finish(), error(reason), "{object} {verb}");
-                assert!(!bench.memory.emove.status.object_held);
+                assert!(!bench.memory.emove.status.held.is_some());
             }
         }
         let mut bench = Bench::ready("HOME", gripper);
@@ -244,7 +244,7 @@ fn a_lost_part_is_noticed_with_every_gripper() {
         (bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening) =
             (size + 30, size + 30, size + 30);
         bench.steps(3);
-        assert!(!bench.memory.emove.status.object_held, "open fingers hold nothing");
+        assert!(!bench.memory.emove.status.held.is_some(), "open fingers hold nothing");
         assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), error(Reason::NothingHeld));
     }
 }
@@ -260,11 +260,11 @@ fn a_part_that_is_no_longer_felt_is_lost() {
     bench.steps(3);
     bench.grip.force = 30;
     bench.steps(3);
-    assert!(bench.memory.emove.status.object_held);
+    assert!(bench.memory.emove.status.held.is_some());
     // The fingers hardly move when a part falls that was held with little force.
     bench.grip.force = 0;
     assert_eq!(bench.finish(), error(Reason::ObjectLost));
-    assert!(!bench.memory.emove.status.object_held);
+    assert!(!bench.memory.emove.status.held.is_some());
 }
 
 #[test]
@@ -294,7 +294,7 @@ fn what_is_not_gripped_is_reported() {
     for (gripper, object, _) in PARTS {
         let mut bench = Bench::ready("HOME", gripper);
         assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), error(Reason::GraspMissed));
-        assert!(!bench.memory.emove.status.object_held);
+        assert!(!bench.memory.emove.status.held.is_some());
     }
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(GraspObj, "BLOCK", 7, "BENCH", 1), error(Reason::UnknownGrip));
@@ -356,7 +356,7 @@ fn vision_that_fails_is_asked_again_and_given_up() {
     assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::VisionSilent));
     let mut bench = Bench::ready("HOME", 1);
     bench.dead.push("Prim");
-    bench.memory.prim.status.sensor_pose = 0;
+    bench.memory.prim.status.sensor_pose = None;
     assert_eq!(
         bench.run(LocateObj, "BLOCK", 1, "BENCH", 1),
         error(Reason::BadRecord),
@@ -397,7 +397,7 @@ fn the_robot_withdraws() {
     assert_eq!(bench.run(Withdraw, "", 0, "BENCH", 0), DONE);
     assert_eq!(bench.log(), ["DELTA-MOVE WITHDRAW"]);
     assert!(bench.off(&moved(frame_of("BENCH"), &["WITHDRAW"])) < 0.02);
-    assert_eq!(bench.memory.emove.status.at.as_str(), "BENCH");
+    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().as_str(), "BENCH");
     bench.command(Withdraw, "", 0, "BENCH", 0);
     bench.steps(3);
     bench.grip.opening = 60;

@@ -127,10 +127,10 @@ fn a_pause_that_fails_says_why() {
 fn the_robot_is_found_where_it_stands() {
     let mut bench = Bench::new("HOLSTER-C", 0);
     assert_eq!(bench.pause(), DONE);
-    assert_eq!(bench.memory.emove.status.at.as_str(), "HOLSTER-C");
+    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().as_str(), "HOLSTER-C");
     bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
     assert_eq!(bench.pause(), DONE, "it need not be anywhere");
-    assert!(bench.memory.emove.status.at.is_empty());
+    assert!(bench.memory.emove.status.at.is_none());
 }
 
 /// Only E-PAUSE looks for the robot, and only while it is done or under way.
@@ -185,7 +185,7 @@ fn the_operator_moves_the_robot_and_the_fingers() {
         bench.world.button = JoystickGrip::Open;
         bench.steps(20);
         assert_eq!(bench.log().len(), 1, "pressing counts, not holding down: {:?}", bench.log());
-        assert!(!bench.memory.emove.status.object_held, "the fingers are open");
+        assert!(!bench.memory.emove.status.held.is_some(), "the fingers are open");
         bench.world.button = JoystickGrip::None;
         bench.steps(3);
         bench.world.button = JoystickGrip::Close;
@@ -198,7 +198,10 @@ fn the_operator_moves_the_robot_and_the_fingers() {
         (bench.world.joystick, bench.world.button) = (false, JoystickGrip::None);
         bench.steps(10);
         let status = bench.memory.emove.status;
-        assert_eq!((status.report, status.reason, status.at.as_str()), (Report::Done, Reason::None, "VISE"));
+        assert_eq!(
+            (status.report, status.reason, status.at.unwrap_or_default().as_str()),
+            (Report::Done, Reason::None, "VISE")
+        );
     }
     // Without frame switches the buttons work as well, and a robot that is switched over while it pauses is
     // the operator's.

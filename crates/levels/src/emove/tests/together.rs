@@ -177,9 +177,9 @@ fn carry(bench: &mut Bench, object: &str, size: i32, gripper: u8) {
     assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), DONE);
     assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), DONE);
     assert_eq!(bench.pause(), DONE);
-    assert!(bench.memory.emove.status.object_held, "{object} is held through a pause");
+    assert!(bench.memory.emove.status.held.is_some(), "{object} is held through a pause");
     assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
-    assert!(!bench.memory.emove.status.object_held);
+    assert!(!bench.memory.emove.status.held.is_some());
     bench.world.object = None;
     assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);

@@ -59,12 +59,12 @@ fn go_until_ramps_down_where_it_trips_and_says_where_that_was() {
             if rig.memory.prim.status.sensed == 1 {
                 break speed;
             }
-            assert_eq!(rig.memory.prim.status.detected_pose, 0);
+            assert_eq!(rig.memory.prim.status.detected_pose, None);
         };
         // The tick of the trip: T3I has told in it where the resolvers see the robot.
-        let seen = rig.memory.changing_pose(rig.memory.prim.status.sensor_pose).copied();
+        let seen = rig.pose(rig.memory.prim.status.sensor_pose).copied();
         let status = rig.memory.prim.status;
-        assert_eq!(rig.memory.changing_pose(status.detected_pose).copied(), seen);
+        assert_eq!(rig.pose(status.detected_pose).copied(), seen);
         assert_eq!(status.report, PrimReport::Executing, "done when it stands, not before");
         assert_eq!(rig.until_over(), PrimReport::Done);
         assert!(rig.at_rest());
@@ -74,11 +74,11 @@ fn go_until_ramps_down_where_it_trips_and_says_where_that_was() {
         rig.check_path(&start());
         // The pose stays until the next guarded move.
         assert_eq!(rig.run(PrimVerb::GotoPt, 1), PrimReport::Done);
-        assert_eq!(rig.memory.changing_pose(rig.memory.prim.status.detected_pose).copied(), seen);
+        assert_eq!(rig.pose(rig.memory.prim.status.detected_pose).copied(), seen);
         rig.external.devices.holsters.right = 0;
         rig.guard(PrimVerb::GoUntil, 3, "NEAR-R");
         rig.steps(2);
-        assert_eq!(rig.memory.prim.status.detected_pose, 0);
+        assert_eq!(rig.memory.prim.status.detected_pose, None);
     }
 }
 
@@ -93,7 +93,7 @@ fn a_condition_that_holds_already_ends_a_guarded_move_without_motion() {
         assert_eq!(rig.until_over(), report);
         rig.steps(20);
         assert_eq!((rig.moved(), rig.t3i.path.len(), rig.report()), (0.0, 0, report));
-        let detected = rig.memory.changing_pose(rig.memory.prim.status.detected_pose);
+        let detected = rig.pose(rig.memory.prim.status.detected_pose);
         let expected = (verb == PrimVerb::GoUntil).then(|| Pose::from_frame(&start()));
         assert_eq!(detected.copied(), expected);
     }
@@ -112,7 +112,7 @@ fn a_goal_without_the_condition_is_not_detected_until_it_comes() {
     rig.step();
     assert_eq!(rig.until_over(), PrimReport::Done);
     assert_eq!(rig.reason(), Reason::None);
-    let detected = rig.memory.changing_pose(rig.memory.prim.status.detected_pose);
+    let detected = rig.pose(rig.memory.prim.status.detected_pose);
     assert_eq!(detected, Some(&Pose::from_frame(&shifted(10.0, 0.0))));
     // A new command ends it as well.
     rig.external.devices.holsters.right = 0;
@@ -247,7 +247,7 @@ fn all_three_motions_take_a_movetable_and_delta_move_ends_as_goto_pt_does() {
     for verb in [PrimVerb::DeltaMove, PrimVerb::GoWhile, PrimVerb::GoUntil] {
         let mut rig = Rig::initialized();
         rig.guard(verb, 1, "NEAR-R");
-        rig.memory.emove.prim.movetable = 1;
+        rig.memory.emove.prim.movetable = Some(1);
         let over = rig.until_over();
         let expected = if verb == PrimVerb::GoUntil { PrimReport::NotDetected } else { PrimReport::Done };
         let mut goal = shifted(10.0, 0.0);

@@ -297,7 +297,7 @@ fn the_gripper_buttons_are_passed_on_while_the_box_has_the_robot() {
 #[test]
 fn a_recorded_pose_suspends_until_the_operator_goes_on() {
     let mut rig = Rig::paused();
-    assert_eq!((rig.memory.prim.status.recorded_pose, rig.memory.prim.status.recording), (0, false));
+    assert_eq!((rig.memory.prim.status.recorded_pose, rig.memory.prim.status.recording), (None, false));
     rig.frame_switch(joystick_frame::WORLD);
     rig.stick(FULL, 0);
     rig.steps(30);
@@ -305,9 +305,9 @@ fn a_recorded_pose_suspends_until_the_operator_goes_on() {
     rig.step();
     let status = rig.memory.prim.status;
     assert!(status.recording);
-    let pose = rig.memory.changing_pose(status.recorded_pose).copied();
+    let pose = rig.pose(status.recorded_pose).copied();
     assert_eq!(pose, Some(Pose::from_frame(&rig.commanded())));
-    assert_eq!(pose, rig.memory.changing_pose(status.present_pose).copied());
+    assert_eq!(pose, rig.pose(status.present_pose).copied());
     // The last point is the one recorded, and the robot holds it.
     rig.steps(2);
     let held = rig.t3i.output;
@@ -321,7 +321,7 @@ fn a_recorded_pose_suspends_until_the_operator_goes_on() {
     rig.external.devices.joystick.resume = false;
     rig.steps(40);
     assert!(!rig.memory.prim.status.recording, "the button was never let go");
-    assert_eq!(rig.memory.changing_pose(rig.memory.prim.status.recorded_pose).copied(), pose);
+    assert_eq!(rig.pose(rig.memory.prim.status.recorded_pose).copied(), pose);
     // The stick was held all the time: from rest again.
     rig.check_path(&held.to_frame().unwrap());
     assert_ne!(rig.t3i.output, held);

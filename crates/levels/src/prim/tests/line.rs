@@ -276,7 +276,7 @@ fn the_joystick_box_moves_the_robot_and_records_where_it_stands() {
     bench.external.devices.joystick.record = true;
     bench.step();
     let status = bench.memory.prim.status;
-    let recorded = bench.memory.changing_pose(status.recorded_pose).unwrap().to_frame().unwrap();
+    let recorded = bench.memory.changing_pose(status.recorded_pose.unwrap()).unwrap().to_frame().unwrap();
     assert!(status.recording && bench.off(&recorded) < 0.05, "{}", bench.off(&recorded));
     bench.external.devices.joystick.x = 1000;
     let at = bench.robot.at;

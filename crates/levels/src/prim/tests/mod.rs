@@ -136,9 +136,9 @@ impl ModelT3i {
             _ => T3iReport::Executing,
         };
         status.frame_feedback = self.output;
-        status.resolver_frame = self.output;
-        status.resolver_frame.tool[0] += self.off;
-        status.resolver_valid = true;
+        let mut seen = self.output;
+        seen.tool[0] += self.off;
+        status.resolver_frame = Some(seen);
         status.link_running = self.running;
         status.controller_ready = !self.dtr_off;
         status.check = match (self.starting, self.broken) {
@@ -303,8 +303,13 @@ impl Rig {
         command.number = successor(command.number);
         command.command = verb;
         command.pose = pose;
-        command.movetable = 0;
+        command.movetable = None;
         command.trajectory_parameters = 1;
+    }
+
+    /// The pose that Prim publishes under a number.
+    fn pose(&self, number: Option<u32>) -> Option<&Pose> {
+        self.memory.changing_pose(number?)
     }
 
     fn report(&self) -> PrimReport {
@@ -332,7 +337,7 @@ impl Rig {
     fn guard(&mut self, verb: PrimVerb, pose: u32, sensor: &str) {
         self.command(verb, pose);
         let command = &mut self.memory.emove.prim;
-        (command.sensor, command.end_effector_id) = (Name10::new(sensor).unwrap(), 1);
+        (command.sensor, command.end_effector_id) = (Some(Name10::new(sensor).unwrap()), 1);
     }
 
     /// The commanded frame, without rounding.
@@ -372,7 +377,7 @@ fn starts_with_pause_and_without_a_position() {
     rig.steps(5);
     let out = rig.memory.prim;
     assert_eq!((out.t3i.command, out.t3i.number), (T3iVerb::Pause, FIRST_STEP));
-    assert_eq!((out.status.report, out.status.present_pose), (PrimReport::Idle, 0));
+    assert_eq!((out.status.report, out.status.present_pose), (PrimReport::Idle, None));
     assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::Done);
     assert_eq!(rig.memory.prim.t3i, out.t3i);
 }
@@ -388,9 +393,9 @@ fn robot_init_takes_the_position_over() {
     assert_eq!(rig.until_over(), PrimReport::Done);
     let status = rig.memory.prim.status;
     assert!(status.link_running && !status.restarting);
-    assert_eq!(rig.memory.changing_pose(status.present_pose), Some(&Pose::from_frame(&start())));
-    assert_eq!(rig.memory.changing_pose(status.sensor_pose), Some(&Pose::from_frame(&start())));
-    assert_eq!(status.detected_pose, 0);
+    assert_eq!(rig.pose(status.present_pose), Some(&Pose::from_frame(&start())));
+    assert_eq!(rig.pose(status.sensor_pose), Some(&Pose::from_frame(&start())));
+    assert_eq!(status.detected_pose, None);
 }
 
 #[test]
@@ -464,7 +469,7 @@ fn the_knob_stops_the_path() {
 fn movetables_and_changing_poses_make_the_goal() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 1);
-    rig.memory.emove.prim.movetable = 1;
+    rig.memory.emove.prim.movetable = Some(1);
     assert_eq!(rig.until_over(), PrimReport::Done);
     let mut goal = shifted(10.0, 0.0);
     goal.position.z += 3.0;
@@ -487,10 +492,10 @@ fn missing_records_and_bad_parameters_are_refused_and_stop_the_robot() {
     assert_ne!(rig.t3i.output, WireFrame::from_frame(&shifted(40.0, 3.0)));
     rig.check_path(&start());
     for (pose, movetable, parameters, reason) in [
-        (pose_range::EMOVE | 77, 0, 1, Reason::BadRecord),
-        (1, 2, 1, Reason::BadRecord),
-        (1, 0, 0, Reason::BadRecord),
-        (1, 0, 2, Reason::BadParameters),
+        (pose_range::EMOVE | 77, None, 1, Reason::BadRecord),
+        (1, Some(2), 1, Reason::BadRecord),
+        (1, None, 0, Reason::BadRecord),
+        (1, None, 2, Reason::BadParameters),
     ] {
         rig.command(PrimVerb::GoThru, pose);
         rig.memory.emove.prim.movetable = movetable;

@@ -21,7 +21,7 @@ impl Rig {
         let stopped = self.t3i.output;
         let status = &self.memory.prim.status;
         assert_eq!((status.report, status.restarting), (PrimReport::Executing, true));
-        assert_eq!((status.present_pose, self.memory.prim.t3i.command), (0, T3iVerb::Restart));
+        assert_eq!((status.present_pose, self.memory.prim.t3i.command), (None, T3iVerb::Restart));
         self.t3i.path.clear();
         stopped
     }

@@ -102,7 +102,7 @@ impl EmoveDouble {
             EmoveVerb::QcDetach => self.outputs.status.end_effector_id = 0,
             EmoveVerb::QcAttach => self.outputs.status.end_effector_id = command.end_effector_id,
             EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => {
-                self.outputs.status.at = command.location;
+                self.outputs.status.at = Some(command.location);
             }
             _ => {}
         }
@@ -110,8 +110,7 @@ impl EmoveDouble {
 
     /// The gripper holds an object; an empty name for none.
     pub fn hold(&mut self, object: &str) {
-        self.outputs.status.held_object = Name16::new(object).unwrap();
-        self.outputs.status.object_held = !object.is_empty();
+        self.outputs.status.held = Some(Name16::new(object).unwrap()).filter(|name| !name.is_empty());
     }
 }
 
@@ -220,7 +219,7 @@ impl<'d> Bench<'d> {
             end_effector_id: self.data.obj_grips(&object).map_or(0, |grips| grips.endeff_id as u8),
             source_grip: grips.0,
             destination_grip: grips.1,
-            object_parameters: self.data.object(&object, grips.0).map_or(0, |(id, _)| id.number()),
+            object_parameters: self.data.object(&object, grips.0).map(|(id, _)| id.number()),
             ..SubtaskCommand::default()
         };
         if let Some(place) = place {
@@ -228,7 +227,7 @@ impl<'d> Bench<'d> {
             poses[0].pose = Pose::from_frame(&place.frame);
             command.location = place.name;
             command.location_kind = place.place.kind;
-            command.location_record = place.place.locpt.number();
+            command.location_record = place.place.locpt.to_option();
             command.pose = poses[0].number;
         }
         self.memory.task.poses = poses;

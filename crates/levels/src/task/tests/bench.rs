@@ -106,13 +106,12 @@ impl SubtaskDouble {
 
     /// The gripper holds an object; an empty name for none.
     pub fn hold(&mut self, object: &str) {
-        self.outputs.status.held_object = Name16::new(object).unwrap();
-        self.outputs.status.object_held = !object.is_empty();
+        self.outputs.status.held = Some(Name16::new(object).unwrap()).filter(|name| !name.is_empty());
     }
 
     /// The robot stands at a location; an empty name for none that is known.
     pub fn stand(&mut self, location: &str) {
-        self.outputs.status.at = Name10::new(location).unwrap();
+        self.outputs.status.at = Some(Name10::new(location).unwrap()).filter(|name| !name.is_empty());
     }
 }
 
