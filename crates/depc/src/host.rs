@@ -498,7 +498,7 @@ impl Host {
             return;
         }
         self.starting = self.starting.saturating_add(1);
-        if self.starting >= self.patience {
+        if self.starting >= self.patience && !self.has_candidate {
             let silent = self.attempt == LinkFault::None;
             self.blame(if silent { LinkFault::NotResponding } else { self.attempt });
         }

@@ -167,6 +167,25 @@ pub struct T3iOutputs {
     pub link_tx: LinkBytes,
 }
 
+impl T3iStatus {
+    /// What a line that carries no answers may mean, in words; `None` if nothing is to be said.
+    #[must_use]
+    pub const fn trouble(&self) -> Option<&'static str> {
+        if self.silent {
+            Some(
+                "the robot controller does not answer, but its DTR is on: Hold, a warning D1 to D6 on its screen, a dead receiver or a \
+                 cut wire; a re-start is sent every second",
+            )
+        } else if matches!(self.check, ReportCheck::Elsewhere) {
+            Some("the robot is not where it was sent, or its controller was off; PAUSE takes its position over")
+        } else if !self.controller_ready && !matches!(self.fault, LinkFault::None) {
+            Some("the robot controller's DTR is off: it is off, or its program does not run the DEPC function")
+        } else {
+            None
+        }
+    }
+}
+
 /// `POINT`.
 impl fmt::Display for T3iCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
