@@ -3,6 +3,7 @@
 use std::{fmt, path::PathBuf, str::FromStr};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use depc::host::RESTART_TICKS;
 use executive::{boards::Board, memory::RunName, overrun::Policy, serial::SerialSettings};
 use neighbours::network::{Address, Role};
 
@@ -89,8 +90,9 @@ pub struct RunArguments {
     pub cpu: Option<usize>,
     /// The robot to command: sim, the simulated one, or serial:PATH[,OPTION...], one at a serial port
     ///
-    /// Options: baud=N (9600), parity=none|even|odd (none), stop=1|2 (1), cts=watch|ignore (watch; ignore is
-    /// for cables of three wires). A robot at a port needs --clock real.
+    /// Options: silence=SECONDS (60), how long to wait for a robot controller that does not answer although its DTR is on; for a
+    /// port also baud=N (9600), parity=none|even|odd (none), stop=1|2 (1), cts=watch|ignore (watch; ignore is for cables of three
+    /// wires). A robot at a port needs --clock real.
     #[arg(long, value_name = "ROBOT", default_value = "sim", value_parser = robot)]
     pub robot: Robot,
     /// Faults of the cell and of the line to the simulated robot, on schedule or by chance (TOML; data/README.md)
@@ -279,28 +281,61 @@ pub enum Switch {
 
 /// Which robot is commanded.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Robot {
+pub enum RobotKind {
     /// The one of the simulated cell.
     Sim,
     /// One at a serial port.
     Serial(SerialSettings),
 }
 
+/// The robot, and how long to wait for its answer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Robot {
+    /// Which.
+    pub kind: RobotKind,
+    /// Seconds that a controller may be silent while its DTR is on, if they were named.
+    pub silence: Option<u16>,
+}
+
+/// The longest silence that can be waited for, seconds.
+const LONGEST_SILENCE: u16 = 2600;
+
+impl Robot {
+    /// Ticks that a controller may be silent, if they were named.
+    #[must_use]
+    pub fn patience(&self) -> Option<u16> {
+        self.silence.map(|seconds| seconds * RESTART_TICKS)
+    }
+}
+
 impl fmt::Display for Robot {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Sim => f.write_str("sim"),
-            Self::Serial(settings) => write!(f, "serial:{}", settings.path.display()),
+        match &self.kind {
+            RobotKind::Sim => f.write_str("sim"),
+            RobotKind::Serial(settings) => write!(f, "serial:{}", settings.path.display()),
         }
     }
 }
 
 fn robot(text: &str) -> Result<Robot, String> {
-    match text.split_once(':') {
-        None if text == "sim" => Ok(Robot::Sim),
-        Some(("serial", port)) => port.parse().map(Robot::Serial),
-        _ => Err("sim or serial:PATH was expected".into()),
-    }
+    let is_silence = |part: &&str| part.starts_with("silence=");
+    let silence = text.split(',').find(is_silence).map(silence).transpose()?;
+    let rest: Vec<&str> = text.split(',').filter(|part| !is_silence(part)).collect();
+    let rest = rest.join(",");
+    let kind = match rest.split_once(':') {
+        None if rest == "sim" => RobotKind::Sim,
+        Some(("serial", port)) => RobotKind::Serial(port.parse()?),
+        _ => return Err("sim[,silence=SECONDS] or serial:PATH[,OPTION...] was expected".into()),
+    };
+    Ok(Robot { kind, silence })
+}
+
+/// `silence=SECONDS`.
+fn silence(part: &str) -> Result<u16, String> {
+    let seconds = part.trim_start_matches("silence=");
+    seconds.parse().ok().filter(|seconds| (1..=LONGEST_SILENCE).contains(seconds)).ok_or_else(|| {
+        format!("silence is a number of seconds from 1 to {LONGEST_SILENCE}, such as 60; found {seconds}")
+    })
 }
 
 /// How processes are spread.
@@ -394,10 +429,23 @@ mod tests {
     #[test]
     fn a_robot_is_simulated_or_at_a_port() {
         let robot = |text| Cli::try_parse_from(["rcs-run", "--robot", text]).map(|cli| cli.run.robot);
-        assert_eq!(robot("sim").ok(), Some(Robot::Sim));
-        let port = SerialSettings::new("/dev/ttyS0");
-        assert_eq!(robot("serial:/dev/ttyS0").ok(), Some(Robot::Serial(port)));
-        for wrong in ["serial", "serial:", "serial:/dev/x,stop=3", "/dev/ttyS0"] {
+        assert_eq!(robot("sim").ok(), Some(Robot { kind: RobotKind::Sim, silence: None }));
+        let kind = RobotKind::Serial(SerialSettings::new("/dev/ttyS0"));
+        let port = Robot { kind, silence: None };
+        assert_eq!((robot("serial:/dev/ttyS0").ok(), port.patience()), (Some(port.clone()), None));
+        let patient = Robot { silence: Some(90), ..port };
+        assert_eq!(robot("serial:/dev/ttyS0,silence=90,stop=1").ok(), Some(patient.clone()));
+        assert_eq!(patient.patience(), Some(90 * 25));
+        assert_eq!(robot("sim,silence=5").ok().and_then(|robot| robot.patience()), Some(125));
+        for wrong in [
+            "serial",
+            "serial:",
+            "serial:/dev/x,stop=3",
+            "/dev/ttyS0",
+            "sim,stop=1",
+            "sim,silence=0",
+            "sim,silence=2601",
+        ] {
             assert_eq!(robot(wrong).expect_err(wrong).exit_code(), 2);
         }
     }

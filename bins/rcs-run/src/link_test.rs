@@ -27,7 +27,7 @@ use self::{
     tally::{Observed, Tally, Verdict},
 };
 use crate::{
-    cli::{LinkTestArguments, Robot},
+    cli::{LinkTestArguments, RobotKind},
     error::{Error, FAILED, STOPPED},
     run::interruption,
 };
@@ -40,7 +40,7 @@ const PERIOD: Duration = Duration::from_millis(TICK_MS);
 /// # Errors
 /// [`Error`] if there is nothing to test.
 pub fn link_test(arguments: &LinkTestArguments) -> Result<ExitCode, Error> {
-    let Robot::Serial(settings) = &arguments.robot else { return Err(Error::NoLinkToTest) };
+    let RobotKind::Serial(settings) = &arguments.robot.kind else { return Err(Error::NoLinkToTest) };
     let interrupted = interruption()?;
     let line = match SerialLine::open(settings.clone()) {
         Ok(line) => line,

@@ -5,6 +5,10 @@
 //! it may have been executed. The host then sends a restart, discards everything until a report with a right checksum
 //! comes, and goes on from there. Only a NAK, which says that nothing was executed, is answered with the same bytes.
 //!
+//! A controller whose DTR is on and that does not answer may be in Hold, show a warning D1 to D6, have a dead receiver, or
+//! the wire may be cut: this end cannot tell. It sends a restart a second, and calls the link failed after
+//! [`Host::set_patience`].
+//!
 //! A report bears no number either. On a slow line several may be on their way, and the robot may have moved since the
 //! first: if more than one has been asked for, the last is believed, and only when none has followed for longer than the
 //! time for an answer.
@@ -31,7 +35,11 @@ pub const ANSWER_TICKS: u16 = 3;
 const ANSWER_BYTES: usize = 4;
 /// Repetitions of one data command after NAKs; then the link is restarted.
 pub const MOST_RETRIES: u8 = 3;
-/// Unanswered attempts to start after which the link counts as not responding.
+/// Ticks between two restarts that are not answered: 1 s (docs/design/link.md "Silence").
+pub const RESTART_TICKS: u16 = 25;
+/// Ticks without a report, with DTR on, after which a link counts as failed if nothing else is set: 60 s.
+pub const PATIENCE_TICKS: u16 = 60 * RESTART_TICKS;
+/// Times that DTR was missed, each for as long as an answer may take, after which the link counts as not responding.
 pub const START_ATTEMPTS: u8 = 3;
 
 /// State of the host's end.
@@ -101,6 +109,14 @@ pub struct Host {
     /// Ticks since the last byte was sent, or since the wait began.
     waited: u16,
     answer_ticks: u16,
+    /// Ticks that a start may take with DTR on.
+    patience: u16,
+    /// Ticks with DTR on that this one has taken.
+    starting: u16,
+    /// A restart was sent, and its report has not come.
+    restarted: bool,
+    /// What was wrong with the last attempt of this start; none if nothing came.
+    attempt: LinkFault,
     retries: u8,
     attempts: u8,
     /// Reports that are on their way, as far as this end can know: restarts sent since the last start, and a report that
@@ -122,7 +138,24 @@ impl Host {
     /// A host that gives a frame `answer_ticks` ticks to be answered (at least 1); usually [`ANSWER_TICKS`].
     #[must_use]
     pub fn new(answer_ticks: u16) -> Self {
-        Self { answer_ticks: answer_ticks.max(1), ..Self::default() }
+        Self { answer_ticks: answer_ticks.max(1), patience: PATIENCE_TICKS, ..Self::default() }
+    }
+
+    /// Wait `ticks` for a report while DTR is on before the link counts as failed; [`PATIENCE_TICKS`] at first.
+    pub const fn set_patience(&mut self, ticks: u16) {
+        self.patience = ticks;
+    }
+
+    /// The controller's DTR was on in this tick.
+    #[must_use]
+    pub const fn has_dtr(&self) -> bool {
+        !matches!(self.state, HostState::Down)
+    }
+
+    /// DTR is on, and for [`RESTART_TICKS`] or longer no report has come.
+    #[must_use]
+    pub const fn is_silent(&self) -> bool {
+        matches!(self.state, HostState::Starting) && self.starting >= RESTART_TICKS
     }
 
     /// State of this end.
@@ -158,7 +191,7 @@ impl Host {
     /// Forget the fault.
     pub const fn forgive(&mut self) {
         self.fault = LinkFault::None;
-        self.attempts = 0;
+        (self.attempts, self.starting, self.attempt) = (0, 0, LinkFault::None);
     }
 
     /// Function bytes of the last data command that was lost with a function: it may or may not have run, and is not
@@ -188,7 +221,7 @@ impl Host {
                 // The restart itself: no report will answer it.
                 self.asked = self.asked.saturating_sub(1);
                 self.restart_due = true;
-                self.attempt_failed(LinkFault::NotTransmitted);
+                self.attempt = LinkFault::NotTransmitted;
                 HostEvent::None
             }
             HostState::Cancelling => {
@@ -206,7 +239,7 @@ impl Host {
             return self.without_dtr();
         }
         if self.state == HostState::Down {
-            self.state = HostState::Starting;
+            self.begin_start();
             self.waited = 0;
             // The controller reports of its own accord when its function begins.
             self.asked = 1;
@@ -226,12 +259,15 @@ impl Host {
                 None => {}
             }
         }
+        self.be_patient();
         if self.waited >= self.answer_ticks { event.max(self.without_answer()) } else { event }
     }
 
     /// Second half of a tick: send what is due, or what is wanted. True if `intent` was sent.
     pub fn transmit(&mut self, intent: &Intent, tx: &mut LinkBytes) -> bool {
         match intent {
+            // The answer to a restart that is under way answers this one too.
+            Intent::Restart if self.state == HostState::Starting && self.restarted => {}
             Intent::Restart => self.restart(),
             Intent::Cancel if self.is_running() => {
                 self.state = HostState::Cancelling;
@@ -244,6 +280,7 @@ impl Host {
         }
         if self.restart_due {
             self.restart_due = false;
+            self.restarted = true;
             count(&mut self.counters.restarts);
             self.asked = self.asked.saturating_add(1);
             self.send(&[Control::Restart.byte()], tx);
@@ -341,7 +378,7 @@ impl Host {
                 self.asked = self.asked.saturating_sub(1);
                 self.restart_due = true;
                 self.has_candidate = false;
-                self.attempt_failed(LinkFault::Checksum);
+                self.attempt = LinkFault::Checksum;
                 HostEvent::None
             }
             _ => HostEvent::None,
@@ -352,7 +389,7 @@ impl Host {
     fn start(&mut self, plate: Plate) -> HostEvent {
         self.position = plate;
         self.state = HostState::Ready;
-        (self.attempts, self.asked, self.has_candidate) = (0, 0, false);
+        (self.attempts, self.starting, self.asked, self.has_candidate) = (0, 0, 0, false);
         HostEvent::Started
     }
 
@@ -384,10 +421,10 @@ impl Host {
                     HostEvent::None
                 }
             }
+            HostState::Starting if self.restarted && self.waited < RESTART_TICKS => HostEvent::None,
             HostState::Starting => {
                 count(&mut self.counters.timeouts);
                 self.restart_due = true;
-                self.attempt_failed(LinkFault::NotResponding);
                 HostEvent::None
             }
             HostState::Cancelling => {
@@ -409,11 +446,15 @@ impl Host {
         }
         let was_running = self.is_running();
         if was_running {
+            (self.starting, self.attempt) = (0, LinkFault::None);
             self.note_lost_function();
             self.blame(LinkFault::NotResponding);
         } else if self.state == HostState::Starting || self.waited >= self.answer_ticks {
             self.waited = 0;
-            self.attempt_failed(LinkFault::NotResponding);
+            self.attempts = self.attempts.saturating_add(1);
+            if self.attempts >= START_ATTEMPTS {
+                self.blame(LinkFault::NotResponding);
+            }
         }
         self.receiver.clear();
         self.state = HostState::Down;
@@ -434,9 +475,32 @@ impl Host {
         self.resend_due = false;
         if self.state != HostState::Down {
             self.receiver.clear();
-            self.state = HostState::Starting;
+            if self.state != HostState::Starting {
+                self.begin_start();
+            }
             self.has_candidate = false;
             self.restart_due = true;
+        }
+    }
+
+    /// DTR is on, or the link was lost. A DTR that comes and goes does not begin the patience anew.
+    fn begin_start(&mut self) {
+        if self.is_running() {
+            (self.starting, self.attempt) = (0, LinkFault::None);
+        }
+        self.state = HostState::Starting;
+        self.restarted = false;
+    }
+
+    /// A tick of a start with DTR on is over.
+    fn be_patient(&mut self) {
+        if self.state != HostState::Starting {
+            return;
+        }
+        self.starting = self.starting.saturating_add(1);
+        if self.starting >= self.patience && !self.has_candidate {
+            let silent = self.attempt == LinkFault::None;
+            self.blame(if silent { LinkFault::NotResponding } else { self.attempt });
         }
     }
 
@@ -449,13 +513,6 @@ impl Host {
     /// Function bytes of the last data command.
     fn function(&self) -> [u8; 2] {
         DataCommand::parse(&self.frame).map_or(NO_FUNCTION, |command| command.function)
-    }
-
-    fn attempt_failed(&mut self, fault: LinkFault) {
-        self.attempts = self.attempts.saturating_add(1);
-        if self.attempts >= START_ATTEMPTS {
-            self.blame(fault);
-        }
     }
 
     fn blame(&mut self, fault: LinkFault) {

@@ -132,6 +132,20 @@ impl Plate {
             && [(d, od), (e, oe), (r, or)].iter().all(|(a, b)| angle_between(*a, *b) == 0)
     }
 
+    /// True if each word is within `counts` of the way from `before` to `last`, angles modulo 360 degrees.
+    #[must_use]
+    pub fn is_between(&self, before: &Self, last: &Self, counts: i32) -> bool {
+        let within = |way: i32, here: i32| {
+            (way.min(0).saturating_sub(counts)..=way.max(0).saturating_add(counts)).contains(&here)
+        };
+        let by = |from: i16, to: i16| i32::from(to).saturating_sub(i32::from(from));
+        let words = self.words.iter().zip(before.words.iter().zip(&last.words));
+        words.enumerate().all(|(word, (here, (from, to)))| {
+            let way: fn(i16, i16) -> i32 = if word < 3 { by } else { angle_between };
+            within(way(*from, *to), way(*from, *here))
+        })
+    }
+
     /// The twelve bytes, each word high byte first.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; 12] {
@@ -165,6 +179,26 @@ mod tests {
 
     const HOME: WireFrame =
         WireFrame { tool: [0, -7145, -1483], wrist_to_tool: [0, -2123, -2119], tool_to_finger: [3000, 0, 0] };
+
+    #[test]
+    fn between_is_a_matter_of_each_word() {
+        let (before, last) = (plate([10, 0, 0, 17_990, 9000, 0]), plate([14, 0, 0, -17_990, 9000, 0]));
+        for (words, between) in [
+            ([10, 0, 0, 17_990, 9000, 0], true),
+            ([12, 0, 0, 18_000, 9000, 0], true),
+            ([8, 2, -2, 17_988, 9002, 36], false),
+            ([8, 2, -2, 17_988, 9002, 2], true),
+            ([16, 0, 0, -17_988, 8998, -2], true),
+            ([7, 0, 0, 17_990, 9000, 0], false),
+            ([17, 0, 0, 17_990, 9000, 0], false),
+            ([10, 3, 0, 17_990, 9000, 0], false),
+            ([10, 0, 0, -17_987, 9000, 0], false),
+            ([10, 0, 0, 17_987, 9000, 0], false),
+        ] {
+            assert_eq!(plate(words).is_between(&before, &last, 2), between, "{words:?}");
+            assert_eq!(plate(words).is_between(&last, &before, 2), between, "{words:?}");
+        }
+    }
 
     fn plate(words: [i16; 6]) -> Plate {
         Plate { words }

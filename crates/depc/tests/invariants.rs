@@ -24,7 +24,7 @@ const SCHEDULES: u64 = 10_000;
 /// Ticks in which a plan has faults.
 const FAULTY_TICKS: u64 = 120;
 /// Ticks in which all must be well again: two answers of the operator, a line that stands still, and the way to the goal.
-const MENDED_TICKS: u32 = 200;
+const MENDED_TICKS: u32 = 300;
 
 /// A rule from the numbers; it may be one that makes no sense.
 fn rule(numbers: &mut Numbers) -> Rule {

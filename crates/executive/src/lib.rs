@@ -21,6 +21,7 @@ pub mod machine;
 pub mod memory;
 pub mod overrun;
 pub mod realtime;
+pub mod rest;
 pub mod runner;
 pub mod serial;
 pub mod status;

@@ -10,19 +10,16 @@
 
 use std::{fmt, str::FromStr, time::Duration};
 
-use rcs_core::{interface::CommonMemory, pose::WireFrame};
+use rcs_core::interface::CommonMemory;
 
 use crate::{
     clock::SLOT,
+    rest::{AT_LAST, RestWatch},
     timing::{Stage, StageTimes},
 };
 
 /// Ticks in a row, one second, that must be punctual before a robot that holds goes on.
 pub const PUNCTUAL: u32 = 25;
-/// The robot is at rest when the commanded frame has not changed for so many ticks.
-const AT_REST: u32 = 5;
-/// It is taken to be at rest after so many ticks, 3 s, whatever is commanded: no ramp takes longer.
-const AT_LAST: u32 = 75;
 
 /// What is done about skipped slots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,7 +99,6 @@ enum Reaction {
     Stopping {
         because: Overrun,
         ticks: u32,
-        unchanged: u32,
     },
 }
 
@@ -112,7 +108,7 @@ pub struct Overruns {
     waking: u64,
     parts: Vec<(Stage, u64)>,
     reaction: Reaction,
-    commanded: WireFrame,
+    rest: RestWatch,
 }
 
 impl Overruns {
@@ -124,7 +120,7 @@ impl Overruns {
             waking: 0,
             parts: Stage::all().map(|part| (part, 0)).collect(),
             reaction: Reaction::None,
-            commanded: WireFrame::default(),
+            rest: RestWatch::default(),
         }
     }
 
@@ -164,7 +160,7 @@ impl Overruns {
                 self.reaction = Reaction::Holding { punctual: 0 };
             }
             (Policy::Stop(least), Reaction::None) if because.slots >= least => {
-                self.reaction = Reaction::Stopping { because, ticks: 0, unchanged: 0 };
+                self.reaction = Reaction::Stopping { because, ticks: 0 };
             }
             _ => {}
         }
@@ -187,13 +183,10 @@ impl Overruns {
 
     /// A tick is over: the overrun for which the run ends now, because the robot is at rest.
     pub fn ends(&mut self, memory: &CommonMemory) -> Option<Overrun> {
-        let commanded = memory.prim.t3i.frame;
-        let same = commanded == self.commanded;
-        self.commanded = commanded;
-        let Reaction::Stopping { because, ticks, unchanged } = &mut self.reaction else { return None };
+        self.rest.observe(memory);
+        let Reaction::Stopping { because, ticks } = &mut self.reaction else { return None };
         *ticks += 1;
-        *unchanged = if same { *unchanged + 1 } else { 0 };
-        (*unchanged >= AT_REST || *ticks >= AT_LAST).then_some(*because)
+        (self.rest.is_at_rest() || *ticks >= AT_LAST).then_some(*because)
     }
 
     /// Skipped slots by what is to blame: `None` is the system that woke the thread late. What is not to blame
@@ -207,6 +200,7 @@ impl Overruns {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rest::AT_REST;
     use std::thread;
 
     const LATE: Duration = Duration::from_millis(95);

@@ -53,6 +53,8 @@ pub struct Status {
     pub controller_us: f64,
     /// The run is over.
     pub over: bool,
+    /// What is wrong with the line to the robot; `None` if nothing is.
+    pub link: Option<&'static str>,
     /// The processes from Task down.
     pub processes: Vec<ProcessStatus>,
 }
@@ -83,6 +85,7 @@ impl Status {
             allocations: pulse.allocations,
             controller_us: pulse.controller_ns as f64 / 1000.0,
             over: pulse.over,
+            link: memory.t3i.status.trouble(),
             processes: processes.collect(),
         }
     }
@@ -106,6 +109,9 @@ impl fmt::Display for Status {
             self.allocations,
             self.controller_us
         )?;
+        if let Some(link) = self.link {
+            writeln!(f, "  {link}")?;
+        }
         for process in &self.processes {
             let mut row = match (process.table, process.row) {
                 (Some(table), Some(row)) => format!("{table} row {row}"),

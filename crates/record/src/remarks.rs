@@ -111,6 +111,9 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
         (true, false) => say(Level::Warning, "the link to the robot is lost".to_owned()),
         _ => {}
     }
+    if let Some(trouble) = is.trouble().filter(|trouble| was.trouble() != Some(*trouble)) {
+        say(Level::Warning, trouble.to_owned());
+    }
     let counts = |status: &T3iStatus| {
         let counters = &status.counters;
         [

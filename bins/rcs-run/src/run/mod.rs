@@ -30,23 +30,27 @@ use std::{
 };
 
 use ::neighbours::workstation::player;
-use depc::Plate;
+use depc::{
+    Plate,
+    host::{PATIENCE_TICKS, RESTART_TICKS},
+};
 use executive::{
     boards::Lost,
     failure::Failure,
     generations::Generations,
     memory::{Mirror, Publisher, RunName},
+    rest::{AT_LAST, RestWatch},
     runner::Runner,
     timing::Stage,
 };
 use levels::ladder::LadderState;
 use plant::CellEvent;
 use rcs_core::{
-    interface::{DeviceInputs, DeviceOutputs, ExternalInputs, device::LinkBytes},
+    interface::{CommonMemory, DeviceInputs, DeviceOutputs, ExternalInputs, device::LinkBytes},
     tick::{TICK_S, Tick},
 };
 use record::Level;
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use taskdata::load::{Job, job::Reload};
 
 use self::{
@@ -67,7 +71,7 @@ use self::{
     workstation::SimulatedWorkstation,
 };
 use crate::{
-    cli::{ClockKind, RunArguments, Switch},
+    cli::{ClockKind, RobotKind, RunArguments, Switch},
     error::{Error, FAILED, STOPPED},
 };
 
@@ -91,6 +95,21 @@ struct Run {
     fresh: Vec<(Level, &'static str, String)>,
     /// What has happened, for the result.
     events: Events,
+    /// Does the robot rest?
+    rest: RestWatch,
+    /// The end of the run, for which the robot is brought to rest.
+    ramp: Option<Ramp>,
+    /// Ticks that the host is to wait for an answer; at a port the first answer may take as long as `--wait` says.
+    patience: Option<u16>,
+    first_patience: Option<u16>,
+    /// What the line was said to suffer last.
+    trouble: Option<&'static str>,
+}
+
+/// The robot comes to rest: the velocity knob is at zero, and nobody commands any more.
+struct Ramp {
+    ending: Ending,
+    ticks: u32,
 }
 
 /// Run a job and print its result.
@@ -99,8 +118,9 @@ struct Run {
 /// [`Error`] if the run could not begin. A job that fails is no error here, but an exit status.
 pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let interrupted = interruption()?;
-    let setup = Setup::load(arguments, &interrupted)?;
+    let mut setup = Setup::load(arguments, &interrupted)?;
     setup.neighbours.gather(arguments, &interrupted)?;
+    setup.robot.gather(arguments.wait, &interrupted);
     let name = arguments.run.clone().unwrap_or_else(|| RunName::unique(&setup.job.name));
     let controller = Controller::start(arguments, &name, &setup.store, &setup.job, &interrupted)?;
     let log = setup.log.as_deref().map(|path| Log::start(path, arguments, &setup)).transpose()?;
@@ -120,6 +140,11 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         check: ContactCheck::new(description.contact),
         fresh: Vec::new(),
         events: Events::default(),
+        rest: RestWatch::default(),
+        ramp: None,
+        patience: arguments.robot.patience(),
+        first_patience: first_patience(arguments),
+        trouble: None,
     };
     // Ends before the run does: it looks on as any reader.
     let mirror = run.runner.publisher().and_then(mirror);
@@ -156,15 +181,23 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     })
 }
 
-/// A flag that an interrupt or a termination request sets; the second one ends the program at once.
+/// A flag that an interrupt, a hang-up or a termination request sets; the second one ends the program at once.
 pub fn interruption() -> Result<Arc<AtomicBool>, Error> {
     let flag = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM] {
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
         signal_hook::flag::register_conditional_shutdown(signal, 128 + signal, Arc::clone(&flag))
             .map_err(Error::Signals)?;
         signal_hook::flag::register(signal, Arc::clone(&flag)).map_err(Error::Signals)?;
     }
     Ok(flag)
+}
+
+/// Ticks that the first answer of a robot controller at a port may take: it may be powered up after the run has begun.
+fn first_patience(arguments: &RunArguments) -> Option<u16> {
+    let RobotKind::Serial(_) = arguments.robot.kind else { return None };
+    let wait = arguments.wait.saturating_mul(RESTART_TICKS.into());
+    let patience = arguments.robot.patience().unwrap_or(PATIENCE_TICKS);
+    Some(u16::try_from(wait).unwrap_or(u16::MAX).max(patience))
 }
 
 /// Shared memory is a convenience: a run that cannot have it says so and goes on.
@@ -227,9 +260,14 @@ impl Run {
 
     /// What comes from outside for the next tick.
     fn external(&self, generations: &Generations) -> ExternalInputs {
+        let mut devices = self.pace.inputs(self.inputs);
+        devices.link_patience = self.first_patience.or(self.patience);
+        if self.ramp.is_some() {
+            devices.joystick.velocity = 0;
+        }
         ExternalInputs {
             hws: *self.neighbours.hws(),
-            devices: self.pace.inputs(self.inputs),
+            devices,
             data_base: self.neighbours.data_base(),
             generation: generations.number(),
             pedestal: *self.neighbours.pedestal(),
@@ -302,7 +340,8 @@ impl Run {
                 // Whatever the arm runs into belongs to the run.
                 player::Progress::Failed(_) if self.workstation.is_settling(tick) => {}
                 player::Progress::Failed(failure) => {
-                    return Ending::Failed(self.explain(&failure, &external));
+                    let ending = Ending::Failed(self.explain(&failure, &external));
+                    self.end_at_rest(ending);
                 }
                 player::Progress::Running => {}
             }
@@ -317,14 +356,20 @@ impl Run {
             }
             self.runner.stage_times_mut().mark(Stage::Workstation);
             if interrupted.load(Ordering::Relaxed) {
-                if self.neighbours.are_commanding() {
-                    // There is no job that ends by itself.
-                    return self.left(Ending::Stopped);
-                }
-                return Ending::Failed(outside(tick, "rcs-run", "interrupted".to_owned()));
+                // Where another process commands there is no job that ends by itself.
+                let failed = || Ending::Failed(outside(tick, "rcs-run", "interrupted".to_owned()));
+                let ending = if self.neighbours.are_commanding() { Ending::Stopped } else { failed() };
+                self.end_at_rest(ending);
             }
             if arguments.ticks.is_some_and(|ticks| tick.0 >= ticks) {
-                return self.left(Ending::Stopped);
+                if arguments.clock == ClockKind::Fast && self.robot.port().is_none() {
+                    return self.left(Ending::Stopped);
+                }
+                self.end_at_rest(Ending::Stopped);
+            }
+            self.watch_link(tick, &memory);
+            if let Some(ending) = self.at_rest(&memory) {
+                return ending;
             }
             self.reload(&mut generations, reloads);
             self.show_cell();
@@ -332,6 +377,38 @@ impl Run {
             stage_times.mark(Stage::Inputs);
             stage_times.finish();
         }
+    }
+
+    /// Say what the line to the robot suffers, as soon as it is something else.
+    fn watch_link(&mut self, tick: Tick, memory: &CommonMemory) {
+        if memory.t3i.status.link_running {
+            self.first_patience = None;
+        }
+        let before = std::mem::replace(&mut self.trouble, memory.t3i.status.trouble());
+        if let Some(trouble) = self.trouble.filter(|_| self.trouble != before) {
+            self.progress.say(&format!("{tick}: {trouble}"));
+            self.events.push(tick, trouble);
+        }
+    }
+
+    /// End the run as soon as the robot rests. What ends it first is what it ends with.
+    fn end_at_rest(&mut self, ending: Ending) {
+        if self.ramp.is_none() {
+            self.neighbours.stop_commanding();
+            self.ramp = Some(Ramp { ending, ticks: 0 });
+        }
+    }
+
+    /// A tick is over: the end of the run, if the robot rests for it.
+    fn at_rest(&mut self, memory: &CommonMemory) -> Option<Ending> {
+        self.rest.observe(memory);
+        let ramp = self.ramp.as_mut()?;
+        if !self.rest.is_at_rest() && ramp.ticks < AT_LAST {
+            ramp.ticks += 1;
+            return None;
+        }
+        let ending = std::mem::replace(&mut ramp.ending, Ending::Stopped);
+        Some(if matches!(ending, Ending::Stopped) { self.left(ending) } else { ending })
     }
 
     /// The rest of a tick: the cell moves.
@@ -400,6 +477,7 @@ impl Run {
     fn result(&mut self, job: &Job, ending: &Ending, wall_s: f64) -> RunResult {
         let ticks = self.runner.tick().0;
         let simulated_s = ticks as f64 * TICK_S;
+        let ramp_ticks = self.ramp.as_ref().map_or(0, |ramp| ramp.ticks);
         let commands =
             self.neighbours.begun_steps().iter().filter(|step| step.is_command).map(|step| CommandResult {
                 text: step.text.trim_start_matches("==").trim_start().to_owned(),
@@ -409,7 +487,8 @@ impl Run {
         RunResult {
             job: job.name.clone(),
             commands: commands.collect(),
-            ticks,
+            ticks: ticks - u64::from(ramp_ticks),
+            ramp_ticks,
             simulated_s,
             wall_s,
             realtime_factor: simulated_s / wall_s,

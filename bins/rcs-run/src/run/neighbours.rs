@@ -93,6 +93,8 @@ pub struct Neighbours {
     /// Lets neighbours in as long as the run lasts; nobody without it.
     network: Option<Network>,
     notes: Vec<Note>,
+    /// Nobody commands any more.
+    is_ending: bool,
 }
 
 impl Neighbours {
@@ -105,7 +107,16 @@ impl Neighbours {
         vision: Option<vision::Port>,
         network: Option<Network>,
     ) -> Self {
-        Self { gate: Gate::default(), workstation, data_system, pedestal, vision, network, notes: Vec::new() }
+        Self {
+            gate: Gate::default(),
+            workstation,
+            data_system,
+            pedestal,
+            vision,
+            network,
+            notes: Vec::new(),
+            is_ending: false,
+        }
     }
 
     /// Wait for those who are other processes: for so many seconds at most, and not beyond an interruption, of which the run will
@@ -139,6 +150,11 @@ impl Neighbours {
             }
             thread::sleep(Duration::from_millis(10));
         }
+    }
+
+    /// The run is about to end: the commands of job or workstation controller are read no longer.
+    pub const fn stop_commanding(&mut self) {
+        self.is_ending = true;
     }
 
     /// Another process commands.
@@ -230,6 +246,7 @@ impl Neighbours {
         self.step_vision(tick, memory, workstation);
         self.gate.write(&memory.task, task_state(&memory.task.header, tick));
         let progress = match &mut self.workstation {
+            _ if self.is_ending => Progress::Running,
             WorkstationSource::Emulator { hwsc, command_box } => {
                 let progress = emulate(hwsc, command_box, &mut self.gate, tick, workstation);
                 // What the gate refuses comes back to the emulator by its status.

@@ -72,6 +72,14 @@ impl fmt::Display for Page<'_> {
             "link       {} frames, {} NAKs, {} retries, {} checksum errors, {} points limited",
             link.frames, link.naks, link.retries, link.checksum_errors, link.limited
         )?;
+        if result.ramp_ticks > 0 {
+            let seconds = f64::from(result.ramp_ticks) * TICK_S;
+            writeln!(
+                f,
+                "ramp       the robot came to rest within {} ticks ({seconds:.1} s)",
+                result.ramp_ticks
+            )?;
+        }
         if let Some(faults) = &result.faults {
             writeln!(f, "faults     {faults}")?;
         }

@@ -371,8 +371,10 @@ pub struct RunResult {
     pub job: String,
     /// Commands that were sent to Task.
     pub commands: Vec<CommandResult>,
-    /// Ticks that were run.
+    /// Ticks that were run, without those in which the robot was brought to rest.
     pub ticks: u64,
+    /// Ticks in which the robot was brought to rest at the end.
+    pub ramp_ticks: u32,
     /// The time that the cell went through.
     pub simulated_s: f64,
     /// The time that it took.

@@ -5,7 +5,11 @@
 //! tray, vise, resolvers) is simulated all the same, and follows the position that the robot has
 //! acknowledged.
 
-use std::time::{Duration, Instant};
+use std::{
+    sync::atomic::{AtomicBool, Ordering},
+    thread,
+    time::{Duration, Instant},
+};
 
 use depc::{
     Plate,
@@ -83,6 +87,29 @@ impl Port {
 }
 
 impl Robot {
+    /// Wait until the robot controller at a port has switched DTR on: for so many seconds at most, and not beyond an interruption.
+    /// Without it the run begins all the same, and fails by name.
+    pub fn gather(&mut self, wait: u32, interrupted: &AtomicBool) {
+        let Self::Serial(port) = self else { return };
+        let (limit, started) = (Duration::from_secs(wait.into()), Instant::now());
+        let mut said = false;
+        while !port.line.is_ready() && !interrupted.load(Ordering::Relaxed) {
+            let path = port.line.path().display();
+            if started.elapsed() >= limit {
+                eprintln!("rcs-run: the robot controller at {path} has not switched DTR on within {wait} s");
+                return;
+            }
+            if !said {
+                eprintln!(
+                    "rcs-run: waiting for the robot controller at {path}: its DTR is off; power it up and start its program \
+                     (IV.3.3)"
+                );
+                said = true;
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
+
     /// Before the controller's tick: what has come over the line. Counted as a part of the tick.
     pub fn receive(&mut self, inputs: &mut DeviceInputs) {
         let Self::Serial(port) = self else { return };

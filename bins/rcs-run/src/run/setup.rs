@@ -27,7 +27,7 @@ use super::{
 };
 use crate::{
     agreement, check,
-    cli::{self, ClockKind, LogTarget, RunArguments},
+    cli::{ClockKind, LogTarget, RobotKind, RunArguments},
     error::Error,
 };
 
@@ -66,7 +66,7 @@ impl Setup {
     /// # Errors
     /// [`Error`], with all errors of the data.
     pub fn load(arguments: &RunArguments, interrupted: &Arc<AtomicBool>) -> Result<Self, Error> {
-        if arguments.robot != cli::Robot::Sim && arguments.clock != ClockKind::Real {
+        if arguments.robot.kind != RobotKind::Sim && arguments.clock != ClockKind::Real {
             return Err(Error::NotInRealTime);
         }
         let data = &arguments.data;
@@ -101,9 +101,9 @@ impl Setup {
         };
         let neighbours = neighbours(arguments, &job, &description, interrupted)?;
         // The last of all: a robot hears nothing of a run that cannot begin.
-        let robot = match &arguments.robot {
-            cli::Robot::Sim => Robot::Simulated(faults.line.map(|plan| Box::new(Injector::new(&plan)))),
-            cli::Robot::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
+        let robot = match &arguments.robot.kind {
+            RobotKind::Sim => Robot::Simulated(faults.line.map(|plan| Box::new(Injector::new(&plan)))),
+            RobotKind::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
         };
         Ok(Self { store, job, description_text, description, cell, faults_text, robot, neighbours, log })
     }
@@ -209,7 +209,7 @@ fn faults(arguments: &RunArguments, cell: &CellDescription) -> Result<(FaultFile
     let Some(path) = &arguments.faults else { return Ok(Default::default()) };
     let text = fs::read_to_string(path).map_err(|source| Error::Read { path: path.clone(), source })?;
     let faults = text::parse(&path.display().to_string(), &text, cell)?;
-    if arguments.robot != cli::Robot::Sim && faults.line.is_some() {
+    if arguments.robot.kind != RobotKind::Sim && faults.line.is_some() {
         return Err(Error::FaultsAtPort);
     }
     Ok((faults, text))

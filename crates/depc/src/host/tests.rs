@@ -75,9 +75,10 @@ fn what_the_port_has_not_taken_is_lost_and_named() {
     assert_eq!(tick(&mut host, &[0x06], &position(NO_FUNCTION)), (HostEvent::None, vec![0x05]));
     assert_eq!(tick(&mut host, &report(), &Intent::Idle).0, HostEvent::Started);
     host.forgive();
-    // A restart that stays in the port is sent again, and after three of them that is the fault.
+    // A restart that stays in the port is sent again, and is the fault when patience is at an end.
+    host.set_patience(4);
     tick(&mut host, &[], &Intent::Restart);
-    for attempt in 1..=START_ATTEMPTS {
+    for attempt in 1..=4 {
         assert_eq!(host.fault(), LinkFault::None, "attempt {attempt}");
         assert_eq!(host.unsent(), HostEvent::None);
         assert_eq!(tick(&mut host, &[], &Intent::Idle).1, [0x05]);
@@ -108,14 +109,44 @@ fn without_an_answer_the_link_is_restarted_and_nothing_is_repeated() {
 }
 
 #[test]
-fn a_start_without_answer_is_tried_again_and_blamed_the_third_time() {
+fn a_start_without_answer_is_tried_once_a_second_and_blamed_at_the_end_of_patience() {
     let mut host = Host::new(ANSWER_TICKS);
     let mut sent = Vec::new();
-    for _ in 0..10 {
-        sent.push(tick(&mut host, &[], &Intent::Idle).1.len());
+    for number in 1..=u32::from(PATIENCE_TICKS) {
+        assert_eq!((host.fault(), host.is_silent()), (LinkFault::None, number > 25), "tick {number}");
+        if tick(&mut host, &[], &Intent::Idle).1 == [0x05] {
+            sent.push(number);
+        }
     }
-    assert_eq!(sent, [0, 0, 0, 1, 0, 0, 1, 0, 0, 1]);
-    assert_eq!((host.fault(), host.counters().restarts), (LinkFault::NotResponding, 3));
+    assert_eq!(sent[..4], [4, 29, 54, 79]);
+    assert_eq!((host.fault(), host.counters().restarts), (LinkFault::NotResponding, 60));
+    // RESTART begins the patience anew; the answer to the 05 that is under way will do.
+    host.forgive();
+    assert_eq!(tick(&mut host, &[], &Intent::Restart).1, []);
+    assert_eq!((host.fault(), host.is_silent()), (LinkFault::None, false));
+    // The report comes as if Hold had ended: one for all of them.
+    tick(&mut host, &report(), &Intent::Idle);
+    for _ in 0..ANSWER_TICKS {
+        tick(&mut host, &[], &Intent::Idle);
+    }
+    assert_eq!(tick(&mut host, &[], &Intent::Idle).0, HostEvent::Started);
+}
+
+#[test]
+fn a_patience_of_its_own_ends_a_silence() {
+    let mut host = running();
+    host.set_patience(50);
+    tick(&mut host, &[], &position(NO_FUNCTION));
+    for _ in 0..3 {
+        tick(&mut host, &[], &Intent::Idle);
+    }
+    assert_eq!(host.fault(), LinkFault::NotResponding);
+    host.forgive();
+    let blamed = (1..200).find(|_| {
+        tick(&mut host, &[], &Intent::Idle);
+        host.fault() != LinkFault::None
+    });
+    assert_eq!((blamed, host.has_dtr()), (Some(50), true));
 }
 
 #[test]
@@ -264,7 +295,7 @@ fn of_the_reports_to_several_restarts_the_last_is_believed() {
     };
     let mut host = running();
     tick(&mut host, &[], &Intent::Restart);
-    for _ in 0..6 {
+    for _ in 0..2 * RESTART_TICKS {
         tick(&mut host, &[], &Intent::Idle);
     }
     assert_eq!(host.counters().restarts, 3);

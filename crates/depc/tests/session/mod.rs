@@ -18,10 +18,10 @@ use rcs_core::{
 };
 
 /// Ticks after which the operator answers a warning, or starts the program again.
-const OPERATOR_TICKS: u32 = 25;
-/// Ticks in which a controller that has stopped must be reported by the host: the time for an answer, then three attempts
-/// to start.
-const REPORT_TICKS: u32 = 16;
+const OPERATOR_TICKS: u32 = 50;
+/// Ticks in which a controller that has stopped must be reported by the host: the time for an answer, then a second
+/// of silence.
+const REPORT_TICKS: u32 = 32;
 
 /// A robot that is where it is told to be, and watches over every step.
 #[derive(Clone, PartialEq, Debug)]
@@ -290,6 +290,8 @@ impl Session {
             self.stopped <= REPORT_TICKS
                 || self.silent <= REPORT_TICKS
                 || self.host.fault() != LinkFault::None
+                || self.host.is_silent()
+                || !self.host.has_dtr()
                 || self.truth.false_acks > 0,
             "tick {}: the controller has stopped and the host does not say so: {:?} {:?}",
             self.tick,

@@ -192,6 +192,11 @@ impl SerialLine {
         let _ = poll(&mut [PollFd::new(&port.bytes, PollFlags::IN)], Some(&limit));
     }
 
+    /// True if the port is there and, where it has modem lines, CTS is on. Reads no bytes.
+    pub fn is_ready(&mut self) -> bool {
+        self.port.as_mut().is_some_and(Port::is_ready)
+    }
+
     /// Device file of the port.
     #[must_use]
     pub fn path(&self) -> &Path {
@@ -279,6 +284,10 @@ impl Port {
         drop(lines.clear(ClearBuffer::All));
         let modem = settings.clear_to_send && lines.read_clear_to_send().is_ok();
         Ok(Self { bytes: File::from(bytes), lines, modem })
+    }
+
+    fn is_ready(&mut self) -> bool {
+        !self.modem || self.lines.read_clear_to_send().unwrap_or(false)
     }
 
     fn receive(&mut self, rx: &mut LinkBytes) -> Result<bool, Gone> {

@@ -100,6 +100,13 @@ fn deflection(counts: i16) -> f64 {
     if counts < 0 { -beyond } else { beyond }
 }
 
+/// A stick or a button that moves the robot is moved beyond its play.
+#[must_use]
+pub fn is_moved(joystick: &JoystickBox) -> bool {
+    let pressed = [joystick.up, joystick.down, joystick.roll_plus, joystick.roll_minus];
+    deflection(joystick.x) != 0.0 || deflection(joystick.y) != 0.0 || pressed.contains(&true)
+}
+
 /// A vector no longer than 1.
 fn within_one(v: Vector) -> Vector {
     let length = norm(&v);

@@ -20,13 +20,14 @@
 //!     T3I: PAUSE         link off, link error, refused or silent T3I; a restart        T3I: POINT
 //! ```
 //!
-//! Only ROBOT-INIT leads from the left to the right, so that the robot is never asked to jump to where Prim
-//! believes it to be. PAUSE ramps down and then repeats the last point under its number: T3I holds it, its
+//! A motion leads from the left to the right too, if T3I says that the robot is where it was sent; the command
+//! goes on executing meanwhile, and then goes on from rest where the robot is. So the robot is never asked to
+//! jump to where Prim believes it to be. PAUSE ramps down and then repeats the last point under its number: T3I holds it, its
 //! queue is not cut short, and the commanded position stays exact. PAUSE goes to T3I only while Prim has no
 //! position.
 //!
-//! A frame switch of the joystick box stops every motion with `joystick-on`; only PAUSE lets the box move
-//! the robot. The sensors of guarded moves are in [`sensors`].
+//! A stick or button of the joystick box that is moved while a frame switch is on stops every motion with
+//! `joystick-on`; only PAUSE lets the box move the robot. The sensors of guarded moves are in [`sensors`].
 //!
 //! T3I queues up to four points. Prim reads in tick k+2 what T3I says to the point of tick k, so that T3I
 //! must say `Executing` while it has room for fewer than two. With that the queue cannot overrun.
@@ -53,6 +54,7 @@ use self::{
     tables::{
         Action, Attendance, Kind, Seen, Step,
         attend::{Attention, attend},
+        link::LinkStep,
     },
 };
 
@@ -80,18 +82,20 @@ impl<'d> Process<TaskData<'d>> for Prim {
         let attendance = Attendance {
             course: state.execution.course(seen.arrival),
             kind: Kind::of(seen.verb),
-            switches: seen.situation.switches,
+            operator: seen.situation.operator,
         };
         let attention = attend(state.execution.outcome, &attendance);
         (state.rows.attend, state.execution.outcome) = (attention.row, attention.next);
         match attention.action {
             Attention::Leave => return Action::Wait,
             Attention::Halt => return Action::Halt,
-            Attention::Begin => state.step = Step::first(seen.verb),
+            Attention::Begin => {
+                (state.step, state.link) = (Step::first(seen.verb), LinkStep::Commanding);
+            }
             Attention::Continue => {}
             Attention::Resume => state.execution.reason = Reason::None,
         }
-        let choice = tables::decide(state.step, seen);
+        let choice = tables::decide(state.step, &mut state.link, seen);
         state.execution.note(&choice);
         state.step = choice.next;
         choice.action

@@ -21,7 +21,7 @@ use super::{
     motion::Motion,
     state::{Standstill, State},
     tables::{
-        Action, FirstPause, Path, Seen,
+        Action, FirstPause, Path, Seen, Way,
         path_clock::{Flow, path_clock},
         record_pose::{Recording, record_pose},
     },
@@ -55,9 +55,19 @@ impl State {
                 self.drop_position();
                 self.command_t3i(T3iVerb::Restart, inputs.tick, &mut outputs.t3i);
             }
+            Action::Recover => {
+                self.drop_position();
+                self.restarts.add(inputs.tick);
+                self.command_t3i(T3iVerb::Restart, inputs.tick, &mut outputs.t3i);
+            }
             Action::TakePosition => {
                 self.motion = seen.feedback.as_ref().map(Motion::at_rest);
                 self.execution.finish();
+            }
+            Action::Resume => {
+                self.motion = seen.feedback.as_ref().map(Motion::at_rest);
+                self.way = Way::Lost;
+                self.standstill = Standstill::default();
             }
             Action::Yield => {
                 self.execution.pass_up(Lower::Joystick, Reason::JoystickOn);
@@ -90,6 +100,7 @@ impl State {
         if let (Some(motion), Some(goal)) = (&mut self.motion, &self.target.goal) {
             motion.go(&goal.frame.frame(), &goal.limits, goal.through);
         }
+        self.way = Way::Kept;
         self.standstill = Standstill::default();
     }
 
@@ -187,7 +198,9 @@ impl State {
             echo: execution.receiver.echo,
             report: report(execution.outcome, execution.reason),
             reason: execution.reason,
-            restarting: execution.outcome == Outcome::Executing && outputs.t3i.command == T3iVerb::Restart,
+            restarting: execution.outcome == Outcome::Executing
+                && self.motion.is_none()
+                && outputs.t3i.command == T3iVerb::Restart,
             link_running: self.motion.is_some() && inputs.memory.t3i.status.link_running,
             present_pose: present.record(),
             sensor_pose: sensor.record(),

@@ -11,7 +11,7 @@ use rcs_core::{
         device::{JoystickBox, single_step},
         pose_range,
         prim::{PrimCommand, PrimVerb},
-        t3i::{LinkFault, T3iCommand, T3iReport, T3iVerb},
+        t3i::{LinkFault, ReportCheck, T3iCommand, T3iReport, T3iStatus, T3iVerb},
     },
     process::Inputs,
     units::{inches, rounded},
@@ -19,13 +19,13 @@ use rcs_core::{
 use taskdata::files::{MovtabId, PoseId, SensorPara, TaskData, TrajParaId};
 
 use super::{
-    manual::{Coordinates, Manual},
+    manual::{Coordinates, Manual, is_moved},
     motion::{limits::Limits, segment::FrameData},
     sensors::Reading,
     state::{Goal, Standstill, State, Target},
     tables::{
-        Above, Button, Guard, Interface, Kind, Link, Missing, Passage, Posture, Request, Rest, Samples, Seen,
-        Situation, Switches,
+        Above, Button, Guard, Interface, Kind, Link, Missing, Operator, Passage, Position, Posture, Request,
+        Rest, Samples, Seen, Situation, Switches, Way,
     },
 };
 use crate::execution::Asked;
@@ -62,6 +62,11 @@ impl State {
             emove: above(inputs),
             switches: switches(&devices.joystick),
             posture,
+            position: position(verb),
+            operator: operator(&devices.joystick),
+            report: report(interface, t3i),
+            restarts: self.restarts.so_far(inputs.tick),
+            way: self.way,
             link: if feedback.is_some() { Link::Running } else { Link::Down },
             passage: match &self.motion {
                 Some(motion) if motion.is_passing() => Passage::Passing,
@@ -94,6 +99,7 @@ impl State {
         let missing = match target(command, inputs) {
             Ok(target) => {
                 self.target = target;
+                self.way = Way::Kept;
                 self.standstill = Standstill::default();
                 Missing::Nothing
             }
@@ -130,8 +136,8 @@ impl State {
             Lower::Executing | Lower::Done | Lower::Error | Lower::Joystick => {}
         }
         match t3i.status.report {
-            T3iReport::Error => fault(t3i.status.fault),
-            _ if self.motion.is_some() && !t3i.status.link_running => Interface::LinkOff,
+            T3iReport::Error => fault(&t3i.status),
+            _ if self.motion.is_some() && !t3i.status.link_running => silence(&t3i.status),
             // A T3I that is held reads nothing: what is sent to it would be lost.
             _ if t3i.header.republished => Interface::Busy,
             T3iReport::Executing => Interface::Busy,
@@ -278,13 +284,46 @@ fn above(inputs: &Inputs<'_, TaskData<'_>>) -> Above {
     if inputs.memory.emove.header.stamp == inputs.tick.previous() { Above::Live } else { Above::Lost }
 }
 
+/// Does a command need a position?
+const fn position(verb: PrimVerb) -> Position {
+    match verb {
+        PrimVerb::None | PrimVerb::Pause | PrimVerb::RobotInit => Position::NotNeeded,
+        PrimVerb::GoThru
+        | PrimVerb::GotoPt
+        | PrimVerb::GoUntil
+        | PrimVerb::GoWhile
+        | PrimVerb::DeltaMove
+        | PrimVerb::CalSensor => Position::Needed,
+    }
+}
+
+/// Does the operator move the robot?
+fn operator(joystick: &JoystickBox) -> Operator {
+    let on = switches(joystick) != Switches::Off && joystick.velocity > 0;
+    if on && is_moved(joystick) { Operator::Moves } else { Operator::Idle }
+}
+
+/// What T3I makes of the report to the last RESTART: nothing before it has echoed that, or while it starts the link.
+const fn report(interface: Interface, status: &T3iStatus) -> ReportCheck {
+    match interface {
+        Interface::Busy | Interface::Silent => ReportCheck::NoReport,
+        Interface::Ready | Interface::Finished if !status.link_running => ReportCheck::NoReport,
+        _ => status.check,
+    }
+}
+
 /// What a fault of T3I stands for.
-const fn fault(fault: LinkFault) -> Interface {
-    match fault {
-        LinkFault::NotResponding => Interface::LinkOff,
+const fn fault(status: &T3iStatus) -> Interface {
+    match status.fault {
+        LinkFault::NotResponding => silence(status),
         LinkFault::InvalidCommand => Interface::Refused,
         LinkFault::None | LinkFault::DepcError | LinkFault::Checksum | LinkFault::NotTransmitted => {
             Interface::LinkError
         }
     }
+}
+
+/// What a link that does not respond stands for.
+const fn silence(status: &T3iStatus) -> Interface {
+    if status.controller_ready { Interface::LinkSilent } else { Interface::LinkOff }
 }

@@ -1,13 +1,13 @@
 //! What Prim remembers from tick to tick.
 
-use rcs_core::{Plain, handshake::Commander, interface::prim::PrimVerb, pose::WireFrame};
+use rcs_core::{Plain, handshake::Commander, interface::prim::PrimVerb, pose::WireFrame, tick::Tick};
 use taskdata::files::SensorPara;
 
 use super::{
     manual::Manual,
     motion::{Motion, limits::Limits, segment::FrameData},
     sensors::Calibration,
-    tables::Step,
+    tables::{Restarts, Step, Way, link::LinkStep},
 };
 use crate::execution::Execution;
 
@@ -46,6 +46,34 @@ pub struct Standstill {
     pub still: u32,
 }
 
+/// RESTARTs in [`RESTART_TICKS`] that are too many.
+pub const MOST_RESTARTS: usize = 10;
+/// Ticks in which so many RESTARTs are too many: 10 s. ASSUMED.
+pub const RESTART_TICKS: u64 = 250;
+
+/// The last RESTARTs that Prim has sent by itself, the latest first.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct RestartTimes {
+    /// When they were sent.
+    pub ticks: [Option<Tick>; MOST_RESTARTS],
+}
+
+impl RestartTimes {
+    /// One more.
+    pub(super) fn add(&mut self, now: Tick) {
+        self.ticks.rotate_right(1);
+        if let Some(latest) = self.ticks.first_mut() {
+            *latest = Some(now);
+        }
+    }
+
+    /// Are they too many?
+    pub(super) fn so_far(&self, now: Tick) -> Restarts {
+        let recent = |time: &Option<Tick>| time.is_some_and(|time| now.since(time) <= RESTART_TICKS);
+        if self.ticks.iter().all(recent) { Restarts::Many } else { Restarts::Few }
+    }
+}
+
 /// Rows of the tables of every tick that fired last; the header names those of the command only.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct TickRows {
@@ -64,6 +92,12 @@ pub struct State {
     pub execution: Execution,
     /// Step of its table.
     pub step: Step,
+    /// Step of LINK: is the link being restarted?
+    pub link: LinkStep,
+    /// The last restarts.
+    pub restarts: RestartTimes,
+    /// The path to the goal.
+    pub way: Way,
     /// Rows of the tables of every tick.
     pub rows: TickRows,
     /// Commands to T3I.

@@ -15,8 +15,11 @@
 //! RESTART, PAUSE and the loss of the link empty the queue; while Prim is held or lost the queue waits and
 //! the position stands.
 //!
-//! Two tables decide in a tick: RECEIVE on the command in the buffer, then that of the current command on
-//! what goes out.
+//! When the link begins again the controller reports where the robot is. T3I compares the words of the report
+//! with those that it sent, and publishes what comes of it (`check`): Prim goes on, or a person decides.
+//!
+//! Three tables decide in a tick: REPORT on what came from the controller, RECEIVE on the command in the
+//! buffer, then that of the current command on what goes out.
 //!
 //! ```text
 //!                 a point that is missing or cannot be sent
@@ -44,6 +47,7 @@ pub use self::state::State;
 use self::tables::{
     Action, Seen, number, of_command,
     receive::{Intake, receive},
+    report::report,
 };
 
 /// The T3 Interface process.
@@ -76,12 +80,15 @@ impl<Data: ?Sized> Process<Data> for T3i {
     const NAME: &'static str = "T3 Interface";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, _: &T3iOutputs) -> Seen {
-        self.state.sense(inputs)
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &T3iOutputs) -> Seen {
+        self.state.sense(inputs, outputs)
     }
 
     fn decide(&mut self, seen: &Seen) -> Action {
         let state = &mut self.state;
+        let checked = report(state.check, &seen.answer);
+        (state.check, state.report_row) = (checked.next, checked.row);
+        state.compare(checked.action);
         let taken = receive(state.receive, &seen.request);
         (state.receive, state.receive_row) = (taken.next, taken.row);
         state.take(taken.action, seen);

@@ -12,7 +12,7 @@ use rcs_core::{
     interface::{
         Header, T3iOutputs,
         device::{LinkBytes, RESOLVER_COUNTS, Resolvers},
-        t3i::{LinkFault, T3iReport, T3iStatus},
+        t3i::{LinkFault, SentWords, T3iReport, T3iStatus},
     },
     kinematics::T3,
     name::Name16,
@@ -23,8 +23,9 @@ use rcs_core::{
 use super::{
     state::State,
     tables::{
-        Action, Seen, Step,
+        Action, Before, Seen, Step,
         receive::{Intake, ReceiveStep},
+        report::Comparison,
     },
 };
 
@@ -49,20 +50,44 @@ impl State {
         }
     }
 
+    /// Do with the words that a report is compared with what REPORT says.
+    pub(super) fn compare(&mut self, comparison: Comparison) {
+        match comparison {
+            Comparison::Keep => {}
+            Comparison::TakeRepeated => {
+                let here = self.position.plate.words;
+                self.sent = Some(SentWords { last: here, before: here });
+            }
+        }
+    }
+
     /// Put the frame of this tick on the line.
     pub(super) fn send(&mut self, action: Action, seen: &Seen) -> LinkBytes {
         let mut tx = LinkBytes::default();
         let command = |position: &Position| {
             Intent::Position(DataCommand { function: NO_FUNCTION, plate: position.plate })
         };
+        self.before = Before::Nothing;
         match action {
             Action::Nothing(_) => drop(self.host.transmit(&Intent::Idle, &mut tx)),
             Action::Restart(_) => drop(self.host.transmit(&Intent::Restart, &mut tx)),
-            Action::Repeat(_) => drop(self.host.transmit(&command(&self.position), &mut tx)),
+            Action::Repeat(report) => {
+                let words = self.position.plate.words;
+                let other = self.sent.is_none_or(|sent| sent.last != words);
+                if self.host.transmit(&command(&self.position), &mut tx)
+                    && other
+                    && report != T3iReport::Error
+                {
+                    self.before = Before::Repeated;
+                }
+            }
             Action::Advance(_) => {
                 if let Some(next) = seen.advance
                     && self.host.transmit(&command(&next.position), &mut tx)
                 {
+                    let (last, before) = (next.position.plate.words, self.position.plate.words);
+                    self.sent = Some(SentWords { last, before });
+                    self.before = Before::Point;
                     self.position = next.position;
                     if next.reached {
                         self.remove_first();
@@ -115,6 +140,10 @@ impl State {
             joint_limit: 0,
             resolver_frame: Some(resolver_frame).filter(|_| resolvers.valid),
             link_running: running,
+            controller_ready: self.host.has_dtr(),
+            silent: self.host.is_silent(),
+            check: self.check,
+            sent: self.sent,
             counters: *self.host.counters(),
         };
         T3iOutputs { header, status, link_tx }

@@ -2,12 +2,15 @@
 
 use depc::{
     Plate,
-    host::HostEvent,
+    host::{HostEvent, PATIENCE_TICKS},
     step::{Position, Step, step},
 };
 use rcs_core::{
     handshake::{Arrival, successor},
-    interface::t3i::{LinkFault, T3iCommand, T3iVerb},
+    interface::{
+        T3iOutputs,
+        t3i::{LinkFault, SentWords, T3iCommand, T3iVerb},
+    },
     kinematics::T3,
     pose::WireFrame,
     process::Inputs,
@@ -15,17 +18,41 @@ use rcs_core::{
 
 use super::{
     state::State,
-    tables::{Above, Line, Link, Point, Queue, Request, Seen, Situation, Trouble, Way, receive::ReceiveStep},
+    tables::{
+        Above, Answer, Dtr, Line, Link, Place, Point, Queue, Request, Seen, Situation, Start, Trouble, Way,
+        Words, receive::ReceiveStep,
+    },
 };
 
+/// Counts of a word by which a report may be beside what was sent: both ends round.
+const NEAR_COUNTS: i32 = 2;
+
 impl State {
-    /// Read the line and the command buffer.
-    pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> Seen {
-        self.receive_bytes(inputs);
+    /// Read the line and the command buffer. `outputs` holds what was written in the tick before: a T3I that
+    /// is restarted learns from it what was sent.
+    pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>, outputs: &T3iOutputs) -> Seen {
+        if !self.receiver.started {
+            (self.sent, self.check) = (outputs.status.sent, outputs.status.check);
+        }
+        let (event, place) = self.receive_bytes(inputs);
         let prim = &inputs.memory.prim;
         let command = prim.t3i;
         let point = self.point(&command);
         let arrival = self.receiver.observe(command.number);
+        let restart = arrival == Arrival::New && command.command == T3iVerb::Restart;
+        let devices = &inputs.external.devices;
+        let answer = Answer {
+            dtr: if devices.link_ready || devices.link_unsent { Dtr::On } else { Dtr::Off },
+            start: match event {
+                _ if restart => Start::Begun,
+                HostEvent::Lost => Start::Begun,
+                HostEvent::Started => Start::Reported,
+                HostEvent::None | HostEvent::Acknowledged => Start::Over,
+            },
+            words: if self.sent.is_some() { Words::Sent } else { Words::Nothing },
+            place,
+            before: self.before,
+        };
         let live = prim.header.stamp == inputs.tick.previous() && !prim.header.republished;
         let line = if self.host.can_send() {
             Line::Free
@@ -36,6 +63,7 @@ impl State {
         };
         Seen {
             request: Request { arrival, command: command.command, point, link: self.link() },
+            answer,
             command,
             prim: if live { Above::Live } else { Above::Still },
             line,
@@ -44,11 +72,13 @@ impl State {
     }
 
     /// Give the host's end of the link the bytes that have arrived. The queue does not outlive the link.
-    fn receive_bytes<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) {
+    fn receive_bytes<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> (HostEvent, Place) {
         let devices = &inputs.external.devices;
+        self.host.set_patience(devices.link_patience.unwrap_or(PATIENCE_TICKS));
         // First, because a port that has taken a part of a frame is not ready either, and this says more.
         let torn = if devices.link_unsent { self.host.unsent() } else { HostEvent::None };
-        match self.host.receive(&devices.link_rx, devices.link_ready).max(torn) {
+        let event = self.host.receive(&devices.link_rx, devices.link_ready).max(torn);
+        match event {
             HostEvent::Started => {
                 self.position = Position::reported(self.host.position(), &T3);
                 self.empty();
@@ -56,6 +86,17 @@ impl State {
             HostEvent::Lost => self.empty(),
             HostEvent::None | HostEvent::Acknowledged => {}
         }
+        (event, self.place())
+    }
+
+    /// Is the position that was reported last on the way to which the robot was sent?
+    fn place(&self) -> Place {
+        let reported = self.host.position();
+        let near = |sent: &SentWords| {
+            let (last, before) = (Plate { words: sent.last }, Plate { words: sent.before });
+            reported.is_between(&before, &last, NEAR_COUNTS)
+        };
+        if self.sent.as_ref().is_some_and(near) { Place::Near } else { Place::Far }
     }
 
     /// What the point of a new command is worth.

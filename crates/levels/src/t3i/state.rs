@@ -8,11 +8,14 @@ use depc::{
 use rcs_core::{
     Plain,
     handshake::Receiver,
-    interface::{Decided, t3i::T3iVerb},
+    interface::{
+        Decided,
+        t3i::{ReportCheck, SentWords, T3iVerb},
+    },
     pose::WireFrame,
 };
 
-use super::tables::{Step, receive::ReceiveStep};
+use super::tables::{Before, Step, receive::ReceiveStep};
 
 /// Points that wait for the line (docs/design/link.md "Queue"): one that is being sent, one that was allowed,
 /// one that is on its way, and one to spare.
@@ -35,6 +38,12 @@ pub struct State {
     pub limits: Limits,
     /// The position last sent, or reported.
     pub position: Position,
+    /// The words with which a report is compared.
+    pub sent: Option<SentWords>,
+    /// Step of REPORT: is the robot where it was sent?
+    pub check: ReportCheck,
+    /// What was sent in the tick before.
+    pub before: Before,
     /// Points that wait; the first `queued` are valid, the oldest first.
     pub queue: [WireFrame; QUEUE_POINTS],
     /// How many.
@@ -43,6 +52,8 @@ pub struct State {
     pub decided: Option<Decided>,
     /// Row of RECEIVE that fired last: the header names it for refusals only.
     pub receive_row: u8,
+    /// Row of REPORT that fired last.
+    pub report_row: u8,
 }
 
 impl State {

@@ -349,6 +349,8 @@ pub struct DeviceInputs {
     pub link_ready: bool,
     /// The port has not taken all bytes of the last tick: they are not on the line.
     pub link_unsent: bool,
+    /// Ticks that the host waits for an answer while the robot's DTR is on; the 60 s of `depc::host` if nothing is set (`--robot`).
+    pub link_patience: Option<u16>,
     /// Joint resolvers.
     pub resolvers: Resolvers,
     /// The attached gripper. All three have their potentiometer on the same connections (III.3.7, III.3.8); strain gages and

@@ -249,6 +249,8 @@ pub enum Reason {
     HandUncertain,
     /// The angle of the pedestal's rotary table is not known.
     TableAngleUnknown,
+    /// The robot is not where it was sent. Look where it is; PAUSE takes its position over.
+    RobotElsewhere,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

@@ -61,7 +61,7 @@ macro_rules! for_each_process {
                 commander: Prim, prim.t3i;
                 reads: [
                     "devices.link_ready", "devices.link_rx.length", "devices.link_unsent",
-                    "devices.resolvers.valid"
+                    "devices.link_patience", "devices.resolvers.valid"
                 ];
             }
             /// Quick Change (VI.2).

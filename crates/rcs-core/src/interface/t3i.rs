@@ -74,6 +74,29 @@ pub enum LinkFault {
     InvalidCommand,
 }
 
+/// Is the robot where it was sent? What T3I makes of a report of the robot controller (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum ReportCheck {
+    /// No report has come since the link was lost, or since the last RESTART.
+    #[text = "no report"]
+    NoReport,
+    /// The robot is where it was sent, within 2 counts a word, or on the way there from where it was sent before. Or nothing has
+    /// been sent yet.
+    #[text = "as sent"]
+    AsSent,
+    /// It is elsewhere, or the controller's DTR was off meanwhile. Stays until the next point is sent.
+    Elsewhere,
+}
+
+/// The positions that were sent last, in the words of the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct SentWords {
+    /// The last one.
+    pub last: [i16; 6],
+    /// The one before.
+    pub before: [i16; 6],
+}
+
 /// Counters of the link since the start (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct LinkCounters {
@@ -121,6 +144,14 @@ pub struct T3iStatus {
     pub resolver_frame: Option<WireFrame>,
     /// The link runs: the last report was received and commands are acknowledged (extension).
     pub link_running: bool,
+    /// The controller's DTR is on (extension).
+    pub controller_ready: bool,
+    /// DTR is on, and for a second or longer the controller has not answered (extension).
+    pub silent: bool,
+    /// Is the robot where it was sent (extension)?
+    pub check: ReportCheck,
+    /// The positions that were sent last, for a T3I that is restarted (extension).
+    pub sent: Option<SentWords>,
     /// Counters (extension).
     pub counters: LinkCounters,
 }
@@ -134,6 +165,29 @@ pub struct T3iOutputs {
     pub status: T3iStatus,
     /// To the DEPC line.
     pub link_tx: LinkBytes,
+}
+
+impl T3iStatus {
+    /// What a line that carries no answers may mean, in words; `None` if nothing is to be said.
+    #[must_use]
+    pub const fn trouble(&self) -> Option<&'static str> {
+        if self.silent {
+            Some(
+                "the robot controller does not answer, but its DTR is on: Hold, a warning D1 to D6 on its screen, a dead receiver or a \
+                 cut wire; a re-start is sent every second",
+            )
+        } else if matches!(self.check, ReportCheck::Elsewhere) {
+            Some(
+                "the robot is not where it was sent, or its controller was off; PAUSE takes its position over",
+            )
+        } else if !self.controller_ready && !matches!(self.fault, LinkFault::None) {
+            Some(
+                "the robot controller's DTR is off: it is off, or its program does not run the DEPC function",
+            )
+        } else {
+            None
+        }
+    }
 }
 
 /// `POINT`.

@@ -30,8 +30,8 @@ decision_table! {
         }
         Done {
             4:  course: Rest, kind: Lasting                         => Resume   -> Executing;
-            5:  course: Rest, kind: Motion, switches: One | Several => Resume   -> Executing;
-            6:  course: Rest, kind: Motion, switches: Off           => Leave;
+            5:  course: Rest, kind: Motion, operator: Moves         => Resume   -> Executing;
+            6:  course: Rest, kind: Motion, operator: Idle          => Leave;
             7:  course: Rest, kind: Single                          => Leave;
         }
         Joystick {

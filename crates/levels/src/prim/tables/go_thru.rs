@@ -12,8 +12,9 @@ decision_table! {
         }
         /// The robot is on its way.
         Going {
-            2: passage: UnderWay                            => Wait;
-            3: passage: Passing                             => Finish;
+            2: way: Lost                                    => Go;
+            3: way: Kept, passage: UnderWay                 => Wait;
+            4: way: Kept, passage: Passing                  => Finish;
         }
     }
 }

@@ -14,7 +14,8 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// GO-UNTIL (V.1.1): a guarded move. Done when the condition has come and the robot stands; a goal
-    /// without it is `not-detected` until it comes after all, or another command does.
+    /// without it is `not-detected` until it comes after all, or another command does. After a restart of the
+    /// link the condition is asked first; a robot that was coming to rest is done where it rests.
     pub GO_UNTIL: fn go_until(enum GoUntilStep, super::Situation) -> super::Action {
         Start | Going | Missed {
             1:  guard: Faulty                               => Fail(SensorError);
@@ -26,19 +27,20 @@ decision_table! {
         }
         /// The robot is on its way.
         Going {
-            4:  guard: Clear, goal: UnderWay | Settling     => Wait;
-            5:  guard: Clear, goal: Arrived                 => Miss             -> Missed;
-            6:  guard: Clear, goal: Late                    => Fail(NotAtGoal);
+            4:  guard: Clear, way: Lost                     => Go;
+            5:  guard: Clear, way: Kept, goal: UnderWay | Settling => Wait;
+            6:  guard: Clear, way: Kept, goal: Arrived      => Miss             -> Missed;
+            7:  guard: Clear, way: Kept, goal: Late         => Fail(NotAtGoal);
         }
         /// The condition has come; the robot comes to rest.
         Stopping {
-            7:  rest: UnderWay | Settling                   => Wait;
-            8:  rest: Arrived                               => Finish;
-            9:  rest: Late                                  => Fail(NotAtGoal);
+            8:  rest: UnderWay | Settling                   => Wait;
+            9:  rest: Arrived                               => Finish;
+            10: rest: Late                                  => Fail(NotAtGoal);
         }
         /// The robot is at the goal, and the condition has not come.
         Missed {
-            10: guard: Clear                                => Wait;
+            11: guard: Clear                                => Wait;
         }
     }
 }

@@ -12,9 +12,10 @@ decision_table! {
         }
         /// The robot is on its way.
         Going {
-            2: goal: UnderWay | Settling                    => Wait;
-            3: goal: Arrived                                => Finish;
-            4: goal: Late                                   => Fail(NotAtGoal);
+            2: way: Lost                                    => Go;
+            3: way: Kept, goal: UnderWay | Settling         => Wait;
+            4: way: Kept, goal: Arrived                     => Finish;
+            5: way: Kept, goal: Late                        => Fail(NotAtGoal);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Decision tables of Prim: what a new command needs, what hinders a motion, a file a command, and those of
+//! Decision tables of Prim: what a new command needs, what a motion needs of the link, a file a command, and those of
 //! every tick: what becomes of finished commands, the path clock, the record button.
 
 pub mod accept;
@@ -8,7 +8,7 @@ pub mod go_thru;
 pub mod go_until;
 pub mod go_while;
 pub mod goto_pt;
-pub mod hindrance;
+pub mod link;
 pub mod path_clock;
 pub mod pause;
 pub mod record_pose;
@@ -18,11 +18,14 @@ use rcs_core::{
     Actions, Plain, Variables, commands,
     frame::Frame,
     handshake::Arrival,
-    interface::{Reason, prim::PrimVerb},
-    table::Choice,
+    interface::{Reason, prim::PrimVerb, t3i::ReportCheck},
+    table::{Choice, Decision, Verdict},
 };
 
-use self::accept::accept;
+use self::{
+    accept::accept,
+    link::{LinkStep, link},
+};
 use crate::execution::{Asked, Course, EXECUTE};
 
 /// What T3I says of the last command to it (VI.1.2 status-report, status-arg-out).
@@ -36,8 +39,10 @@ pub enum Interface {
     Finished,
     /// It does not answer.
     Silent,
-    /// The DEPC link does not respond, or does not run any more although Prim commands the robot.
+    /// The robot controller's DTR is off.
     LinkOff,
+    /// DTR is on, and the DEPC link does not respond, or does not run any more although Prim commands the robot.
+    LinkSilent,
     /// The DEPC link has another error.
     LinkError,
     /// It refused a command.
@@ -64,6 +69,42 @@ pub enum Posture {
     Ending,
     /// It stands where it was told to be.
     Standing,
+}
+
+/// Does the command need a commanded position?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Position {
+    /// PAUSE and ROBOT-INIT do not.
+    NotNeeded,
+    /// Motions do, and CAL-SENSOR.
+    Needed,
+}
+
+/// The RESTARTs that Prim has sent by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Restarts {
+    /// Fewer than 10 in the last 10 s.
+    Few,
+    /// 10 in the last 10 s: the link is of no use.
+    Many,
+}
+
+/// The path to the goal of the command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Way {
+    /// It is under way, or has ended.
+    Kept,
+    /// The link was restarted: the robot rests, and the path begins anew.
+    Lost,
+}
+
+/// The operator with the joystick box (III.3.3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Operator {
+    /// Does not move the robot.
+    Idle,
+    /// A frame switch is on, the velocity knob is not at zero, and a stick or button is moved beyond its play.
+    Moves,
 }
 
 /// The DEPC link after a RESTART.
@@ -194,8 +235,8 @@ pub struct Attendance {
     pub course: Course,
     /// What the command is.
     pub kind: Kind,
-    /// The frame switches of the joystick box.
-    pub switches: Switches,
+    /// The operator.
+    pub operator: Operator,
 }
 
 /// The state variables of a tick, for the tables of the commands.
@@ -209,8 +250,18 @@ pub struct Situation {
     pub switches: Switches,
     /// What the robot was told to do.
     pub posture: Posture,
+    /// Does the command need a position?
+    pub position: Position,
+    /// The operator.
+    pub operator: Operator,
     /// The link after a RESTART.
     pub link: Link,
+    /// What T3I makes of the report to the last RESTART.
+    pub report: ReportCheck,
+    /// The RESTARTs of the last time.
+    pub restarts: Restarts,
+    /// The path to the goal.
+    pub way: Way,
     /// The through point of a GO-THRU.
     pub passage: Passage,
     /// Rest at the goal of the command.
@@ -266,6 +317,10 @@ pub enum Action {
     Halt,
     /// RESTART to T3I; the position is forgotten.
     Restart,
+    /// The same, because the link has failed; RESTARTs of this kind are counted.
+    Recover,
+    /// Take the frame that T3I feeds back as the commanded one; the path to the goal is to begin anew.
+    Resume,
     /// Take the frame that T3I feeds back as the commanded one; report done.
     TakePosition,
     /// Report `joystick-on`, ramp down and stop.
@@ -290,19 +345,25 @@ commands! {
     /// Consult the tables of a command.
     pub fn of_command(PrimVerb, enum Step, Situation) -> Action {
         others: EXECUTE, accept::ACCEPT, attend::ATTEND, path_clock::PATH_CLOCK, record_pose::RECORD_POSE,
-            hindrance::HINDRANCE;
+            link::LINK;
         None | Pause            => pause::pause;
         RobotInit               => robot_init::robot_init;
-        GoThru                  => hindrance::hindrance then go_thru::go_thru;
-        GotoPt | DeltaMove      => hindrance::hindrance then goto_pt::goto_pt;
-        GoUntil                 => hindrance::hindrance then go_until::go_until;
-        GoWhile                 => hindrance::hindrance then go_while::go_while then goto_pt::goto_pt;
-        CalSensor               => hindrance::hindrance then cal_sensor::cal_sensor;
+        GoThru                  => go_thru::go_thru;
+        GotoPt | DeltaMove      => goto_pt::goto_pt;
+        GoUntil                 => go_until::go_until;
+        GoWhile                 => go_while::go_while then goto_pt::goto_pt;
+        CalSensor               => cal_sensor::cal_sensor;
     }
 }
 
-/// Consult the tables in turn until a row decides.
+/// Consult the tables in turn until a row decides. `link_step` is the step of LINK.
 #[must_use]
-pub fn decide(step: Step, seen: &Seen) -> Choice<Action, Step> {
-    accept(step, &seen.request).then(number::ACCEPT, |()| of_command(seen.verb, step, &seen.situation))
+pub fn decide(step: Step, link_step: &mut LinkStep, seen: &Seen) -> Choice<Action, Step> {
+    accept(step, &seen.request).then(number::ACCEPT, |()| match link(*link_step, &seen.situation) {
+        Verdict::Decided(Decision { row, action, next }) => {
+            *link_step = next;
+            Choice { table: number::LINK, row, action, next: step }
+        }
+        Verdict::Passed(()) => of_command(seen.verb, step, &seen.situation),
+    })
 }

@@ -23,7 +23,7 @@ decision_table! {
     pub PATH_CLOCK: fn path_clock(super::Path) -> Flow {
         1: first_pause: Due                                 => Abandon;
         2: posture: Unpositioned                            => Repeat;
-        3: t3i: Silent | LinkOff | LinkError | Refused      => Abandon;
+        3: t3i: Silent | LinkOff | LinkSilent | LinkError | Refused => Abandon;
         4: posture: Moving, t3i: Ready | Finished           => Advance;
         5: posture: Moving, t3i: Busy                       => Repeat;
         6: posture: Ending | Standing                       => Repeat;

@@ -4,30 +4,35 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// PAUSE (V.1.1): do nothing. A motion ramps down within its limits; then the last point is repeated.
-    /// From there on the joystick box moves the robot while one of its frame switches is on.
+    /// From there on the joystick box moves the robot while one of its frame switches is on. A link that fails
+    /// meanwhile is reported; the next motion restarts it.
     pub PAUSE: fn pause(enum PauseStep, super::Situation) -> super::Action {
         any {
-            1:  posture: Unpositioned | Standing, switches: Off     => Finish   -> Start;
-            2:  posture: Unpositioned | Standing, switches: Several => Yield    -> Start;
-            3:  posture: Unpositioned, switches: One                => Yield    -> Start;
-            4:  posture: Standing, switches: One                    => Drive    -> Driving;
+            1:  t3i: Silent                                         => Fail(InterfaceSilent);
+            2:  t3i: LinkOff | LinkSilent                           => Fail(LinkOff);
+            3:  t3i: LinkError                                      => Fail(LinkError);
+            4:  t3i: Refused                                        => Fail(InterfaceRefused);
+            5:  posture: Unpositioned | Standing, switches: Off     => Finish   -> Start;
+            6:  posture: Unpositioned | Standing, switches: Several => Yield    -> Start;
+            7:  posture: Unpositioned, switches: One                => Yield    -> Start;
+            8:  posture: Standing, switches: One                    => Drive    -> Driving;
         }
         /// Nothing done yet, or nothing to do.
         Start {
-            5:  switches: Off                                       => Halt     -> Stopping;
+            9:  switches: Off                                       => Halt     -> Stopping;
         }
         /// The motion of the command before ramps down.
         Stopping {
-            6:  switches: Off                                       => Wait;
+            10: switches: Off                                       => Wait;
         }
         Start | Stopping {
-            7:  switches: One | Several                             => Yield    -> Stopping;
+            11: switches: One | Several                             => Yield    -> Stopping;
         }
         /// The box moves the robot.
         Driving {
-            8:  switches: One                                       => Drive;
-            9:  switches: Several                                   => Yield;
-            10: switches: Off                                       => Wait;
+            12: switches: One                                       => Drive;
+            13: switches: Several                                   => Yield;
+            14: switches: Off                                       => Wait;
         }
     }
 }

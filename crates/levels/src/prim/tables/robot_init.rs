@@ -4,16 +4,16 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// ROBOT-INIT (V.1.1): RESTART to T3I. It clears the errors of the link, so that only those count which
-    /// come after the RESTART. The only way from an error, or from a start, to a commanded position. The
-    /// joystick box does not hinder it: nothing moves.
+    /// come after the RESTART. The position that is reported is taken over wherever it is: the way on after
+    /// the robot was moved by other means. The joystick box does not hinder it: nothing moves.
     pub ROBOT_INIT: fn robot_init(enum RobotInitStep, super::Situation) -> super::Action {
         /// Nothing sent yet.
         Start {
-            1:  t3i: LinkOff | LinkError | Refused          => Restart          -> Restarting;
+            1:  t3i: LinkOff | LinkSilent | LinkError | Refused => Restart          -> Restarting;
         }
         any {
             2:  t3i: Silent                                 => Fail(InterfaceSilent);
-            3:  t3i: LinkOff                                => Fail(LinkOff);
+            3:  t3i: LinkOff | LinkSilent                   => Fail(LinkOff);
             4:  t3i: LinkError                              => Fail(LinkError);
             5:  t3i: Refused                                => Fail(InterfaceRefused);
             6:  emove: Lost                                 => Fail(NeighbourLost);

@@ -185,14 +185,23 @@ fn two_frames_are_none() {
 }
 
 #[test]
-fn a_switch_stops_every_motion_and_the_commander_hears_of_it() {
+fn a_stick_stops_every_motion_and_the_commander_hears_of_it() {
     for verb in
         [PrimVerb::GoThru, PrimVerb::GotoPt, PrimVerb::GoUntil, PrimVerb::GoWhile, PrimVerb::DeltaMove]
     {
         let mut rig = Rig::initialized();
         rig.guard(verb, 3, "NEAR-R");
-        rig.stick(FULL, 0);
-        rig.steps(30);
+        // A stick without a switch, a switch with a stick in its play, and the box with the knob at zero.
+        for (frame, x, knob) in
+            [(0, FULL, 1000), (joystick_frame::WORLD, 30, 1000), (joystick_frame::WORLD, FULL, 0)]
+        {
+            rig.frame_switch(frame);
+            rig.stick(x, 0);
+            rig.external.devices.joystick.velocity = knob;
+            rig.steps(10);
+            assert_eq!(rig.report(), PrimReport::Executing, "{verb} {frame} {x} {knob}");
+        }
+        rig.external.devices.joystick.velocity = 1000;
         rig.frame_switch(joystick_frame::WORLD);
         rig.step();
         assert_eq!(
@@ -212,20 +221,26 @@ fn a_switch_stops_every_motion_and_the_commander_hears_of_it() {
         rig.frame_switch(joystick_frame::WORLD);
         rig.steps(20);
         assert_ne!(rig.commanded(), held);
-        // With the switch on no motion begins.
+        // With the switch on and the stick at rest a motion goes on, until the stick is moved.
         rig.let_go();
-        let held = rig.commanded();
-        rig.guard(verb, 3, "NEAR-R");
-        assert_eq!((rig.until_over(), rig.commanded()), (PrimReport::JoystickOn, held));
+        rig.guard(verb, 2, "SEATED-R");
+        rig.steps(10);
+        assert_eq!(rig.report(), PrimReport::Executing);
+        rig.external.devices.joystick.roll_plus = true;
+        rig.step();
+        assert_eq!(rig.report(), PrimReport::JoystickOn);
     }
 }
 
 #[test]
-fn a_switch_is_heard_of_after_a_motion_is_done() {
+fn a_stick_is_heard_of_after_a_motion_is_done() {
     let mut rig = Rig::initialized();
     assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done);
     let flying = rig.commanded();
     rig.frame_switch(joystick_frame::TOOL);
+    rig.step();
+    assert_eq!(rig.report(), PrimReport::Done, "the switch alone is nothing");
+    rig.external.devices.joystick.up = true;
     rig.step();
     assert_eq!(rig.report(), PrimReport::JoystickOn);
     rig.steps(80);

@@ -1,6 +1,8 @@
 //! Prim, T3I and the controller's end of the DEPC line together, tick by tick: what one sends is what the
 //! next takes.
 
+use std::collections::VecDeque;
+
 use depc::{
     Limits, Plate,
     controller::{Controller, ControllerInputs},
@@ -22,6 +24,16 @@ use taskdata::files::{TaskData, TrajPara};
 use super::pose_record;
 use crate::{exact_robot::Exact, prim::Prim, t3i::T3i};
 
+/// What happens to an answer on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Answer {
+    Comes,
+    IsLost,
+    IsDamaged,
+    /// With all that follow, by so many ticks, until the line is empty.
+    IsLate(usize),
+}
+
 /// The test is E-move.
 struct Bench {
     prim: Prim,
@@ -34,6 +46,10 @@ struct Bench {
     hold: bool,
     /// The line carries nothing.
     cut: bool,
+    /// What happens to the controller's answer in this tick.
+    answer: Answer,
+    /// Answers that come late.
+    late: VecDeque<LinkBytes>,
     /// Prim is held by its switch on the joystick box.
     held: bool,
     /// Where the robot was after each tick.
@@ -70,6 +86,8 @@ impl Bench {
             robot: Exact { joints: HOME_JOINTS, at },
             hold: false,
             cut: false,
+            answer: Answer::Comes,
+            late: VecDeque::new(),
             held: false,
             track: Vec::new(),
         };
@@ -92,7 +110,22 @@ impl Bench {
         let rx = if self.cut { LinkBytes::default() } else { *tx };
         let inputs = ControllerInputs { rx, cts: true, board: true, start, hold, ..Default::default() };
         let out = self.controller.step(&inputs, &mut self.robot);
-        self.external.devices.link_rx = if self.cut { LinkBytes::default() } else { out.tx };
+        let mut rx = if self.cut || self.answer == Answer::IsLost { LinkBytes::default() } else { out.tx };
+        match self.answer {
+            Answer::IsDamaged => {
+                rx.bytes.iter_mut().take(usize::from(rx.length)).for_each(|byte| *byte ^= 0x40)
+            }
+            Answer::IsLate(ticks) => self.late.extend(vec![LinkBytes::default(); ticks]),
+            Answer::Comes | Answer::IsLost => {}
+        }
+        if !self.late.is_empty() {
+            self.late.push_back(rx);
+            rx = self.late.pop_front().unwrap_or_default();
+        }
+        if self.late.iter().all(|bytes| bytes.length == 0) {
+            self.late.clear();
+        }
+        self.external.devices.link_rx = rx;
         self.external.devices.link_ready = out.dtr;
         self.external.devices.resolvers.counts = self.robot.joints.map(|angle| {
             let turns = (angle / (2.0 * std::f64::consts::PI)).rem_euclid(1.0);
@@ -196,23 +229,98 @@ fn a_held_robot_delays_the_path_and_loses_nothing() {
     bench.check_track();
 }
 
+/// One answer is lost, damaged or late, in each of many ticks of a motion: it goes on and ends at its goal.
 #[test]
-fn a_cut_line_stops_the_robot_until_robot_init() {
+fn a_motion_survives_an_answer_that_is_lost_damaged_or_late() {
+    for answer in [Answer::IsLost, Answer::IsDamaged, Answer::IsLate(2), Answer::IsLate(5)] {
+        for after in (1..46).step_by(3) {
+            let mut bench = Bench::initialized();
+            bench.command(PrimVerb::GotoPt, 1);
+            (0..after).for_each(|_| bench.step());
+            bench.answer = answer;
+            bench.step();
+            bench.answer = Answer::Comes;
+            assert_eq!(bench.until_over(), PrimReport::Done, "{answer:?} {after}");
+            assert!(bench.off(&goals()[0]) < 0.03, "{answer:?} {after}");
+            bench.check_track();
+            let counters = bench.memory.t3i.status.counters;
+            let restarted = counters.restarts > 1;
+            assert_eq!(restarted, answer != Answer::IsLate(2), "{answer:?} {after}: {counters:?}");
+        }
+    }
+}
+
+#[test]
+fn hold_on_the_panel_only_delays_a_motion() {
+    for after in [1, 10, 25, 45] {
+        for held in [3, 10, 75, 400] {
+            let mut bench = Bench::initialized();
+            bench.command(PrimVerb::GotoPt, 1);
+            (0..after).for_each(|_| bench.step());
+            bench.hold = true;
+            (0..held).for_each(|_| bench.step());
+            assert_eq!(bench.memory.t3i.status.silent, held > 10, "{after} {held}");
+            bench.hold = false;
+            assert_eq!(bench.until_over(), PrimReport::Done, "{after} {held}");
+            assert!(bench.off(&goals()[0]) < 0.03, "{after} {held}");
+            bench.check_track();
+        }
+    }
+}
+
+#[test]
+fn a_cut_line_is_waited_for_and_then_lost() {
+    for (cut, over) in [(90, PrimReport::Done), (140, PrimReport::T3LinkOff)] {
+        let mut bench = Bench::initialized();
+        bench.external.devices.link_patience = Some(125);
+        bench.command(PrimVerb::GotoPt, 1);
+        (0..25).for_each(|_| bench.step());
+        bench.cut = true;
+        (0..4).for_each(|_| bench.step());
+        let stopped = bench.robot.at;
+        (0..cut).for_each(|_| bench.step());
+        bench.cut = false;
+        assert_eq!(bench.until_over(), over);
+        if over != PrimReport::Done {
+            assert_eq!((bench.memory.prim.status.reason, bench.robot.at), (Reason::LinkOff, stopped));
+            assert_eq!(bench.run(PrimVerb::GotoPt, 1), PrimReport::Done, "the next motion restarts it");
+        }
+        assert!(bench.off(&goals()[0]) < 0.03);
+        bench.check_track();
+    }
+}
+
+#[test]
+fn a_robot_that_was_led_away_meanwhile_is_not_moved_before_robot_init() {
     let mut bench = Bench::initialized();
     bench.command(PrimVerb::GotoPt, 1);
-    for _ in 0..25 {
-        bench.step();
-    }
+    (0..25).for_each(|_| bench.step());
     bench.cut = true;
-    assert_eq!(bench.until_over(), PrimReport::T3LinkOff);
-    let stopped = bench.robot.at;
-    assert_eq!(bench.run(PrimVerb::GotoPt, 2), PrimReport::T3LinkOff);
-    assert_eq!(bench.memory.prim.status.reason, Reason::LinkOff);
+    (0..5).for_each(|_| bench.step());
+    bench.robot.at.words[2] += 200;
+    bench.track.clear();
     bench.cut = false;
+    let led = bench.robot.at;
+    assert_eq!(bench.until_over(), PrimReport::Error);
+    assert_eq!((bench.memory.prim.status.reason, bench.robot.at), (Reason::RobotElsewhere, led));
+    assert_eq!(bench.run(PrimVerb::GotoPt, 1), PrimReport::Error);
+    assert_eq!((bench.memory.prim.status.reason, bench.robot.at), (Reason::RobotElsewhere, led));
     assert_eq!(bench.run(PrimVerb::RobotInit, 0), PrimReport::Done);
-    assert_eq!(bench.robot.at, stopped);
-    assert_eq!(bench.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+    assert_eq!(bench.run(PrimVerb::GotoPt, 1), PrimReport::Done);
     bench.check_track();
+}
+
+#[test]
+fn a_restarted_t3i_is_restarted_by_prim_in_the_middle_of_a_motion() {
+    for after in [2, 30, 60] {
+        let mut bench = Bench::initialized();
+        bench.command(PrimVerb::GotoPt, 1);
+        (0..after).for_each(|_| bench.step());
+        bench.t3i = T3i::default();
+        assert_eq!(bench.until_over(), PrimReport::Done, "{after}");
+        assert!(bench.off(&goals()[0]) < 0.03);
+        bench.check_track();
+    }
 }
 
 impl Bench {

@@ -5,6 +5,7 @@ mod guarded;
 mod joystick;
 mod line;
 mod random;
+mod recovery;
 mod rows;
 
 use std::{collections::VecDeque, sync::LazyLock};
@@ -16,7 +17,7 @@ use rcs_core::{
         ChangingPose, CommonMemory, Decided, ExternalInputs, Header, PrimOutputs, Reason, T3iOutputs,
         pose_range,
         prim::{PrimReport, PrimVerb},
-        t3i::{LinkFault, T3iReport, T3iVerb},
+        t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
     },
     movetable::{Line, Movetable, System, straight_down},
     name::Name10,
@@ -46,6 +47,14 @@ struct ModelT3i {
     starting: Option<u32>,
     running: bool,
     fault: LinkFault,
+    /// How each start of the link ends; the link runs then if nothing is wrong.
+    broken: LinkFault,
+    /// Faults that come by themselves as soon as the link runs again.
+    more_faults: u32,
+    /// The controller's DTR is off.
+    dtr_off: bool,
+    /// The robot is not where it was sent.
+    elsewhere: bool,
     /// Every frame that went to the robot, without the repetitions.
     path: Vec<WireFrame>,
     /// The resolvers see this many 0.01 in beside the output.
@@ -83,12 +92,22 @@ impl ModelT3i {
                     assert!(self.queue.len() < QUEUE, "the queue overruns");
                     self.queue.push_back(command.frame);
                 }
-                T3iVerb::Pause => self.queue.clear(),
+                T3iVerb::Pause => {
+                    self.queue.clear();
+                    if self.fault == LinkFault::InvalidCommand {
+                        self.fault = LinkFault::None;
+                    }
+                }
                 T3iVerb::None => panic!("a command without a word"),
             }
         }
         if self.starting.is_some_and(|left| left == 0) {
-            (self.starting, self.running) = (None, true);
+            self.starting = None;
+            self.fault = if self.dtr_off { LinkFault::NotResponding } else { self.broken };
+            self.running = self.fault == LinkFault::None;
+        }
+        if self.running && self.more_faults > 0 {
+            (self.fault, self.more_faults) = (LinkFault::Checksum, self.more_faults - 1);
         }
         self.starting = self.starting.map(|left| left - 1);
         let stalled = stalled || memory.prim.header.republished;
@@ -122,6 +141,12 @@ impl ModelT3i {
         seen.tool[0] += self.off;
         status.resolver_frame = Some(seen);
         status.link_running = self.running;
+        status.controller_ready = !self.dtr_off;
+        status.check = match (self.starting, self.broken) {
+            (None, LinkFault::None) if self.elsewhere => ReportCheck::Elsewhere,
+            (None, LinkFault::None) => ReportCheck::AsSent,
+            _ => ReportCheck::NoReport,
+        };
         outputs
     }
 }
@@ -354,7 +379,6 @@ fn starts_with_pause_and_without_a_position() {
     let out = rig.memory.prim;
     assert_eq!((out.t3i.command, out.t3i.number), (T3iVerb::Pause, FIRST_STEP));
     assert_eq!((out.status.report, out.status.present_pose), (PrimReport::Idle, None));
-    assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::T3LinkOff);
     assert_eq!(rig.run(PrimVerb::Pause, 0), PrimReport::Done);
     assert_eq!(rig.memory.prim.t3i, out.t3i);
 }
@@ -483,33 +507,6 @@ fn missing_records_and_bad_parameters_are_refused_and_stop_the_robot() {
     assert_eq!(rig.run(PrimVerb::None, 0), PrimReport::Error);
     assert_eq!(rig.memory.prim.status.reason, Reason::UnknownCommand);
     assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
-}
-
-#[test]
-fn after_a_fault_only_robot_init_moves_the_robot() {
-    for (fault, report) in [
-        (LinkFault::NotResponding, PrimReport::T3LinkOff),
-        (LinkFault::DepcError, PrimReport::T3LinkErr),
-        (LinkFault::Checksum, PrimReport::T3LinkErr),
-        (LinkFault::NotTransmitted, PrimReport::T3LinkErr),
-        (LinkFault::InvalidCommand, PrimReport::T3BadCommand),
-    ] {
-        let mut rig = Rig::initialized();
-        rig.command(PrimVerb::GotoPt, 3);
-        rig.steps(30);
-        rig.t3i.fault = fault;
-        assert_eq!(rig.until_over(), report);
-        assert_eq!(rig.memory.prim.status.present_pose, None);
-        rig.steps(3);
-        let stopped = rig.t3i.output;
-        assert_ne!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
-        assert_eq!(rig.memory.prim.t3i.command, T3iVerb::Pause);
-        assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Done);
-        assert_eq!(rig.t3i.output, stopped);
-        rig.t3i.path.clear();
-        assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
-        rig.check_path(&stopped.to_frame().unwrap());
-    }
 }
 
 #[test]

@@ -41,7 +41,11 @@ fn hindered(fired: &mut Fired) {
         }
         fired.during(verb, 2, |rig| rig.t3i.dead = true);
         fired.during(verb, 2, |rig| rig.emove_dead = true);
-        fired.during(verb, 2, |rig| rig.frame_switch(joystick_frame::TOOL));
+        fired.during(verb, 2, |rig| {
+            rig.frame_switch(joystick_frame::TOOL);
+            rig.stick(1000, 0);
+        });
+        link_faults(fired, verb);
         fired.run(Rig::new(), |rig| {
             rig.steps(3);
             rig.guard(verb, 1, "NEAR-R");
@@ -50,6 +54,33 @@ fn hindered(fired: &mut Fired) {
     fired.during(PrimVerb::GotoPt, 20, |rig| {
         rig.run(PrimVerb::RobotInit, 0);
     });
+}
+
+/// A link that fails, and fails again.
+fn link_faults(fired: &mut Fired, verb: PrimVerb) {
+    for fault in FAULTS {
+        // Before the RESTART is answered, and as soon as it is, and for ever.
+        fired.during(verb, 4, |rig| {
+            (rig.t3i.fault, rig.t3i.broken) = (fault, fault);
+            rig.steps(30);
+        });
+        fired.during(verb, 4, |rig| {
+            (rig.t3i.fault, rig.t3i.more_faults) = (fault, 2);
+            rig.steps(40);
+        });
+        fired.during(verb, 4, |rig| {
+            for _ in 0..=10 {
+                rig.t3i.fault = fault;
+                rig.steps(20);
+            }
+            rig.command(verb, 1);
+            rig.steps(3);
+        });
+        fired.run(Rig::paused(), |rig| rig.t3i.fault = fault);
+    }
+    fired.during(verb, 4, |rig| (rig.t3i.fault, rig.t3i.dtr_off) = (LinkFault::NotResponding, true));
+    fired.during(verb, 4, |rig| (rig.t3i.fault, rig.t3i.elsewhere) = (LinkFault::NotResponding, true));
+    fired.run(Rig::paused(), |rig| rig.t3i.dead = true);
 }
 
 /// What becomes of a motion.
@@ -146,6 +177,7 @@ fn pauses(fired: &mut Fired) {
     fired.run(Rig::initialized(), |rig| {
         rig.run(PrimVerb::GoThru, 1);
         rig.frame_switch(both);
+        rig.stick(1000, 0);
     });
     fired.during(PrimVerb::GotoPt, 20, |rig| rig.command(PrimVerb::None, 0));
     fired.during(PrimVerb::GotoPt, 20, |rig| rig.prim = Prim::default());

@@ -189,7 +189,9 @@ impl PedestalDouble {
                         }
                         PedestalVerb::Release => status.grip_size = command.grasp_size,
                         PedestalVerb::Grip => status.grip_size = self.part.max(command.grasp_size),
-                        PedestalVerb::Flip if !self.slips => status.table_position += command.table_angle,
+                        PedestalVerb::Flip if !self.slips => {
+                            status.table_position = status.table_position.map(|at| at + command.table_angle);
+                        }
                         PedestalVerb::Flip if self.slips => status.grip_size = 0,
                         _ => {}
                     }

@@ -101,8 +101,7 @@ fn an_interrupted_regrip_goes_on() {
                         let s = bench.step();
                         (
                             s.report,
-                            bench.memory.subtask.header.table,
-                            bench.memory.subtask.header.row,
+                            bench.memory.subtask.header.decided,
                             bench.memory.subtask.emove.command,
                             bench.memory.subtask.pedestal.command,
                         )
@@ -113,7 +112,11 @@ fn an_interrupted_regrip_goes_on() {
                 panic!("{ticks} {restart} {trail:?}");
             }
             assert_eq!(fix(&mut bench), DONE, "interrupted after {ticks} ticks");
-            assert_eq!(bench.memory.pedestal.status.table_position, -2135 + 1835, "the angle is absolute");
+            assert_eq!(
+                bench.memory.pedestal.status.table_position,
+                Some(-2135 + 1835),
+                "the angle is absolute"
+            );
             let held = ObjectGrip { object: Name16::new("PART").unwrap(), grip: -1 };
             assert_eq!(bench.memory.emove.status.held, Holding::Object(held));
             assert_eq!(bench.memory.subtask.regrip, None);
@@ -129,7 +132,7 @@ fn a_table_that_was_stopped_half_way_turns_by_what_is_left() {
         bench.step();
     }
     assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
-    bench.pedestal.outputs.status.table_position = -1000;
+    bench.pedestal.outputs.status.table_position = Some(-1000);
     bench.step();
     assert_eq!(fix(&mut bench), DONE);
     let flip = bench.pedestal.received[0];
@@ -218,7 +221,7 @@ fn regrips(ignores: (bool, bool), rows: &mut Coverage) -> (usize, usize) {
                         let mut bench = Bench::default();
                         let grip_size = if in_hand.is_some() { 255 } else { open };
                         let status = &mut bench.pedestal.outputs.status;
-                        (status.grip_size, status.table_position) = (grip_size, table_position);
+                        (status.grip_size, status.table_position) = (grip_size, Some(table_position));
                         bench.emove.outputs.status.held = holding(held);
                         bench.emove.outputs.status.at = standing(&bench, at);
                         bench.step();

@@ -1,8 +1,10 @@
-//! Decision tables of T3I: what comes from Prim, what all commands have in common, and a file a command.
+//! Decision tables of T3I: what comes from Prim, what a report of the robot controller is worth, what all commands have in
+//! common, and a file a command.
 
 pub mod pause;
 pub mod point;
 pub mod receive;
+pub mod report;
 pub mod restart;
 pub mod trouble;
 
@@ -35,6 +37,55 @@ pub enum Link {
     Starting,
     /// It has failed since the last RESTART.
     Failed,
+}
+
+/// The controller's DTR.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Dtr {
+    /// It is on, or this end of the line has stopped in the middle of a frame and does not look.
+    On,
+    /// The controller does not run its DEPC function, or is not there.
+    Off,
+}
+
+/// The start of the link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Start {
+    /// It goes on, or is over.
+    Over,
+    /// The link was lost in this tick, or is to be restarted.
+    Begun,
+    /// A report has come in this tick.
+    Reported,
+}
+
+/// The words with which a report is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Words {
+    /// No position was ever sent.
+    Nothing,
+    /// Those of the position that was sent last and of the one before.
+    Sent,
+}
+
+/// The position of the last report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Place {
+    /// No word is more than 2 counts beside the way from the words before to the last ones.
+    Near,
+    /// A word is.
+    Far,
+}
+
+/// What was sent in the tick before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Before {
+    /// Nothing that counts.
+    Nothing,
+    /// A point, or a part of the way to it.
+    Point,
+    /// A reported position that is not that of the last words, without an error to report.
+    Repeated,
 }
 
 /// What there is to report as an error.
@@ -101,6 +152,21 @@ pub struct Request {
     pub link: Link,
 }
 
+/// The state variables of [`report::REPORT`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Answer {
+    /// The controller's DTR.
+    pub dtr: Dtr,
+    /// The start of the link.
+    pub start: Start,
+    /// What a report is compared with.
+    pub words: Words,
+    /// The report.
+    pub place: Place,
+    /// What was sent in the tick before.
+    pub before: Before,
+}
+
 /// The state variables of a tick, for the tables of the commands.
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
@@ -121,6 +187,8 @@ pub struct Situation {
 pub struct Seen {
     /// What is in the command buffer.
     pub request: Request,
+    /// What came from the robot controller.
+    pub answer: Answer,
     /// The command.
     pub command: T3iCommand,
     /// Does Prim work?
@@ -149,7 +217,7 @@ pub enum Action {
 commands! {
     /// Consult the tables of a command.
     pub fn of_command(T3iVerb, enum Step, Situation) -> Action {
-        others: receive::RECEIVE, trouble::TROUBLE;
+        others: receive::RECEIVE, report::REPORT, trouble::TROUBLE;
         None | Pause    => trouble::trouble then pause::pause;
         Restart         => trouble::trouble then restart::restart;
         Point           => trouble::trouble then point::point;

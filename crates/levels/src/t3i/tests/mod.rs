@@ -15,7 +15,7 @@ use rcs_core::{
     interface::{
         CommonMemory, Decided, ExternalInputs, Header, T3iOutputs,
         device::{LinkBytes, RESOLVER_COUNTS},
-        t3i::{LinkFault, T3iReport, T3iVerb},
+        t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
     },
     kinematics::{HOME_JOINTS, Joints, T3},
     pose::WireFrame,
@@ -39,6 +39,8 @@ struct Bench {
     /// The line carries bytes.
     connected: bool,
     hold: bool,
+    /// The controller's program runs; else its DTR is off.
+    on: bool,
     /// Tables and rows that fired.
     rows: Coverage,
 }
@@ -67,6 +69,7 @@ impl Bench {
             prim_runs: true,
             connected: true,
             hold: false,
+            on: true,
             rows: Coverage::default(),
         };
         bench.external.devices.resolvers.valid = true;
@@ -93,7 +96,7 @@ impl Bench {
             ControllerInputs { rx, cts: true, board: true, start, hold: self.hold, ..Default::default() };
         let out = self.controller.step(&inputs, &mut self.robot);
         self.external.devices.link_rx = if self.connected { out.tx } else { LinkBytes::default() };
-        self.external.devices.link_ready = out.dtr;
+        self.external.devices.link_ready = out.dtr && self.on;
         self.external.devices.resolvers.counts = counts(&self.robot.joints);
     }
 
@@ -108,8 +111,10 @@ impl Bench {
         Process::<()>::step(&mut self.t3i, &inputs, &mut outputs);
         self.memory.t3i = outputs;
         let received = Decided { table: tables::number::RECEIVE, row: self.t3i.state.receive_row };
-        self.rows.note(&Header { decided: Some(received), ..Header::default() });
-        self.rows.note(&outputs.header);
+        let reported = Decided { table: tables::number::REPORT, row: self.t3i.state.report_row };
+        for decided in [Some(reported), Some(received), outputs.header.decided] {
+            self.rows.note(&Header { decided, ..Header::default() });
+        }
         self.cell(&outputs.link_tx, false);
         &self.memory.t3i
     }
@@ -367,7 +372,7 @@ fn a_cut_line_is_noticed_reported_and_mended_only_by_restart() {
     assert!(!bench.memory.t3i.status.link_running);
     let at = bench.robot.at;
     bench.connected = true;
-    for _ in 0..10 {
+    for _ in 0..30 {
         bench.tick();
         assert_eq!((bench.report(), bench.robot.at), (T3iReport::Error, at));
     }
@@ -427,16 +432,138 @@ fn a_prim_that_is_stepped_singly_lets_one_point_out_a_step() {
 }
 
 #[test]
-fn a_restart_without_an_answer_is_an_error_after_three_attempts() {
-    let mut bench = Bench::running();
-    bench.connected = false;
-    bench.command(T3iVerb::Restart);
-    let mut executing = 0;
-    while bench.tick().status.report == T3iReport::Executing {
-        executing += 1;
-        assert!(executing < 100);
+fn a_restart_without_an_answer_is_an_error_at_the_end_of_patience() {
+    for (patience, ticks) in [(Some(100), 100), (None, 1500)] {
+        let mut bench = Bench::running();
+        bench.external.devices.link_patience = patience;
+        bench.connected = false;
+        bench.command(T3iVerb::Restart);
+        let (mut executing, mut asked) = (0, 0);
+        while bench.tick().status.report == T3iReport::Executing {
+            executing += 1;
+            asked += usize::from(bench.memory.t3i.link_tx.as_slice() == [0x05]);
+            let status = &bench.memory.t3i.status;
+            assert_eq!((status.controller_ready, status.silent), (true, executing > 25));
+        }
+        assert_eq!((executing, asked, bench.fault()), (ticks, ticks / 25, LinkFault::NotResponding));
     }
-    assert_eq!((executing, bench.fault()), (9, LinkFault::NotResponding));
+}
+
+/// What T3I makes of a report.
+fn check(bench: &Bench) -> ReportCheck {
+    bench.memory.t3i.status.check
+}
+
+/// A robot that is sent along X, and whose line is cut: `taken` says whether the last words arrive.
+fn cut_off(taken: bool) -> Bench {
+    let mut bench = Bench::running();
+    for point in 1..=5 {
+        bench.point(&beside(0.3 * f64::from(point)));
+        bench.tick();
+    }
+    assert_eq!(check(&bench), ReportCheck::AsSent);
+    if !taken {
+        bench.connected = false;
+    }
+    bench.point(&beside(1.8));
+    bench.tick();
+    bench.connected = false;
+    bench.external.devices.link_rx = LinkBytes::default();
+    for _ in 0..4 {
+        bench.tick();
+    }
+    assert_eq!((bench.fault(), check(&bench)), (LinkFault::NotResponding, ReportCheck::NoReport));
+    bench
+}
+
+/// The line is mended and the link restarted.
+fn restarted(mut bench: Bench) -> Bench {
+    bench.connected = true;
+    bench.command(T3iVerb::Restart);
+    for _ in 0..40 {
+        bench.tick();
+    }
+    assert_eq!((bench.report(), bench.fault()), (T3iReport::Finished, LinkFault::None));
+    bench
+}
+
+/// Words that the robot is moved by, otherwise than over the line.
+fn led(mut bench: Bench, words: i16) -> Bench {
+    bench.robot.at.words[0] += words;
+    bench
+}
+
+#[test]
+fn a_robot_that_took_the_last_words_or_not_or_is_between_is_where_it_was_sent() {
+    for (taken, words) in
+        [(true, 0), (true, 2), (true, -15), (true, -32), (false, 0), (false, -2), (false, 32)]
+    {
+        let bench = restarted(led(cut_off(taken), words));
+        assert_eq!(check(&bench), ReportCheck::AsSent, "{taken} {words}");
+        let at = bench.robot.at.to_tool(&T3);
+        assert_eq!(bench.memory.t3i.status.frame_feedback, WireFrame::from_frame(&at));
+    }
+    for (taken, words) in [(true, 3), (true, -33), (false, -3), (false, 33)] {
+        let bench = restarted(led(cut_off(taken), words));
+        assert_eq!(check(&bench), ReportCheck::Elsewhere, "{taken} {words}");
+    }
+}
+
+#[test]
+fn a_robot_that_is_elsewhere_stays_so_until_it_is_sent_on() {
+    let mut bench = restarted(led(cut_off(true), 100));
+    assert_eq!(check(&bench), ReportCheck::Elsewhere);
+    // Another RESTART, and another loss of the link, do not make it right.
+    for connected in [true, false] {
+        bench.connected = connected;
+        for _ in 0..5 {
+            bench.tick();
+        }
+        bench = restarted(bench);
+        assert_eq!(check(&bench), ReportCheck::Elsewhere);
+    }
+    bench.point(&bench.robot_tool());
+    bench.tick();
+    bench.tick();
+    assert_eq!(check(&bench), ReportCheck::AsSent);
+}
+
+#[test]
+fn a_report_after_dtr_was_off_is_not_believed_to_be_where_it_was_sent() {
+    let mut bench = Bench::running();
+    bench.point(&beside(0.3));
+    bench.tick();
+    (bench.on, bench.external.devices.link_ready) = (false, false);
+    bench.tick();
+    let status = &bench.memory.t3i.status;
+    assert_eq!((status.controller_ready, status.report), (false, T3iReport::Error));
+    bench.on = true;
+    let bench = restarted(bench);
+    assert_eq!(check(&bench), ReportCheck::Elsewhere);
+    // Before anything was sent it does not matter.
+    let mut bench = Bench::new();
+    (bench.on, bench.external.devices.link_ready) = (false, false);
+    bench.tick();
+    assert_eq!(check(&bench), ReportCheck::NoReport);
+    bench.on = true;
+    assert_eq!(check(&restarted(bench)), ReportCheck::AsSent);
+}
+
+#[test]
+fn a_restarted_t3i_knows_from_its_outputs_what_was_sent() {
+    for (words, expected) in [(0, ReportCheck::AsSent), (3, ReportCheck::Elsewhere)] {
+        let mut bench = cut_off(true);
+        bench.t3i = T3i::default();
+        bench.tick();
+        assert_eq!(bench.fault(), LinkFault::InvalidCommand);
+        let bench = restarted(led(bench, words));
+        assert_eq!(check(&bench), expected);
+    }
+    // Nor does it forget that a person has to decide.
+    let mut bench = restarted(led(cut_off(true), 100));
+    bench.t3i = T3i::default();
+    bench.tick();
+    assert_eq!(check(&restarted(bench)), ReportCheck::Elsewhere);
 }
 
 #[test]

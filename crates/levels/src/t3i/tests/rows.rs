@@ -21,7 +21,7 @@ impl Bench {
         self.connected = false;
         self.ticks(4);
         self.connected = true;
-        self.ticks(12);
+        self.ticks(30);
         assert_eq!((self.report(), self.memory.t3i.status.link_running), (T3iReport::Error, true));
     }
 }
@@ -52,7 +52,7 @@ fn every_row_fires() {
     bench.command(T3iVerb::Restart);
     bench.ticks(12);
     bench.connected = true;
-    bench.ticks(6);
+    bench.ticks(30);
     bench.tick_unanswered();
     fired.append(&mut bench.rows);
 
@@ -102,6 +102,18 @@ fn every_row_fires() {
     // A restart of the process.
     bench.t3i = T3i::default();
     bench.ticks(2);
+    fired.append(&mut bench.rows);
+
+    // DTR goes off before anything was sent, and after; a robot that is elsewhere is repeated where it is, and sent on.
+    let mut bench = Bench::new();
+    (bench.on, bench.external.devices.link_ready) = (false, false);
+    bench.ticks(2);
+    fired.append(&mut bench.rows);
+    let mut bench = restarted(led(cut_off(true), 100));
+    bench.point(&bench.robot_tool());
+    bench.ticks(2);
+    bench.on = false;
+    bench.ticks(3);
     fired.append(&mut bench.rows);
 
     // No words on the way: to the only point, and to the first of two.

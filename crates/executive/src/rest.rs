@@ -1,0 +1,30 @@
+//! Does the commanded frame rest? So that a stream of points ends at rest, whatever ends the run.
+
+use rcs_core::{interface::CommonMemory, pose::WireFrame};
+
+/// The robot is at rest when the commanded frame has not changed for so many ticks.
+pub const AT_REST: u32 = 5;
+/// It is taken to be at rest after so many ticks, 3 s, with the velocity knob at zero: no ramp takes longer.
+pub const AT_LAST: u32 = 75;
+
+/// Looks at the commanded frame after each tick.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RestWatch {
+    commanded: WireFrame,
+    unchanged: u32,
+}
+
+impl RestWatch {
+    /// A tick is over.
+    pub fn observe(&mut self, memory: &CommonMemory) {
+        let commanded = memory.prim.t3i.frame;
+        self.unchanged = if commanded == self.commanded { self.unchanged.saturating_add(1) } else { 0 };
+        self.commanded = commanded;
+    }
+
+    /// The commanded frame has rested.
+    #[must_use]
+    pub const fn is_at_rest(&self) -> bool {
+        self.unchanged >= AT_REST
+    }
+}

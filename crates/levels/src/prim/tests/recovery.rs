@@ -1,0 +1,230 @@
+//! What becomes of a command when the link fails: Prim restarts it, and goes on.
+
+use rcs_core::interface::device::ForceSensor;
+
+use super::*;
+use crate::prim::state::{MOST_RESTARTS, RESTART_TICKS};
+
+const FAULTS: [LinkFault; 5] = [
+    LinkFault::NotResponding,
+    LinkFault::DepcError,
+    LinkFault::Checksum,
+    LinkFault::NotTransmitted,
+    LinkFault::InvalidCommand,
+];
+
+impl Rig {
+    /// The link fails and is restarted; the command goes on executing meanwhile. Where the robot stopped.
+    fn lose_and_restart(&mut self, fault: LinkFault) -> WireFrame {
+        self.t3i.fault = fault;
+        self.steps(3);
+        let stopped = self.t3i.output;
+        let status = &self.memory.prim.status;
+        assert_eq!((status.report, status.restarting), (PrimReport::Executing, true));
+        assert_eq!((status.present_pose, self.memory.prim.t3i.command), (None, T3iVerb::Restart));
+        self.t3i.path.clear();
+        stopped
+    }
+}
+
+#[test]
+fn a_motion_goes_on_from_rest_to_its_goal_after_every_fault() {
+    for verb in [PrimVerb::GotoPt, PrimVerb::DeltaMove, PrimVerb::GoWhile, PrimVerb::GoThru] {
+        for fault in FAULTS {
+            for after in [2, 5, 30, 60] {
+                let mut rig = Rig::initialized();
+                rig.guard(verb, 3, "NEAR-R");
+                rig.steps(after);
+                let stopped = rig.lose_and_restart(fault);
+                assert_eq!(rig.until_over(), PrimReport::Done, "{verb} {fault} {after}");
+                assert!(!rig.memory.prim.status.restarting);
+                rig.check_path(&stopped.to_frame().unwrap());
+                rig.steps(100);
+                assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(40.0, 3.0)));
+            }
+        }
+    }
+}
+
+#[test]
+fn it_goes_on_to_the_goal_of_the_command_that_is_current_then() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(30);
+    let stopped = rig.lose_and_restart(LinkFault::NotResponding);
+    assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+    assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(10.0, 10.0)));
+    rig.check_path(&stopped.to_frame().unwrap());
+}
+
+#[test]
+fn a_robot_that_flies_on_is_sent_on_by_the_next_motion() {
+    let mut rig = Rig::initialized();
+    assert_eq!(rig.run(PrimVerb::GoThru, 1), PrimReport::Done);
+    rig.t3i.fault = LinkFault::Checksum;
+    rig.steps(20);
+    assert_eq!((rig.report(), rig.memory.prim.t3i.command), (PrimReport::Done, T3iVerb::Pause));
+    let stopped = rig.t3i.output.to_frame().unwrap();
+    rig.t3i.path.clear();
+    assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+    assert_eq!(rig.t3i.output, WireFrame::from_frame(&shifted(10.0, 10.0)));
+    rig.check_path(&stopped);
+}
+
+#[test]
+fn a_link_that_fails_while_pause_stands_is_reported_and_the_next_motion_restarts_it() {
+    for (fault, report) in [
+        (LinkFault::NotResponding, PrimReport::T3LinkOff),
+        (LinkFault::DepcError, PrimReport::T3LinkErr),
+        (LinkFault::InvalidCommand, PrimReport::T3BadCommand),
+    ] {
+        let mut rig = Rig::paused();
+        let held = rig.t3i.output;
+        rig.t3i.fault = fault;
+        rig.steps(20);
+        assert_eq!((rig.report(), rig.t3i.output), (report, held));
+        rig.t3i.path.clear();
+        assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+        rig.check_path(&held.to_frame().unwrap());
+    }
+}
+
+#[test]
+fn a_guarded_move_asks_its_condition_before_the_first_point() {
+    for (verb, report) in
+        [(PrimVerb::GoUntil, PrimReport::Done), (PrimVerb::GoWhile, PrimReport::DetectedErr)]
+    {
+        let mut rig = Rig::initialized();
+        rig.guard(verb, 3, "NEAR-R");
+        rig.steps(30);
+        let stopped = rig.lose_and_restart(LinkFault::NotResponding);
+        rig.external.devices.holsters.right = 3;
+        assert_eq!((rig.until_over(), rig.t3i.output), (report, stopped));
+        assert_eq!(rig.t3i.path, []);
+    }
+}
+
+#[test]
+fn a_guarded_move_that_was_stopping_is_done_where_it_rests() {
+    let mut rig = Rig::initialized();
+    rig.guard(PrimVerb::GoUntil, 3, "NEAR-R");
+    rig.steps(40);
+    rig.external.devices.holsters.right = 3;
+    rig.steps(3);
+    let detected = rig.memory.prim.status.detected_pose;
+    let stopped = rig.lose_and_restart(LinkFault::NotResponding);
+    // The condition has passed: it has come all the same.
+    rig.external.devices.holsters.right = 0;
+    assert_eq!((rig.until_over(), rig.t3i.output), (PrimReport::Done, stopped));
+    assert_eq!((rig.memory.prim.status.detected_pose, rig.t3i.path.len()), (detected, 0));
+}
+
+#[test]
+fn a_missed_condition_is_waited_for_after_a_restart() {
+    let mut rig = Rig::initialized();
+    rig.guard(PrimVerb::GoUntil, 2, "NEAR-R");
+    assert_eq!(rig.until_over(), PrimReport::NotDetected);
+    rig.t3i.fault = LinkFault::NotResponding;
+    rig.steps(30);
+    assert_eq!(rig.report(), PrimReport::NotDetected);
+    rig.external.devices.holsters.right = 3;
+    rig.steps(2);
+    assert_eq!(rig.until_over(), PrimReport::Done);
+}
+
+#[test]
+fn cal_sensor_begins_its_samples_anew() {
+    let force = |z| ForceSensor { x: 2048, y: 2048, z, moment: 2048, valid: true };
+    let mut rig = Rig::initialized();
+    rig.external.devices.force = force(2048);
+    rig.command(PrimVerb::CalSensor, 0);
+    rig.steps(9);
+    assert!(rig.prim.state().calibration.samples > 2);
+    rig.lose_and_restart(LinkFault::NotResponding);
+    rig.external.devices.force = force(2148);
+    assert_eq!(rig.until_over(), PrimReport::Done);
+    assert_eq!(rig.prim.state().calibration.bias, Some([100.0, 0.0, 0.0, 0.0]));
+}
+
+#[test]
+fn a_restart_without_a_report_is_a_lost_link() {
+    for (broken, report) in
+        [(LinkFault::NotResponding, PrimReport::T3LinkOff), (LinkFault::Checksum, PrimReport::T3LinkErr)]
+    {
+        let mut rig = Rig::initialized();
+        rig.command(PrimVerb::GotoPt, 3);
+        rig.steps(30);
+        rig.t3i.broken = broken;
+        rig.lose_and_restart(LinkFault::DepcError);
+        assert_eq!(rig.until_over(), report);
+    }
+}
+
+#[test]
+fn a_controller_whose_dtr_is_off_is_a_link_that_is_off() {
+    for before_the_restart in [true, false] {
+        let mut rig = Rig::initialized();
+        rig.command(PrimVerb::GotoPt, 3);
+        rig.steps(30);
+        if before_the_restart {
+            (rig.t3i.dtr_off, rig.t3i.fault) = (true, LinkFault::NotResponding);
+        } else {
+            rig.lose_and_restart(LinkFault::NotResponding);
+            rig.t3i.dtr_off = true;
+        }
+        assert_eq!(rig.until_over(), PrimReport::T3LinkOff);
+    }
+}
+
+#[test]
+fn too_many_restarts_are_a_lost_link_and_pass() {
+    let most = u32::try_from(MOST_RESTARTS).unwrap();
+    for (faults, report) in [(most - 1, PrimReport::Done), (most, PrimReport::T3LinkErr)] {
+        let mut rig = Rig::initialized();
+        rig.command(PrimVerb::GotoPt, 3);
+        rig.steps(30);
+        rig.lose_and_restart(LinkFault::Checksum);
+        rig.t3i.more_faults = faults;
+        assert_eq!(rig.until_over(), report, "{faults}");
+        if report == PrimReport::T3LinkErr {
+            assert_eq!(rig.run(PrimVerb::GotoPt, 2), report, "at once again");
+        }
+        rig.steps(u32::try_from(RESTART_TICKS).unwrap());
+        assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+    }
+}
+
+#[test]
+fn a_robot_that_is_elsewhere_waits_for_robot_init() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(30);
+    rig.lose_and_restart(LinkFault::NotResponding);
+    rig.t3i.elsewhere = true;
+    rig.t3i.output = WireFrame::from_frame(&shifted(3.0, 3.0));
+    let elsewhere = |rig: &mut Rig| {
+        assert_eq!(rig.until_over(), PrimReport::Error);
+        assert_eq!(rig.memory.prim.status.reason, Reason::RobotElsewhere);
+        assert_eq!((rig.t3i.output, rig.t3i.path.len()), (WireFrame::from_frame(&shifted(3.0, 3.0)), 0));
+    };
+    elsewhere(&mut rig);
+    rig.command(PrimVerb::GotoPt, 2);
+    elsewhere(&mut rig);
+    assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Done);
+    assert_eq!(rig.run(PrimVerb::GotoPt, 2), PrimReport::Done);
+    rig.check_path(&shifted(3.0, 3.0));
+}
+
+#[test]
+fn a_restarted_prim_goes_on_where_the_robot_stands() {
+    let mut rig = Rig::initialized();
+    rig.command(PrimVerb::GotoPt, 3);
+    rig.steps(30);
+    rig.prim = Prim::default();
+    rig.steps(5);
+    assert_eq!((rig.report(), rig.memory.prim.status.reason), (PrimReport::Error, Reason::Restarted));
+    let stopped = rig.t3i.output;
+    rig.t3i.path.clear();
+    assert_eq!(rig.run(PrimVerb::GotoPt, 3), PrimReport::Done);
+    rig.check_path(&stopped.to_frame().unwrap());
+}
