@@ -123,7 +123,7 @@ struct Allowance {
 }
 
 /// Watches a run.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ContactCheck {
     permits: Permits,
     allowed: BTreeMap<(String, String), Allowance>,

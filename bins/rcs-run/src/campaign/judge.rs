@@ -1,0 +1,160 @@
+//! What has become of the world: compared with the undisturbed run, and watched for what must not happen.
+
+use plant::{CellEvent, t3::Stage};
+use rcs_core::tick::Tick;
+
+use super::branch::Branch;
+use crate::run::contacts::Collision;
+
+/// A part may lie so far from where the undisturbed run has it, in.
+const PART: f64 = 0.5;
+/// The hand may stand so far from where the undisturbed run has it, in.
+const HAND: f64 = 0.5;
+
+/// Where everything is at the end of a command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct World {
+    parts: Vec<PartAt>,
+    /// End effector id of the gripper on the robot.
+    gripper: u8,
+    /// Middle between the fingertips, world, in.
+    hand: [f64; 3],
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct PartAt {
+    name: String,
+    location: String,
+    sector: u16,
+    clamped: bool,
+    at: [f64; 3],
+}
+
+fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+impl World {
+    /// The world of a branch now.
+    #[must_use]
+    pub fn of(branch: &Branch<'_>) -> Self {
+        let cell = &branch.workstation.cell;
+        let parts = cell.parts().into_iter().map(|part| PartAt {
+            name: part.name,
+            location: part.location,
+            sector: part.sector,
+            clamped: part.clamped,
+            at: part.position,
+        });
+        Self { parts: parts.collect(), gripper: cell.gripper(), hand: cell.tool().position.into() }
+    }
+
+    /// What is unlike in the undisturbed run; `None` if nothing is.
+    #[must_use]
+    pub fn unlike(&self, undisturbed: &Self) -> Option<String> {
+        if self.gripper != undisturbed.gripper {
+            return Some(format!("the robot has gripper {}, not {}", self.gripper, undisturbed.gripper));
+        }
+        if self.parts.len() != undisturbed.parts.len() {
+            return Some(format!("{} parts in the cell, not {}", self.parts.len(), undisturbed.parts.len()));
+        }
+        let parts = self.parts.iter().zip(&undisturbed.parts);
+        let part = parts.filter_map(|(one, other)| one.unlike(other)).next();
+        let away = distance(&self.hand, &undisturbed.hand);
+        part.or_else(|| {
+            (away > HAND).then(|| format!("the hand is {away:.2} in from where the command leaves it"))
+        })
+    }
+}
+
+impl PartAt {
+    fn unlike(&self, other: &Self) -> Option<String> {
+        let place = |part: &Self| match part.sector {
+            0 => part.location.clone(),
+            sector => format!("{} {sector}", part.location),
+        };
+        if self.name != other.name {
+            return Some(format!("{} is in the cell, not {}", self.name, other.name));
+        }
+        if (&self.location, self.sector) != (&other.location, other.sector) {
+            return Some(format!("{} is at {}, not at {}", self.name, place(self), place(other)));
+        }
+        if self.clamped != other.clamped {
+            let not = if self.clamped { "" } else { "not " };
+            return Some(format!("{} is {not}clamped in the vise", self.name));
+        }
+        let away = distance(&self.at, &other.at);
+        (away > PART)
+            .then(|| format!("{} is {away:.2} in from where it should be in {}", self.name, place(self)))
+    }
+}
+
+/// Something that must not happen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Harm {
+    /// When.
+    pub tick: Tick,
+    /// What, in a sentence.
+    pub what: String,
+    /// What it is like, without numbers: to be counted.
+    pub kind: String,
+    /// A commanded point has caused it, not an arm without pressure, a person at the box or the controller's own travel.
+    pub commanded: bool,
+}
+
+/// Watches a branch.
+#[derive(Default)]
+pub struct Judge {
+    /// Contacts that were there before the interruption.
+    before: usize,
+    seen: usize,
+    /// What has happened.
+    pub harms: Vec<Harm>,
+}
+
+impl Judge {
+    /// A judge of what happens from now on.
+    #[must_use]
+    pub fn from_now(branch: &Branch<'_>) -> Self {
+        let before = branch.check().collisions().len();
+        Self { before, seen: before, harms: Vec::new() }
+    }
+
+    /// Look at a tick; `person` moves the robot at the joystick box.
+    pub fn look(&mut self, branch: &Branch<'_>, person: bool) {
+        let tick = branch.at();
+        let t3 = branch.workstation.cell.t3();
+        let commanded = t3.stage() == Stage::Depc && t3.cut().is_none() && !person;
+        let contacts = branch.check().collisions();
+        for contact in contacts.iter().skip(self.seen) {
+            let Collision { mover, obstacle, commands, .. } = contact;
+            let kind = format!("{mover} runs into {obstacle} during {commands}");
+            self.harms.push(Harm { tick, what: contact.to_string(), kind, commanded });
+        }
+        self.seen = contacts.len();
+        for event in branch.events.iter().filter(|event| is_harm(event)) {
+            let text = event.to_string();
+            let commanded = commanded && !matches!(event, CellEvent::Sagged(_));
+            self.harms.push(Harm { tick, what: text.clone(), kind: text, commanded });
+        }
+    }
+
+    /// How deep the contacts have become that were not there before.
+    #[must_use]
+    pub fn deepest<'b>(&self, branch: &'b Branch<'_>) -> Option<&'b Collision> {
+        let contacts = branch.check().collisions().iter().skip(self.before);
+        contacts.max_by(|a, b| a.depth_in.total_cmp(&b.depth_in))
+    }
+}
+
+const fn is_harm(event: &CellEvent) -> bool {
+    matches!(
+        event,
+        CellEvent::Dropped { .. }
+            | CellEvent::ForcedOut { .. }
+            | CellEvent::GripperFell { .. }
+            | CellEvent::GripperTorn { .. }
+            | CellEvent::Fell { .. }
+            | CellEvent::Quarantined
+    )
+}

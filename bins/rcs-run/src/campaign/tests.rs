@@ -1,0 +1,1 @@
+//! Forks are exact, and the judge finds what is planted.
