@@ -366,12 +366,6 @@ impl<'f> Branch<'f> {
     pub const fn facility(&self) -> &'f Facility {
         self.facility
     }
-
-    /// All that the next tick depends on, as one number.
-    #[must_use]
-    pub fn fingerprint(&self) -> (Digest, u64) {
-        (self.control.digest, self.workstation.cell.digest())
-    }
 }
 
 /// The task data of a generation: 0 as loaded, then one for each reload of the job.

@@ -4,7 +4,7 @@ use plant::{CellEvent, t3::Stage};
 use rcs_core::tick::Tick;
 
 use super::branch::Branch;
-use crate::run::contacts::Collision;
+use crate::run::contacts::{Collision, Commands};
 
 /// A part may lie so far from where the undisturbed run has it, in.
 const PART: f64 = 0.5;
@@ -100,24 +100,27 @@ pub struct Harm {
     pub kind: String,
     /// A commanded point has caused it, not an arm without pressure, a person at the box or the controller's own travel.
     pub commanded: bool,
+    /// Which contact it is, if it is one.
+    contact: Option<usize>,
 }
 
 /// Watches a branch.
-#[derive(Default)]
 pub struct Judge {
-    /// Contacts that were there before the interruption.
-    before: usize,
     seen: usize,
-    /// What has happened.
-    pub harms: Vec<Harm>,
+    harms: Vec<Harm>,
 }
 
 impl Judge {
     /// A judge of what happens from now on.
     #[must_use]
     pub fn from_now(branch: &Branch<'_>) -> Self {
-        let before = branch.check().collisions().len();
-        Self { before, seen: before, harms: Vec::new() }
+        Self { seen: branch.check().collisions().len(), harms: Vec::new() }
+    }
+
+    /// What has happened: the first that a commanded point has caused, or else the first.
+    #[must_use]
+    pub fn worst(&self) -> Option<&Harm> {
+        self.harms.iter().find(|harm| harm.commanded).or_else(|| self.harms.first())
     }
 
     /// Look at a tick; `person` moves the robot at the joystick box.
@@ -126,24 +129,30 @@ impl Judge {
         let t3 = branch.workstation.cell.t3();
         let commanded = t3.stage() == Stage::Depc && t3.cut().is_none() && !person;
         let contacts = branch.check().collisions();
-        for contact in contacts.iter().skip(self.seen) {
+        for (at, contact) in contacts.iter().enumerate().skip(self.seen) {
             let Collision { mover, obstacle, commands, .. } = contact;
             let kind = format!("{mover} runs into {obstacle} during {commands}");
-            self.harms.push(Harm { tick, what: contact.to_string(), kind, commanded });
+            let commanded = commanded && (contact.is_of_robot() || !self.is_displaced());
+            self.harms.push(Harm { tick, what: contact.to_string(), kind, commanded, contact: Some(at) });
         }
         self.seen = contacts.len();
+        // What has become of a contact is known later than that it is there.
+        for harm in &mut self.harms {
+            if let Some(contact) = harm.contact.and_then(|at| contacts.get(at)) {
+                harm.what = contact.to_string();
+            }
+        }
+        let commands = Commands::from(branch.memory());
         for event in branch.events.iter().filter(|event| is_harm(event)) {
-            let text = event.to_string();
-            let commanded = commanded && !matches!(event, CellEvent::Sagged(_));
-            self.harms.push(Harm { tick, what: text.clone(), kind: text, commanded });
+            let kind = format!("{event} during {commands}");
+            let commanded = commanded && !self.is_displaced();
+            self.harms.push(Harm { tick, what: kind.clone(), kind, commanded, contact: None });
         }
     }
 
-    /// How deep the contacts have become that were not there before.
-    #[must_use]
-    pub fn deepest<'b>(&self, branch: &'b Branch<'_>) -> Option<&'b Collision> {
-        let contacts = branch.check().collisions().iter().skip(self.before);
-        contacts.max_by(|a, b| a.depth_in.total_cmp(&b.depth_in))
+    /// An arm without pressure or a person has touched something: where parts are is no matter of the controller any more.
+    fn is_displaced(&self) -> bool {
+        self.harms.iter().any(|harm| !harm.commanded)
     }
 }
 

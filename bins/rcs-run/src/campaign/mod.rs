@@ -85,7 +85,7 @@ pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
     if let Some(bar) = &bar {
         bar.finish_and_clear();
     }
-    let report = Report::new(&facility.job.name, arguments, &judgements);
+    let report = Report::new(&facility.job.name, &parent, arguments, &judgements);
     if let Some(path) = &arguments.markdown {
         let text = report.markdown();
         fs::write(path, text).map_err(|source| Error::Write { path: path.clone(), source })?;

@@ -140,12 +140,6 @@ impl<'f> Operator<'f> {
         }
     }
 
-    /// The line that is being worked on.
-    #[must_use]
-    pub const fn current(&self) -> usize {
-        self.current
-    }
-
     /// Begin the recovery procedure.
     pub fn recover(&mut self, tick: Tick) {
         self.doing = Doing::Pause;
@@ -173,12 +167,6 @@ impl<'f> Operator<'f> {
     #[must_use]
     pub fn stranded(&self) -> Option<&str> {
         (self.doing == Doing::Stranded).then_some(self.reason.as_str())
-    }
-
-    /// Commands that were sent again.
-    #[must_use]
-    pub const fn tried(&self) -> u32 {
-        self.tried
     }
 
     fn send(&mut self, tick: Tick, command: &HwsCommand) {

@@ -4,7 +4,10 @@ use std::{collections::BTreeMap, fmt::Write as _, io};
 
 use serde::Serialize;
 
-use super::trial::{Judgement, Verdict};
+use super::{
+    parent::Parent,
+    trial::{Judgement, Verdict},
+};
 use crate::{cli::CampaignArguments, error::Error};
 
 /// Branches that are listed for each reason.
@@ -44,6 +47,7 @@ impl Row {
 /// A campaign that is over.
 pub struct Report<'a> {
     job: &'a str,
+    parent: &'a Parent,
     judgements: &'a [Judgement],
     rows: Vec<Row>,
     command: String,
@@ -52,6 +56,9 @@ pub struct Report<'a> {
 #[derive(Serialize)]
 struct Json<'a> {
     job: &'a str,
+    /// Ticks and fingerprint of the undisturbed run.
+    ticks: u64,
+    digest: &'a str,
     rows: &'a [Row],
     branches: &'a [Judgement],
 }
@@ -59,7 +66,12 @@ struct Json<'a> {
 impl<'a> Report<'a> {
     /// The report on these branches, which stand in the order of their interruptions.
     #[must_use]
-    pub fn new(job: &'a str, arguments: &CampaignArguments, judgements: &'a [Judgement]) -> Self {
+    pub fn new(
+        job: &'a str,
+        parent: &'a Parent,
+        arguments: &CampaignArguments,
+        judgements: &'a [Judgement],
+    ) -> Self {
         let mut rows: Vec<Row> = Vec::new();
         for judgement in judgements {
             if rows.last().is_none_or(|row| row.interruption != judgement.interruption) {
@@ -70,7 +82,7 @@ impl<'a> Report<'a> {
             }
         }
         let command = format!("rcs-run campaign {} --seed {}", arguments.job, arguments.seed);
-        Self { job, judgements, rows, command }
+        Self { job, parent, judgements, rows, command }
     }
 
     /// As one JSON object.
@@ -78,7 +90,9 @@ impl<'a> Report<'a> {
     /// # Errors
     /// [`Error::Output`] if it cannot be written.
     pub fn json(&self) -> Result<String, Error> {
-        let json = Json { job: self.job, rows: &self.rows, branches: self.judgements };
+        let Parent { ticks, digest, .. } = self.parent;
+        let (rows, branches) = (&self.rows, self.judgements);
+        let json = Json { job: self.job, ticks: *ticks, digest, rows, branches };
         Ok(serde_json::to_string(&json).map_err(io::Error::from)? + "\n")
     }
 

@@ -18,6 +18,9 @@ use crate::error::Error;
 /// A location that no task data have.
 const MISSPELT: &str = "NOWHERRE";
 
+/// Ticks that a branch goes on after a commanded point has done damage: 2 s.
+const AFTERMATH: u64 = 50;
+
 /// When a branch is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Until {
@@ -227,10 +230,15 @@ impl Trial<'_, '_> {
                 reached |= ended.line >= self.goal;
             }
         }
-        if self.mismatch.is_some() || self.judge.harms.iter().any(|harm| harm.commanded) {
+        let worst = self.judge.worst().map(|harm| (harm.commanded, harm.tick));
+        if self.mismatch.is_some() {
             return Some(Verdict::Hurt);
         }
-        let apart = if self.judge.harms.is_empty() { None } else { Some(Verdict::Apart) };
+        if let Some((true, tick)) = worst {
+            // How deep it gets is worth knowing.
+            return (self.branch.at().since(tick) >= AFTERMATH).then_some(Verdict::Hurt);
+        }
+        let apart = worst.map(|_| Verdict::Apart);
         if self.operator.stranded().is_some() || self.branch.check().is_stuck() {
             return Some(apart.unwrap_or(Verdict::Stranded));
         }
@@ -241,7 +249,7 @@ impl Trial<'_, '_> {
     fn compare(&mut self, line: usize, command: &str) {
         let Some(world) = self.parent.world_after(line) else { return };
         // What has touched something without command may have displaced it.
-        if !self.judge.harms.is_empty() {
+        if self.judge.worst().is_some() {
             return;
         }
         if let Some(unlike) = World::of(&self.branch).unlike(world) {
@@ -285,17 +293,13 @@ impl Trial<'_, '_> {
     fn why(&self, verdict: Verdict) -> (String, String) {
         match verdict {
             Verdict::Done => (String::new(), String::new()),
-            Verdict::Hurt => {
-                if let Some(harm) = self.judge.harms.iter().find(|harm| harm.commanded) {
-                    return (harm.kind.clone(), format!("tick {}: {}", harm.tick.0, harm.what));
+            Verdict::Hurt | Verdict::Apart => {
+                if let Some(mismatch) = &self.mismatch {
+                    return mismatch.clone();
                 }
-                self.mismatch.clone().unwrap_or_default()
-            }
-            Verdict::Apart => {
-                let first = self.judge.harms.first();
                 let stranded =
-                    self.operator.stranded().map_or(String::new(), |why| format!("; stranded: {why}"));
-                first.map_or_else(Default::default, |harm| {
+                    self.operator.stranded().map_or_else(String::new, |why| format!("; stranded: {why}"));
+                self.judge.worst().map_or_else(Default::default, |harm| {
                     (harm.kind.clone(), format!("tick {}: {}{stranded}", harm.tick.0, harm.what))
                 })
             }
