@@ -33,7 +33,11 @@ fn a_branch_that_is_not_interrupted_is_the_ordinary_run_bit_for_bit() {
         assert_eq!(branches.len(), 2);
         for branch in branches {
             assert_eq!(branch["verdict"], "done", "{job}: {branch}");
-            assert_eq!((&branch["until"], &branch["digest"]), (&run["ticks"], &run["digest"]), "{job}: {branch}");
+            assert_eq!(
+                (&branch["until"], &branch["digest"]),
+                (&run["ticks"], &run["digest"]),
+                "{job}: {branch}"
+            );
         }
     }
 }
@@ -57,4 +61,24 @@ fn the_table_is_written_as_markdown() {
     let rows: Vec<&str> = table.lines().collect();
     assert_eq!(rows.len(), 4, "{table}");
     assert!(rows[2].starts_with("| linkbar | pause | 2 |") && rows[3].contains("held:task"), "{table}");
+}
+
+/// Nothing is found where nothing was interrupted, and every branch is judged: a sample of all jobs.
+#[test]
+fn a_sample_of_a_campaign_judges_every_branch() {
+    for job in ["linkbar", "clevis", "turned-part", "tool-change"] {
+        let sample = json(&["campaign", job, "--ticks", "900", "--interrupt", "none,pause,estop", "--json"]);
+        let rows = sample["rows"].as_array().expect("there are rows");
+        let count = |row: &Value, name: &str| row[name].as_u64().expect("counts are numbers");
+        let [none, pause, estop] = &rows[..] else { panic!("{rows:?}") };
+        assert_eq!(count(none, "done"), count(none, "branches"), "{job}: {}", sample["branches"]);
+        for row in [pause, estop] {
+            let judged = ["done", "stranded", "apart", "hurt"].map(|name| count(row, name));
+            assert_eq!(judged.iter().sum::<u64>(), count(none, "branches"), "{job}: {row}");
+        }
+        for branch in sample["branches"].as_array().expect("branches are listed") {
+            let explained = branch["verdict"] == "done" || branch["detail"] != "";
+            assert!(explained, "{job}: {branch}");
+        }
+    }
 }

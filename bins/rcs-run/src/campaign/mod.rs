@@ -10,6 +10,7 @@
 //! A branch does in a tick what a run does ([`branch`]); what it knows of the control processes is their interfaces.
 //! docs/campaign.md says what is judged how.
 
+mod arguments;
 mod branch;
 mod interruption;
 mod judge;
@@ -30,7 +31,7 @@ use std::{
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-pub use self::trial::Until;
+pub use self::arguments::CampaignArguments;
 use self::{
     branch::Facility,
     interruption::Kind,
@@ -39,7 +40,6 @@ use self::{
     trial::{Judgement, Procedure, Verdict},
 };
 use crate::{
-    cli::CampaignArguments,
     error::Error,
     run::setup::{CellFile, TaskFiles},
 };
@@ -54,7 +54,8 @@ const EVERY: u64 = 23;
 pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
     let facility = facility(arguments)?;
     let kinds = kinds(arguments, &facility)?;
-    let procedure = Procedure { tries: arguments.tries, until: arguments.judge };
+    let procedure =
+        Procedure { recovery: arguments.recovery, tries: arguments.tries, until: arguments.judge };
     let parent = Parent::run(&facility)?;
     let forks = parent.forks(&ticks(arguments));
     if forks.is_empty() {

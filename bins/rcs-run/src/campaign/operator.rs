@@ -53,6 +53,15 @@ pub enum Then {
     SameCommand,
 }
 
+/// What an operator does first when a command was interrupted or has failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Recovery {
+    /// PAUSE, and the same command again
+    Pause,
+    /// The same command again, without a PAUSE
+    Same,
+}
+
 /// What an operator told the trial of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ended {
@@ -87,6 +96,7 @@ pub struct Operator<'f> {
     outgoing: Option<HwsCommand>,
     /// The interruption goes on: nothing is tried.
     pub is_waiting: bool,
+    recovery: Recovery,
     tries: u32,
     tried: u32,
     /// Ticks after which the first command that is sent again is paused; none if it is not.
@@ -109,6 +119,7 @@ impl<'f> Operator<'f> {
             number: last.number,
             outgoing: None,
             is_waiting: false,
+            recovery: Recovery::Pause,
             tries,
             tried: 0,
             second_pause: None,
@@ -119,6 +130,13 @@ impl<'f> Operator<'f> {
         };
         operator.doing = if operator.command_at(current).is_some() { Doing::Command } else { Doing::Action };
         operator
+    }
+
+    /// The operator follows this procedure.
+    #[must_use]
+    pub const fn with_recovery(mut self, recovery: Recovery) -> Self {
+        self.recovery = recovery;
+        self
     }
 
     /// The first command that is sent again is paused after so many ticks.
@@ -142,6 +160,14 @@ impl<'f> Operator<'f> {
 
     /// Begin the recovery procedure.
     pub fn recover(&mut self, tick: Tick) {
+        match self.recovery {
+            Recovery::Pause => self.pause(tick),
+            Recovery::Same => self.same(tick),
+        }
+    }
+
+    /// Send a PAUSE; the current line follows it.
+    pub fn pause(&mut self, tick: Tick) {
         self.doing = Doing::Pause;
         self.send(tick, &pause());
     }
@@ -334,7 +360,7 @@ impl Operator<'_> {
             if paused {
                 self.second_pause = None;
                 self.tried = 0;
-                self.recover(tick);
+                self.pause(tick);
             }
             return;
         };

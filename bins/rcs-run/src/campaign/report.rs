@@ -5,10 +5,11 @@ use std::{collections::BTreeMap, fmt::Write as _, io};
 use serde::Serialize;
 
 use super::{
+    arguments::CampaignArguments,
     parent::Parent,
     trial::{Judgement, Verdict},
 };
-use crate::{cli::CampaignArguments, error::Error};
+use crate::error::Error;
 
 /// Branches that are listed for each reason.
 const LISTED: usize = 4;

@@ -10,6 +10,7 @@ use taskdata::load::{Job, Source};
 use super::{
     branch::{Branch, Commander, Facility, Fork},
     interruption::Kind,
+    operator::Recovery,
     parent::{Parent, Ticks, emulator},
     pool,
     trial::{self, Judgement, Nobody, Procedure, Until, Verdict},
@@ -20,11 +21,12 @@ use crate::run::{
 };
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
-const PROCEDURE: Procedure = Procedure { tries: 3, until: Until::Next };
+const PROCEDURE: Procedure = Procedure { recovery: Recovery::Pause, tries: 3, until: Until::Next };
 
 fn facility(job: &str) -> Facility {
     let data = Path::new(DATA);
-    let TaskFiles { store, job, job_path, .. } = TaskFiles::load(data, Some(job)).expect("the job is shipped");
+    let TaskFiles { store, job, job_path, .. } =
+        TaskFiles::load(data, Some(job)).expect("the job is shipped");
     let CellFile { description, .. } =
         CellFile::load(data, &store, &job, &job_path).expect("the cell is shipped");
     Facility { store, job, description, seed: 1 }
@@ -85,7 +87,7 @@ fn a_fork_goes_on_as_its_parent_bit_for_bit() {
     );
     let mut branch = Branch::start(&facility).expect("the cell is sound");
     let mut hwsc = emulator(&facility);
-    for fork_at in [1, 72, 90, 110, 200, 700, 1600] {
+    for fork_at in [1, 72, 107, 160, 700, 1600] {
         while branch.at() < Tick(fork_at) {
             branch.tick(&mut hwsc);
         }
@@ -143,7 +145,10 @@ fn the_judge_finds_a_contact_that_was_planted() {
     let planted = branch.fork().expect("the cell can be saved");
     let judgement = judged(&facility, &parent, &planted, "none");
     assert_eq!(judgement.verdict, Verdict::Hurt);
-    assert!(judgement.detail.contains("LCLEVIS_BH") && judgement.detail.contains("MOV-TO-LOC"), "{judgement:?}");
+    assert!(
+        judgement.detail.contains("LCLEVIS_BH") && judgement.detail.contains("MOV-TO-LOC"),
+        "{judgement:?}"
+    );
     assert!(judgement.detail.starts_with("tick 1"), "{judgement:?}");
 }
 
@@ -186,10 +191,26 @@ fn every_interruption_has_a_name_that_is_read_back() {
     let all = Kind::named("all", Path::new(DATA), &facility.description).expect("there are some");
     for kind in &all {
         let again = Kind::named(&kind.to_string(), Path::new(DATA), &facility.description);
-        assert_eq!(again.expect("it is known"), [kind.clone()]);
+        assert_eq!(again.expect("it is known"), std::slice::from_ref(kind));
     }
     let unknown = Kind::named("pauze", Path::new(DATA), &facility.description).expect_err("it is misspelt");
     assert!(unknown.to_string().contains("expected none, pause"), "{unknown}");
+}
+
+/// docs/campaign.md says of each file of faults whether it can be switched on.
+#[test]
+fn the_page_lists_the_faults_that_can_be_switched_on() {
+    let facility = facility("linkbar");
+    let page = std::fs::read_to_string(Path::new(DATA).join("../docs/campaign.md")).expect("there is a page");
+    let switchable = Kind::named("fault", Path::new(DATA), &facility.description).expect("there are some");
+    let switchable: Vec<String> = switchable.iter().map(ToString::to_string).collect();
+    for entry in std::fs::read_dir(Path::new(DATA).join("faults")).expect("there are faults") {
+        let path = entry.expect("the directory can be read").path();
+        let name = path.file_stem().and_then(|name| name.to_str()).expect("names are text");
+        let can = switchable.contains(&format!("fault:{name}"));
+        let listed = format!("| `{name}` | {} |", if can { "yes" } else { "no" });
+        assert!(page.contains(&listed), "expected `{listed}` in docs/campaign.md");
+    }
 }
 
 #[test]

@@ -10,7 +10,7 @@ use super::{
     branch::{Branch, Facility, Fork},
     interruption::Kind,
     judge::{Judge, World},
-    operator::{Operator, Then},
+    operator::{Operator, Recovery, Then},
     parent::Parent,
 };
 use crate::error::Error;
@@ -33,6 +33,8 @@ pub enum Until {
 /// How branches are run.
 #[derive(Clone, Copy, Debug)]
 pub struct Procedure {
+    /// What the operator does first.
+    pub recovery: Recovery,
     /// How often the interrupted command is sent again.
     pub tries: u32,
     /// When a branch is judged.
@@ -126,7 +128,8 @@ pub fn run(
     let branch = Branch::resume(facility, fork)?;
     let at = branch.at();
     let (line, began) = parent.line_at(at);
-    let mut operator = Operator::new(&facility.job.steps, line, began, branch.command(), procedure.tries);
+    let mut operator = Operator::new(&facility.job.steps, line, began, branch.command(), procedure.tries)
+        .with_recovery(procedure.recovery);
     if *kind == Kind::PauseTwice {
         // Another place in each branch, the same in each run.
         operator = operator.with_second_pause(1 + at.0 * 37 % 120);
@@ -186,7 +189,8 @@ impl Trial<'_, '_> {
             self.operator.is_waiting = !script.is_over();
             if script.is_over() && !following {
                 following = true;
-                self.operator.recover(self.branch.at());
+                // PAUSE is what interrupts, or what an operator begins with who has worked at box or panel.
+                self.operator.pause(self.branch.at());
             }
             if following {
                 self.branch.tick(&mut self.operator);
