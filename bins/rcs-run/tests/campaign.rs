@@ -67,7 +67,7 @@ fn the_table_is_written_as_markdown() {
 #[test]
 fn a_sample_of_a_campaign_judges_every_branch() {
     for job in ["linkbar", "clevis", "turned-part", "tool-change"] {
-        let sample = json(&["campaign", job, "--ticks", "900", "--interrupt", "none,pause,estop", "--json"]);
+        let sample = json(&["campaign", job, "--ticks", "2100", "--interrupt", "none,pause,estop", "--json"]);
         let rows = sample["rows"].as_array().expect("there are rows");
         let count = |row: &Value, name: &str| row[name].as_u64().expect("counts are numbers");
         let [none, pause, estop] = &rows[..] else { panic!("{rows:?}") };
