@@ -45,6 +45,7 @@ struct Cause {
 }
 
 /// Looks at every tick and keeps when, and amid what, each process began to report what it reports now.
+#[derive(Clone)]
 pub struct Watch {
     last: [Fault; PROCESSES],
     causes: [Option<Cause>; PROCESSES],
