@@ -185,7 +185,7 @@ impl PedestalDouble {
                         _ if mishap == Some(Mishap::NoEffect) || self.ignores => {}
                         PedestalVerb::PreGrip => {
                             status.grip_size = command.grasp_size;
-                            status.table_position = command.table_angle;
+                            status.table_position = Some(command.table_angle);
                         }
                         PedestalVerb::Release => status.grip_size = command.grasp_size,
                         PedestalVerb::Grip => status.grip_size = self.part.max(command.grasp_size),
