@@ -38,7 +38,7 @@ pub struct Parent {
 }
 
 /// Steps and command numbers of all processes.
-type Steps = Vec<(Name16, Option<u32>)>;
+type Steps = Vec<(Option<Name16>, Option<u32>)>;
 
 fn steps(memory: &CommonMemory, task: u32) -> Steps {
     let step = |process: &ProcessId| {

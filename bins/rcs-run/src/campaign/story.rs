@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use executive::failure;
 use levels::ladder::{Ladder, ProcessId};
-use rcs_core::tick::Tick;
+use rcs_core::{interface::Decided, tick::Tick};
 
 use super::{
     branch::Branch,
@@ -16,8 +16,7 @@ use super::{
 struct Said {
     command: String,
     report: &'static str,
-    table: u8,
-    row: u8,
+    decided: Option<Decided>,
     step: String,
     why: &'static str,
 }
@@ -63,9 +62,8 @@ impl Story {
             Said {
                 command: failure::command(*process, hws, memory),
                 report: said.report,
-                table: header.table,
-                row: header.row,
-                step: header.step.to_string(),
+                decided: header.decided,
+                step: header.step.unwrap_or_default().to_string(),
                 why: said.fault.text(),
             }
         };
@@ -81,15 +79,16 @@ impl Observer for Story {
         let first = self.last.is_empty();
         for (at, (said, process)) in now.iter().zip(Ladder::processes()).enumerate() {
             let before = self.last.get(at).cloned().unwrap_or_default();
-            let row = (before.table, before.row) != (said.table, said.row);
-            let rest = Said { table: said.table, row: said.row, ..before.clone() } != *said;
+            let row = before.decided != said.decided;
+            let rest = Said { decided: said.decided, ..before.clone() } != *said;
             let idle = said.command.is_empty();
             if !(rest || row && near) || first && idle {
                 continue;
             }
-            let table = process.table(said.table);
+            let number = said.decided.map_or(0, |decided| decided.row);
+            let table = said.decided.and_then(|decided| process.table(decided.table));
             let text =
-                table.and_then(|table| table.row(said.row)).map_or_else(String::new, |row| row.to_string());
+                table.and_then(|table| table.row(number)).map_or_else(String::new, |row| row.to_string());
             let name = table.map_or("no table", |table| table.name);
             let why = if said.why.is_empty() { String::new() } else { format!(" [{}]", said.why) };
             let _ = writeln!(
@@ -98,7 +97,7 @@ impl Observer for Story {
                 process.name,
                 said.command,
                 said.report,
-                said.row,
+                number,
                 if said.step.is_empty() { "" } else { ", " },
                 said.step
             );

@@ -166,11 +166,13 @@ fn present(branch: &Branch<'_>) -> Vec<String> {
     let lines = ProcessId::ALL.iter().zip(Ladder::processes()).filter_map(|(id, process)| {
         let command = failure::command(*id, hws, memory);
         let header = memory.header(*id);
-        let table = process.table(header.table).map_or("no table", |table| table.name);
+        let (table, row) = header.decided.map_or(("no table", 0), |decided| {
+            (process.table(decided.table).map_or("no table", |table| table.name), decided.row)
+        });
         let said = memory.said(*id).report;
-        let step = if header.step.is_empty() { String::new() } else { format!(", {}", header.step) };
+        let step = header.step.map_or_else(String::new, |step| format!(", {step}"));
         (!command.is_empty())
-            .then(|| format!("{}: {command}: {said} ({table} row {}{step})", process.name, header.row))
+            .then(|| format!("{}: {command}: {said} ({table} row {row}{step})", process.name))
     });
     lines.collect()
 }

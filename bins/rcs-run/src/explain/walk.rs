@@ -3,7 +3,6 @@
 
 use levels::{
     emove::{
-        robot_place::{GoneTo, ObjectGrip, RobotPlace},
         route::{Goal, LegGoal, Planning, Route},
         tables::{Action, Request, accept::accept},
     },
@@ -15,7 +14,7 @@ use rcs_core::{
     interface::{
         Reason,
         device::KNOB_FULL,
-        emove::{EmoveCommand, EmoveVerb},
+        emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace},
     },
     kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
     name::Name16,
@@ -127,8 +126,8 @@ impl<'a> Walk<'a> {
 
     fn goal_and_route(&self, command: &EmoveCommand, at: &Location) -> Result<(Goal, Route), Planning> {
         let goal = Goal::new(command, &at.frame, &self.data)?;
-        let mut route = Route::plan(command, &goal, Some(&self.place), &self.data)?;
-        (route.departure.number, route.goal.number) = (DEPARTURE, GOAL);
+        let mut route = Route::plan(command, &goal, &self.place, &self.data)?;
+        (route.departure, route.goal) = (DEPARTURE, GOAL);
         Ok((goal, route))
     }
 
@@ -292,13 +291,20 @@ impl<'a> Walk<'a> {
 
 /// The robot at a location.
 fn robot_at(gone_to: GoneTo, at: &Location, frame: &Frame) -> RobotPlace {
-    RobotPlace { gone_to, location: at.name, place: at.place, pose: Pose::from_frame(frame) }
+    RobotPlace {
+        gone_to,
+        location: at.name,
+        kind: at.place.kind,
+        record: at.place.locpt.to_option(),
+        array: at.place.array.to_option(),
+        pose: Pose::from_frame(frame),
+    }
 }
 
 /// The reason with which E-move refuses a command whose way cannot be planned.
 fn refusal(verb: EmoveVerb, route: Planning) -> Reason {
     match accept((), &Request { asked: Asked::Now, verb, route, ..Request::default() }) {
-        Verdict::Decided(Decision { action: Action::Fail(reason), .. }) => reason,
+        Verdict::Decided(Decision { action: Action::Refuse(reason), .. }) => reason,
         Verdict::Decided(_) | Verdict::Passed(()) => Reason::None,
     }
 }
