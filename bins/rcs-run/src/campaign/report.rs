@@ -162,7 +162,7 @@ impl<'a> Report<'a> {
         }
         let mut totals: Vec<_> = totals.into_iter().collect();
         totals.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-        totals.iter().map(|(reason, count)| format!("\n{count:>6}  {reason}")).collect::<String>() + "\n"
+        totals.iter().map(|(reason, count)| format!("{count:>6}  {reason}\n")).collect()
     }
 
     /// The branches of a verdict, by cause; the most frequent one first.
@@ -174,7 +174,10 @@ impl<'a> Report<'a> {
         let mut reasons: Vec<_> = reasons.into_iter().collect();
         reasons.sort_by_key(|(_, branches)| std::cmp::Reverse(branches.len()));
         if !reasons.is_empty() {
-            let _ = writeln!(text, "\n{title}:{}", self.totals(verdict));
+            let _ = writeln!(text, "\n{title}:");
+            if verdict == Verdict::Stranded {
+                let _ = writeln!(text, "{}", self.totals(verdict));
+            }
         }
         for (reason, branches) in reasons {
             let _ = writeln!(text, "{:>6}  {reason}", branches.len());
