@@ -12,7 +12,7 @@ use super::{
 use crate::error::Error;
 
 /// Branches that are listed for each reason.
-const LISTED: usize = 4;
+const LISTED: usize = 3;
 
 /// What came of a kind of interruption.
 #[derive(Debug, Default, Serialize)]
@@ -43,6 +43,14 @@ impl Row {
         let counted = self.branches - self.apart;
         if counted == 0 { 100.0 } else { 100.0 * self.done as f64 / counted as f64 }
     }
+}
+
+/// What branches are counted by: of one that is stranded, who failed in which command and in which row.
+fn cause(judgement: &Judgement) -> &str {
+    let known = (judgement.verdict == Verdict::Stranded)
+        .then(|| judgement.detail.strip_prefix("tick ")?.split_once(": "))
+        .flatten();
+    known.map_or(&judgement.reason, |(_, cause)| cause)
 }
 
 /// A campaign that is over.
@@ -146,25 +154,40 @@ impl<'a> Report<'a> {
         text
     }
 
-    /// The branches of a verdict, by reason; the most frequent reason first.
+    /// How often each reason of a verdict was given, the most frequent first.
+    fn totals(&self, verdict: Verdict) -> String {
+        let mut totals: BTreeMap<&str, usize> = BTreeMap::new();
+        for judgement in self.judgements.iter().filter(|judgement| judgement.verdict == verdict) {
+            *totals.entry(&judgement.reason).or_default() += 1;
+        }
+        let mut totals: Vec<_> = totals.into_iter().collect();
+        totals.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        totals.iter().map(|(reason, count)| format!("{count:>6}  {reason}\n")).collect()
+    }
+
+    /// The branches of a verdict, by cause; the most frequent one first.
     fn list(&self, text: &mut String, verdict: Verdict, title: &str) {
         let mut reasons: BTreeMap<&str, Vec<&Judgement>> = BTreeMap::new();
         for judgement in self.judgements.iter().filter(|judgement| judgement.verdict == verdict) {
-            reasons.entry(&judgement.reason).or_default().push(judgement);
+            reasons.entry(cause(judgement)).or_default().push(judgement);
         }
         let mut reasons: Vec<_> = reasons.into_iter().collect();
         reasons.sort_by_key(|(_, branches)| std::cmp::Reverse(branches.len()));
         if !reasons.is_empty() {
             let _ = writeln!(text, "\n{title}:");
+            if verdict == Verdict::Stranded {
+                let _ = writeln!(text, "{}", self.totals(verdict));
+            }
         }
         for (reason, branches) in reasons {
             let _ = writeln!(text, "{:>6}  {reason}", branches.len());
             for branch in branches.iter().take(LISTED) {
-                let _ = writeln!(
-                    text,
-                    "        {} --at {} --interrupt {}  ({})\n            {}",
-                    self.command, branch.at, branch.interruption, branch.line, branch.detail
-                );
+                let Judgement { at, interruption, line, detail, .. } = branch;
+                let command = &self.command;
+                let _ = writeln!(text, "        {command} --at {at} --interrupt {interruption}  ({line})");
+                if !detail.ends_with(reason) {
+                    let _ = writeln!(text, "            {detail}");
+                }
             }
             if branches.len() > LISTED {
                 let more: Vec<String> = branches
