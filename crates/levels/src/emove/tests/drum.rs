@@ -80,7 +80,7 @@ fn a_tool_is_put_into_the_drum_and_left() {
         ["RELEASE 400", "CAL-SENSOR", "GO-UNTIL REL-SLIDE REL-MY", "DELTA-MOVE REL-BACK"]
     );
     assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["INS-IN", "REL-SLIDE", "REL-BACK"])) < 0.02);
-    assert!(!bench.memory.emove.status.held.is_some());
+    assert!(bench.memory.emove.status.held.is_none());
     assert_eq!(run(&mut bench, ReleaseTool), DONE, "it is left");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);

@@ -120,7 +120,7 @@ fn jaws_take_and_leave_their_parts() {
         assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), DONE);
         assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
         assert_eq!(bench.log(), [format!("RELEASE {}", if gripper == 2 { 350 } else { 400 })]);
-        assert!(!bench.memory.emove.status.held.is_some());
+        assert!(bench.memory.emove.status.held.is_none());
         assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
         assert!(bench.log().is_empty());
         let opening = if gripper == 2 { bench.v_grip.opening } else { bench.tool_grip.opening };
@@ -236,7 +236,7 @@ fn a_lost_part_is_noticed_with_every_gripper() {
                 let reason =
                     if matches!(gone, Mishap::Slip) { Reason::ObjectLost } else { Reason::GripperGone };
                 assert_eq!(bench.finish(), error(reason), "{object} {verb}");
-                assert!(!bench.memory.emove.status.held.is_some());
+                assert!(bench.memory.emove.status.held.is_none());
             }
         }
         let mut bench = Bench::ready("HOME", gripper);
@@ -244,7 +244,7 @@ fn a_lost_part_is_noticed_with_every_gripper() {
         (bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening) =
             (size + 30, size + 30, size + 30);
         bench.steps(3);
-        assert!(!bench.memory.emove.status.held.is_some(), "open fingers hold nothing");
+        assert!(bench.memory.emove.status.held.is_none(), "open fingers hold nothing");
         assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), error(Reason::NothingHeld));
     }
 }
@@ -264,7 +264,7 @@ fn a_part_that_is_no_longer_felt_is_lost() {
     // The fingers hardly move when a part falls that was held with little force.
     bench.grip.force = 0;
     assert_eq!(bench.finish(), error(Reason::ObjectLost));
-    assert!(!bench.memory.emove.status.held.is_some());
+    assert!(bench.memory.emove.status.held.is_none());
 }
 
 #[test]
@@ -294,7 +294,7 @@ fn what_is_not_gripped_is_reported() {
     for (gripper, object, _) in PARTS {
         let mut bench = Bench::ready("HOME", gripper);
         assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), error(Reason::GraspMissed));
-        assert!(!bench.memory.emove.status.held.is_some());
+        assert!(bench.memory.emove.status.held.is_none());
     }
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(GraspObj, "BLOCK", 7, "BENCH", 1), error(Reason::UnknownGrip));

@@ -185,7 +185,7 @@ fn the_operator_moves_the_robot_and_the_fingers() {
         bench.world.button = JoystickGrip::Open;
         bench.steps(20);
         assert_eq!(bench.log().len(), 1, "pressing counts, not holding down: {:?}", bench.log());
-        assert!(!bench.memory.emove.status.held.is_some(), "the fingers are open");
+        assert!(bench.memory.emove.status.held.is_none(), "the fingers are open");
         bench.world.button = JoystickGrip::None;
         bench.steps(3);
         bench.world.button = JoystickGrip::Close;

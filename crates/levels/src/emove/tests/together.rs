@@ -179,7 +179,7 @@ fn carry(bench: &mut Bench, object: &str, size: i32, gripper: u8) {
     assert_eq!(bench.pause(), DONE);
     assert!(bench.memory.emove.status.held.is_some(), "{object} is held through a pause");
     assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
-    assert!(!bench.memory.emove.status.held.is_some());
+    assert!(bench.memory.emove.status.held.is_none());
     bench.world.object = None;
     assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
