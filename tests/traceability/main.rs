@@ -194,13 +194,14 @@ fn a_command_or_a_status_is_named_as_the_code_has_it() {
     let (interfaces, page) = (Interfaces::new(), page());
     let matches = |line: &Line, code: &str| {
         let variant = interfaces.variant(code);
-        // V-Grip and Tool-Grip share their words, without the prefix (VI.5).
+        // V-Grip and Tool-Grip share their words, those of V-Grip (VI.5).
         let bare = ["VGRIP-", "TGRIP-", "VG-", "TG-", "vgrip-", "tgrip-"]
             .iter()
             .find_map(|prefix| line.name.strip_prefix(prefix))
             .filter(|_| code.starts_with("Jaws"))
             .unwrap_or(&line.name);
-        bare.eq_ignore_ascii_case(variant.text) || line.name == variant.code.to_string()
+        let text = variant.text.strip_prefix("vgrip-").unwrap_or(variant.text);
+        bare.eq_ignore_ascii_case(text) || line.name == variant.code.to_string()
     };
     for line in page.lines.iter().filter(|line| line.kind != "variables") {
         let code = line.code.as_deref().expect("no command and no status is left out");

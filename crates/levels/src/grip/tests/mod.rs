@@ -648,7 +648,7 @@ fn every_row_fires() {
     bench.gripper.object = Some(Object { size: 1.5, off_centre: 0.0 });
     bench.command(GripVerb::CloseGrip, 1.4, 5);
     while bench.process.state.settled < 10 {
-        bench.gripper.potentiometer.0 = if bench.tick.0 % 2 == 0 { 205.0 } else { 225.0 };
+        bench.gripper.potentiometer.0 = if bench.tick.0.is_multiple_of(2) { 205.0 } else { 225.0 };
         bench.step();
     }
     bench.gripper.potentiometer.0 = 205.0;
