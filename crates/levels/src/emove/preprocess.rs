@@ -209,6 +209,8 @@ impl State {
             spread: self.spread(gripper, command, inputs),
             readiness: match gripper {
                 Lower::Done if Gripper::attached(memory).is_uncalibrated(memory) => Readiness::Uncalibrated,
+                // Attached just now: it has no order yet.
+                Lower::Lost if self.is_new_and_uncalibrated(memory) => Readiness::Uncalibrated,
                 Lower::Done => Readiness::Ready,
                 _ => Readiness::Faulty,
             },
@@ -243,6 +245,11 @@ impl State {
             },
             _ => At::Elsewhere,
         }
+    }
+
+    fn is_new_and_uncalibrated(&self, memory: &CommonMemory) -> bool {
+        let attached = Gripper::attached(memory);
+        attached != self.grippers.to && attached.is_uncalibrated(memory)
     }
 
     /// What Quick Change says of its ring to the last command.

@@ -44,11 +44,13 @@
 //! * [`state`]: what the process remembers;
 //! * [`goal`]: what a command asks of the fingers;
 //! * [`calibration`]: from counts to inches and pounds;
+//! * [`felt`]: what is between the fingers, as the sensors tell it;
 //! * [`preprocess`]: the state variables;
 //! * [`tables`]: the decision tables, a file a command;
 //! * [`postprocess`]: valves and status.
 
 pub mod calibration;
+pub mod felt;
 pub mod goal;
 pub mod postprocess;
 pub mod preprocess;
@@ -135,6 +137,7 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
         outputs: &mut GripOutputs,
     ) {
         self.state.act(action, seen, inputs.tick);
+        self.state.execution.reason = S::reason(self.state.execution.reason);
         *outputs = self.state.report(action, seen, inputs.tick);
     }
 

@@ -6,6 +6,7 @@ use rcs_core::{
     interface::{
         CommonMemory, ExternalInputs, JawsOutputs, Reason,
         device::{JawValves, QuickChangeSensors},
+        grip::Felt,
         jaws::{JawsCommand, JawsReport, JawsVerb},
     },
     plain::to_bytes,
@@ -208,6 +209,31 @@ fn every_command_reports_where_its_fingers_stopped() {
         assert_eq!(bench.execute(verb, size), (expected, reason), "{verb} {size} at {place}");
         assert_eq!(bench.wait(30).status.report, expected, "it stays until the next command");
     }
+}
+
+#[test]
+fn what_is_held_is_felt_whatever_was_commanded() {
+    let mut bench = VBench::new(2.0);
+    let felt: Vec<_> = (0..5).map(|_| bench.step().status.felt).collect();
+    assert_eq!(felt, [Felt::NotKnown, Felt::NotKnown, Felt::NotKnown, Felt::NotKnown, Felt::Something]);
+    bench.fingers.object = Some(2.0);
+    for (verb, felt) in [(JawsVerb::Release, Felt::Nothing), (JawsVerb::Grasp, Felt::Something)] {
+        bench.send(verb, 0.0);
+        assert_eq!(bench.wait(8).status.felt, Felt::NotKnown, "they move");
+        bench.finish();
+        assert_eq!(bench.outputs.status.felt, felt, "{verb}");
+        bench.execute(JawsVerb::Pause, 0.0);
+        assert_eq!(bench.outputs.status.felt, felt, "the report does not count");
+    }
+    bench.fingers.object = None;
+    assert_eq!(bench.wait(40).status.felt, Felt::Nothing, "it was lost");
+    for (dead, felt) in [(-0.3, Felt::NotKnown), (6.0, Felt::NotKnown)] {
+        bench.fingers.ends = (dead, dead);
+        bench.fingers.opening = dead;
+        assert_eq!(bench.wait(20).status.felt, felt, "a potentiometer at {dead}");
+    }
+    bench.attach(false);
+    assert_eq!(bench.step().status.felt, Felt::NotKnown);
 }
 
 #[test]

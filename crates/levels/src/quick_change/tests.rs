@@ -5,7 +5,7 @@ use rcs_core::{
     interface::{
         CommonMemory, ExternalInputs, QuickChangeOutputs, Reason,
         device::{QuickChangeSensors, QuickChangeValves},
-        quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
+        quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb, RingPosition},
     },
     plain::to_bytes,
     process::{Inputs, Process},
@@ -249,6 +249,44 @@ fn a_ring_seen_by_neither_sensor_is_stuck_only_after_a_while() {
     }
     assert_eq!(bench.report(false, false, 1), QuickChangeReport::Stuck);
     assert_eq!(bench.report(false, true, 1), QuickChangeReport::Unlocked);
+}
+
+#[test]
+fn where_the_ring_is_is_published_in_every_tick_whatever_is_reported() {
+    let readings = [
+        (true, false, RingPosition::Locked),
+        (false, true, RingPosition::Unlocked),
+        (false, false, RingPosition::Between),
+        (true, true, RingPosition::Implausible),
+    ];
+    let mut bench = Bench::default();
+    for verb in
+        [None, Some(QuickChangeVerb::Pause), Some(QuickChangeVerb::Lock), Some(QuickChangeVerb::Unlock)]
+    {
+        for _ in 0..40 {
+            for (locked, unlocked, ring) in readings {
+                assert_eq!(bench.step(locked, unlocked, 1).status.ring, ring);
+            }
+        }
+        if let Some(verb) = verb {
+            bench.command(bench.memory.emove.quick_change.number + 1, verb);
+        }
+    }
+    // Half unlocked, then PAUSE: the report lags, the position does not.
+    let (mut bench, mut ring) = (Bench::default(), RingModel { place: 1.0, ..UNLOCKED });
+    bench.step(true, false, 1);
+    bench.command(1, QuickChangeVerb::Unlock);
+    for _ in 0..3 {
+        ring.turn(bench.step(ring.place >= 1.0, ring.place <= 0.0, 1).valves);
+    }
+    let (paused, _) = bench.execute(QuickChangeVerb::Pause, &mut ring, 1);
+    assert_eq!(
+        (paused.status.report, paused.status.ring),
+        (QuickChangeReport::Locked, RingPosition::Between)
+    );
+    bench.process = QuickChange::default();
+    let restarted = bench.step(false, false, 1).status;
+    assert_eq!((restarted.reason, restarted.ring), (Reason::Restarted, RingPosition::Between));
 }
 
 #[test]

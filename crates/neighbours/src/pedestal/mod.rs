@@ -31,7 +31,7 @@ pub use agent::{Agent, Remark};
 pub use station::Station;
 
 use rcs_core::{
-    interface::{Header, Reason},
+    interface::{Header, Reason, grip::Felt},
     name::{Name, Name16},
 };
 
@@ -88,6 +88,12 @@ fn reason(fields: &mut Unpacker<'_>, field: &'static str) -> Result<Reason, Fiel
     let found = fields.long(field)?;
     let code = u8::try_from(found).ok().and_then(Reason::from_code);
     code.ok_or_else(|| FieldError::Code { field, found: u16::try_from(found).unwrap_or(u16::MAX) })
+}
+
+/// What a gripper feels, by its code.
+fn felt(fields: &mut Unpacker<'_>) -> Result<Felt, FieldError> {
+    let found = fields.byte("felt")?;
+    Felt::from_code(found).ok_or(FieldError::Code { field: "felt", found: found.into() })
 }
 
 /// Decision table and row of a process, two bytes each, and the step of its command after that row.

@@ -5,7 +5,7 @@ use rcs_core::{
     interface::{
         GripOutputs, Header, Reason, TableOutputs,
         device::{GripValves, MotorCommand, MotorOrder, PedestalSensors},
-        grip::{GripCommand, GripReport, GripStatus, GripVerb},
+        grip::{Calibration, Felt, GripCommand, GripReport, GripStatus, GripVerb, Scale},
         pedestal::{
             PedestalCommand, PedestalReport, PedestalStatus, PedestalVerb, TableCommand, TableStatus,
             TableVerb,
@@ -64,7 +64,9 @@ fn a_status_stands_at_its_bytes() {
         reason: Reason::TableLimit,
         grip_size: 250,
         grip_force: -1,
-        table_position: -200,
+        table_position: Some(-200),
+        felt: Felt::Something,
+        gripped: true,
     };
     let sent = Status { status, header: row(), mailgram_echo: 4, verdict: Verdict::NoCommand, reason: "why" };
     let expected = [
@@ -73,6 +75,7 @@ fn a_status_stands_at_its_bytes() {
         b"\xFA\x00\x00\x00\xFF\xFF\xFF\xFF\x38\xFF\xFF\xFF",
         b"\x03\x00\x09\x00letting-go      \x04\x00\x01\x00",
         format!("{:160}", "why").as_bytes(),
+        b"\x01\x00\x02\x00\x01\x00",
     ]
     .concat();
     assert_eq!(sent.encode(), &expected[..]);
@@ -94,7 +97,13 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
             velocity: -4,
             finger_height: 5,
             valves: 0x81,
+            felt: Felt::Nothing,
         },
+        calibration: Some(Calibration {
+            potentiometer: Scale { zero: 1.0, gain: 2.0 },
+            left: Scale { zero: -1.0, gain: 0.5 },
+            right: Scale { zero: 0.0, gain: -2.0 },
+        }),
         valves: GripValves::default(),
     };
     let order = GripCommand {
@@ -110,7 +119,10 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
         &[Reason::GripTimeout.code(), 0, 0, 0, 1, 0],
         b"\x01\x00\x00\x00\x02\x00\x00\x00\x03\x00\x00\x00\xFC\xFF\xFF\xFF\x05\x00\x00\x00\x81\x00",
         b"\x03\x00\x09\x00letting-go      \x03\x00\x00\x00CLOSE-GRIP",
-        b"\x1E\x00\x00\x00\x3C\x00\x00\x00\x00\x00\x00\x00\x00\x00",
+        b"\x1E\x00\x00\x00\x3C\x00\x00\x00\x00\x00\x00\x00\x00\x00\x01\x00\x01\x00",
+        b"\x00\x00\x00\x00\x00\x00\xF0\x3F\x00\x00\x00\x00\x00\x00\x00\x40",
+        b"\x00\x00\x00\x00\x00\x00\xF0\xBF\x00\x00\x00\x00\x00\x00\xE0\x3F",
+        b"\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\xC0",
     ]
     .concat();
     assert_eq!(gripper::encode(&hand, &order), &expected[..]);
@@ -122,14 +134,15 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
             report: PedestalReport::Executing,
             reason: Reason::None,
             calibrated: true,
-            position: -200,
+            position: Some(-200),
         },
+        at_limit: Some(0x0F01),
         motor: MotorCommand::default(),
     };
     let turn = TableCommand { number: 5, command: TableVerb::Turn, angle: -2035 };
     let expected = [
         &b"\x05\x00\x00\x00executing \x00\x00\x00\x00\x01\x00\x38\xFF\xFF\xFF\x03\x00\x09\x00letting-go      "[..],
-        b"\x05\x00\x00\x00TURN      \x0D\xF8\xFF\xFF",
+        b"\x05\x00\x00\x00TURN      \x0D\xF8\xFF\xFF\x01\x00\x01\x00\x01\x0F",
     ]
     .concat();
     assert_eq!(table::encode(&turned, &turn), &expected[..]);
@@ -313,7 +326,7 @@ fn a_pedestal_that_is_booted_calibrates_and_one_that_replaces_another_moves_noth
     // FLIP needs to know where the table is, PRE-GRIP finds out.
     replaced.command(&flip(8));
     replaced.tick();
-    assert_eq!(replaced.status().status.reason, Reason::NotPrepared);
+    assert_eq!(replaced.status().status.reason, Reason::TableAngleUnknown);
     replaced.command(&PedestalCommand {
         command: PedestalVerb::PreGrip,
         grasp_size: 250,

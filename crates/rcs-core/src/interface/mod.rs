@@ -206,6 +206,20 @@ pub enum Reason {
     GripperGone,
     /// Vision answers what its camera cannot have seen.
     VisionImplausible,
+    /// The pedestal's hand closed on nothing.
+    HandMissed,
+    /// The pedestal's hand has lost the object.
+    HandLost,
+    /// The pedestal's hand is not calibrated.
+    HandNotCalibrated,
+    /// The pedestal's hand does not finish.
+    HandTimeout,
+    /// The pedestal's hand cannot reach the commanded opening or force.
+    HandUnattainable,
+    /// The sensors of the pedestal's hand do not tell whether it holds the object.
+    HandUncertain,
+    /// The angle of the pedestal's rotary table is not known.
+    TableAngleUnknown,
     /// An order has changed nothing: see what hinders it, then send the command again.
     NoEffect,
     /// The gripper holds something unknown: take it out, or let it go with POSITION.

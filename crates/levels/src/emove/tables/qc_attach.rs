@@ -4,7 +4,8 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// QC-ATTACH (V.2.1): down fast, down slowly, lock, close the gripper, back, lift, check the id, up,
-    /// calibrate if required. Done at once if the gripper is locked on and clear of its holster. A bare robot
+    /// calibrate if required. A gripper that is not calibrated cannot be told to close: it is taken out as it was
+    /// put in. Done at once if the gripper is locked on and clear of its holster. A bare robot
     /// whose ring is locked is unlocked first.
     pub QC_ATTACH: fn qc_attach(enum QcAttachStep, super::Situation) -> super::Action {
         any {
@@ -38,37 +39,38 @@ decision_table! {
         }
         /// The quick change is locking.
         Locking {
-            16: ring: Locked                                         => CloseForHolster    -> Closing;
-            17: ring: Busy | Unlocked | Faulty                       => FailRing;
+            16: ring: Locked, readiness: Uncalibrated                => DeltaMove(QcaBack) -> Backing;
+            17: ring: Locked                                         => CloseForHolster    -> Closing;
+            18: ring: Busy | Unlocked | Faulty                       => FailRing;
         }
         /// The gripper is closing.
         Closing {
-            18: work: Over                                           => DeltaMove(QcaBack) -> Backing;
+            19: work: Over                                           => DeltaMove(QcaBack) -> Backing;
         }
         /// The gripper is sliding back out of its seat.
         Backing {
-            19: work: Over                                           => DeltaMove(QcaLift) -> Lifting;
+            20: work: Over                                           => DeltaMove(QcaLift) -> Lifting;
         }
         Lifting | Raising {
-            20: mate: None                                           => Fail(NotAttached);
-            21: mate: Wrong                                          => Fail(WrongGripperId);
+            21: mate: None                                           => Fail(NotAttached);
+            22: mate: Wrong                                          => Fail(WrongGripperId);
         }
         /// It is being lifted a distance out of the holster.
         Lifting {
-            22: ring: Locked                                         => DeltaMove(QcaUp)   -> Raising;
-            23: ring: Busy | Unlocked | Faulty                       => FailRing;
+            23: ring: Locked                                         => DeltaMove(QcaUp)   -> Raising;
+            24: ring: Busy | Unlocked | Faulty                       => FailRing;
         }
         /// It is being lifted completely out of it.
         Raising {
-            24: readiness: Uncalibrated                              => Calibrate          -> Calibrating;
+            25: readiness: Uncalibrated                              => Calibrate          -> Calibrating;
         }
         /// It is being calibrated.
         Calibrating {
-            25: readiness: Uncalibrated                              => FailGrip;
+            26: readiness: Uncalibrated                              => FailGrip;
         }
         Raising | Calibrating {
-            26: readiness: Ready                                     => Stand;
-            27: readiness: Faulty                                    => FailGrip;
+            27: readiness: Ready                                     => Stand;
+            28: readiness: Faulty                                    => FailGrip;
         }
     }
 }

@@ -156,6 +156,8 @@ pub enum Part {
     Unknown,
     /// The robot's gripper does not tell.
     NotKnown,
+    /// The pedestal's hand does not tell.
+    Unsure,
 }
 
 /// Where the rotary table stands.
@@ -167,6 +169,8 @@ pub enum Turn {
     Turned,
     /// Between, or beyond them.
     Between,
+    /// At no known angle.
+    Unknown,
 }
 
 /// The hand of the pedestal, by its opening.
@@ -207,6 +211,8 @@ pub enum PedestalHand {
     Free,
     /// It is there, alone or together with the robot.
     HoldsPart,
+    /// The hand has gripped and does not tell.
+    Unsure,
 }
 
 /// Which holster is moved to.
