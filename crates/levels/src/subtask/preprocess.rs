@@ -23,7 +23,7 @@ use super::{
 };
 use crate::{
     execution::{Asked, Work},
-    halt::{Below, Intake, JoystickBox, Kind, Replaced},
+    halt::{Below, BoxState, Intake, Kind, Replaced},
     places::{Missing, place_of},
 };
 
@@ -159,7 +159,7 @@ fn replaced(
     Replaced {
         intake: Intake::Taken,
         kind: if command.command == SubtaskVerb::Pause { Kind::Pause } else { Kind::Other },
-        joystick: if on { JoystickBox::On } else { JoystickBox::Off },
+        joystick: if on { BoxState::On } else { BoxState::Off },
         below: robot.and(part),
     }
 }
