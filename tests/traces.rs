@@ -282,6 +282,7 @@ fn a_trace_has_all_fields_and_then_what_changes() {
     let table = prim.and_then(|prim| prim.table(1)).expect("Prim has a table").name;
     let bytes = format!("A5{}", "00".repeat(63));
     let expected = [
+        "2\ttask.status.command\tMOVE".to_owned(),
         "2\temove.status.reason\tthe object was lost on the way".to_owned(),
         "2\temove.status.held\tsomething".to_owned(),
         "2\tprim.poses[2].pose.tool[1]\t-7145".to_owned(),

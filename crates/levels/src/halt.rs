@@ -35,7 +35,7 @@ pub enum Kind {
 
 /// The joystick box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum JoystickBox {
+pub enum BoxState {
     /// It is off.
     Off,
     /// It is on: the operator has the robot, and nothing is sent.
@@ -83,7 +83,7 @@ pub struct Replaced {
     /// Does it stop what is below by itself?
     pub kind: Kind,
     /// The joystick box.
-    pub joystick: JoystickBox,
+    pub joystick: BoxState,
     /// What the processes below are doing.
     pub below: Below,
 }

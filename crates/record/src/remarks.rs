@@ -7,6 +7,7 @@
 use rcs_core::{
     interface::{
         CommonMemory, Fault, Header, ProcessId,
+        data_base::Connection,
         emove::Holding,
         hws::{HwsCommand, HwsReport},
         prim::{PrimReport, PrimVerb},
@@ -62,6 +63,10 @@ fn commands(
     let (was, is) = (&before.task.status, &after.task.status);
     if was.echo != is.echo {
         say(Level::Info, "task", format!("command {}: {}", is.echo, hws_text(hws)));
+    }
+    if was.echo != is.echo && after.task.connection == Connection::Interrupted {
+        let text = "STARTUP was interrupted: the Data System is told nothing until it is sent again";
+        say(Level::Warning, "task", text.to_owned());
     }
     if was.report != is.report && is.report != HwsReport::Idle {
         let level = if is.report == HwsReport::Error { Level::Error } else { Level::Info };

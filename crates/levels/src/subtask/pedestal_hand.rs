@@ -1,6 +1,7 @@
-//! The part in the pedestal's hand: what Subtask believes of it, and what the opening of the hand says.
+//! The part in the pedestal's hand: what the hand feels, and what Subtask believes that it is.
 
 use rcs_core::interface::{
+    grip::Felt,
     pedestal::PedestalStatus,
     subtask::{Regrip, SubtaskCommand},
 };
@@ -11,60 +12,58 @@ use super::{
     tables::{Hand, Held, Part, Pedestal, PedestalHand, Turn},
 };
 
-/// A hand that stands so much wider than when it had gripped has let go, 0.01 in (as E-move decides for the parts
-/// gripper; ASSUMED).
-const LET_GO: i32 = 25;
 /// The hand is open if it stands within this of its opening to receive the object, 0.01 in (ASSUMED).
 const OPEN_WITHIN: i32 = 10;
 /// The table is at an angle if it stands within this of it, 0.1 degree: several steps of its motor (ASSUMED).
 const AT_ANGLE: u32 = 10;
 
 impl State {
-    /// Once a tick: does the opening of the hand agree with what Subtask believes is in it? A hand that is closing is
-    /// believed until it rests.
+    /// Once a tick: does the hand agree with what Subtask believes is in it? A hand that moves is believed until it rests.
     pub(super) fn sense_hand(&mut self, status: &PedestalStatus, pedestal: Pedestal) {
-        let Some(regrip) = &mut self.regrip else { return };
-        let closed = status.grip_size <= regrip.grasp_size;
-        let open = regrip.opening.is_some_and(|opening| status.grip_size > opening.saturating_add(LET_GO));
-        match pedestal {
-            Pedestal::Moving => {}
-            _ if closed || open => self.regrip = None,
-            _ => regrip.opening = regrip.opening.or(Some(status.grip_size)),
+        if pedestal != Pedestal::Moving && pedestal_hand(status) == PedestalHand::Free {
+            self.regrip = None;
         }
     }
 
     /// The pedestal is told to close its hand on the object of the command.
-    pub(super) fn give(&mut self, command: &SubtaskCommand) {
-        let grasp_size = self.ped_para.grasp_size;
-        self.regrip = Some(Regrip { object: command.object, grasp_size, opening: None });
-    }
-
-    /// Is a part in the hand?
-    pub(super) const fn pedestal_hand(&self) -> PedestalHand {
-        if self.regrip.is_some() { PedestalHand::HoldsPart } else { PedestalHand::Free }
+    pub(super) const fn give(&mut self, command: &SubtaskCommand) {
+        self.regrip = Some(Regrip { object: command.object });
     }
 
     /// Who has the object of the command.
-    pub(super) fn part(&self, held: Held, command: &SubtaskCommand) -> Part {
-        match (held, &self.regrip) {
+    pub(super) fn part(&self, held: Held, status: &PedestalStatus, command: &SubtaskCommand) -> Part {
+        let right = self.regrip.is_some_and(|regrip| regrip.object == command.object);
+        match (held, pedestal_hand(status)) {
             (Held::NotKnown, _) => Part::NotKnown,
-            (_, Some(regrip)) if regrip.object != command.object => Part::Other,
-            (Held::Right, Some(_)) => Part::Both,
-            (Held::Something, Some(_)) => Part::Touched,
-            (Held::Nothing | Held::Other, Some(_)) => Part::Hand,
-            (Held::Right, None) => Part::Robot,
-            (Held::Something, None) => Part::Unknown,
-            (Held::Nothing | Held::Other, None) => Part::Nobody,
+            (_, PedestalHand::Unsure) => Part::Unsure,
+            (_, PedestalHand::HoldsPart) if !right => Part::Other,
+            (Held::Right, PedestalHand::HoldsPart) => Part::Both,
+            (Held::Something, PedestalHand::HoldsPart) => Part::Touched,
+            (Held::Nothing | Held::Other, PedestalHand::HoldsPart) => Part::Hand,
+            (Held::Right, PedestalHand::Free) => Part::Robot,
+            (Held::Something, PedestalHand::Free) => Part::Unknown,
+            (Held::Nothing | Held::Other, PedestalHand::Free) => Part::Nobody,
         }
     }
 }
 
-/// Where the table stands for an object; an angle that is not known is neither of the two.
+/// Is a part in the hand? What it feels before it was told to grip, or after it was told to open, is none.
+pub(super) const fn pedestal_hand(status: &PedestalStatus) -> PedestalHand {
+    match status.felt {
+        Felt::Something if status.gripped => PedestalHand::HoldsPart,
+        Felt::NotKnown if status.gripped => PedestalHand::Unsure,
+        Felt::Nothing | Felt::Something | Felt::NotKnown => PedestalHand::Free,
+    }
+}
+
+/// Where the table stands for an object.
 pub(super) fn turn(status: &PedestalStatus, para: &PedPara) -> Turn {
+    let is_at = |angle: i32, position: i32| position.abs_diff(angle) <= AT_ANGLE;
     match status.table_position {
-        Some(position) if position.abs_diff(para.table_pos) <= AT_ANGLE => Turn::Receive,
-        Some(position) if position.abs_diff(turned(para)) <= AT_ANGLE => Turn::Turned,
-        _ => Turn::Between,
+        None => Turn::Unknown,
+        Some(position) if is_at(para.table_pos, position) => Turn::Receive,
+        Some(position) if is_at(turned(para), position) => Turn::Turned,
+        Some(_) => Turn::Between,
     }
 }
 

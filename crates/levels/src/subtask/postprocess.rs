@@ -14,7 +14,7 @@ use taskdata::files::TaskData;
 
 use super::{
     aims::Aim,
-    pedestal_hand::turned,
+    pedestal_hand::{pedestal_hand, turned},
     state::State,
     tables::{Action, Flip, Holster, Ordered, Pedestal, PedestalHand, Seen},
 };
@@ -70,13 +70,10 @@ impl State {
                 self.command_pedestal(PedestalVerb::Grip, ped.grasp_size, ped.force, 0, inputs, outputs);
             }
             Action::PedFlip(flip) => {
+                let position = inputs.memory.pedestal.status.table_position.unwrap_or(ped.table_pos);
                 let angle = match flip {
                     Flip::Whole => ped.flip_angle,
-                    // From an angle that is not known nothing is turned: the table fails for that.
-                    Flip::Rest => {
-                        let position = inputs.memory.pedestal.status.table_position;
-                        position.map_or(0, |position| turned(&ped).saturating_sub(position))
-                    }
+                    Flip::Rest => turned(&ped).saturating_sub(position),
                 };
                 self.command_pedestal(PedestalVerb::Flip, 0, 0, angle, inputs, outputs);
             }
@@ -174,7 +171,7 @@ impl State {
             end_effector_id: below.end_effector_id,
             at: below.at,
             drum: below.drum,
-            pedestal_part: self.pedestal_hand() == PedestalHand::HoldsPart,
+            pedestal_part: pedestal_hand(&inputs.memory.pedestal.status) != PedestalHand::Free,
         };
         outputs.regrip = self.regrip;
     }

@@ -14,7 +14,7 @@ use taskdata::files::TaskData;
 
 use super::{
     aims::{Aim, Aims},
-    pedestal_hand::{hand, turn},
+    pedestal_hand::{hand, pedestal_hand, turn},
     state::State,
     tables::{
         Drum, Exchange, GripHeld, Gripper, Held, Hindrance, Named, Ordered, Orders, Pedestal, PedestalData,
@@ -23,7 +23,7 @@ use super::{
 };
 use crate::{
     execution::{Asked, Work},
-    halt::{Below, Intake, JoystickBox, Kind, Replaced},
+    halt::{Below, BoxState, Intake, Kind, Replaced},
     places::{Missing, place_of},
 };
 
@@ -46,7 +46,7 @@ impl State {
             request,
             hindrance: Hindrance {
                 asked,
-                pedestal: self.pedestal_hand(),
+                pedestal: pedestal_hand(&inputs.memory.pedestal.status),
                 verb: command.command,
                 gripper: situation.gripper,
             },
@@ -118,7 +118,7 @@ impl State {
                 None => Drum::Unplaced,
             },
             named: named(command),
-            part: self.part(held, command),
+            part: self.part(held, pedestal, command),
             table: turn(pedestal, &self.ped_para),
             hand: hand(pedestal, &self.ped_para),
             robot: robot(emove, &self.aims),
@@ -159,7 +159,7 @@ fn replaced(
     Replaced {
         intake: Intake::Taken,
         kind: if command.command == SubtaskVerb::Pause { Kind::Pause } else { Kind::Other },
-        joystick: if on { JoystickBox::On } else { JoystickBox::Off },
+        joystick: if on { BoxState::On } else { BoxState::Off },
         below: robot.and(part),
     }
 }

@@ -49,7 +49,7 @@ use self::{
 };
 use crate::{
     execution::Course,
-    halt::{JoystickBox, Replaced},
+    halt::{BoxState, Replaced},
 };
 
 /// The Task process.
@@ -84,7 +84,7 @@ impl<'d> Process<TaskData<'d>> for Task {
             }
         };
         let manual = state.control == Control::Manual;
-        let joystick = if manual { JoystickBox::On } else { JoystickBox::Off };
+        let joystick = if manual { BoxState::On } else { BoxState::Off };
         match state.execution.admit(course, &Replaced { joystick, ..seen.replaced }) {
             Err(halting) => return (takeover, halting.into()),
             Ok(Course::Rest | Course::Refuse) => return (takeover, Action::Wait),

@@ -23,7 +23,7 @@ use super::{
 use crate::{
     emove::route::same_location,
     execution::{Asked, Work},
-    halt::{Below, Intake, JoystickBox, Kind, Replaced},
+    halt::{Below, BoxState, Intake, Kind, Replaced},
     places::{named, place_of},
 };
 
@@ -50,7 +50,7 @@ impl State {
             replaced: Replaced {
                 intake: Intake::Taken,
                 kind: if plan.verb == TaskVerb::Pause { Kind::Pause } else { Kind::Other },
-                joystick: JoystickBox::Off,
+                joystick: BoxState::Off,
                 below: Below::of(subtask, pausing),
             },
             plan,

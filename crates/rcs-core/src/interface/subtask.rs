@@ -126,15 +126,11 @@ pub struct SubtaskStatus {
 }
 
 /// The part that Subtask has given to the pedestal's hand. It is an output, so that a Subtask that is restarted knows
-/// it (docs/design/recovery.md "Beliefs"); it counts as long as the opening of the hand agrees.
+/// it (docs/design/recovery.md "Beliefs"); it counts as long as the hand feels something.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Regrip {
     /// The object.
     pub object: Name16,
-    /// The hand stands wider than this, 0.01 in, if there is something between its fingers.
-    pub grasp_size: i32,
-    /// Opening with which it has gripped the part, 0.01 in, once it has.
-    pub opening: Option<i32>,
 }
 
 /// Changing poses of Subtask: the location that it names itself (holster, pedestal), one after the other.

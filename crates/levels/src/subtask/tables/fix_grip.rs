@@ -13,45 +13,46 @@ decision_table! {
             2:  part: Other                                                             => Fail(PedestalHoldsOther);
             3:  part: Unknown                                                           => Fail(UnknownHeld);
             4:  part: NotKnown                                                          => Fail(HeldNotKnown);
-            5:  part: Robot, grip: Destination                                          => Finish;
-            6:  part: Robot, grip: Neither                                              => Fail(RegripNeeded);
+            5:  part: Unsure                                                            => Fail(HandUncertain);
+            6:  part: Robot, grip: Destination                                          => Finish;
+            7:  part: Robot, grip: Neither                                              => Fail(RegripNeeded);
         }
         /// Nothing ordered yet.
         Start {
-            7:  part: Nobody                                                            => Fail(NothingHeld);
-            8:  part: Robot, grip: Source, robot: Safe | Away                           => PedPreGrip       -> Preparing;
+            8:  part: Nobody                                                            => Fail(NothingHeld);
+            9:  part: Robot, grip: Source, robot: Safe | Away                           => PedPreGrip       -> Preparing;
         }
         /// The pedestal opens its hand and turns its table to receive the object.
         Preparing {
-            9:  part: Robot, grip: Source, table: Turned | Between                      => Fail(TableStuck);
-            10: part: Robot, grip: Source, table: Receive, hand: Narrow                 => Fail(PedestalError);
+            10: part: Robot, grip: Source, table: Turned | Between | Unknown                      => Fail(TableStuck);
+            11: part: Robot, grip: Source, table: Receive, hand: Narrow                 => Fail(PedestalError);
         }
         /// The pedestal closes its hand on the object.
         Gripping {
-            11: part: Robot, grip: Source                                               => Fail(GraspMissed);
+            12: part: Robot, grip: Source                                               => Fail(GraspMissed);
         }
         /// The robot's fingers close on the object.
         Grasping {
-            12: part: Hand | Touched                                                    => Fail(GraspMissed);
+            13: part: Hand | Touched                                                    => Fail(GraspMissed);
         }
         any {
-            13: part: Nobody                                                            => Fail(ObjectLost);
+            14: part: Nobody                                                            => Fail(ObjectLost);
             // The robot has the part.
-            14: part: Robot, grip: Source, robot: First | Third, table: Turned | Between => MovToPedSafe    -> Clearing;
-            15: part: Robot, grip: Source, robot: First | Third, hand: Narrow           => MovToPedSafe     -> Clearing;
-            16: part: Robot, grip: Source, robot: Safe | Away, table: Turned | Between  => PedPreGrip       -> Preparing;
-            17: part: Robot, grip: Source, robot: Safe | Away, hand: Narrow             => PedPreGrip       -> Preparing;
-            18: part: Robot, grip: Source, robot: First                                 => PedGrip          -> Gripping;
-            19: part: Robot, grip: Source, robot: Third | Safe | Away                   => MovObjToPed      -> Bringing;
+            15: part: Robot, grip: Source, robot: First | Third, table: Turned | Between | Unknown => MovToPedSafe    -> Clearing;
+            16: part: Robot, grip: Source, robot: First | Third, hand: Narrow           => MovToPedSafe     -> Clearing;
+            17: part: Robot, grip: Source, robot: Safe | Away, table: Turned | Between | Unknown  => PedPreGrip       -> Preparing;
+            18: part: Robot, grip: Source, robot: Safe | Away, hand: Narrow             => PedPreGrip       -> Preparing;
+            19: part: Robot, grip: Source, robot: First                                 => PedGrip          -> Gripping;
+            20: part: Robot, grip: Source, robot: Third | Safe | Away                   => MovObjToPed      -> Bringing;
             // Both have it.
-            20: part: Both | Touched, robot: First, table: Receive                      => ReleaseAtPed     -> Releasing;
-            21: part: Both, robot: Third, table: Turned                                 => PedRelease       -> LettingGo;
-            22: part: Touched, robot: Third, table: Turned                              => GraspObjAtPed    -> Grasping;
-            23: part: Both | Touched                                                    => Fail(PartInPedestal);
+            21: part: Both | Touched, robot: First, table: Receive                      => ReleaseAtPed     -> Releasing;
+            22: part: Both, robot: Third, table: Turned                                 => PedRelease       -> LettingGo;
+            23: part: Touched, robot: Third, table: Turned                              => GraspObjAtPed    -> Grasping;
+            24: part: Both | Touched                                                    => Fail(PartInPedestal);
             // The pedestal has it.
-            24: part: Hand, robot: First                                                => MovToPedSafe     -> Clearing;
-            25: part: Hand, robot: Third, table: Receive | Between                      => MovToPedSafe     -> Clearing;
-            26: part: Hand, robot: Third, table: Turned                                 => GraspObjAtPed    -> Grasping;
+            25: part: Hand, robot: First                                                => MovToPedSafe     -> Clearing;
+            26: part: Hand, robot: Third, table: Receive | Between | Unknown                      => MovToPedSafe     -> Clearing;
+            27: part: Hand, robot: Third, table: Turned                                 => GraspObjAtPed    -> Grasping;
         }
         /// The object is on its way to the pedestal.
         Bringing {}
@@ -65,13 +66,14 @@ decision_table! {
         LettingGo {}
         /// The pedestal turns the object.
         Flipping {
-            27: part: Hand, table: Receive | Between                                    => Fail(TableStuck);
+            28: part: Hand, table: Receive | Between | Unknown                                    => Fail(TableStuck);
         }
         any {
-            28: part: Hand, robot: Away, table: Receive | Between                       => MovToPedSafe     -> Clearing;
-            29: part: Hand, robot: Safe, table: Receive                                 => PedFlip(Whole)   -> Flipping;
-            30: part: Hand, robot: Safe, table: Between                                 => PedFlip(Rest)    -> Flipping;
-            31: part: Hand, robot: Safe | Away, table: Turned                           => MovToObjAtPed    -> Approaching;
+            29: part: Hand, robot: Away, table: Receive | Between | Unknown                       => MovToPedSafe     -> Clearing;
+            30: part: Hand, robot: Safe, table: Receive                                 => PedFlip(Whole)   -> Flipping;
+            31: part: Hand, robot: Safe, table: Between                                 => PedFlip(Rest)    -> Flipping;
+            32: part: Hand, robot: Safe, table: Unknown                                 => Fail(TableAngleUnknown);
+            33: part: Hand, robot: Safe | Away, table: Turned                           => MovToObjAtPed    -> Approaching;
         }
     }
 }

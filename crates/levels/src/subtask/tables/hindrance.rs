@@ -8,12 +8,12 @@ decision_table! {
     pub HINDRANCE: fn hindrance(super::Hindrance) -> super::Action or () {
         1: asked: Before                                                        => consult;
         2: pedestal: Free                                                       => consult;
-        3: pedestal: HoldsPart, verb: None | Pause | FixGrip | Release          => consult;
-        4: pedestal: HoldsPart, verb: GetEndeff, gripper: Right                 => consult;
-        5: pedestal: HoldsPart, verb: GetEndeff, gripper: None | Wrong          => Fail(PartInPedestal);
-        6: pedestal: HoldsPart, verb: GetObject | PlaceObj | MoveObjToDest      => Fail(PartInPedestal);
-        7: pedestal: HoldsPart, verb: GotoEndpt | GotoDest | Position           => Fail(PartInPedestal);
-        8: pedestal: HoldsPart, verb: InsertTool | ReleaseTool                  => Fail(PartInPedestal);
-        9: pedestal: HoldsPart, verb: AcquireTool | RemoveTool                  => Fail(PartInPedestal);
+        3: pedestal: HoldsPart | Unsure, verb: None | Pause | FixGrip | Release          => consult;
+        4: pedestal: HoldsPart | Unsure, verb: GetEndeff, gripper: Right                 => consult;
+        5: pedestal: HoldsPart | Unsure, verb: GetEndeff, gripper: None | Wrong          => Fail(PartInPedestal);
+        6: pedestal: HoldsPart | Unsure, verb: GetObject | PlaceObj | MoveObjToDest      => Fail(PartInPedestal);
+        7: pedestal: HoldsPart | Unsure, verb: GotoEndpt | GotoDest | Position           => Fail(PartInPedestal);
+        8: pedestal: HoldsPart | Unsure, verb: InsertTool | ReleaseTool                  => Fail(PartInPedestal);
+        9: pedestal: HoldsPart | Unsure, verb: AcquireTool | RemoveTool                  => Fail(PartInPedestal);
     }
 }

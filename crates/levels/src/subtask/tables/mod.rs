@@ -16,229 +16,25 @@ pub mod release;
 pub mod release_tool;
 pub mod remove_tool;
 pub mod s_pause;
+pub mod variables;
 
 use rcs_core::{
-    Actions, Plain, Variables, commands,
+    Actions, Variables, commands,
     handshake::{Arrival, Lower},
     interface::{Reason, subtask::SubtaskVerb},
     table::Choice,
 };
 
+pub use self::variables::{
+    Drum, Exchange, Flip, GripHeld, Gripper, Hand, Held, Holster, Named, Ordered, Part, Pedestal,
+    PedestalData, PedestalHand, Robot, Turn, Vision, Where,
+};
 use self::{accept::accept, hindrance::hindrance, ordered::ordered};
 use crate::{
     execution::{Asked, EXECUTE, Orders as Commander, Work},
     halt::{EFFECT, Futile, HALT, Halting, Replaced},
     places::Missing,
 };
-
-/// Is the object held (V.3.1)?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Held {
-    /// The gripper holds nothing.
-    Nothing,
-    /// It holds the object of the command.
-    Right,
-    /// It holds another object.
-    Other,
-    /// It holds something, and nothing says what it is.
-    Something,
-    /// Its sensors do not tell: counts as held.
-    NotKnown,
-}
-
-/// With which grip the object of the command is held.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum GripHeld {
-    /// The grip for the source location.
-    Source,
-    /// The grip for the destination location, which may be the same.
-    Destination,
-    /// Neither of the two, or the object is not held.
-    Neither,
-}
-
-/// Must the object be found by vision (VII.7.6, en)?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Vision {
-    /// Its location is known well enough.
-    #[text = "not needed"]
-    NotNeeded,
-    /// It must be found.
-    Needed,
-    /// It has been found, and nothing has moved it since.
-    Done,
-}
-
-/// Is there something where the command wants it?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Where {
-    /// At the location of the command, in its grip.
-    There,
-    /// Elsewhere, or nowhere.
-    Elsewhere,
-}
-
-/// An exchange of grippers that is half done: the robot stands in a holster.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Exchange {
-    /// None: the robot is clear of the holsters.
-    None,
-    /// In the holster of the wanted gripper.
-    Wanted,
-    /// In that of another one.
-    Other,
-}
-
-/// End effector state (V.3.1): right, wrong, none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Gripper {
-    /// No gripper is attached.
-    None,
-    /// The gripper for the object is attached.
-    Right,
-    /// Another one is attached.
-    Wrong,
-}
-
-/// What a position is named by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Named {
-    /// The location alone.
-    Location,
-    /// An object, real or virtual, at the location.
-    Object,
-}
-
-/// Pedestal status (V.3.1): what the Active Pedestal makes of the last command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Pedestal {
-    /// Hand or table are moving, or the command is not echoed yet.
-    Moving,
-    /// The command is done.
-    Done,
-    /// It cannot be executed.
-    #[text = "can't-do"]
-    Cannot,
-    /// An error prevents it from finishing.
-    #[text = "error"]
-    Faulty,
-    /// The pedestal does not answer.
-    Silent,
-}
-
-/// The robot and the tool drum.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Drum {
-    /// The fingers are around a tool in the drum.
-    Inside,
-    /// The robot stands at a place outside.
-    Outside,
-    /// It stands at no place: it may be on its way into the drum or out of it.
-    Unplaced,
-}
-
-/// Who has the part that is regripped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Part {
-    /// The robot.
-    Robot,
-    /// Robot and pedestal.
-    Both,
-    /// The pedestal, and something is between the robot's fingers, which may be the part.
-    Touched,
-    /// The pedestal.
-    Hand,
-    /// Neither of them.
-    Nobody,
-    /// The pedestal has another object.
-    Other,
-    /// The pedestal has nothing, and the robot something unknown.
-    Unknown,
-    /// The robot's gripper does not tell.
-    NotKnown,
-}
-
-/// Where the rotary table stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Turn {
-    /// At the angle in which it receives the object.
-    Receive,
-    /// At the angle to which it turns the object.
-    Turned,
-    /// Between, or beyond them.
-    Between,
-}
-
-/// The hand of the pedestal, by its opening.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Hand {
-    /// As wide as the object needs it to come in.
-    Open,
-    /// Narrower.
-    Narrow,
-}
-
-/// Where the robot is, for FIX-GRIP.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Robot {
-    /// At the pedestal, for the source grip.
-    First,
-    /// At the pedestal, for the destination grip.
-    Third,
-    /// At PED-SAFE.
-    Safe,
-    /// Elsewhere, or on a way.
-    Away,
-}
-
-/// How far the table turns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Flip {
-    /// By the whole flip angle of the object.
-    Whole,
-    /// By what is left of it.
-    Rest,
-}
-
-/// The part in the pedestal's hand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum PedestalHand {
-    /// There is none.
-    Free,
-    /// It is there, alone or together with the robot.
-    HoldsPart,
-}
-
-/// Which holster is moved to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Holster {
-    /// That of the attached gripper.
-    Own,
-    /// That of the wanted gripper.
-    Wanted,
-}
-
-/// The PED-PARA record of the object (VII.7.4).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum PedestalData {
-    /// There is none, or it is not needed.
-    Missing,
-    /// It is there.
-    Found,
-}
-
-/// The process that has the last order of the current command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Ordered {
-    /// Nothing was ordered yet.
-    Nothing,
-    /// E-move.
-    Emove,
-    /// The Active Pedestal.
-    Pedestal,
-    /// Both: they are pausing.
-    Both,
-}
 
 /// What a new command needs, for [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Default, Variables)]

@@ -5,7 +5,8 @@ use rcs_core::{
     handshake::{Arrival, Receiver},
     interface::{
         CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, Report,
-        emove::{EmoveCommand, EmoveVerb, Holding, ObjectGrip, PlacedObject, Standing},
+        emove::{EmoveCommand, EmoveVerb, ObjectGrip, Holding, PlacedObject, Standing},
+        grip::Felt,
         pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
         subtask::{SubtaskCommand, SubtaskStatus, SubtaskVerb},
     },
@@ -186,13 +187,23 @@ impl PedestalDouble {
                         PedestalVerb::PreGrip => {
                             status.grip_size = command.grasp_size;
                             status.table_position = Some(command.table_angle);
+                            (status.felt, status.gripped) = (Felt::Nothing, false);
                         }
-                        PedestalVerb::Release => status.grip_size = command.grasp_size,
-                        PedestalVerb::Grip => status.grip_size = self.part.max(command.grasp_size),
+                        PedestalVerb::Release => {
+                            status.grip_size = command.grasp_size;
+                            (status.felt, status.gripped) = (Felt::Nothing, false);
+                        }
+                        PedestalVerb::Grip => {
+                            let holds = self.part > command.grasp_size;
+                            status.grip_size = self.part.max(command.grasp_size);
+                            status.felt = if holds { Felt::Something } else { Felt::Nothing };
+                            status.gripped = true;
+                        }
                         PedestalVerb::Flip if !self.slips => {
-                            status.table_position = status.table_position.map(|at| at + command.table_angle);
+                            status.table_position =
+                                status.table_position.map(|position| position + command.table_angle);
                         }
-                        PedestalVerb::Flip if self.slips => status.grip_size = 0,
+                        PedestalVerb::Flip => (status.grip_size, status.felt) = (0, Felt::Nothing),
                         _ => {}
                     }
                 }
@@ -234,6 +245,8 @@ impl<'d> Bench<'d> {
             rows: Coverage::default(),
         };
         bench.emove.outputs.status.end_effector_id = 1;
+        let status = &mut bench.pedestal.outputs.status;
+        (status.felt, status.table_position) = (Felt::Nothing, Some(-200));
         bench.step();
         bench
     }

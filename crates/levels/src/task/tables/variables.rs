@@ -1,0 +1,122 @@
+//! The values of the state variables of Task.
+
+use rcs_core::Plain;
+
+/// Object status (V.4.1): does the gripper hold something?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Holding {
+    /// Nothing.
+    NotHeld,
+    /// The object of the command.
+    Held,
+    /// Another object.
+    Other,
+    /// Something, and nothing says what it is.
+    Something,
+    /// The sensors do not tell: counts as held.
+    NotKnown,
+}
+
+/// Where the robot is to be at the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Ends {
+    /// Where the command leaves it.
+    Here,
+    /// At the end-at location, where it is now.
+    There,
+    /// At the end-at location, where it is not.
+    Elsewhere,
+}
+
+/// State of the data base (V.4.1): what the Data System makes of the last command to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum DataBase {
+    /// It is done.
+    Done,
+    /// It is executing, or not answered yet.
+    Executing,
+    /// It was refused.
+    Refused,
+    /// It is not done in time, and can be written again.
+    Overdue,
+    /// It is not done in time, however often it was written.
+    Silent,
+}
+
+/// Pending update of the data base.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Update {
+    /// None: the object is not moved from or to the MBD, its move has been told, or no Data System is
+    /// connected (DB-DONE, IV.3.2).
+    None,
+    /// The move of this command, from or to the MBD, is to be told once it is made.
+    Due,
+    /// An update was told and has not been taken yet.
+    Owed,
+}
+
+/// The tool gripper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Tool {
+    /// It is not on, or it holds another tool than the command names.
+    None,
+    /// It holds nothing.
+    Free,
+    /// It holds the tool.
+    Held,
+    /// It holds something unknown, or its sensors do not tell.
+    Unsure,
+}
+
+/// Where the robot is, for the tool commands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Station {
+    /// At none of the following.
+    Elsewhere,
+    /// Near the drum: at TOOL-SAFE.
+    Safe,
+    /// In the transfer location of the drum.
+    Transfer,
+    /// At no known place: it may be on its way.
+    Unplaced,
+}
+
+/// The fingers and the tool drum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Drum {
+    /// They are not around a tool in it.
+    Outside,
+    /// They are.
+    Inside,
+}
+
+/// Can the robot go to the position of a POSITION, as far as Task can tell?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Way {
+    /// It is there, or the task data have a trajectory.
+    Known,
+    /// They have none.
+    NoTrajectory,
+    /// It is not known where the robot is.
+    NoStart,
+}
+
+/// A location of the command, to which POSITION goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Goal {
+    /// The source location.
+    Source,
+    /// The destination.
+    Destination,
+}
+
+/// The neighbour that has the last order of the current command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Ordered {
+    /// Nothing was ordered yet.
+    Nothing,
+    /// Subtask.
+    Subtask,
+    /// The Data System.
+    DataSystem,
+}
