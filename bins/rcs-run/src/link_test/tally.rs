@@ -202,7 +202,13 @@ impl fmt::Display for Tally {
             }
             None => writeln!(f, "ACK after  -")?,
         }
-        writeln!(f, "verdict    {} ({:.3} in time, {:.3} lost)", self.verdict.text(), self.share_in_time, self.share_lost)
+        writeln!(
+            f,
+            "verdict    {} ({:.3} in time, {:.3} lost)",
+            self.verdict.text(),
+            self.share_in_time,
+            self.share_lost
+        )
     }
 }
 
@@ -251,7 +257,11 @@ mod tests {
             let tally = tally(1000, acknowledged, 0);
             assert_eq!(tally.verdict, verdict, "{tally}");
         }
-        assert_eq!(Verdict::of(true, 1.0, 0.0, 1), Verdict::Usable, "the port was away: the run would have ended");
+        assert_eq!(
+            Verdict::of(true, 1.0, 0.0, 1),
+            Verdict::Usable,
+            "the port was away: the run would have ended"
+        );
     }
 
     #[test]

@@ -107,7 +107,16 @@ impl Neighbours {
         vision: Option<vision::Port>,
         network: Option<Network>,
     ) -> Self {
-        Self { gate: Gate::default(), workstation, data_system, pedestal, vision, network, notes: Vec::new(), is_ending: false }
+        Self {
+            gate: Gate::default(),
+            workstation,
+            data_system,
+            pedestal,
+            vision,
+            network,
+            notes: Vec::new(),
+            is_ending: false,
+        }
     }
 
     /// Wait for those who are other processes: for so many seconds at most, and not beyond an interruption, of which the run will

@@ -74,7 +74,11 @@ impl fmt::Display for Page<'_> {
         )?;
         if result.ramp_ticks > 0 {
             let seconds = f64::from(result.ramp_ticks) * TICK_S;
-            writeln!(f, "ramp       the robot came to rest within {} ticks ({seconds:.1} s)", result.ramp_ticks)?;
+            writeln!(
+                f,
+                "ramp       the robot came to rest within {} ticks ({seconds:.1} s)",
+                result.ramp_ticks
+            )?;
         }
         if let Some(faults) = &result.faults {
             writeln!(f, "faults     {faults}")?;

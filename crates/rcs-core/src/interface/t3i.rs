@@ -177,9 +177,13 @@ impl T3iStatus {
                  cut wire; a re-start is sent every second",
             )
         } else if matches!(self.check, ReportCheck::Elsewhere) {
-            Some("the robot is not where it was sent, or its controller was off; PAUSE takes its position over")
+            Some(
+                "the robot is not where it was sent, or its controller was off; PAUSE takes its position over",
+            )
         } else if !self.controller_ready && !matches!(self.fault, LinkFault::None) {
-            Some("the robot controller's DTR is off: it is off, or its program does not run the DEPC function")
+            Some(
+                "the robot controller's DTR is off: it is off, or its program does not run the DEPC function",
+            )
         } else {
             None
         }

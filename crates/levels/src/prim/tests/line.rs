@@ -112,7 +112,9 @@ impl Bench {
         let out = self.controller.step(&inputs, &mut self.robot);
         let mut rx = if self.cut || self.answer == Answer::IsLost { LinkBytes::default() } else { out.tx };
         match self.answer {
-            Answer::IsDamaged => rx.bytes.iter_mut().take(usize::from(rx.length)).for_each(|byte| *byte ^= 0x40),
+            Answer::IsDamaged => {
+                rx.bytes.iter_mut().take(usize::from(rx.length)).for_each(|byte| *byte ^= 0x40)
+            }
             Answer::IsLate(ticks) => self.late.extend(vec![LinkBytes::default(); ticks]),
             Answer::Comes | Answer::IsLost => {}
         }
