@@ -22,7 +22,7 @@ use std::{
 
 use rcs_core::{
     Plain,
-    interface::{CommonMemory, DeviceOutputs, Header},
+    interface::{CommonMemory, Decided, DeviceOutputs, Header},
     plain::{Schema, StructSchema, Writer, from_bytes},
     tick::Tick,
 };
@@ -48,8 +48,8 @@ pub const ABSENT: &str = "-";
 /// First name of what goes to the devices.
 const DEVICE: &str = "device";
 /// Fields of a header that are not written. The stamp is new in every tick; `age` says how old the outputs
-/// are. Table and row are numbers; `fired` says the same by name. The step belongs to the row.
-const NOT_WRITTEN: [&str; 4] = ["stamp", "table", "row", "step"];
+/// are. The row that decided is named by numbers; `fired` says the same by name. The step belongs to the row.
+const NOT_WRITTEN: [&str; 3] = ["stamp", "decided", "step"];
 
 /// The trace of a scenario in a directory.
 #[must_use]
@@ -316,10 +316,10 @@ fn hex(bytes: &[u8]) -> String {
 
 /// The row that a header names, by the name of its table. The only place that knows how a header names a row.
 fn fired(place: &HeaderPlace, header: &Header) -> String {
-    match (header.table, place.process.table(header.table)) {
-        (0, _) => "none".into(),
-        (_, Some(table)) => format!("{} {}", table.name, header.row),
-        (number, None) => format!("table-{number} {}", header.row),
+    let Some(Decided { table, row }) = header.decided else { return "none".into() };
+    match place.process.table(table) {
+        Some(table) => format!("{} {row}", table.name),
+        None => format!("table-{table} {row}"),
     }
 }
 

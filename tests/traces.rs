@@ -1,7 +1,7 @@
 //! Traces and their comparison: every change is in the trace, and every difference is found.
 
 use rcs_core::{
-    interface::{CommonMemory, Reason},
+    interface::{CommonMemory, Decided, Reason, emove::Holding},
     name::Name16,
     tick::Tick,
 };
@@ -262,13 +262,14 @@ fn traced(change: impl FnOnce(&mut CommonMemory)) -> (Vec<String>, Vec<String>) 
 fn a_trace_has_all_fields_and_then_what_changes() {
     let (first, later) = traced(|memory| {
         memory.emove.status.reason = Reason::ObjectLost;
-        memory.emove.status.held = Some(Name16::new("LINKBAR1").expect("it is a name"));
+        memory.emove.status.held = Holding::Something;
+        memory.task.status.command = Name16::new("MOVE").expect("it is a name");
         memory.prim.poses[2].pose.tool[1] = -7145;
         memory.grip.valves.bits = 0x82;
         memory.t3i.link_tx.length = 1;
         memory.t3i.link_tx.bytes[0] = 0xA5;
         memory.quick_change.header.republished = true;
-        (memory.prim.header.table, memory.prim.header.row) = (1, 3);
+        memory.prim.header.decided = Some(Decided { table: 1, row: 3 });
     });
     for line in
         ["1\temove.status.reason\t", "1\ttask.header.age\t0", "1\tprim.header.age\t1", "1\tprim.fired\tnone"]
@@ -276,13 +277,13 @@ fn a_trace_has_all_fields_and_then_what_changes() {
         assert!(first.iter().any(|found| found == line), "{line:?} is not in {first:#?}");
     }
     assert!(first.iter().any(|line| line.starts_with("1\tdevice.link_tx.bytes\t0000")));
-    assert!(!first.iter().any(|line| line.contains(".stamp\t") || line.contains("header.row")));
+    assert!(!first.iter().any(|line| line.contains(".stamp\t") || line.contains("header.decided")));
     let prim = levels::ladder::Ladder::processes().iter().find(|process| process.name == "Prim");
     let table = prim.and_then(|prim| prim.table(1)).expect("Prim has a table").name;
     let bytes = format!("A5{}", "00".repeat(63));
     let expected = [
         "2\temove.status.reason\tthe object was lost on the way".to_owned(),
-        "2\temove.status.held\tLINKBAR1".to_owned(),
+        "2\temove.status.held\tsomething".to_owned(),
         "2\tprim.poses[2].pose.tool[1]\t-7145".to_owned(),
         "2\tt3i.link_tx.length\t1".to_owned(),
         format!("2\tt3i.link_tx.bytes\t{bytes}"),

@@ -2,6 +2,7 @@
 
 use std::{fmt, path::PathBuf, str::FromStr};
 
+use crate::campaign::CampaignArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use depc::host::RESTART_TICKS;
 use executive::{boards::Board, memory::RunName, overrun::Policy, serial::SerialSettings};
@@ -63,6 +64,8 @@ pub enum Command {
     Latency(LatencyArguments),
     /// Print what a run that goes on is doing: each process with its command, its status, and the row that fired
     Status(StatusArguments),
+    /// Interrupt a job at many ticks, let an operator recover it, and judge what became of each branch
+    Campaign(CampaignArguments),
     /// Remove what killed runs left in shared memory
     Clean,
 }

@@ -69,6 +69,12 @@ pub enum Error {
     /// A robot at a port with a clock that does not wait for it.
     #[error("a robot at a serial port lives in real time: add --clock real")]
     NotInRealTime,
+    /// A run cannot be forked.
+    #[error("the run cannot be forked: {0}")]
+    Fork(String),
+    /// A campaign asks for what there is not.
+    #[error("{0}")]
+    Campaign(String),
     /// Faults for a line that has its own.
     #[error("the file has faults of the line to the simulated robot; a serial port has faults of its own")]
     FaultsAtPort,

@@ -10,6 +10,7 @@
 mod agreement;
 mod board;
 mod bus_error;
+mod campaign;
 mod check;
 mod clean;
 mod cli;
@@ -58,6 +59,7 @@ fn execute(cli: Cli) -> Result<ExitCode, Error> {
         Some(Command::Tables) => tables::tables(),
         Some(Command::Latency(arguments)) => latency::latency(&arguments),
         Some(Command::Status(arguments)) => status::status(&arguments),
+        Some(Command::Campaign(arguments)) => campaign::campaign(&arguments),
         Some(Command::Clean) => clean::clean(),
     }
 }

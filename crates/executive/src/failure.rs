@@ -45,6 +45,7 @@ struct Cause {
 }
 
 /// Looks at every tick and keeps when, and amid what, each process began to report what it reports now.
+#[derive(Clone)]
 pub struct Watch {
     last: [Fault; PROCESSES],
     causes: [Option<Cause>; PROCESSES],
@@ -120,8 +121,7 @@ impl Watch {
 
 /// The table and the row that a header names.
 fn row_of(process: &ProcessInfo, header: &Header) -> Option<(&'static Table, &'static Row)> {
-    let table = process.table(header.table)?;
-    Some((table, table.row(header.row)?))
+    process.row(header.decided?)
 }
 
 fn faults(memory: &CommonMemory) -> [Fault; PROCESSES] {
@@ -182,6 +182,7 @@ mod tests {
     use rcs_core::{
         Actions, Plain, Variables, decision_table,
         interface::{
+            Decided,
             grip::GripVerb,
             jaws::{JawsCommand, JawsVerb, TOOL_GRIPPER},
             pedestal::{PedestalVerb, TableCommand, TableVerb},
@@ -271,12 +272,13 @@ mod tests {
             |memory| memory.emove.grip.force = 25,
             |memory| {
                 let row = close_grip(CloseGripStep::Wait, &Situation { fingers: Fingers::Shut }).row;
-                memory.grip.header = Header { stamp: Tick(3), table: 1, row, ..Header::ZERO };
+                let decided = Some(Decided { table: 1, row });
+                memory.grip.header = Header { stamp: Tick(3), decided, ..Header::ZERO };
                 memory.grip.status.reason = Reason::GraspMissed;
             },
             |memory| {
                 memory.emove.status.reason = Reason::GraspMissed;
-                memory.grip.header.row = 1;
+                memory.grip.header.decided = Some(Decided { table: 1, row: 1 });
             },
             |memory| {
                 memory.subtask.status.reason = Reason::GraspMissed;

@@ -24,8 +24,8 @@ pub struct ProcessStatus {
     pub status: &'static str,
     /// Its decision table; `None` before one was used.
     pub table: Option<&'static str>,
-    /// The row that fired; 0 for none.
-    pub row: u8,
+    /// The row that fired; `None` before one did.
+    pub row: Option<u8>,
     /// Step of its command after that row; empty for none.
     pub step: String,
     /// It was not stepped: dormant or held.
@@ -69,9 +69,9 @@ impl Status {
                 process: info.name,
                 command: command(id, &external.hws, memory),
                 status: memory.said(id).report,
-                table: info.table(header.table).map(|table| table.name),
-                row: header.row,
-                step: header.step.to_string(),
+                table: header.decided.and_then(|decided| info.table(decided.table)).map(|table| table.name),
+                row: header.decided.map(|decided| decided.row),
+                step: header.step.unwrap_or_default().to_string(),
                 suspended: header.republished,
                 elsewhere: of_pedestal(id) && external.pedestal.elsewhere,
                 lost: header.stamp != pulse.tick,
@@ -113,8 +113,10 @@ impl fmt::Display for Status {
             writeln!(f, "  {link}")?;
         }
         for process in &self.processes {
-            let mut row =
-                process.table.map_or_else(String::new, |table| format!("{table} row {}", process.row));
+            let mut row = match (process.table, process.row) {
+                (Some(table), Some(row)) => format!("{table} row {row}"),
+                _ => String::new(),
+            };
             if !process.step.is_empty() {
                 row += &format!(", {}", process.step);
             }
@@ -139,7 +141,7 @@ impl fmt::Display for Status {
 mod tests {
     use super::*;
     use rcs_core::{
-        interface::{emove::EmoveVerb, grip::GripReport},
+        interface::{Decided, emove::EmoveVerb, grip::GripReport},
         name::Name16,
         tick::Tick,
     };
@@ -153,14 +155,17 @@ mod tests {
         (memory.grip.header.stamp, memory.grip.header.republished) = (Tick(50), true);
         external.pedestal.elsewhere = true;
         memory.hand.header.stamp = Tick(50);
-        (memory.task.header.table, memory.task.header.row) = (1, 2);
-        memory.task.header.step = Name16::clipped("moving");
+        memory.task.header.decided = Some(Decided { table: 1, row: 2 });
+        memory.task.header.step = Some(Name16::clipped("moving"));
         let pulse = Pulse { tick: Tick(50), skipped: 3, controller_ns: 2500, ..Pulse::default() };
         let status = Status::of("linkbar-1", &external, &memory, &pulse);
         assert_eq!((status.tick, status.skipped, status.processes.len()), (50, 3, ProcessId::ALL.len()));
         let [task, _, emove, ..] = &status.processes[..] else { panic!("{status}") };
         assert_eq!((task.command.as_str(), emove.command.as_str()), ("PAUSE", "E-PAUSE"));
-        assert_eq!((task.table, task.row), (Ladder::processes()[0].table(1).map(|table| table.name), 2));
+        assert_eq!(
+            (task.table, task.row),
+            (Ladder::processes()[0].table(1).map(|table| table.name), Some(2))
+        );
         assert_eq!(task.step, "moving");
         let grip = &status.processes[6];
         assert_eq!((grip.status, grip.suspended, grip.table), (GripReport::ALL[1].text(), true, None));

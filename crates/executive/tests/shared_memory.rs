@@ -14,7 +14,7 @@ use std::{
 use executive::memory::{Attached, Publisher, RunName, SharedMemoryError, buffers::Pulse, list, runs};
 use rcs_core::{
     Plain,
-    interface::{CommonMemory, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport},
+    interface::{CommonMemory, Decided, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport},
     name::Name16,
     plain::{Schema, from_bytes},
     tick::Tick,
@@ -28,7 +28,7 @@ fn name(test: &str) -> RunName {
 
 fn with_stamp(tick: u64) -> (ExternalInputs, CommonMemory, Pulse) {
     let tick = Tick(tick);
-    let header = Header { stamp: tick, table: 2, row: 7, ..Header::ZERO };
+    let header = Header { stamp: tick, decided: Some(Decided { table: 2, row: 7 }), ..Header::ZERO };
     let mut memory = CommonMemory::default();
     headers(&mut memory).into_iter().for_each(|place| *place = header);
     memory.task.status.report = HwsReport::Executing;

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use rcs_core::{interface::Header, table::Table};
+use rcs_core::{
+    interface::{Decided, Header},
+    table::Table,
+};
 
 use crate::execution::EXECUTE;
 
@@ -13,7 +16,7 @@ pub struct Coverage(BTreeSet<(u8, u8)>);
 impl Coverage {
     /// Take in what a process has reported.
     pub fn note(&mut self, header: &Header) {
-        self.0.insert((header.table, header.row));
+        self.0.extend(header.decided.map(|Decided { table, row }| (table, row)));
     }
 
     /// Take in what another test has covered.

@@ -15,16 +15,20 @@
 //! ```
 //!
 //! A process consults in turn, until a row decides: [`EXECUTE`], its table ACCEPT with what a new command needs, its table of what all
-//! commands have in common, if it has one, and the table of the command. `docs/design/tables.md` tells more.
+//! commands have in common, if it has one, and the table of the command. A process with others below it consults
+//! [`HALT`](crate::halt::HALT) before ACCEPT and [`EFFECT`](crate::halt::EFFECT) after the table of the command.
+//! `docs/design/tables.md` tells more.
 
 use rcs_core::{
     Actions, Plain, Variables, decision_table,
     handshake::{Arrival, Lower, Receiver},
-    interface::{Header, Reason, Report},
+    interface::{Decided, Header, Reason, Report},
     name::Name16,
     table::{Choice, Decision, Verdict},
     tick::Tick,
 };
+
+use crate::halt::{Fired, Futile, Halt, Halting, Intake, Order, Replaced, effect, halt};
 
 /// How far the current command has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -111,6 +115,23 @@ pub enum Work {
     Over,
 }
 
+/// A row that has ordered something of a process below.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct LastOrder {
+    /// Its table.
+    pub table: u8,
+    /// Its number.
+    pub row: u8,
+    /// The state variables at that time, as one number.
+    pub variables: u64,
+}
+
+/// The actions of a process that commands others.
+pub trait Orders: From<Halting> + From<Futile> {
+    /// The action orders something of a process below that changes a state variable when it is carried out.
+    fn is_order(&self) -> bool;
+}
+
 /// The current command of a process and how far it has come.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Execution {
@@ -120,16 +141,24 @@ pub struct Execution {
     pub outcome: Outcome,
     /// Why it failed.
     pub reason: Reason,
-    /// Table that was used last, from 1; 0 for none.
-    pub table: u8,
-    /// Row of it.
-    pub row: u8,
+    /// The row that decided last, if any has.
+    pub decided: Option<Decided>,
+    /// The command is new and neither accepted nor refused yet.
+    pub waiting: bool,
+    /// What is done so that it can be.
+    pub halt: Halt,
+    /// What was ordered last for the command.
+    pub last_order: Option<LastOrder>,
 }
 
 /// Number of [`EXECUTE`] in every process.
 const EXECUTE_NUMBER: u8 = 1;
 /// Number of the table ACCEPT in every process.
 const ACCEPT_NUMBER: u8 = 2;
+/// Number of [`HALT`](crate::halt::HALT) in the processes that have it.
+const HALT_NUMBER: u8 = 3;
+/// Number of [`EFFECT`](crate::halt::EFFECT) in the processes that have it.
+const EFFECT_NUMBER: u8 = 4;
 
 impl Execution {
     /// Consult [`EXECUTE`].
@@ -139,7 +168,7 @@ impl Execution {
         match decision.action {
             Course::Refuse => {
                 self.reason = Reason::Restarted;
-                (self.table, self.row) = (EXECUTE_NUMBER, decision.row);
+                self.decided = Some(Decided { table: EXECUTE_NUMBER, row: decision.row });
             }
             Course::Begin => self.reason = Reason::None,
             Course::Rest | Course::Continue => {}
@@ -167,12 +196,86 @@ impl Execution {
         Some(choice.action)
     }
 
+    /// Consult [`HALT`](crate::halt::HALT) about what [`EXECUTE`] has said. What is to be done with the tables: `Begin` in the tick in
+    /// which a command is accepted or refused.
+    ///
+    /// # Errors
+    /// What HALT asks for: no other table is to be consulted.
+    pub fn admit(&mut self, course: Course, replaced: &Replaced) -> Result<Course, Halting> {
+        self.waiting |= course == Course::Begin;
+        let intake = match course {
+            Course::Refuse => Intake::Adopted,
+            _ if self.waiting => Intake::Asked,
+            Course::Rest | Course::Begin | Course::Continue => Intake::Taken,
+        };
+        match halt(self.halt, &Replaced { intake, ..*replaced }) {
+            Verdict::Passed(()) if self.waiting => {
+                (self.waiting, self.last_order) = (false, None);
+                Ok(Course::Begin)
+            }
+            Verdict::Passed(()) => Ok(course),
+            Verdict::Decided(decision) => {
+                self.halt = decision.next;
+                // The header of a restarted process says that it was restarted.
+                if intake == Intake::Asked {
+                    self.note(&decision.of(HALT_NUMBER));
+                }
+                Err(decision.action)
+            }
+        }
+    }
+
+    /// As [`Self::decide`], for a process that commands others: HALT is consulted before the tables and EFFECT after them.
+    /// `variables` are those of the command's table, as one number.
+    pub fn command<Action: Orders, Step: Copy>(
+        &mut self,
+        (arrival, replaced, variables): (Arrival, &Replaced, u64),
+        first: Step,
+        step: &mut Step,
+        tables: impl FnOnce(Step) -> Choice<Action, Step>,
+    ) -> Option<Action> {
+        let course = self.course(arrival);
+        match self.admit(course, replaced) {
+            Err(halting) => return Some(halting.into()),
+            Ok(Course::Rest | Course::Refuse) => return None,
+            Ok(Course::Begin) => *step = first,
+            Ok(Course::Continue) => {}
+        }
+        let choice = self.effective(tables(*step), variables);
+        self.note(&choice);
+        *step = choice.next;
+        Some(choice.action)
+    }
+
+    /// Consult [`EFFECT`](crate::halt::EFFECT) about a row that fired: the row, or that of EFFECT.
+    pub fn effective<Action: Orders, Step>(
+        &mut self,
+        choice: Choice<Action, Step>,
+        variables: u64,
+    ) -> Choice<Action, Step> {
+        let this = LastOrder { table: choice.table, row: choice.row, variables };
+        let order = match choice.action.is_order() {
+            false => Order::None,
+            true if self.last_order == Some(this) => Order::Repeated,
+            true => Order::New,
+        };
+        match effect((), &Fired { order }) {
+            Verdict::Passed(()) => {
+                self.last_order = if order == Order::New { Some(this) } else { self.last_order };
+                choice
+            }
+            Verdict::Decided(Decision { row, action, .. }) => {
+                Choice { table: EFFECT_NUMBER, row, action: action.into(), next: choice.next }
+            }
+        }
+    }
+
     /// Note what a table ACCEPT has decided whose process does more in the same tick. False if it refused the command.
     pub fn accepts<Step>(&mut self, verdict: &Verdict<Refusal, Step, ()>) -> bool {
         match *verdict {
             Verdict::Passed(()) => true,
             Verdict::Decided(Decision { row, action: Refusal::Fail(reason), .. }) => {
-                (self.table, self.row) = (ACCEPT_NUMBER, row);
+                self.decided = Some(Decided { table: ACCEPT_NUMBER, row });
                 self.fail(reason);
                 false
             }
@@ -181,13 +284,31 @@ impl Execution {
 
     /// Note which row of which table fired.
     pub fn note<Action, Step>(&mut self, choice: &Choice<Action, Step>) {
-        (self.table, self.row) = (choice.table, choice.row);
+        self.decided = Some(Decided { table: choice.table, row: choice.row });
+    }
+
+    /// Is the command in the buffer to be accepted or refused, as soon as HALT allows it?
+    #[must_use]
+    pub fn asked(&self, arrival: Arrival) -> Asked {
+        if self.waiting { Asked::Now } else { Asked::of(arrival) }
     }
 
     /// True in the tick in which a command was accepted: `arrival` is that of the tick, and no row of ACCEPT has refused it.
     #[must_use]
     pub fn begins(&self, arrival: Arrival) -> bool {
-        arrival == Arrival::New && self.table != ACCEPT_NUMBER
+        self.accepted(Asked::of(arrival))
+    }
+
+    /// As [`Self::begins`], for a process that has HALT: `asked` is that of the tick.
+    #[must_use]
+    pub fn accepted(&self, asked: Asked) -> bool {
+        asked == Asked::Now && !self.waiting && !self.is_refused()
+    }
+
+    /// True if a row of ACCEPT decided last: the command was refused.
+    #[must_use]
+    pub fn is_refused(&self) -> bool {
+        self.decided.is_some_and(|decided| decided.table == ACCEPT_NUMBER)
     }
 
     /// The process was dormant in the tick before: the next command number it reads is adopted, not executed.
@@ -236,9 +357,8 @@ impl Execution {
         Header {
             stamp: tick,
             republished: false,
-            table: self.table,
-            row: self.row,
-            step: Name16::clipped(step),
+            decided: self.decided,
+            step: Some(Name16::clipped(step)).filter(|step| !step.is_empty()),
         }
     }
 }
@@ -271,10 +391,11 @@ mod tests {
         let mut e = Execution::default();
         e.course(Arrival::New);
         assert!(e.accepts(&Verdict::<Refusal, (), ()>::Passed(())));
-        assert_eq!((e.report(), e.table), (Report::Executing, 0));
+        assert_eq!((e.report(), e.decided), (Report::Executing, None));
         let refusal = Decision { row: 2, action: Refusal::Fail(Reason::UnknownCommand), next: () };
         assert!(!e.accepts(&Verdict::Decided(refusal)));
-        assert_eq!((e.report(), e.reason, e.row), (Report::Error, Reason::UnknownCommand, 2));
+        assert_eq!((e.report(), e.reason), (Report::Error, Reason::UnknownCommand));
+        assert_eq!(e.decided, Some(Decided { table: ACCEPT_NUMBER, row: 2 }));
         assert!(!e.begins(Arrival::New));
     }
 
@@ -282,6 +403,7 @@ mod tests {
     fn a_restarted_process_refuses_what_stands_in_its_buffer() {
         let mut e = Execution::default();
         let arrival = e.receiver.observe(7);
-        assert_eq!((e.course(arrival), e.reason, e.row), (Course::Refuse, Reason::Restarted, 2));
+        assert_eq!((e.course(arrival), e.reason), (Course::Refuse, Reason::Restarted));
+        assert_eq!(e.decided, Some(Decided { table: EXECUTE_NUMBER, row: 2 }));
     }
 }

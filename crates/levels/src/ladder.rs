@@ -8,11 +8,11 @@
 use rcs_core::{
     Plain, for_each_process,
     interface::{
-        CommonMemory, ExternalInputs, Header, OutsidePedestal,
+        CommonMemory, Decided, ExternalInputs, Header, OutsidePedestal,
         device::{JoystickBox, single_step},
     },
     process::{Inputs, Process},
-    table::Table,
+    table::{Row, Table},
     tick::Tick,
 };
 use taskdata::files::TaskData;
@@ -26,7 +26,7 @@ use crate::processes::*;
 pub struct ProcessInfo {
     /// The manual's name.
     pub name: &'static str,
-    /// Its tables; `table` of a [`rcs_core::interface::Header`] counts them from 1.
+    /// Its tables; `table` of a [`Decided`] counts them from 1.
     pub tables: &'static [&'static Table],
 }
 
@@ -35,6 +35,13 @@ impl ProcessInfo {
     #[must_use]
     pub fn table(&self, number: u8) -> Option<&'static Table> {
         self.tables.get(usize::from(number.checked_sub(1)?)).copied()
+    }
+
+    /// A row by its numbers, with its table.
+    #[must_use]
+    pub fn row(&self, decided: Decided) -> Option<(&'static Table, &'static Row)> {
+        let table = self.table(decided.table)?;
+        Some((table, table.row(decided.row)?))
     }
 }
 

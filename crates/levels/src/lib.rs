@@ -44,6 +44,7 @@ pub mod emove;
 mod exact_robot;
 pub mod execution;
 pub mod grip;
+pub mod halt;
 pub mod jaws;
 pub mod ladder;
 pub mod pedestal;

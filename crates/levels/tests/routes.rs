@@ -2,13 +2,10 @@
 
 use std::{path::Path, sync::OnceLock};
 
-use levels::emove::{
-    robot_place::{GoneTo, ObjectGrip, RobotPlace},
-    route::{Ahead, Goal, LegGoal, Planning, Route},
-};
+use levels::emove::route::{Ahead, Goal, LegGoal, Planning, Route};
 use rcs_core::{
     frame::Frame,
-    interface::emove::{EmoveCommand, EmoveVerb},
+    interface::emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace},
     name::{Name10, Name16},
     pose::Pose,
 };
@@ -52,7 +49,14 @@ fn command(verb: EmoveVerb, object: &str, grip: i32, at: &Location) -> EmoveComm
 }
 
 fn robot_at(gone_to: GoneTo, at: &Location, frame: &Frame) -> RobotPlace {
-    RobotPlace { gone_to, location: at.name, place: at.place, pose: Pose::from_frame(frame) }
+    RobotPlace {
+        gone_to,
+        location: at.name,
+        kind: at.place.kind,
+        record: at.place.locpt.to_option(),
+        array: at.place.array.to_option(),
+        pose: Pose::from_frame(frame),
+    }
 }
 
 fn gripped(object: &str, grip: i32) -> ObjectGrip {
@@ -62,7 +66,7 @@ fn gripped(object: &str, grip: i32) -> ObjectGrip {
 /// The whole route as text: `departure A/D-8`, `UNIT-V1`, `goal A/D-10`, `goal`, each with the velocity of its segment.
 fn legs(mut route: Route) -> Vec<(String, i32)> {
     let data = data();
-    (route.departure.number, route.goal.number) = (1_000_001, 1_000_002);
+    (route.departure, route.goal) = (1_000_001, 1_000_002);
     let mut all = Vec::new();
     while route.ahead(&data) != Ahead::Nothing {
         let leg = route.leg(&data).unwrap();
@@ -91,7 +95,7 @@ fn planned(
 ) -> Result<Vec<(String, i32)>, Planning> {
     let command = command(verb, object, grip, to);
     let goal = Goal::new(&command, &to.frame, &data())?;
-    let route = Route::plan(&command, &goal, from, &data())?;
+    let route = Route::plan(&command, &goal, from.ok_or(Planning::NoStart)?, &data())?;
     Ok(legs(route))
 }
 

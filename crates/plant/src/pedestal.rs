@@ -273,12 +273,12 @@ mod tests {
         order(&mut table, MotorOrder::Turn, 1_000_000);
         run(&mut table);
         assert!(table.at_plus() && !table.at_minus());
-        assert_eq!(table.motor_angle(), -20.0, "it stops on the step of the switch");
-        order(&mut table, MotorOrder::SetCounter, -2_000);
-        assert_eq!(table.counter(), -2_000);
+        assert_eq!(table.motor_angle(), 0.0, "it stops on the step of the switch");
+        order(&mut table, MotorOrder::SetCounter, 0);
+        assert_eq!(table.counter(), 0);
         order(&mut table, MotorOrder::Turn, 500);
         run(&mut table);
-        assert_eq!(table.counter(), -2_000, "not beyond the switch");
+        assert_eq!(table.counter(), 0, "not beyond the switch");
         order(&mut table, MotorOrder::Turn, -1_000_000);
         run(&mut table);
         assert!(table.at_minus() && !table.at_plus());

@@ -190,7 +190,7 @@ fn what_is_measured_by_a_value_that_cannot_be_read_is_not_judged() {
     for (from, to, entry) in [
         ("jaw = [6.0, 3.0, 3.25]", "jaw = [6.0, 3.0]", "vise.jaw"),
         ("inside = 21.0", "inside = \"21.0\"", "tray_shape.inside"),
-        ("limits = [-345.0, -20.0]", "limits = [-345.0, \"-20.0\"]", "pedestal.table.limits[1]"),
+        ("limits = [-345.0, 0.0]", "limits = [-345.0, \"0.0\"]", "pedestal.table.limits[1]"),
         ("stop_force = 100.0", "stop_force = true", "drum.stop_force"),
         ("pins_reach = 0.65", "pins_reach = [0.65]", "quick_change.pins_reach"),
         ("opening_open = 2.760", "opening_open = \"\"", "vise.program[1].opening_open"),

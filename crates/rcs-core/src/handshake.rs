@@ -15,8 +15,8 @@ use crate::{Plain, interface::Header, tick::Tick};
 /// Ticks after which a command that is not echoed counts as lost.
 pub const ECHO_LIMIT: u64 = 3;
 
-/// How far the first number of a starting commander is from the echo: more than can be under way, since a number
-/// written in tick k is echoed in the buffer that tick k+2 reads.
+/// How far the first number of a starting commander is from the last that it finds: more than can be under way, since a
+/// number written in tick k is echoed in the buffer that tick k+2 reads.
 pub const FIRST_STEP: u32 = 4;
 
 /// The command number after `number`: they run on past the end without 0, which means none.
@@ -58,10 +58,21 @@ pub struct Commander {
 }
 
 impl Commander {
-    /// Before anything else in a tick: a commander that has sent nothing yet follows the echo of the process below.
+    /// Before anything else in a tick: a commander that has sent nothing yet follows the echo of what is below. This is
+    /// for commanders of devices and of other systems.
     pub fn start(&mut self, echo: u32) {
         if !self.started {
             self.number = echo;
+        }
+    }
+
+    /// As [`Self::start`], for a commander of a process. Its output buffer is still there after a restart, and with it
+    /// the number of a command that may be under way without being echoed yet: it goes on from that, `written`. An echo
+    /// alone is not settled before the second tick.
+    pub fn start_from(&mut self, tick: Tick, written: u32, echo: u32) {
+        self.start(if written == 0 { echo } else { written });
+        if !self.started {
+            self.sent = tick;
         }
     }
 
@@ -166,7 +177,7 @@ mod tests {
     #[test]
     fn an_old_status_is_not_believed() {
         let mut commander = Commander::default();
-        commander.start(41);
+        commander.start_from(Tick(10), 0, 41);
         assert_eq!(commander.send(Tick(10)), 41 + FIRST_STEP);
         assert_eq!(commander.read(Tick(11), &header(10), 41, Lower::Done), Lower::Pending);
         assert_eq!(
@@ -186,26 +197,49 @@ mod tests {
     #[test]
     fn a_restarted_commander_uses_no_number_that_is_under_way() {
         let mut commander = Commander::default();
-        commander.start(41);
+        commander.start_from(Tick(10), 0, 41);
         let under_way = commander.send(Tick(10));
-        // It forgets everything in the next tick, when the echo is still the old one.
+        // It forgets everything in the next tick, when the echo is still the old one. Its output buffer stays.
         let mut restarted = Commander::default();
-        restarted.start(41);
+        restarted.start_from(Tick(11), under_way, 41);
+        assert_eq!(restarted.read(Tick(11), &header(10), 41, Lower::Done), Lower::Pending, "that is another");
         let mut receiver = Receiver { echo: 41, started: true, adopted: false };
         assert_eq!(receiver.observe(under_way), Arrival::New);
-        restarted.start(under_way);
-        assert_eq!(receiver.observe(restarted.send(Tick(12))), Arrival::New);
+        let first = restarted.send(Tick(11));
+        assert_eq!(receiver.observe(first), Arrival::New);
+    }
+
+    #[test]
+    fn a_commander_that_waits_for_a_command_of_before_its_restart_is_not_lost() {
+        let mut commander = Commander::default();
+        commander.start_from(Tick(100), 45, 41);
+        assert_eq!(commander.read(Tick(100), &header(99), 41, Lower::Done), Lower::Pending);
+        commander.start_from(Tick(101), 45, 45);
+        assert_eq!(commander.read(Tick(101), &header(100), 45, Lower::Executing), Lower::Executing);
+    }
+
+    /// A command as the buffer holds it: its number, and what distinguishes it from every other command ever sent.
+    #[derive(Clone, Copy, Debug, Default, PartialEq)]
+    struct Content {
+        number: u32,
+        text: usize,
     }
 
     proptest! {
-        /// Whatever is restarted whenever, no command is executed twice and no status of another command is believed.
+        /// Whatever is restarted whenever, no command is executed twice, and no status is believed but that of the
+        /// command that was sent last: by its content, not by its number.
         #[test]
         fn each_command_is_executed_at_most_once(events in prop::collection::vec(0_u8..12, 1..300)) {
             let mut commander = Commander::default();
             let mut receiver = Receiver::default();
-            // Tick-parity buffers: what was written in the tick before stays until it is written again.
-            let (mut number, mut echo) = (0_u32, (0_u32, Lower::Done));
+            // Tick-parity buffers: what was written in the tick before stays until it is written again. They survive
+            // a restart.
+            let (mut written, mut echo) = (Content::default(), (0_u32, Lower::Done));
+            // What the receiver has executed or adopted last: what its status is about.
+            let mut current = Content::default();
             let mut executed = std::collections::HashSet::new();
+            // The status that stands in the buffer, and what it is about.
+            let mut about = current;
             for (k, event) in events.into_iter().enumerate() {
                 let tick = Tick(k as u64 + 1);
                 match event {
@@ -213,22 +247,29 @@ mod tests {
                     1 => receiver = Receiver::default(),
                     _ => {}
                 }
-                let (old_number, old_echo) = (number, echo);
-                commander.start(old_echo.0);
+                let (old_written, old_echo, old_about) = (written, echo, about);
+                commander.start_from(tick, old_written.number, old_echo.0);
                 let status = commander.read(tick, &header(k as u64), old_echo.0, old_echo.1);
-                if matches!(status, Lower::Done | Lower::Error) || (event == 2 && status != Lower::Pending) {
-                    number = commander.send(tick);
+                if commander.started && matches!(status, Lower::Done | Lower::Executing | Lower::Error) {
+                    prop_assert_eq!(old_about, old_written, "the status is that of another command");
                 }
-                let arrival = receiver.observe(old_number);
+                if matches!(status, Lower::Done | Lower::Error) || (event >= 8 && status != Lower::Pending)
+                    || event == 2 {
+                    written = Content { number: commander.send(tick), text: k };
+                }
+                let arrival = receiver.observe(old_written.number);
                 if arrival == Arrival::New {
-                    prop_assert!(executed.insert(old_number), "{old_number} was executed twice");
+                    prop_assert!(executed.insert(old_written.text), "{:?} was executed twice", old_written);
+                }
+                if matches!(arrival, Arrival::New | Arrival::Restarted) {
+                    current = old_written;
                 }
                 let report = match arrival {
                     Arrival::Restarted => Lower::Error,
                     Arrival::Nothing | Arrival::Same => Lower::Done,
                     Arrival::New => Lower::Executing,
                 };
-                echo = (receiver.echo, report);
+                (echo, about) = ((receiver.echo, report), current);
             }
         }
     }

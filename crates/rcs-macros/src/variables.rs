@@ -34,6 +34,15 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
                 doc: #docs,
                 values: <#types>::ENUM,
             }, )* ];
+
+            /// The values of all variables as one number: equal numbers are equal situations.
+            #[allow(dead_code, reason = "not every table is asked whether it repeats itself")]
+            pub fn code(&self) -> u64 {
+                let code = 0_u64;
+                #( let code = code.wrapping_mul(u64::try_from(<#types>::ALL.len()).unwrap_or(u64::MAX))
+                    .wrapping_add(u64::from(self.#idents.code())); )*
+                code
+            }
         }
 
         #[doc(hidden)]

@@ -16,7 +16,7 @@ use levels::ladder::{Ladder, ProcessInfo};
 use mcap::{McapResult, records::MessageHeader};
 use prost_types::field_descriptor_proto::Type;
 use rcs_core::{
-    interface::{CommonMemory, ExternalInputs, Header},
+    interface::{CommonMemory, Decided, ExternalInputs, Header},
     plain::{self, Schema, StructSchema},
     table::{Row, Table},
     tick::Tick,
@@ -219,8 +219,7 @@ impl HeaderPlace {
     /// The row that a header names.
     #[must_use]
     pub fn row(&self, header: &Header) -> Option<(&'static Table, &'static Row)> {
-        let table = self.process.table(header.table)?;
-        Some((table, table.row(header.row)?))
+        self.process.row(header.decided?)
     }
 }
 
@@ -293,16 +292,17 @@ fn row_message(place: &HeaderPlace, header: &Header) -> Vec<u8> {
         }
         None => Default::default(),
     };
+    let (table_number, row_number) = header.decided.map_or((0, 0), |Decided { table, row }| (table, row));
     let mut data = Vec::new();
     wire::bytes(1, place.process.name.as_bytes(), &mut data);
-    wire::unsigned(2, header.table.into(), &mut data);
+    wire::unsigned(2, table_number.into(), &mut data);
     wire::bytes(3, table.as_bytes(), &mut data);
-    wire::unsigned(4, header.row.into(), &mut data);
+    wire::unsigned(4, row_number.into(), &mut data);
     wire::bytes(5, conditions.as_bytes(), &mut data);
     wire::bytes(6, action.as_bytes(), &mut data);
     wire::bytes(7, next.as_bytes(), &mut data);
     wire::unsigned(8, header.republished.into(), &mut data);
-    wire::bytes(9, header.step.as_str().as_bytes(), &mut data);
+    wire::bytes(9, header.step.unwrap_or_default().as_str().as_bytes(), &mut data);
     data
 }
 
@@ -335,7 +335,8 @@ mod tests {
     #[test]
     fn headers_are_where_the_processes_are() {
         let mut memory = CommonMemory::default();
-        memory.prim.header = Header { stamp: Tick(7), table: 2, row: 3, ..Header::default() };
+        memory.prim.header =
+            Header { stamp: Tick(7), decided: Some(Decided { table: 2, row: 3 }), ..Header::default() };
         let mut image = vec![0; CommonMemory::SIZE];
         memory.encode(&mut plain::Writer::new(&mut image));
         let headers = headers();

@@ -7,6 +7,7 @@
 use rcs_core::{
     interface::{
         CommonMemory, Fault, Header, ProcessId,
+        emove::Holding,
         hws::{HwsCommand, HwsReport},
         prim::{PrimReport, PrimVerb},
         t3i::T3iStatus,
@@ -88,10 +89,8 @@ fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemo
         }
     }
     let (was, is) = (&before.subtask.status, &after.subtask.status);
-    match (was.held, is.held) {
-        (was, Some(held)) if was != Some(held) => say("subtask", format!("holds {held}")),
-        (Some(held), None) => say("subtask", format!("no longer holds {held}")),
-        _ => {}
+    if let Some(remark) = holding(&was.held, &is.held) {
+        say("subtask", remark);
     }
     if was.end_effector_id != is.end_effector_id {
         match is.end_effector_id {
@@ -130,7 +129,7 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
         }
     }
     // Only the first of a row of points: a fast move is limited in every tick.
-    if is.counters.limited > was.counters.limited && before.t3i.header.row != after.t3i.header.row {
+    if is.counters.limited > was.counters.limited && before.t3i.header.decided != after.t3i.header.decided {
         say(Level::Info, "the velocity limits hold a point back".to_owned());
     }
 }
@@ -177,6 +176,18 @@ fn failure(headers: &[HeaderPlace], field: &str, header: &Header, level: Level, 
     }
 }
 
+/// What has changed in what is held.
+fn holding(was: &Holding, is: &Holding) -> Option<String> {
+    match (was, is) {
+        _ if was == is => None,
+        (_, Holding::Object(held)) => Some(format!("holds {}", held.object)),
+        (Holding::Object(held), Holding::Nothing) => Some(format!("no longer holds {}", held.object)),
+        (_, Holding::Nothing) => Some("holds nothing".to_owned()),
+        (_, Holding::Something) => Some("holds something unknown".to_owned()),
+        (_, Holding::NotKnown) => Some("cannot tell whether anything is held".to_owned()),
+    }
+}
+
 /// A row as one line: `GET-OBJECT row 4: Start, held Nothing, vision Needed => MovToVu -> Viewing`.
 #[must_use]
 pub fn row_text(table: &Table, row: &Row) -> String {
@@ -216,7 +227,8 @@ mod tests {
     use crate::channels::headers;
     use rcs_core::{
         interface::{
-            Reason,
+            Decided, Reason,
+            emove::ObjectGrip,
             jaws::JawsVerb,
             pedestal::{PedestalVerb, TableVerb},
         },
@@ -284,14 +296,15 @@ mod tests {
         before.prim.status.report = PrimReport::Executing;
         let mut after = before;
         after.prim.status.report = PrimReport::Done;
-        (after.subtask.status.held, after.subtask.status.end_effector_id) = (Name16::new("LINKBAR1").ok(), 1);
+        let held = ObjectGrip { object: Name16::new("LINKBAR1").unwrap(), grip: 1 };
+        (after.subtask.status.held, after.subtask.status.end_effector_id) = (Holding::Object(held), 1);
         let texts = |before, after| {
             let said = remarks(&headers(), &HwsCommand::default(), before, after);
             said.into_iter().map(|remark| remark.text).collect::<Vec<_>>()
         };
         assert_eq!(texts(&before, &after), ["GO-UNTIL TOUCH: done", "holds LINKBAR1", "gripper 1 is on"]);
         let mut later = after;
-        (later.subtask.status.held, later.subtask.status.end_effector_id) = (None, 0);
+        (later.subtask.status.held, later.subtask.status.end_effector_id) = (Holding::Nothing, 0);
         later.prim.status.report = PrimReport::JoystickOn;
         assert_eq!(
             texts(&after, &later),
@@ -325,7 +338,7 @@ mod tests {
         let before = CommonMemory::default();
         let mut after = before;
         after.subtask.status.reason = Reason::UnknownLocation;
-        (after.subtask.header.table, after.subtask.header.row) = (2, 5);
+        after.subtask.header.decided = Some(Decided { table: 2, row: 5 });
         let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
         assert_eq!(said.len(), 1, "{said:?}");
         assert_eq!(said[0].level, Level::Error);

@@ -123,7 +123,8 @@ impl Run {
             let command = |memory| failure::command(*process, &moment.external.hws, memory);
             let text = command(&moment.after);
             // A command that was written in this tick is not read yet: the step is that of the one before.
-            let step = if text == command(&moment.before) { header.step } else { Name16::EMPTY };
+            let step =
+                if text == command(&moment.before) { header.step.unwrap_or_default() } else { Name16::EMPTY };
             extend(lane, tick, text, &step);
         }
         let (speed, turning) = motion(&moment.before, &moment.after);

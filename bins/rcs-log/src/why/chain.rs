@@ -97,9 +97,9 @@ fn news(history: &History, at: Root, fired: &Fired) -> Option<String> {
         return None;
     }
     let last = history.row(at.process, seen)?;
-    let ((table, now), (_, before)) = (row_of(at.process, fired)?, row_of(at.process, last)?);
+    let ((table, now), (above, before)) = (row_of(at.process, fired)?, row_of(at.process, last)?);
     // A table above, which decides now, has passed the decision on before, by a row that no header names.
-    let passed = table.rows.iter().filter(|row| last.table != fired.table && row.action == CONSULT);
+    let passed = table.rows.iter().filter(|row| above.name != table.name && row.action == CONSULT);
     let changed = changed(passed.chain([before]), now);
     (!changed.is_empty()).then(|| changed.join(", "))
 }
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
     use crate::story::Moment;
     use rcs_core::{
-        interface::{CommonMemory, ExternalInputs, Header, Reason, Report, prim::PrimReport},
+        interface::{CommonMemory, Decided, ExternalInputs, Header, Reason, Report, prim::PrimReport},
         tick::Tick,
     };
 
@@ -187,7 +187,11 @@ mod tests {
             |_, memory| {
                 memory.prim.status.report = PrimReport::NotDetected;
                 memory.prim.status.reason = Reason::NotDetected;
-                memory.prim.header = Header { stamp: Tick(5), table: 1, row: 1, ..Header::default() };
+                memory.prim.header = Header {
+                    stamp: Tick(5),
+                    decided: Some(Decided { table: 1, row: 1 }),
+                    ..Header::default()
+                };
             },
             |_, memory| {
                 memory.emove.status.report = Report::Error;
@@ -229,8 +233,8 @@ mod tests {
     #[test]
     fn a_table_above_tells_what_it_did_not_pass_on() {
         let history = history(&[
-            |_, memory| memory.subtask.header = Header { table: 6, row: 1, ..Header::default() },
-            |_, memory| memory.subtask.header = Header { table: 3, row: 4, ..Header::default() },
+            |_, memory| memory.subtask.header.decided = Some(Decided { table: 6, row: 1 }),
+            |_, memory| memory.subtask.header.decided = Some(Decided { table: 3, row: 4 }),
         ]);
         let fired = history.row(ProcessId::Subtask, 2).unwrap();
         let found = news(&history, Root { process: ProcessId::Subtask, tick: 2 }, fired);

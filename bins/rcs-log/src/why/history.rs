@@ -3,7 +3,7 @@
 use executive::failure;
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
-    interface::Header,
+    interface::{Decided, Header},
     name::Name16,
     table::{Condition, Row, Table},
 };
@@ -26,12 +26,10 @@ pub struct Command {
 pub struct Fired {
     /// The tick.
     pub tick: u64,
-    /// Number of the table in its process.
-    pub table: u8,
-    /// The row; 0 for none.
-    pub row: u8,
-    /// Step of the command after it; empty for none.
-    pub step: Name16,
+    /// The row.
+    pub decided: Option<Decided>,
+    /// Step of the command after it.
+    pub step: Option<Name16>,
 }
 
 /// A report from the tick on in which it was written.
@@ -59,10 +57,10 @@ impl History {
         let tick = moment.tick.0;
         for process in ProcessId::ALL.iter().copied() {
             let at = process.position();
-            let Header { table, row, step, .. } = *moment.after.header(process);
+            let Header { decided, step, .. } = *moment.after.header(process);
             let rows = &mut self.rows[at];
-            if rows.last().is_none_or(|last| (last.table, last.row, last.step) != (table, row, step)) {
-                rows.push(Fired { tick, table, row, step });
+            if rows.last().is_none_or(|last| (last.decided, last.step) != (decided, step)) {
+                rows.push(Fired { tick, decided, step });
             }
             let said = moment.after.said(process);
             let (report, reason) = (said.report, said.fault.text());
@@ -110,8 +108,7 @@ pub fn info(process: ProcessId) -> &'static ProcessInfo {
 
 /// Table and row that fired.
 pub fn row_of(process: ProcessId, fired: &Fired) -> Option<(&'static Table, &'static Row)> {
-    let table = info(process).table(fired.table)?;
-    Some((table, table.row(fired.row)?))
+    info(process).row(fired.decided?)
 }
 
 /// What a row asks for, as words: `step is Start`, `gripper is None`.
@@ -150,7 +147,8 @@ pub fn row_words(process: ProcessId, fired: &Fired) -> String {
     match row_of(process, fired) {
         None => "by no row of a table".to_owned(),
         Some((table, row)) => {
-            let (deed, because) = (deed(row, fired.step.as_str()), because(&conditions(row)));
+            let (deed, because) =
+                (deed(row, fired.step.unwrap_or_default().as_str()), because(&conditions(row)));
             format!("table {} row {}: {deed}, {because}", table.name, row.number)
         }
     }

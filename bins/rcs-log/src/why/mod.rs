@@ -193,8 +193,8 @@ fn explain(log: &Log, moment: &Moment, told: Option<Told>) -> Explanation {
     let levels = Ladder::processes().iter().zip(ProcessId::ALL).map(|(process, id)| {
         let header = moment.after.header(*id);
         let command = failure::command(*id, &moment.external.hws, &moment.before);
-        let table = process.table(header.table);
-        let row = table.and_then(|table| table.row(header.row).map(|row| (table, row)));
+        let row = header.decided.and_then(|decided| process.row(decided));
+        let step = header.step.unwrap_or_default();
         Rung {
             process: process.name.to_owned(),
             command,
@@ -204,8 +204,8 @@ fn explain(log: &Log, moment: &Moment, told: Option<Told>) -> Explanation {
             conditions: row.map_or_else(Vec::new, |(_, row)| conditions(row)),
             action: row.map(|(_, row)| row.call().to_string()),
             next: row.and_then(|(_, row)| row.next).map(str::to_owned),
-            step: header.step.to_string(),
-            deed: row.map_or_else(String::new, |(_, row)| deed(row, header.step.as_str())),
+            step: step.to_string(),
+            deed: row.map_or_else(String::new, |(_, row)| deed(row, step.as_str())),
         }
     });
     let (failure, begun) = told.map_or((None, None), |told| (Some(told.story), Some(told.begun)));

@@ -78,6 +78,14 @@ pub struct Collision {
     is_robot: bool,
 }
 
+impl Collision {
+    /// It is the robot itself that has run into something, not a part that it carries.
+    #[must_use]
+    pub const fn is_of_robot(&self) -> bool {
+        self.is_robot
+    }
+}
+
 impl fmt::Display for Collision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { mover, obstacle, depth_in, position_in: [x, y, z], commands, .. } = self;
@@ -123,7 +131,7 @@ struct Allowance {
 }
 
 /// Watches a run.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ContactCheck {
     permits: Permits,
     allowed: BTreeMap<(String, String), Allowance>,

@@ -6,9 +6,9 @@
 //! the next tick, and its warm-up, come before that tick begins.
 
 pub mod boards;
-mod contacts;
+pub mod contacts;
 mod log;
-mod neighbours;
+pub mod neighbours;
 mod outside;
 mod pace;
 mod page;

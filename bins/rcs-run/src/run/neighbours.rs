@@ -307,7 +307,8 @@ fn pictured(subject: &Subject) -> Part {
 }
 
 /// Whether Task has run in a tick.
-fn task_state(header: &Header, tick: Tick) -> TaskState {
+#[must_use]
+pub fn task_state(header: &Header, tick: Tick) -> TaskState {
     if header.stamp != tick {
         TaskState::Lost
     } else if header.republished {

@@ -71,25 +71,9 @@ impl Setup {
         }
         let data = &arguments.data;
         let TaskFiles { store, job, job_path, warnings } = TaskFiles::load(data, arguments.played())?;
-        let path = data.join(CELL);
-        let description_text =
-            fs::read_to_string(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
-        let description = CellDescription::from_toml(&description_text).map_err(|error| Error::Data {
-            what: format!("the cell description {}", path.display()),
-            report: Box::new(check::cell_report(description_text.clone(), &error)),
-        })?;
-        let source = check::source(description_text.clone());
-        let report = agreement::of_cell(source, &description, &store).with(agreement::of_job(
-            &job,
-            &description,
-            &path,
-        ));
-        if report.has_errors() {
-            let what = format!("the job {} in the cell of {}", job_path.display(), path.display());
-            return Err(Error::Data { what, report: Box::new(report) });
-        }
-        let warnings = warnings.into_iter().chain(warning(&report, "the cell description"));
-        warnings.for_each(|line| eprintln!("rcs-run: {line}"));
+        let CellFile { text: description_text, description, warning } =
+            CellFile::load(data, &store, &job, &job_path)?;
+        warnings.into_iter().chain(warning).for_each(|line| eprintln!("rcs-run: {line}"));
         let (faults, faults_text) = faults(arguments, &description)?;
         let cell = Cell::with_faults(&description, arguments.seed, &faults.cell)?;
         let sees_elsewhere = arguments.outside.contains(&Role::Vision);
@@ -144,6 +128,39 @@ impl TaskFiles {
         let (job, in_job) = read.map_err(unusable(format!("the job {}", job_path.display())))?;
         let warnings = [warning(&in_data, "the task data"), warning(&in_job, "the job")];
         Ok(Self { store, job, job_path, warnings: warnings.into_iter().flatten().collect() })
+    }
+}
+
+/// The cell description of a data directory.
+pub struct CellFile {
+    /// As written.
+    pub text: String,
+    /// As read.
+    pub description: CellDescription,
+    /// A line that says that there are warnings.
+    pub warning: Option<String>,
+}
+
+impl CellFile {
+    /// Read the description, and check that task data, job and description mean the same cell.
+    ///
+    /// # Errors
+    /// [`Error`], with all errors of the data.
+    pub fn load(data: &Path, store: &Store, job: &Job, job_path: &Path) -> Result<Self, Error> {
+        let path = data.join(CELL);
+        let text = fs::read_to_string(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
+        let description = CellDescription::from_toml(&text).map_err(|error| Error::Data {
+            what: format!("the cell description {}", path.display()),
+            report: Box::new(check::cell_report(text.clone(), &error)),
+        })?;
+        let report = agreement::of_cell(check::source(text.clone()), &description, store)
+            .with(agreement::of_job(job, &description, &path));
+        if report.has_errors() {
+            let what = format!("the job {} in the cell of {}", job_path.display(), path.display());
+            return Err(Error::Data { what, report: Box::new(report) });
+        }
+        let warning = warning(&report, "the cell description");
+        Ok(Self { text, description, warning })
     }
 }
 

@@ -31,6 +31,12 @@ pub struct Emergency {
 pub struct SimulatedWorkstation {
     /// The cell.
     pub cell: Cell,
+    state: WorkstationState,
+}
+
+/// What is known of a workstation beside its cell.
+#[derive(Clone, Debug, Default)]
+pub struct WorkstationState {
     fault: Option<String>,
     /// The robot is not the simulated one: its panel is out of reach.
     robot_elsewhere: bool,
@@ -43,14 +49,25 @@ pub struct SimulatedWorkstation {
 
 impl SimulatedWorkstation {
     /// A workstation around a cell.
-    pub const fn new(cell: Cell) -> Self {
-        Self { cell, fault: None, robot_elsewhere: false, emergency: None, stopped: false, loads: Vec::new() }
+    pub fn new(cell: Cell) -> Self {
+        Self::with_state(cell, WorkstationState::default())
+    }
+
+    /// A workstation around a cell that was restored, which goes on from the state that was kept with it.
+    pub const fn with_state(cell: Cell, state: WorkstationState) -> Self {
+        Self { cell, state }
+    }
+
+    /// What is to be kept with a cell that is saved.
+    pub const fn state(&self) -> &WorkstationState {
+        &self.state
     }
 
     /// The cell follows a robot elsewhere, whose controller no line of a job can reach.
     #[must_use]
-    pub fn with_robot_elsewhere(self) -> Self {
-        Self { robot_elsewhere: true, ..self }
+    pub fn with_robot_elsewhere(mut self) -> Self {
+        self.state.robot_elsewhere = true;
+        self
     }
 
     /// What happened in the cell in `tick`, which is over. A simulation that has failed is a fault of the
@@ -58,16 +75,16 @@ impl SimulatedWorkstation {
     pub fn events(&mut self, tick: Tick) -> Vec<CellEvent> {
         let events = self.cell.events();
         if let Some(droop) = self.cell.droop().filter(|droop| droop.cause.is_emergency()) {
-            let began = match &self.emergency {
-                Some(known) if self.stopped => known.tick,
+            let began = match &self.state.emergency {
+                Some(known) if self.state.stopped => known.tick,
                 _ => tick,
             };
-            self.emergency = Some(Emergency { tick: began, droop: droop.clone() });
+            self.state.emergency = Some(Emergency { tick: began, droop: droop.clone() });
         }
-        self.stopped = self.cell.droop().is_some();
+        self.state.stopped = self.cell.droop().is_some();
         let fatal = |event: &&CellEvent| matches!(event, CellEvent::Quarantined | CellEvent::ViseStuck);
         if let Some(event) = events.iter().find(fatal) {
-            self.fault = Some(event.to_string());
+            self.state.fault = Some(event.to_string());
         }
         events
     }
@@ -75,7 +92,7 @@ impl SimulatedWorkstation {
     /// The last emergency, also if the robot has been started again since.
     #[must_use]
     pub const fn last_emergency(&self) -> Option<&Emergency> {
-        self.emergency.as_ref()
+        self.state.emergency.as_ref()
     }
 
     /// The arm has lost its pressure in an emergency, has not come to rest, and may yet run into something.
@@ -83,18 +100,18 @@ impl SimulatedWorkstation {
     pub fn is_settling(&self, tick: Tick) -> bool {
         let sinks =
             |emergency: &Emergency| !emergency.droop.at_rest && tick.since(emergency.tick) < SETTLING_LIMIT;
-        self.stopped && self.emergency.as_ref().is_some_and(sinks)
+        self.state.stopped && self.state.emergency.as_ref().is_some_and(sinks)
     }
 
     /// Numbers of the reloads of task data that the job has asked for since the last call.
     pub fn loads(&mut self) -> Vec<u32> {
-        std::mem::take(&mut self.loads)
+        std::mem::take(&mut self.state.loads)
     }
 
     /// What the cell has to do for an action, in this order.
     fn translate(&self, action: &Action) -> Result<Vec<WorkstationAction>, String> {
         let at_the_robot = matches!(action, Action::Press(_) | Action::Release(_) | Action::Panel(_));
-        if at_the_robot && self.robot_elsewhere {
+        if at_the_robot && self.state.robot_elsewhere {
             return Err("the robot at the serial port has its own panel and emergency stops".to_owned());
         }
         orders(action, self.cell.description()).map_err(|error| error.to_string())
@@ -216,7 +233,7 @@ fn placement(offset: &Offset) -> Placement {
 impl Workstation for SimulatedWorkstation {
     fn begin(&mut self, action: &Action, _: &str) -> Result<(), String> {
         if let Action::Load { number } = action {
-            self.loads.push(*number);
+            self.state.loads.push(*number);
             return Ok(());
         }
         for action in self.translate(action)? {
@@ -230,7 +247,7 @@ impl Workstation for SimulatedWorkstation {
     }
 
     fn fault(&self) -> Option<String> {
-        self.fault.clone()
+        self.state.fault.clone()
     }
 
     /// From the loss of pressure to FAULT RESET.
@@ -355,7 +372,7 @@ mod tests {
     #[test]
     fn a_robot_elsewhere_has_its_own_panel() {
         let mut bench = Bench::new();
-        bench.workstation.robot_elsewhere = true;
+        bench.workstation.state.robot_elsewhere = true;
         for line in ["** estop pedestal", "** release pedestal", "** panel auto"] {
             let refused = bench.play(line).unwrap_err();
             assert!(refused.contains("has its own panel"), "{line}: {refused}");

@@ -2,7 +2,12 @@
 
 use rcs_core::{
     frame::Frame,
-    interface::{EmoveOutputs, device::Picture, emove::EmoveCommand, prim::PrimVerb},
+    interface::{
+        EmoveOutputs,
+        device::Picture,
+        emove::{EmoveCommand, Located},
+        prim::PrimVerb,
+    },
     pose::Pose,
     process::Inputs,
 };
@@ -11,8 +16,8 @@ use taskdata::files::{MovtabId, TaskData, TrajParaId};
 use super::{
     locate::{centred, looked_at, part_frame, request, view_of},
     postprocess::Slot,
-    robot_place::{GoneTo, place_named, present_frame},
-    state::{Located, State},
+    robot_place::{gone_to, place_named, present_frame, robot_at},
+    state::State,
     tables::Action,
 };
 
@@ -50,8 +55,8 @@ impl State {
         let again = matches!(action, Action::FloodAgain | Action::PreciseAgain);
         self.tries = if again { self.tries.saturating_add(1) } else { 0 };
         match action {
-            Action::Flood => self.located = None,
-            Action::Precise => self.settle(command, GoneTo::of(command), outputs),
+            Action::Flood => self.beliefs.located = None,
+            Action::Precise => self.settle(command, gone_to(command), outputs),
             _ => {}
         }
         if let Some(view) = view_of(command, inputs.data) {
@@ -74,7 +79,7 @@ impl State {
             let part = part_frame(&middle, seen);
             let pose = Pose::from_frame(&part);
             self.publish(Slot::Located, pose, outputs);
-            self.located = Some(Located {
+            self.beliefs.located = Some(Located {
                 object: command.object,
                 record: command.location_record,
                 array: command.location_array,
@@ -86,6 +91,7 @@ impl State {
         };
         let goal = Pose::from_frame(&inputs.data.moved(&target, view));
         let record = self.publish(Slot::Goal, goal, outputs);
+        self.leave_view(robot_at(command, gone_to(command), goal), inputs.memory);
         self.send_prim(PrimVerb::GotoPt, inputs, outputs);
         outputs.prim.pose = record;
         outputs.prim.trajectory_parameters = parameters.number();

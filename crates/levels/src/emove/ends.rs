@@ -1,29 +1,33 @@
 //! What E-move notes when a command ends: where the robot is, and what it has taken hold of.
 
 use rcs_core::{
-    interface::{EmoveOutputs, emove::EmoveCommand},
+    interface::{
+        EmoveOutputs,
+        emove::{EmoveCommand, GoneTo, Grasped, ObjectGrip},
+    },
     process::Inputs,
 };
-use taskdata::files::{EndEffId, TaskData};
+use taskdata::files::TaskData;
 
 use super::{
     fingers::sizes,
     gripper::Gripper,
-    robot_place::{GoneTo, RobotPlace, commanded_pose},
-    state::{Held, State},
+    robot_place::{commanded_pose, gone_to, robot_at},
+    state::State,
 };
 
 impl State {
     /// The robot is at the goal of the current command: report done.
     pub(super) fn arrive(&mut self, command: &EmoveCommand, outputs: &EmoveOutputs) {
-        self.settle(command, GoneTo::of(command), outputs);
+        self.settle(command, gone_to(command), outputs);
         self.finish();
     }
 
     /// The robot has come to rest at the goal record: remember where that is.
     pub(super) fn settle(&mut self, command: &EmoveCommand, gone_to: GoneTo, outputs: &EmoveOutputs) {
         let [_, goal, ..] = outputs.poses;
-        self.place = Some(RobotPlace::at(command, gone_to, goal.pose));
+        self.beliefs.place = Some(robot_at(command, gone_to, goal.pose));
+        self.beliefs.way = None;
     }
 
     /// The robot stands where relative moves have led it: it is at the location of the command. Report done.
@@ -34,23 +38,35 @@ impl State {
         inputs: &Inputs<'_, TaskData<'_>>,
     ) {
         if let Some(pose) = commanded_pose(inputs.memory) {
-            self.place = Some(RobotPlace::at(command, gone_to, pose));
+            self.beliefs.place = Some(robot_at(command, gone_to, pose));
         }
+        self.beliefs.exchange = None;
         self.finish();
+    }
+
+    /// What the fingers are to close on, for the command.
+    pub(super) fn grasp_of(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Grasped {
+        let gripper = Gripper::attached(inputs.memory);
+        Grasped {
+            object: ObjectGrip { object: command.object, grip: command.grip },
+            parameters: command.object_parameters,
+            gripper: gripper.code(),
+            grasp_size: sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size),
+            opening: gripper.opening(inputs.memory).unwrap_or_default(),
+            pose: commanded_pose(inputs.memory).unwrap_or_default(),
+        }
     }
 
     /// The object of the command is held: report done.
     pub(super) fn grasped(&mut self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) {
-        let gripper = Gripper::attached(inputs.memory);
-        self.held = Some(Held {
-            object: command.object,
-            parameters: EndEffId::from_option(command.object_parameters),
-            gripper,
-            grasp_size: sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size),
-            opening: gripper.opening(inputs.memory).unwrap_or_default(),
-            unfelt: 0,
-        });
-        self.located = None;
+        self.hold(self.grasp_of(command, inputs));
         self.finish();
+    }
+
+    /// An object is held.
+    pub(super) fn hold(&mut self, grasped: Grasped) {
+        self.beliefs.held = Some(grasped);
+        (self.beliefs.placed, self.beliefs.located) = (None, None);
+        self.unfelt = 0;
     }
 }

@@ -1,9 +1,15 @@
 //! What the fingers are to do and what they have done: openings and sizes of the object forms (VII.7.1) as
 //! orders to the attached gripper, and its opening as state variables.
 
+use core::mem;
+
 use rcs_core::{
     handshake::Lower,
-    interface::{CommonMemory, emove::EmoveCommand},
+    interface::{
+        CommonMemory,
+        emove::{EmoveCommand, EmoveVerb, Grasped, Holding, PlacedObject, RobotPlace},
+        grip::Felt,
+    },
     name::Name16,
     process::Inputs,
 };
@@ -11,10 +17,13 @@ use taskdata::files::{EndEffId, EndEffPara, TaskData};
 
 use super::{
     gripper::{Gripper, Order, Request},
-    route::FULL_OPENING,
+    robot_place::present_frame,
+    route::{FULL_OPENING, near},
     state::State,
     tables::{Action, Fingers, Opening, Spread},
+    way::{AWAY_INCHES, AWAY_RADIANS},
 };
+use crate::execution::Outcome;
 
 /// Grip number of a holster object with the gripper on the robot; its approach size is the opening with which
 /// the gripper goes through the holster.
@@ -52,31 +61,91 @@ fn attached_stands_at(opening: i32, memory: &CommonMemory) -> bool {
 }
 
 impl State {
+    /// Is what was held still there, and is there something between the fingers?
+    pub(super) fn sense_held(&mut self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) {
+        let memory = inputs.memory;
+        self.sense_loss(inputs);
+        let attached = Gripper::attached(memory);
+        if attached.code() != mem::replace(&mut self.attached, attached.code()) {
+            (self.beliefs.empty, self.beliefs.grasping) = (false, None);
+        }
+        match attached.felt(memory) {
+            Felt::Nothing => self.beliefs.empty = true,
+            Felt::Something if self.beliefs.held.is_none() && self.may_adopt(command, inputs) => {
+                let at = |grasped: &Grasped| {
+                    let (Ok(then), Some(now)) = (grasped.pose.to_frame(), present_frame(memory)) else {
+                        return false;
+                    };
+                    near(&then, &now, AWAY_INCHES, AWAY_RADIANS)
+                };
+                if let Some(grasped) = self.beliefs.grasping.filter(at) {
+                    let opening = attached.opening(memory).unwrap_or(grasped.opening);
+                    self.hold(Grasped { opening, gripper: attached.code(), ..grasped });
+                }
+            }
+            Felt::Something | Felt::NotKnown => {}
+        }
+    }
+
+    /// May something that is felt count as grasped? Not while the fingers move, nor before the command that
+    /// closes them has looked, nor if they were only opened since nothing was felt.
+    fn may_adopt(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> bool {
+        let grasps = matches!(command.command, EmoveVerb::GraspObj | EmoveVerb::AcquireTool);
+        let looks = grasps && self.execution.outcome == Outcome::Executing;
+        let moving =
+            matches!(self.grippers.status(inputs.tick, inputs.memory), Lower::Pending | Lower::Executing);
+        !looks && !moving && !self.beliefs.empty
+    }
+
     /// Is what was held still there?
-    pub(super) fn sense_held(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
+    fn sense_loss(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
         let letting_go = self.grippers.order == Order::Release;
-        let Some(held) = &mut self.held else { return };
+        let Some(held) = self.beliefs.held else { return };
+        let gripper = Gripper::of(held.gripper);
         // A part that was held with little force leaves the fingers where they are when it falls: only the
         // force tells.
-        let felt = letting_go || !held.gripper.feels_nothing(memory);
-        held.unfelt = if felt { 0 } else { held.unfelt.saturating_add(1) };
+        let felt = letting_go || !gripper.feels_nothing(memory);
+        self.unfelt = if felt { 0 } else { self.unfelt.saturating_add(1) };
         // A gripper that was restarted knows no opening: what was held is not lost for that.
-        let slipped = held
-            .gripper
+        let slipped = gripper
             .opening(memory)
-            .is_some_and(|opening| !held.gripper.still_grips(opening, held.grasp_size, held.opening));
-        let gone = Gripper::attached(memory) != held.gripper;
-        let unfelt = held.unfelt > UNFELT_TICKS;
+            .is_some_and(|opening| !gripper.still_grips(opening, held.grasp_size, held.opening));
+        let gone = Gripper::attached(memory) != gripper;
+        let unfelt = self.unfelt > UNFELT_TICKS;
         if slipped || unfelt || gone || self.grippers.has_let_go(inputs.tick, memory) {
-            self.held = None;
+            self.beliefs.held = None;
             self.gripper_gone = gone;
+            self.beliefs.grasping = None;
+            let let_go = |at: RobotPlace| PlacedObject {
+                object: held.object.object,
+                grip: held.object.grip,
+                location: at.location,
+                record: at.record,
+                array: at.array,
+            };
+            self.beliefs.placed = self.beliefs.place.filter(|_| self.releasing && !gone).map(let_go);
+        }
+    }
+
+    /// What the gripper holds: what was grasped and is still felt, else what its sensors say.
+    #[must_use]
+    pub(super) fn holding(&self, memory: &CommonMemory) -> Holding {
+        let attached = Gripper::attached(memory);
+        match (self.beliefs.held, attached.felt(memory)) {
+            (Some(held), _) => Holding::Object(held.object),
+            (None, Felt::Nothing) => Holding::Nothing,
+            (None, Felt::NotKnown) if self.beliefs.empty => Holding::Nothing,
+            // Jaws that were stopped on their way to open stand between their stops, too.
+            (None, Felt::Something) if self.beliefs.empty && attached.has_stops() => Holding::Nothing,
+            (None, Felt::Something) => Holding::Something,
+            (None, Felt::NotKnown) => Holding::NotKnown,
         }
     }
 
     /// The opening to let go of what is held, or of the object of the command, 0.01 in.
     fn depart_opening(&self, command: &EmoveCommand, data: &TaskData<'_>) -> i32 {
-        let held = self.held.and_then(|held| data.end_eff(held.parameters));
+        let held = self.beliefs.held.and_then(|held| data.end_eff(EndEffId::from_option(held.parameters)));
         held.or_else(|| sizes(command, data)).map_or(FULL_OPENING, |sizes| sizes.depart_size)
     }
 
@@ -125,7 +194,7 @@ impl State {
             }
         } else if gripper == Lower::Done && attached_stands_at(opening, inputs.memory) {
             Opening::Set
-        } else if route.departing(inputs.data) {
+        } else if self.departing(inputs.data) {
             Opening::Departing
         } else {
             Opening::Due

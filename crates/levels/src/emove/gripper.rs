@@ -22,7 +22,7 @@ use rcs_core::{
     interface::{
         CommonMemory, EmoveOutputs, JawsOutputs, Reason,
         emove::Dormancy,
-        grip::{GripCommand, GripVerb},
+        grip::{Felt, GripCommand, GripVerb},
         jaws::{JawsCommand, JawsReport, JawsVerb},
     },
     tick::Tick,
@@ -86,6 +86,23 @@ impl Gripper {
             Self::None | Self::Parts => return None,
         };
         Some((hundredths(closed), hundredths(opened)))
+    }
+
+    /// Does it open and close between stops, without a force sensor (VI.4)?
+    #[must_use]
+    pub fn has_stops(self) -> bool {
+        self.stops().is_some()
+    }
+
+    /// What is between its fingers, by its sensors; nothing without a gripper.
+    #[must_use]
+    pub const fn felt(self, memory: &CommonMemory) -> Felt {
+        let (header, felt) = match (self, self.jaws(memory)) {
+            (Self::None, _) => return Felt::Nothing,
+            (_, Some(jaws)) => (&jaws.header, jaws.status.felt),
+            (_, None) => (&memory.grip.header, memory.grip.status.felt),
+        };
+        if header.republished { Felt::NotKnown } else { felt }
     }
 
     /// The least opening, 0.01 in.
@@ -264,10 +281,11 @@ pub struct Grippers {
 
 impl Grippers {
     /// Before anything else in a tick: follow the echoes until the first command.
-    pub fn start(&mut self, memory: &CommonMemory) {
-        self.parts.start(memory.grip.status.echo);
-        self.v.start(memory.v_grip.status.echo);
-        self.tool.start(memory.tool_grip.status.echo);
+    pub fn start(&mut self, tick: Tick, memory: &CommonMemory) {
+        let written = &memory.emove;
+        self.parts.start_from(tick, written.grip.number, memory.grip.status.echo);
+        self.v.start_from(tick, written.v_grip.number, memory.v_grip.status.echo);
+        self.tool.start_from(tick, written.tool_grip.number, memory.tool_grip.status.echo);
     }
 
     /// Give the attached gripper an order; without a gripper it only counts as given.

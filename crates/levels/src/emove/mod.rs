@@ -16,6 +16,8 @@
 //! * [`state`]: what E-move remembers;
 //! * [`robot_place`]: where the robot is;
 //! * [`route`]: depart, trajectory, approach and stop as one list of points;
+//! * [`way`]: going on with a way that was interrupted;
+//! * [`exchange`]: where the robot is in the change of a gripper;
 //! * [`locate`]: from a picture to a part frame;
 //! * [`relative`]: the short moves at holsters and tool drum;
 //! * [`gripper`]: the three grippers as one;
@@ -26,6 +28,7 @@
 
 pub mod camera;
 pub mod ends;
+pub mod exchange;
 pub mod fingers;
 pub mod gripper;
 pub mod locate;
@@ -39,6 +42,7 @@ pub mod state;
 pub mod tables;
 #[cfg(test)]
 mod tests;
+pub mod way;
 
 use rcs_core::{
     interface::EmoveOutputs,
@@ -49,9 +53,9 @@ use taskdata::files::TaskData;
 
 use self::{
     state::State,
-    tables::{Action, Seen, Step, Watch, attend::attend},
+    tables::{Action, Demand, Seen, Step, Watch, attend::attend, halt::halt, number},
 };
-use crate::execution::Course;
+use crate::execution::{Asked, Course};
 
 /// The E-move process.
 #[derive(Clone, Debug, Default)]
@@ -68,14 +72,19 @@ impl<'d> Process<TaskData<'d>> for Emove {
     const NAME: &'static str = "E-move";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, _: &EmoveOutputs) -> Seen {
-        self.state.sense(inputs)
+    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &EmoveOutputs) -> Seen {
+        self.state.sense(inputs, outputs)
     }
 
     fn decide(&mut self, seen: &Seen) -> Action {
         let state = &mut self.state;
         match state.execution.course(seen.arrival) {
-            Course::Refuse => return Action::Wait,
+            Course::Refuse => {
+                return match halt(state.step, &seen.below) {
+                    Verdict::Decided(decision) => decision.action,
+                    Verdict::Passed(()) => Action::Wait,
+                };
+            }
             Course::Rest => {
                 let watch = Watch { outcome: state.execution.outcome, ..seen.watch };
                 if let Verdict::Decided(decision) = attend(state.step, &watch) {
@@ -86,6 +95,7 @@ impl<'d> Process<TaskData<'d>> for Emove {
             Course::Continue => {}
         }
         let choice = tables::decide(state.step, seen);
+        state.halting = seen.below.demand == Demand::Now && choice.table == number::HALT;
         state.execution.note(&choice);
         state.step = choice.next;
         choice.action
@@ -99,7 +109,7 @@ impl<'d> Process<TaskData<'d>> for Emove {
         outputs: &mut EmoveOutputs,
     ) {
         let state = &mut self.state;
-        if state.execution.begins(seen.arrival) {
+        if seen.request.asked == Asked::Now && !state.execution.is_refused() {
             state.publish_route(outputs);
         }
         state.act(action, seen, inputs, outputs);

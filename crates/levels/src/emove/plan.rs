@@ -6,7 +6,9 @@ use rcs_core::{
         CommonMemory,
         emove::{EmoveCommand, EmoveVerb},
         pose_range,
+        quick_change::RingPosition,
     },
+    name::Name10,
     process::Inputs,
 };
 use taskdata::files::{PoseId, TaskData};
@@ -15,10 +17,12 @@ use super::{
     fingers::{gripper_on, sizes},
     gripper::Gripper,
     locate::view_of,
-    relative,
+    relative::{self, Relative},
+    robot_place::place_named,
     route::{Goal, Planning, Route},
     state::State,
-    tables::{Attached, HolsterData, Knowledge, Ordered, Record, Request},
+    tables::{Attached, Coupling, Exchange, HolsterData, Knowledge, Ordered, Record, Request, Target},
+    way::Back,
 };
 use crate::execution::Asked;
 
@@ -43,6 +47,25 @@ fn holster(command: &EmoveCommand, data: &TaskData<'_>) -> HolsterData {
     }
 }
 
+/// How the gripper hangs on the robot.
+const fn coupling(memory: &CommonMemory) -> Coupling {
+    let status = &memory.quick_change.status;
+    match (status.end_effector_id, status.ring) {
+        (0, _) => Coupling::Bare,
+        (_, RingPosition::Locked) => Coupling::Locked,
+        _ => Coupling::Loose,
+    }
+}
+
+/// The location of a motion command that is no gripper change.
+fn target(command: &EmoveCommand, data: &TaskData<'_>) -> Target {
+    let relative = Name10::clipped(Relative::QcaBack.text());
+    match data.relative_move(&relative, &place_named(command)) {
+        Some(_) if command.command == EmoveVerb::MovToLoc => Target::Holster,
+        _ => Target::Plain,
+    }
+}
+
 const fn record(found: bool) -> Record {
     if found { Record::Found } else { Record::Missing }
 }
@@ -51,21 +74,24 @@ impl State {
     /// A new command: look up all that it needs. What is found is kept.
     pub(super) fn look_up(&mut self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
         let (memory, data) = (inputs.memory, inputs.data);
-        let route = self.plan(command, inputs);
-        self.route = route.ok().flatten();
+        let planned = self.plan(command, inputs);
+        (self.route, self.back) = planned.unwrap_or_default();
         (self.ordered, self.uses_prim) = (Ordered::Nothing, false);
         (self.tries, self.undetected) = (0, 0);
-        self.carrying = self.held.is_some();
+        self.carrying = self.beliefs.held.is_some();
         Request {
             asked: Asked::Now,
             verb: command.command,
             gripper: attached(command, memory),
-            start: if self.place.is_some() { Knowledge::Known } else { Knowledge::Unknown },
+            start: if self.beliefs.place.is_some() { Knowledge::Known } else { Knowledge::Unknown },
+            coupling: coupling(memory),
+            exchange: if self.beliefs.exchange.is_some() { Exchange::HalfDone } else { Exchange::None },
+            target: target(command, inputs.data),
             sizes: record(sizes(command, data).is_some()),
             view: record(view_of(command, data).is_some()),
             holster: holster(command, data),
             moves: relative::look_up(command, memory, data),
-            route: route.err().unwrap_or(Planning::Planned),
+            route: planned.err().unwrap_or(Planning::Planned),
         }
     }
 
@@ -74,7 +100,7 @@ impl State {
         &self,
         command: &EmoveCommand,
         inputs: &Inputs<'_, TaskData<'_>>,
-    ) -> Result<Option<Route>, Planning> {
+    ) -> Result<(Option<Route>, Option<Back>), Planning> {
         match command.command {
             EmoveVerb::MovToLoc
             | EmoveVerb::MovToObj
@@ -83,11 +109,11 @@ impl State {
             | EmoveVerb::MovToHol => {
                 let base = self.base_frame(command, inputs)?;
                 let goal = Goal::new(command, &base, inputs.data)?;
-                let route = Route::plan(command, &goal, self.place.as_ref(), inputs.data)?;
+                let (route, back) = self.flight(command, &goal, inputs)?;
                 let bare = Gripper::attached(inputs.memory) == Gripper::None;
-                Ok(Some(if bare { Route { opening: None, ..route } } else { route }))
+                Ok((Some(if bare { Route { opening: None, ..route } } else { route }), back))
             }
-            _ => Ok(None),
+            _ => Ok((None, None)),
         }
     }
 
@@ -97,7 +123,7 @@ impl State {
         command: &EmoveCommand,
         inputs: &Inputs<'_, TaskData<'_>>,
     ) -> Result<Frame, Planning> {
-        let located = self.located.filter(|located| {
+        let located = self.beliefs.located.filter(|located| {
             command.command == EmoveVerb::MovToObj
                 && located.object == command.object
                 && located.record == command.location_record

@@ -5,7 +5,7 @@ use rcs_core::{
     interface::{
         ChangingPose, EmoveOutputs, Reason, Report,
         device::Picture,
-        emove::{EmoveCommand, EmoveStatus},
+        emove::{EmoveCommand, EmoveStatus, GoneTo, Located, LocatedObject, RobotPlace},
         pose_range,
         prim::{PrimCommand, PrimReport, PrimVerb},
         quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
@@ -18,7 +18,7 @@ use taskdata::files::{TaskData, TrajParaId};
 use super::{
     gripper::{Gripper, Order, Request},
     relative::{Reference, Relative},
-    robot_place::{GoneTo, commanded_pose},
+    robot_place::{commanded_pose, standing},
     route::LegGoal,
     state::State,
     tables::{Action, Ordered, Seen},
@@ -113,6 +113,7 @@ impl State {
             }
             Action::Centre | Action::Align => self.move_camera(action, command, inputs, outputs),
             Action::Finish => self.finish(),
+            Action::Refuse(reason) => self.execution.fail(reason),
             Action::Fail(reason) => self.fail(reason, inputs, outputs),
             Action::FailGrip => self.fail(self.grippers.fault(inputs.tick, inputs.memory), inputs, outputs),
             Action::FailRing => self.fail(self.ring_fault(inputs), inputs, outputs),
@@ -184,12 +185,7 @@ impl State {
 
     /// GO-THRU or GOTO-PT with the next point of the route.
     fn send_leg(&mut self, verb: PrimVerb, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
-        let leg = self.route.as_mut().and_then(|route| {
-            let leg = route.leg(inputs.data);
-            route.advance(inputs.data);
-            leg
-        });
-        let Some(leg) = leg else { return };
+        let Some(leg) = self.next_leg(inputs.memory, inputs.data) else { return };
         let (pose, movetable) = match leg.at {
             LegGoal::Record { pose, movetable } => (pose, movetable),
             LegGoal::Computed(frame) => {
@@ -200,7 +196,7 @@ impl State {
         outputs.prim.pose = pose;
         outputs.prim.movetable = movetable;
         outputs.prim.trajectory_parameters = leg.parameters.number();
-        self.place = None;
+        self.beliefs.place = None;
     }
 
     /// DELTA-MOVE, GO-UNTIL or GO-WHILE to Prim. If nothing says where the robot stands, the command fails.
@@ -214,6 +210,9 @@ impl State {
     ) {
         let pose = match relative.reference() {
             Reference::Location => Some(command.pose),
+            Reference::Seat => self
+                .seat_pose(command, inputs.memory, inputs.data)
+                .map(|pose| self.publish(Slot::Departure, pose, outputs)),
             Reference::Stand => {
                 commanded_pose(inputs.memory).map(|pose| self.publish(Slot::Departure, pose, outputs))
             }
@@ -229,7 +228,8 @@ impl State {
             outputs.prim.sensor = Some(found.sensor);
         }
         self.undetected = 0;
-        self.place = None;
+        (self.beliefs.place, self.beliefs.way) = (None, None);
+        self.note_exchange(command, inputs.memory, inputs.data);
     }
 
     /// Give the attached gripper the order that an action stands for.
@@ -241,6 +241,15 @@ impl State {
         outputs: &mut EmoveOutputs,
     ) {
         let request = self.request(action, command, inputs);
+        self.releasing = request.order == Order::Release;
+        match request.order {
+            Order::Grasp => {
+                let by_name = action == Action::Close;
+                self.beliefs.grasping = by_name.then(|| self.grasp_of(command, inputs));
+                self.beliefs.empty = false;
+            }
+            Order::Stand | Order::Release | Order::Calibrate | Order::None | Order::Pause => {}
+        }
         if let Some(route) = &mut self.route {
             route.opening_sent |= action == Action::Open;
         }
@@ -264,8 +273,8 @@ impl State {
     /// Give the ends of the route of a new command record numbers.
     pub(super) fn publish_route(&mut self, outputs: &mut EmoveOutputs) {
         if let Some(mut route) = self.route {
-            route.departure.number = self.publish(Slot::Departure, route.departure.pose, outputs);
-            route.goal.number = self.publish(Slot::Goal, route.goal.pose, outputs);
+            route.departure = self.publish(Slot::Departure, route.from.pose, outputs);
+            route.goal = self.publish(Slot::Goal, route.to.pose, outputs);
             self.route = Some(route);
         }
     }
@@ -290,14 +299,23 @@ impl State {
         let (report, reason) = self.outcome(inputs);
         outputs.header = self.execution.header(inputs.tick, self.step.text());
         outputs.dormant = Gripper::attached(inputs.memory).dormancy();
+        outputs.beliefs = self.beliefs;
         outputs.status = EmoveStatus {
             echo: self.execution.receiver.echo,
             report,
             reason,
             reference_pose: inputs.memory.prim.status.sensor_pose,
-            held: self.held.map(|held| held.object),
+            held: self.holding(inputs.memory),
+            placed: self.beliefs.placed,
+            located: self.beliefs.located.map(|Located { object, record, array, .. }| LocatedObject {
+                object,
+                record,
+                array,
+            }),
             end_effector_id: inputs.memory.quick_change.status.end_effector_id,
-            at: self.place.map(|place| place.location),
+            at: self.beliefs.place.as_ref().map(standing),
+            exchange: self.beliefs.exchange.map(|exchange| exchange.gripper),
+            drum: matches!(self.beliefs.place, Some(RobotPlace { gone_to: GoneTo::Drum, .. })),
         };
     }
 }

@@ -1,36 +1,44 @@
 //! Preprocess of E-move: what is held, where the robot is, and the state variables of the tables.
 
+use core::mem;
+
 use rcs_core::{
     frame::Frame,
     handshake::{Arrival, Lower},
     interface::{
-        CommonMemory,
+        CommonMemory, EmoveOutputs,
         device::VisionStatus,
-        emove::{EmoveCommand, EmoveVerb},
+        emove::{EmoveCommand, EmoveVerb, GoneTo, Holding, RobotPlace},
         prim::{JoystickGrip, PrimReport},
-        quick_change::QuickChangeReport,
+        quick_change::{QuickChangeReport, RingPosition},
         subtask::LocationKind,
     },
+    name::Name10,
     pose::Pose,
     process::Inputs,
 };
-use taskdata::files::{LocptId, TaskData};
+use taskdata::files::{LocptId, Place, TaskData};
 
 use super::{
     fingers::fingers,
     gripper::Gripper,
     locate::{is_another, is_plausible},
-    robot_place::{GoneTo, RobotPlace, place_named, present_frame},
-    route::{Ahead, near, same_location},
+    relative::Relative,
+    robot_place::{place, place_named, present_frame},
+    route::{near, same_location},
     state::State,
     tables::{
-        At, Contact, Held, Holster, Knowledge, Link, Load, Mate, Orders, Pause, Readiness, Request, Ring,
-        Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch, Whereabouts,
+        At, Below, Contact, Demand, Halt, Held, Holster, Knowledge, Link, Load, Lock, Mate, Orders, Pause,
+        Readiness, Request, Rest, Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch,
+        Whereabouts,
         e_pause::EPauseStep,
         search::{Look, search},
     },
 };
-use crate::{execution::Work, places::place_of};
+use crate::{
+    execution::Work,
+    places::{named, place_of},
+};
 
 /// The robot is no longer where its last move ended if it is more than this many inches …
 /// (docs/design/motion.md "Where the robot is")
@@ -72,18 +80,28 @@ const fn known(known: bool) -> Knowledge {
 
 impl State {
     /// Read the inputs of a tick.
-    pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> Seen {
+    pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &EmoveOutputs) -> Seen {
         let command = &inputs.memory.subtask.emove;
-        self.sense_neighbours(inputs);
-        self.sense_held(inputs);
-        let watch = self.sense_place(command, inputs);
         let arrival = self.execution.receiver.observe(command.number);
-        let request =
-            if arrival == Arrival::New { self.look_up(command, inputs) } else { Request::default() };
+        let demand = self.demand(arrival, outputs);
+        self.sense_neighbours(inputs);
+        self.sense_way(inputs.memory);
+        self.sense_held(command, inputs);
+        let watch = self.sense_place(command, inputs);
+        self.sense_exchange(inputs);
+        let below = self.below(demand, &watch, inputs);
+        let request = match below {
+            Below { demand: Demand::Now, rest: Rest::AtRest, .. }
+            | Below { demand: Demand::Now, pause: Pause::UnderWay | Pause::Standing, .. } => {
+                self.look_up(command, inputs)
+            }
+            _ => Request::default(),
+        };
         let orders = self.orders(command, inputs);
         let seen = Seen {
             arrival,
             verb: command.command,
+            below,
             request,
             watch,
             orders,
@@ -93,12 +111,44 @@ impl State {
         seen
     }
 
+    /// What is asked of E-move. In its first tick it takes over what it believed before a restart.
+    fn demand(&mut self, arrival: Arrival, outputs: &EmoveOutputs) -> Demand {
+        let first = !mem::replace(&mut self.started, true);
+        if first {
+            self.beliefs = outputs.beliefs;
+        }
+        match arrival {
+            Arrival::Restarted if first => Demand::Restarted,
+            Arrival::New => Demand::Now,
+            Arrival::Same if self.halting => Demand::Now,
+            Arrival::Nothing | Arrival::Same | Arrival::Restarted => Demand::Before,
+        }
+    }
+
+    /// Is everything below at rest?
+    fn below(&self, demand: Demand, watch: &Watch, inputs: &Inputs<'_, TaskData<'_>>) -> Below {
+        let (tick, memory) = (inputs.tick, inputs.memory);
+        let prim = &memory.prim;
+        let prim = self.prim.read(tick, &prim.header, prim.status.echo, prim.status.report.lower());
+        let fingers = self.grippers.status(tick, memory);
+        let moves = |lower| matches!(lower, Lower::Pending | Lower::Executing);
+        let moving = moves(prim) || moves(fingers) || moves(self.ring_order(inputs));
+        Below {
+            demand,
+            pause: watch.pause,
+            prim,
+            rest: if moving { Rest::Moving } else { Rest::AtRest },
+            halt: if self.halting { Halt::Ordered } else { Halt::NotOrdered },
+        }
+    }
+
     /// Follow the echoes until the first command, and count how long Prim has not detected anything.
     fn sense_neighbours(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
-        self.prim.start(memory.prim.status.echo);
-        self.grippers.start(memory);
-        self.quick_change.start(memory.quick_change.status.echo);
+        let (tick, written) = (inputs.tick, &memory.emove);
+        self.prim.start_from(tick, written.prim.number, memory.prim.status.echo);
+        self.grippers.start(tick, memory);
+        self.quick_change.start_from(tick, written.quick_change.number, memory.quick_change.status.echo);
         self.vision.start(inputs.external.devices.vision.echo);
         let prim = &memory.prim.status;
         let undetected = prim.echo == self.prim.number && prim.report == PrimReport::NotDetected;
@@ -112,7 +162,7 @@ impl State {
             let there = |pose: &Pose| {
                 pose.to_frame().is_ok_and(|frame| near(&frame, present, LOST_INCHES, LOST_RADIANS))
             };
-            self.place = self.place.filter(|place| there(&place.pose));
+            self.beliefs.place = self.beliefs.place.filter(|place| there(&place.pose));
         }
         let watch = Watch {
             pause: match (command.command, self.step) {
@@ -137,13 +187,18 @@ impl State {
             let next = LocptId::new(self.searched.saturating_add(1));
             let Some(locpt) = data.locpt(next) else { return };
             self.searched = next.number();
-            if near(&locpt.frame, present, LOST_INCHES, LOST_RADIANS) {
-                self.place = Some(RobotPlace {
+            let place = place_of(LocationKind::Point, next.to_option(), None);
+            let plain = is_plain(&locpt.name, &place, data);
+            if plain && near(&locpt.frame, present, LOST_INCHES, LOST_RADIANS) {
+                self.beliefs.place = Some(RobotPlace {
                     gone_to: GoneTo::Location,
                     location: locpt.name,
-                    place: place_of(LocationKind::Point, next.to_option(), None),
+                    kind: LocationKind::Point,
+                    record: next.to_option(),
+                    array: None,
                     pose: Pose::from_frame(present),
                 });
+                self.beliefs.way = None;
                 return;
             }
         }
@@ -151,7 +206,7 @@ impl State {
 
     /// Is it known where the robot is?
     fn whereabouts(&self, data: &TaskData<'_>) -> Whereabouts {
-        if self.place.is_some() {
+        if self.beliefs.place.is_some() || self.beliefs.way.is_some() || self.beliefs.exchange.is_some() {
             Whereabouts::Known
         } else if data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
             Whereabouts::Searching
@@ -167,7 +222,7 @@ impl State {
         let gripper = self.grippers.status(tick, memory);
         Orders {
             verb: command.command,
-            load: match self.held {
+            load: match self.beliefs.held {
                 None if self.carrying && self.gripper_gone => Load::GripperGone,
                 None if self.carrying => Load::Lost,
                 _ => Load::Kept,
@@ -197,27 +252,27 @@ impl State {
         let &Orders { prim, opening, gripper, ring, .. } = orders;
         Situation {
             work: Work::Busy,
-            ahead: self.route.map_or(Ahead::Nothing, |route| route.ahead(inputs.data)),
+            ahead: self.ahead(inputs.data),
             opening,
-            held: match self.held {
-                None => Held::Nothing,
-                Some(held) if held.object == command.object => Held::Right,
-                Some(_) => Held::Other,
+            held: match self.holding(memory) {
+                Holding::Nothing => Held::Nothing,
+                Holding::Object(held) if held.object == command.object => Held::Right,
+                Holding::Object(_) => Held::Other,
+                Holding::Something => Held::Something,
+                Holding::NotKnown => Held::NotKnown,
             },
             fingers: fingers(command, inputs),
             spread: self.spread(gripper, command, inputs),
-            readiness: match gripper {
-                Lower::Done if Gripper::attached(memory).is_uncalibrated(memory) => Readiness::Uncalibrated,
-                Lower::Done => Readiness::Ready,
-                _ => Readiness::Faulty,
-            },
+            readiness: self.readiness(gripper, memory),
             mate: match memory.quick_change.status.end_effector_id {
                 0 => Mate::None,
                 id if id == command.end_effector_id => Mate::Right,
                 _ => Mate::Wrong,
             },
-            ring,
             holster: holster(command.end_effector_id, memory),
+            lock: self.lock(inputs),
+            along: self.along(command, inputs),
+            shut: self.shut(command, inputs),
             at: self.at(command),
             sight: sight(inputs),
             aim: known(self.aim(command, inputs).is_some()),
@@ -233,32 +288,53 @@ impl State {
         }
     }
 
+    /// The attached gripper after its last order; one that has had none yet is as it came.
+    fn readiness(&self, gripper: Lower, memory: &CommonMemory) -> Readiness {
+        let attached = Gripper::attached(memory);
+        let idle = gripper == Lower::Done || self.grippers.to != attached;
+        match (idle, attached.is_uncalibrated(memory)) {
+            (true, true) => Readiness::Uncalibrated,
+            (true, false) => Readiness::Ready,
+            (false, _) => Readiness::Faulty,
+        }
+    }
+
     /// Where the robot is, seen from the command's location.
     fn at(&self, command: &EmoveCommand) -> At {
-        match self.place {
-            Some(at) if same_location(&at.place, &place_named(command)) => match at.gone_to {
+        match self.beliefs.place {
+            Some(at) if same_location(&place(&at), &place_named(command)) => match at.gone_to {
                 GoneTo::Drum => At::InDrum,
                 GoneTo::Location | GoneTo::Object(_) | GoneTo::View(_) => At::There,
             },
+            Some(at) if at.location.as_str() == named::TOOL_SAFE => At::Before,
             _ => At::Elsewhere,
+        }
+    }
+
+    /// What Quick Change has made of its last command.
+    fn ring_order(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
+        let ring = &inputs.memory.quick_change;
+        self.quick_change.read(inputs.tick, &ring.header, ring.status.echo, ring.status.report.lower())
+    }
+
+    /// Where the sensors see the locking ring.
+    fn lock(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lock {
+        match (self.ring_order(inputs), inputs.memory.quick_change.status.ring) {
+            (Lower::Lost, _) | (_, RingPosition::Implausible) => Lock::Faulty,
+            (_, RingPosition::Locked) => Lock::Locked,
+            (_, RingPosition::Unlocked) => Lock::Unlocked,
+            (_, RingPosition::Unread | RingPosition::Between) => Lock::Between,
         }
     }
 
     /// What Quick Change says of its ring to the last command.
     fn ring(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Ring {
-        let ring = &inputs.memory.quick_change;
-        let report = ring.status.report;
-        match self.quick_change.read(inputs.tick, &ring.header, ring.status.echo, report.lower()) {
-            Lower::Pending | Lower::Executing => Ring::Busy,
-            Lower::Error | Lower::Joystick | Lower::Lost => Ring::Faulty,
-            Lower::Done => match report {
-                QuickChangeReport::Locked => Ring::Locked,
-                QuickChangeReport::Unlocked => Ring::Unlocked,
-                QuickChangeReport::Idle
-                | QuickChangeReport::Executing
-                | QuickChangeReport::SensorMalfunction
-                | QuickChangeReport::Stuck => Ring::Busy,
-            },
+        match (self.ring_order(inputs), inputs.memory.quick_change.status.report) {
+            (Lower::Pending | Lower::Executing, _) => Ring::Busy,
+            (Lower::Error | Lower::Joystick | Lower::Lost, _) => Ring::Faulty,
+            (Lower::Done, QuickChangeReport::Locked) => Ring::Locked,
+            (Lower::Done, QuickChangeReport::Unlocked) => Ring::Unlocked,
+            (Lower::Done, _) => Ring::Busy,
         }
     }
 
@@ -292,6 +368,13 @@ impl State {
             Vision::Waiting
         }
     }
+}
+
+/// Can a robot that stands at a location point be there as such? Not in a holster, at the tool drum, or at the
+/// pedestal: there it depends on gripper, tool and part how it may leave.
+fn is_plain(name: &Name10, place: &Place, data: &TaskData<'_>) -> bool {
+    let has = |relative: Relative| data.relative_move(&Name10::clipped(relative.text()), place).is_some();
+    !has(Relative::QcaBack) && !has(Relative::InsIn) && name.as_str() != named::PEDESTAL
 }
 
 /// What vision has answered.

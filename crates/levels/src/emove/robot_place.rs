@@ -2,90 +2,72 @@
 //! what Prim says.
 
 use rcs_core::{
-    Plain,
     frame::Frame,
     interface::{
         CommonMemory,
-        emove::{EmoveCommand, EmoveVerb},
+        emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace, Standing},
     },
-    name::{Name10, Name16},
     pose::Pose,
 };
 use taskdata::files::Place;
 
 use crate::places::place_of;
 
-/// An object and how it is gripped: approach and depart points belong to both.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct ObjectGrip {
-    /// The object.
-    pub object: Name16,
-    /// Its grip number.
-    pub grip: i32,
-}
-
-/// What a move goes to. It decides which data lead away from there.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub enum GoneTo {
-    /// A location as such.
-    Location,
-    /// An object at a location, or a held object's destination.
-    Object(ObjectGrip),
-    /// The place from which pictures of an object are taken.
-    View(ObjectGrip),
-    /// The tool drum, with the fingers around a tool in it: only the tool commands lead away from there.
-    Drum,
-}
-
-impl GoneTo {
-    /// What a command goes to.
-    #[must_use]
-    pub const fn of(command: &EmoveCommand) -> Self {
-        let object = ObjectGrip { object: command.object, grip: command.grip };
-        match command.command {
-            EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => Self::Object(object),
-            EmoveVerb::MovToVu | EmoveVerb::LocateObj => Self::View(object),
-            EmoveVerb::None
-            | EmoveVerb::Pause
-            | EmoveVerb::MovToLoc
-            | EmoveVerb::GraspObj
-            | EmoveVerb::Release
-            | EmoveVerb::QcDetach
-            | EmoveVerb::QcAttach
-            | EmoveVerb::Withdraw
-            | EmoveVerb::InsertTool
-            | EmoveVerb::ReleaseTool
-            | EmoveVerb::AcquireTool
-            | EmoveVerb::RemoveTool => Self::Location,
-        }
+/// What a command goes to.
+#[must_use]
+pub const fn gone_to(command: &EmoveCommand) -> GoneTo {
+    let object = ObjectGrip { object: command.object, grip: command.grip };
+    match command.command {
+        EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => GoneTo::Object(object),
+        EmoveVerb::MovToVu | EmoveVerb::LocateObj => GoneTo::View(object),
+        EmoveVerb::None
+        | EmoveVerb::Pause
+        | EmoveVerb::MovToLoc
+        | EmoveVerb::GraspObj
+        | EmoveVerb::Release
+        | EmoveVerb::QcDetach
+        | EmoveVerb::QcAttach
+        | EmoveVerb::Withdraw
+        | EmoveVerb::InsertTool
+        | EmoveVerb::ReleaseTool
+        | EmoveVerb::AcquireTool
+        | EmoveVerb::RemoveTool => GoneTo::Location,
     }
 }
 
-/// Where the robot is: the end of the last completed move. It decides how the robot departs.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct RobotPlace {
-    /// What was gone to.
-    pub gone_to: GoneTo,
-    /// Name of the location.
-    pub location: Name10,
-    /// The location as task data know it.
-    pub place: Place,
-    /// Where the move ended.
-    pub pose: Pose,
+/// The robot at the location of a command.
+#[must_use]
+pub const fn robot_at(command: &EmoveCommand, gone_to: GoneTo, pose: Pose) -> RobotPlace {
+    RobotPlace {
+        gone_to,
+        location: command.location,
+        kind: command.location_kind,
+        record: command.location_record,
+        array: command.location_array,
+        pose,
+    }
 }
 
-impl RobotPlace {
-    /// At the location of a command.
-    #[must_use]
-    pub const fn at(command: &EmoveCommand, gone_to: GoneTo, pose: Pose) -> Self {
-        Self { gone_to, location: command.location, place: place_named(command), pose }
-    }
+/// The place as task data know it.
+#[must_use]
+pub const fn place(at: &RobotPlace) -> Place {
+    place_of(at.kind, at.record, at.array)
 }
 
 /// The place that a command names.
 #[must_use]
 pub const fn place_named(command: &EmoveCommand) -> Place {
     place_of(command.location_kind, command.location_record, command.location_array)
+}
+
+/// Where the robot stands, for the status.
+#[must_use]
+pub const fn standing(at: &RobotPlace) -> Standing {
+    let grip = match at.gone_to {
+        GoneTo::Object(ObjectGrip { grip, .. }) => Some(grip),
+        GoneTo::Location | GoneTo::View(_) | GoneTo::Drum => None,
+    };
+    Standing { location: at.location, record: at.record, array: at.array, grip }
 }
 
 /// Where the resolvers say that the robot is.

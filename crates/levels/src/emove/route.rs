@@ -1,5 +1,5 @@
 //! The way from where the robot is to the goal of a command (V.2.1 MOV-TO-LOC): depart points, intermediate
-//! trajectory, approach points, stop.
+//! trajectory, approach points, stop. [`super::way`] goes on with a way that was interrupted.
 //!
 //! ```text
 //!   departure --depart--> . --trajectory--> . --approach--> . --stop--> goal
@@ -10,15 +10,12 @@
 use rcs_core::{
     Plain,
     frame::Frame,
-    interface::{
-        ChangingPose,
-        emove::{EmoveCommand, EmoveVerb},
-    },
+    interface::emove::{EmoveCommand, EmoveVerb, GoneTo, Leg as Part, ObjectGrip, RobotPlace},
     pose::Pose,
 };
 use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Place, Target, TaskData, TrajParaId, VisionId};
 
-use super::robot_place::{GoneTo, ObjectGrip, RobotPlace, place_named};
+use super::robot_place::{gone_to, place, place_named, robot_at};
 
 /// Opening, 0.01 in, when pictures are taken: the camera looks between the open fingers (V.2.1 MOV-TO-VU).
 /// The parts gripper opens as wide; the others open to their stop.
@@ -47,6 +44,8 @@ pub enum Planning {
     NoApproach,
     /// It is not known where the robot is.
     NoStart,
+    /// The robot stopped on a way on which it can only go on, and the goal is another one.
+    ForwardOnly,
     /// The fingers are around a tool in the drum.
     InDrum,
     /// No trajectory leads from where the robot is to the location of the goal.
@@ -71,6 +70,10 @@ pub enum Ahead {
 /// A planned way and how far it has been commanded.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Route {
+    /// The place left.
+    pub from: RobotPlace,
+    /// The goal.
+    pub to: RobotPlace,
     /// Depart points, relative to the pose departed from.
     pub depart: PathId,
     /// Intermediate trajectory.
@@ -87,10 +90,10 @@ pub struct Route {
     pub opening: Option<i32>,
     /// The opening has been commanded.
     pub opening_sent: bool,
-    /// The pose departed from; without a number until it is published.
-    pub departure: ChangingPose,
-    /// The goal; without a number until it is published.
-    pub goal: ChangingPose,
+    /// Record number of the pose departed from, once it is published.
+    pub departure: u32,
+    /// Record number of the goal, once it is published.
+    pub goal: u32,
 }
 
 /// A point of a route that Prim is to be sent to.
@@ -121,8 +124,6 @@ pub enum LegGoal {
 pub struct Goal {
     /// Where the tool is to be.
     pub frame: Frame,
-    /// How it is approached; null if nothing is written.
-    pub approach: PathId,
     /// Opening of the fingers, 0.01 in; `None` if it does not matter.
     pub opening: Option<i32>,
     /// What is gone to.
@@ -135,41 +136,38 @@ impl Goal {
     /// # Errors
     /// What is missing.
     pub fn new(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Result<Self, Planning> {
-        let (place, gone_to) = (place_named(command), GoneTo::of(command));
+        let (place, gone_to) = (place_named(command), gone_to(command));
         let grip_frame = || {
             let movetable = data.grip_movetable(&command.object, command.grip, &place);
             Ok(data.moved(base, movetable.ok_or(Planning::NoGrip)?))
         };
-        let approach = || data.approach(&command.object, command.grip, &place).ok_or(Planning::NoApproach);
-        match command.command {
+        let (frame, opening, approach) = match command.command {
             EmoveVerb::MovToObj | EmoveVerb::MovToHol => {
                 let sizes = data
                     .end_eff(EndEffId::from_option(command.object_parameters))
                     .ok_or(Planning::NoSizes)?;
-                let opening = Some(sizes.appr_size);
-                Ok(Self { frame: grip_frame()?, approach: approach()?, opening, gone_to })
+                let approach = data.approach(&command.object, command.grip, &place);
+                (grip_frame()?, Some(sizes.appr_size), approach)
             }
             EmoveVerb::MovObjTo => {
-                Ok(Self { frame: grip_frame()?, approach: approach()?, opening: None, gone_to })
+                (grip_frame()?, None, data.approach(&command.object, command.grip, &place))
             }
             EmoveVerb::MovToVu => {
                 let view =
                     data.vision_para(VisionId::from_option(command.object_vision)).ok_or(Planning::NoView)?;
                 let approach = data.view_approach(&command.object, command.grip, &place);
-                Ok(Self {
-                    frame: data.moved(base, view.movetable),
-                    approach: approach.ok_or(Planning::NoApproach)?,
-                    opening: Some(FULL_OPENING),
-                    gone_to,
-                })
+                (data.moved(base, view.movetable), Some(FULL_OPENING), approach)
             }
-            _ => Ok(Self {
-                frame: *base,
-                approach: data.approach_location(&place).unwrap_or(PathId::NULL),
-                opening: None,
-                gone_to,
-            }),
-        }
+            _ => return Ok(Self { frame: *base, opening: None, gone_to }),
+        };
+        approach.ok_or(Planning::NoApproach)?;
+        Ok(Self { frame, opening, gone_to })
+    }
+
+    /// The goal as a place of the robot.
+    #[must_use]
+    pub fn place(&self, command: &EmoveCommand) -> RobotPlace {
+        robot_at(command, self.gone_to, Pose::from_frame(&self.frame))
     }
 }
 
@@ -187,41 +185,57 @@ pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
 }
 
 impl Route {
-    /// Plan the way to `goal` from where the robot is, if that is known.
+    /// Plan the way from where the robot is to the goal of a command.
     ///
     /// # Errors
     /// Why there is no way.
     pub fn plan(
         command: &EmoveCommand,
         goal: &Goal,
-        from: Option<&RobotPlace>,
+        from: &RobotPlace,
         data: &TaskData<'_>,
     ) -> Result<Self, Planning> {
-        let from = from.ok_or(Planning::NoStart)?;
-        let to = place_named(command);
+        let to = goal.place(command);
         let start = from.pose.to_frame().map_err(|_| Planning::NoStart)?;
-        let here = same_location(&from.place, &to);
-        let route = Self {
-            opening: goal.opening,
-            departure: ChangingPose { number: 0, pose: from.pose },
-            goal: ChangingPose { number: 0, pose: Pose::from_frame(&goal.frame) },
-            ..Self::default()
-        };
+        let here = same_location(&place(from), &place(&to));
         if here && near(&start, &goal.frame, THERE_INCHES, THERE_RADIANS) {
-            return Ok(Self { complete: true, ..route });
+            return Ok(Self { from: *from, to, opening: goal.opening, complete: true, ..Self::default() });
         }
+        Ok(Self { opening: goal.opening, ..Self::between(from, &to, data)? })
+    }
+
+    /// The straight way from one pose to another at the same place, as that of the camera over a part.
+    #[must_use]
+    pub fn straight(from: &RobotPlace, to: &RobotPlace, stop: TrajParaId) -> Self {
+        Self { from: *from, to: *to, stop, ..Self::default() }
+    }
+
+    /// The whole way from one place to another.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn between(from: &RobotPlace, to: &RobotPlace, data: &TaskData<'_>) -> Result<Self, Planning> {
+        let (start, end) = (place(from), place(to));
         let depart = match from.gone_to {
             GoneTo::Drum => return Err(Planning::InDrum),
-            GoneTo::Location => data.depart_location(&from.place),
-            GoneTo::Object(ObjectGrip { object, grip }) => data.depart(&object, grip, &from.place),
-            GoneTo::View(ObjectGrip { object, grip }) => data.view_depart(&object, grip, &from.place),
+            GoneTo::Location => data.depart_location(&start),
+            GoneTo::Object(ObjectGrip { object, grip }) => data.depart(&object, grip, &start),
+            GoneTo::View(ObjectGrip { object, grip }) => data.view_depart(&object, grip, &start),
         };
-        let between = if here { Some(PathId::NULL) } else { data.trajectory(&from.place, &to) };
+        let approach = match to.gone_to {
+            GoneTo::Location | GoneTo::Drum => data.approach_location(&end),
+            GoneTo::Object(ObjectGrip { object, grip }) => data.approach(&object, grip, &end),
+            GoneTo::View(ObjectGrip { object, grip }) => data.view_approach(&object, grip, &end),
+        };
+        let between =
+            if same_location(&start, &end) { Some(PathId::NULL) } else { data.trajectory(&start, &end) };
         let mut route = Self {
+            from: *from,
+            to: *to,
             depart: depart.unwrap_or(PathId::NULL),
             between: between.ok_or(Planning::NoTrajectory)?,
-            approach: goal.approach,
-            ..route
+            approach: approach.unwrap_or(PathId::NULL),
+            ..Self::default()
         };
         route.stop = route.stop_parameters(data).ok_or(Planning::NoSpeed)?;
         Ok(route)
@@ -235,17 +249,58 @@ impl Route {
             .find_map(|path| Some(data.path(path).last()?.para))
     }
 
-    /// The next point to go through; `None` if the goal is next, or the route is complete.
-    fn next_point<'a>(&self, data: &TaskData<'a>) -> Option<(Part, &'a PathPoint)> {
-        if self.complete {
-            return None;
-        }
+    /// The points to go through, in the direction of the goal.
+    fn points<'a>(&self, data: &TaskData<'a>) -> impl Iterator<Item = (Part, &'a PathPoint)> + use<'a> {
         let part = |part, path| data.path(path).iter().map(move |point| (part, point));
         part(Part::Depart, self.depart)
-            .chain(part(Part::Between, self.between))
+            .chain(part(Part::Trajectory, self.between))
             .chain(part(Part::Approach, self.approach))
             .filter(|(_, point)| point.target != Target::Stop)
-            .nth(usize::from(self.commanded))
+    }
+
+    /// The next point to go through; `None` if the goal is next, or the route is complete.
+    fn next_point<'a>(&self, data: &TaskData<'a>) -> Option<(Part, &'a PathPoint)> {
+        if self.complete { None } else { self.points(data).nth(usize::from(self.commanded)) }
+    }
+
+    /// The number of depart points.
+    #[must_use]
+    pub fn depart_points(&self, data: &TaskData<'_>) -> u16 {
+        u16::try_from(data.path(self.depart).len()).unwrap_or(u16::MAX)
+    }
+
+    /// The point to which the robot was sent last, from 0; the goal is the last.
+    #[must_use]
+    pub const fn heading(&self) -> u16 {
+        if self.complete { self.commanded } else { self.commanded.saturating_sub(1) }
+    }
+
+    /// The leg of a point; the goal belongs to the approach.
+    #[must_use]
+    pub fn part(&self, point: u16, data: &TaskData<'_>) -> Part {
+        self.points(data).nth(usize::from(point)).map_or(Part::Approach, |(part, _)| part)
+    }
+
+    /// Where a point is and with which parameters it is gone to; the goal is the last. `None` if a record is
+    /// missing.
+    #[must_use]
+    pub fn point(&self, point: u16, data: &TaskData<'_>) -> Option<(Frame, TrajParaId)> {
+        let (departure, goal) = (self.from.pose.to_frame().ok()?, self.to.pose.to_frame().ok()?);
+        let mut before = departure;
+        for (part, point) in self.points(data).take(usize::from(point).saturating_add(1)) {
+            let reference = match part {
+                Part::Depart => &departure,
+                Part::Trajectory => &before,
+                Part::Approach => &goal,
+            };
+            let frame = data.point_frame(point, reference)?;
+            before = if part == Part::Depart { departure } else { frame };
+        }
+        match self.points(data).nth(usize::from(point)) {
+            Some((Part::Depart, found)) => Some((data.point_frame(found, &departure)?, found.para)),
+            Some((_, found)) => Some((before, found.para)),
+            None => Some((goal, self.stop)),
+        }
     }
 
     /// What lies ahead.
@@ -272,7 +327,7 @@ impl Route {
         let record =
             |pose: u32, movetable: MovtabId| LegGoal::Record { pose, movetable: movetable.to_option() };
         let Some((part, point)) = self.next_point(data) else {
-            let at = record(self.goal.number, MovtabId::NULL);
+            let at = record(self.goal, MovtabId::NULL);
             return (!self.complete).then_some(Leg { at, parameters: self.stop });
         };
         let at = match (point.target, part) {
@@ -281,22 +336,14 @@ impl Route {
                 let locpt = data.locpt(id)?;
                 record(locpt.pose.number(), locpt.movetable)
             }
-            (Target::Movetable(id), Part::Depart) => record(self.departure.number, id),
-            (Target::Movetable(id), Part::Approach) => record(self.goal.number, id),
-            (Target::Movetable(_), Part::Between) => LegGoal::Computed(self.between_frame(data)?),
+            (Target::Movetable(id), Part::Depart) => record(self.departure, id),
+            (Target::Movetable(id), Part::Approach) => record(self.goal, id),
+            (Target::Movetable(_), Part::Trajectory) => {
+                LegGoal::Computed(self.point(self.commanded, data)?.0)
+            }
             (Target::Stop, _) => return None,
         };
         Some(Leg { at, parameters: point.para })
-    }
-
-    /// The frame of the next trajectory point, each relative to the one before it (VII.6), the first to the
-    /// departure.
-    fn between_frame(&self, data: &TaskData<'_>) -> Option<Frame> {
-        let departure = self.departure.pose.to_frame().ok()?;
-        let points = data.path(self.between);
-        let before = data.path(self.depart).len();
-        let last = usize::from(self.commanded).checked_sub(before)?;
-        points.get(..=last)?.iter().try_fold(departure, |frame, point| data.point_frame(point, &frame))
     }
 
     /// Note that the next leg has been commanded.
@@ -307,12 +354,4 @@ impl Route {
             self.complete = true;
         }
     }
-}
-
-/// Which part of a route a point belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Part {
-    Depart,
-    Between,
-    Approach,
 }

@@ -1,45 +1,18 @@
 //! What E-move remembers from tick to tick.
 
-use rcs_core::{Plain, handshake::Commander, interface::prim::JoystickGrip, name::Name16, pose::Pose};
-use taskdata::files::EndEffId;
+use rcs_core::{
+    Plain,
+    handshake::Commander,
+    interface::{emove::Beliefs, prim::JoystickGrip},
+};
 
 use super::{
-    gripper::{Gripper, Grippers},
-    robot_place::RobotPlace,
+    gripper::Grippers,
     route::Route,
     tables::{Ordered, Step},
+    way::Back,
 };
 use crate::execution::Execution;
-
-/// What the gripper holds.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Held {
-    /// The object.
-    pub object: Name16,
-    /// Its record of END-EFF-PARA.
-    pub parameters: EndEffId,
-    /// The gripper that holds it.
-    pub gripper: Gripper,
-    /// Grasp size of the object, 0.01 in: what [`Gripper::grips`] is asked about.
-    pub grasp_size: i32,
-    /// Opening when it was grasped, 0.01 in.
-    pub opening: i32,
-    /// Ticks in which neither finger has felt it.
-    pub unfelt: u8,
-}
-
-/// An object that vision has located and that has not been grasped since.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Located {
-    /// The object.
-    pub object: Name16,
-    /// Record of LOCPT where it is; a static array has none.
-    pub record: Option<u32>,
-    /// Record of ARRAY-TABLE where it is, if it lies in a sector.
-    pub array: Option<u32>,
-    /// Its part frame.
-    pub pose: Pose,
-}
 
 /// State of E-move.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -64,14 +37,22 @@ pub struct State {
     pub tries: u8,
     /// The way to the goal of the current command, if it is a motion command.
     pub route: Option<Route>,
-    /// Where the robot is, if that is known.
-    pub place: Option<RobotPlace>,
+    /// The part of an interrupted way that is flown back first.
+    pub back: Option<Back>,
+    /// What is believed of the world: an output, adopted again after a restart.
+    pub beliefs: Beliefs,
+    /// The beliefs of the time before the start have been adopted.
+    pub started: bool,
+    /// A new command waits until robot, ring and fingers are at rest.
+    pub halting: bool,
     /// How many location points have been looked at to find out where the robot is.
     pub searched: u32,
-    /// What the gripper holds.
-    pub held: Option<Held>,
-    /// What vision has located.
-    pub located: Option<Located>,
+    /// `endeff-id#` of the gripper on the robot in the tick before.
+    pub attached: u8,
+    /// The fingers were told last to let go of what is held.
+    pub releasing: bool,
+    /// Ticks in which neither finger has felt what is held.
+    pub unfelt: u8,
     /// Something was held when the current command came.
     pub carrying: bool,
     /// What was held last went away with its gripper.

@@ -2,7 +2,10 @@
 
 use rcs_core::{
     Plain,
-    interface::device::{ADC_FULL_SCALE, GripSensors},
+    interface::{
+        device::{ADC_FULL_SCALE, GripSensors},
+        grip::{Calibration, Scale},
+    },
 };
 
 use super::goal::{CLOSED_END, OPEN_END, SUPPLY_FORCE};
@@ -15,37 +18,15 @@ const LEAST_TRAVEL: f64 = 1000.0;
 /// Least difference of a strain gage between the supply force and none, counts.
 const LEAST_STRAIN: f64 = 400.0;
 
-/// A sensor that is linear: `value = (counts - zero) * gain`.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Scale {
-    /// Counts at value 0.
-    pub zero: f64,
-    /// Inches or pounds a count.
-    pub gain: f64,
+/// The line through a value at some counts and another at `span` counts more.
+fn through(counts: f64, value: f64, span: f64, further: f64) -> Scale {
+    let gain = (further - value) / span;
+    Scale { zero: counts - value / gain, gain }
 }
 
-impl Scale {
-    /// The line through a value at some counts and another at `span` counts more.
-    fn through(counts: f64, value: f64, span: f64, further: f64) -> Self {
-        let gain = (further - value) / span;
-        Self { zero: counts - value / gain, gain }
-    }
-
-    /// Inches or pounds.
-    pub(super) fn value(&self, counts: f64) -> f64 {
-        (counts - self.zero) * self.gain
-    }
-}
-
-/// Scale and offset of each sensor.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Calibration {
-    /// Potentiometer: inches.
-    pub potentiometer: Scale,
-    /// Left strain gage: pounds.
-    pub left: Scale,
-    /// Right strain gage: pounds.
-    pub right: Scale,
+/// Inches or pounds.
+pub(super) fn value(scale: &Scale, counts: f64) -> f64 {
+    (counts - scale.zero) * scale.gain
 }
 
 /// Steady readings, counts.
@@ -72,16 +53,14 @@ pub struct Steady {
     pub right: u32,
 }
 
-impl Calibration {
-    /// From the readings at both ends of travel and without force.
-    pub(super) fn new(closed: &Readings, open: &Readings, free: &Readings) -> Self {
-        let travel = open.potentiometer - closed.potentiometer;
-        let (left, right) = (closed.left - free.left, closed.right - free.right);
-        Self {
-            potentiometer: Scale::through(closed.potentiometer, CLOSED_END, travel, OPEN_END),
-            left: Scale::through(free.left, 0.0, left, SUPPLY_FORCE),
-            right: Scale::through(free.right, 0.0, right, SUPPLY_FORCE),
-        }
+/// From the readings at both ends of travel and without force.
+pub(super) fn calibration(closed: &Readings, open: &Readings, free: &Readings) -> Calibration {
+    let travel = open.potentiometer - closed.potentiometer;
+    let (left, right) = (closed.left - free.left, closed.right - free.right);
+    Calibration {
+        potentiometer: through(closed.potentiometer, CLOSED_END, travel, OPEN_END),
+        left: through(free.left, 0.0, left, SUPPLY_FORCE),
+        right: through(free.right, 0.0, right, SUPPLY_FORCE),
     }
 }
 

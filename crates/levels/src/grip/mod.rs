@@ -5,32 +5,32 @@
 //! dead band, lets the readings settle, and only then judges. It does not hunt: a flow that was stopped
 //! starts again only if the settled reading is outside a wider band than the one that stopped it.
 //!
-//! The command selects the table. Before any of them UP-INIT runs if position and force are not calibrated
-//! yet; the command waits, still executing, and is executed after it.
+//! The command selects the table. UP-INIT runs by itself when the system is booted, and a command that comes
+//! meanwhile waits; later it runs by command alone, and without a calibration commands that move the fingers are
+//! refused: UP-INIT closes with the whole supply pressure, and a part may be held.
 //!
 //! ```text
 //!   a command                               the calibration (UP-INIT)
 //!
-//!             accepted                       Missing         Deferred, Failed
-//!                |                              |                   |
-//!                v                              | at once           | first command that
-//!            .-------.    not calibrated        |                   | moves the fingers
-//!            | Start |- - - - - - - - - - - -.  |                   |
-//!            '-------'                       :  v                   v
-//!                | calibrated                :..>.----------------.
-//!                v                               |    Closing     |  readings at 0.10 in
-//!   Error    .-------. <---------.               '----------------'
-//!   <--------|  Move |           |                       | steady
-//!   too late '-------'           |               .----------------.
-//!                | in the        | outside       |    Opening     |  readings at 5.00 in
-//!                | dead band     | wide band     '----------------'
-//!                v               |                       | steady
-//!            .--------.          |               .----------------.
-//!            | Settle |----------'               |    Venting     |  readings without force
-//!            '--------'                          '----------------'
-//!                | inside the wide band                  | steady, plausible   | else
-//!                v                                       v                     v
-//!              Done                                    Valid                 Failed
+//!      | calibrated          Missing    Deferred, Failed, Valid     Adopting   restarted, and calibrated
+//!      v                        |                |                     |       before
+//!   .-------.                   | at once        | UP-INIT             | the sensors agree
+//!   | Start |                   v                v                     v
+//!   '-------'                .----------------------.                Valid
+//!      |                     |       Closing        |  readings at 0.10 in
+//!      v                     '----------------------'
+//!   .-------. <---------.               | steady
+//!   |  Move |           |    .----------------------.
+//!   '-------'           |    |       Opening        |  readings at 5.00 in
+//!      | in the dead    |    '----------------------'
+//!      | band           |               | steady
+//!      v                |    .----------------------.
+//!   .--------. outside  |    |       Venting        |  readings without force
+//!   | Settle |----------'    '----------------------'
+//!   '--------' wide band           | steady, plausible   | else
+//!      | inside the wide band      v                     v
+//!      v                         Valid                 Failed
+//!    Done         (Error: too late, without the gripper)
 //! ```
 //!
 //! A gripper that is there when the system is booted is calibrated at once. One that comes later belongs to a
@@ -38,17 +38,19 @@
 //! (docs/design/handshake.md "Wake"): E-move sends UP-INIT when the gripper is clear of its holster (V.2.1
 //! QC-ATTACH). When the gripper is taken off, a calibration under way is void and all valves go off; one that
 //! was finished is kept. PAUSE leaves the valves as they are, literally (VI.3.1): sent while a flow is on,
-//! the flow stays on.
+//! the flow stays on, and PAUSE is done when the fingers rest.
 //!
 //! * [`site`]: where a gripper that is servoed has its buffers and sensor words;
 //! * [`state`]: what the process remembers;
 //! * [`goal`]: what a command asks of the fingers;
 //! * [`calibration`]: from counts to inches and pounds;
+//! * [`felt`]: what is between the fingers, as the sensors tell it;
 //! * [`preprocess`]: the state variables;
 //! * [`tables`]: the decision tables, a file a command;
 //! * [`postprocess`]: valves and status.
 
 pub mod calibration;
+pub mod felt;
 pub mod goal;
 pub mod postprocess;
 pub mod preprocess;
@@ -135,6 +137,7 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
         outputs: &mut GripOutputs,
     ) {
         self.state.act(action, seen, inputs.tick);
+        self.state.execution.reason = S::reason(self.state.execution.reason);
         *outputs = self.state.report(action, seen, inputs.tick);
     }
 

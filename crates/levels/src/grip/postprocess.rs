@@ -4,14 +4,14 @@ use rcs_core::{
     interface::{
         GripOutputs,
         device::{GripValves, valve},
-        grip::{GripReport, GripStatus},
+        grip::{Felt, GripReport, GripStatus},
     },
     tick::Tick,
     units::{hundredths, rounded},
 };
 
 use super::{
-    calibration::{Calibration, Readings, Steady},
+    calibration::{Readings, Steady, calibration},
     state::State,
     tables::{Action, Flow, Gripper, Phase, Seen},
 };
@@ -39,7 +39,9 @@ impl State {
             Action::Refuse => self.missed = 0,
             Action::Finish | Action::Pause => self.execution.finish(),
             Action::Fail(reason) => self.execution.fail(reason),
+            Action::Forget => self.calibration = None,
             Action::Keep
+            | Action::Adopt
             | Action::Stop
             | Action::Open(_)
             | Action::Close(_)
@@ -65,8 +67,9 @@ impl State {
             | Action::Fail(_)
             | Action::Calibrate
             | Action::CalibrateAndFinish
-            | Action::GiveUp => 0,
-            Action::Keep | Action::Pause => self.valves,
+            | Action::GiveUp
+            | Action::Forget => 0,
+            Action::Keep | Action::Adopt | Action::Pause => self.valves,
             Action::Open(flow) => match flow.min(limit) {
                 Flow::Fine => valve::SUPPLY | valve::OPEN_FINE,
                 Flow::Medium => valve::SUPPLY | valve::OPEN_MEDIUM,
@@ -88,7 +91,8 @@ impl State {
     /// The last readings set scale and offset.
     fn calibrate(&mut self) {
         let free = self.take_readings();
-        self.calibration = Some(Calibration::new(&self.closed, &self.open, &free));
+        self.calibration = Some(calibration(&self.closed, &self.open, &free));
+        self.feel_nothing();
     }
 
     /// The outputs of this tick.
@@ -107,6 +111,7 @@ impl State {
             reason: execution.reason,
             initialized: self.phase == Phase::Valid,
             finger_height: FINGER_HEIGHT,
+            felt: if self.phase == Phase::Valid { self.felt } else { Felt::NotKnown },
             valves: self.valves,
             ..GripStatus::default()
         };
@@ -117,7 +122,13 @@ impl State {
             status.right_force = rounded(seen.measured.right);
         }
         let step = if self.is_calibrating() { self.phase.text() } else { self.step.text() };
-        GripOutputs { header: execution.header(tick, step), status, valves: GripValves { bits: self.valves } }
+        let known = matches!(self.phase, Phase::Valid | Phase::Adopting);
+        GripOutputs {
+            header: execution.header(tick, step),
+            status,
+            calibration: self.calibration.filter(|_| known),
+            valves: GripValves { bits: self.valves },
+        }
     }
 }
 

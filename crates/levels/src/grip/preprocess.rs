@@ -13,13 +13,14 @@ use rcs_core::{
 };
 
 use super::{
-    calibration::{Steady, is_plausible},
+    calibration::{Steady, is_plausible, value},
+    felt,
     goal::{CLOSED_END, Goal},
     site::Site,
     state::{Sensed, State, WINDOW},
     tables::{
-        Addressee, Calibrating, Clock, Command, Flow, Grasp, Gripper, Measured, Opening, Phase, Reach,
-        Request, Rest, Seen, Situation, Step,
+        Addressee, Calibrating, Clock, Command, Flow, Grasp, Gripper, Measured, Motion, Opening, Phase,
+        Reach, Request, Rest, Seen, Sensors, Situation, Step,
     },
 };
 use crate::execution::{Asked, Outcome};
@@ -35,7 +36,7 @@ const DEAD_BAND: f64 = 0.010;
 const REST_BAND: f64 = 0.016;
 
 /// A finger that feels more than this touches something, lb.
-const CONTACT: f64 = 1.0;
+pub(super) const CONTACT: f64 = 1.0;
 /// The least force that the servo aims at, lb: below it contact comes and goes.
 const LEAST_FORCE: f64 = 3.0;
 /// Farther than this from the commanded force a medium flow is used, lb.
@@ -48,13 +49,15 @@ const FORCE_REST_BAND: f64 = 2.0;
 /// rounded to 0.01 in, and "nothing held" must read at or below the grasp size.
 const MISSED_BELOW: f64 = 0.02;
 /// The same near the closed end, where no opening is below: in above the closed end.
-const MISSED_AT_END: f64 = 0.02;
+pub(super) const MISSED_AT_END: f64 = 0.02;
 /// Ticks in which force must build up if there is anything between the fingers.
 const MISSED_TICKS: u8 = 3;
 
 /// Ticks with the valves off after which readings count as settled: two until the last flow has ended, and a
 /// window.
 const SETTLE_TICKS: u8 = 6;
+/// Ticks after which fingers that stand still are at rest: valves act two ticks late.
+const STILL_TICKS: u8 = 5;
 /// Ticks that a command may take, by its greatest flow: fine, medium, coarse (26, 12 and 6 s). The whole
 /// travel takes 490, 125 and 55 ticks, a grasp 30 more.
 const LIMIT_TICKS: [u64; 3] = [650, 300, 150];
@@ -72,13 +75,15 @@ impl State {
     ) -> Seen {
         let command = S::command(inputs.memory);
         let (gripper, sensors) = S::sensors(&inputs.external.devices);
-        let arrival = self.observe(command.number, gripper, outputs.header.republished);
+        let arrival = self.observe(command.number, gripper, outputs);
         let goal = Goal::from(command);
         if arrival == Arrival::New {
             self.goal = goal;
         }
+        let before = self.sensed.map(|sensed| sensed.last);
         self.sample(gripper, &sensors);
         let measured = self.measure();
+        self.feel(before.as_ref(), &measured);
         let step = if arrival == Arrival::New { Step::Start } else { self.step };
         self.count(arrival, step, &measured, inputs.tick);
         Seen {
@@ -95,6 +100,9 @@ impl State {
                 gripper,
                 readings: self.readings(inputs.tick),
                 clock: self.clock(inputs.tick),
+                motion: if self.still_ticks >= STILL_TICKS { Motion::Still } else { Motion::Moving },
+                felt: self.felt,
+                sensors: self.sensors(&measured),
                 rest: if self.settled >= SETTLE_TICKS { Rest::Rested } else { Rest::Waiting },
                 opening: self.opening(step, &measured),
                 grasp: self.grasp(step, &measured),
@@ -104,17 +112,21 @@ impl State {
     }
 
     /// Read the command number, and find out where the calibration begins with a process that starts or
-    /// wakes.
-    fn observe(&mut self, number: u32, gripper: Gripper, woken: bool) -> Arrival {
+    /// wakes: one that has written a calibration before a restart adopts it.
+    fn observe(&mut self, number: u32, gripper: Gripper, outputs: &GripOutputs) -> Arrival {
+        let woken = outputs.header.republished;
         if woken {
             self.execution.wake();
-            self.valves = 0;
+            (self.valves, self.sensed) = (0, None);
         }
         let starting = !self.execution.receiver.started;
         let arrival = self.execution.receiver.observe(number);
         if starting && self.phase != Phase::Valid {
             let attached = gripper == Gripper::Attached;
-            self.phase = if woken && attached && self.is_calibrating() {
+            self.phase = if let Some(calibration) = outputs.calibration {
+                self.calibration = Some(calibration);
+                Phase::Adopting
+            } else if woken && attached && self.is_calibrating() {
                 // It became dormant before E-move knew which gripper is on: begin again.
                 Phase::Missing
             } else if woken || !attached || self.execution.receiver.adopted {
@@ -150,11 +162,11 @@ impl State {
         };
         let [newest, second, third, oldest] = window.map(f64::from);
         Measured {
-            opening: scale.potentiometer.value(newest),
-            mean_opening: scale.potentiometer.value((newest + second + third + oldest) / 4.0),
+            opening: value(&scale.potentiometer, newest),
+            mean_opening: value(&scale.potentiometer, (newest + second + third + oldest) / 4.0),
             velocity: (newest - oldest) * scale.potentiometer.gain / (3.0 * TICK_S),
-            left: scale.left.value(f64::from(last.strain_left)),
-            right: scale.right.value(f64::from(last.strain_right)),
+            left: value(&scale.left, f64::from(last.strain_left)),
+            right: value(&scale.right, f64::from(last.strain_right)),
         }
     }
 
@@ -174,6 +186,14 @@ impl State {
         let touching = measured.left > CONTACT || measured.right > CONTACT;
         let missing = executing && !self.is_calibrating() && !touching && measured.opening <= gone_by;
         self.missed = if missing { self.missed.saturating_add(1) } else { 0 };
+    }
+
+    /// Do the sensors agree with the calibration?
+    fn sensors(&self, measured: &Measured) -> Sensors {
+        match (&self.calibration, &self.sensed) {
+            (Some(_), Some(sensed)) if felt::is_plausible(&sensed.last, measured) => Sensors::Plausible,
+            _ => Sensors::Implausible,
+        }
     }
 
     /// What the sensors read while calibrating.

@@ -1,7 +1,7 @@
 //! Where a gripper that is servoed has its sensor words and its command.
 
 use rcs_core::interface::{
-    CommonMemory,
+    CommonMemory, Reason,
     device::{DeviceInputs, GripSensors},
     grip::GripCommand,
 };
@@ -17,6 +17,11 @@ pub trait Site {
     /// `endeff-id#` of the gripper; 0 for one that is not on the quick change.
     const END_EFFECTOR_ID: u8;
 
+    /// What a failure is called there.
+    #[must_use]
+    fn reason(reason: Reason) -> Reason {
+        reason
+    }
     /// The command buffer.
     fn command(memory: &CommonMemory) -> &GripCommand;
     /// The sensor words, and whether the gripper that they come from is there.

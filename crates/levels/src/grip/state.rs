@@ -1,9 +1,17 @@
 //! What Grip remembers from tick to tick.
 
-use rcs_core::{Plain, interface::device::GripSensors, tick::Tick};
+use rcs_core::{
+    Plain,
+    interface::{
+        device::GripSensors,
+        grip::{Calibration, Felt},
+    },
+    tick::Tick,
+};
 
 use super::{
-    calibration::{Calibration, Readings, Steady},
+    calibration::{Readings, Steady},
+    felt::Touch,
     goal::Goal,
     tables::{Phase, Step},
 };
@@ -38,7 +46,7 @@ pub struct State {
     pub missed: u8,
     /// Step of UP-INIT.
     pub phase: Phase,
-    /// Scale and offset of the sensors, once they are known.
+    /// Scale and offset of the sensors, once they are known, or of the time before a restart.
     pub calibration: Option<Calibration>,
     /// Readings at the closed end, while calibrating.
     pub closed: Readings,
@@ -48,6 +56,14 @@ pub struct State {
     pub steady: Steady,
     /// The last readings, if the gripper was attached in the last tick.
     pub sensed: Option<Sensed>,
+    /// What is between the fingers.
+    pub felt: Felt,
+    /// What they touched in the last tick.
+    pub touch: Touch,
+    /// Ticks for which that has been the same.
+    pub touch_ticks: u8,
+    /// Ticks for which the fingers have stood still.
+    pub still_ticks: u8,
     /// Command bits to the valves.
     pub valves: u8,
 }

@@ -62,6 +62,7 @@ impl State {
         };
         if seen.situation.gripper == Gripper::Attached {
             status.size = hundredths(seen.opening);
+            status.felt = seen.felt;
             status.velocity = hundredths(seen.velocity);
         }
         JawsOutputs { header: self.execution.header(tick, self.step.text()), status, valves: self.valves }

@@ -2,7 +2,7 @@
 
 use rcs_core::{
     handshake::Arrival,
-    interface::{JawsOutputs, device::QuickChangeSensors, jaws::JawsCommand},
+    interface::{JawsOutputs, device::QuickChangeSensors, grip::Felt, jaws::JawsCommand},
     process::Inputs,
     tick::{TICK_S, Tick},
     units::inches,
@@ -23,6 +23,8 @@ pub const POTENTIOMETER_SCALE: f64 = 600.0;
 
 /// Ticks after a change of the air in which fingers may not have begun to move.
 pub(super) const START_TICKS: u8 = 6;
+/// Ticks after which the readings of a gripper that was attached just now count.
+const SETTLED_TICKS: u8 = 5;
 /// Ticks in which any way of the fingers must end (4 s).
 pub(super) const LIMIT_TICKS: u64 = 100;
 /// Readings of a window that differ by no more than this are those of fingers that stand still, counts.
@@ -57,6 +59,7 @@ impl State {
         let window = self.sample(gripper, devices.grip.potentiometer);
         let [newest, second, third, oldest] = window.map(f64::from);
         let opening = opening_at((newest + second + third + oldest) / 4.0);
+        let (motion, stop) = (self.motion(&window, inputs.tick), stop(opening, &K::PARAMETERS));
         Seen {
             arrival,
             request: Request {
@@ -65,12 +68,8 @@ impl State {
                 addressee: addressee(command, &K::PARAMETERS),
                 gripper,
             },
-            situation: Situation {
-                gripper,
-                motion: self.motion(&window, inputs.tick),
-                stop: stop(opening, &K::PARAMETERS),
-                size: self::size(opening, size),
-            },
+            situation: Situation { gripper, motion, stop, size: self::size(opening, size) },
+            felt: self.felt(motion, stop, opening, &K::PARAMETERS),
             size,
             opening,
             velocity: (newest - oldest) / POTENTIOMETER_SCALE / (3.0 * TICK_S),
@@ -85,6 +84,7 @@ impl State {
             (Gripper::Attached, Some([newest, second, third, _])) => Some([counts, newest, second, third]),
         };
         self.air_ticks = self.air_ticks.saturating_add(1);
+        self.attached_ticks = if self.window.is_some() { self.attached_ticks.saturating_add(1) } else { 0 };
         self.window.unwrap_or_default()
     }
 
@@ -97,6 +97,21 @@ impl State {
             Motion::Endless
         } else {
             Motion::Moving
+        }
+    }
+}
+
+impl State {
+    /// What is between the fingers, by the potentiometer alone (VI.4 has no force sensors): whatever keeps
+    /// them between the ends of their way. At an end they hold nothing, though a thing that is as small as the
+    /// opening of closed fingers reads the same.
+    fn felt(&self, motion: Motion, stop: Stop, opening: f64, parameters: &Parameters) -> Felt {
+        let settled = motion == Motion::Stopped && self.attached_ticks >= SETTLED_TICKS;
+        match stop {
+            _ if !settled => Felt::NotKnown,
+            Stop::Closed | Stop::Opened => Felt::Nothing,
+            Stop::Between if (parameters.closed..=parameters.opened).contains(&opening) => Felt::Something,
+            Stop::Between => Felt::NotKnown,
         }
     }
 }

@@ -33,6 +33,8 @@ pub struct State {
     /// Potentiometer readings of the last ticks, the newest first, if the gripper was attached in the last
     /// tick.
     pub window: Option<[u16; WINDOW]>,
+    /// Ticks for which the gripper has been attached.
+    pub attached_ticks: u8,
     /// Air.
     pub valves: JawValves,
     /// Ticks for which the valves have been as they are.

@@ -6,6 +6,7 @@ use rcs_core::{
     interface::{
         CommonMemory, ExternalInputs, JawsOutputs, Reason,
         device::{JawValves, QuickChangeSensors},
+        grip::Felt,
         jaws::{JawsCommand, JawsReport, JawsVerb},
     },
     plain::to_bytes,
@@ -211,6 +212,31 @@ fn every_command_reports_where_its_fingers_stopped() {
 }
 
 #[test]
+fn what_is_held_is_felt_whatever_was_commanded() {
+    let mut bench = VBench::new(2.0);
+    let felt: Vec<_> = (0..5).map(|_| bench.step().status.felt).collect();
+    assert_eq!(felt, [Felt::NotKnown, Felt::NotKnown, Felt::NotKnown, Felt::NotKnown, Felt::Something]);
+    bench.fingers.object = Some(2.0);
+    for (verb, felt) in [(JawsVerb::Release, Felt::Nothing), (JawsVerb::Grasp, Felt::Something)] {
+        bench.send(verb, 0.0);
+        assert_eq!(bench.wait(8).status.felt, Felt::NotKnown, "they move");
+        bench.finish();
+        assert_eq!(bench.outputs.status.felt, felt, "{verb}");
+        bench.execute(JawsVerb::Pause, 0.0);
+        assert_eq!(bench.outputs.status.felt, felt, "the report does not count");
+    }
+    bench.fingers.object = None;
+    assert_eq!(bench.wait(40).status.felt, Felt::Nothing, "it was lost");
+    for (dead, felt) in [(-0.3, Felt::NotKnown), (6.0, Felt::NotKnown)] {
+        bench.fingers.ends = (dead, dead);
+        bench.fingers.opening = dead;
+        assert_eq!(bench.wait(20).status.felt, felt, "a potentiometer at {dead}");
+    }
+    bench.attach(false);
+    assert_eq!(bench.step().status.felt, Felt::NotKnown);
+}
+
+#[test]
 fn an_object_is_pressed_until_it_is_released() {
     let mut bench = VBench::new(3.5);
     bench.fingers.object = Some(2.0);
@@ -339,6 +365,39 @@ fn every_row_fires() {
     bench.process = Jaws::default();
     bench.step();
     assert_eq!(bench.rows.missing(TABLES), [""; 0]);
+}
+
+/// From every state, with fingers that move and with fingers that do not, with and without the gripper.
+#[test]
+fn every_command_ends_from_every_state_whether_the_fingers_obey_or_not() {
+    let mut ends = [0; 2];
+    for step in super::tables::Step::ALL {
+        for (open, close) in [(false, false), (true, false), (false, true)] {
+            for place in [-0.3, 0.50, 1.50, 2.00, 3.50, 6.0] {
+                for (attached, speed, noise) in
+                    [(true, 3.0, 1), (true, 0.0, 1), (true, 3.0, 60), (false, 3.0, 1)]
+                {
+                    for object in [None, Some(2.0), Some(1.5)] {
+                        for verb in JawsVerb::ALL {
+                            let mut bench = VBench::new(place);
+                            bench.attach(attached);
+                            (bench.fingers.speed, bench.fingers.noise, bench.fingers.object) =
+                                (speed, noise, object);
+                            let state = &mut bench.process.state;
+                            (state.step, state.valves) = (*step, JawValves { open, close });
+                            let (report, reason) = bench.execute(*verb, 2.0);
+                            assert!(
+                                reason != Reason::None || report != JawsReport::Stuck,
+                                "{verb} at {place}"
+                            );
+                            ends[usize::from(reason == Reason::None)] += 1;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(ends.iter().all(|count| *count > 100), "failed and done: {ends:?}");
 }
 
 proptest! {

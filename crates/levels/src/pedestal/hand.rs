@@ -2,7 +2,7 @@
 //! serves it.
 
 use rcs_core::interface::{
-    CommonMemory,
+    CommonMemory, Reason,
     device::{DeviceInputs, GripSensors},
     grip::GripCommand,
 };
@@ -17,6 +17,16 @@ pub struct PedestalHand;
 impl Site for PedestalHand {
     const NAME: &'static str = "Pedestal Hand";
     const END_EFFECTOR_ID: u8 = 0;
+
+    /// The pedestal's hand is named where its failure stands beside those of the robot's grippers.
+    fn reason(reason: Reason) -> Reason {
+        match reason {
+            Reason::GripNotCalibrated => Reason::HandNotCalibrated,
+            Reason::GripTimeout => Reason::HandTimeout,
+            Reason::GripUnattainable => Reason::HandUnattainable,
+            other => other,
+        }
+    }
 
     fn command(memory: &CommonMemory) -> &GripCommand {
         &memory.pedestal.hand

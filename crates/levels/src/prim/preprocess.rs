@@ -43,7 +43,7 @@ impl State {
     /// Read the inputs of a tick. `outputs` holds what was written in the tick before.
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &PrimOutputs) -> Seen {
         let (t3i, devices) = (&inputs.memory.t3i.status, &inputs.external.devices);
-        self.t3i.start(t3i.echo);
+        self.t3i.start_from(inputs.tick, inputs.memory.prim.t3i.number, t3i.echo);
         self.resume_from_rest(inputs);
         let command = &inputs.memory.emove.prim;
         let arrival = self.execution.receiver.observe(command.number);

@@ -12,7 +12,7 @@
 //!      '----------> Unlocked <------+----------------------------------'
 //!                       ^           |
 //!                       |           v
-//!                       '---------> Both     both seen, 3 ticks: qc-sens-malf
+//!                       '---------> Implausible     both seen, 3 ticks: qc-sens-malf
 //! ```
 //!
 //! QC-LOCK and QC-UNLOCK give the ring air and enable the control port, until the ring has arrived, both

@@ -36,6 +36,7 @@ impl State {
                 report,
                 reason: self.execution.reason,
                 end_effector_id: self.end_effector_id,
+                ring: self.reading,
             },
             // With the port disabled the ring cannot move, whatever the two air lines do (VI.2.1 QC-LOCK): it
             // is enabled only while the ring is to turn.

@@ -1,10 +1,14 @@
 //! Preprocess of Quick Change: its state variables, from the command and the sensors; which readings count.
 
-use rcs_core::{handshake::Arrival, interface::device::QuickChangeSensors, process::Inputs};
+use rcs_core::{
+    handshake::Arrival,
+    interface::{device::QuickChangeSensors, quick_change::RingPosition},
+    process::Inputs,
+};
 
 use super::{
     state::State,
-    tables::{Clock, Id, Request, Ring, Seen, Situation},
+    tables::{Clock, Id, Request, Seen, Situation},
 };
 use crate::execution::Asked;
 
@@ -41,10 +45,10 @@ impl State {
 
     fn read_ring(&mut self, sensors: &QuickChangeSensors) {
         let (reading, needed) = match (sensors.locked, sensors.unlocked) {
-            (true, false) => (Ring::Locked, 1),
-            (false, true) => (Ring::Unlocked, 1),
-            (false, false) => (Ring::Between, STUCK_TICKS),
-            (true, true) => (Ring::Both, MALFUNCTION_TICKS),
+            (true, false) => (RingPosition::Locked, 1),
+            (false, true) => (RingPosition::Unlocked, 1),
+            (false, false) => (RingPosition::Between, STUCK_TICKS),
+            (true, true) => (RingPosition::Implausible, MALFUNCTION_TICKS),
         };
         self.reading_ticks = if reading == self.reading { self.reading_ticks.saturating_add(1) } else { 1 };
         self.reading = reading;

@@ -1,8 +1,12 @@
 //! What Quick Change remembers from tick to tick.
 
-use rcs_core::{Plain, interface::quick_change::QuickChangeVerb, tick::Tick};
+use rcs_core::{
+    Plain,
+    interface::quick_change::{QuickChangeVerb, RingPosition},
+    tick::Tick,
+};
 
-use super::tables::{Ring, Step};
+use super::tables::Step;
 use crate::execution::Execution;
 
 /// State of Quick Change.
@@ -17,9 +21,9 @@ pub struct State {
     /// When it came.
     pub since: Tick,
     /// The reading that counts.
-    pub ring: Ring,
-    /// The reading of the last tick.
-    pub reading: Ring,
+    pub ring: RingPosition,
+    /// What the sensors say in this tick.
+    pub reading: RingPosition,
     /// Ticks for which it has been the same.
     pub reading_ticks: u8,
     /// The last legal `endeff-id#` of the mated gripper.

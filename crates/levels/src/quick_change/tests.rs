@@ -5,7 +5,7 @@ use rcs_core::{
     interface::{
         CommonMemory, ExternalInputs, QuickChangeOutputs, Reason,
         device::{QuickChangeSensors, QuickChangeValves},
-        quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
+        quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb, RingPosition},
     },
     plain::to_bytes,
     process::{Inputs, Process},
@@ -15,7 +15,7 @@ use rcs_core::{
 use super::{
     QuickChange,
     preprocess::{MALFUNCTION_TICKS, STUCK_TICKS, TURN_TICKS},
-    tables::TABLES,
+    tables::{Step, TABLES},
 };
 use crate::coverage::Coverage;
 
@@ -252,6 +252,44 @@ fn a_ring_seen_by_neither_sensor_is_stuck_only_after_a_while() {
 }
 
 #[test]
+fn where_the_ring_is_is_published_in_every_tick_whatever_is_reported() {
+    let readings = [
+        (true, false, RingPosition::Locked),
+        (false, true, RingPosition::Unlocked),
+        (false, false, RingPosition::Between),
+        (true, true, RingPosition::Implausible),
+    ];
+    let mut bench = Bench::default();
+    for verb in
+        [None, Some(QuickChangeVerb::Pause), Some(QuickChangeVerb::Lock), Some(QuickChangeVerb::Unlock)]
+    {
+        for _ in 0..40 {
+            for (locked, unlocked, ring) in readings {
+                assert_eq!(bench.step(locked, unlocked, 1).status.ring, ring);
+            }
+        }
+        if let Some(verb) = verb {
+            bench.command(bench.memory.emove.quick_change.number + 1, verb);
+        }
+    }
+    // Half unlocked, then PAUSE: the report lags, the position does not.
+    let (mut bench, mut ring) = (Bench::default(), RingModel { place: 1.0, ..UNLOCKED });
+    bench.step(true, false, 1);
+    bench.command(1, QuickChangeVerb::Unlock);
+    for _ in 0..3 {
+        ring.turn(bench.step(ring.place >= 1.0, ring.place <= 0.0, 1).valves);
+    }
+    let (paused, _) = bench.execute(QuickChangeVerb::Pause, &mut ring, 1);
+    assert_eq!(
+        (paused.status.report, paused.status.ring),
+        (QuickChangeReport::Locked, RingPosition::Between)
+    );
+    bench.process = QuickChange::default();
+    let restarted = bench.step(false, false, 1).status;
+    assert_eq!((restarted.reason, restarted.ring), (Reason::Restarted, RingPosition::Between));
+}
+
+#[test]
 fn a_malfunction_is_reported_only_after_a_while() {
     let mut bench = Bench::default();
     for (locked, unlocked, id) in [(true, true, 1), (true, false, 4), (true, false, 255)] {
@@ -278,6 +316,36 @@ fn a_restart_and_an_unknown_command_are_named_and_the_ring_still_reported() {
     assert_eq!(bench.step(true, false, 1).status.reason, Reason::None);
     bench.command(9, QuickChangeVerb::None);
     assert_eq!(bench.step(true, false, 1).status.reason, Reason::UnknownCommand);
+}
+
+/// From every step and reading, with a ring that turns, one that is stuck and sensors that fail.
+#[test]
+fn every_command_ends_from_every_state_whether_the_ring_obeys_or_not() {
+    let mut ends = std::collections::BTreeSet::new();
+    for step in Step::ALL {
+        for ring in RingPosition::ALL {
+            for place in [0.0, 0.3, 1.0] {
+                for (speed, id) in [(0.125, 1), (0.0, 1), (0.02, 1), (0.125, 9)] {
+                    for verb in QuickChangeVerb::ALL {
+                        let mut bench = Bench::default();
+                        bench.step(true, false, 1);
+                        (bench.process.state.step, bench.process.state.ring) = (*step, *ring);
+                        (bench.process.state.reading, bench.process.state.reading_ticks) = (*ring, 1);
+                        let mut model = RingModel { place, speed, jam: None };
+                        bench.command(1, *verb);
+                        let end = (0..TURN_TICKS + 2 + u64::from(STUCK_TICKS)).find_map(|_| {
+                            let outputs = bench.step(model.place >= 1.0, model.place <= 0.0, id);
+                            model.turn(outputs.valves);
+                            let report = outputs.status.report;
+                            (report != QuickChangeReport::Executing).then_some(report)
+                        });
+                        ends.insert(end.expect("it ends").code());
+                    }
+                }
+            }
+        }
+    }
+    assert_eq!(ends.len(), 4, "locked, unlocked, malfunction, stuck: {ends:?}");
 }
 
 proptest! {

@@ -129,13 +129,18 @@ impl Aim {
 
 impl Aims {
     /// Look up what a command needs beside its own location; `attached` is the id of the gripper on the
-    /// robot, 0 for none.
+    /// robot, 0 for none, `exchange` that of an exchange that is half done.
     ///
     /// # Errors
     /// What the task data lack for the command.
-    pub fn new(command: &SubtaskCommand, attached: u8, data: &TaskData<'_>) -> Result<Self, Missing> {
+    pub fn new(
+        command: &SubtaskCommand,
+        attached: u8,
+        exchange: Option<u8>,
+        data: &TaskData<'_>,
+    ) -> Result<Self, Missing> {
         match command.command {
-            SubtaskVerb::GetEndeff => Self::holsters(command.end_effector_id, attached, data),
+            SubtaskVerb::GetEndeff => Self::holsters(command.end_effector_id, attached, exchange, data),
             SubtaskVerb::FixGrip => Self::pedestal(command, data),
             SubtaskVerb::InsertTool
             | SubtaskVerb::ReleaseTool
@@ -154,14 +159,22 @@ impl Aims {
     }
 
     /// GET-ENDEFF: where the attached gripper is left, and where the wanted one is.
-    fn holsters(wanted: u8, attached: u8, data: &TaskData<'_>) -> Result<Self, Missing> {
+    fn holsters(
+        wanted: u8,
+        attached: u8,
+        exchange: Option<u8>,
+        data: &TaskData<'_>,
+    ) -> Result<Self, Missing> {
         let mut aims = Self::default();
-        if attached != 0 && (attached == wanted || wanted == 0) {
+        // An exchange that is half done is finished in the holster in which it is.
+        let own = exchange.unwrap_or(attached);
+        let wanted = if wanted == 0 { own } else { wanted };
+        if exchange.is_none() && attached != 0 && attached == wanted {
             return Ok(aims);
         }
         let [own_pose, wanted_pose] = &mut aims.poses;
-        if attached != 0 {
-            aims.first = holster(attached, PUT_IN, data, own_pose)?;
+        if own != 0 && own != wanted {
+            aims.first = holster(own, PUT_IN, data, own_pose)?;
         }
         aims.second = holster(wanted, TAKE_OUT, data, wanted_pose)?;
         Ok(aims)

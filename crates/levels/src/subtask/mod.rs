@@ -13,12 +13,14 @@
 //! ```
 //!
 //! * [`state`]: what Subtask remembers;
+//! * `pedestal_hand`: the part in the pedestal's hand;
 //! * [`aims`]: objects and locations of the commands to E-move;
 //! * [`preprocess`]: the state variables;
 //! * [`tables`]: the decision tables, a file a command;
 //! * [`postprocess`]: the outputs that a row asks for.
 
 pub mod aims;
+mod pedestal_hand;
 pub mod postprocess;
 pub mod preprocess;
 pub mod state;
@@ -52,14 +54,15 @@ impl<'d> Process<TaskData<'d>> for Subtask {
     const NAME: &'static str = "Subtask";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, outputs: &SubtaskOutputs) -> Seen {
-        self.state.sense(inputs, outputs)
+    fn preprocess(&mut self, inputs: &Inputs<'_, TaskData<'d>>, _: &SubtaskOutputs) -> Seen {
+        self.state.sense(inputs)
     }
 
     fn decide(&mut self, seen: &Seen) -> Action {
         let State { execution, step, .. } = &mut self.state;
+        let input = (seen.arrival, &seen.replaced, seen.situation.code());
         let decided =
-            execution.decide(seen.arrival, Step::first(seen.verb), step, |step| tables::decide(step, seen));
+            execution.command(input, Step::first(seen.verb), step, |step| tables::decide(step, seen));
         decided.unwrap_or(Action::Wait)
     }
 
@@ -71,7 +74,7 @@ impl<'d> Process<TaskData<'d>> for Subtask {
         outputs: &mut SubtaskOutputs,
     ) {
         let state = &mut self.state;
-        if state.execution.begins(seen.arrival) {
+        if state.execution.accepted(seen.asked) {
             state.publish_poses(outputs);
         }
         state.act(action, seen, inputs, outputs);

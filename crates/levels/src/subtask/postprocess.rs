@@ -14,8 +14,9 @@ use taskdata::files::TaskData;
 
 use super::{
     aims::Aim,
+    pedestal_hand::turned,
     state::State,
-    tables::{Action, Holster, Ordered, Seen},
+    tables::{Action, Flip, Holster, Ordered, Pedestal, PedestalHand, Seen},
 };
 use crate::execution::Outcome;
 
@@ -30,12 +31,13 @@ impl State {
     ) {
         let (own, aims) = (Aim::of_command(&inputs.memory.task.subtask), self.aims);
         let ped = self.ped_para;
-        if action == Action::Pause {
-            self.pause_pedestal(inputs, outputs);
+        let both = action == Action::Pause && self.pause_pedestal(seen, inputs, outputs);
+        if action == Action::PedGrip {
+            self.give(&inputs.memory.task.subtask);
         }
         let mut send = |verb, aim: &Aim| {
             let number = self.emove.send(inputs.tick);
-            self.ordered = Ordered::Emove;
+            self.ordered = if both { Ordered::Both } else { Ordered::Emove };
             outputs.emove = EmoveCommand { number, ..aim.command(verb, inputs.data) };
         };
         match action {
@@ -67,8 +69,16 @@ impl State {
             Action::PedGrip => {
                 self.command_pedestal(PedestalVerb::Grip, ped.grasp_size, ped.force, 0, inputs, outputs);
             }
-            Action::PedFlip => {
-                self.command_pedestal(PedestalVerb::Flip, 0, 0, ped.flip_angle, inputs, outputs);
+            Action::PedFlip(flip) => {
+                let angle = match flip {
+                    Flip::Whole => ped.flip_angle,
+                    // From an angle that is not known nothing is turned: the table fails for that.
+                    Flip::Rest => {
+                        let position = inputs.memory.pedestal.status.table_position;
+                        position.map_or(0, |position| turned(&ped).saturating_sub(position))
+                    }
+                };
+                self.command_pedestal(PedestalVerb::Flip, 0, 0, angle, inputs, outputs);
             }
             Action::PedRelease => {
                 self.command_pedestal(PedestalVerb::Release, ped.release_size, 0, 0, inputs, outputs);
@@ -109,10 +119,20 @@ impl State {
         };
     }
 
-    /// A pedestal that was told to move is told to stop; one that was not needed is left alone.
-    fn pause_pedestal(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut SubtaskOutputs) {
-        if !matches!(outputs.pedestal.command, PedestalVerb::None | PedestalVerb::Pause) {
-            self.command_pedestal(PedestalVerb::Pause, 0, 0, 0, inputs, outputs);
+    /// A pedestal that was told to move is told to stop; one that was not needed is left alone. True if it is to be waited for.
+    fn pause_pedestal(
+        &mut self,
+        seen: &Seen,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut SubtaskOutputs,
+    ) -> bool {
+        match outputs.pedestal.command {
+            PedestalVerb::None => false,
+            PedestalVerb::Pause => seen.orders.pedestal == Pedestal::Moving,
+            PedestalVerb::PreGrip | PedestalVerb::Grip | PedestalVerb::Flip | PedestalVerb::Release => {
+                self.command_pedestal(PedestalVerb::Pause, 0, 0, 0, inputs, outputs);
+                true
+            }
         }
     }
 
@@ -150,8 +170,12 @@ impl State {
             reason,
             reference_pose: below.reference_pose,
             held: below.held,
+            placed: below.placed,
             end_effector_id: below.end_effector_id,
             at: below.at,
+            drum: below.drum,
+            pedestal_part: self.pedestal_hand() == PedestalHand::HoldsPart,
         };
+        outputs.regrip = self.regrip;
     }
 }

@@ -1,11 +1,11 @@
 //! Preprocess of Subtask: its state variables, from the statuses of E-move and of the Active Pedestal.
 
 use rcs_core::{
-    handshake::{Arrival, Lower},
+    handshake::Lower,
     interface::{
-        SubtaskOutputs,
-        emove::{EmoveCommand, EmoveVerb},
-        pedestal::PedestalReport,
+        Report,
+        emove::{EmoveStatus, EmoveVerb, Holding},
+        pedestal::{PedestalReport, PedestalVerb},
         subtask::{SubtaskCommand, SubtaskVerb},
     },
     process::Inputs,
@@ -13,52 +13,56 @@ use rcs_core::{
 use taskdata::files::TaskData;
 
 use super::{
-    aims::Aims,
-    state::{Grasp, State},
+    aims::{Aim, Aims},
+    pedestal_hand::{hand, turn},
+    state::State,
     tables::{
-        GripHeld, Gripper, Hand, Held, Named, Ordered, Orders, Pedestal, PedestalData, Request, Seen,
-        Situation, Vision,
+        Drum, Exchange, GripHeld, Gripper, Held, Hindrance, Named, Ordered, Orders, Pedestal, PedestalData,
+        Request, Robot, Seen, Situation, Vision, Where,
     },
 };
 use crate::{
     execution::{Asked, Work},
+    halt::{Below, Intake, JoystickBox, Kind, Replaced},
     places::{Missing, place_of},
 };
 
 impl State {
     /// Read the inputs of a tick.
-    pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &SubtaskOutputs) -> Seen {
+    pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> Seen {
         let command = &inputs.memory.task.subtask;
-        self.emove.start(inputs.memory.emove.status.echo);
-        self.pedestal.start(inputs.memory.pedestal.status.echo);
-        self.sense_grasp(inputs, outputs);
+        self.adopt(inputs);
+        let (emove, pedestal) = (self.emove(inputs), self.pedestal(inputs));
+        self.sense_hand(&inputs.memory.pedestal.status, pedestal);
         let arrival = self.execution.receiver.observe(command.number);
-        let request =
-            if arrival == Arrival::New { self.look_up(command, inputs) } else { Request::default() };
+        let asked = self.execution.asked(arrival);
+        let request = if asked == Asked::Now { self.look_up(command, inputs) } else { Request::default() };
+        let situation = self.situation(command, inputs);
         Seen {
             arrival,
+            asked,
+            replaced: replaced(command, emove, pedestal, inputs),
             verb: command.command,
             request,
-            orders: Orders {
-                ordered: self.ordered,
-                emove: self.emove(inputs),
-                pedestal: self.pedestal(inputs),
+            hindrance: Hindrance {
+                asked,
+                pedestal: self.pedestal_hand(),
+                verb: command.command,
+                gripper: situation.gripper,
             },
-            situation: self.situation(command, inputs),
+            orders: Orders { ordered: self.ordered, emove, pedestal },
+            situation,
         }
     }
 
-    /// How the held object was taken.
-    fn sense_grasp(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &SubtaskOutputs) {
-        let emove = &inputs.memory.emove.status;
-        let taken = matches!(outputs.emove.command, EmoveVerb::GraspObj | EmoveVerb::AcquireTool)
-            && self.emove(inputs) == Lower::Done
-            && emove.held == Some(outputs.emove.object);
-        if emove.held.is_none() {
-            self.grasp = None;
-        } else if taken {
-            let EmoveCommand { object, grip, .. } = outputs.emove;
-            self.grasp = Some(Grasp { object, grip }).filter(|grasp| !grasp.object.is_empty());
+    /// Before the first command after a start: go on from the own output buffers, as they were written before it.
+    fn adopt(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
+        let (tick, memory, written) = (inputs.tick, inputs.memory, &inputs.memory.subtask);
+        self.emove.start_from(tick, written.emove.number, memory.emove.status.echo);
+        self.pedestal.start_from(tick, written.pedestal.number, memory.pedestal.status.echo);
+        if !self.execution.receiver.started {
+            self.regrip = written.regrip;
+            self.last_pose = written.poses.iter().map(|pose| pose.number).max().unwrap_or_default();
         }
     }
 
@@ -66,8 +70,8 @@ impl State {
     /// the pedestal takes the object. What is complete is kept.
     fn look_up(&mut self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
         self.ordered = Ordered::Nothing;
-        let attached = inputs.memory.emove.status.end_effector_id;
-        let aims = Aims::new(command, attached, inputs.data);
+        let emove = &inputs.memory.emove.status;
+        let aims = Aims::new(command, emove.end_effector_id, emove.exchange, inputs.data);
         let ped_para = match command.command {
             SubtaskVerb::FixGrip => inputs.data.ped_para(&command.object).map(|(_, para)| *para),
             _ => None,
@@ -87,18 +91,13 @@ impl State {
 
     /// Set the state variables.
     fn situation(&self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Situation {
-        let emove = &inputs.memory.emove.status;
-        let place = place_of(command.location_kind, command.location_record, command.location_array);
-        let view = inputs.data.view(&command.object, &place).is_some_and(|(_, view)| view.enabled);
+        let (emove, pedestal) = (&inputs.memory.emove.status, &inputs.memory.pedestal.status);
+        let held = held(emove, command);
         Situation {
             work: Work::Busy,
-            held: match emove.held {
-                None => Held::Nothing,
-                Some(held) if held == command.object => Held::Right,
-                Some(_) => Held::Other,
-            },
-            grip: self.grip_held(command),
-            vision: if view { Vision::Needed } else { Vision::NotNeeded },
+            held,
+            grip: grip_held(emove, command),
+            vision: vision(emove, command, inputs.data),
             gripper: if emove.end_effector_id == 0 {
                 Gripper::None
             } else if command.end_effector_id == 0 || command.end_effector_id == emove.end_effector_id {
@@ -106,12 +105,23 @@ impl State {
             } else {
                 Gripper::Wrong
             },
-            named: named(command),
-            hand: if inputs.memory.pedestal.status.grip_size > self.ped_para.grasp_size {
-                Hand::Gripping
-            } else {
-                Hand::Empty
+            exchange: match emove.exchange {
+                None => Exchange::None,
+                Some(id) if command.end_effector_id == 0 || command.end_effector_id == id => Exchange::Wanted,
+                Some(_) => Exchange::Other,
             },
+            station: station(emove, command),
+            placed: placed(emove, command),
+            drum: match emove.at {
+                _ if emove.drum => Drum::Inside,
+                Some(_) => Drum::Outside,
+                None => Drum::Unplaced,
+            },
+            named: named(command),
+            part: self.part(held, command),
+            table: turn(pedestal, &self.ped_para),
+            hand: hand(pedestal, &self.ped_para),
+            robot: robot(emove, &self.aims),
         }
     }
 
@@ -119,21 +129,6 @@ impl State {
     fn emove(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Lower {
         let emove = &inputs.memory.emove;
         self.emove.read(inputs.tick, &emove.header, emove.status.echo, emove.status.report.lower())
-    }
-
-    fn grip_held(&self, command: &SubtaskCommand) -> GripHeld {
-        match self.grasp {
-            Some(Grasp { object, grip }) if object == command.object => {
-                if grip == command.destination_grip {
-                    GripHeld::Destination
-                } else if grip == command.source_grip {
-                    GripHeld::Source
-                } else {
-                    GripHeld::Neither
-                }
-            }
-            _ => GripHeld::Unknown,
-        }
     }
 
     fn pedestal(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Pedestal {
@@ -146,6 +141,96 @@ impl State {
             Lower::Error | Lower::Joystick => Pedestal::Faulty,
             Lower::Lost => Pedestal::Silent,
         }
+    }
+}
+
+/// What a new command replaces.
+fn replaced(
+    command: &SubtaskCommand,
+    emove: Lower,
+    pedestal: Pedestal,
+    inputs: &Inputs<'_, TaskData<'_>>,
+) -> Replaced {
+    let written = &inputs.memory.subtask;
+    let robot = Below::of(emove, written.emove.command == EmoveVerb::Pause);
+    let turning = if pedestal == Pedestal::Moving { Lower::Executing } else { Lower::Done };
+    let part = Below::of(turning, written.pedestal.command == PedestalVerb::Pause);
+    let on = inputs.memory.emove.status.report == Report::JoystickOn;
+    Replaced {
+        intake: Intake::Taken,
+        kind: if command.command == SubtaskVerb::Pause { Kind::Pause } else { Kind::Other },
+        joystick: if on { JoystickBox::On } else { JoystickBox::Off },
+        below: robot.and(part),
+    }
+}
+
+/// Is the object of a command held?
+fn held(emove: &EmoveStatus, command: &SubtaskCommand) -> Held {
+    match emove.held {
+        Holding::Nothing => Held::Nothing,
+        Holding::Object(held) if held.object == command.object => Held::Right,
+        Holding::Object(_) => Held::Other,
+        Holding::Something => Held::Something,
+        Holding::NotKnown => Held::NotKnown,
+    }
+}
+
+/// With which grip?
+fn grip_held(emove: &EmoveStatus, command: &SubtaskCommand) -> GripHeld {
+    match emove.held {
+        Holding::Object(held) if held.object != command.object => GripHeld::Neither,
+        Holding::Object(held) if held.grip == command.destination_grip => GripHeld::Destination,
+        Holding::Object(held) if held.grip == command.source_grip => GripHeld::Source,
+        Holding::Object(_) | Holding::Nothing | Holding::Something | Holding::NotKnown => GripHeld::Neither,
+    }
+}
+
+/// Must vision find the object of a command?
+fn vision(emove: &EmoveStatus, command: &SubtaskCommand, data: &TaskData<'_>) -> Vision {
+    let place = place_of(command.location_kind, command.location_record, command.location_array);
+    let located = emove.located.is_some_and(|located| {
+        let there = (command.object, command.location_record, command.location_array);
+        (located.object, located.record, located.array) == there
+    });
+    if !data.view(&command.object, &place).is_some_and(|(_, view)| view.enabled) {
+        Vision::NotNeeded
+    } else if located {
+        Vision::Done
+    } else {
+        Vision::Needed
+    }
+}
+
+/// Does the robot stand at the object of a command?
+fn station(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
+    let there = (command.location_record, command.location_array, Some(command.source_grip));
+    match emove.at {
+        Some(at) if (at.record, at.array, at.grip) == there => Where::There,
+        _ => Where::Elsewhere,
+    }
+}
+
+/// Was the object of a command let go at its destination?
+fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
+    let there = (command.object, command.destination_grip, command.location_record, command.location_array);
+    match emove.placed {
+        Some(it) if (it.object, it.grip, it.record, it.array) == there => Where::There,
+        _ => Where::Elsewhere,
+    }
+}
+
+/// Where the robot is, for FIX-GRIP.
+fn robot(emove: &EmoveStatus, aims: &Aims) -> Robot {
+    let Some(at) = emove.at else { return Robot::Away };
+    let is_at = |aim: &Aim| !aim.location.is_empty() && (at.record, at.array) == (aim.record, aim.array);
+    if is_at(&aims.first) && at.grip == Some(aims.first.grip) {
+        Robot::First
+    } else if is_at(&aims.third) && at.grip == Some(aims.third.grip) {
+        Robot::Third
+    } else if is_at(&aims.second) {
+        Robot::Safe
+    } else {
+        Robot::Away
     }
 }
 

@@ -1,6 +1,6 @@
 //! What Subtask remembers from tick to tick.
 
-use rcs_core::{Plain, handshake::Commander, name::Name16};
+use rcs_core::{Plain, handshake::Commander, interface::subtask::Regrip};
 use taskdata::files::PedPara;
 
 use super::{
@@ -8,16 +8,6 @@ use super::{
     tables::{Ordered, Step},
 };
 use crate::execution::Execution;
-
-/// How the held object is gripped. The status of E-move names the object; the grip is the one with which
-/// it was last taken.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Grasp {
-    /// The object.
-    pub object: Name16,
-    /// Its grip number.
-    pub grip: i32,
-}
 
 /// State of Subtask.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -32,8 +22,8 @@ pub struct State {
     pub emove: Commander,
     /// Commands to the Active Pedestal.
     pub pedestal: Commander,
-    /// How the held object is gripped, if Subtask has seen how it was taken.
-    pub grasp: Option<Grasp>,
+    /// The part in the pedestal's hand.
+    pub regrip: Option<Regrip>,
     /// What the current command names beside the location and the object that Task gave.
     pub aims: Aims,
     /// How the pedestal takes the object of the current FIX-GRIP.

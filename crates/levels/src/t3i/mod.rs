@@ -38,7 +38,7 @@ mod tests;
 
 use depc::Limits;
 use rcs_core::{
-    interface::T3iOutputs,
+    interface::{Decided, T3iOutputs},
     process::{Inputs, Process},
     table::Table,
 };
@@ -95,8 +95,8 @@ impl<Data: ?Sized> Process<Data> for T3i {
         let choice = of_command(state.command, state.step, &state.situation(seen));
         state.step = choice.next;
         let refused = matches!(taken.action, Intake::Ignore | Intake::Refuse);
-        (state.table, state.row) =
-            if refused { (number::RECEIVE, taken.row) } else { (choice.table, choice.row) };
+        let (table, row) = if refused { (number::RECEIVE, taken.row) } else { (choice.table, choice.row) };
+        state.decided = Some(Decided { table, row });
         choice.action
     }
 

@@ -118,9 +118,8 @@ impl State {
         let header = Header {
             stamp: inputs.tick,
             republished: false,
-            table: self.table,
-            row: self.row,
-            step: Name16::clipped(self.step.text()),
+            decided: self.decided,
+            step: Some(Name16::clipped(self.step.text())).filter(|step| !step.is_empty()),
         };
         let status = T3iStatus {
             cycle: inputs.tick,

@@ -8,7 +8,10 @@ use depc::{
 use rcs_core::{
     Plain,
     handshake::Receiver,
-    interface::t3i::{ReportCheck, SentWords, T3iVerb},
+    interface::{
+        Decided,
+        t3i::{ReportCheck, SentWords, T3iVerb},
+    },
     pose::WireFrame,
 };
 
@@ -45,10 +48,8 @@ pub struct State {
     pub queue: [WireFrame; QUEUE_POINTS],
     /// How many.
     pub queued: u8,
-    /// Decision table that was used last, from 1.
-    pub table: u8,
-    /// Row of it.
-    pub row: u8,
+    /// The row that decided last, if any has.
+    pub decided: Option<Decided>,
     /// Row of RECEIVE that fired last: the header names it for refusals only.
     pub receive_row: u8,
     /// Row of REPORT that fired last.

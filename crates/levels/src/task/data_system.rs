@@ -1,18 +1,20 @@
 //! Task and the Data System (IV.4.2, IX.2): what is asked, asked again, and kept until it is taken.
 //!
 //! While no Data System is connected nothing is told and nothing waited for, as with DB-DONE (Figure IV.1).
-//! Once connected, the move of a command from or to the MBD is told when it has been made. An update that is
-//! not taken is kept: before the next object is moved, or at the end of the next STARTUP, it is told again,
-//! so that the data base is never more than one move behind.
+//! Once connected, the move of a command from or to the MBD is told when it has been made, and so is the place
+//! where an object is let go that the data base knows as the robot's. An update that is not taken is kept, also
+//! when another command replaces the one that told it: before the next object is moved, or at the end of the next
+//! STARTUP, it is told again, so that the data base is never more than one command behind.
 
 use rcs_core::{
     Plain,
     handshake::Commander,
     interface::{
         DataBaseCommand, DataBaseStatus, TaskOutputs,
-        data_base::{DataBaseReport, DataBaseVerb},
+        data_base::{Connection, DataBaseReport, DataBaseVerb},
+        emove::Standing,
     },
-    name::Name10,
+    name::{Name10, Name16},
     tick::Tick,
 };
 
@@ -27,6 +29,23 @@ pub const ANSWER_LIMIT: u64 = 250;
 pub const MAX_TRIES: u8 = 3;
 /// `STORAGE-POS` of what the robot holds, which is also the name of the client (IX.2).
 pub const IN_HAND: &str = "H_ROBOT";
+/// Updates that are kept until they are taken: one of an object that is taken, and one of where it is let go.
+const QUEUE: usize = 2;
+
+/// An item that the robot holds: what the data base is told when it is let go.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Carried {
+    /// The object.
+    pub item: Name16,
+    /// Its serial number.
+    pub serial: Name16,
+    /// Where it was taken, or to where it was brought.
+    pub location: Name10,
+    /// Sector there.
+    pub sector: i32,
+    /// The data base knows it as the robot's.
+    pub told: bool,
+}
 
 /// What Task knows of the Data System.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -39,16 +58,25 @@ pub struct DataSystem {
     pub tries: u8,
     /// A STARTUP has succeeded, and no SHUTDOWN came since.
     pub connected: bool,
-    /// The last update, until it is taken.
-    pub owed: Option<DataBaseCommand>,
+    /// A STARTUP has begun, and neither succeeded nor was followed by a SHUTDOWN.
+    pub connecting: bool,
+    /// The updates that have not been taken, the oldest first.
+    pub owed: [Option<DataBaseCommand>; QUEUE],
+    /// What the robot holds after a MOVE or an ACQUIRE.
+    pub carried: Option<Carried>,
 }
 
 impl DataSystem {
     /// Once a tick, before anything else: an update that is taken is owed no longer.
     pub fn observe(&mut self, status: &DataBaseStatus, tick: Tick) {
         self.commander.start(status.echo);
-        if self.request.command == DataBaseVerb::Update && self.status(status, tick) == DataBase::Done {
-            self.owed = None;
+        let [first, second] = self.owed;
+        let told = self.request.command == DataBaseVerb::Update
+            && first.is_some_and(|first| {
+                DataBaseCommand { number: self.request.number, ..first } == self.request
+            });
+        if told && self.status(status, tick) == DataBase::Done {
+            self.owed = [second, None];
         }
     }
 
@@ -65,17 +93,38 @@ impl DataSystem {
         }
     }
 
+    /// Is the Data System told of moves? `executing` is the command that is.
+    #[must_use]
+    pub const fn connection(&self, executing: Option<TaskVerb>) -> Connection {
+        match (self.connected, self.connecting, executing) {
+            (true, _, _) => Connection::Open,
+            (false, true, Some(TaskVerb::Startup)) => Connection::Opening,
+            (false, true, _) => Connection::Interrupted,
+            (false, false, _) => Connection::Closed,
+        }
+    }
+
     /// The pending update.
     #[must_use]
     pub fn update(&self, plan: &Plan) -> Update {
         let connecting = plan.verb == TaskVerb::Startup;
-        if self.owed.is_some() && (self.connected || connecting) {
+        let [owed, _] = self.owed;
+        if plan.verb == TaskVerb::Position && self.connected && plan.update_due {
+            // What is let go is let go whether or not an earlier update is taken.
+            Update::Due
+        } else if owed.is_some() && (self.connected || connecting) {
             Update::Owed
         } else if self.connected && plan.update_due {
             Update::Due
         } else {
             Update::None
         }
+    }
+
+    /// Is the data base to be told where an object is let go?
+    #[must_use]
+    pub fn is_to_be_told_of(&self, object: Option<Name16>, in_mbd: bool) -> bool {
+        self.carried.is_some_and(|carried| Some(carried.item) == object && (carried.told || in_mbd))
     }
 
     /// Write a command for the first time.
@@ -94,8 +143,22 @@ impl DataSystem {
 
     /// Write a reconfiguration command: one without an item.
     pub fn reconfigure(&mut self, command: DataBaseVerb, tick: Tick, outputs: &mut TaskOutputs) {
-        self.connected = false;
+        (self.connected, self.connecting) = (false, true);
         self.ask(DataBaseCommand { command, ..DataBaseCommand::default() }, tick, outputs);
+    }
+
+    /// The Data System takes commands.
+    pub const fn connect(&mut self) {
+        (self.connected, self.connecting) = (true, false);
+    }
+
+    /// The robot holds the object of a MOVE or an ACQUIRE.
+    pub fn carry(&mut self, plan: &Plan, told: bool) {
+        let site = plan.destination.location.or(plan.source.location).unwrap_or_default();
+        let item = plan.object.unwrap_or_default();
+        let told = told || self.carried.is_some_and(|carried| carried.item == item && carried.told);
+        self.carried =
+            Some(Carried { item, serial: plan.serial, location: site.name, sector: site.sector, told });
     }
 
     /// REPORT-ITEM (IX.2): write where the object of a command now is, and keep it until it is taken.
@@ -104,27 +167,46 @@ impl DataSystem {
             Some(location) if !in_hand => (location.name, location.sector),
             _ => (Name10::clipped(IN_HAND), 0),
         };
-        self.owed = Some(DataBaseCommand {
-            number: 0,
-            command: DataBaseVerb::Update,
-            item: plan.object.unwrap_or_default(),
-            serial: plan.serial,
-            position,
-            sector,
-        });
+        if in_hand {
+            self.carry(plan, true);
+        } else {
+            self.carried = self.carried.filter(|carried| Some(carried.item) != plan.object);
+        }
+        let item = plan.object.unwrap_or_default();
+        self.owe(item, plan.serial, position, sector);
         self.tell_owed(tick, outputs);
     }
 
-    /// Write the update that has not been taken.
+    /// REPORT-ITEM: write where the robot has let an object go, and keep it until it is taken.
+    pub fn tell_released(&mut self, at: Option<Standing>, tick: Tick, outputs: &mut TaskOutputs) {
+        let Some(Carried { item, serial, location, sector, .. }) = self.carried.take() else { return };
+        let position = at.map_or(location, |at| at.location);
+        self.owe(item, serial, position, if position == location { sector } else { 0 });
+        self.tell_owed(tick, outputs);
+    }
+
+    /// Keep an update. A full queue keeps the oldest and the newest.
+    fn owe(&mut self, item: Name16, serial: Name16, position: Name10, sector: i32) {
+        let command = DataBaseVerb::Update;
+        let update = Some(DataBaseCommand { number: 0, command, item, serial, position, sector });
+        self.owed = match self.owed {
+            [None, _] => [update, None],
+            [first, _] => [first, update],
+        };
+    }
+
+    /// Write the oldest update that has not been taken.
     pub fn tell_owed(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
-        if let Some(update) = self.owed {
+        let [first, _] = self.owed;
+        if let Some(update) = first {
             self.ask(update, tick, outputs);
         }
     }
 
     /// The Data System is disconnected, and what was owed to it is dropped.
     pub fn disconnect(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
-        self.owed = None;
+        (self.owed, self.carried) = ([None; QUEUE], None);
         self.reconfigure(DataBaseVerb::Abort, tick, outputs);
+        self.connecting = false;
     }
 }

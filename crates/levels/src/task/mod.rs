@@ -16,12 +16,14 @@
 //!
 //! * [`state`]: what Task remembers;
 //! * [`plan`]: a command with its names looked up;
+//! * [`ledger`]: the command that is not finished;
 //! * [`data_system`]: what the Data System has been told;
 //! * [`preprocess`]: the state variables;
 //! * [`tables`]: the decision tables, a file a command;
 //! * [`postprocess`]: the outputs that a row asks for.
 
 pub mod data_system;
+pub mod ledger;
 pub mod plan;
 pub mod postprocess;
 pub mod preprocess;
@@ -39,9 +41,16 @@ use taskdata::files::TaskData;
 
 use self::{
     state::State,
-    tables::{Action, Operator, Orders, Request, Seen, Step, Takeover, joystick::joystick, number},
+    tables::{
+        Action, Operator, Orders, Request, Seen, Step, Takeover,
+        joystick::{Control, joystick},
+        number,
+    },
 };
-use crate::execution::Course;
+use crate::{
+    execution::Course,
+    halt::{JoystickBox, Replaced},
+};
 
 /// The Task process.
 #[derive(Clone, Debug, Default)]
@@ -74,14 +83,18 @@ impl<'d> Process<TaskData<'d>> for Task {
                 decision.action
             }
         };
-        match course {
-            Course::Rest | Course::Refuse => return (takeover, Action::Wait),
-            Course::Begin => state.step = Step::first(seen.plan.verb),
-            Course::Continue => {}
+        let manual = state.control == Control::Manual;
+        let joystick = if manual { JoystickBox::On } else { JoystickBox::Off };
+        match state.execution.admit(course, &Replaced { joystick, ..seen.replaced }) {
+            Err(halting) => return (takeover, halting.into()),
+            Ok(Course::Rest | Course::Refuse) => return (takeover, Action::Wait),
+            Ok(Course::Begin) => state.step = Step::first(seen.plan.verb),
+            Ok(Course::Continue) => {}
         }
         let request = Request { control: state.control, ..seen.request };
         let orders = Orders { takeover, ..seen.orders };
         let choice = tables::decide(state.step, &Seen { request, orders, ..*seen });
+        let choice = state.execution.effective(choice, seen.situation.code());
         state.execution.note(&choice);
         state.step = choice.next;
         (takeover, choice.action)
@@ -95,8 +108,8 @@ impl<'d> Process<TaskData<'d>> for Task {
         outputs: &mut TaskOutputs,
     ) {
         let state = &mut self.state;
-        if state.execution.begins(seen.arrival) {
-            state.begin(&seen.plan, outputs);
+        if state.execution.accepted(seen.asked) {
+            state.begin(&seen.plan, inputs, outputs);
         }
         state.take_over(takeover, inputs, outputs);
         state.act(action, seen, inputs, outputs);

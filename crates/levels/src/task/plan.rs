@@ -56,6 +56,28 @@ pub enum Handling {
     Object,
 }
 
+/// Was the command sent before and not finished (docs/design/recovery.md "Ledger")?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Resumed {
+    /// No.
+    Not,
+    /// It was.
+    Begun,
+    /// It was, and its tool command was with Subtask.
+    AtTool,
+    /// It was, and all but the way to the end-at location was done.
+    Leaving,
+}
+
+/// Is a location near the tool drum?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Near {
+    /// It is not, or is not named.
+    No,
+    /// It is TOOL-SAFE.
+    Yes,
+}
+
 /// Is a location named?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Named {
@@ -159,6 +181,8 @@ pub struct Plan {
     pub end_at: Site,
     /// The data base is still to be told that the object is moved from or to the MBD.
     pub update_due: bool,
+    /// Was the command sent before and not finished?
+    pub resumed: Resumed,
 }
 
 /// What the look-up of a command has found.
@@ -243,6 +267,12 @@ impl Plan {
         if self.object.is_some() { Handling::Object } else { Handling::NoObject }
     }
 
+    /// The command is about an object or a tool.
+    #[must_use]
+    pub const fn is_about_something(&self) -> bool {
+        self.object.is_some() || self.verb.is_for_tools()
+    }
+
     /// Are the source and destination grips the same?
     #[must_use]
     pub const fn grips(&self) -> Grips {
@@ -289,6 +319,13 @@ fn gripper(verb: TaskVerb, object: Option<&Name16>, data: &TaskData<'_>) -> (u8,
 }
 
 impl Site {
+    /// Is the location near the tool drum?
+    #[must_use]
+    pub fn near_drum(&self) -> Near {
+        let near = self.location.is_some_and(|location| location.name.as_str() == named::TOOL_SAFE);
+        if near { Near::Yes } else { Near::No }
+    }
+
     /// Is the location named?
     #[must_use]
     pub const fn named(&self) -> Named {
@@ -320,8 +357,14 @@ impl Location {
 
     /// True if the location is one of the MBD's.
     fn is_in_mbd(&self, data: &TaskData<'_>) -> bool {
-        let point = LocptId::from_option(self.record);
-        let owner = data.owner_named(&Name10::clipped(named::MBD)).filter(|_| !point.is_null());
-        owner.is_some_and(|owner| data.is_member(owner, Reference::location_point(point)))
+        is_in_mbd(self.record, data)
     }
+}
+
+/// True if a record of LOCPT is one of the MBD's.
+#[must_use]
+pub fn is_in_mbd(record: Option<u32>, data: &TaskData<'_>) -> bool {
+    let point = LocptId::from_option(record);
+    let owner = data.owner_named(&Name10::clipped(named::MBD)).filter(|_| !point.is_null());
+    owner.is_some_and(|owner| data.is_member(owner, Reference::location_point(point)))
 }

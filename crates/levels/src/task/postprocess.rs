@@ -14,7 +14,8 @@ use taskdata::files::TaskData;
 
 use super::{
     data_system::DataSystem,
-    plan::{Plan, Site},
+    ledger::opened,
+    plan::{Plan, Site, TaskVerb},
     state::State,
     tables::{Action, Goal, Ordered, Seen, Takeover, joystick::Control},
 };
@@ -23,8 +24,14 @@ use crate::execution::Outcome;
 impl State {
     /// Take over a command that was accepted, and give its poses new record numbers: T-POSE-1 source,
     /// T-POSE-2 destination, T-POSE-3 end-at.
-    pub(super) fn begin(&mut self, plan: &Plan, outputs: &mut TaskOutputs) {
+    pub(super) fn begin(
+        &mut self,
+        plan: &Plan,
+        inputs: &Inputs<'_, TaskData<'_>>,
+        outputs: &mut TaskOutputs,
+    ) {
         self.plan = *plan;
+        outputs.ledger = opened(outputs.ledger, &inputs.external.hws, plan);
         let sites = [&mut self.plan.source, &mut self.plan.destination, &mut self.plan.end_at];
         for (slot, site) in outputs.poses.iter_mut().zip(sites) {
             self.last_pose = pose_range::next(pose_range::TASK, self.last_pose);
@@ -72,11 +79,8 @@ impl State {
             }
             Action::GotoDest => self.send(SubtaskVerb::GotoDest, &plan.destination, inputs, outputs),
             Action::GotoEndpt => self.send(SubtaskVerb::GotoEndpt, &plan.end_at, inputs, outputs),
-            Action::Position(Goal::Source) => {
-                self.send(SubtaskVerb::Position, &plan.source, inputs, outputs);
-            }
-            Action::Position(Goal::Destination) => {
-                self.send(SubtaskVerb::Position, &plan.destination, inputs, outputs);
+            Action::Position(goal) => {
+                self.send(SubtaskVerb::Position, site(&plan, goal), inputs, outputs);
             }
             Action::Release => self.send(SubtaskVerb::Release, &plan.source, inputs, outputs),
             Action::InsertTool => self.send_tool(SubtaskVerb::InsertTool, inputs, outputs),
@@ -88,11 +92,11 @@ impl State {
             Action::Startup => self.order().reconfigure(DataBaseVerb::Startup, tick, outputs),
             Action::Disconnect => self.order().disconnect(tick, outputs),
             Action::Connect => {
-                self.data_system.connected = true;
-                self.execution.finish();
+                self.data_system.connect();
+                self.finish(inputs, outputs);
             }
             Action::ConnectAndTell => {
-                self.data_system.connected = true;
+                self.data_system.connect();
                 self.order().tell_owed(tick, outputs);
             }
             Action::TellOwed => self.order().tell_owed(tick, outputs),
@@ -102,13 +106,36 @@ impl State {
                 self.tell(inputs, outputs);
                 self.send(SubtaskVerb::GotoEndpt, &plan.end_at, inputs, outputs);
             }
+            Action::UpdateAndPosition(goal) => {
+                self.plan.update_due = false;
+                self.data_system.tell_released(inputs.memory.subtask.status.at, tick, outputs);
+                self.send(SubtaskVerb::Position, site(&plan, goal), inputs, outputs);
+            }
             Action::AwaitUpdate => self.ordered = Ordered::DataSystem,
-            Action::Finish => self.execution.finish(),
+            Action::Finish => self.finish(inputs, outputs),
             Action::Fail(reason) => self.execution.fail(reason),
             Action::PassUp => {
                 self.execution.pass_up(seen.orders.subtask, inputs.memory.subtask.status.reason);
             }
         }
+    }
+
+    /// The command is finished.
+    fn finish(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
+        let (plan, below) = (self.plan, &inputs.memory.subtask.status);
+        let carries = matches!(plan.verb, TaskVerb::Move | TaskVerb::Acquire);
+        if carries && plan.object.is_some() && plan.object == below.held.object() {
+            self.data_system.carry(&plan, false);
+        }
+        if self.is_in_ledger(outputs) {
+            outputs.ledger = None;
+        }
+        self.execution.finish();
+    }
+
+    /// Is the current command the one in the ledger?
+    const fn is_in_ledger(&self, outputs: &TaskOutputs) -> bool {
+        self.plan.is_about_something() && outputs.ledger.is_some()
     }
 
     /// The Data System, which has the last order from now on.
@@ -120,8 +147,11 @@ impl State {
     /// Tell the data base where the object now is.
     fn tell(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut TaskOutputs) {
         let below = &inputs.memory.subtask.status;
-        let in_hand = below.held.is_some() && self.plan.object == below.held;
+        let in_hand = below.held.is_held() && self.plan.object == below.held.object();
         self.plan.update_due = false;
+        if let Some(ledger) = &mut outputs.ledger {
+            ledger.told = true;
+        }
         let plan = self.plan;
         self.order().tell(&plan, in_hand, inputs.tick, outputs);
     }
@@ -135,6 +165,10 @@ impl State {
         outputs: &mut TaskOutputs,
     ) {
         self.ordered = Ordered::Subtask;
+        let about = self.plan.is_about_something() && verb != SubtaskVerb::Pause;
+        if let Some(ledger) = outputs.ledger.as_mut().filter(|_| about) {
+            ledger.last = verb;
+        }
         let (plan, location) = (&self.plan, site.location.unwrap_or_default());
         outputs.subtask = SubtaskCommand {
             number: self.subtask.send(inputs.tick),
@@ -159,7 +193,7 @@ impl State {
         self.send(verb, &Site { location: None, grip, parameters }, inputs, outputs);
         (outputs.subtask.source_grip, outputs.subtask.destination_grip) = (grip, grip);
         if self.plan.object.is_none() {
-            outputs.subtask.object = inputs.memory.subtask.status.held.unwrap_or_default();
+            outputs.subtask.object = inputs.memory.subtask.status.held.object().unwrap_or_default();
         }
     }
 
@@ -173,8 +207,18 @@ impl State {
             (Control::Automatic, Outcome::Done) => (HwsReport::Finished, execution.reason),
             (Control::Automatic, Outcome::Error | Outcome::Joystick) => (HwsReport::Error, execution.reason),
         };
+        let executing = Some(self.plan.verb).filter(|_| execution.outcome == Outcome::Executing);
+        outputs.connection = self.data_system.connection(executing);
         outputs.header = execution.header(inputs.tick, self.step.text());
         outputs.status =
             HwsStatus { echo: execution.receiver.echo, command: inputs.external.hws.command, report, reason };
+    }
+}
+
+/// The location of a plan to which POSITION goes.
+const fn site(plan: &Plan, goal: Goal) -> &Site {
+    match goal {
+        Goal::Source => &plan.source,
+        Goal::Destination => &plan.destination,
     }
 }

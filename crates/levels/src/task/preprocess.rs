@@ -1,50 +1,90 @@
 //! Preprocess of Task: its state variables, from the statuses of Subtask and of the Data System.
 
 use rcs_core::{
-    handshake::{Arrival, Lower},
+    handshake::Lower,
+    interface::{
+        emove::{Holding as Held, Standing},
+        subtask::SubtaskVerb,
+    },
     name::Name10,
     process::Inputs,
 };
 use taskdata::files::TaskData;
 
 use super::{
-    plan::{Found, Plan, Site, TOOL_GRIPPER},
+    ledger::{Part, placed, resumed},
+    plan::{Found, Plan, Resumed, Site, TOOL_GRIPPER, TaskVerb, is_in_mbd},
     state::State,
     tables::{
-        Ends, Holding, Ordered, Orders, Request, Seen, Situation, Station, Takeover, Tool, joystick::Control,
+        Drum, Ends, Holding, Ordered, Orders, Request, Seen, Situation, Station, Takeover, Tool, Way,
+        joystick::Control,
     },
 };
 use crate::{
+    emove::route::same_location,
     execution::{Asked, Work},
-    places::named,
+    halt::{Below, Intake, JoystickBox, Kind, Replaced},
+    places::{named, place_of},
 };
 
 impl State {
     /// Read the inputs of a tick.
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>) -> Seen {
         let (command, data_base) = (&inputs.external.hws, &inputs.external.data_base);
-        self.subtask.start(inputs.memory.subtask.status.echo);
+        self.adopt(inputs);
         self.data_system.observe(data_base, inputs.tick);
         let arrival = self.execution.receiver.observe(command.number);
-        let (plan, request) = if arrival == Arrival::New {
+        let asked = self.execution.asked(arrival);
+        let (plan, request) = if asked == Asked::Now {
             self.ordered = Ordered::Nothing;
             let found = Plan::look_up(command, inputs.data);
-            (found.plan, request(&found))
+            (self.plan(&found.plan, inputs), request(&found))
         } else {
             (self.plan, Request::default())
         };
+        let subtask = self.subtask(inputs);
+        let pausing = inputs.memory.task.subtask.command == SubtaskVerb::Pause;
         Seen {
             arrival,
+            asked,
+            replaced: Replaced {
+                intake: Intake::Taken,
+                kind: if plan.verb == TaskVerb::Pause { Kind::Pause } else { Kind::Other },
+                joystick: JoystickBox::Off,
+                below: Below::of(subtask, pausing),
+            },
             plan,
             request,
             orders: Orders {
                 takeover: Takeover::None,
                 ordered: self.ordered,
-                subtask: self.subtask(inputs),
+                subtask,
                 data_base: self.data_system.status(data_base, inputs.tick),
             },
             situation: self.situation(&plan, inputs),
         }
+    }
+
+    /// Before the first command after a start: go on from the own output buffers, as they were written before it.
+    fn adopt(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
+        let (memory, written) = (inputs.memory, &inputs.memory.task);
+        self.subtask.start_from(inputs.tick, written.subtask.number, memory.subtask.status.echo);
+        if !self.execution.receiver.started {
+            self.last_pose = written.poses.iter().map(|pose| pose.number).max().unwrap_or_default();
+        }
+    }
+
+    /// A new command, with what it has to do with the commands before it.
+    fn plan(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Plan {
+        let (below, ledger) = (&inputs.memory.subtask.status, inputs.memory.task.ledger.as_ref());
+        let resumed = resumed(&inputs.external.hws, ledger);
+        let told = resumed != Resumed::Not && ledger.is_some_and(|ledger| ledger.told);
+        let in_mbd = below.at.is_some_and(|at| is_in_mbd(at.record, inputs.data));
+        let update_due = match plan.verb {
+            TaskVerb::Position => self.data_system.is_to_be_told_of(below.held.object(), in_mbd),
+            _ => plan.update_due && !told,
+        };
+        Plan { resumed, update_due, ..*plan }
     }
 
     /// Status of Subtask.
@@ -56,29 +96,33 @@ impl State {
     /// Set the state variables for a command.
     fn situation(&self, plan: &Plan, inputs: &Inputs<'_, TaskData<'_>>) -> Situation {
         let below = &inputs.memory.subtask.status;
-        let right = below.held.is_some() && plan.object == below.held;
         Situation {
             work: Work::Busy,
             handling: plan.handling(),
-            holding: match (below.held, right) {
-                (None, _) => Holding::NotHeld,
-                (Some(_), true) => Holding::Held,
-                (Some(_), false) => Holding::Other,
+            holding: match below.held {
+                Held::Nothing => Holding::NotHeld,
+                Held::Object(held) if plan.object == Some(held.object) => Holding::Held,
+                Held::Object(_) => Holding::Other,
+                Held::Something => Holding::Something,
+                Held::NotKnown => Holding::NotKnown,
             },
             grips: plan.grips(),
             source: plan.source.named(),
             ends: ends(&plan.end_at, below.at),
             update: self.data_system.update(plan),
-            tool: if below.end_effector_id != TOOL_GRIPPER {
-                Tool::None
-            } else if below.held.is_none() {
-                Tool::Free
-            } else if right || plan.object.is_none() {
-                Tool::Held
-            } else {
-                Tool::None
+            tool: match below.held {
+                _ if below.end_effector_id != TOOL_GRIPPER => Tool::None,
+                Held::Nothing => Tool::Free,
+                Held::Object(held) if plan.object.is_none_or(|object| object == held.object) => Tool::Held,
+                Held::Object(_) => Tool::None,
+                Held::Something | Held::NotKnown => Tool::Unsure,
             },
-            station: station(&plan.source, below.at),
+            station: station(below.at.map(|at| at.location)),
+            drum: if below.drum { Drum::Inside } else { Drum::Outside },
+            way: way(below.at, plan, inputs.data),
+            resumed: plan.resumed,
+            placed: placed(plan, below),
+            part: if below.pedestal_part { Part::InPedestal } else { Part::Elsewhere },
         }
     }
 }
@@ -99,12 +143,14 @@ fn request(found: &Found) -> Request {
         tool: plan.tool(),
         grips: plan.grips(),
         pedestal: found.pedestal,
+        near: plan.destination.near_drum(),
         control: Control::Automatic,
     }
 }
 
 /// Where the robot is to be at the end. A sector is not known by its location's name alone.
-fn ends(end_at: &Site, at: Option<Name10>) -> Ends {
+fn ends(end_at: &Site, at: Option<Standing>) -> Ends {
+    let at = at.map(|at| at.location);
     match &end_at.location {
         None => Ends::Here,
         Some(location) if Some(location.name) == at && location.array.is_none() => Ends::There,
@@ -113,13 +159,21 @@ fn ends(end_at: &Site, at: Option<Name10>) -> Ends {
 }
 
 /// Where the robot is, for the tool commands.
-fn station(source: &Site, at: Option<Name10>) -> Station {
-    let Some(at) = at else { return Station::Elsewhere };
-    if at.as_str() == named::TOOL_TRNS {
-        Station::Transfer
-    } else if at.as_str() == named::TOOL_SAFE || source.location.is_some_and(|location| location.name == at) {
-        Station::Safe
-    } else {
-        Station::Elsewhere
+fn station(at: Option<Name10>) -> Station {
+    match at.as_ref().map(Name10::as_str) {
+        None => Station::Unplaced,
+        Some(named::TOOL_TRNS) => Station::Transfer,
+        Some(named::TOOL_SAFE) => Station::Safe,
+        Some(_) => Station::Elsewhere,
     }
+}
+
+/// The way from where the robot is to the position of a POSITION, as far as the names of the locations tell.
+fn way(at: Option<Standing>, plan: &Plan, data: &TaskData<'_>) -> Way {
+    let Some(at) = at else { return Way::NoStart };
+    let Some(goal) = plan.source.location.or(plan.destination.location) else { return Way::Known };
+    let from = place_of(goal.kind, at.record, at.array);
+    let to = place_of(goal.kind, goal.record, goal.array);
+    let leads = same_location(&from, &to) || data.trajectory(&from, &to).is_some();
+    if leads { Way::Known } else { Way::NoTrajectory }
 }

@@ -293,7 +293,7 @@ mod tests {
             bench.remarks(),
             [
                 "mailbox Pedestal Gripper to RCS Status at F5600 cannot be read, the Active Pedestal counts as not \
-              answering: a status of the gripper of 90 bytes was expected, found 6"
+              answering: a status of the gripper of 142 bytes was expected, found 6"
             ]
         );
         of_gripper.write(&gripper::encode(&hand, &Default::default())).unwrap();

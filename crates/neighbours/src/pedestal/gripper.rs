@@ -23,19 +23,25 @@
 //!   80    4    position           0.01 in
 //!   84    4    velocity           0.01 in/s; 0 is full speed
 //!   88    2    end-effector       0: it is on no quick change
+//!   90    2    felt               extension: what is between the fingers: 0 not known, 1 nothing, 2 something
+//!   92    2    scales-known       extension: 1 if the scales are those of a calibration
+//!   94    8    zero of pos        extension: counts at opening 0, as the bits of a 64-bit floating-point number
+//!  102    8    gain of pos        extension: inches a count
+//!  110   16    left strain gage   extension: the same, pounds
+//!  126   16    right strain gage  extension: the same, pounds
 //! ```
 
 use rcs_core::interface::{
     GripOutputs,
     device::GripValves,
-    grip::{GripCommand, GripReport, GripStatus, GripVerb},
+    grip::{Calibration, Felt, GripCommand, GripReport, GripStatus, GripVerb, Scale},
 };
 
-use super::{LayoutError, WORD, fields, put_row, reason, take_row, word};
+use super::{LayoutError, WORD, felt, fields, put_row, reason, take_row, word};
 use crate::fields::Packer;
 
 /// Bytes of a status.
-pub const STATUS: usize = 90;
+pub const STATUS: usize = 142;
 
 /// The bytes of the hand's status and command.
 #[must_use]
@@ -59,6 +65,13 @@ pub fn encode(hand: &GripOutputs, command: &GripCommand) -> [u8; STATUS] {
     fields.long_integer(command.position);
     fields.long_integer(command.velocity);
     fields.word(command.end_effector_id.into());
+    fields.word(status.felt.code().into());
+    fields.flag(hand.calibration.is_some());
+    let Calibration { potentiometer, left, right } = hand.calibration.unwrap_or_default();
+    for scale in [potentiometer, left, right] {
+        fields.quad(scale.zero.to_bits());
+        fields.quad(scale.gain.to_bits());
+    }
     fields.finish()
 }
 
@@ -68,7 +81,7 @@ pub fn encode(hand: &GripOutputs, command: &GripCommand) -> [u8; STATUS] {
 /// [`LayoutError`] for the first thing that cannot be.
 pub fn decode(data: &[u8]) -> Result<(GripOutputs, GripCommand), LayoutError> {
     let mut fields = fields("a status of the gripper", STATUS, data)?;
-    let status = GripStatus {
+    let mut status = GripStatus {
         echo: fields.long("incr-cmnd#-echo")?,
         report: word::<WORD, _>(&mut fields, "status", GripReport::from_text)?,
         reason: reason(&mut fields, "status-code")?,
@@ -79,8 +92,9 @@ pub fn decode(data: &[u8]) -> Result<(GripOutputs, GripCommand), LayoutError> {
         velocity: fields.long_integer("vel")?,
         finger_height: fields.long_integer("finger-hgt")?,
         valves: fields.byte("grip")?,
+        felt: Felt::NotKnown,
     };
-    let hand = GripOutputs { header: take_row(&mut fields)?, status, valves: GripValves::default() };
+    let header = take_row(&mut fields)?;
     let command = GripCommand {
         number: fields.long("incr-cmnd#")?,
         command: word::<WORD, _>(&mut fields, "command", GripVerb::from_text)?,
@@ -89,5 +103,17 @@ pub fn decode(data: &[u8]) -> Result<(GripOutputs, GripCommand), LayoutError> {
         velocity: fields.long_integer("velocity")?,
         end_effector_id: fields.byte("end-effector")?,
     };
+    status.felt = felt(&mut fields)?;
+    let known = fields.flag("scales-known")?;
+    let mut scale = |zero, gain| -> Result<Scale, LayoutError> {
+        Ok(Scale { zero: f64::from_bits(fields.quad(zero)?), gain: f64::from_bits(fields.quad(gain)?) })
+    };
+    let calibration = Calibration {
+        potentiometer: scale("zero of pos", "gain of pos")?,
+        left: scale("zero of the left strain gage", "gain of the left strain gage")?,
+        right: scale("zero of the right strain gage", "gain of the right strain gage")?,
+    };
+    let calibration = known.then_some(calibration);
+    let hand = GripOutputs { header, status, calibration, valves: GripValves::default() };
     Ok((hand, command))
 }

@@ -31,7 +31,7 @@ pub use agent::{Agent, Remark};
 pub use station::Station;
 
 use rcs_core::{
-    interface::{Header, Reason},
+    interface::{Decided, Header, Reason, grip::Felt},
     name::{Name, Name16},
 };
 
@@ -90,15 +90,24 @@ fn reason(fields: &mut Unpacker<'_>, field: &'static str) -> Result<Reason, Fiel
     code.ok_or_else(|| FieldError::Code { field, found: u16::try_from(found).unwrap_or(u16::MAX) })
 }
 
+/// What a gripper feels, by its code.
+fn felt(fields: &mut Unpacker<'_>) -> Result<Felt, FieldError> {
+    let found = fields.byte("felt")?;
+    Felt::from_code(found).ok_or(FieldError::Code { field: "felt", found: found.into() })
+}
+
 /// Decision table and row of a process, two bytes each, and the step of its command after that row.
 fn put_row<const N: usize>(fields: &mut Packer<N>, header: &Header) {
-    fields.word(header.table.into());
-    fields.word(header.row.into());
-    fields.text(STEP, &header.step);
+    let (table, row) = header.decided.map_or((0, 0), |Decided { table, row }| (table, row));
+    fields.word(table.into());
+    fields.word(row.into());
+    fields.text(STEP, &header.step.unwrap_or_default());
 }
 
 /// The header of a process, without a stamp.
 fn take_row(fields: &mut Unpacker<'_>) -> Result<Header, FieldError> {
     let (table, row) = (fields.byte("table#")?, fields.byte("row#")?);
-    Ok(Header { table, row, step: fields.name::<STEP>("step")?, ..Header::default() })
+    let decided = Some(Decided { table, row }).filter(|_| table != 0);
+    let step = Some(fields.name::<STEP>("step")?).filter(|step| !step.is_empty());
+    Ok(Header { decided, step, ..Header::default() })
 }

@@ -15,6 +15,9 @@
 //!   58    2    mailgram-echo     extension: mailgram number of the command mailbox that was read last
 //!   60    2    verdict           extension: 0 that mailgram was taken, 1 it is no command, 2 the sensor words cannot be read
 //!   62  160    reason            extension: the same in a sentence
+//!  222    2    angle-known       extension: 1 if `table-position` is an angle; 0 if it is not known, and 0
+//!  224    2    felt              extension: what is in the hand: 0 not known, 1 nothing, 2 something
+//!  226    2    gripped           extension: 1 if GRIP was ordered, and no opening since
 //! ```
 //!
 //! The extensions are CHOSEN. `status-code` is "not currently used" by the manual; here it is the code of [`Reason`].
@@ -30,11 +33,11 @@ use rcs_core::{
     tick::Tick,
 };
 
-use super::{LayoutError, WORD, fields, put_row, reason, take_row, word};
+use super::{LayoutError, WORD, felt, fields, put_row, reason, take_row, word};
 use crate::fields::{FieldError, Packer};
 
 /// Bytes of a status.
-pub const STATUS: usize = 222;
+pub const STATUS: usize = 228;
 /// Bytes of `reason`.
 pub const REASON: usize = 160;
 
@@ -78,11 +81,14 @@ impl<'a> Status<'a> {
         fields.long(status.reason.code().into());
         fields.long_integer(status.grip_size);
         fields.long_integer(status.grip_force);
-        fields.long_integer(status.table_position);
+        fields.long_integer(status.table_position.unwrap_or_default());
         put_row(&mut fields, &self.header);
         fields.word(self.mailgram_echo);
         fields.word(self.verdict.code().into());
         fields.text(REASON, &self.reason);
+        fields.flag(status.table_position.is_some());
+        fields.word(status.felt.code().into());
+        fields.flag(status.gripped);
         fields.finish()
     }
 
@@ -92,27 +98,28 @@ impl<'a> Status<'a> {
     /// [`LayoutError`] for the first thing that cannot be.
     pub fn decode(data: &'a [u8]) -> Result<Self, LayoutError> {
         let mut fields = fields("a status of the pedestal", STATUS, data)?;
-        let status = PedestalStatus {
+        let mut status = PedestalStatus {
             cycle_echo: Tick(fields.quad("cycle-cnt-echo")?),
             echo: fields.long("incr-cmnd#-echo")?,
             report: word::<WORD, _>(&mut fields, "status", PedestalReport::from_text)?,
             reason: reason(&mut fields, "status-code")?,
             grip_size: fields.long_integer("grip-size")?,
             grip_force: fields.long_integer("grip-force")?,
-            table_position: fields.long_integer("table-position")?,
+            table_position: Some(fields.long_integer("table-position")?),
+            ..PedestalStatus::default()
         };
         if status.report == PedestalReport::Idle && status.echo != 0 {
             return Err(LayoutError::Idle(status.echo));
         }
         let header = take_row(&mut fields)?;
         let (mailgram_echo, verdict) = (fields.word("mailgram-echo")?, fields.byte("verdict")?);
-        Ok(Self {
-            status,
-            header,
-            mailgram_echo,
-            verdict: Verdict::from_code(verdict)
-                .ok_or(FieldError::Code { field: "verdict", found: verdict.into() })?,
-            reason: fields.text("reason", REASON)?,
-        })
+        let verdict = Verdict::from_code(verdict)
+            .ok_or(FieldError::Code { field: "verdict", found: verdict.into() })?;
+        let reason = fields.text("reason", REASON)?;
+        if !fields.flag("angle-known")? {
+            status.table_position = None;
+        }
+        (status.felt, status.gripped) = (felt(&mut fields)?, fields.flag("gripped")?);
+        Ok(Self { status, header, mailgram_echo, verdict, reason })
     }
 }

@@ -3,9 +3,9 @@
 use proptest::prelude::*;
 use rcs_core::{
     interface::{
-        GripOutputs, Header, Reason, TableOutputs,
+        Decided, GripOutputs, Header, Reason, TableOutputs,
         device::{GripValves, MotorCommand, MotorOrder, PedestalSensors},
-        grip::{GripCommand, GripReport, GripStatus, GripVerb},
+        grip::{Calibration, Felt, GripCommand, GripReport, GripStatus, GripVerb, Scale},
         pedestal::{
             PedestalCommand, PedestalReport, PedestalStatus, PedestalVerb, TableCommand, TableStatus,
             TableVerb,
@@ -38,7 +38,8 @@ fn flip(number: u32) -> PedestalCommand {
 
 /// After row 9 of table 3.
 fn row() -> Header {
-    Header { table: 3, row: 9, step: Name16::clipped("letting-go"), ..Header::default() }
+    let decided = Some(Decided { table: 3, row: 9 });
+    Header { decided, step: Some(Name16::clipped("letting-go")), ..Header::default() }
 }
 
 #[test]
@@ -64,7 +65,9 @@ fn a_status_stands_at_its_bytes() {
         reason: Reason::TableLimit,
         grip_size: 250,
         grip_force: -1,
-        table_position: -200,
+        table_position: Some(-200),
+        felt: Felt::Something,
+        gripped: true,
     };
     let sent = Status { status, header: row(), mailgram_echo: 4, verdict: Verdict::NoCommand, reason: "why" };
     let expected = [
@@ -73,6 +76,7 @@ fn a_status_stands_at_its_bytes() {
         b"\xFA\x00\x00\x00\xFF\xFF\xFF\xFF\x38\xFF\xFF\xFF",
         b"\x03\x00\x09\x00letting-go      \x04\x00\x01\x00",
         format!("{:160}", "why").as_bytes(),
+        b"\x01\x00\x02\x00\x01\x00",
     ]
     .concat();
     assert_eq!(sent.encode(), &expected[..]);
@@ -94,7 +98,13 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
             velocity: -4,
             finger_height: 5,
             valves: 0x81,
+            felt: Felt::Nothing,
         },
+        calibration: Some(Calibration {
+            potentiometer: Scale { zero: 1.0, gain: 2.0 },
+            left: Scale { zero: -1.0, gain: 0.5 },
+            right: Scale { zero: 0.0, gain: -2.0 },
+        }),
         valves: GripValves::default(),
     };
     let order = GripCommand {
@@ -110,7 +120,10 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
         &[Reason::GripTimeout.code(), 0, 0, 0, 1, 0],
         b"\x01\x00\x00\x00\x02\x00\x00\x00\x03\x00\x00\x00\xFC\xFF\xFF\xFF\x05\x00\x00\x00\x81\x00",
         b"\x03\x00\x09\x00letting-go      \x03\x00\x00\x00CLOSE-GRIP",
-        b"\x1E\x00\x00\x00\x3C\x00\x00\x00\x00\x00\x00\x00\x00\x00",
+        b"\x1E\x00\x00\x00\x3C\x00\x00\x00\x00\x00\x00\x00\x00\x00\x01\x00\x01\x00",
+        b"\x00\x00\x00\x00\x00\x00\xF0\x3F\x00\x00\x00\x00\x00\x00\x00\x40",
+        b"\x00\x00\x00\x00\x00\x00\xF0\xBF\x00\x00\x00\x00\x00\x00\xE0\x3F",
+        b"\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\xC0",
     ]
     .concat();
     assert_eq!(gripper::encode(&hand, &order), &expected[..]);
@@ -122,14 +135,15 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
             report: PedestalReport::Executing,
             reason: Reason::None,
             calibrated: true,
-            position: -200,
+            position: Some(-200),
         },
+        at_limit: Some(0x0F01),
         motor: MotorCommand::default(),
     };
     let turn = TableCommand { number: 5, command: TableVerb::Turn, angle: -2035 };
     let expected = [
         &b"\x05\x00\x00\x00executing \x00\x00\x00\x00\x01\x00\x38\xFF\xFF\xFF\x03\x00\x09\x00letting-go      "[..],
-        b"\x05\x00\x00\x00TURN      \x0D\xF8\xFF\xFF",
+        b"\x05\x00\x00\x00TURN      \x0D\xF8\xFF\xFF\x01\x00\x01\x00\x01\x0F",
     ]
     .concat();
     assert_eq!(table::encode(&turned, &turn), &expected[..]);
@@ -310,10 +324,10 @@ fn a_pedestal_that_is_booted_calibrates_and_one_that_replaces_another_moves_noth
     }
     let PedestalStatus { echo, report, reason, .. } = replaced.status().status;
     assert_eq!((echo, report, reason), (7, PedestalReport::Error, Reason::Restarted));
-    // FLIP needs to know where the table is, PRE-GRIP finds out.
+    // FLIP needs to know where the table is, PRE-GRIP finds out, and calibrates the hand before it.
     replaced.command(&flip(8));
     replaced.tick();
-    assert_eq!(replaced.status().status.reason, Reason::NotPrepared);
+    assert_eq!(replaced.status().status.reason, Reason::TableAngleUnknown);
     replaced.command(&PedestalCommand {
         command: PedestalVerb::PreGrip,
         grasp_size: 250,
@@ -325,7 +339,8 @@ fn a_pedestal_that_is_booted_calibrates_and_one_that_replaces_another_moves_noth
         (replaced.status().status.echo, replaced.status().status.report),
         (9, PedestalReport::Executing)
     );
-    assert_eq!(replaced.orders().1.order, MotorOrder::Turn, "it looks for its limit");
+    let (valves, motor) = replaced.orders();
+    assert!(valves.bits != 0 && motor == MotorCommand::default(), "{valves:?} {motor:?}");
 }
 
 #[test]

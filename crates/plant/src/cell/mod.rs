@@ -244,6 +244,13 @@ impl Cell {
         }));
     }
 
+    /// Faults that begin in ticks to come, beside those of the plan that the cell was built with.
+    ///
+    /// A fault that displaces something is not admitted: the cell stands as it was built.
+    pub fn add_faults(&mut self, faults: &FaultPlan, seed: u64) {
+        self.faults.add(faults, seed);
+    }
+
     /// Faults of the plan that have happened so far.
     #[must_use]
     pub fn faults(&self) -> Vec<Struck> {

@@ -90,8 +90,21 @@ impl Injector {
     /// The faults of a plan in a run with a seed, before the first tick.
     #[must_use]
     pub fn new(plan: &FaultPlan, seed: u64) -> Self {
-        let seed = seed ^ plan.seed.wrapping_mul(MIX);
-        let faults = (STREAMS..).zip(&plan.faults).map(|(stream, fault)| Running {
+        let mut injector = Self::default();
+        injector.push(plan.faults.iter(), plan.seed, seed);
+        injector
+    }
+
+    /// Add the faults of another plan, those left out that displace something from the beginning.
+    pub(crate) fn add(&mut self, plan: &FaultPlan, seed: u64) {
+        let stays = |fault: &&Fault| !matches!(fault.what, What::PedestalMoved { .. });
+        self.push(plan.faults.iter().filter(stays), plan.seed, seed);
+    }
+
+    fn push<'f>(&mut self, faults: impl Iterator<Item = &'f Fault>, of_plan: u64, of_run: u64) {
+        let seed = of_run ^ of_plan.wrapping_mul(MIX);
+        let first = STREAMS + self.faults.len() as u64;
+        self.faults.extend((first..).zip(faults).map(|(stream, fault)| Running {
             fault: fault.clone(),
             noise: Noise::numbered(seed, stream),
             active: false,
@@ -102,8 +115,7 @@ impl Injector {
             times: 0,
             first: 0,
             last: 0,
-        });
-        Self { tick: 0, faults: faults.collect() }
+        }));
     }
 
     /// Begin and end what begins and ends with the present tick.

@@ -206,8 +206,8 @@ impl Rig {
     /// radial line.
     pub fn table_square(&mut self) {
         self.table(MotorOrder::Turn, 100_000);
-        self.table(MotorOrder::SetCounter, -2_000);
-        self.table(MotorOrder::Turn, -19_350);
+        self.table(MotorOrder::SetCounter, 0);
+        self.table(MotorOrder::Turn, -21_350);
     }
 
     pub fn vise(&mut self, action: WorkstationAction) {

@@ -53,6 +53,19 @@ pub enum DataBaseReport {
     Refused,
 }
 
+/// Is the Data System told of moves (IV.4.2)?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Connection {
+    /// No: there was no STARTUP, or a SHUTDOWN.
+    Closed,
+    /// Not yet: STARTUP is executing.
+    Opening,
+    /// Yes.
+    Open,
+    /// No: STARTUP was interrupted.
+    Interrupted,
+}
+
 impl DataBaseReport {
     /// The report as a state variable of Task.
     #[must_use]

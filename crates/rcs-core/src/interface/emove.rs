@@ -9,6 +9,7 @@ use crate::{
         prim::PrimCommand, quick_change::QuickChangeCommand, subtask::LocationKind,
     },
     name::{Name10, Name16},
+    pose::Pose,
 };
 
 use super::words::{Place, words};
@@ -86,6 +87,84 @@ pub struct EmoveCommand {
     pub end_effector_id: u8,
 }
 
+/// An object and how it is gripped: approach and depart points belong to both.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ObjectGrip {
+    /// The object.
+    pub object: Name16,
+    /// Its grip number.
+    pub grip: i32,
+}
+
+/// What the attached gripper holds, by its sensors (docs/design/recovery.md "Held"; extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub enum Holding {
+    /// Nothing.
+    Nothing,
+    /// Something is felt, and the last grasp that named an object was made here.
+    Object(ObjectGrip),
+    /// Something is felt, and nothing says what it is.
+    Something,
+    /// The gripper is not calibrated or not at rest: counts as held.
+    NotKnown,
+}
+
+impl Holding {
+    /// The object, if it is known.
+    #[must_use]
+    pub const fn object(&self) -> Option<Name16> {
+        match self {
+            Self::Object(held) => Some(held.object),
+            Self::Nothing | Self::Something | Self::NotKnown => None,
+        }
+    }
+
+    /// False only if the gripper is known to hold nothing.
+    #[must_use]
+    pub const fn is_held(&self) -> bool {
+        !matches!(self, Self::Nothing)
+    }
+}
+
+/// An object that has been let go at its place (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PlacedObject {
+    /// The object.
+    pub object: Name16,
+    /// Grip number with which it was held.
+    pub grip: i32,
+    /// Name of the location.
+    pub location: Name10,
+    /// Its record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Its record of ARRAY-TABLE if it is a sector.
+    pub array: Option<u32>,
+}
+
+/// An object that vision has found (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct LocatedObject {
+    /// The object.
+    pub object: Name16,
+    /// Record of LOCPT where it is; a static array has none.
+    pub record: Option<u32>,
+    /// Record of ARRAY-TABLE where it is, if it lies in a sector.
+    pub array: Option<u32>,
+}
+
+/// Where the robot stands: the end of its last completed move (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Standing {
+    /// Name of the location.
+    pub location: Name10,
+    /// Its record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Its record of ARRAY-TABLE if it is a sector.
+    pub array: Option<u32>,
+    /// Grip of the object that was gone to, for MOV-TO-OBJ, MOV-OBJ-TO and MOV-TO-HOL.
+    pub grip: Option<i32>,
+}
+
 /// Status from E-move to Subtask.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct EmoveStatus {
@@ -97,12 +176,153 @@ pub struct EmoveStatus {
     pub reason: Reason,
     /// `ref-pose-^`: the feedback pose, if the resolvers can be believed.
     pub reference_pose: Option<u32>,
-    /// `obj-held-status-out`: the object held (its name is an extension).
-    pub held: Option<Name16>,
+    /// `obj-held-status-out`: what is held (more than yes or no is an extension).
+    pub held: Holding,
+    /// The object that the last RELEASE has let go; none as soon as anything is grasped or held (extension).
+    pub placed: Option<PlacedObject>,
+    /// What vision has found and nothing has made invalid since (extension).
+    pub located: Option<LocatedObject>,
     /// `pres-endeff-id#-out`.
     pub end_effector_id: u8,
-    /// Where the robot is, if that is known: location of the last completed move (extension).
-    pub at: Option<Name10>,
+    /// Where the robot stands, if that is known (extension).
+    pub at: Option<Standing>,
+    /// Number of the gripper in whose holster the robot stands in the middle of an exchange: between the first and
+    /// the last point of QC-ATTACH or QC-DETACH (extension).
+    pub exchange: Option<u8>,
+    /// The fingers are around a tool in the tool drum (extension).
+    pub drum: bool,
+}
+
+/// What a move goes to. It decides which data lead there, and away from there.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub enum GoneTo {
+    /// A location as such.
+    Location,
+    /// An object at a location, or a held object's destination.
+    Object(ObjectGrip),
+    /// The place from which pictures of an object are taken.
+    View(ObjectGrip),
+    /// The tool drum, with the fingers around a tool in it: only the tool commands lead away from there.
+    Drum,
+}
+
+/// A place of the robot: where a move ended, or where one leads.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct RobotPlace {
+    /// What is gone to.
+    pub gone_to: GoneTo,
+    /// Name of the location.
+    pub location: Name10,
+    /// What the location is.
+    pub kind: LocationKind,
+    /// Its record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Its record of ARRAY-TABLE if it is a sector.
+    pub array: Option<u32>,
+    /// Where the tool is there.
+    pub pose: Pose,
+}
+
+/// Part of a way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Leg {
+    /// The depart points of the place left.
+    Depart,
+    /// The points of the intermediate trajectory.
+    Trajectory,
+    /// The approach points of the goal, and the goal.
+    Approach,
+}
+
+/// Which way the robot goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Direction {
+    /// To the goal.
+    Forward,
+    /// Back to the end of the depart leg.
+    Back,
+}
+
+/// The way that the robot is on: published so that an interrupted move can go on (docs/design/recovery.md).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Way {
+    /// The place left.
+    pub from: RobotPlace,
+    /// The goal.
+    pub to: RobotPlace,
+    /// The next point in the direction of the goal, from 0, through all legs; the goal is the last.
+    pub next: u16,
+    /// The leg of that point.
+    pub leg: Leg,
+    /// It leads straight from one pose to the other, without points, as that of the camera over a part.
+    pub straight: bool,
+    /// Which way the robot went last.
+    pub direction: Direction,
+    /// Where the robot was commanded to be last.
+    pub rest: Pose,
+    /// The joystick box has moved the robot since.
+    pub by_hand: bool,
+}
+
+/// What the gripper holds, or has tried to grasp.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Grasped {
+    /// The object and its grip.
+    pub object: ObjectGrip,
+    /// Its record of END-EFF-PARA.
+    pub parameters: Option<u32>,
+    /// `endeff-id#` of the gripper that holds it.
+    pub gripper: u8,
+    /// Grasp size of the object, 0.01 in.
+    pub grasp_size: i32,
+    /// Opening when it was grasped, 0.01 in.
+    pub opening: i32,
+    /// Where the robot stood.
+    pub pose: Pose,
+}
+
+/// An object that vision has located and that nothing has moved since.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Located {
+    /// The object.
+    pub object: Name16,
+    /// Record of LOCPT where it is; a static array has none.
+    pub record: Option<u32>,
+    /// Record of ARRAY-TABLE where it is, if it lies in a sector.
+    pub array: Option<u32>,
+    /// Its part frame.
+    pub pose: Pose,
+}
+
+/// A holster in which the robot changes a gripper.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Exchange {
+    /// `endeff-id#` of its gripper.
+    pub gripper: u8,
+    /// Its place.
+    pub place: RobotPlace,
+}
+
+/// What E-move believes of the world and cannot read from a sensor alone. It is an output, so that E-move has
+/// it again after a restart; each belief counts only as long as the sensors do not contradict it.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Beliefs {
+    /// Where the robot stands.
+    pub place: Option<RobotPlace>,
+    /// The way that it is on.
+    pub way: Option<Way>,
+    /// What the gripper holds.
+    pub held: Option<Grasped>,
+    /// What it was told last to grasp.
+    pub grasping: Option<Grasped>,
+    /// The fingers were empty, and have not been told to close since.
+    pub empty: bool,
+    /// The object that the gripper has let go, and where.
+    pub placed: Option<PlacedObject>,
+    /// What vision has located.
+    pub located: Option<Located>,
+    /// The holster in which the robot changes a gripper.
+    pub exchange: Option<Exchange>,
 }
 
 /// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.
@@ -140,6 +360,8 @@ pub struct EmoveOutputs {
     pub dormant: Dormancy,
     /// To the vision system.
     pub vision: VisionRequest,
+    /// What E-move believes (extension).
+    pub beliefs: Beliefs,
     /// Departure, goal, point between, located object.
     pub poses: [ChangingPose; EMOVE_POSES],
 }

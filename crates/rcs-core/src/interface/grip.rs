@@ -73,6 +73,21 @@ impl GripReport {
     }
 }
 
+/// What a gripper has between its fingers, as its sensors tell it, whatever was commanded
+/// (docs/design/ownership.md "Felt"; extension).
+///
+/// While a process is dormant it stays what it was, and the header says that the outputs were republished: it
+/// counts only for the gripper that is on the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Felt {
+    /// The sensors cannot tell: they are not calibrated, implausible, or have not settled. Counts as held.
+    NotKnown,
+    /// Nothing.
+    Nothing,
+    /// Something: a part, or whatever else keeps the fingers apart.
+    Something,
+}
+
 /// Status from Grip to E-move.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripStatus {
@@ -94,8 +109,30 @@ pub struct GripStatus {
     pub velocity: i32,
     /// `finger-hgt`: 0.01 in.
     pub finger_height: i32,
+    /// What is between the fingers, by strain gages and potentiometer (extension).
+    pub felt: Felt,
     /// `grip`: command bits to the air valves.
     pub valves: u8,
+}
+
+/// A sensor that is linear: `value = (counts - zero) * gain`.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Scale {
+    /// Counts at value 0.
+    pub zero: f64,
+    /// Inches or pounds a count.
+    pub gain: f64,
+}
+
+/// Scale and offset of each sensor (VI.3.1 UP-INIT).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Calibration {
+    /// Potentiometer: inches.
+    pub potentiometer: Scale,
+    /// Left strain gage: pounds.
+    pub left: Scale,
+    /// Right strain gage: pounds.
+    pub right: Scale,
 }
 
 /// Output buffers of Grip.
@@ -105,6 +142,8 @@ pub struct GripOutputs {
     pub header: Header,
     /// To E-move.
     pub status: GripStatus,
+    /// What UP-INIT has found: a process that is restarted adopts it if the sensors agree (extension).
+    pub calibration: Option<Calibration>,
     /// To the valves.
     pub valves: GripValves,
 }

@@ -5,7 +5,11 @@ use core::fmt;
 use crate::{
     Plain,
     handshake::Lower,
-    interface::{ChangingPose, Header, Reason, data_base::DataBaseCommand, subtask::SubtaskCommand},
+    interface::{
+        ChangingPose, Header, Reason,
+        data_base::{Connection, DataBaseCommand},
+        subtask::{SubtaskCommand, SubtaskVerb},
+    },
     name::Name16,
 };
 
@@ -69,6 +73,18 @@ pub struct HwsStatus {
     pub reason: Reason,
 }
 
+/// The last command about an object or a tool that Task has accepted and not finished. It is an output, so that a Task
+/// that is restarted knows it (docs/design/recovery.md "Ledger"; extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Ledger {
+    /// The command, without its number.
+    pub command: HwsCommand,
+    /// What it ordered of Subtask last, pauses apart.
+    pub last: SubtaskVerb,
+    /// The Data System has been told of its move.
+    pub told: bool,
+}
+
 /// T-POSE-1 to T-POSE-3 (VII.1).
 pub const TASK_POSES: usize = 3;
 
@@ -83,6 +99,10 @@ pub struct TaskOutputs {
     pub subtask: SubtaskCommand,
     /// To the Data System.
     pub data_base: DataBaseCommand,
+    /// Is the Data System told of moves (extension)?
+    pub connection: Connection,
+    /// The last command about an object or a tool that is not finished (extension).
+    pub ledger: Option<Ledger>,
     /// T-POSE-1 …: poses that the commands name.
     pub poses: [ChangingPose; TASK_POSES],
 }

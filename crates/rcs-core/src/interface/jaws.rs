@@ -7,7 +7,7 @@ use core::fmt;
 use crate::{
     Plain,
     handshake::Lower,
-    interface::{Header, Reason, device::JawValves},
+    interface::{Header, Reason, device::JawValves, grip::Felt},
 };
 
 use super::words::Inches;
@@ -46,7 +46,7 @@ pub struct JawsCommand {
     pub end_effector_id: u8,
 }
 
-/// `status-report` of V-Grip and Tool-Grip: the manual's words without the prefix `vgrip-`, `tgrip-`.
+/// `status-report` of V-Grip (VI.4.2), and of Tool-Grip, which has the same buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum JawsReport {
     /// Nothing was commanded yet (extension).
@@ -54,8 +54,10 @@ pub enum JawsReport {
     /// The fingers are moving.
     Executing,
     /// They stand open, or where a RELEASE wanted them.
+    #[text = "vgrip-opened"]
     Opened,
     /// They stand closed, or where a GRASP wanted them.
+    #[text = "vgrip-closed"]
     Closed,
     /// They stand where nothing wanted them.
     #[text = "jaws-stuck"]
@@ -93,6 +95,8 @@ pub struct JawsStatus {
     pub right_force: i32,
     /// `vgrip-vel`: 0.01 in/s, positive opening.
     pub velocity: i32,
+    /// What is between the fingers, by the potentiometer alone (extension).
+    pub felt: Felt,
 }
 
 /// Output buffers of V-Grip or Tool-Grip.

@@ -43,12 +43,19 @@ pub struct Header {
     pub stamp: Tick,
     /// The process was not stepped in that tick (dormant or held); its last outputs were republished for it.
     pub republished: bool,
-    /// Decision table that was used, from 1 in the order of the process's tables; 0 for none.
+    /// The row that decided last, if any has.
+    pub decided: Option<Decided>,
+    /// Step of the current command after that row: its reference action (V.1.1).
+    pub step: Option<Name16>,
+}
+
+/// A row of a decision table, by number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub struct Decided {
+    /// The table, from 1 in the order of the process's tables.
     pub table: u8,
-    /// Row of it that fired, from 1; 0 for none.
+    /// The row, from 1.
     pub row: u8,
-    /// Step of the current command after that row: its reference action (V.1.1); empty for none.
-    pub step: Name16,
 }
 
 /// `status-report` of Subtask and E-move (V.2.2, V.3.2).
@@ -206,6 +213,42 @@ pub enum Reason {
     GripperGone,
     /// Vision answers what its camera cannot have seen.
     VisionImplausible,
+    /// It is not known whether the gripper holds something: calibrate it, or open it by RELEASE.
+    HeldNotKnown,
+    /// The robot changes a gripper in a holster: send the command that does so again.
+    InHolster,
+    /// A gripper is mated and the locking ring is not locked: send the gripper change again.
+    RingNotLocked,
+    /// A holster is gone to only in order to change the gripper.
+    HolsterOnly,
+    /// The robot was stopped where it can only go on: send the interrupted command again.
+    ForwardOnly,
+    /// An order has changed nothing: see what hinders it, then send the command again.
+    NoEffect,
+    /// The gripper holds something unknown: take it out, or let it go with POSITION.
+    UnknownHeld,
+    /// The part is in the pedestal's hand: send the command that regrips it again, or open the hand at the pedestal.
+    PartInPedestal,
+    /// What is in the pedestal's hand is not the object of the command: open the hand at the pedestal.
+    PedestalHoldsOther,
+    /// The source and destination grips are equal: nothing is to be regripped.
+    EqualGrips,
+    /// A tool is acquired from TOOL-SAFE: name that as the destination.
+    NotNearDrum,
+    /// The pedestal's hand closed on nothing.
+    HandMissed,
+    /// The pedestal's hand has lost the object.
+    HandLost,
+    /// The pedestal's hand is not calibrated.
+    HandNotCalibrated,
+    /// The pedestal's hand does not finish.
+    HandTimeout,
+    /// The pedestal's hand cannot reach the commanded opening or force.
+    HandUnattainable,
+    /// The sensors of the pedestal's hand do not tell whether it holds the object.
+    HandUncertain,
+    /// The angle of the pedestal's rotary table is not known.
+    TableAngleUnknown,
     /// The robot is not where it was sent. Look where it is; PAUSE takes its position over.
     RobotElsewhere,
 }

@@ -8,7 +8,11 @@ use core::fmt;
 use crate::{
     Plain,
     handshake::Lower,
-    interface::{GripOutputs, Header, Reason, device::MotorCommand, grip::GripCommand},
+    interface::{
+        GripOutputs, Header, Reason,
+        device::MotorCommand,
+        grip::{Felt, GripCommand},
+    },
     tick::Tick,
 };
 
@@ -93,8 +97,13 @@ pub struct PedestalStatus {
     pub grip_size: i32,
     /// `grip-force`: lb.
     pub grip_force: i32,
-    /// `table-position`: absolute angle, 0.1 degree.
-    pub table_position: i32,
+    /// `table-position`: absolute angle, 0.1 degree, if it is known: the counter was set at the + limit, and the
+    /// potentiometer agrees with it while the table stands.
+    pub table_position: Option<i32>,
+    /// What the hand has between its fingers, by its strain gages and its potentiometer (extension).
+    pub felt: Felt,
+    /// GRIP was ordered, and no opening since: what the hand feels is the object (extension).
+    pub gripped: bool,
 }
 
 /// Commands of the table process (ours).
@@ -134,8 +143,9 @@ pub struct TableStatus {
     pub reason: Reason,
     /// The counter has been set at the limit: angles are absolute.
     pub calibrated: bool,
-    /// Absolute angle, 0.1 degree.
-    pub position: i32,
+    /// Absolute angle, 0.1 degree, if it is known: calibrated, and the potentiometer agrees with the counter
+    /// while the table stands.
+    pub position: Option<i32>,
 }
 
 /// Output buffers of the pedestal process.
@@ -158,6 +168,9 @@ pub struct TableOutputs {
     pub header: Header,
     /// To the pedestal process.
     pub status: TableStatus,
+    /// Potentiometer at the + limit, counts, while the table is calibrated: a process that is restarted adopts
+    /// it if counter and potentiometer agree.
+    pub at_limit: Option<u16>,
     /// To the rotary table controller.
     pub motor: MotorCommand,
 }

@@ -67,6 +67,21 @@ impl QuickChangeReport {
     }
 }
 
+/// Where the locking ring is, as its two sensors say together (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum RingPosition {
+    /// Not read yet.
+    Unread,
+    /// Locked.
+    Locked,
+    /// Unlocked.
+    Unlocked,
+    /// Seen by neither sensor: on its way, or stuck half open.
+    Between,
+    /// Seen by both sensors, which cannot be.
+    Implausible,
+}
+
 /// Status from Quick Change to E-move.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct QuickChangeStatus {
@@ -78,6 +93,8 @@ pub struct QuickChangeStatus {
     pub reason: Reason,
     /// `endeff-id#`: gripper mated, locked or not; 0 for none.
     pub end_effector_id: u8,
+    /// What the sensors of the ring say in this tick, whatever became of the last command (extension).
+    pub ring: RingPosition,
 }
 
 /// Output buffers of Quick Change.

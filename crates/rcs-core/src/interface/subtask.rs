@@ -4,7 +4,11 @@ use core::fmt;
 
 use crate::{
     Plain,
-    interface::{ChangingPose, Header, Reason, Report, emove::EmoveCommand, pedestal::PedestalCommand},
+    interface::{
+        ChangingPose, Header, Reason, Report,
+        emove::{EmoveCommand, Holding, PlacedObject, Standing},
+        pedestal::PedestalCommand,
+    },
     name::{Name10, Name16},
 };
 
@@ -107,12 +111,30 @@ pub struct SubtaskStatus {
     pub reason: Reason,
     /// `ref-pose-^-out`: the feedback pose, as E-move reports it.
     pub reference_pose: Option<u32>,
-    /// `obj-held-status-out`: the object held (its name is an extension).
-    pub held: Option<Name16>,
+    /// `obj-held-status-out`: what is held, as E-move reports it (more than yes or no is an extension).
+    pub held: Holding,
+    /// The object that the last RELEASE has let go, as E-move reports it (extension).
+    pub placed: Option<PlacedObject>,
     /// `pres-endeff-id#-out`.
     pub end_effector_id: u8,
-    /// Where the robot is, if E-move knows it (extension).
-    pub at: Option<Name10>,
+    /// Where the robot stands, if E-move knows it (extension).
+    pub at: Option<Standing>,
+    /// The fingers are around a tool in the tool drum, as E-move reports it (extension).
+    pub drum: bool,
+    /// The part is in the pedestal's hand, alone or together with the robot (extension).
+    pub pedestal_part: bool,
+}
+
+/// The part that Subtask has given to the pedestal's hand. It is an output, so that a Subtask that is restarted knows
+/// it (docs/design/recovery.md "Beliefs"); it counts as long as the opening of the hand agrees.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Regrip {
+    /// The object.
+    pub object: Name16,
+    /// The hand stands wider than this, 0.01 in, if there is something between its fingers.
+    pub grasp_size: i32,
+    /// Opening with which it has gripped the part, 0.01 in, once it has.
+    pub opening: Option<i32>,
 }
 
 /// Changing poses of Subtask: the location that it names itself (holster, pedestal), one after the other.
@@ -129,6 +151,8 @@ pub struct SubtaskOutputs {
     pub emove: EmoveCommand,
     /// To the Active Pedestal.
     pub pedestal: PedestalCommand,
+    /// The part in the pedestal's hand (extension).
+    pub regrip: Option<Regrip>,
     /// Poses of locations that no Task command names.
     pub poses: [ChangingPose; SUBTASK_POSES],
 }

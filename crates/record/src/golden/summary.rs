@@ -9,7 +9,7 @@ use std::{collections::BTreeMap, fmt::Write as _};
 use rcs_core::{
     Plain as _,
     digest::Digest,
-    interface::{CommonMemory, ExternalInputs, hws::HwsReport},
+    interface::{CommonMemory, Decided, ExternalInputs, hws::HwsReport},
     plain::Writer,
     tick::{TICK_S, Tick},
 };
@@ -70,8 +70,10 @@ impl Summary {
         after.encode(&mut Writer::new(&mut self.image));
         for (at, place) in self.headers.iter().enumerate() {
             let header = place.read(&self.image);
-            if !header.republished && header.row > 0 {
-                *self.rows.entry((at, header.table, header.row)).or_default() += 1;
+            if !header.republished
+                && let Some(Decided { table, row }) = header.decided
+            {
+                *self.rows.entry((at, table, row)).or_default() += 1;
             }
         }
         let said = remarks(&self.headers, &external.hws, before, after);
@@ -160,7 +162,7 @@ mod tests {
         for tick in 1..=40 {
             if tick == 5 {
                 (after.task.status.echo, after.task.status.report) = (1, HwsReport::Executing);
-                (after.task.header.table, after.task.header.row) = (1, 2);
+                after.task.header.decided = Some(Decided { table: 1, row: 2 });
             }
             if tick == 30 {
                 after.task.status.report = HwsReport::Error;

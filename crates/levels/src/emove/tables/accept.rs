@@ -4,33 +4,42 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// ACCEPT: a new command is refused if the gripper is not the right one, or if a record that it needs is
-    /// missing; the motion of the command before it is stopped. Quick change commands have rows of their own
+    /// missing; nothing has been ordered then, since HALT has stopped what was under way. A robot that changes a
+    /// gripper, or whose gripper is not locked, goes nowhere. Quick change commands have rows of their own
     /// for the gripper.
     pub ACCEPT: fn accept(super::Request) -> super::Action or () {
         1:  asked: Before                                              => consult;
-        2:  verb: None                                                 => Fail(UnknownCommand);
-        3:  verb: MovToHol, gripper: Wrong                             => Fail(WrongGripper);
-        4:  verb: MovToObj | MovObjTo | MovToVu, gripper: Wrong | None => Fail(WrongGripper);
-        5:  verb: LocateObj | GraspObj, gripper: Wrong | None          => Fail(WrongGripper);
-        6:  verb: InsertTool | ReleaseTool, gripper: Wrong | None      => Fail(WrongGripper);
-        7:  verb: AcquireTool | RemoveTool, gripper: Wrong | None      => Fail(WrongGripper);
-        8:  verb: InsertTool | ReleaseTool, start: Unknown             => Fail(UnknownStart);
-        9:  verb: AcquireTool | RemoveTool, start: Unknown             => Fail(UnknownStart);
-        10: verb: GraspObj | AcquireTool, sizes: Missing               => Fail(UnknownGrip);
-        11: verb: LocateObj, view: Missing                             => Fail(BadRecord);
-        12: verb: QcDetach | QcAttach, holster: NoGripper              => Fail(NoHolster);
-        13: verb: QcDetach | QcAttach, holster: NoOpening              => Fail(UnknownGrip);
-        14: moves: Missing                                             => Fail(NoRelativeMove);
-        15: moves: Unguarded                                           => Fail(UnknownSensor);
-        16: moves: NoPose                                              => Fail(NoDestination);
-        17: route: NoPose                                              => Fail(NoDestination);
-        18: route: BadPose | NoView                                    => Fail(BadRecord);
-        19: route: NoSizes                                             => Fail(UnknownGrip);
-        20: route: NoGrip                                              => Fail(NoGripMovetable);
-        21: route: NoApproach | NoSpeed                                => Fail(NoApproach);
-        22: route: NoStart                                             => Fail(UnknownStart);
-        23: route: InDrum                                              => Fail(NotPrepared);
-        24: route: NoTrajectory                                        => Fail(NoTrajectory);
-        25: route: Planned                                             => consult;
+        2:  verb: None                                                 => Refuse(UnknownCommand);
+        3:  verb: MovToHol, gripper: Wrong                             => Refuse(WrongGripper);
+        4:  verb: MovToObj | MovObjTo | MovToVu, gripper: Wrong | None => Refuse(WrongGripper);
+        5:  verb: LocateObj | GraspObj, gripper: Wrong | None          => Refuse(WrongGripper);
+        6:  verb: InsertTool | ReleaseTool, gripper: Wrong | None      => Refuse(WrongGripper);
+        7:  verb: AcquireTool | RemoveTool, gripper: Wrong | None      => Refuse(WrongGripper);
+        8:  verb: InsertTool | ReleaseTool, start: Unknown             => Refuse(UnknownStart);
+        9:  verb: AcquireTool | RemoveTool, start: Unknown             => Refuse(UnknownStart);
+        10: verb: GraspObj | AcquireTool, sizes: Missing               => Refuse(UnknownGrip);
+        11: verb: LocateObj, view: Missing                             => Refuse(BadRecord);
+        12: verb: QcDetach | QcAttach, holster: NoGripper              => Refuse(NoHolster);
+        13: verb: QcDetach | QcAttach, holster: NoOpening              => Refuse(UnknownGrip);
+        14: verb: MovToLoc | MovToObj | MovObjTo, exchange: HalfDone   => Refuse(InHolster);
+        15: verb: MovToVu | MovToHol | Withdraw, exchange: HalfDone    => Refuse(InHolster);
+        16: verb: InsertTool | ReleaseTool, exchange: HalfDone         => Refuse(InHolster);
+        17: verb: AcquireTool | RemoveTool, exchange: HalfDone         => Refuse(InHolster);
+        18: verb: MovToLoc | MovToObj | MovObjTo, coupling: Loose      => Refuse(RingNotLocked);
+        19: verb: MovToVu | MovToHol | Withdraw, coupling: Loose       => Refuse(RingNotLocked);
+        20: target: Holster                                            => Refuse(HolsterOnly);
+        21: moves: Missing                                             => Refuse(NoRelativeMove);
+        22: moves: Unguarded                                           => Refuse(UnknownSensor);
+        23: moves: NoPose                                              => Refuse(NoDestination);
+        24: route: NoPose                                              => Refuse(NoDestination);
+        25: route: BadPose | NoView                                    => Refuse(BadRecord);
+        26: route: NoSizes                                             => Refuse(UnknownGrip);
+        27: route: NoGrip                                              => Refuse(NoGripMovetable);
+        28: route: NoApproach | NoSpeed                                => Refuse(NoApproach);
+        29: route: NoStart                                             => Refuse(UnknownStart);
+        30: route: ForwardOnly                                         => Refuse(ForwardOnly);
+        31: route: InDrum                                              => Refuse(NotPrepared);
+        32: route: NoTrajectory                                        => Refuse(NoTrajectory);
+        33: route: Planned                                             => consult;
     }
 }

@@ -12,40 +12,41 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2: held: Other                          => Fail(AlreadyHolding);
-            3: held: Right, at: InDrum              => Finish;
-            4: held: Right, at: Elsewhere | There   => Fail(NotPrepared);
-            5: held: Nothing, at: InDrum            => Fail(NotPrepared);
-            6: held: Nothing, at: Elsewhere | There => OpenToApproach     -> Opening;
+            2: held: Other | Something              => Fail(AlreadyHolding);
+            3: held: NotKnown                       => Fail(HeldNotKnown);
+            4: held: Right, at: InDrum              => Finish;
+            5: held: Right, at: Elsewhere | Before | There   => Fail(NotPrepared);
+            6: held: Nothing, at: InDrum | Elsewhere => Fail(NotPrepared);
+            7: held: Nothing, at: Before | There    => OpenToApproach     -> Opening;
         }
         /// The gripper is opening.
         Opening {
-            7: work: Over                           => DeltaMove(AcqNear) -> Approaching;
+            8: work: Over                           => DeltaMove(AcqNear) -> Approaching;
         }
         /// The robot is moving towards the machine tool.
         Approaching {
-            8: work: Over                           => CalSensor          -> Calibrating;
+            9: work: Over                           => CalSensor          -> Calibrating;
         }
         /// The force sensor is being calibrated for the contact.
         Calibrating {
-            9: work: Over                           => GoUntil(AcqStrike) -> Striking;
+            10: work: Over                           => GoUntil(AcqStrike) -> Striking;
         }
         /// The robot is moving into contact with the strike plate.
         Striking {
-            10: work: Over                          => CalSensor          -> Recalibrating;
+            11: work: Over                          => CalSensor          -> Recalibrating;
         }
         /// The force sensor is being calibrated for the slide.
         Recalibrating {
-            11: work: Over                          => GoUntil(AcqSlide)  -> Sliding;
+            12: work: Over                          => GoUntil(AcqSlide)  -> Sliding;
         }
         /// The gripper is sliding to the left.
         Sliding {
-            12: work: Over                          => Close              -> Grasping;
+            13: work: Over                          => Close              -> Grasping;
         }
         /// The gripper is closing.
         Grasping {
-            13: fingers: Gripping                   => Acquired;
-            14: fingers: Empty                      => Fail(GraspMissed);
+            14: fingers: Gripping                   => Acquired;
+            15: fingers: Empty                      => Fail(GraspMissed);
         }
     }
 }

@@ -3,21 +3,25 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// GRASP-OBJ (V.2.1): close the gripper on the object; done at once if it is held.
+    /// GRASP-OBJ (V.2.1): close the gripper on the object; done at once if it is held. What is felt at
+    /// the object is grasped anew: it may be half gripped.
     pub GRASP_OBJ: fn grasp_obj(enum GraspObjStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy        => Wait;
+            1: work: Busy                                => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: held: Right       => Finish;
-            3: held: Other       => Fail(AlreadyHolding);
-            4: held: Nothing     => Close -> Closing;
+            2: held: Right                               => Finish;
+            3: held: Other                               => Fail(AlreadyHolding);
+            4: held: Something, at: Elsewhere | Before | InDrum   => Fail(AlreadyHolding);
+            5: held: NotKnown, at: Elsewhere | Before | InDrum    => Fail(HeldNotKnown);
+            6: held: Something | NotKnown, at: There     => Close -> Closing;
+            7: held: Nothing                             => Close -> Closing;
         }
         /// The gripper is closing.
         Closing {
-            5: fingers: Gripping => Grasped;
-            6: fingers: Empty    => Fail(GraspMissed);
+            8: fingers: Gripping                         => Grasped;
+            9: fingers: Empty                            => Fail(GraspMissed);
         }
     }
 }

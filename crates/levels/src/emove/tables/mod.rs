@@ -7,6 +7,7 @@ pub mod attend;
 pub mod carried;
 pub mod e_pause;
 pub mod grasp_obj;
+pub mod halt;
 pub mod insert_tool;
 pub mod locate_obj;
 pub mod motion;
@@ -19,6 +20,7 @@ pub mod qc_detach;
 pub mod release;
 pub mod release_tool;
 pub mod remove_tool;
+pub mod resume;
 pub mod search;
 mod variables;
 pub mod withdraw;
@@ -31,10 +33,11 @@ use rcs_core::{
 };
 
 pub use self::variables::{
-    At, Attached, Contact, Fingers, Held, Holster, HolsterData, Knowledge, Link, Load, Mate, Opening,
-    Ordered, Pause, Readiness, Record, Ring, Sight, Spread, Tooling, Tries, Vision, Whereabouts,
+    Along, At, Attached, Contact, Coupling, Demand, Exchange, Fingers, Halt, Held, Holster, HolsterData,
+    Knowledge, Link, Load, Lock, Mate, Opening, Ordered, Pause, Readiness, Record, Rest, Ring, Shut, Sight,
+    Spread, Target, Tooling, Tries, Vision, Whereabouts,
 };
-use self::{accept::accept, carried::carried, ordered::ordered};
+use self::{accept::accept, carried::carried, halt::halt, ordered::ordered};
 use super::{
     relative::{Relative, RelativeMoves},
     route::{Ahead, Planning},
@@ -52,6 +55,12 @@ pub struct Request {
     pub gripper: Attached,
     /// Where the robot is.
     pub start: Knowledge,
+    /// How the gripper hangs on it.
+    pub coupling: Coupling,
+    /// The change of a gripper.
+    pub exchange: Exchange,
+    /// The location of the command.
+    pub target: Target,
     /// Sizes of object and grip: END-EFF-PARA.
     pub sizes: Record,
     /// How the object is seen: VISION-PARA.
@@ -62,6 +71,21 @@ pub struct Request {
     pub moves: RelativeMoves,
     /// The way to its goal.
     pub route: Planning,
+}
+
+/// Whether a new command has to wait, for [`halt::HALT`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Below {
+    /// What is asked.
+    pub demand: Demand,
+    /// Is the command E-PAUSE?
+    pub pause: Pause,
+    /// Status of Prim.
+    pub prim: Lower,
+    /// Robot, ring and fingers.
+    pub rest: Rest,
+    /// The pause that the command waits for.
+    pub halt: Halt,
 }
 
 /// What goes on whatever the command, for [`attend::ATTEND`] and [`search::SEARCH`].
@@ -119,10 +143,14 @@ pub struct Situation {
     pub readiness: Readiness,
     /// What is mated.
     pub mate: Mate,
-    /// The locking ring.
-    pub ring: Ring,
+    /// The locking ring, by its sensors.
+    pub lock: Lock,
     /// The holster.
     pub holster: Holster,
+    /// Where the robot is in the exchange.
+    pub along: Along,
+    /// The fingers, for the way through the holster.
+    pub shut: Shut,
     /// Is the robot at the command's location?
     pub at: At,
     /// What vision has answered.
@@ -150,6 +178,8 @@ pub struct Seen {
     pub arrival: Arrival,
     /// The command in it.
     pub verb: EmoveVerb,
+    /// Whether a new command has to wait.
+    pub below: Below,
     /// What a new command needs.
     pub request: Request,
     /// What goes on whatever the command.
@@ -229,6 +259,8 @@ pub enum Action {
     Located,
     /// Report done.
     Finish,
+    /// Report an error before anything has been ordered.
+    Refuse(Reason),
     /// Stop the robot and report an error.
     Fail(Reason),
     /// Stop the robot and report what the gripper reports.
@@ -242,7 +274,7 @@ pub enum Action {
 commands! {
     /// Consult the tables of a command.
     pub fn of_command(EmoveVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, attend::ATTEND, search::SEARCH, carried::CARRIED, ordered::ORDERED;
+        others: EXECUTE, accept::ACCEPT, halt::HALT, attend::ATTEND, search::SEARCH, resume::RESUME, carried::CARRIED, ordered::ORDERED;
         None | Pause            => e_pause::e_pause;
         MovToLoc                => motion::motion;
         MovToObj | MovToVu      => mov_to_obj::mov_to_obj then motion::motion;
@@ -265,8 +297,10 @@ commands! {
 #[must_use]
 pub fn decide(step: Step, seen: &Seen) -> Choice<Action, Step> {
     let of_command = |work| of_command(seen.verb, step, &Situation { work, ..seen.situation });
-    accept(step, &seen.request).then(number::ACCEPT, |()| {
-        carried(step, &seen.orders)
-            .then(number::CARRIED, |()| ordered(step, &seen.orders).then(number::ORDERED, of_command))
+    halt(step, &seen.below).then(number::HALT, |()| {
+        accept(step, &seen.request).then(number::ACCEPT, |()| {
+            carried(step, &seen.orders)
+                .then(number::CARRIED, |()| ordered(step, &seen.orders).then(number::ORDERED, of_command))
+        })
     })
 }

@@ -6,7 +6,8 @@ decision_table! {
     /// MOV-TO-HOL (V.2.1): move to a holster, like MOV-TO-LOC; the gripper, if one is attached, closes to the
     /// value of the holster object on the way. A gripper that holds an object cannot do that.
     pub MOV_TO_HOL: fn mov_to_hol(super::Situation) -> super::Action or () {
-        1: held: Right | Other => Fail(AlreadyHolding);
-        2: held: Nothing       => consult;
+        1: held: Right | Other | Something  => Fail(AlreadyHolding);
+        2: held: NotKnown                   => Fail(HeldNotKnown);
+        3: held: Nothing                    => consult;
     }
 }

@@ -4,71 +4,95 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// QC-ATTACH (V.2.1): down fast, down slowly, lock, close the gripper, back, lift, check the id, up,
-    /// calibrate if required. Done at once if the gripper is locked on and clear of its holster. A bare robot
-    /// whose ring is locked is unlocked first.
+    /// calibrate if required. What is done next depends on where the robot is in the holster and on what is
+    /// mated and locked, so that a command that is sent again goes on (docs/design/recovery.md "Exchange"). Done
+    /// at once if the gripper is locked on and clear of its holster.
     pub QC_ATTACH: fn qc_attach(enum QcAttachStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                                            => Wait;
+            1: work: Busy                                                                => Wait;
+            2: lock: Faulty                                                         => FailRing;
         }
         /// Nothing done yet.
         Start {
-            2: mate: Wrong                                           => Fail(WrongGripper);
-            3: mate: Right, holster: Partial | Full                  => Fail(NotPrepared);
-            4: mate: Right, ring: Locked                             => Finish;
-            5: mate: Right, ring: Busy | Unlocked | Faulty           => FailRing;
-            6: mate: None, at: Elsewhere | InDrum                    => Fail(NotPrepared);
-            7: mate: None, at: There, holster: Empty | Partial       => Fail(HolsterEmpty);
-            8: mate: None, at: There, holster: Full, ring: Busy      => Wait;
-            9: mate: None, at: There, holster: Full, ring: Faulty    => FailRing;
-            10: mate: None, at: There, holster: Full, ring: Locked   => Unlock             -> Unlocking;
-            11: mate: None, at: There, holster: Full, ring: Unlocked => DeltaMove(QcaFast) -> Approaching;
+            3: mate: Wrong                                                               => Fail(WrongGripper);
+            4: mate: Right, at: There, holster: Empty, lock: Locked                      => Finish;
+            5: mate: Right, along: Off, holster: Partial | Full                          => Fail(NotPrepared);
+            6: mate: Right, along: Off, holster: Empty, lock: Locked                     => Finish;
+            7: mate: Right, along: Off, holster: Empty, lock: Unlocked | Between         => Fail(RingNotLocked);
+            8: mate: None, along: Above | Out, holster: Empty | Partial                  => Fail(HolsterEmpty);
+        }
+        any {
+            9: mate: Wrong                                                               => Fail(WrongGripperId);
+            10: along: Off                                                                => Fail(NotPrepared);
+            11: mate: Right, along: Above | Out                                          => Fail(NotPrepared);
         }
         /// The quick change of the bare robot is unlocking.
         Unlocking {
-            12: ring: Unlocked                                       => DeltaMove(QcaFast) -> Approaching;
-            13: ring: Busy | Locked | Faulty                         => FailRing;
+            12: mate: None, along: Above | Out | Coming, lock: Locked | Between          => FailRing;
+        }
+        any {
+            13: mate: None, along: Above | Out | Coming, lock: Locked | Between          => Unlock -> Unlocking;
         }
         /// The robot is moving close to the gripper.
         Approaching {
-            14: work: Over                                           => DeltaMove(QcaSlow) -> Mating;
+            14: mate: None, along: Above | Out | Coming                                  => DeltaMove(QcaSlow) -> Mating;
         }
-        /// It is moving slowly onto the gripper.
-        Mating {
-            15: work: Over                                           => Lock               -> Locking;
+        /// The seat was empty: the robot moves away from it.
+        Undoing {
+            15: mate: None, along: Above | Out | Coming                                  => Fail(NotAttached);
+        }
+        any {
+            16: mate: None, along: Above | Out                                           => DeltaMove(QcaFast) -> Approaching;
+            17: mate: None, along: Coming                                                => DeltaMove(QcaSlow) -> Mating;
+            18: mate: None, along: Seat                                                  => DeltaMove(QcaFast) -> Undoing;
+            19: mate: None, along: Sliding | Low                                         => Fail(NotAttached);
+            20: mate: None, along: Lifting | Raising | Clear                             => Fail(NotAttached);
+            21: mate: Right, along: Coming | Sliding | Low, lock: Unlocked               => DeltaMove(QcaSlow) -> Mating;
+            22: mate: Right, along: Coming, lock: Locked | Between                       => Fail(RingNotLocked);
+            23: mate: Right, along: Sliding | Low, lock: Between                         => DeltaMove(QcaSlow) -> Mating;
+            24: mate: Right, along: Lifting | Raising | Clear, lock: Unlocked | Between  => Fail(RingNotLocked);
         }
         /// The quick change is locking.
         Locking {
-            16: ring: Locked                                         => CloseForHolster    -> Closing;
-            17: ring: Busy | Unlocked | Faulty                       => FailRing;
+            25: mate: Right, along: Seat, lock: Unlocked | Between                       => FailRing;
+        }
+        /// The robot is moving slowly onto the gripper.
+        Mating {
+            26: mate: Right, along: Seat                                                 => Lock -> Locking;
         }
         /// The gripper is closing.
         Closing {
-            18: work: Over                                           => DeltaMove(QcaBack) -> Backing;
+            27: mate: Right, along: Seat, lock: Locked                                   => DeltaMove(QcaBack) -> Backing;
+        }
+        any {
+            28: mate: Right, along: Seat, lock: Unlocked | Between                       => Lock -> Locking;
+            29: mate: Right, along: Seat | Sliding, lock: Locked, shut: Open             => CloseForHolster -> Closing;
+            30: mate: Right, along: Seat | Sliding, lock: Locked, shut: Shut | Raw       => DeltaMove(QcaBack) -> Backing;
         }
         /// The gripper is sliding back out of its seat.
         Backing {
-            19: work: Over                                           => DeltaMove(QcaLift) -> Lifting;
-        }
-        Lifting | Raising {
-            20: mate: None                                           => Fail(NotAttached);
-            21: mate: Wrong                                          => Fail(WrongGripperId);
+            31: mate: Right, along: Low | Lifting, lock: Locked                          => DeltaMove(QcaLift) -> Lifting;
         }
         /// It is being lifted a distance out of the holster.
         Lifting {
-            22: ring: Locked                                         => DeltaMove(QcaUp)   -> Raising;
-            23: ring: Busy | Unlocked | Faulty                       => FailRing;
+            32: mate: Right, along: Lifting | Raising, lock: Locked                      => DeltaMove(QcaUp) -> Raising;
         }
-        /// It is being lifted completely out of it.
-        Raising {
-            24: readiness: Uncalibrated                              => Calibrate          -> Calibrating;
+        any {
+            33: mate: Right, along: Low | Lifting, lock: Locked                          => DeltaMove(QcaLift) -> Lifting;
+            34: mate: Right, along: Raising, lock: Locked                                => DeltaMove(QcaUp) -> Raising;
         }
         /// It is being calibrated.
         Calibrating {
-            25: readiness: Uncalibrated                              => FailGrip;
+            35: along: Clear, readiness: Uncalibrated                                    => FailGrip;
         }
-        Raising | Calibrating {
-            26: readiness: Ready                                     => Stand;
-            27: readiness: Faulty                                    => FailGrip;
+        /// It is being lifted completely out of the holster.
+        Raising {
+            36: along: Clear, readiness: Uncalibrated                                    => Calibrate -> Calibrating;
+        }
+        any {
+            37: along: Clear, readiness: Uncalibrated                                    => Calibrate -> Calibrating;
+            38: along: Clear, readiness: Ready                                           => Stand;
+            39: along: Clear, readiness: Faulty                                          => FailGrip;
         }
     }
 }

@@ -13,10 +13,11 @@ decision_table! {
             2: held: Nothing, spread: Open   => Finish;
             3: held: Nothing, spread: Narrow => OpenToDepart -> Opening;
             4: held: Right | Other           => OpenToDepart -> Opening;
+            5: held: Something | NotKnown    => OpenToDepart -> Opening;
         }
         /// The gripper is opening.
         Opening {
-            5: work: Over                    => Finish;
+            6: work: Over                    => Finish;
         }
     }
 }

@@ -14,7 +14,7 @@ decision_table! {
         Start {
             2: at: InDrum                             => OpenToDepart       -> Opening;
             3: at: There, held: Nothing, spread: Open => Finish;
-            4: at: There | Elsewhere                  => Fail(NotPrepared);
+            4: at: There | Before | Elsewhere         => Fail(NotPrepared);
         }
         /// The gripper is opening.
         Opening {

@@ -13,17 +13,19 @@ decision_table! {
         /// Nothing done yet.
         Start {
             2: held: Nothing | Other      => Fail(NothingHeld);
-            3: held: Right, at: There     => Finish;
-            4: held: Right, at: Elsewhere => Fail(NotPrepared);
-            5: held: Right, at: InDrum    => CalSensor       -> Calibrating;
+            3: held: Something         => Fail(NothingHeld);
+            4: held: NotKnown          => Fail(HeldNotKnown);
+            5: held: Right, at: There     => Finish;
+            6: held: Right, at: Elsewhere | Before => Fail(NotPrepared);
+            7: held: Right, at: InDrum    => CalSensor       -> Calibrating;
         }
         /// The force sensor is being calibrated.
         Calibrating {
-            6: work: Over                 => GoWhile(RemOut) -> Removing;
+            8: work: Over                 => GoWhile(RemOut) -> Removing;
         }
         /// The tool is being pulled out.
         Removing {
-            7: work: Over                 => Stand;
+            9: work: Over                 => Stand;
         }
     }
 }

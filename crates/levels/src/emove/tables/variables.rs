@@ -53,6 +53,64 @@ pub enum Pause {
     Standing,
 }
 
+/// What is asked of E-move in this tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Demand {
+    /// Nothing new.
+    Before,
+    /// E-move was restarted in this tick: a command stands in its buffer that it has not begun.
+    Restarted,
+    /// A new command.
+    Now,
+}
+
+/// Robot, ring and fingers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Rest {
+    /// They are at rest.
+    AtRest,
+    /// At least one of them moves.
+    Moving,
+}
+
+/// The pause that a new command waits for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Halt {
+    /// Not ordered yet.
+    NotOrdered,
+    /// Ordered.
+    Ordered,
+}
+
+/// How the gripper hangs on the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Coupling {
+    /// There is none.
+    Bare,
+    /// It is mated, and the ring is locked.
+    Locked,
+    /// It is mated, and the ring is not locked.
+    Loose,
+}
+
+/// The change of a gripper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Exchange {
+    /// None is under way.
+    None,
+    /// The robot is in a holster, between the first and the last point of one.
+    HalfDone,
+}
+
+/// The location of a motion command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Target {
+    /// No holster, or the command is there to go to one.
+    Plain,
+    /// A holster, as a plain location.
+    Holster,
+}
+
 /// The process that has the last order of the current command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ordered {
@@ -107,6 +165,10 @@ pub enum Held {
     Right,
     /// It holds another object.
     Other,
+    /// It holds something that was not grasped by name.
+    Something,
+    /// The sensors cannot tell: counts as held.
+    NotKnown,
 }
 
 /// What was held when the command came.
@@ -176,6 +238,8 @@ pub enum Whereabouts {
 pub enum At {
     /// Elsewhere, or at no known location.
     Elsewhere,
+    /// At TOOL-SAFE, the location near the tool drum (V.4.1 INSERT-TOOL).
+    Before,
     /// There.
     There,
     /// There, with the fingers around a tool in the drum.
@@ -204,6 +268,55 @@ pub enum Ring {
     Unlocked,
     /// It is stuck, its sensors fail, or Quick Change does not answer.
     Faulty,
+}
+
+/// Where its two sensors see the locking ring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Lock {
+    /// Locked.
+    Locked,
+    /// Unlocked.
+    Unlocked,
+    /// In between.
+    Between,
+    /// Both see it, or Quick Change does not answer.
+    Faulty,
+}
+
+/// Where the robot is in the exchange that the command asks for, by the resolvers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Along {
+    /// Nowhere on it.
+    Off,
+    /// Above the gripper, clear of the holster: where a bare robot comes from.
+    Above,
+    /// Between there and the point close to the gripper.
+    Out,
+    /// Close to the gripper, or between there and the seat.
+    Coming,
+    /// On the gripper at its seat.
+    Seat,
+    /// Between the seat and the low point.
+    Sliding,
+    /// At the low point: the gripper is before its seat, deep in the holster.
+    Low,
+    /// A distance out of the holster.
+    Lifting,
+    /// Between there and the upper point.
+    Raising,
+    /// At the upper point, clear of the holster with a gripper.
+    Clear,
+}
+
+/// The fingers, for the way through the holster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Shut {
+    /// They are at the opening for it.
+    Shut,
+    /// They are not, or it is not known.
+    Open,
+    /// They cannot be brought there: the gripper is not calibrated.
+    Raw,
 }
 
 /// What the four sensors of the command's holster see (V.1.2 hol-R-status …).

@@ -143,7 +143,10 @@ impl Bench {
     pub fn ready(location: &str, gripper: u8) -> Self {
         let mut bench = Self::new(location, gripper);
         assert_eq!(bench.pause(), DONE);
-        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().as_str(), location);
+        // A robot in a holster or at the tool drum may be there in more than one way.
+        let plain = !location.starts_with("HOLSTER") && location != "TOOL-TRNS";
+        let found = bench.memory.emove.status.at.unwrap_or_default().location;
+        assert_eq!(found.as_str(), if plain { location } else { "" });
         bench.world.log.clear();
         bench
     }
@@ -267,7 +270,7 @@ impl Bench {
     pub fn hold(&mut self, object: &str, size: i32, gripper: u8) {
         self.world.object = Some(size);
         assert_eq!(self.run(EmoveVerb::GraspObj, object, 1, "", gripper), DONE);
-        assert_eq!(self.memory.emove.status.held.unwrap_or_default().as_str(), object);
+        assert_eq!(self.memory.emove.status.held.object().unwrap_or_default().as_str(), object);
     }
 
     pub fn log(&self) -> Vec<&str> {

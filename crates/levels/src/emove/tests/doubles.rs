@@ -8,11 +8,11 @@ use rcs_core::{
         CommonMemory, ExternalInputs, GripOutputs, Header, JawsOutputs, PrimOutputs, QuickChangeOutputs,
         Reason,
         device::{Picture, VisionStatus},
-        grip::{GripReport, GripVerb},
+        grip::{Felt, GripReport, GripVerb},
         jaws::{JawsCommand, JawsReport, JawsVerb},
         pose_range,
         prim::{JoystickGrip, PrimReport, PrimVerb},
-        quick_change::{QuickChangeReport, QuickChangeVerb},
+        quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
     },
     pose::Pose,
     tick::Tick,
@@ -256,6 +256,12 @@ impl Ring {
         };
         outputs.status.echo = self.receiving.receiver.echo;
         outputs.status.end_effector_id = world.mated;
+        outputs.status.ring = match self.failed {
+            Some(QuickChangeReport::SensorMalfunction) => RingPosition::Implausible,
+            Some(_) => RingPosition::Between,
+            None if world.locked => RingPosition::Locked,
+            None => RingPosition::Unlocked,
+        };
         outputs.status.report = match self.failed {
             Some(report) => report,
             None if self.receiving.left > 0 => QuickChangeReport::Executing,
@@ -325,6 +331,11 @@ impl Grip {
         (outputs.status.report, outputs.status.reason) = (self.report, self.reason);
         (outputs.status.initialized, outputs.status.position) = (self.initialized, self.opening);
         (outputs.status.left_force, outputs.status.right_force) = (self.force, self.force);
+        outputs.status.felt = match world.object {
+            _ if !self.initialized => Felt::NotKnown,
+            Some(size) if size == self.opening && self.force > 0 => Felt::Something,
+            _ => Felt::Nothing,
+        };
         outputs
     }
 }
@@ -339,7 +350,7 @@ pub struct Jaws {
 
 impl Jaws {
     pub fn new(stops: (i32, i32)) -> Self {
-        Self { receiving: Receiving::default(), report: JawsReport::Idle, stops, opening: 300 }
+        Self { receiving: Receiving::default(), report: JawsReport::Idle, stops, opening: stops.1 }
     }
 
     pub fn step(
@@ -384,6 +395,8 @@ impl Jaws {
         outputs.header = Header { stamp: tick, ..Header::default() };
         outputs.status.echo = self.receiving.receiver.echo;
         (outputs.status.report, outputs.status.size) = (self.report, self.opening);
+        let at_stop = self.opening == self.stops.0 || self.opening == self.stops.1;
+        outputs.status.felt = if at_stop { Felt::Nothing } else { Felt::Something };
         if self.report == JawsReport::Stuck {
             outputs.status.reason = Reason::JawsStuck;
         }

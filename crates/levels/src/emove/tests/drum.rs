@@ -71,7 +71,7 @@ fn a_tool_is_put_into_the_drum_and_left() {
     assert_eq!(run(&mut bench, InsertTool), DONE);
     assert_eq!(bench.log(), ["DELTA-MOVE INS-NEAR", "CAL-SENSOR", "GO-WHILE INS-IN INS-FX"]);
     assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["INS-IN"])) < 0.02);
-    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().as_str(), "TOOL-TRNS");
+    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), "TOOL-TRNS");
     assert_eq!(run(&mut bench, InsertTool), DONE, "it is in");
     assert!(bench.log().is_empty());
     assert_eq!(run(&mut bench, ReleaseTool), DONE);
@@ -80,7 +80,7 @@ fn a_tool_is_put_into_the_drum_and_left() {
         ["RELEASE 400", "CAL-SENSOR", "GO-UNTIL REL-SLIDE REL-MY", "DELTA-MOVE REL-BACK"]
     );
     assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["INS-IN", "REL-SLIDE", "REL-BACK"])) < 0.02);
-    assert!(!bench.memory.emove.status.held.is_some());
+    assert!(!bench.memory.emove.status.held.is_held());
     assert_eq!(run(&mut bench, ReleaseTool), DONE, "it is left");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
@@ -98,7 +98,7 @@ fn a_tool_is_taken_out_of_the_drum() {
             .collect::<Vec<_>>()
     );
     assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["ACQ-STRIKE", "ACQ-SLIDE"])) < 0.02);
-    assert_eq!(bench.memory.emove.status.held.unwrap_or_default().as_str(), "CUTTER");
+    assert_eq!(bench.memory.emove.status.held.object().unwrap_or_default().as_str(), "CUTTER");
     assert_eq!(run(&mut bench, AcquireTool), DONE, "it is held");
     assert!(bench.log().is_empty());
     assert_eq!(run(&mut bench, RemoveTool), DONE);
@@ -106,7 +106,7 @@ fn a_tool_is_taken_out_of_the_drum() {
     assert_eq!(run(&mut bench, RemoveTool), DONE, "it is out");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
-    assert!(bench.memory.emove.status.held.is_some());
+    assert!(bench.memory.emove.status.held.is_held());
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn tool_commands_begin_only_when_they_can() {
     assert_eq!(bench.run(AcquireTool, "PIN", 1, "TOOL-TRNS", 3), error(Reason::AlreadyHolding));
     assert_eq!(bench.run(InsertTool, "PIN", 1, "TOOL-TRNS", 3), error(Reason::NothingHeld));
     // At the drum with closed fingers, or with a tool that is not in it, letting go may do anything.
-    let mut bench = Bench::ready("TOOL-TRNS", 3);
+    let mut bench = Bench::ready("TOOL-SAFE", 3);
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared));
     bench.hold("CUTTER", SIZE, 3);
     assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared));
@@ -162,7 +162,7 @@ fn a_force_that_must_not_come_stops_the_robot() {
     let mut bench = loaded();
     bench.spoil("INS-IN", detected);
     assert_eq!(run(&mut bench, InsertTool), error(Reason::Detected));
-    assert!(bench.memory.emove.status.held.is_some() && bench.memory.emove.status.at.is_none());
+    assert!(bench.memory.emove.status.held.is_held() && bench.memory.emove.status.at.is_none());
     let mut bench = empty();
     assert_eq!(acquire(&mut bench), DONE);
     bench.spoil("REM-OUT", detected);

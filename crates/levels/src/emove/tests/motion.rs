@@ -55,7 +55,7 @@ fn a_robot_moves_with_any_gripper_and_with_none() {
         assert!(bench.off(&frame_of("VISE")) < 0.02);
         assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
         assert!(bench.off(&frame_of("HOME")) < 0.02);
-        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().as_str(), "HOME");
+        assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), "HOME");
     }
 }
 
@@ -86,7 +86,7 @@ fn a_part_is_taken_placed_and_left() {
     assert_eq!(bench.log(), ["CLOSE-GRIP"]);
     let command = bench.memory.emove.grip;
     assert_eq!((command.position, command.force, command.end_effector_id), (60, 30, 1));
-    assert!(bench.memory.emove.status.held.is_some());
+    assert!(bench.memory.emove.status.held.is_held());
     assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE, "it is held");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE, "so it has been gone to");
@@ -97,7 +97,7 @@ fn a_part_is_taken_placed_and_left() {
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(Release, "BLOCK", 1, "VISE", 1), DONE);
     assert_eq!(bench.log(), ["OPEN-GRIP"]);
-    assert_eq!((bench.memory.emove.grip.position, bench.memory.emove.status.held.is_some()), (350, false));
+    assert_eq!((bench.memory.emove.grip.position, bench.memory.emove.status.held.is_held()), (350, false));
     assert_eq!(bench.run(Release, "BLOCK", 1, "VISE", 1), DONE, "nothing is held and the fingers are open");
     assert!(bench.log().is_empty());
     assert_eq!(bench.run(MovToObj, "BLOCK", 1, "VISE", 1), DONE);
@@ -110,17 +110,18 @@ fn jaws_take_and_leave_their_parts() {
         [(2, "SHAFT", 204, "POSE 350", 350), (3, "CUTTER", 246, "POSE 400", 400)]
     {
         let mut bench = Bench::ready("HOME", gripper);
+        (bench.v_grip.opening, bench.tool_grip.opening) = (50, 100);
         assert_eq!(bench.run(MovToObj, object, 1, "BENCH", gripper), DONE);
         assert_eq!(bench.log(), [opened, "GO-THRU", "GO-THRU", "GOTO-PT"]);
         bench.world.object = Some(size);
         assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), DONE);
         assert_eq!(bench.log(), [format!("GRASP {}", if gripper == 2 { 200 } else { 250 })]);
         assert_eq!(bench.pause(), DONE, "a pause leaves it held");
-        assert!(bench.memory.emove.status.held.is_some());
+        assert!(bench.memory.emove.status.held.is_held());
         assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), DONE);
         assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
         assert_eq!(bench.log(), [format!("RELEASE {}", if gripper == 2 { 350 } else { 400 })]);
-        assert!(!bench.memory.emove.status.held.is_some());
+        assert!(!bench.memory.emove.status.held.is_held());
         assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
         assert!(bench.log().is_empty());
         let opening = if gripper == 2 { bench.v_grip.opening } else { bench.tool_grip.opening };
@@ -153,7 +154,7 @@ fn fingers_do_not_open_over_a_held_part() {
     assert_eq!(bench.run(MovToVu, "PIN", 1, "BENCH", 1), error(Reason::BadRecord), "there is no view of it");
     assert_eq!(bench.run(GraspObj, "PIN", 1, "BENCH", 1), error(Reason::AlreadyHolding));
     assert_eq!(bench.run(MovToHol, "GRIPPER-1", 1, "HOLSTER-R", 1), error(Reason::NoTrajectory));
-    assert!(bench.memory.emove.status.held.is_some());
+    assert!(bench.memory.emove.status.held.is_held());
 }
 
 #[test]
@@ -164,6 +165,7 @@ fn a_gripper_that_fails_stops_the_move() {
     bench.step();
     assert_eq!(bench.log().last(), Some(&"PAUSE"), "the robot stops");
     let mut bench = Bench::ready("HOME", 2);
+    bench.v_grip.opening = 50;
     bench.spoil("POSE", Mishap::Jaws(JawsReport::Closed));
     assert_eq!(bench.run(MovToObj, "SHAFT", 1, "BENCH", 2), error(Reason::JawsStuck), "they went nowhere");
     let mut bench = Bench::ready("HOME", 2);
@@ -236,7 +238,7 @@ fn a_lost_part_is_noticed_with_every_gripper() {
                 let reason =
                     if matches!(gone, Mishap::Slip) { Reason::ObjectLost } else { Reason::GripperGone };
                 assert_eq!(bench.finish(), error(reason), "{object} {verb}");
-                assert!(!bench.memory.emove.status.held.is_some());
+                assert!(!bench.memory.emove.status.held.is_held());
             }
         }
         let mut bench = Bench::ready("HOME", gripper);
@@ -244,7 +246,7 @@ fn a_lost_part_is_noticed_with_every_gripper() {
         (bench.grip.opening, bench.v_grip.opening, bench.tool_grip.opening) =
             (size + 30, size + 30, size + 30);
         bench.steps(3);
-        assert!(!bench.memory.emove.status.held.is_some(), "open fingers hold nothing");
+        assert!(!bench.memory.emove.status.held.is_held(), "open fingers hold nothing");
         assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), error(Reason::NothingHeld));
     }
 }
@@ -260,11 +262,11 @@ fn a_part_that_is_no_longer_felt_is_lost() {
     bench.steps(3);
     bench.grip.force = 30;
     bench.steps(3);
-    assert!(bench.memory.emove.status.held.is_some());
+    assert!(bench.memory.emove.status.held.is_held());
     // The fingers hardly move when a part falls that was held with little force.
     bench.grip.force = 0;
     assert_eq!(bench.finish(), error(Reason::ObjectLost));
-    assert!(!bench.memory.emove.status.held.is_some());
+    assert!(!bench.memory.emove.status.held.is_held());
 }
 
 #[test]
@@ -282,7 +284,7 @@ fn the_wrong_gripper_is_refused() {
             let mut bench = Bench::ready("HOME", attached);
             assert_eq!(bench.run(verb, "BLOCK", 1, location, 1), error(Reason::WrongGripper), "{verb}");
             bench.steps(3);
-            assert_eq!(bench.log(), ["PAUSE"], "a refused command stops what was under way");
+            assert!(bench.log().is_empty(), "nothing was under way");
         }
     }
     let mut bench = Bench::ready("HOME", 2);
@@ -294,7 +296,7 @@ fn what_is_not_gripped_is_reported() {
     for (gripper, object, _) in PARTS {
         let mut bench = Bench::ready("HOME", gripper);
         assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), error(Reason::GraspMissed));
-        assert!(!bench.memory.emove.status.held.is_some());
+        assert!(!bench.memory.emove.status.held.is_held());
     }
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(GraspObj, "BLOCK", 7, "BENCH", 1), error(Reason::UnknownGrip));
@@ -397,7 +399,7 @@ fn the_robot_withdraws() {
     assert_eq!(bench.run(Withdraw, "", 0, "BENCH", 0), DONE);
     assert_eq!(bench.log(), ["DELTA-MOVE WITHDRAW"]);
     assert!(bench.off(&moved(frame_of("BENCH"), &["WITHDRAW"])) < 0.02);
-    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().as_str(), "BENCH");
+    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), "BENCH");
     bench.command(Withdraw, "", 0, "BENCH", 0);
     bench.steps(3);
     bench.grip.opening = 60;

@@ -125,7 +125,7 @@ proptest! {
             prop_assert!(was.grip.number == is.grip.number || attached == Gripper::Parts);
             prop_assert!(was.v_grip.number == is.v_grip.number || attached == Gripper::V);
             prop_assert!(was.tool_grip.number == is.tool_grip.number || attached == Gripper::Tool);
-            prop_assert!(!is.status.held.is_some() || attached != Gripper::None);
+            prop_assert!(!is.status.held.is_held() || attached != Gripper::None);
         }
     }
 }

@@ -127,7 +127,10 @@ fn a_pause_that_fails_says_why() {
 fn the_robot_is_found_where_it_stands() {
     let mut bench = Bench::new("HOLSTER-C", 0);
     assert_eq!(bench.pause(), DONE);
-    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().as_str(), "HOLSTER-C");
+    assert!(bench.memory.emove.status.at.is_none(), "a holster is no plain location");
+    bench.world.frame = frame_of("BENCH");
+    assert_eq!(bench.pause(), DONE);
+    assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), "BENCH");
     bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
     assert_eq!(bench.pause(), DONE, "it need not be anywhere");
     assert!(bench.memory.emove.status.at.is_none());
@@ -185,7 +188,7 @@ fn the_operator_moves_the_robot_and_the_fingers() {
         bench.world.button = JoystickGrip::Open;
         bench.steps(20);
         assert_eq!(bench.log().len(), 1, "pressing counts, not holding down: {:?}", bench.log());
-        assert!(!bench.memory.emove.status.held.is_some(), "the fingers are open");
+        assert!(!bench.memory.emove.status.held.is_held(), "the fingers are open");
         bench.world.button = JoystickGrip::None;
         bench.steps(3);
         bench.world.button = JoystickGrip::Close;
@@ -199,7 +202,7 @@ fn the_operator_moves_the_robot_and_the_fingers() {
         bench.steps(10);
         let status = bench.memory.emove.status;
         assert_eq!(
-            (status.report, status.reason, status.at.unwrap_or_default().as_str()),
+            (status.report, status.reason, status.at.unwrap_or_default().location.as_str()),
             (Report::Done, Reason::None, "VISE")
         );
     }

@@ -90,7 +90,7 @@ impl Real {
     fn devices(&mut self, before: &CommonMemory, external: &mut ExternalInputs, world: &mut World) {
         if !self.started {
             (self.started, self.ring, self.openings) =
-                (true, if world.locked { 1.0 } else { 0.0 }, [2.0, 2.0, 2.0]);
+                (true, if world.locked { 1.0 } else { 0.0 }, [2.0, 3.5, 4.0]);
         }
         let outputs = before.device_outputs();
         let ring = &outputs.quick_change;
@@ -177,9 +177,9 @@ fn carry(bench: &mut Bench, object: &str, size: i32, gripper: u8) {
     assert_eq!(bench.run(GraspObj, object, 1, "BENCH", gripper), DONE);
     assert_eq!(bench.run(MovObjTo, object, 1, "VISE", gripper), DONE);
     assert_eq!(bench.pause(), DONE);
-    assert!(bench.memory.emove.status.held.is_some(), "{object} is held through a pause");
+    assert!(bench.memory.emove.status.held.is_held(), "{object} is held through a pause");
     assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
-    assert!(!bench.memory.emove.status.held.is_some());
+    assert!(!bench.memory.emove.status.held.is_held());
     bench.world.object = None;
     assert_eq!(bench.run(Release, object, 1, "VISE", gripper), DONE);
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);

@@ -16,8 +16,9 @@ decision_table! {
             7:  grasp: Crushing                             => Open(Medium)     -> Move;
         }
         Settle {
-            8:  grasp: Firm | Missed                        => Finish;
-            9:  grasp: Far | Near | OneFinger | Loose | Weak | Strong | Crushing => Stop -> Move;
+            8:  grasp: Firm | Missed, felt: NotKnown        => Stop;
+            9:  grasp: Firm | Missed                        => Finish;
+            10: grasp: Far | Near | OneFinger | Loose | Weak | Strong | Crushing => Stop -> Move;
         }
     }
 }

@@ -11,7 +11,10 @@ pub mod up_init;
 use rcs_core::{
     Actions, Plain, Variables, commands,
     handshake::Arrival,
-    interface::{Reason, grip::GripVerb},
+    interface::{
+        Reason,
+        grip::{Felt, GripVerb},
+    },
 };
 
 use crate::execution::{Asked, Course, EXECUTE};
@@ -32,10 +35,11 @@ pub enum Step {
 pub enum Phase {
     /// Never done: begins at once, since the gripper is there when the system is booted (VI.3.1).
     Missing,
-    /// Never done, or interrupted: waits for UP-INIT or another command that moves the fingers. So begins a
-    /// process whose gripper comes later, which is then still in its holster, and one that was started in the
-    /// middle of a job: a part may be held.
+    /// Never done, or interrupted: waits for UP-INIT. So begins a process whose gripper comes later, which is
+    /// then still in its holster, and one that was started in the middle of a job: a part may be held.
     Deferred,
+    /// Done before the process was restarted: counts again when the sensors of the gripper agree.
+    Adopting,
     /// The fingers close, until the readings are steady.
     Closing,
     /// The fingers open, until the readings are steady.
@@ -44,7 +48,7 @@ pub enum Phase {
     Venting,
     /// Scale and offset of all sensors are known.
     Valid,
-    /// The last attempt failed; the next command that moves the fingers tries again.
+    /// The last attempt failed; UP-INIT tries again.
     Failed,
 }
 
@@ -118,6 +122,24 @@ pub enum Calibrating {
     Implausible,
     /// The calibration takes longer than its limit.
     Late,
+}
+
+/// Do the sensors read what fingers within their travel can read, by a calibration from before a restart?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Sensors {
+    /// Yes.
+    Plausible,
+    /// No.
+    Implausible,
+}
+
+/// What the fingers do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Motion {
+    /// They move, or have come to rest only just now.
+    Moving,
+    /// They are at rest.
+    Still,
 }
 
 /// Time of the command.
@@ -215,8 +237,14 @@ pub struct Situation {
     pub gripper: Gripper,
     /// What the sensors read while calibrating.
     pub readings: Calibrating,
+    /// Do the sensors agree with a calibration from before a restart?
+    pub sensors: Sensors,
     /// Time of the command.
     pub clock: Clock,
+    /// What the fingers do.
+    pub motion: Motion,
+    /// What is between them.
+    pub felt: Felt,
     /// Have the readings settled?
     pub rest: Rest,
     /// The opening, seen from the commanded one.
@@ -303,6 +331,10 @@ pub enum Action {
     CalibrateAndFinish,
     /// All valves off: there is no calibration, and no command that fails with it.
     GiveUp,
+    /// The calibration from before the restart counts.
+    Adopt,
+    /// The calibration from before the restart does not count.
+    Forget,
 }
 
 commands! {

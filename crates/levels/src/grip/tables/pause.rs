@@ -3,9 +3,19 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// PAUSE (VI.3.1): the valves stay as they are; without the gripper they are off.
-    pub PAUSE: fn pause(super::Situation) -> super::Action {
-        1:  gripper: Attached       => Pause;
-        2:  gripper: Detached       => Finish;
+    /// PAUSE (VI.3.1): the valves stay as they are, and the fingers are waited for until they are at rest;
+    /// without the gripper the valves are off.
+    pub PAUSE: fn pause(super::Step, super::Situation) -> super::Action {
+        any {
+            1:  gripper: Detached                       => Finish;
+            2:  motion: Still                           => Pause;
+        }
+        Start {
+            3:                                          => Keep             -> Move;
+        }
+        Move | Settle {
+            4:  clock: Running                          => Keep;
+            5:  clock: Expired                          => Pause;
+        }
     }
 }

@@ -45,6 +45,8 @@ pub struct Gripper {
     pub strain: [(f64, f64); 2],
     /// Valves act one tick late.
     pub late: bool,
+    /// There is no air: nothing moves, whatever the valves do.
+    pub without_air: bool,
     pending: u8,
     random: u64,
 }
@@ -60,6 +62,7 @@ impl Gripper {
             potentiometer: (205.0, 700.0),
             strain: [(310.0, 40.5), (287.0, 39.2)],
             late: false,
+            without_air: false,
             pending: 0,
             random: seed.wrapping_mul(2).wrapping_add(1),
         }
@@ -67,6 +70,9 @@ impl Gripper {
 
     /// One tick of air.
     pub fn advance(&mut self, bits: u8) {
+        if self.without_air {
+            return;
+        }
         let bits = if self.late { core::mem::replace(&mut self.pending, bits) } else { bits };
         if bits & valve::VENT != 0 {
             self.force = 0.0;

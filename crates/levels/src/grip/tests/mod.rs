@@ -1,6 +1,7 @@
 //! Scenarios of Grip with a simulated gripper.
 
 mod bench;
+mod ends;
 pub mod gripper;
 
 use proptest::prelude::*;
@@ -9,7 +10,7 @@ use rcs_core::{
     interface::{
         GripOutputs, Reason,
         device::valve,
-        grip::{GripReport, GripVerb},
+        grip::{Felt, GripReport, GripVerb},
     },
     plain::to_bytes,
     process::Process,
@@ -20,7 +21,7 @@ use self::{
     gripper::{Gripper, Object},
 };
 use super::{
-    Grip,
+    Grip, calibration,
     state::State,
     tables::{Phase, TABLES},
 };
@@ -29,6 +30,15 @@ use super::{
 fn calibrated(seed: u64) -> Bench {
     let mut bench = Bench::new(Gripper::new(1.0, seed));
     bench.done(GripVerb::UpInit, 0.0, 0);
+    bench
+}
+
+/// A bench with a calibrated gripper that holds a part with 30 lb.
+fn holding(seed: u64) -> Bench {
+    let mut bench = calibrated(seed);
+    bench.done(GripVerb::OpenGrip, 3.0, 0);
+    bench.gripper.object = Some(Object { size: 0.625, off_centre: 0.0 });
+    bench.done(GripVerb::CloseGrip, 0.60, 30);
     bench
 }
 
@@ -121,7 +131,7 @@ fn a_gripper_that_is_attached_at_the_start_calibrates_by_itself() {
     assert_eq!((status.initialized, status.report, status.echo), (true, GripReport::Idle, 0));
     assert_eq!((status.position, bench.gripper.opening), (500, 5.0));
     bench.patterns.clear();
-    assert_eq!(bench.wait(500).header.step.as_str(), "start");
+    assert_eq!(bench.wait(500).header.step.unwrap().as_str(), "start");
     assert_eq!(bench.patterns, [0], "once is enough");
 }
 
@@ -254,34 +264,86 @@ fn without_the_gripper_commands_fail_and_valves_are_off() {
 }
 
 #[test]
-fn pause_leaves_the_valves_as_they_are() {
+fn pause_leaves_the_valves_as_they_are_and_waits_until_the_fingers_rest() {
     let mut bench = calibrated(13);
     bench.done(GripVerb::Position, 0.5, 0);
     bench.command(GripVerb::Position, 3.0, 0);
     let moving = bench.wait(4).valves.bits;
     assert_eq!(moving, valve::SUPPLY | valve::OPEN_COARSE);
     let (ticks, outputs) = bench.done(GripVerb::Pause, 0.0, 0);
-    assert_eq!((ticks, outputs.valves.bits), (1, moving));
+    assert_eq!(
+        (bench.patterns.as_slice(), outputs.valves.bits, bench.gripper.opening),
+        (&[moving][..], moving, 5.0)
+    );
+    assert!(ticks > 25, "{ticks}");
     assert_eq!(bench.wait(20).valves.bits, moving);
     bench.done(GripVerb::Position, 3.0, 0);
-    assert_eq!(bench.done(GripVerb::Pause, 0.0, 0).1.valves.bits, 0);
+    let (ticks, outputs) = bench.done(GripVerb::Pause, 0.0, 0);
+    assert_eq!((ticks, outputs.valves.bits), (1, 0), "they rest");
+    // A potentiometer that never rests.
+    bench.gripper.noise = 40;
+    let (ticks, _) = bench.done(GripVerb::Pause, 0.0, 0);
+    assert_eq!(ticks, 152);
 }
 
 #[test]
-fn a_restarted_process_moves_nothing_until_it_must() {
-    let mut bench = calibrated(14);
-    bench.gripper.object = Some(Object { size: 0.625, off_centre: 0.0 });
-    bench.done(GripVerb::CloseGrip, 0.60, 30);
-    let force = bench.gripper.force;
+fn a_restarted_process_adopts_its_calibration_and_moves_nothing() {
+    let mut bench = holding(14);
+    let (force, position) = (bench.gripper.force, bench.memory.grip.status.position);
     bench.process = Grip::default();
-    assert_eq!(reason(&mut bench), Reason::Restarted);
-    bench.wait(100);
-    bench.done(GripVerb::Pause, 0.0, 0);
-    bench.wait(100);
-    assert_eq!((bench.gripper.force, bench.memory.grip.status.initialized), (force, false));
-    bench.gripper.object = None;
+    let status = bench.step().status;
+    assert_eq!((status.report, status.reason), (GripReport::Serror, Reason::Restarted));
+    assert!(status.initialized);
+    let status = bench.wait(100).status;
+    assert_eq!((bench.gripper.force, status.position, status.felt), (force, position, Felt::Something));
+    bench.done(GripVerb::CloseGrip, 0.60, 30);
+    assert!((bench.gripper.force - 30.0).abs() <= 3.0);
     bench.done(GripVerb::OpenGrip, 2.0, 0);
-    assert!(bench.memory.grip.status.initialized && (bench.gripper.opening - 2.0).abs() <= 0.02);
+    assert!((bench.gripper.opening - 2.0).abs() <= 0.02);
+    // Restarted in the middle of an opening: it stops, and the same command can be given again.
+    bench.command(GripVerb::OpenGrip, 4.0, 0);
+    bench.wait(5);
+    bench.process = Grip::default();
+    assert_eq!((bench.step().valves.bits, bench.memory.grip.status.reason), (0, Reason::Restarted));
+    bench.done(GripVerb::OpenGrip, 4.0, 0);
+    assert!((bench.gripper.opening - 4.0).abs() <= 0.02);
+    // Restarted while its gripper is in the holster: it counts when the gripper is there.
+    bench.attach(false);
+    bench.process = Grip::default();
+    assert!(!bench.wait(5).status.initialized);
+    bench.command(GripVerb::Position, 1.0, 0);
+    assert_eq!(reason(&mut bench), Reason::WrongGripper);
+    bench.done(GripVerb::Pause, 0.0, 0);
+    bench.attach(true);
+    bench.done(GripVerb::Position, 1.0, 0);
+}
+
+/// UP-INIT closes with the whole supply pressure: what is held would be crushed and dropped.
+#[test]
+fn without_a_calibration_only_up_init_moves_the_fingers() {
+    let fails: [fn(&mut Bench); 3] = [
+        |b| b.memory.grip.calibration = None,
+        |b| b.gripper.potentiometer.0 = 4000.0,
+        |b| b.gripper.strain[1] = (0.0, 0.0),
+    ];
+    for fail in fails {
+        let mut bench = holding(25);
+        fail(&mut bench);
+        let force = bench.gripper.force;
+        bench.process = Grip::default();
+        let status = bench.wait(50).status;
+        assert_eq!((status.initialized, status.felt), (false, Felt::NotKnown));
+        assert_eq!(bench.memory.grip.calibration, None);
+        for verb in [GripVerb::OpenGrip, GripVerb::Position, GripVerb::CloseGrip] {
+            bench.command(verb, 2.0, 30);
+            assert_eq!(reason(&mut bench), Reason::GripNotCalibrated, "{verb}");
+        }
+        bench.done(GripVerb::Pause, 0.0, 0);
+        assert_eq!(bench.gripper.force, force);
+        bench.gripper = Gripper::new(1.0, 25);
+        bench.done(GripVerb::UpInit, 0.0, 0);
+        bench.done(GripVerb::OpenGrip, 2.0, 0);
+    }
 }
 
 #[test]
@@ -311,8 +373,73 @@ fn sensors_that_tell_nothing_are_not_calibrated() {
         assert_eq!(reason(&mut bench), Reason::GripNotCalibrated, "{fault}");
         assert_eq!(bench.process.state.phase, Phase::Failed);
         bench.gripper = Gripper::new(1.0, 16);
+        bench.command(GripVerb::Position, 0.6, 0);
+        assert_eq!(reason(&mut bench), Reason::GripNotCalibrated, "it is not tried again by itself");
+        bench.done(GripVerb::UpInit, 0.0, 0);
         bench.done(GripVerb::Position, 0.6, 0);
     }
+}
+
+#[test]
+fn what_is_held_is_felt_whatever_was_commanded() {
+    let mut bench = Bench::new(Gripper::new(1.0, 23));
+    assert_eq!(bench.wait(5).status.felt, Felt::NotKnown, "not calibrated");
+    assert_eq!(bench.done(GripVerb::UpInit, 0.0, 0).1.status.felt, Felt::Nothing, "open and vented");
+    for (size, felt) in [(0.625, Felt::Something), (0.05, Felt::Nothing), (0.10, Felt::Nothing)] {
+        bench.gripper.object = Some(Object { size, off_centre: 0.0 });
+        assert_eq!(bench.done(GripVerb::OpenGrip, 3.0, 0).1.status.felt, Felt::Nothing);
+        assert_eq!(bench.done(GripVerb::CloseGrip, 0.10, 5).1.status.felt, felt, "{size} in");
+        assert_eq!(bench.done(GripVerb::Pause, 0.0, 0).1.status.felt, felt, "the report does not count");
+    }
+    // Shut on each other with force.
+    bench.gripper.object = None;
+    bench.gripper.force = 80.0;
+    assert_eq!(bench.wait(20).status.felt, Felt::Nothing);
+    // A pause in the middle of a grasp: the fingers close on, and what they close on is felt.
+    bench.done(GripVerb::OpenGrip, 3.0, 0);
+    bench.gripper.object = Some(Object { size: 0.625, off_centre: 0.0 });
+    bench.command(GripVerb::CloseGrip, 0.60, 30);
+    bench.wait(5);
+    bench.done(GripVerb::Pause, 0.0, 0);
+    assert_eq!(bench.wait(40).status.felt, Felt::Something);
+}
+
+#[test]
+fn what_is_felt_settles_for_five_ticks_and_never_becomes_nothing_at_once() {
+    let mut bench = holding(24);
+    // It falls: neither finger feels anything.
+    bench.gripper.force = 0.0;
+    let felt: Vec<_> = (0..6).map(|_| bench.step().status.felt).collect();
+    assert_eq!(felt, [[Felt::Something; 4].as_slice(), &[Felt::Nothing; 2]].concat());
+    // It is pushed between the fingers.
+    bench.gripper.force = 20.0;
+    let felt: Vec<_> = (0..6).map(|_| bench.step().status.felt).collect();
+    assert_eq!(felt, [[Felt::NotKnown; 4].as_slice(), &[Felt::Something; 2]].concat());
+    // One finger alone tells nothing.
+    bench.gripper.strain[0].1 = 0.0;
+    assert_eq!(bench.wait(10).status.felt, Felt::NotKnown);
+    bench.gripper.strain[0].1 = 40.5;
+    assert_eq!(bench.wait(10).status.felt, Felt::Something);
+    // Sensors that fail.
+    for breakage in [
+        (|g: &mut Gripper| g.strain[1] = (0.0, 0.0)) as fn(&mut Gripper),
+        |g| g.strain[1] = (5000.0, 0.0),
+        |g| g.potentiometer = (0.0, 0.0),
+        |g| g.opening = 5.5,
+        |g| (g.force, g.strain[0].0) = (0.0, 20.0),
+    ] {
+        let mut broken = holding(24);
+        breakage(&mut broken.gripper);
+        broken.gripper.noise = 0;
+        assert_eq!(broken.step().status.felt, Felt::NotKnown);
+        assert_eq!(broken.wait(20).status.felt, Felt::NotKnown);
+    }
+    // A gripper that comes back may hold another thing.
+    bench.attach(false);
+    assert_eq!(bench.step().status.felt, Felt::NotKnown);
+    bench.attach(true);
+    let felt: Vec<_> = (0..7).map(|_| bench.step().status.felt).collect();
+    assert_eq!(felt, [[Felt::NotKnown; 5].as_slice(), &[Felt::Something; 2]].concat());
 }
 
 /// Random work for one bench; returns the images of all outputs.
@@ -320,7 +447,7 @@ fn work(
     mut bench: Bench,
     commands: &[(bool, i32, i32, i32)],
     size: f64,
-) -> Result<Vec<[u8; 64]>, TestCaseError> {
+) -> Result<Vec<[u8; 128]>, TestCaseError> {
     let mut images = Vec::new();
     for &(grasp, opening, force, velocity) in commands {
         let opening = f64::from(opening) / 100.0;
@@ -394,12 +521,12 @@ proptest! {
         (gripper.noise, gripper.late, gripper.potentiometer, gripper.strain) = (noise, late, potentiometer, [left, right]);
         let mut bench = Bench::new(gripper);
         bench.wait(200);
-        let calibration = bench.process.state.calibration.unwrap();
+        let found = bench.process.state.calibration.unwrap();
         for (scale, (zero, counts), most) in
-            [(calibration.potentiometer, potentiometer, 5.0), (calibration.left, left, 80.0), (calibration.right, right, 80.0)]
+            [(found.potentiometer, potentiometer, 5.0), (found.left, left, 80.0), (found.right, right, 80.0)]
         {
             for value in [0.0, most / 2.0, most] {
-                let found = scale.value(zero + counts * value);
+                let found = calibration::value(&scale, zero + counts * value);
                 prop_assert!((found - value).abs() < 2.0 / counts, "{found} for {value} of {most}");
             }
         }
@@ -438,7 +565,7 @@ fn state_and_outputs_survive_as_bytes() {
     bench.wait(7);
     let state = *<Grip as Process<()>>::state(&bench.process);
     let image: [u8; 512] = to_bytes(&state);
-    assert!(State::SIZE <= image.len() && GripOutputs::SIZE <= 64, "{} {}", State::SIZE, GripOutputs::SIZE);
+    assert!(State::SIZE <= image.len() && GripOutputs::SIZE <= 128, "{} {}", State::SIZE, GripOutputs::SIZE);
     let back = rcs_core::plain::from_bytes::<State>(&image).unwrap();
     let mut resumed = Grip::default();
     Process::<()>::restore(&mut resumed, back);
@@ -461,17 +588,19 @@ fn settle(bench: &mut Bench) {
 #[test]
 fn every_row_fires() {
     let mut bench = Bench::new(Gripper::new(1.0, 18));
-    // UP-INIT 1, 11 to 13, 8: taken off on the way, while no command waits; 2 and 7: while one waits.
+    // UP-INIT 1, 13 to 17, 10: taken off on the way, while no command waits; 2; 9: while one waits.
     bench.wait(40);
     bench.attach(false);
     bench.wait(2);
     bench.attach(true);
     bench.command(GripVerb::Position, 1.0, 0);
+    bench.finish();
+    bench.command(GripVerb::UpInit, 1.0, 0);
     bench.wait(5);
     bench.attach(false);
     bench.finish();
     bench.attach(true);
-    // UP-INIT 9, 10: noise hides the ends; a dead strain gage, for a command and for none.
+    // UP-INIT 11, 12: noise hides the ends; a dead strain gage, for a command and for none.
     bench.gripper.noise = 40;
     bench.command(GripVerb::UpInit, 0.0, 0);
     bench.finish();
@@ -480,14 +609,17 @@ fn every_row_fires() {
     bench.wait(5);
     bench.command(GripVerb::None, 0.0, 0);
     bench.wait(200);
-    // UP-INIT 3, 14 to 16; 17: at last, for a command.
+    // UP-INIT 5, 18; 19: at last, for a command.
     bench.gripper.strain[0].1 = 40.5;
     bench.done(GripVerb::UpInit, 0.0, 0);
     bench.command(GripVerb::UpInit, 0.0, 0);
     bench.wait(5);
     bench.done(GripVerb::Position, 3.0, 0);
-    // PAUSE 1, 2.
+    // PAUSE: at rest, moving, never at rest, and without the gripper.
     bench.done(GripVerb::Pause, 0.0, 0);
+    bench.gripper.noise = 40;
+    bench.done(GripVerb::Pause, 0.0, 0);
+    bench.gripper.noise = 1;
     bench.attach(false);
     bench.done(GripVerb::Pause, 0.0, 0);
     bench.attach(true);
@@ -512,6 +644,16 @@ fn every_row_fires() {
         bench.gripper.strain[1].1 = 39.2;
         bench.done(GripVerb::OpenGrip, 3.0, 0);
     }
+    // CLOSE-GRIP 8: fingers that press, and do not stand still.
+    bench.gripper.object = Some(Object { size: 1.5, off_centre: 0.0 });
+    bench.command(GripVerb::CloseGrip, 1.4, 5);
+    while bench.process.state.settled < 10 {
+        bench.gripper.potentiometer.0 = if bench.tick.0 % 2 == 0 { 205.0 } else { 225.0 };
+        bench.step();
+    }
+    bench.gripper.potentiometer.0 = 205.0;
+    bench.finish();
+    bench.done(GripVerb::OpenGrip, 3.0, 0);
     // CLOSE-GRIP: off centre, far from the grasp size so that the force overshoots, and losing force while
     // settling.
     bench.gripper.object = Some(Object { size: 1.5, off_centre: 0.1 });
@@ -530,8 +672,12 @@ fn every_row_fires() {
     bench.attach(true);
     bench.command(GripVerb::Position, 9.0, 0);
     bench.finish();
+    // UP-INIT 3, 4: a calibration from before a restart.
     bench.process = Grip::default();
-    bench.step();
+    bench.wait(2);
+    bench.process = Grip::default();
+    bench.gripper.potentiometer.0 += 3000.0;
+    bench.wait(2);
     assert_eq!(bench.rows.missing(TABLES), [""; 0]);
 }
 

@@ -12,6 +12,7 @@ use rcs_core::{
     handshake::Arrival,
     interface::{
         Reason,
+        grip::Felt,
         jaws::{JawsReport, JawsVerb},
     },
     table::Choice,
@@ -113,6 +114,8 @@ pub struct Seen {
     pub request: Request,
     /// The state variables of the command's table.
     pub situation: Situation,
+    /// What is between the fingers.
+    pub felt: Felt,
     /// `commanded-size` that counts once the command is accepted, 0.01 in.
     pub size: Option<i32>,
     /// Opening by the mean of the last readings, in.

@@ -1,12 +1,12 @@
 //! The pedestal process (VI.7): coordinates hand and table for Subtask.
 //!
-//! | command  | hand                  | table                          |
-//! |----------|-----------------------|--------------------------------|
-//! | PRE-GRIP | opens to `grasp-size` | turns to `table-angle`         |
-//! | GRIP     | grasps                |                                |
-//! | FLIP     |                       | turns by `table-angle`         |
-//! | RELEASE  | opens to `grasp-size` |                                |
-//! | PAUSE    |                       | stops                          |
+//! | command  | hand | table |
+//! |----------|------|-------|
+//! | PRE-GRIP | opens to `grasp-size`, after UP-INIT if it is not calibrated | turns to `table-angle` |
+//! | GRIP     | grasps | |
+//! | FLIP     | | turns by `table-angle` |
+//! | RELEASE  | opens to `grasp-size` | |
+//! | PAUSE    | is waited for | stops |
 //!
 //! ```text
 //!               ACCEPT               ORDERED: hand, table
@@ -17,7 +17,8 @@
 //!     can't-do                           error
 //! ```
 //!
-//! A failure sends nothing to the hand: what it holds, it goes on holding.
+//! A failure sends nothing to the hand: what it holds, it goes on holding. A process that is restarted stops the
+//! table and leaves the hand alone.
 //!
 //! * [`state`]: what the process remembers;
 //! * [`orders`]: what a command asks of hand and table;
@@ -36,12 +37,12 @@ mod tests;
 use rcs_core::{
     interface::PedestalOutputs,
     process::{Inputs, Process},
-    table::Table,
+    table::{Table, Verdict},
 };
 
 use self::{
     state::State,
-    tables::{Action, Seen, Step},
+    tables::{Action, Seen, Step, number, restarted::restarted},
 };
 use crate::execution::Course;
 
@@ -60,15 +61,22 @@ impl<Data: ?Sized> Process<Data> for Pedestal {
     const NAME: &'static str = "Active Pedestal";
     const TABLES: &'static [&'static Table] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, _: &PedestalOutputs) -> Seen {
-        self.state.sense(inputs)
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &PedestalOutputs) -> Seen {
+        self.state.sense(inputs, outputs)
     }
 
     fn decide(&mut self, seen: &Seen) -> Action {
         let state = &mut self.state;
         let verb = state.command.command;
         match state.execution.course(seen.arrival) {
-            Course::Rest | Course::Refuse => return Action::Wait,
+            Course::Rest => return Action::Wait,
+            Course::Refuse => {
+                let Verdict::Decided(decision) = restarted(state.step, &seen.remains) else {
+                    return Action::Wait;
+                };
+                state.execution.note(&decision.of(number::RESTARTED));
+                return decision.action;
+            }
             Course::Begin => state.step = Step::first(verb),
             Course::Continue => {}
         }

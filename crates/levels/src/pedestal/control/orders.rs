@@ -21,7 +21,10 @@ pub(super) fn hand_command(command: &PedestalCommand) -> GripCommand {
 /// The absolute angle that a command leads to, 0.1 degree.
 pub(super) const fn table_angle(command: &PedestalCommand, table: &TableStatus) -> i32 {
     match command.command {
-        PedestalVerb::Flip => table.position.saturating_add(command.table_angle),
+        PedestalVerb::Flip => match table.position {
+            Some(position) => position.saturating_add(command.table_angle),
+            None => command.table_angle,
+        },
         PedestalVerb::PreGrip
         | PedestalVerb::Grip
         | PedestalVerb::Release
@@ -33,7 +36,7 @@ pub(super) const fn table_angle(command: &PedestalCommand, table: &TableStatus) 
 /// Can the table turn as a command asks?
 pub(super) fn angle(command: &PedestalCommand, table: &TableStatus) -> Angle {
     match command.command {
-        PedestalVerb::Flip if !table.calibrated => Angle::Unknown,
+        PedestalVerb::Flip if table.position.is_none() => Angle::Unknown,
         PedestalVerb::PreGrip | PedestalVerb::Flip if !is_within_limits(table_angle(command, table)) => {
             Angle::Beyond
         }

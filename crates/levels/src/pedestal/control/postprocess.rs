@@ -4,7 +4,7 @@ use rcs_core::{
     handshake::Lower,
     interface::{
         PedestalOutputs, Reason,
-        grip::GripCommand,
+        grip::{GripCommand, GripVerb},
         pedestal::{PedestalStatus, TableCommand, TableVerb},
     },
     process::Inputs,
@@ -14,6 +14,7 @@ use rcs_core::{
 
 use super::{
     orders::{hand_command, table_angle},
+    preprocess::felt,
     state::State,
     tables::{Action, Ordered, Seen},
 };
@@ -37,18 +38,24 @@ impl State {
                 self.command_table(TableVerb::Turn, angle, tick, outputs);
                 self.ordered = Ordered::Both;
             }
-            Action::Close => self.command_hand(tick, outputs),
+            Action::Calibrate => {
+                self.command_hand(
+                    GripCommand { command: GripVerb::UpInit, ..GripCommand::default() },
+                    tick,
+                    outputs,
+                );
+            }
+            Action::Close => {
+                self.gripped = true;
+                self.command_hand(hand_command(&self.command), tick, outputs);
+            }
             Action::Turn => self.command_table(TableVerb::Turn, angle, tick, outputs),
             Action::Open => self.open(tick, outputs),
             Action::StopTable => self.command_table(TableVerb::Pause, 0, tick, outputs),
             Action::Finish => self.execution.finish(),
-            Action::Hold => {
-                self.held_size = Some(self.command.grasp_size);
-                self.execution.finish();
-            }
-            Action::Lose => {
-                self.held_size = None;
-                self.execution.fail(Reason::ObjectLost);
+            Action::Lose(reason) => {
+                self.gripped = false;
+                self.execution.fail(reason);
             }
             Action::Fail(reason) => self.execution.fail(reason),
             Action::PassUpHand => self.pass_up(seen.orders.hand, memory.hand.status.reason),
@@ -64,13 +71,13 @@ impl State {
 
     /// Open the hand: what it holds is let go.
     fn open(&mut self, tick: Tick, outputs: &mut PedestalOutputs) {
-        self.held_size = None;
-        self.command_hand(tick, outputs);
+        self.gripped = false;
+        self.command_hand(hand_command(&self.command), tick, outputs);
     }
 
-    fn command_hand(&mut self, tick: Tick, outputs: &mut PedestalOutputs) {
+    fn command_hand(&mut self, command: GripCommand, tick: Tick, outputs: &mut PedestalOutputs) {
         self.ordered = Ordered::Hand;
-        outputs.hand = GripCommand { number: self.hand.send(tick), ..hand_command(&self.command) };
+        outputs.hand = GripCommand { number: self.hand.send(tick), ..command };
     }
 
     /// A command to the table; the absolute angle in 0.1 degree.
@@ -92,7 +99,15 @@ impl State {
             reason: execution.reason,
             grip_size: hand.position,
             grip_force: rounded(force),
-            table_position: inputs.memory.table.status.position,
+            table_position: table_position(inputs),
+            felt: felt(inputs),
+            gripped: self.gripped,
         };
     }
+}
+
+/// The angle of the table; not known of one that does not answer.
+fn table_position<Data: ?Sized>(inputs: &Inputs<'_, Data>) -> Option<i32> {
+    let table = &inputs.memory.table;
+    table.status.position.filter(|_| table.header.stamp == inputs.tick.previous())
 }

@@ -3,7 +3,7 @@
 
 use rcs_core::{
     handshake::{Arrival, Lower},
-    interface::{CommonMemory, pedestal::PedestalVerb},
+    interface::{CommonMemory, PedestalOutputs, grip::Felt, pedestal::PedestalVerb},
     process::Inputs,
     tick::Tick,
 };
@@ -11,25 +11,35 @@ use rcs_core::{
 use super::{
     orders::{angle, opening},
     state::State,
-    tables::{Object, Ordered, Orders, Request, Seen, Situation},
+    tables::{Calibration, Gripped, Object, Ordered, Orders, Remains, Request, Seen, Situation},
 };
-use crate::execution::Asked;
+use crate::execution::{Asked, Work};
 
 impl State {
     /// Read the inputs of a tick.
-    pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> Seen {
+    /// A process that starts adopts what it has written of its hand.
+    pub(super) fn sense<Data: ?Sized>(
+        &mut self,
+        inputs: &Inputs<'_, Data>,
+        outputs: &PedestalOutputs,
+    ) -> Seen {
         let memory = inputs.memory;
         let command = &memory.subtask.pedestal;
-        self.hand.start(memory.hand.status.echo);
-        self.table.start(memory.table.status.echo);
+        let (tick, written) = (inputs.tick, &memory.pedestal);
+        self.hand.start_from(tick, written.hand.number, memory.hand.status.echo);
+        self.table.start_from(tick, written.table.number, memory.table.status.echo);
         if command.number != 0 {
             self.cycle = command.cycle;
+        }
+        if !self.execution.receiver.started {
+            self.gripped = outputs.status.gripped;
         }
         let arrival = self.execution.receiver.observe(command.number);
         if arrival == Arrival::New {
             (self.command, self.ordered) = (*command, Ordered::Nothing);
         }
-        let object = self.object(memory);
+        let object = self.object(felt(inputs), memory);
+        let hand = self.hand(memory, inputs.tick);
         Seen {
             arrival,
             request: Request {
@@ -41,11 +51,24 @@ impl State {
             orders: Orders {
                 verb: self.command.command,
                 ordered: self.ordered,
-                hand: self.hand(memory, inputs.tick),
+                hand,
                 table: self.table(memory, inputs.tick),
                 object,
             },
-            situation: Situation { object },
+            situation: Situation {
+                object,
+                calibration: if memory.hand.status.initialized {
+                    Calibration::Known
+                } else {
+                    Calibration::Missing
+                },
+                gripped: if self.gripped { Gripped::Yes } else { Gripped::No },
+                fingers: match hand {
+                    Lower::Pending | Lower::Executing => Work::Busy,
+                    Lower::Done | Lower::Error | Lower::Joystick | Lower::Lost => Work::Over,
+                },
+            },
+            remains: Remains { ordered: self.ordered },
         }
     }
 
@@ -59,15 +82,21 @@ impl State {
         self.table.read(tick, &memory.table.header, status.echo, status.report.lower())
     }
 
-    /// Fingers that stand wider than the grasp size have something between them (VIII.9.1). A hand that is
-    /// not calibrated cannot tell.
-    fn object(&self, memory: &CommonMemory) -> Object {
-        let hand = &memory.hand.status;
+    /// What the hand feels. Fingers that stand no wider than the grasp size have missed the object (VIII.9.1).
+    fn object(&self, felt: Felt, memory: &CommonMemory) -> Object {
         let gripping = self.command.command == PedestalVerb::Grip;
-        match if gripping { Some(self.command.grasp_size) } else { self.held_size } {
-            None => Object::None,
-            Some(size) if !hand.initialized || hand.position > size => Object::Held,
-            Some(_) => Object::Lost,
+        let wide = !gripping || memory.hand.status.position > self.command.grasp_size;
+        match felt {
+            Felt::NotKnown => Object::NotKnown,
+            Felt::Something if wide => Object::Held,
+            Felt::Something | Felt::Nothing if self.gripped => Object::Lost,
+            Felt::Something | Felt::Nothing => Object::None,
         }
     }
+}
+
+/// What the hand feels; nothing is known of one that does not answer.
+pub(super) fn felt<Data: ?Sized>(inputs: &Inputs<'_, Data>) -> Felt {
+    let hand = &inputs.memory.hand;
+    if hand.header.stamp == inputs.tick.previous() { hand.status.felt } else { Felt::NotKnown }
 }

@@ -22,6 +22,6 @@ pub struct State {
     pub hand: Commander,
     /// Commands to the table.
     pub table: Commander,
-    /// `grasp-size` of the object that the hand holds, 0.01 in, if it holds one.
-    pub held_size: Option<i32>,
+    /// The hand was told to grip, and not to open since.
+    pub gripped: bool,
 }

@@ -1,8 +1,9 @@
 //! Rotary table of the pedestal (III.9.1, III.10): a step motor behind a controller that counts its steps.
 //!
 //! The controller takes orders by number over a serial link: turn by so many steps, give the counter a value,
-//! stop. Its counter means an angle only after it has been set where the angle is known: at the + limit. So
-//! the table calibrates first, by itself when it is booted, and before the first turn it is asked for.
+//! stop. Its counter means an angle only after it has been set where the angle is known: to zero at the + limit
+//! (IV.1 step 3). So the table calibrates first, by itself when it is booted, and before the first turn it is
+//! asked for. In the end it is parked at -20.00, clear of the switch.
 //!
 //! ```text
 //!   Missing, Deferred, Failed                    a command TURN
@@ -16,9 +17,20 @@
 //!      .-----------.  stops elsewhere, late        .---------.  stands elsewhere, late
 //!      |  Setting  |--------------> Failed         | Turning |----------------> Error,
 //!      '-----------'                               '---------'              uncalibrated
-//!            | counter reads -20.00                    | stands at the angle
+//!            | counter reads zero                      | stands at the angle
 //!            v                                         v
-//!          Valid                                     Done
+//!      .-----------.  stops elsewhere, late          Done
+//!      |  Parking  |--------------> Failed
+//!      '-----------'
+//!            | stands at -20.00
+//!            v
+//!          Valid
+//!            ^
+//!            | stands; counter and potentiometer agree
+//!      .------------.  they do not, or it never stands
+//!      |  Adopting  |--------------> Deferred
+//!      '------------'
+//!            ^ restarted in the middle of a job: a table that turns is stopped
 //! ```
 //!
 //! An angle is believed if counter and potentiometer agree. If they do not, steps were lost, and the table
@@ -68,8 +80,8 @@ impl<Data: ?Sized> Process<Data> for Table {
     const NAME: &'static str = "Rotary Table";
     const TABLES: &'static [&'static DecisionTable] = tables::TABLES;
 
-    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, _: &TableOutputs) -> Seen {
-        self.state.sense(inputs)
+    fn preprocess(&mut self, inputs: &Inputs<'_, Data>, outputs: &TableOutputs) -> Seen {
+        self.state.sense(inputs, outputs)
     }
 
     /// A calibration goes on in the tick of a refusal, and while a command waits for it.
@@ -112,7 +124,7 @@ impl<Data: ?Sized> Process<Data> for Table {
             state.since = inputs.tick;
         }
         state.act(action, sensors, inputs.tick);
-        *outputs = state.report(sensors, inputs.tick);
+        *outputs = state.report(seen, inputs.tick);
     }
 
     fn state(&self) -> &State {

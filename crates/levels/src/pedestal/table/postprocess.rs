@@ -3,23 +3,22 @@
 use rcs_core::{
     interface::{
         Reason, TableOutputs,
-        device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH},
+        device::{MotorCommand, MotorOrder, PedestalSensors},
         pedestal::{PedestalReport, TableStatus},
     },
     tick::Tick,
-    units::rounded,
 };
 
 use super::{
-    preprocess::{LIMIT_MINUS, LIMIT_PLUS, steps},
+    preprocess::{AT_LIMIT, LIMIT_MINUS, LIMIT_PLUS, steps},
     state::State,
-    tables::{Action, Phase},
+    tables::{Action, Phase, Seen},
 };
 use crate::execution::Outcome;
 
 /// Steps that lead to the + limit from anywhere: twice as far as from one limit to the other. The switch ends
 /// the turn.
-const TO_THE_LIMIT: i32 = steps(LIMIT_PLUS.saturating_sub(LIMIT_MINUS).saturating_mul(2));
+const TO_THE_LIMIT: i32 = steps(AT_LIMIT.saturating_sub(LIMIT_MINUS).saturating_mul(2));
 
 impl State {
     /// Carry out what a row asks for.
@@ -31,14 +30,12 @@ impl State {
                 self.order(MotorOrder::Turn, TO_THE_LIMIT, tick);
             }
             Action::SetCounter => {
-                self.at_limit = sensors.table_potentiometer;
-                self.order(MotorOrder::SetCounter, steps(LIMIT_PLUS), tick);
+                self.at_limit = Some(sensors.table_potentiometer);
+                self.order(MotorOrder::SetCounter, steps(AT_LIMIT), tick);
             }
-            Action::EndCalibration => self.since = tick,
-            Action::Turn => {
-                let way = steps(self.command.angle).saturating_sub(sensors.motor_counter);
-                self.order(MotorOrder::Turn, way, tick);
-            }
+            Action::Park => self.turn(LIMIT_PLUS, sensors, tick),
+            Action::EndWait => self.since = tick,
+            Action::Turn => self.turn(self.command.angle, sensors, tick),
             Action::Stop => self.stop(tick),
             Action::Finish => self.execution.finish(),
             Action::Lose(reason) => {
@@ -51,6 +48,12 @@ impl State {
                 self.stop(tick);
             }
         }
+    }
+
+    /// Turn to an angle, 0.1 degree.
+    fn turn(&mut self, angle: i32, sensors: &PedestalSensors, tick: Tick) {
+        let way = steps(angle).saturating_sub(sensors.motor_counter);
+        self.order(MotorOrder::Turn, way, tick);
     }
 
     fn order(&mut self, order: MotorOrder, steps: i32, tick: Tick) {
@@ -66,10 +69,10 @@ impl State {
     }
 
     /// The outputs of this tick.
-    pub(super) fn report(&self, sensors: &PedestalSensors, tick: Tick) -> TableOutputs {
+    pub(super) fn report(&self, seen: &Seen, tick: Tick) -> TableOutputs {
         let execution = &self.execution;
         let calibrated = self.phase == Phase::Valid;
-        let angle = rounded(f64::from(sensors.motor_counter) / f64::from(TABLE_STEPS_PER_TENTH));
+        let adoptable = calibrated || self.phase == Phase::Adopting;
         let step = if self.is_calibrating() { self.phase.text() } else { self.step.text() };
         TableOutputs {
             header: execution.header(tick, step),
@@ -78,8 +81,9 @@ impl State {
                 report: report_of(execution.outcome, execution.reason),
                 reason: execution.reason,
                 calibrated,
-                position: if calibrated { angle } else { 0 },
+                position: seen.angle.filter(|_| calibrated),
             },
+            at_limit: self.at_limit.filter(|_| adoptable),
             motor: self.order,
         }
     }
@@ -92,9 +96,11 @@ pub(in crate::pedestal) const fn report_of(outcome: Outcome, reason: Reason) -> 
         Outcome::Executing => PedestalReport::Executing,
         Outcome::Done => PedestalReport::Done,
         Outcome::Error | Outcome::Joystick => match reason {
-            Reason::UnknownCommand | Reason::TableLimit | Reason::GripUnattainable | Reason::NotPrepared => {
-                PedestalReport::CannotDo
-            }
+            Reason::UnknownCommand
+            | Reason::TableLimit
+            | Reason::TableAngleUnknown
+            | Reason::HandUnattainable
+            | Reason::HandNotCalibrated => PedestalReport::CannotDo,
             _ => PedestalReport::Error,
         },
     }

@@ -1,21 +1,27 @@
 //! Preprocess of the table process: its state variables, from the command and the sensors.
 
 use rcs_core::{
-    handshake::Arrival,
+    handshake::{Arrival, Commander},
     interface::{
-        device::{PedestalSensors, TABLE_STEPS_PER_TENTH},
+        TableOutputs,
+        device::{MotorCommand, PedestalSensors, TABLE_STEPS_PER_TENTH},
         pedestal::{TableCommand, TableVerb},
     },
     process::Inputs,
+    tick::Tick,
+    units::rounded,
 };
 
 use super::{
     state::State,
-    tables::{Angle, Clock, Command, Motor, Phase, Place, Request, Seen, Situation},
+    tables::{Angle, Clock, Command, Counter, Motor, Phase, Place, Request, Seen, Situation},
 };
 use crate::execution::Asked;
 
-/// Angle at the + limit, 0.1 degree (IV.1 step 3: the counter is set to -20.00 there).
+/// Angle at the + limit, 0.1 degree (IV.1 step 3: the counter is set to zero there).
+pub const AT_LIMIT: i32 = 0;
+/// Greatest angle that can be commanded, 0.1 degree: the table is parked there, clear of the switch (IV.1 step
+/// 3: -20.00).
 pub const LIMIT_PLUS: i32 = -200;
 /// Least angle that can be commanded, 0.1 degree: a little short of the - limit. ASSUMED.
 pub const LIMIT_MINUS: i32 = -3400;
@@ -37,7 +43,8 @@ pub(super) const LIMIT_TICKS: u64 = 1500;
 
 impl State {
     /// Read the inputs of a tick.
-    pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> Seen {
+    /// A process that starts in the middle of a job adopts the calibration that it has written before.
+    pub(super) fn sense<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>, outputs: &TableOutputs) -> Seen {
         let command = &inputs.memory.pedestal.table;
         let sensors = &inputs.external.devices.pedestal;
         let starting = !self.execution.receiver.started;
@@ -46,18 +53,33 @@ impl State {
             self.command = *command;
         }
         if starting && self.execution.receiver.adopted {
-            self.phase = Phase::Deferred;
+            self.phase = Phase::Adopting;
+            (self.at_limit, self.since) = (outputs.at_limit.or(self.at_limit), inputs.tick);
+            self.adopt(&outputs.motor, inputs.tick);
         }
+        let (motor, counter) = (self.motor(sensors), self.counter(sensors));
+        let known = motor != Motor::Standing || counter == Counter::Agrees;
         let late = arrival != Arrival::New && inputs.tick.since(self.since) > LIMIT_TICKS;
         Seen {
             arrival,
             request: Request { asked: Asked::of(arrival), verb: command.command, angle: angle(command) },
             situation: Situation {
                 command: Command::Nothing,
-                motor: self.motor(sensors),
+                motor,
+                counter,
                 place: if self.is_there(sensors) { Place::There } else { Place::Elsewhere },
                 clock: if late { Clock::Expired } else { Clock::Running },
             },
+            angle: known
+                .then(|| rounded(f64::from(sensors.motor_counter) / f64::from(TABLE_STEPS_PER_TENTH))),
+        }
+    }
+
+    /// The last order stands: its number is not given to another one.
+    fn adopt(&mut self, order: &MotorCommand, tick: Tick) {
+        if order.number != 0 {
+            self.order = *order;
+            self.motor = Commander { number: order.number, sent: tick, started: true };
         }
     }
 
@@ -69,8 +91,10 @@ impl State {
         self.standing = if still { self.standing.saturating_add(1) } else { 0 };
         if !taken {
             if self.unanswered > SILENCE_TICKS { Motor::Silent } else { Motor::Pending }
-        } else if self.standing < STANDING_TICKS {
+        } else if sensors.motor_moving {
             Motor::Turning
+        } else if self.standing < STANDING_TICKS {
+            Motor::Settling
         } else {
             Motor::Standing
         }
@@ -80,14 +104,26 @@ impl State {
         let on = |angle: i32| sensors.motor_counter.abs_diff(steps(angle)) <= ON_GOAL.unsigned_abs();
         match self.phase {
             Phase::Seeking => sensors.limit_plus && !sensors.limit_minus,
-            Phase::Setting => on(LIMIT_PLUS),
-            Phase::Missing | Phase::Deferred | Phase::Valid | Phase::Failed => {
-                let angle = self.command.angle;
-                let turned = f64::from(angle.saturating_sub(LIMIT_PLUS)) * COUNTS_PER_TENTH;
-                let read = f64::from(sensors.table_potentiometer) - f64::from(self.at_limit);
-                on(angle) && (read - turned).abs() <= AGREEMENT
+            Phase::Setting => on(AT_LIMIT),
+            Phase::Parking => on(LIMIT_PLUS) && self.reads(LIMIT_PLUS, sensors),
+            Phase::Missing | Phase::Deferred | Phase::Adopting | Phase::Valid | Phase::Failed => {
+                on(self.command.angle) && self.reads(self.command.angle, sensors)
             }
         }
+    }
+
+    fn counter(&self, sensors: &PedestalSensors) -> Counter {
+        let agrees = self.reads(sensors.motor_counter / TABLE_STEPS_PER_TENTH, sensors);
+        if agrees { Counter::Agrees } else { Counter::Disagrees }
+    }
+
+    /// Does the potentiometer read an angle, 0.1 degree? Not before it was read at the + limit.
+    fn reads(&self, angle: i32, sensors: &PedestalSensors) -> bool {
+        self.at_limit.is_some_and(|at_limit| {
+            let turned = f64::from(angle.saturating_sub(AT_LIMIT)) * COUNTS_PER_TENTH;
+            let read = f64::from(sensors.table_potentiometer) - f64::from(at_limit);
+            (read - turned).abs() <= AGREEMENT
+        })
     }
 }
 

@@ -23,8 +23,8 @@ pub struct State {
     pub since: Tick,
     /// Step of CALIBRATE.
     pub phase: Phase,
-    /// Potentiometer at the + limit, counts.
-    pub at_limit: u16,
+    /// Potentiometer at the + limit, counts, once it was read there, or of the time before a restart.
+    pub at_limit: Option<u16>,
     /// Numbers of the orders to the motor.
     pub motor: Commander,
     /// The last order to the motor.
@@ -38,6 +38,6 @@ pub struct State {
 impl State {
     /// A calibration is under way.
     pub(super) fn is_calibrating(&self) -> bool {
-        matches!(self.phase, Phase::Seeking | Phase::Setting)
+        matches!(self.phase, Phase::Seeking | Phase::Setting | Phase::Parking)
     }
 }

@@ -14,7 +14,8 @@ use rcs_core::{
     frame::{Frame, Vector, norm},
     handshake::{Arrival, FIRST_STEP, Receiver, successor},
     interface::{
-        ChangingPose, CommonMemory, ExternalInputs, Header, PrimOutputs, Reason, T3iOutputs, pose_range,
+        ChangingPose, CommonMemory, Decided, ExternalInputs, Header, PrimOutputs, Reason, T3iOutputs,
+        pose_range,
         prim::{PrimReport, PrimVerb},
         t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
     },
@@ -282,7 +283,7 @@ impl Rig {
                 (number::PATH_CLOCK, of_tick.path_clock),
                 (number::RECORD_POSE, of_tick.record_pose),
             ] {
-                self.rows.note(&Header { table, row, ..Header::default() });
+                self.rows.note(&Header { decided: Some(Decided { table, row }), ..Header::default() });
             }
         }
         let t3i = self.t3i.step(self.tick, &self.memory, stalled);

@@ -37,8 +37,9 @@ impl Watch {
         rig.step();
         let (header, command) = (rig.memory.prim.header, rig.memory.prim.status.echo);
         // The condition, or a sensor that fails.
-        let table = TABLES[usize::from(header.table) - 1].name;
-        if matches!((table, header.row), ("GO-UNTIL" | "GO-WHILE", 1 | 2)) && !rig.at_rest() {
+        let decided = header.decided.unwrap();
+        let table = TABLES[usize::from(decided.table) - 1].name;
+        if matches!((table, decided.row), ("GO-UNTIL" | "GO-WHILE", 1 | 2)) && !rig.at_rest() {
             self.trip.get_or_insert((command, before, self.speed()));
         }
         if rig.memory.prim.t3i.number == self.number {

@@ -10,7 +10,7 @@ use rcs_core::{
     handshake::Arrival,
     interface::{
         Reason,
-        quick_change::{QuickChangeReport, QuickChangeVerb},
+        quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
     },
 };
 
@@ -27,21 +27,6 @@ pub enum Step {
     Stuck,
     /// The sensors failed on the way.
     Faulty,
-}
-
-/// Where the locking ring is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Ring {
-    /// No reading has counted yet.
-    Unread,
-    /// Locked.
-    Locked,
-    /// Unlocked.
-    Unlocked,
-    /// Seen by neither sensor: on its way, or stuck.
-    Between,
-    /// Seen by both sensors, which cannot be.
-    Both,
 }
 
 /// What the id pins of the mated gripper are worth.
@@ -75,7 +60,7 @@ pub struct Request {
 #[derive(Clone, Copy, Debug, Variables)]
 pub struct Situation {
     /// Where the ring is.
-    pub ring: Ring,
+    pub ring: RingPosition,
     /// What the id is worth.
     pub id: Id,
     /// Time of the command.

@@ -8,7 +8,7 @@ decision_table! {
     pub QC_LOCK: fn qc_lock(super::Step, super::Situation) -> super::Action or () {
         Start {
             1:  ring: Unread                                => Wait;
-            2:  ring: Both                                  => Fail(SensorMalfunction)  -> Faulty;
+            2:  ring: Implausible                                  => Fail(SensorMalfunction)  -> Faulty;
             3:  ring: Locked, id: Illegal                   => Fail(SensorMalfunction)  -> Faulty;
             4:  ring: Locked, id: Legal                     => Report(Locked)           -> Watch;
             5:  ring: Unlocked | Between, clock: Running    => Lock;

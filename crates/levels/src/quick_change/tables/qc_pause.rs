@@ -14,7 +14,7 @@ decision_table! {
         }
         Start | Watch {
             3:  ring: Unread            => Wait;
-            4:  ring: Both              => Report(SensorMalfunction);
+            4:  ring: Implausible              => Report(SensorMalfunction);
             5:  id: Illegal             => Report(SensorMalfunction);
             6:  ring: Locked            => Report(Locked);
             7:  ring: Unlocked          => Report(Unlocked);

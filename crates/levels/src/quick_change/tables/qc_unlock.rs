@@ -8,7 +8,7 @@ decision_table! {
     pub QC_UNLOCK: fn qc_unlock(super::Step, super::Situation) -> super::Action or () {
         Start {
             1:  ring: Unread                                => Wait;
-            2:  ring: Both                                  => Fail(SensorMalfunction)  -> Faulty;
+            2:  ring: Implausible                                  => Fail(SensorMalfunction)  -> Faulty;
             3:  ring: Unlocked                              => Report(Unlocked)         -> Watch;
             4:  ring: Locked | Between, clock: Running      => Unlock;
             5:  ring: Locked | Between, clock: Expired      => Fail(Stuck)              -> Stuck;

@@ -6,6 +6,7 @@ pub mod fix_grip;
 pub mod get_endeff;
 pub mod get_object;
 pub mod goto;
+pub mod hindrance;
 pub mod insert_tool;
 pub mod move_obj_to_dest;
 pub mod ordered;
@@ -23,9 +24,10 @@ use rcs_core::{
     table::Choice,
 };
 
-use self::{accept::accept, ordered::ordered};
+use self::{accept::accept, hindrance::hindrance, ordered::ordered};
 use crate::{
-    execution::{Asked, EXECUTE, Work},
+    execution::{Asked, EXECUTE, Orders as Commander, Work},
+    halt::{EFFECT, Futile, HALT, Halting, Replaced},
     places::Missing,
 };
 
@@ -38,18 +40,20 @@ pub enum Held {
     Right,
     /// It holds another object.
     Other,
+    /// It holds something, and nothing says what it is.
+    Something,
+    /// Its sensors do not tell: counts as held.
+    NotKnown,
 }
 
 /// With which grip the object of the command is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripHeld {
-    /// Subtask has not seen how it was taken.
-    Unknown,
     /// The grip for the source location.
     Source,
     /// The grip for the destination location, which may be the same.
     Destination,
-    /// Neither of the two.
+    /// Neither of the two, or the object is not held.
     Neither,
 }
 
@@ -61,6 +65,28 @@ pub enum Vision {
     NotNeeded,
     /// It must be found.
     Needed,
+    /// It has been found, and nothing has moved it since.
+    Done,
+}
+
+/// Is there something where the command wants it?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Where {
+    /// At the location of the command, in its grip.
+    There,
+    /// Elsewhere, or nowhere.
+    Elsewhere,
+}
+
+/// An exchange of grippers that is half done: the robot stands in a holster.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Exchange {
+    /// None: the robot is clear of the holsters.
+    None,
+    /// In the holster of the wanted gripper.
+    Wanted,
+    /// In that of another one.
+    Other,
 }
 
 /// End effector state (V.3.1): right, wrong, none.
@@ -100,13 +126,87 @@ pub enum Pedestal {
     Silent,
 }
 
+/// The robot and the tool drum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Drum {
+    /// The fingers are around a tool in the drum.
+    Inside,
+    /// The robot stands at a place outside.
+    Outside,
+    /// It stands at no place: it may be on its way into the drum or out of it.
+    Unplaced,
+}
+
+/// Who has the part that is regripped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Part {
+    /// The robot.
+    Robot,
+    /// Robot and pedestal.
+    Both,
+    /// The pedestal, and something is between the robot's fingers, which may be the part.
+    Touched,
+    /// The pedestal.
+    Hand,
+    /// Neither of them.
+    Nobody,
+    /// The pedestal has another object.
+    Other,
+    /// The pedestal has nothing, and the robot something unknown.
+    Unknown,
+    /// The robot's gripper does not tell.
+    NotKnown,
+}
+
+/// Where the rotary table stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Turn {
+    /// At the angle in which it receives the object.
+    Receive,
+    /// At the angle to which it turns the object.
+    Turned,
+    /// Between, or beyond them.
+    Between,
+}
+
 /// The hand of the pedestal, by its opening.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Hand {
-    /// It stands at the grasp size or below it: nothing is between its fingers.
-    Empty,
-    /// It stands above.
-    Gripping,
+    /// As wide as the object needs it to come in.
+    Open,
+    /// Narrower.
+    Narrow,
+}
+
+/// Where the robot is, for FIX-GRIP.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Robot {
+    /// At the pedestal, for the source grip.
+    First,
+    /// At the pedestal, for the destination grip.
+    Third,
+    /// At PED-SAFE.
+    Safe,
+    /// Elsewhere, or on a way.
+    Away,
+}
+
+/// How far the table turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Flip {
+    /// By the whole flip angle of the object.
+    Whole,
+    /// By what is left of it.
+    Rest,
+}
+
+/// The part in the pedestal's hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum PedestalHand {
+    /// There is none.
+    Free,
+    /// It is there, alone or together with the robot.
+    HoldsPart,
 }
 
 /// Which holster is moved to.
@@ -136,6 +236,8 @@ pub enum Ordered {
     Emove,
     /// The Active Pedestal.
     Pedestal,
+    /// Both: they are pausing.
+    Both,
 }
 
 /// What a new command needs, for [`accept::ACCEPT`].
@@ -151,6 +253,19 @@ pub struct Request {
     pub pedestal: PedestalData,
     /// What the task data lack.
     pub missing: Missing,
+}
+
+/// A part in the pedestal's hand, for [`hindrance::HINDRANCE`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Hindrance {
+    /// Is the command new?
+    pub asked: Asked,
+    /// The part.
+    pub pedestal: PedestalHand,
+    /// The command.
+    pub verb: SubtaskVerb,
+    /// End effector state.
+    pub gripper: Gripper,
 }
 
 /// How the last order of the command stands, for [`ordered::ORDERED`].
@@ -177,10 +292,24 @@ pub struct Situation {
     pub vision: Vision,
     /// End effector state.
     pub gripper: Gripper,
+    /// An exchange that is half done.
+    pub exchange: Exchange,
+    /// Where the robot stands: at the object of the command, in its source grip?
+    pub station: Where,
+    /// Where the object of the command was let go last: at its destination?
+    pub placed: Where,
+    /// The tool drum.
+    pub drum: Drum,
     /// What the position is named by.
     pub named: Named,
-    /// Hand of the pedestal.
+    /// Who has the part that is regripped.
+    pub part: Part,
+    /// The rotary table.
+    pub table: Turn,
+    /// The hand of the pedestal.
     pub hand: Hand,
+    /// Where the robot is.
+    pub robot: Robot,
 }
 
 /// What preprocess has found in a tick.
@@ -188,10 +317,16 @@ pub struct Situation {
 pub struct Seen {
     /// What the command buffer holds.
     pub arrival: Arrival,
+    /// Is the command to be accepted or refused?
+    pub asked: Asked,
+    /// What a new command replaces.
+    pub replaced: Replaced,
     /// The command in it.
     pub verb: SubtaskVerb,
     /// What a new command needs.
     pub request: Request,
+    /// What hinders it.
+    pub hindrance: Hindrance,
     /// How the last order of the command stands.
     pub orders: Orders,
     /// The state variables of the command's table; [`Orders`] decide on `work`.
@@ -236,7 +371,7 @@ pub enum Action {
     /// MOV-TO-LOC to E-move: out of the pedestal's way.
     MovToPedSafe,
     /// FLIP to the pedestal.
-    PedFlip,
+    PedFlip(Flip),
     /// MOV-TO-OBJ to E-move: the object in the pedestal's hand, in the destination grip.
     MovToObjAtPed,
     /// GRASP-OBJ to E-move, in the destination grip.
@@ -261,10 +396,34 @@ pub enum Action {
     PassUpPedestal(Reason),
 }
 
+impl From<Halting> for Action {
+    fn from(halting: Halting) -> Self {
+        match halting {
+            Halting::Stop => Self::Pause,
+            Halting::Wait => Self::Wait,
+        }
+    }
+}
+
+impl From<Futile> for Action {
+    fn from(Futile::Fail(reason): Futile) -> Self {
+        Self::Fail(reason)
+    }
+}
+
+impl Commander for Action {
+    fn is_order(&self) -> bool {
+        !matches!(
+            self,
+            Self::Wait | Self::Pause | Self::Finish | Self::Fail(_) | Self::PassUp | Self::PassUpPedestal(_)
+        )
+    }
+}
+
 commands! {
     /// Consult the table of a command.
     pub fn of_command(SubtaskVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, ordered::ORDERED;
+        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, hindrance::HINDRANCE, ordered::ORDERED;
         None | Pause            => s_pause::s_pause;
         GetEndeff               => get_endeff::get_endeff;
         GetObject               => get_object::get_object;
@@ -284,8 +443,9 @@ commands! {
 /// Consult the tables in turn until a row decides.
 #[must_use]
 pub fn decide(step: Step, seen: &Seen) -> Choice<Action, Step> {
+    let of_command = |work| of_command(seen.verb, step, &Situation { work, ..seen.situation });
     accept(step, &seen.request).then(number::ACCEPT, |()| {
-        ordered(step, &seen.orders)
-            .then(number::ORDERED, |work| of_command(seen.verb, step, &Situation { work, ..seen.situation }))
+        hindrance(step, &seen.hindrance)
+            .then(number::HINDRANCE, |()| ordered(step, &seen.orders).then(number::ORDERED, of_command))
     })
 }

@@ -14,5 +14,10 @@ decision_table! {
         7:  ordered: Pedestal, pedestal: Cannot             => PassUpPedestal(PedestalCannot);
         8:  ordered: Pedestal, pedestal: Faulty             => PassUpPedestal(PedestalError);
         9:  ordered: Pedestal, pedestal: Silent             => PassUpPedestal(PedestalSilent);
+        10: ordered: Both, emove: Error | Joystick | Lost   => PassUp;
+        11: ordered: Both, pedestal: Silent                 => PassUpPedestal(PedestalSilent);
+        12: ordered: Both, pedestal: Moving                 => consult(Busy);
+        13: ordered: Both, emove: Pending | Executing       => consult(Busy);
+        14: ordered: Both, emove: Done                      => consult(Over);
     }
 }

@@ -3,25 +3,32 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// PLACE-OBJ (V.3.1): move an object to a location and release it. E-move reports an object that is lost on the way.
+    /// PLACE-OBJ (V.3.1): move an object to a location and release it; done at once if that is the last that was released.
+    /// E-move reports an object that is lost on the way.
     pub PLACE_OBJ: fn place_obj(enum PlaceObjStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                               => Wait;
+            1:  work: Busy                                => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: held: Right, grip: Destination | Unknown    => MovObjTo         -> Moving;
-            3: held: Right, grip: Source | Neither         => Fail(RegripNeeded);
-            4: held: Nothing | Other                       => Fail(NothingHeld);
+            2:  held: Right, grip: Destination            => MovObjTo         -> Moving;
+            3:  held: Right, grip: Source | Neither       => Fail(RegripNeeded);
+            4:  held: Nothing, placed: There              => Finish;
+            5:  held: Nothing, placed: Elsewhere          => Fail(NothingHeld);
+            6:  held: Other                               => Fail(NothingHeld);
+            7:  held: Something                           => Fail(UnknownHeld);
+            8:  held: NotKnown                            => Fail(HeldNotKnown);
         }
         /// The object is on its way.
         Moving {
-            5: held: Right                                 => Release          -> Releasing;
-            6: held: Nothing | Other                       => Fail(ObjectLost);
+            9:  held: Right                               => Release          -> Releasing;
+            10: held: Nothing | Other                     => Fail(ObjectLost);
+            11: held: Something                           => Fail(UnknownHeld);
+            12: held: NotKnown                            => Fail(HeldNotKnown);
         }
         /// The gripper is opening.
         Releasing {
-            7: work: Over                                  => Finish;
+            13: work: Over                                => Finish;
         }
     }
 }

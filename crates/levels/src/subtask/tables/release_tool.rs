@@ -3,7 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// RELEASE-TOOL (V.3.1): let go of a tool that is in the tool drum.
+    /// RELEASE-TOOL (V.3.1): let go of a tool that is in the tool drum. Fingers that have let go and are still around the tool,
+    /// or on their way out, are led out: E-move knows where they are.
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                               => Wait;
@@ -11,11 +12,17 @@ decision_table! {
         /// Nothing done yet.
         Start {
             2: held: Right                                 => ReleaseTool      -> Releasing;
-            3: held: Nothing | Other                       => Fail(NothingHeld);
+            3: drum: Inside, held: Nothing | Something     => ReleaseTool      -> Releasing;
+            4: drum: Inside, held: NotKnown                => ReleaseTool      -> Releasing;
+            5: drum: Unplaced, held: Nothing               => ReleaseTool      -> Releasing;
+            6: drum: Outside, held: Nothing                => Fail(NothingHeld);
+            7: held: Other                                 => Fail(NothingHeld);
+            8: held: Something                             => Fail(UnknownHeld);
+            9: held: NotKnown                              => Fail(HeldNotKnown);
         }
         /// E-move is letting go and leaving the drum.
         Releasing {
-            4: work: Over                                  => Finish;
+            10: work: Over                                 => Finish;
         }
     }
 }

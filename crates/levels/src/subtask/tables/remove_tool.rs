@@ -18,5 +18,9 @@ decision_table! {
             4: held: Right                                 => Finish;
             5: held: Nothing | Other                       => Fail(ObjectLost);
         }
+        any {
+            6: held: Something                             => Fail(UnknownHeld);
+            7: held: NotKnown                              => Fail(HeldNotKnown);
+        }
     }
 }

@@ -5,7 +5,7 @@ use rcs_core::{
     handshake::{Arrival, Receiver},
     interface::{
         CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, Report,
-        emove::{EmoveCommand, EmoveVerb},
+        emove::{EmoveCommand, EmoveVerb, Holding, ObjectGrip, PlacedObject, Standing},
         pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
         subtask::{SubtaskCommand, SubtaskStatus, SubtaskVerb},
     },
@@ -49,6 +49,8 @@ pub struct EmoveDouble {
     pub outputs: EmoveOutputs,
     pub received: Vec<EmoveCommand>,
     pub mishap: Option<(EmoveVerb, Mishap)>,
+    /// It reports done and does nothing.
+    pub ignores: bool,
 }
 
 impl EmoveDouble {
@@ -82,6 +84,7 @@ impl EmoveDouble {
         let status = &mut self.outputs.status;
         status.report = Report::Done;
         match mishap {
+            _ if self.ignores => {}
             None => self.effect(command),
             Some(Mishap::Error(reason)) => (status.report, status.reason) = (Report::Error, reason),
             Some(Mishap::Special(reason)) => (status.report, status.reason) = (Report::JoystickOn, reason),
@@ -89,7 +92,7 @@ impl EmoveDouble {
             Some(Mishap::NoEffect) => {}
             Some(Mishap::Loss) => {
                 self.effect(command);
-                self.hold("");
+                self.hold("", 0);
             }
             Some(Mishap::OtherGripper(id)) => status.end_effector_id = id,
         }
@@ -97,20 +100,44 @@ impl EmoveDouble {
 
     fn effect(&mut self, command: &EmoveCommand) {
         match command.command {
-            EmoveVerb::GraspObj | EmoveVerb::AcquireTool => self.hold(command.object.as_str()),
-            EmoveVerb::Release | EmoveVerb::ReleaseTool => self.hold(""),
-            EmoveVerb::QcDetach => self.outputs.status.end_effector_id = 0,
-            EmoveVerb::QcAttach => self.outputs.status.end_effector_id = command.end_effector_id,
+            EmoveVerb::GraspObj | EmoveVerb::AcquireTool => self.hold(command.object.as_str(), command.grip),
+            EmoveVerb::Release => {
+                if let Some(held) = self.outputs.status.held.object() {
+                    self.outputs.status.placed = Some(PlacedObject {
+                        object: held,
+                        grip: command.grip,
+                        location: command.location,
+                        record: command.location_record,
+                        array: command.location_array,
+                    });
+                }
+                self.hold("", 0);
+            }
+            EmoveVerb::ReleaseTool => self.hold("", 0),
+            EmoveVerb::QcDetach => {
+                (self.outputs.status.end_effector_id, self.outputs.status.exchange) = (0, None);
+            }
+            EmoveVerb::QcAttach => {
+                self.outputs.status.end_effector_id = command.end_effector_id;
+                self.outputs.status.exchange = None;
+            }
             EmoveVerb::MovToLoc | EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => {
-                self.outputs.status.at = Some(command.location);
+                self.outputs.status.at = Some(Standing {
+                    location: command.location,
+                    record: command.location_record,
+                    array: command.location_array,
+                    grip: Some(command.grip).filter(|_| command.command != EmoveVerb::MovToLoc),
+                });
             }
             _ => {}
         }
     }
 
     /// The gripper holds an object; an empty name for none.
-    pub fn hold(&mut self, object: &str) {
-        self.outputs.status.held = Some(Name16::new(object).unwrap()).filter(|name| !name.is_empty());
+    pub fn hold(&mut self, object: &str, grip: i32) {
+        let object = Name16::new(object).unwrap();
+        let held = Holding::Object(ObjectGrip { object, grip });
+        self.outputs.status.held = if object.is_empty() { Holding::Nothing } else { held };
     }
 }
 
@@ -126,6 +153,8 @@ pub struct PedestalDouble {
     pub part: i32,
     /// The hand loses the object while the table turns.
     pub slips: bool,
+    /// It reports done and does nothing.
+    pub ignores: bool,
 }
 
 impl PedestalDouble {
@@ -153,10 +182,16 @@ impl PedestalDouble {
                         _ => (PedestalReport::Done, Reason::None),
                     };
                     match command.command {
-                        PedestalVerb::PreGrip | PedestalVerb::Release => {
-                            status.grip_size = command.grasp_size
+                        _ if mishap == Some(Mishap::NoEffect) || self.ignores => {}
+                        PedestalVerb::PreGrip => {
+                            status.grip_size = command.grasp_size;
+                            status.table_position = Some(command.table_angle);
                         }
+                        PedestalVerb::Release => status.grip_size = command.grasp_size,
                         PedestalVerb::Grip => status.grip_size = self.part.max(command.grasp_size),
+                        PedestalVerb::Flip if !self.slips => {
+                            status.table_position = status.table_position.map(|at| at + command.table_angle);
+                        }
                         PedestalVerb::Flip if self.slips => status.grip_size = 0,
                         _ => {}
                     }

@@ -13,7 +13,7 @@ use depc::{
 use rcs_core::{
     frame::{Frame, Vector},
     interface::{
-        CommonMemory, ExternalInputs, Header, T3iOutputs,
+        CommonMemory, Decided, ExternalInputs, Header, T3iOutputs,
         device::{LinkBytes, RESOLVER_COUNTS},
         t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
     },
@@ -110,10 +110,10 @@ impl Bench {
         let inputs = Inputs { tick: self.tick, memory: &self.memory, external: &self.external, data: &() };
         Process::<()>::step(&mut self.t3i, &inputs, &mut outputs);
         self.memory.t3i = outputs;
-        let received = (tables::number::RECEIVE, self.t3i.state.receive_row);
-        let reported = (tables::number::REPORT, self.t3i.state.report_row);
-        for (table, row) in [reported, received, (outputs.header.table, outputs.header.row)] {
-            self.rows.note(&Header { table, row, ..Header::default() });
+        let received = Decided { table: tables::number::RECEIVE, row: self.t3i.state.receive_row };
+        let reported = Decided { table: tables::number::REPORT, row: self.t3i.state.report_row };
+        for decided in [Some(reported), Some(received), outputs.header.decided] {
+            self.rows.note(&Header { decided, ..Header::default() });
         }
         self.cell(&outputs.link_tx, false);
         &self.memory.t3i
@@ -141,8 +141,8 @@ impl Bench {
 
     /// Row that fired, as table and number.
     fn row(&self) -> (&'static str, u8) {
-        let header = &self.memory.t3i.header;
-        (tables::TABLES[usize::from(header.table) - 1].name, header.row)
+        let Decided { table, row } = self.memory.t3i.header.decided.unwrap();
+        (tables::TABLES[usize::from(table) - 1].name, row)
     }
 
     fn sent(&self) -> Option<Plate> {

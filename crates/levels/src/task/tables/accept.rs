@@ -28,8 +28,10 @@ decision_table! {
         19: verb: InsertTool | ReleaseTool | AcquireTool | RemoveTool, tool: Unfit  => Fail(WrongGripper);
         20: verb: InsertTool | ReleaseTool | AcquireTool | RemoveTool, tool: NoGrip => Fail(UnknownGrip);
         21: verb: Transfer | Refixture | Move, grips: Different, pedestal: Missing  => Fail(NoPedestalData);
-        22: verb: Pause                                                             => consult;
-        23: control: Manual                                                         => Fail(JoystickOn);
-        24: control: Automatic                                                      => consult;
+        22: verb: Refixture, grips: Same                                            => Fail(EqualGrips);
+        23: verb: AcquireTool, near: No                                             => Fail(NotNearDrum);
+        24: verb: Pause                                                             => consult;
+        25: control: Manual                                                         => Fail(JoystickOn);
+        26: control: Automatic                                                      => consult;
     }
 }

@@ -3,22 +3,35 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACQUIRE (V.4.1): get the proper end effector, move to the object and grasp it.
+    /// ACQUIRE (V.4.1): get the proper end effector, move to the object and grasp it. The data base is told of
+    /// an object that is taken from the MBD (an extension: SPECNOTES.md).
     pub ACQUIRE: fn acquire(enum AcquireStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy  => Wait;
+            1: work: Busy           => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: work: Over  => GetEndeff  -> Gripper;
+            2: update: Owed         => TellOwed   -> Settling;
+        }
+        /// The data base is told an earlier update again.
+        Settling {
+            3: update: Owed         => TellOwed;
+        }
+        Start | Settling {
+            4: work: Over           => GetEndeff  -> Gripper;
         }
         /// The gripper is being fetched.
         Gripper {
-            3: work: Over  => GetObject  -> Object;
+            5: work: Over           => GetObject  -> Object;
         }
         /// The object is being fetched.
         Object {
-            4: work: Over  => Finish;
+            6: update: Due          => Update     -> Telling;
+            7: update: None | Owed  => Finish;
+        }
+        /// The data base is being told that the robot has the object.
+        Telling {
+            8: work: Over           => Finish;
         }
     }
 }

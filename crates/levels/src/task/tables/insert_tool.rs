@@ -4,21 +4,22 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// INSERT-TOOL (V.4.1): insert a tool, which a MOVE has brought near the tool drum, into the drum; done
-    /// at once if it is there.
+    /// at once if it is there. Whether a robot at no known place is on its way into the drum, E-move knows.
     pub INSERT_TOOL: fn insert_tool(enum InsertToolStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                      => Wait;
+            1: work: Busy                                     => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: tool: Held, station: Transfer   => Finish;
-            3: tool: Held, station: Safe       => InsertTool  -> Inserting;
-            4: tool: Held, station: Elsewhere  => Fail(NotPrepared);
-            5: tool: Free | None               => Fail(NotPrepared);
+            2: tool: Held, drum: Inside                       => Finish;
+            3: tool: Held, station: Safe | Transfer | Unplaced => InsertTool  -> Inserting;
+            4: tool: Held, station: Elsewhere                 => Fail(NotPrepared);
+            5: tool: Free | None                              => Fail(NotPrepared);
+            6: tool: Unsure                                   => Fail(UnknownHeld);
         }
         /// The tool is being inserted.
         Inserting {
-            6: work: Over                      => Finish;
+            7: work: Over                                     => Finish;
         }
     }
 }

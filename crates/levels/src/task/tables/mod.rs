@@ -25,9 +25,13 @@ use rcs_core::{
 };
 
 use self::{accept::accept, joystick::Control, ordered::ordered};
-use super::plan::{Grip, Gripper, Grips, Handling, Named, PedestalData, Plan, TaskVerb, ToolData};
+use super::{
+    ledger::{Part, Placed},
+    plan::{Grip, Gripper, Grips, Handling, Named, Near, PedestalData, Plan, Resumed, TaskVerb, ToolData},
+};
 use crate::{
-    execution::{Asked, EXECUTE, Outcome, Work},
+    execution::{Asked, EXECUTE, Orders as Commander, Outcome, Work},
+    halt::{EFFECT, Futile, HALT, Halting, Replaced},
     places::Missing,
 };
 
@@ -38,8 +42,12 @@ pub enum Holding {
     NotHeld,
     /// The object of the command.
     Held,
-    /// Something else.
+    /// Another object.
     Other,
+    /// Something, and nothing says what it is.
+    Something,
+    /// The sensors do not tell: counts as held.
+    NotKnown,
 }
 
 /// Where the robot is to be at the end.
@@ -89,6 +97,8 @@ pub enum Tool {
     Free,
     /// It holds the tool.
     Held,
+    /// It holds something unknown, or its sensors do not tell.
+    Unsure,
 }
 
 /// Where the robot is, for the tool commands.
@@ -96,10 +106,32 @@ pub enum Tool {
 pub enum Station {
     /// At none of the following.
     Elsewhere,
-    /// Near the drum: at TOOL-SAFE, or at the source location that the command names.
+    /// Near the drum: at TOOL-SAFE.
     Safe,
     /// In the transfer location of the drum.
     Transfer,
+    /// At no known place: it may be on its way.
+    Unplaced,
+}
+
+/// The fingers and the tool drum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Drum {
+    /// They are not around a tool in it.
+    Outside,
+    /// They are.
+    Inside,
+}
+
+/// Can the robot go to the position of a POSITION, as far as Task can tell?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Way {
+    /// It is there, or the task data have a trajectory.
+    Known,
+    /// They have none.
+    NoTrajectory,
+    /// It is not known where the robot is.
+    NoStart,
 }
 
 /// A location of the command, to which POSITION goes.
@@ -175,6 +207,8 @@ pub struct Request {
     pub grips: Grips,
     /// The PED-PARA record of the object (VII.7.4).
     pub pedestal: PedestalData,
+    /// Is the destination near the tool drum?
+    pub near: Near,
     /// What has the robot.
     pub control: Control,
 }
@@ -213,6 +247,16 @@ pub struct Situation {
     pub tool: Tool,
     /// Where the robot is.
     pub station: Station,
+    /// The tool drum.
+    pub drum: Drum,
+    /// The way to the position.
+    pub way: Way,
+    /// Was the command sent before and not finished?
+    pub resumed: Resumed,
+    /// Has it placed its object already?
+    pub placed: Placed,
+    /// Is the part in the pedestal's hand?
+    pub part: Part,
 }
 
 /// What preprocess has found in a tick.
@@ -220,6 +264,10 @@ pub struct Situation {
 pub struct Seen {
     /// What the command buffer holds.
     pub arrival: Arrival,
+    /// Is the command to be accepted or refused?
+    pub asked: Asked,
+    /// What a new command replaces; [`joystick::JOYSTICK`] decides on `joystick`.
+    pub replaced: Replaced,
     /// The new command looked up, or the current one.
     pub plan: Plan,
     /// What a new command needs; [`joystick::JOYSTICK`] decides on `control`.
@@ -283,6 +331,8 @@ pub enum Action {
     Update,
     /// Tell the Data System where the object now is, and GOTO-ENDPT to Subtask.
     UpdateAndGotoEndpt,
+    /// Tell the Data System where the object now is, and >POSITION to Subtask.
+    UpdateAndPosition(Goal),
     /// Wait for the Data System, which has been told.
     AwaitUpdate,
     /// Report finished.
@@ -293,10 +343,46 @@ pub enum Action {
     PassUp,
 }
 
+impl From<Halting> for Action {
+    fn from(halting: Halting) -> Self {
+        match halting {
+            Halting::Stop => Self::Pause,
+            Halting::Wait => Self::Wait,
+        }
+    }
+}
+
+impl From<Futile> for Action {
+    fn from(Futile::Fail(reason): Futile) -> Self {
+        Self::Fail(reason)
+    }
+}
+
+impl Commander for Action {
+    fn is_order(&self) -> bool {
+        matches!(
+            self,
+            Self::GetEndeff
+                | Self::GetObject
+                | Self::FixGrip
+                | Self::PlaceObj
+                | Self::MoveObjToDest
+                | Self::GotoDest
+                | Self::GotoEndpt
+                | Self::Position(_)
+                | Self::Release
+                | Self::InsertTool
+                | Self::ReleaseTool
+                | Self::AcquireTool
+                | Self::RemoveTool
+        )
+    }
+}
+
 commands! {
     /// Consult the table of a command.
     pub fn of_command(TaskVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, joystick::JOYSTICK, ordered::ORDERED;
+        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, joystick::JOYSTICK, ordered::ORDERED;
         None | Pause    => pause::pause;
         Transfer        => transfer::transfer;
         Move            => mov::r#move;

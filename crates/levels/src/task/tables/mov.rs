@@ -4,7 +4,7 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// MOVE (V.4.1): move an object to a location and hold it there, or move the robot; the end-at location
-    /// is ignored.
+    /// is ignored. Sent again after an interruption it goes on with the part in the pedestal's hand.
     pub MOVE: fn r#move(enum MoveStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                            => Wait;
@@ -13,33 +13,36 @@ decision_table! {
         Start {
             2:  handling: NoObject                    => GotoDest       -> Moving;
             3:  handling: Object, update: Owed        => TellOwed       -> Settling;
-            4:  handling: Object, update: None | Due  => GetEndeff      -> Gripper;
         }
         /// The data base is told an earlier update again.
         Settling {
-            5:  work: Over                            => GetEndeff      -> Gripper;
+            4:  update: Owed                          => TellOwed;
+        }
+        Start | Settling {
+            5:  part: InPedestal, grips: Different    => FixGrip        -> Regripping;
+            6:  work: Over                            => GetEndeff      -> Gripper;
         }
         /// The gripper is being fetched.
         Gripper {
-            6:  work: Over                            => GetObject      -> Object;
+            7:  work: Over                            => GetObject      -> Object;
         }
         /// The object is being fetched.
         Object {
-            7:  grips: Same                           => MoveObjToDest  -> Moving;
-            8:  grips: Different                      => FixGrip        -> Regripping;
+            8:  grips: Same                           => MoveObjToDest  -> Moving;
+            9:  grips: Different                      => FixGrip        -> Regripping;
         }
         /// The object is being regripped on the pedestal.
         Regripping {
-            9:  work: Over                            => MoveObjToDest  -> Moving;
+            10: work: Over                            => MoveObjToDest  -> Moving;
         }
         /// The object, or the robot alone, is on its way.
         Moving {
-            10: update: Due                           => Update         -> Telling;
-            11: update: None | Owed                   => Finish;
+            11: update: Due                           => Update         -> Telling;
+            12: update: None | Owed                   => Finish;
         }
         /// The data base is being told where the object is.
         Telling {
-            12: work: Over                            => Finish;
+            13: work: Over                            => Finish;
         }
     }
 }

@@ -4,27 +4,33 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// RELEASE-TOOL (V.4.1): let go of a tool in the transfer location, then go to the end-at location; done
-    /// at once if the tool gripper is free and there.
+    /// at once if the tool gripper is free and there. Sent again after an interruption it goes on: fingers that
+    /// have let go are led out of the drum.
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                             => Wait;
+            1:  work: Busy                                                => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: tool: Held, station: Transfer          => ReleaseTool  -> Releasing;
-            3: tool: Held, station: Safe | Elsewhere  => Fail(NotPrepared);
-            4: tool: Free, ends: There                => Finish;
-            5: tool: Free, ends: Here | Elsewhere     => Fail(NotPrepared);
-            6: tool: None                             => Fail(NotPrepared);
+            2:  tool: None                                                => Fail(NotPrepared);
+            3:  drum: Inside                                              => ReleaseTool  -> Releasing;
+            4:  tool: Held, station: Transfer | Unplaced                  => ReleaseTool  -> Releasing;
+            5:  tool: Held, station: Safe | Elsewhere                     => Fail(NotPrepared);
+            6:  tool: Unsure                                              => Fail(UnknownHeld);
+            7:  tool: Free, station: Unplaced, resumed: AtTool            => ReleaseTool  -> Releasing;
+            8:  tool: Free, ends: There                                   => Finish;
+            9:  tool: Free, resumed: AtTool | Leaving, ends: Here         => Finish;
+            10: tool: Free, resumed: AtTool | Leaving, ends: Elsewhere    => GotoEndpt    -> Leaving;
+            11: tool: Free, resumed: Not | Begun, ends: Here | Elsewhere  => Fail(NotPrepared);
         }
         /// The tool is being let go.
         Releasing {
-            7: ends: There | Elsewhere                => GotoEndpt    -> Leaving;
-            8: ends: Here                             => Finish;
+            12: ends: There | Elsewhere                                   => GotoEndpt    -> Leaving;
+            13: ends: Here                                                => Finish;
         }
         /// The robot is on its way to the end-at location.
         Leaving {
-            9: work: Over                             => Finish;
+            14: work: Over                                                => Finish;
         }
     }
 }

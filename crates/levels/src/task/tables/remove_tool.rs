@@ -4,26 +4,30 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// REMOVE-TOOL (V.4.1): pull a tool that has been acquired out of the tool drum, then go to the end-at
-    /// location; done at once if the tool is there.
+    /// location; done at once if the tool is there. Sent again after an interruption it goes on.
     pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                                                     => Wait;
+            1:  work: Busy                                                => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: tool: Held, station: Transfer                                  => RemoveTool  -> Removing;
-            3: tool: Held, station: Safe | Elsewhere, ends: There             => Finish;
-            4: tool: Held, station: Safe | Elsewhere, ends: Here | Elsewhere  => Fail(NotPrepared);
-            5: tool: Free | None                                              => Fail(NotPrepared);
+            2:  tool: Free | None                                         => Fail(NotPrepared);
+            3:  tool: Unsure                                              => Fail(UnknownHeld);
+            4:  station: Unplaced, resumed: Leaving                       => GotoEndpt   -> Leaving;
+            5:  station: Transfer | Unplaced                              => RemoveTool  -> Removing;
+            6:  ends: There                                               => Finish;
+            7:  resumed: AtTool | Leaving, ends: Here                     => Finish;
+            8:  resumed: AtTool | Leaving, ends: Elsewhere                => GotoEndpt   -> Leaving;
+            9:  resumed: Not | Begun, ends: Here | Elsewhere              => Fail(NotPrepared);
         }
         /// The tool is being pulled out.
         Removing {
-            6: ends: There | Elsewhere                                        => GotoEndpt   -> Leaving;
-            7: ends: Here                                                     => Finish;
+            10: ends: There | Elsewhere                                   => GotoEndpt   -> Leaving;
+            11: ends: Here                                                => Finish;
         }
         /// The robot is on its way to the end-at location.
         Leaving {
-            8: work: Over                                                     => Finish;
+            12: work: Over                                                => Finish;
         }
     }
 }

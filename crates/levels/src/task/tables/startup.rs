@@ -4,7 +4,7 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// STARTUP (V.4.1): connect the Data System: Abort, Initiate, Startup, which the terminal showed (IV.4.2
-    /// step 3), and the update that it did not take before, if there is one.
+    /// step 3), and the updates that it did not take before, if there are any.
     pub STARTUP: fn startup(enum StartupStep, super::Situation) -> super::Action {
         any {
             1: work: Busy          => Wait;
@@ -26,9 +26,10 @@ decision_table! {
             5: update: Owed        => ConnectAndTell  -> Settling;
             6: update: None | Due  => Connect;
         }
-        /// The data base is told an earlier update again.
+        /// The data base is told earlier updates again.
         Settling {
-            7: work: Over          => Finish;
+            7: update: Owed        => TellOwed;
+            8: update: None | Due  => Finish;
         }
     }
 }

@@ -6,6 +6,7 @@ use rcs_core::{
         CommonMemory, DataBaseCommand, DataBaseStatus, ExternalInputs, Header, HwsCommand, Reason, Report,
         SubtaskOutputs,
         data_base::{DataBaseReport, DataBaseVerb},
+        emove::{Holding, ObjectGrip, PlacedObject, Standing},
         hws::{HwsReport, HwsStatus},
         subtask::{SubtaskCommand, SubtaskVerb},
     },
@@ -39,6 +40,8 @@ pub struct SubtaskDouble {
     pub mishap: Option<(SubtaskVerb, Mishap)>,
     /// The joystick box is on.
     pub joystick: bool,
+    /// While a motion is under way, and after one that was interrupted, the robot is at no place.
+    pub loses_place: bool,
 }
 
 impl SubtaskDouble {
@@ -53,6 +56,13 @@ impl SubtaskDouble {
             Arrival::New => {
                 self.received.push(*command);
                 self.left = WORK;
+                let stands = matches!(
+                    command.command,
+                    SubtaskVerb::Pause | SubtaskVerb::GetEndeff | SubtaskVerb::Release
+                );
+                if self.loses_place && !stands {
+                    status.at = None;
+                }
                 (status.report, status.reason) = (Report::Executing, Reason::None);
             }
             Arrival::Same if self.left > 0 => {
@@ -91,27 +101,55 @@ impl SubtaskDouble {
                 self.stand("TOOL-TRNS");
             }
             SubtaskVerb::InsertTool => self.stand("TOOL-TRNS"),
-            SubtaskVerb::Release | SubtaskVerb::ReleaseTool => self.hold(""),
+            SubtaskVerb::Release => self.hold(""),
+            SubtaskVerb::ReleaseTool => {
+                self.hold("");
+                self.outputs.status.drum = false;
+            }
+            SubtaskVerb::RemoveTool => self.outputs.status.drum = false,
             SubtaskVerb::PlaceObj => {
                 self.hold("");
-                self.stand(command.location.as_str());
+                self.outputs.status.placed = Some(PlacedObject {
+                    object: command.object,
+                    grip: command.destination_grip,
+                    location: command.location,
+                    record: command.location_record,
+                    array: command.location_array,
+                });
+                self.stand_at(command);
             }
             SubtaskVerb::GotoDest
             | SubtaskVerb::GotoEndpt
             | SubtaskVerb::MoveObjToDest
-            | SubtaskVerb::Position => self.stand(command.location.as_str()),
+            | SubtaskVerb::Position => self.stand_at(command),
+            SubtaskVerb::FixGrip => status.pedestal_part = false,
             _ => {}
+        }
+    }
+
+    fn stand_at(&mut self, command: &SubtaskCommand) {
+        self.stand(command.location.as_str());
+        if let Some(at) = &mut self.outputs.status.at {
+            (at.record, at.array) = (command.location_record, command.location_array);
         }
     }
 
     /// The gripper holds an object; an empty name for none.
     pub fn hold(&mut self, object: &str) {
-        self.outputs.status.held = Some(Name16::new(object).unwrap()).filter(|name| !name.is_empty());
+        let object = Name16::new(object).unwrap();
+        let held = Holding::Object(ObjectGrip { object, grip: 1 });
+        if !object.is_empty() {
+            self.outputs.status.placed = None;
+        }
+        self.outputs.status.held = if object.is_empty() { Holding::Nothing } else { held };
     }
 
-    /// The robot stands at a location; an empty name for none that is known.
+    /// The robot stands at a location, in the drum if it is that of the drum; an empty name for none that is known.
     pub fn stand(&mut self, location: &str) {
-        self.outputs.status.at = Some(Name10::new(location).unwrap()).filter(|name| !name.is_empty());
+        let location = Name10::new(location).unwrap();
+        let at = Standing { location, ..Standing::default() };
+        self.outputs.status.at = Some(at).filter(|at| !at.location.is_empty());
+        self.outputs.status.drum = location.as_str() == "TOOL-TRNS";
     }
 }
 
@@ -290,6 +328,9 @@ impl<'d> Bench<'d> {
         self.subtask.outputs.status.end_effector_id = gripper;
         self.subtask.hold(object);
         self.subtask.stand(at);
+        if let Some(at) = &mut self.subtask.outputs.status.at {
+            at.record = self.data.locpt_named(&at.location).map(|id| id.number());
+        }
         self.step();
     }
 }

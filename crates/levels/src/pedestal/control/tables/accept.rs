@@ -8,9 +8,9 @@ decision_table! {
     pub ACCEPT: fn accept(super::Request) -> super::Action or () {
         1:  asked: Before           => consult;
         2:  verb: None              => Fail(UnknownCommand);
-        3:  angle: Unknown          => Fail(NotPrepared);
+        3:  angle: Unknown          => Fail(TableAngleUnknown);
         4:  angle: Beyond           => Fail(TableLimit);
-        5:  opening: Beyond         => Fail(GripUnattainable);
+        5:  opening: Beyond         => Fail(HandUnattainable);
         6:  opening: Within         => consult;
     }
 }

@@ -12,8 +12,9 @@ decision_table! {
         }
         /// The hand closes.
         Closing {
-            2:  object: Held            => Hold;
-            3:  object: None | Lost     => Fail(GraspMissed);
+            2:  object: Held            => Finish;
+            3:  object: None | Lost     => Lose(HandMissed);
+            4:  object: NotKnown        => Fail(HandUncertain);
         }
     }
 }

@@ -8,6 +8,7 @@ pub mod ordered;
 pub mod pause;
 pub mod pre_grip;
 pub mod release;
+pub mod restarted;
 
 use rcs_core::{
     Actions, Plain, Variables, commands,
@@ -17,7 +18,7 @@ use rcs_core::{
 };
 
 use self::{accept::accept, ordered::ordered};
-use crate::execution::{Asked, EXECUTE};
+use crate::execution::{Asked, EXECUTE, Work};
 
 /// Can the table turn as a command asks?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -26,7 +27,7 @@ pub enum Angle {
     Within,
     /// The angle is beyond the limits.
     Beyond,
-    /// The table is not calibrated: a relative angle leads nowhere.
+    /// The angle of the table is not known: a relative angle leads nowhere.
     Unknown,
 }
 
@@ -52,15 +53,35 @@ pub enum Ordered {
     Both,
 }
 
-/// What the hand holds.
+/// What the hand feels (VI.7.2 `grip-size`, `grip-force`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Object {
-    /// Nothing that it was to hold.
+    /// Its sensors cannot tell, or it does not answer.
+    NotKnown,
+    /// Nothing, and nothing was gripped.
     None,
     /// The object between its fingers.
     Held,
-    /// Nothing, though it gripped an object.
+    /// Nothing, or fingers that stand no wider than the grasp size, though an object was gripped.
     Lost,
+}
+
+/// Are the sensors of the hand calibrated?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Calibration {
+    /// Yes.
+    Known,
+    /// No.
+    Missing,
+}
+
+/// Was the hand told to grip, and not to open since?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Gripped {
+    /// No: it holds nothing that it was to hold.
+    No,
+    /// Yes: it may hold the object.
+    Yes,
 }
 
 /// What a new command needs, for [`accept::ACCEPT`].
@@ -96,6 +117,20 @@ pub struct Orders {
 pub struct Situation {
     /// What the hand holds.
     pub object: Object,
+    /// Are its sensors calibrated?
+    pub calibration: Calibration,
+    /// Was it told to grip?
+    pub gripped: Gripped,
+    /// What has become of its last command, whichever command of the pedestal that was for.
+    pub fingers: Work,
+}
+
+/// What a process that was started in the middle of a job has done about what it had ordered before, for
+/// [`restarted::RESTARTED`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Remains {
+    /// The processes that have its orders.
+    pub ordered: Ordered,
 }
 
 /// What preprocess has found in a tick.
@@ -109,6 +144,8 @@ pub struct Seen {
     pub orders: Orders,
     /// The state variables of the command's table.
     pub situation: Situation,
+    /// What has become of what a process ordered before a restart.
+    pub remains: Remains,
 }
 
 /// What a row can ask for.
@@ -116,6 +153,8 @@ pub struct Seen {
 pub enum Action {
     /// Nothing new.
     Wait,
+    /// UP-INIT to the hand.
+    Calibrate,
     /// OPEN-GRIP to the hand, TURN to the table.
     OpenAndTurn,
     /// CLOSE-GRIP to the hand.
@@ -128,10 +167,8 @@ pub enum Action {
     StopTable,
     /// Report done.
     Finish,
-    /// Report done: from now on the hand holds the object.
-    Hold,
-    /// Report an error: the hand has lost the object.
-    Lose,
+    /// Report an error: the hand holds nothing.
+    Lose(Reason),
     /// Report an error.
     Fail(Reason),
     /// Report an error with the hand's reason.
@@ -143,7 +180,7 @@ pub enum Action {
 commands! {
     /// Consult the table of a command.
     pub fn of_command(PedestalVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, ordered::ORDERED;
+        others: EXECUTE, accept::ACCEPT, ordered::ORDERED, restarted::RESTARTED;
         None | Pause    => pause::pause;
         PreGrip         => pre_grip::pre_grip;
         Grip            => grip::grip;

@@ -6,7 +6,7 @@ decision_table! {
     /// ORDERED: hand and table are waited for. A failure ends the command, and so does an object that comes
     /// loose in FLIP.
     pub ORDERED: fn ordered(super::Orders) -> super::Action or () {
-        1:  verb: Flip, object: Lost                                => Lose;
+        1:  verb: Flip, object: Lost                                => Lose(HandLost);
         2:  ordered: Nothing                                        => consult;
         3:  ordered: Hand | Both, hand: Error | Joystick | Lost     => PassUpHand;
         4:  ordered: Table | Both, table: Error | Joystick | Lost   => PassUpTable;

@@ -3,10 +3,11 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// CALIBRATE (IV.1 step 3, IV.5.1 step 10): turn to the + limit and give the counter the angle of the
-    /// limit. Runs by itself when the table is booted, and before the first command that turns it. Commands
-    /// wait for it. A motor that does not take its order, does not come to rest in time or stands elsewhere
-    /// ends it.
+    /// CALIBRATE (IV.1 step 3, IV.5.1 step 10): turn to the + limit, set the counter to zero, park at -20.00.
+    /// Runs by itself when the table is booted, and before the first command that turns it. Commands wait for
+    /// it. A motor that does not take its order, does not come to rest in time or stands elsewhere ends it. A
+    /// process that is restarted in the middle of a job stops the table and adopts the calibration from before,
+    /// if counter and potentiometer agree.
     pub CALIBRATE: fn calibrate(super::Phase, super::Situation) -> super::Action or super::Duty {
         Missing {
             1:  command: Nothing                                    => SeekLimit            -> Seeking;
@@ -19,19 +20,28 @@ decision_table! {
             4:  command: Pause | Turn                               => consult(Command);
             5:  command: Nothing | Refused                          => consult(Nothing);
         }
-        Seeking | Setting {
-            6:  motor: Pending | Turning, clock: Running            => Wait;
+        Adopting {
+            6:  motor: Turning, clock: Running                      => Stop;
+            7:  motor: Pending | Settling, clock: Running           => Wait;
+            8:  motor: Standing, counter: Agrees                    => EndWait              -> Valid;
+            9:                                                      => EndWait              -> Deferred;
+        }
+        Seeking | Setting | Parking {
+            10: motor: Pending | Turning | Settling, clock: Running => Wait;
         }
         Seeking {
-            7:  motor: Standing, place: There                       => SetCounter           -> Setting;
+            11: motor: Standing, place: There                       => SetCounter           -> Setting;
         }
         Setting {
-            8:  motor: Standing, place: There, command: Calibrate   => Finish               -> Valid;
-            9:  motor: Standing, place: There                       => EndCalibration       -> Valid;
+            12: motor: Standing, place: There                       => Park                 -> Parking;
         }
-        Seeking | Setting {
-            10: command: Calibrate | Turn                           => Lose(TableStuck)     -> Failed;
-            11: command: Nothing | Refused | Pause                  => GiveUp               -> Failed;
+        Parking {
+            13: motor: Standing, place: There, command: Calibrate   => Finish               -> Valid;
+            14: motor: Standing, place: There                       => EndWait              -> Valid;
+        }
+        Seeking | Setting | Parking {
+            15: command: Calibrate | Turn                           => Lose(TableStuck)     -> Failed;
+            16: command: Nothing | Refused | Pause                  => GiveUp               -> Failed;
         }
     }
 }

@@ -29,13 +29,18 @@ pub enum Step {
 pub enum Phase {
     /// Never done: begins at once, since the table was booted just now (IV.5.1 step 10).
     Missing,
-    /// Never done by this process, which was started in the middle of a job: the table may stand beside the
-    /// robot, so it waits for a command that turns it.
+    /// Not done since the process was started in the middle of a job: the table may stand beside the robot, so
+    /// it waits for a command that turns it.
     Deferred,
+    /// The process was started in the middle of a job: the table comes to rest, and the calibration from before
+    /// counts if counter and potentiometer agree.
+    Adopting,
     /// The table turns towards its + limit.
     Seeking,
     /// The counter is being set.
     Setting,
+    /// The table turns to -20.00, clear of the + limit.
+    Parking,
     /// The counter shows the angle.
     Valid,
     /// The last attempt failed, or steps were lost; the next command that turns the table tries again.
@@ -88,18 +93,29 @@ impl Command {
 pub enum Motor {
     /// Its controller has not taken the last order yet.
     Pending,
-    /// It turns, or has come to rest only just now.
+    /// It turns.
     Turning,
+    /// It has come to rest only just now.
+    Settling,
     /// It stands.
     Standing,
     /// Its controller does not take the last order.
     Silent,
 }
 
+/// Do counter and potentiometer agree where the table is?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Counter {
+    /// Yes.
+    Agrees,
+    /// No: steps were lost, the counter was never set, or the potentiometer fails.
+    Disagrees,
+}
+
 /// Where the table is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Place {
-    /// Where the step that is under way wants it: at the + limit, with the counter set, at the angle.
+    /// Where the step that is under way wants it: at the + limit, with the counter set, parked, at the angle.
     There,
     /// Anywhere else.
     Elsewhere,
@@ -132,6 +148,8 @@ pub struct Situation {
     pub command: Command,
     /// What the motor does.
     pub motor: Motor,
+    /// Do counter and potentiometer agree?
+    pub counter: Counter,
     /// Is the table where it should be?
     pub place: Place,
     /// Time of the command.
@@ -147,6 +165,8 @@ pub struct Seen {
     pub request: Request,
     /// The state variables; EXECUTE and ACCEPT decide on `command`.
     pub situation: Situation,
+    /// What the counter shows, 0.1 degree, unless the table stands elsewhere by its potentiometer.
+    pub angle: Option<i32>,
 }
 
 /// What [`calibrate::CALIBRATE`] leaves to decide.
@@ -165,10 +185,12 @@ pub enum Action {
     Wait,
     /// The calibration begins: turn towards the + limit.
     SeekLimit,
-    /// The table stands at the + limit: give the counter the angle of the limit.
+    /// The table stands at the + limit: set the counter to zero.
     SetCounter,
-    /// The table is calibrated: the time of a command that has waited begins.
-    EndCalibration,
+    /// Turn to -20.00.
+    Park,
+    /// The calibration is over: the time of a command that has waited begins.
+    EndWait,
     /// Turn to the commanded angle.
     Turn,
     /// Stop.

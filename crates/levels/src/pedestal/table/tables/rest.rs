@@ -9,7 +9,7 @@ decision_table! {
         any {
             1:  motor: Standing | Silent    => consult;
             2:  clock: Expired              => Lose(TableStuck);
-            3:  motor: Pending              => Wait;
+            3:  motor: Pending | Settling   => Wait;
         }
         Start {
             4:  motor: Turning              => Stop;

@@ -1,0 +1,55 @@
+//! The command line of `rcs-run campaign`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{operator::Recovery, trial::Until};
+
+/// Arguments of `rcs-run campaign`.
+#[derive(Clone, Debug, Args)]
+pub struct CampaignArguments {
+    /// Name of a job in the data directory, or a path
+    #[arg(default_value = "linkbar")]
+    pub job: String,
+    /// Task data, jobs and cell description
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
+    /// Seed of the cell's noise and of where parts are delivered
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// What interrupts, with commas between them: pause, pause-twice, refused, replaced, answer-lost, answer-late,
+    /// answer-damaged, hold, nudge, away, estop, held[:PROCESS], restart[:PROCESS], fault[:FILE], none or all
+    #[arg(long, value_name = "KIND", value_delimiter = ',', default_value = "pause")]
+    pub interrupt: Vec<String>,
+    /// Fork at every so many ticks [default: 23 without --changes and --at]
+    #[arg(long, value_name = "EVERY", value_parser = clap::value_parser!(u64).range(1..))]
+    pub ticks: Option<u64>,
+    /// Fork at each tick in which a step or a command number changes, and at the two after it
+    #[arg(long)]
+    pub changes: bool,
+    /// Fork at these ticks; one tick with one interruption prints all of the branch
+    #[arg(long, value_name = "N", value_delimiter = ',', conflicts_with_all = ["ticks", "changes"])]
+    pub at: Vec<u64>,
+    /// What the operator does first when a command was interrupted or has failed
+    #[arg(long, value_enum, default_value_t = Recovery::Pause)]
+    pub recovery: Recovery,
+    /// How often the operator sends the interrupted command again, each time after a PAUSE
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    pub tries: u32,
+    /// When a branch is judged
+    #[arg(long, value_enum, default_value_t = Until::Next)]
+    pub judge: Until,
+    /// Branches that are run at the same time
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=64))]
+    pub threads: u8,
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long)]
+    pub json: bool,
+    /// Write the table as Markdown
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+    /// Ticks before the interruption and after it of which a single branch prints every row that fires
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    pub around: u64,
+}

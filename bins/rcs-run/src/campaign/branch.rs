@@ -1,0 +1,379 @@
+//! A run that can be forked: controller, cell, line, mailboxes and Data System, without log, clock, network and shared memory.
+//!
+//! A [`Branch`] does in a tick what `rcs-run run` does in fast clock with the simulated robot, in the same order, so that
+//! both have the same digest. A [`Fork`] is what the next tick depends on; any number of branches can go on from it, each
+//! in its own thread.
+
+use std::sync::Arc;
+
+use depc::fault::{Direction, FaultKind, Injector, Plan, Rule};
+use executive::failure::Watch;
+use levels::ladder::{Ladder, ProcessId};
+use neighbours::{
+    data_system::{self, ANSWER_TICKS, DataSystem, Pace},
+    mailbox::{HWSC_COMMAND, Mailbox},
+    workstation::{
+        Gate, command,
+        player::Hwsc,
+        status::{self, Status},
+    },
+};
+use plant::{Cell, CellDescription, CellEvent};
+use rcs_core::{
+    Plain,
+    digest::Digest,
+    interface::{
+        CommonMemory, DataBaseCommand, DeviceInputs, DeviceOutputs, ExternalInputs, HwsCommand,
+        OutsidePedestal, Report, hws::HwsReport,
+    },
+    tick::Tick,
+};
+use taskdata::{
+    files::TaskData,
+    load::{Job, Store},
+};
+
+use crate::{
+    error::Error,
+    run::{
+        contacts::{Commands, ContactCheck},
+        neighbours::task_state,
+        workstation::{SimulatedWorkstation, WorkstationState},
+    },
+};
+
+/// Ticks that a late answer needs more than one that is not: beyond the three that the host waits.
+const LATE: u16 = 5;
+
+/// What all branches of a campaign share.
+pub struct Facility {
+    /// Task data.
+    pub store: Store,
+    /// The job.
+    pub job: Job,
+    /// The cell description.
+    pub description: CellDescription,
+    /// Seed of the cell's noise.
+    pub seed: u64,
+}
+
+/// What commands Task in a branch, and works the cell beside the robot.
+pub trait Commander {
+    /// Once a tick: read Task's status and write a command, if one is to be sent.
+    fn step(
+        &mut self,
+        tick: Tick,
+        status: &Status<'_>,
+        workstation: &mut SimulatedWorkstation,
+    ) -> Option<HwsCommand>;
+}
+
+impl Commander for Hwsc {
+    fn step(
+        &mut self,
+        tick: Tick,
+        status: &Status<'_>,
+        workstation: &mut SimulatedWorkstation,
+    ) -> Option<HwsCommand> {
+        Self::step(self, tick, status, workstation);
+        self.mailgram().copied()
+    }
+}
+
+/// The line to the robot controller.
+#[derive(Clone, Copy, Debug, Default)]
+struct Line {
+    injector: Option<Injector>,
+    /// The next answer suffers this.
+    armed: Option<FaultKind>,
+}
+
+impl Line {
+    fn advance(&mut self, tick: Tick, cell: &mut Cell, outputs: &DeviceOutputs) -> DeviceInputs {
+        let Some(injector) = &mut self.injector else {
+            let mut inputs = cell.step(outputs);
+            self.strike(tick, &mut inputs);
+            return inputs;
+        };
+        let (rx, ready) = injector.carry(Direction::ToController, tick, &outputs.link_tx, true);
+        cell.set_host_ready(ready);
+        let mut inputs = cell.step(&DeviceOutputs { link_tx: rx, ..*outputs });
+        (inputs.link_rx, inputs.link_ready) =
+            injector.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
+        inputs
+    }
+
+    /// The answer that was waited for has come: from now on the line has a fault in this tick.
+    fn strike(&mut self, tick: Tick, inputs: &mut DeviceInputs) {
+        let Some(kind) = self.armed.filter(|_| inputs.link_rx.length > 0) else { return };
+        self.armed = None;
+        let rule = Rule::new(kind).at(tick.0).only(Direction::ToHost);
+        let rule = if kind == FaultKind::Delay { rule.ticks(LATE) } else { rule };
+        let mut plan = Plan::new(tick.0);
+        // A rule for a single tick is never refused as the only one of its plan.
+        if plan.add(rule).is_ok() {
+            let mut injector = Injector::new(&plan);
+            (inputs.link_rx, inputs.link_ready) =
+                injector.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
+            self.injector = Some(injector);
+        }
+    }
+}
+
+/// Everything but the cell and the Data System.
+#[derive(Clone)]
+struct Control {
+    ladder: Ladder,
+    tick: Tick,
+    memory: CommonMemory,
+    external: ExternalInputs,
+    digest: Digest,
+    scratch: Box<[u8]>,
+    watch: Watch,
+    gate: Gate,
+    command_box: Mailbox,
+    check: ContactCheck,
+    inputs: DeviceInputs,
+    line: Line,
+    /// Generation of the task data, and how many were asked for.
+    generation: u32,
+    asked: Vec<u32>,
+    /// What Task has told the Data System, and when.
+    told: Vec<(Tick, DataBaseCommand)>,
+}
+
+/// A run that goes on from a tick.
+pub struct Branch<'f> {
+    facility: &'f Facility,
+    control: Control,
+    data_system: DataSystem,
+    /// The cell, and what is done in it beside the robot.
+    pub workstation: SimulatedWorkstation,
+    /// What has happened in the cell in the last tick.
+    pub events: Vec<CellEvent>,
+}
+
+/// The state of a branch between two ticks.
+pub struct Fork {
+    control: Control,
+    workstation: WorkstationState,
+    cell: Arc<[u8]>,
+}
+
+impl<'f> Branch<'f> {
+    /// The run before its first tick.
+    ///
+    /// # Errors
+    /// [`Error`] if the cell or its data base cannot be built.
+    pub fn start(facility: &'f Facility) -> Result<Self, Error> {
+        let cell = Cell::new(&facility.description, facility.seed)?;
+        let control = Control {
+            ladder: Ladder::default(),
+            tick: Tick::BEFORE_START,
+            memory: CommonMemory::ZERO,
+            external: ExternalInputs::default(),
+            digest: Digest::new(),
+            scratch: vec![0; CommonMemory::SIZE].into_boxed_slice(),
+            watch: Watch::default(),
+            gate: Gate::default(),
+            command_box: Mailbox::initialized(HWSC_COMMAND),
+            check: ContactCheck::new(facility.description.contact.clone()),
+            inputs: cell.inputs(),
+            line: Line::default(),
+            generation: 0,
+            asked: Vec::new(),
+            told: Vec::new(),
+        };
+        Ok(Self {
+            facility,
+            control,
+            data_system: data_system()?,
+            workstation: SimulatedWorkstation::new(cell),
+            events: Vec::new(),
+        })
+    }
+
+    /// The state after the last tick.
+    ///
+    /// # Errors
+    /// [`Error::Fork`] if the cell cannot be saved.
+    pub fn fork(&self) -> Result<Fork, Error> {
+        let cell = self.workstation.cell.save().map_err(|error| Error::Fork(error.to_string()))?;
+        Ok(Fork {
+            control: self.control.clone(),
+            workstation: self.workstation.state().clone(),
+            cell: cell.into(),
+        })
+    }
+
+    /// A branch that goes on from a state.
+    ///
+    /// # Errors
+    /// [`Error`] if the cell or its data base cannot be built.
+    pub fn resume(facility: &'f Facility, fork: &Fork) -> Result<Self, Error> {
+        let cell = Cell::restore(&facility.description, &fork.cell)
+            .map_err(|error| Error::Fork(error.to_string()))?;
+        let mut data_system = data_system()?;
+        for (place, (tick, command)) in fork.control.told.iter().enumerate() {
+            data_system.step(*tick, command);
+            let next =
+                fork.control.told.get(place + 1).map_or(fork.control.tick, |(next, _)| next.previous());
+            let answered = Tick(tick.0.saturating_add(ANSWER_TICKS));
+            if answered <= next {
+                data_system.step(answered, command);
+            }
+        }
+        Ok(Self {
+            facility,
+            control: fork.control.clone(),
+            data_system,
+            workstation: SimulatedWorkstation::with_state(cell, fork.workstation.clone()),
+            events: Vec::new(),
+        })
+    }
+
+    /// Run a tick.
+    pub fn tick(&mut self, commander: &mut impl Commander) {
+        let control = &mut self.control;
+        let tick = control.tick.next();
+        control.external = ExternalInputs {
+            hws: *control.gate.command(),
+            devices: control.inputs,
+            data_base: self.data_system.status(),
+            generation: control.generation,
+            pedestal: OutsidePedestal::ZERO,
+        };
+        let before = control.memory;
+        let data = data(self.facility, control.generation);
+        control.ladder.step(tick, &before, &control.external, &data, &mut control.memory);
+        control.tick = tick;
+        control.watch.observe(tick, &control.external, &before, &control.memory);
+        control.digest.add_record(&control.memory, &mut control.scratch);
+        let outputs = control.memory.device_outputs();
+        control.inputs = control.line.advance(tick, &mut self.workstation.cell, &outputs);
+        self.observe();
+        self.tell_data_system();
+        self.exchange(commander);
+        self.control.inputs.vision = self.workstation.cell.inputs().vision;
+        self.reload();
+    }
+
+    /// What has happened in the cell.
+    fn observe(&mut self) {
+        let control = &mut self.control;
+        self.events = self.workstation.events(control.tick);
+        let commands = Commands::from(&control.memory);
+        control.check.look(control.tick, self.workstation.cell.contacts(), commands);
+        self.workstation.cell.watch_clearance(control.check.margin());
+    }
+
+    fn tell_data_system(&mut self) {
+        let control = &mut self.control;
+        let command = control.memory.task.data_base;
+        if control.told.last().is_none_or(|(_, last)| last.number != command.number) {
+            control.told.push((control.tick, command));
+        }
+        self.data_system.step(control.tick, &command);
+    }
+
+    /// Task's status goes to the commander, and its command comes back.
+    fn exchange(&mut self, commander: &mut impl Commander) {
+        let control = &mut self.control;
+        let task = &control.memory.task;
+        control.gate.write(task, task_state(&task.header, control.tick));
+        let command = status::decode(control.gate.status_box().data())
+            .ok()
+            .and_then(|status| commander.step(control.tick, &status, &mut self.workstation));
+        // Commands are those of a job, whose fields fit into the mailbox.
+        if let Some(bytes) = command.and_then(|command| command::encode(&command).ok()) {
+            let _ = control.command_box.write(&bytes);
+        }
+        control.gate.read(&control.command_box);
+    }
+
+    /// Task data that the job has loaded become visible when no command is executed.
+    fn reload(&mut self) {
+        let control = &mut self.control;
+        control.asked.extend(self.workstation.loads());
+        let memory = &control.memory;
+        let busy = memory.task.status.report == HwsReport::Executing
+            || memory.subtask.status.report == Report::Executing
+            || memory.emove.status.report == Report::Executing;
+        if !busy && !control.asked.is_empty() {
+            control.generation = control.asked.remove(0);
+        }
+    }
+
+    /// A process forgets everything.
+    pub fn restart(&mut self, process: ProcessId) {
+        self.control.ladder.restart(process);
+    }
+
+    /// The next answer of the robot controller suffers this.
+    pub const fn spoil_answer(&mut self, kind: FaultKind) {
+        self.control.line.armed = Some(kind);
+    }
+
+    /// From now on the line has the faults of a plan.
+    pub fn spoil_line(&mut self, plan: &Plan) {
+        self.control.line.injector = Some(Injector::new(plan));
+    }
+
+    /// The tick that was run last.
+    #[must_use]
+    pub const fn at(&self) -> Tick {
+        self.control.tick
+    }
+
+    /// Common memory as the last tick left it.
+    #[must_use]
+    pub const fn memory(&self) -> &CommonMemory {
+        &self.control.memory
+    }
+
+    /// What came from outside for the last tick.
+    #[must_use]
+    pub const fn external(&self) -> &ExternalInputs {
+        &self.control.external
+    }
+
+    /// Fingerprint of all ticks so far.
+    #[must_use]
+    pub const fn digest(&self) -> Digest {
+        self.control.digest
+    }
+
+    /// What the robot has touched.
+    #[must_use]
+    pub const fn check(&self) -> &ContactCheck {
+        &self.control.check
+    }
+
+    /// Who failed first, and why.
+    #[must_use]
+    pub const fn watch(&self) -> &Watch {
+        &self.control.watch
+    }
+
+    /// Number of the command that Task has.
+    #[must_use]
+    pub const fn command(&self) -> &HwsCommand {
+        self.control.gate.command()
+    }
+
+    /// What is shared.
+    #[must_use]
+    pub const fn facility(&self) -> &'f Facility {
+        self.facility
+    }
+}
+
+/// The task data of a generation: 0 as loaded, then one for each reload of the job.
+fn data(facility: &Facility, generation: u32) -> TaskData<'_> {
+    let reload = usize::try_from(generation).ok().and_then(|number| number.checked_sub(1));
+    reload.and_then(|at| facility.job.reloads.get(at)).map_or(&facility.store, |reload| &reload.store).view()
+}
+
+fn data_system() -> Result<DataSystem, Error> {
+    Ok(DataSystem::new(data_system::Store::in_memory()?, ANSWER_TICKS, Pace::Wait))
+}

@@ -1,0 +1,369 @@
+//! What interrupts a branch: kinds, their names on the command line, and what is done tick by tick.
+
+use std::{fmt, path::Path, sync::Arc};
+
+use depc::fault::{ALWAYS, FaultKind, Plan, Rule};
+use levels::ladder::ProcessId;
+use plant::{
+    BoxAction, BoxButton, CellDescription, EStop, Key, WorkstationAction,
+    fault::{
+        FaultPlan, What, When,
+        text::{self, FaultFile},
+    },
+    t3::Stage,
+};
+use rcs_core::{
+    interface::device::{KNOB_FULL, joystick_frame, single_step},
+    tick::Tick,
+};
+
+use super::branch::Branch;
+use crate::error::Error;
+
+/// Ticks of Hold: 3 s.
+const HOLD: u64 = 75;
+/// Ticks for which a process is held.
+const HELD: u64 = 50;
+/// Ticks for which a fault is switched on.
+pub const FAULT: u64 = 20;
+/// Ticks between the emergency stop and its release: time to walk there.
+const STOPPED: u64 = 100;
+/// Ticks for which a key of the panel is tried.
+const PATIENCE: u64 = 2000;
+/// Ticks from CYCLE START to the DEPC function: the program makes two short motions.
+const REHEARSAL: u64 = 75;
+/// A fault by chance must be there at least so often to be seen in [`FAULT`] ticks: millionths a tick or byte.
+const CHANCE: u32 = 50_000;
+
+/// A kind of interruption.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// None: the branch goes on as its parent.
+    None,
+    /// PAUSE.
+    Pause,
+    /// PAUSE, and another one during the recovery.
+    PauseTwice,
+    /// A command with a misspelt location.
+    Refused,
+    /// Another good command, then the old one.
+    Replaced,
+    /// One answer of the robot controller is lost.
+    AnswerLost,
+    /// One answer is late.
+    AnswerLate,
+    /// One answer is damaged.
+    AnswerDamaged,
+    /// Hold of the robot controller for 3 s.
+    Hold,
+    /// The joystick moves the robot by 0.2 in and back.
+    Nudge,
+    /// The joystick moves the robot 3 in away and back.
+    Away,
+    /// A process is held by its switch on the joystick box, and freed.
+    Held(ProcessId),
+    /// A process is restarted.
+    Restart(ProcessId),
+    /// Emergency stop, and the start-up by the panel.
+    Estop,
+    /// The faults of a file, for a short time.
+    Fault(String, Arc<FaultFile>),
+}
+
+/// Kinds without a parameter, with their names.
+const PLAIN: [(&str, Kind); 12] = [
+    ("none", Kind::None),
+    ("pause", Kind::Pause),
+    ("pause-twice", Kind::PauseTwice),
+    ("refused", Kind::Refused),
+    ("replaced", Kind::Replaced),
+    ("answer-lost", Kind::AnswerLost),
+    ("answer-late", Kind::AnswerLate),
+    ("answer-damaged", Kind::AnswerDamaged),
+    ("hold", Kind::Hold),
+    ("nudge", Kind::Nudge),
+    ("away", Kind::Away),
+    ("estop", Kind::Estop),
+];
+/// Processes with a switch on the joystick box.
+const SWITCHES: [(ProcessId, u8); 4] = [
+    (ProcessId::Task, single_step::TASK),
+    (ProcessId::Subtask, single_step::SUBTASK),
+    (ProcessId::Emove, single_step::EMOVE),
+    (ProcessId::Prim, single_step::PRIM),
+];
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Held(process) => write!(f, "held:{}", word(*process)),
+            Self::Restart(process) => write!(f, "restart:{}", word(*process)),
+            Self::Fault(name, _) => write!(f, "fault:{name}"),
+            plain => f.write_str(PLAIN.iter().find(|(_, kind)| kind == plain).map_or("", |(name, _)| name)),
+        }
+    }
+}
+
+/// A process on the command line.
+fn word(process: ProcessId) -> &'static str {
+    process.field()
+}
+
+impl Kind {
+    /// The kinds that a word of the command line stands for: `restart` for one of each process, `fault` for each file
+    /// that can be switched on.
+    ///
+    /// # Errors
+    /// [`Error::Campaign`] with all words.
+    pub fn named(text: &str, data: &Path, cell: &CellDescription) -> Result<Vec<Self>, Error> {
+        let process = |name: &str| ProcessId::ALL.iter().copied().find(|process| word(*process) == name);
+        let found = match text.split_once(':') {
+            None if text == "all" => {
+                let mut all: Vec<Self> = PLAIN[1..].iter().map(|(_, kind)| kind.clone()).collect();
+                for word in ["held", "restart", "fault"] {
+                    all.extend(Self::named(word, data, cell)?);
+                }
+                Some(all)
+            }
+            None if text == "held" => {
+                Some(SWITCHES.iter().map(|(process, _)| Self::Held(*process)).collect())
+            }
+            None if text == "restart" => Some(ProcessId::ALL.iter().copied().map(Self::Restart).collect()),
+            None if text == "fault" => Some(faults(data, cell)?),
+            None => PLAIN.iter().find(|(name, _)| *name == text).map(|(_, kind)| vec![kind.clone()]),
+            Some(("held", name)) => process(name)
+                .filter(|process| SWITCHES.iter().any(|(one, _)| one == process))
+                .map(|process| vec![Self::Held(process)]),
+            Some(("restart", name)) => process(name).map(|process| vec![Self::Restart(process)]),
+            Some(("fault", name)) => {
+                fault(&data.join("faults").join(name).with_added_extension("toml"), cell)?
+                    .map(|kind| vec![kind])
+            }
+            Some(_) => None,
+        };
+        found.ok_or_else(|| Error::Campaign(format!("no interruption {text}: expected {}", words())))
+    }
+
+    /// The interrupted command goes on by itself unless it fails.
+    #[must_use]
+    pub const fn leaves_command(&self) -> bool {
+        matches!(
+            self,
+            Self::None
+                | Self::AnswerLost
+                | Self::AnswerLate
+                | Self::AnswerDamaged
+                | Self::Hold
+                | Self::Held(_)
+                | Self::Restart(_)
+                | Self::Fault(..)
+        )
+    }
+
+    /// What is done.
+    #[must_use]
+    pub fn script(&self) -> Script {
+        let hands = match self {
+            Self::None | Self::Pause | Self::PauseTwice | Self::Refused | Self::Replaced => Vec::new(),
+            Self::AnswerLost => vec![Hand::Answer(FaultKind::Drop)],
+            Self::AnswerLate => vec![Hand::Answer(FaultKind::Delay)],
+            Self::AnswerDamaged => vec![Hand::Answer(FaultKind::Flip)],
+            Self::Hold => vec![Hand::key(Key::Hold(true)), Hand::Wait(HOLD), Hand::key(Key::Hold(false))],
+            Self::Nudge => joystick(100, 11, false),
+            Self::Away => joystick(500, 31, true),
+            Self::Held(process) => {
+                let bit = SWITCHES.iter().find(|(one, _)| one == process).map_or(0, |(_, bit)| *bit);
+                let hold = |action| Hand::Act(WorkstationAction::Joystick(action));
+                vec![hold(BoxAction::Hold(bit)), Hand::Wait(HELD), hold(BoxAction::Free(bit))]
+            }
+            Self::Restart(process) => vec![Hand::Restart(*process)],
+            Self::Estop => {
+                let mut hands = vec![Hand::key(Key::Press(EStop::Pedestal)), Hand::Wait(STOPPED)];
+                hands.push(Hand::key(Key::Release(EStop::Pedestal)));
+                hands.push(Hand::StartUp);
+                hands
+            }
+            Self::Fault(_, file) => {
+                vec![Hand::Faults(Arc::clone(file)), Hand::Wait(FAULT), Hand::Enter, Hand::StartUp]
+            }
+        };
+        Script { hands, at: 0, until: None }
+    }
+}
+
+/// A stick that is deflected for some ticks, and back.
+fn joystick(knob: u16, ticks: u32, up: bool) -> Vec<Hand> {
+    let act = |action| Hand::Act(WorkstationAction::Joystick(action));
+    let stick = |x: i16| match (up, x > 0) {
+        (true, true) => BoxAction::Press(BoxButton::Up, ticks),
+        (true, false) => BoxAction::Press(BoxButton::Down, ticks),
+        (false, _) => BoxAction::Stick { x, y: 0, ticks },
+    };
+    vec![
+        act(BoxAction::Velocity(knob)),
+        act(BoxAction::Frame(joystick_frame::WORLD)),
+        // A motion that is under way ramps down first.
+        Hand::Wait(25),
+        act(stick(1000)),
+        Hand::Wait(u64::from(ticks) + 10),
+        act(stick(-1000)),
+        Hand::Wait(u64::from(ticks) + 10),
+        act(BoxAction::Frame(0)),
+        act(BoxAction::Velocity(KNOB_FULL)),
+        Hand::Wait(5),
+    ]
+}
+
+/// The words of the command line.
+fn words() -> String {
+    let plain = PLAIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+    let processes = ProcessId::ALL.iter().map(|process| word(*process)).collect::<Vec<_>>().join(", ");
+    format!("{plain}, held[:PROCESS], restart[:PROCESS], fault[:FILE] or all; processes are {processes}")
+}
+
+/// All files of faults that can be switched on.
+fn faults(data: &Path, cell: &CellDescription) -> Result<Vec<Kind>, Error> {
+    let directory = data.join("faults");
+    let unreadable = |source| Error::Read { path: directory.clone(), source };
+    let entries = std::fs::read_dir(&directory).map_err(unreadable)?;
+    let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    paths.sort();
+    paths.iter().filter_map(|path| fault(path, cell).transpose()).collect()
+}
+
+/// The faults of a file; none if it has none that can be switched on for a time.
+fn fault(path: &Path, cell: &CellDescription) -> Result<Option<Kind>, Error> {
+    let text =
+        std::fs::read_to_string(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
+    let file = text::parse(&path.display().to_string(), &text, cell)?;
+    let lasting = |what: &What| !what.is_delivery() && !matches!(what, What::PedestalMoved { .. });
+    let switchable = file.line.is_some() || file.cell.faults.iter().any(|fault| lasting(&fault.what));
+    let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    Ok(switchable.then(|| Kind::Fault(name, Arc::new(file))))
+}
+
+/// A fault of the cell in a window; one by chance comes often enough to be seen.
+fn cell_faults(plan: &FaultPlan, from: u64) -> FaultPlan {
+    let mut plan = plan.clone();
+    plan.faults.retain(|fault| !fault.what.is_delivery());
+    for fault in &mut plan.faults {
+        let rate = fault.when.rate.map(|rate| rate.max(f64::from(CHANCE) / f64::from(ALWAYS)));
+        fault.when = When { from, until: from + FAULT, rate, ..fault.when };
+    }
+    plan
+}
+
+/// Faults of the line in a window.
+fn line_faults(plan: &Plan, from: u64) -> Plan {
+    let mut windowed = Plan::new(plan.seed());
+    for rule in plan.rules() {
+        let single = rule.rate == 0 && rule.until == rule.from + 1;
+        let rule: Rule = match single {
+            true => rule.at(from),
+            false if rule.rate == 0 => rule.window(from, from + FAULT),
+            false => rule.window(from, from + FAULT).rate(rule.rate.max(CHANCE)),
+        };
+        // The rules fit together in their own windows; those that do not in this one are left out.
+        let _ = windowed.add(rule);
+    }
+    windowed
+}
+
+/// Something that is done between two ticks.
+#[derive(Clone, Debug)]
+enum Hand {
+    Act(WorkstationAction),
+    Wait(u64),
+    Restart(ProcessId),
+    Answer(FaultKind),
+    Faults(Arc<FaultFile>),
+    /// ENTER, if the robot controller shows a warning.
+    Enter,
+    /// The start-up by the panel, if the robot controller has lost its pressure.
+    StartUp,
+    /// A key of the panel, as soon as the controller takes it.
+    Key(Key),
+}
+
+impl Hand {
+    const fn key(key: Key) -> Self {
+        Self::Act(WorkstationAction::T3(key))
+    }
+}
+
+/// The start-up of IV.3.3 after an emergency stop.
+const START_UP: [Key; 6] =
+    [Key::FaultReset, Key::Hydraulics(true), Key::Manual(true), Key::Align(None), Key::Auto, Key::CycleStart];
+
+/// What is done, tick by tick.
+pub struct Script {
+    hands: Vec<Hand>,
+    at: usize,
+    until: Option<Tick>,
+}
+
+impl Script {
+    /// It is over.
+    #[must_use]
+    pub const fn is_over(&self) -> bool {
+        self.at >= self.hands.len()
+    }
+
+    /// Do what is to be done before the next tick. Returns what the cell refuses.
+    pub fn step(&mut self, branch: &mut Branch<'_>) -> Option<String> {
+        let mut refused = None;
+        while let Some(hand) = self.hands.get(self.at).cloned() {
+            match hand {
+                Hand::Wait(ticks) => {
+                    let now = branch.at();
+                    let until = *self.until.get_or_insert(Tick(now.0 + ticks));
+                    if now < until {
+                        return refused;
+                    }
+                    self.until = None;
+                }
+                Hand::Key(key) => {
+                    let now = branch.at();
+                    let until = *self.until.get_or_insert(Tick(now.0 + PATIENCE));
+                    let busy = branch.workstation.cell.t3().busy();
+                    if now < until && (busy || branch.workstation.cell.press(key).is_err()) {
+                        return refused;
+                    }
+                    self.until = None;
+                }
+                Hand::Act(action) => {
+                    refused =
+                        branch.workstation.cell.workstation(&action).err().map(|error| error.to_string());
+                }
+                Hand::Restart(process) => branch.restart(process),
+                Hand::Answer(kind) => branch.spoil_answer(kind),
+                Hand::Faults(file) => {
+                    let from = branch.at().0 + 1;
+                    let seed = branch.facility().seed;
+                    branch.workstation.cell.add_faults(&cell_faults(&file.cell, from), seed);
+                    if let Some(plan) = &file.line {
+                        branch.spoil_line(&line_faults(plan, from));
+                    }
+                }
+                Hand::Enter => {
+                    // Only a warning takes the key.
+                    let _ = branch.workstation.cell.press(Key::Enter);
+                }
+                Hand::StartUp => self.start_up(branch),
+            }
+            self.at += 1;
+        }
+        refused
+    }
+
+    fn start_up(&mut self, branch: &Branch<'_>) {
+        if branch.workstation.cell.t3().stage() == Stage::Depc {
+            return;
+        }
+        for key in START_UP {
+            self.hands.extend([Hand::Key(key), Hand::Wait(1)]);
+        }
+        self.hands.push(Hand::Wait(REHEARSAL));
+    }
+}

@@ -1,0 +1,169 @@
+//! What has become of the world: compared with the undisturbed run, and watched for what must not happen.
+
+use plant::{CellEvent, t3::Stage};
+use rcs_core::tick::Tick;
+
+use super::branch::Branch;
+use crate::run::contacts::{Collision, Commands};
+
+/// A part may lie so far from where the undisturbed run has it, in.
+const PART: f64 = 0.5;
+/// The hand may stand so far from where the undisturbed run has it, in.
+const HAND: f64 = 0.5;
+
+/// Where everything is at the end of a command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct World {
+    parts: Vec<PartAt>,
+    /// End effector id of the gripper on the robot.
+    gripper: u8,
+    /// Middle between the fingertips, world, in.
+    hand: [f64; 3],
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct PartAt {
+    name: String,
+    location: String,
+    sector: u16,
+    clamped: bool,
+    at: [f64; 3],
+}
+
+fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+impl World {
+    /// The world of a branch now.
+    #[must_use]
+    pub fn of(branch: &Branch<'_>) -> Self {
+        let cell = &branch.workstation.cell;
+        let parts = cell.parts().into_iter().map(|part| PartAt {
+            name: part.name,
+            location: part.location,
+            sector: part.sector,
+            clamped: part.clamped,
+            at: part.position,
+        });
+        Self { parts: parts.collect(), gripper: cell.gripper(), hand: cell.tool().position.into() }
+    }
+
+    /// What is unlike in the undisturbed run; `None` if nothing is.
+    #[must_use]
+    pub fn unlike(&self, undisturbed: &Self) -> Option<String> {
+        if self.gripper != undisturbed.gripper {
+            return Some(format!("the robot has gripper {}, not {}", self.gripper, undisturbed.gripper));
+        }
+        if self.parts.len() != undisturbed.parts.len() {
+            return Some(format!("{} parts in the cell, not {}", self.parts.len(), undisturbed.parts.len()));
+        }
+        let parts = self.parts.iter().zip(&undisturbed.parts);
+        let part = parts.filter_map(|(one, other)| one.unlike(other)).next();
+        let away = distance(&self.hand, &undisturbed.hand);
+        part.or_else(|| {
+            (away > HAND).then(|| format!("the hand is {away:.2} in from where the command leaves it"))
+        })
+    }
+}
+
+impl PartAt {
+    fn unlike(&self, other: &Self) -> Option<String> {
+        let place = |part: &Self| match part.sector {
+            0 => part.location.clone(),
+            sector => format!("{} {sector}", part.location),
+        };
+        if self.name != other.name {
+            return Some(format!("{} is in the cell, not {}", self.name, other.name));
+        }
+        if (&self.location, self.sector) != (&other.location, other.sector) {
+            return Some(format!("{} is at {}, not at {}", self.name, place(self), place(other)));
+        }
+        if self.clamped != other.clamped {
+            let not = if self.clamped { "" } else { "not " };
+            return Some(format!("{} is {not}clamped in the vise", self.name));
+        }
+        let away = distance(&self.at, &other.at);
+        (away > PART)
+            .then(|| format!("{} is {away:.2} in from where it should be in {}", self.name, place(self)))
+    }
+}
+
+/// Something that must not happen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Harm {
+    /// When.
+    pub tick: Tick,
+    /// What, in a sentence.
+    pub what: String,
+    /// What it is like, without numbers: to be counted.
+    pub kind: String,
+    /// A commanded point has caused it, not an arm without pressure, a person at the box or the controller's own travel.
+    pub commanded: bool,
+    /// Which contact it is, if it is one.
+    contact: Option<usize>,
+}
+
+/// Watches a branch.
+pub struct Judge {
+    seen: usize,
+    harms: Vec<Harm>,
+}
+
+impl Judge {
+    /// A judge of what happens from now on.
+    #[must_use]
+    pub fn from_now(branch: &Branch<'_>) -> Self {
+        Self { seen: branch.check().collisions().len(), harms: Vec::new() }
+    }
+
+    /// What has happened: the first that a commanded point has caused, or else the first.
+    #[must_use]
+    pub fn worst(&self) -> Option<&Harm> {
+        self.harms.iter().find(|harm| harm.commanded).or_else(|| self.harms.first())
+    }
+
+    /// Look at a tick; `person` moves the robot at the joystick box.
+    pub fn look(&mut self, branch: &Branch<'_>, person: bool) {
+        let tick = branch.at();
+        let t3 = branch.workstation.cell.t3();
+        let commanded = t3.stage() == Stage::Depc && t3.cut().is_none() && !person;
+        let contacts = branch.check().collisions();
+        for (at, contact) in contacts.iter().enumerate().skip(self.seen) {
+            let Collision { mover, obstacle, commands, .. } = contact;
+            let kind = format!("{mover} runs into {obstacle} during {commands}");
+            let commanded = commanded && (contact.is_of_robot() || !self.is_displaced());
+            self.harms.push(Harm { tick, what: contact.to_string(), kind, commanded, contact: Some(at) });
+        }
+        self.seen = contacts.len();
+        // What has become of a contact is known later than that it is there.
+        for harm in &mut self.harms {
+            if let Some(contact) = harm.contact.and_then(|at| contacts.get(at)) {
+                harm.what = contact.to_string();
+            }
+        }
+        let commands = Commands::from(branch.memory());
+        for event in branch.events.iter().filter(|event| is_harm(event)) {
+            let kind = format!("{event} during {commands}");
+            let commanded = commanded && !self.is_displaced();
+            self.harms.push(Harm { tick, what: kind.clone(), kind, commanded, contact: None });
+        }
+    }
+
+    /// An arm without pressure or a person has touched something: where parts are is no matter of the controller any more.
+    fn is_displaced(&self) -> bool {
+        self.harms.iter().any(|harm| !harm.commanded)
+    }
+}
+
+const fn is_harm(event: &CellEvent) -> bool {
+    matches!(
+        event,
+        CellEvent::Dropped { .. }
+            | CellEvent::ForcedOut { .. }
+            | CellEvent::GripperFell { .. }
+            | CellEvent::GripperTorn { .. }
+            | CellEvent::Fell { .. }
+            | CellEvent::Quarantined
+    )
+}

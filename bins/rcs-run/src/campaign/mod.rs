@@ -1,0 +1,133 @@
+//! `rcs-run campaign`: a job is interrupted at many ticks, an operator follows the recovery procedure, and each branch is judged.
+//!
+//! ```text
+//!   undisturbed run:  ──●────●────●────●────●──►     once to list the ticks and the world after each line, once to fork
+//!                       │    │    │
+//!                       ▼    ▼    ▼   a fork: cell, processes, common memory, mailboxes, line, Data System
+//!                   interruption ──► PAUSE, the same command, up to three tries ──► next command ──► verdict
+//! ```
+//!
+//! A branch does in a tick what a run does ([`branch`]); what it knows of the control processes is their interfaces.
+//! docs/campaign.md says what is judged how.
+
+mod arguments;
+mod branch;
+mod interruption;
+mod judge;
+mod operator;
+mod parent;
+mod pool;
+mod report;
+mod story;
+#[cfg(test)]
+mod tests;
+mod trial;
+
+use std::{
+    fs,
+    io::{self, IsTerminal as _, Write as _},
+    process::ExitCode,
+};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+pub use self::arguments::CampaignArguments;
+use self::{
+    branch::Facility,
+    interruption::Kind,
+    parent::{Parent, Ticks},
+    report::Report,
+    trial::{Judgement, Procedure, Verdict},
+};
+use crate::{
+    error::Error,
+    run::setup::{CellFile, TaskFiles},
+};
+
+/// Ticks between two forks unless others are asked for.
+const EVERY: u64 = 23;
+
+/// Run a campaign and print what came of it.
+///
+/// # Errors
+/// [`Error`] if data or arguments cannot be used, or if the job does not finish undisturbed.
+pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
+    let facility = facility(arguments)?;
+    let kinds = kinds(arguments, &facility)?;
+    let procedure =
+        Procedure { recovery: arguments.recovery, tries: arguments.tries, until: arguments.judge };
+    let parent = Parent::run(&facility)?;
+    let forks = parent.forks(&ticks(arguments));
+    if forks.is_empty() {
+        let ticks = parent.ticks;
+        return Err(Error::Campaign(format!("no tick to fork at: the job has ticks 1 to {}", ticks - 1)));
+    }
+    if let ([tick], [kind], false) = (&forks[..], &kinds[..], arguments.json) {
+        let fork = pool::fork_at(&facility, *tick)?;
+        let mut story = story::Story::new(*tick, arguments.around);
+        let judgement = trial::run(&facility, &parent, &fork, kind, procedure, &mut story)?;
+        print(&story.told(&judgement))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let bar = bar(forks.len() * kinds.len());
+    let done = |judgement: &Judgement| {
+        if let Some(bar) = &bar {
+            bar.inc(1);
+            if judgement.verdict == Verdict::Hurt {
+                bar.println(format!(
+                    "hurt: {} at {}: {}",
+                    judgement.interruption, judgement.at, judgement.detail
+                ));
+            }
+        }
+    };
+    let threads = usize::from(arguments.threads);
+    let judgements = pool::run(&facility, &parent, &forks, &kinds, procedure, threads, &done)?;
+    if let Some(bar) = &bar {
+        bar.finish_and_clear();
+    }
+    let report = Report::new(&facility.job.name, &parent, arguments, &judgements);
+    if let Some(path) = &arguments.markdown {
+        let text = report.markdown();
+        fs::write(path, text).map_err(|source| Error::Write { path: path.clone(), source })?;
+    }
+    print(&if arguments.json { report.json()? } else { report.text() })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn facility(arguments: &CampaignArguments) -> Result<Facility, Error> {
+    let data = &arguments.data;
+    let TaskFiles { store, job, job_path, .. } = TaskFiles::load(data, Some(&arguments.job))?;
+    let CellFile { description, .. } = CellFile::load(data, &store, &job, &job_path)?;
+    Ok(Facility { store, job, description, seed: arguments.seed })
+}
+
+fn kinds(arguments: &CampaignArguments, facility: &Facility) -> Result<Vec<Kind>, Error> {
+    let named =
+        arguments.interrupt.iter().map(|text| Kind::named(text, &arguments.data, &facility.description));
+    Ok(named.collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+fn ticks(arguments: &CampaignArguments) -> Ticks {
+    match (arguments.ticks, arguments.changes) {
+        _ if !arguments.at.is_empty() => Ticks::At(arguments.at.clone()),
+        (Some(every), true) => Ticks::Both(every),
+        (None, true) => Ticks::Changes,
+        (every, false) => Ticks::Every(every.unwrap_or(EVERY)),
+    }
+}
+
+/// Progress on a terminal; none if standard error is no terminal.
+fn bar(branches: usize) -> Option<ProgressBar> {
+    io::stderr().is_terminal().then(|| {
+        let bar = ProgressBar::new(branches as u64);
+        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} branches, {eta} left") {
+            bar.set_style(style);
+        }
+        bar
+    })
+}
+
+fn print(text: &str) -> Result<(), Error> {
+    Ok(io::stdout().write_all(text.as_bytes())?)
+}

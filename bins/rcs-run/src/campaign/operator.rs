@@ -1,0 +1,380 @@
+//! What plays the job from an interruption on: the recovery procedure of an operator, and then the rest of the job.
+//!
+//! The procedure is what an operator does first: PAUSE, and the same command again, up to a number of tries. When the
+//! command ends `finished` the job goes on with its next line. `** after` lines that were begun are not begun again.
+//!
+//! ```text
+//!   interruption ──► [a command of the operator] ──► PAUSE ──► the same command ──► next lines of the job ──► over
+//!                                                      ▲             │ error
+//!                                                      └─────────────┘ tries left; else stranded
+//! ```
+
+use neighbours::workstation::{Status, TaskState, player::Workstation as _};
+use rcs_core::{
+    interface::{HwsCommand, hws::HwsReport},
+    name::Name16,
+    tick::Tick,
+};
+use taskdata::load::job::{JobLine, Step, Workstation as Action};
+
+use super::branch::Commander;
+use crate::run::workstation::SimulatedWorkstation;
+
+/// Ticks that a command may take: five minutes, as in a run.
+const TIME_LIMIT: u64 = neighbours::workstation::player::TIME_LIMIT;
+/// Ticks in which Task has to echo a command.
+const ECHO_LIMIT: u64 = 25;
+
+/// What is going on.
+#[derive(Clone, Debug, PartialEq)]
+enum Doing {
+    /// A command that is not one of the job: what follows its end.
+    Own(Then),
+    /// PAUSE.
+    Pause,
+    /// The current line is a command, and Task has it.
+    Command,
+    /// The command failed; the interruption still goes on.
+    Failed,
+    /// The current line is an action of the workstation.
+    Action,
+    /// Nothing more.
+    Over,
+    /// No try is left.
+    Stranded,
+}
+
+/// What follows a command of the operator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Then {
+    /// The recovery procedure.
+    Recovery,
+    /// The interrupted command at once.
+    SameCommand,
+}
+
+/// What an operator does first when a command was interrupted or has failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Recovery {
+    /// PAUSE, and the same command again
+    Pause,
+    /// The same command again, without a PAUSE
+    Same,
+}
+
+/// What an operator told the trial of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ended {
+    /// The tick in which the end was seen.
+    pub tick: Tick,
+    /// Position in the job: 0 for the first PAUSE.
+    pub line: usize,
+    /// The command; empty for an action of the workstation.
+    pub command: String,
+    /// It is the line of the job, not a command of the recovery.
+    pub of_job: bool,
+    /// How it ended: empty for `finished`, else why it failed.
+    pub failure: String,
+}
+
+/// An action that waits for its time.
+struct Later {
+    due: Tick,
+    action: Action,
+    text: String,
+}
+
+/// The operator.
+pub struct Operator<'f> {
+    lines: &'f [JobLine],
+    /// Position in the job: 0 is the first PAUSE, `n` is `lines[n - 1]`.
+    current: usize,
+    doing: Doing,
+    /// When the command or the action began.
+    began: Tick,
+    number: u32,
+    outgoing: Option<HwsCommand>,
+    /// The interruption goes on: nothing is tried.
+    pub is_waiting: bool,
+    recovery: Recovery,
+    tries: u32,
+    tried: u32,
+    /// Ticks after which the first command that is sent again is paused; none if it is not.
+    second_pause: Option<u64>,
+    later: Vec<Later>,
+    delayed: Vec<(u64, Action, String)>,
+    ended: Vec<Ended>,
+    reason: String,
+}
+
+impl<'f> Operator<'f> {
+    /// An operator that comes upon line `current` of a job, which began at `began`; `last` is the command that Task has.
+    #[must_use]
+    pub fn new(lines: &'f [JobLine], current: usize, began: Tick, last: &HwsCommand, tries: u32) -> Self {
+        let mut operator = Self {
+            lines,
+            current,
+            doing: Doing::Over,
+            began,
+            number: last.number,
+            outgoing: None,
+            is_waiting: false,
+            recovery: Recovery::Pause,
+            tries,
+            tried: 0,
+            second_pause: None,
+            later: Vec::new(),
+            delayed: Vec::new(),
+            ended: Vec::new(),
+            reason: String::new(),
+        };
+        operator.doing = if operator.command_at(current).is_some() { Doing::Command } else { Doing::Action };
+        operator
+    }
+
+    /// The operator follows this procedure.
+    #[must_use]
+    pub const fn with_recovery(mut self, recovery: Recovery) -> Self {
+        self.recovery = recovery;
+        self
+    }
+
+    /// The first command that is sent again is paused after so many ticks.
+    #[must_use]
+    pub const fn with_second_pause(mut self, ticks: u64) -> Self {
+        self.second_pause = Some(ticks);
+        self
+    }
+
+    /// The command of a line; PAUSE for the first one.
+    #[must_use]
+    pub fn command_at(&self, line: usize) -> Option<HwsCommand> {
+        match line.checked_sub(1) {
+            None => Some(pause()),
+            Some(at) => match self.lines.get(at)?.step {
+                Step::Command(command) => Some(command),
+                _ => None,
+            },
+        }
+    }
+
+    /// Begin the recovery procedure.
+    pub fn recover(&mut self, tick: Tick) {
+        match self.recovery {
+            Recovery::Pause => self.pause(tick),
+            Recovery::Same => self.same(tick),
+        }
+    }
+
+    /// Send a PAUSE; the current line follows it.
+    pub fn pause(&mut self, tick: Tick) {
+        self.doing = Doing::Pause;
+        self.send(tick, &pause());
+    }
+
+    /// Send a command that is not one of the job.
+    pub fn interject(&mut self, tick: Tick, command: &HwsCommand, then: Then) {
+        self.doing = Doing::Own(then);
+        self.send(tick, command);
+    }
+
+    /// What has ended since the last call.
+    pub fn ended(&mut self) -> Vec<Ended> {
+        std::mem::take(&mut self.ended)
+    }
+
+    /// The job is over.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.doing == Doing::Over && self.later.is_empty()
+    }
+
+    /// Why the job does not go on, if it does not.
+    #[must_use]
+    pub fn stranded(&self) -> Option<&str> {
+        (self.doing == Doing::Stranded).then_some(self.reason.as_str())
+    }
+
+    fn send(&mut self, tick: Tick, command: &HwsCommand) {
+        // Numbers in the mailbox have two bytes, and 0 means none.
+        self.number = if self.number >= 0xFFFF { 1 } else { self.number + 1 };
+        self.outgoing = Some(HwsCommand { number: self.number, ..*command });
+        self.began = tick;
+    }
+
+    /// How the command that was sent last ended; `None` while it goes on.
+    fn end(&self, tick: Tick, status: &Status<'_>) -> Option<Result<(), String>> {
+        let ticks = tick.since(self.began);
+        if status.task == TaskState::Held {
+            return None;
+        }
+        if u32::from(status.echo) != self.number {
+            if status.verdict != 0 && ticks > 1 {
+                return Some(Err(format!("the controller refuses the command: {}", status.reason)));
+            }
+            return (ticks > ECHO_LIMIT).then(|| Err("Task does not answer".to_owned()));
+        }
+        match status.report {
+            HwsReport::Finished | HwsReport::Idle => Some(Ok(())),
+            HwsReport::Error => Some(Err(status.code.text().to_owned())),
+            HwsReport::JoystickOn => Some(Err("the joystick box is on".to_owned())),
+            HwsReport::Executing => (ticks > TIME_LIMIT).then(|| Err("not finished within 300 s".to_owned())),
+        }
+    }
+
+    fn note(&mut self, tick: Tick, command: &HwsCommand, of_job: bool, end: &Result<(), String>) {
+        self.ended.push(Ended {
+            tick,
+            line: self.current,
+            command: command.to_string(),
+            of_job,
+            failure: end.as_ref().err().cloned().unwrap_or_default(),
+        });
+    }
+
+    /// The current line again, or the line that was going on.
+    fn same(&mut self, tick: Tick) {
+        match self.command_at(self.current) {
+            Some(command) => {
+                self.tried += 1;
+                self.doing = Doing::Command;
+                self.send(tick, &command);
+            }
+            None => self.doing = Doing::Action,
+        }
+    }
+
+    fn strand(&mut self, reason: String) {
+        self.reason = reason;
+        self.doing = Doing::Stranded;
+    }
+
+    fn failed(&mut self, tick: Tick, reason: String) {
+        if self.tried >= self.tries {
+            self.strand(reason);
+        } else if self.is_waiting {
+            self.reason = reason;
+            self.doing = Doing::Failed;
+        } else {
+            self.recover(tick);
+        }
+    }
+
+    /// The next line of the job.
+    fn next(&mut self, tick: Tick, workstation: &mut SimulatedWorkstation) {
+        self.current += 1;
+        self.tried = 0;
+        self.began = tick;
+        let lines = self.lines;
+        let Some(line) = lines.get(self.current - 1) else {
+            self.doing = Doing::Over;
+            return;
+        };
+        self.doing = Doing::Action;
+        match &line.step {
+            Step::Command(command) => {
+                self.doing = Doing::Command;
+                self.later.extend(self.delayed.drain(..).map(|(ticks, action, text)| Later {
+                    due: Tick(tick.0.saturating_add(ticks)),
+                    action,
+                    text,
+                }));
+                self.send(tick, command);
+            }
+            Step::Workstation(Action::Wait { .. }) => {}
+            Step::Workstation(action) => {
+                if let Err(refused) = workstation.begin(action, &line.text) {
+                    self.strand(format!("workstation: {refused}"));
+                }
+            }
+            Step::After { ticks, action } => {
+                self.delayed.push((u64::from(*ticks), *action, line.text.clone()))
+            }
+        }
+    }
+
+    /// The action of the current line has come to its end.
+    fn is_done(&self, tick: Tick, workstation: &SimulatedWorkstation) -> bool {
+        match self.current.checked_sub(1).and_then(|at| self.lines.get(at)).map(|line| &line.step) {
+            Some(Step::Workstation(Action::Wait { ticks })) => tick.since(self.began) >= u64::from(*ticks),
+            _ => !workstation.busy(),
+        }
+    }
+}
+
+impl Commander for Operator<'_> {
+    fn step(
+        &mut self,
+        tick: Tick,
+        status: &Status<'_>,
+        workstation: &mut SimulatedWorkstation,
+    ) -> Option<HwsCommand> {
+        for later in self.later.extract_if(.., |later| later.due <= tick) {
+            // What a job does beside a command that was interrupted may come too late to be done.
+            let _ = workstation.begin(&later.action, &later.text);
+        }
+        if let Some(fault) = workstation.fault() {
+            self.strand(format!("workstation: {fault}"));
+        }
+        match self.doing.clone() {
+            Doing::Over | Doing::Stranded => {}
+            Doing::Failed if self.is_waiting => {}
+            Doing::Failed => self.recover(tick),
+            Doing::Own(then) => {
+                if let Some(end) = self.end(tick, status) {
+                    self.note(
+                        tick,
+                        &HwsCommand { command: status.command, ..HwsCommand::default() },
+                        false,
+                        &end,
+                    );
+                    match then {
+                        Then::Recovery => self.recover(tick),
+                        Then::SameCommand => self.same(tick),
+                    }
+                }
+            }
+            Doing::Pause => {
+                if let Some(end) = self.end(tick, status) {
+                    self.note(tick, &pause(), false, &end);
+                    self.same(tick);
+                }
+            }
+            Doing::Command => self.follow(tick, status, workstation),
+            Doing::Action => {
+                if self.is_done(tick, workstation) {
+                    self.next(tick, workstation);
+                }
+            }
+        }
+        self.outgoing.take()
+    }
+}
+
+impl Operator<'_> {
+    /// A command of the job goes on, or ends.
+    fn follow(&mut self, tick: Tick, status: &Status<'_>, workstation: &mut SimulatedWorkstation) {
+        let paused =
+            self.tried == 1 && self.second_pause.is_some_and(|ticks| tick.since(self.began) >= ticks);
+        let Some(end) = self.end(tick, status) else {
+            if paused {
+                self.second_pause = None;
+                self.tried = 0;
+                self.pause(tick);
+            }
+            return;
+        };
+        let command = self.command_at(self.current).unwrap_or_default();
+        self.note(tick, &command, true, &end);
+        match end {
+            Ok(()) => self.next(tick, workstation),
+            Err(reason) => self.failed(tick, reason),
+        }
+    }
+}
+
+/// PAUSE (V.4.1).
+#[must_use]
+pub fn pause() -> HwsCommand {
+    HwsCommand { command: Name16::clipped("PAUSE"), ..HwsCommand::default() }
+}

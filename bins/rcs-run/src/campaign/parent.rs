@@ -1,0 +1,132 @@
+//! The undisturbed run: which line of the job goes on in a tick, what the world is like at the end of each, and in which ticks
+//! something changes.
+
+use levels::ladder::ProcessId;
+use neighbours::workstation::player::{Hwsc, JobFailure, Progress, TIME_LIMIT};
+use rcs_core::{interface::CommonMemory, name::Name16, tick::Tick};
+
+use super::{
+    branch::{Branch, Facility},
+    judge::World,
+};
+use crate::error::Error;
+
+/// Which ticks of the parent are forked.
+#[derive(Clone, Debug)]
+pub enum Ticks {
+    /// Every so many.
+    Every(u64),
+    /// These.
+    At(Vec<u64>),
+    /// Those in which a step or a command number changes, and the two after it.
+    Changes,
+    /// Both: every so many, and those in which something changes.
+    Both(u64),
+}
+
+/// The undisturbed run.
+pub struct Parent {
+    /// First tick of each line: 0 is the first PAUSE.
+    begun: Vec<Tick>,
+    /// The world at the end of each line.
+    worlds: Vec<World>,
+    changes: Vec<u64>,
+    /// Ticks of the run.
+    pub ticks: u64,
+    /// Fingerprint of the run.
+    pub digest: String,
+}
+
+/// Steps and command numbers of all processes.
+type Steps = Vec<(Name16, Option<u32>)>;
+
+fn steps(memory: &CommonMemory, task: u32) -> Steps {
+    let step = |process: &ProcessId| {
+        let number = memory.command_number(*process).unwrap_or(task);
+        (memory.header(*process).step, Some(number))
+    };
+    ProcessId::ALL.iter().map(step).collect()
+}
+
+/// The emulator of a job before its first tick.
+#[must_use]
+pub fn emulator(facility: &Facility) -> Hwsc {
+    Hwsc::new(facility.job.steps.clone(), TIME_LIMIT)
+}
+
+impl Parent {
+    /// Run the job to its end.
+    ///
+    /// # Errors
+    /// [`Error`] if the job does not finish undisturbed.
+    pub fn run(facility: &Facility) -> Result<Self, Error> {
+        let mut branch = Branch::start(facility)?;
+        let mut hwsc = emulator(facility);
+        let mut parent = Self {
+            begun: Vec::new(),
+            worlds: Vec::new(),
+            changes: Vec::new(),
+            ticks: 0,
+            digest: String::new(),
+        };
+        let mut before = steps(branch.memory(), 0);
+        loop {
+            branch.tick(&mut hwsc);
+            let tick = branch.at();
+            while parent.begun.len() < hwsc.begun_steps().len() {
+                if !parent.begun.is_empty() {
+                    parent.worlds.push(World::of(&branch));
+                }
+                parent.begun.push(tick);
+            }
+            let now = steps(branch.memory(), branch.external().hws.number);
+            if now != before {
+                parent.changes.push(tick.0);
+                before = now;
+            }
+            match hwsc.progress() {
+                Progress::Running => {}
+                Progress::Over => {
+                    parent.worlds.push(World::of(&branch));
+                    (parent.ticks, parent.digest) = (tick.0, branch.digest().to_string());
+                    return Ok(parent);
+                }
+                Progress::Failed(failure) => return Err(failed(facility, tick, failure)),
+            }
+        }
+    }
+
+    /// The line that goes on after a tick, and when it began.
+    #[must_use]
+    pub fn line_at(&self, tick: Tick) -> (usize, Tick) {
+        let line = self.begun.iter().rposition(|began| *began <= tick).unwrap_or(0);
+        (line, self.begun.get(line).copied().unwrap_or(tick))
+    }
+
+    /// The world at the end of a line.
+    #[must_use]
+    pub fn world_after(&self, line: usize) -> Option<&World> {
+        self.worlds.get(line)
+    }
+
+    /// The ticks after which the run is forked, in order.
+    #[must_use]
+    pub fn forks(&self, ticks: &Ticks) -> Vec<u64> {
+        let every = |step: u64| (1..).map(move |n| n * step).take_while(|tick| *tick < self.ticks);
+        let changes =
+            || self.changes.iter().flat_map(|tick| *tick..=tick + 2).filter(|tick| *tick < self.ticks);
+        let mut forks: Vec<u64> = match ticks {
+            Ticks::Every(step) => every(*step).collect(),
+            Ticks::At(ticks) => ticks.iter().copied().filter(|tick| *tick < self.ticks).collect(),
+            Ticks::Changes => changes().collect(),
+            Ticks::Both(step) => every(*step).chain(changes()).collect(),
+        };
+        forks.sort_unstable();
+        forks.dedup();
+        forks
+    }
+}
+
+fn failed(facility: &Facility, tick: Tick, failure: &JobFailure) -> Error {
+    Error::Campaign(format!("{} fails undisturbed, at tick {}: {failure}", facility.job.name, tick.0))
+}

@@ -1,0 +1,179 @@
+//! What a campaign prints: a table, the branches that are not done, and both as JSON or Markdown.
+
+use std::{collections::BTreeMap, fmt::Write as _, io};
+
+use serde::Serialize;
+
+use super::{
+    arguments::CampaignArguments,
+    parent::Parent,
+    trial::{Judgement, Verdict},
+};
+use crate::error::Error;
+
+/// Branches that are listed for each reason.
+const LISTED: usize = 4;
+
+/// What came of a kind of interruption.
+#[derive(Debug, Default, Serialize)]
+struct Row {
+    interruption: String,
+    branches: usize,
+    /// Branches that were interrupted while no command was executed.
+    without_command: usize,
+    done: usize,
+    stranded: usize,
+    apart: usize,
+    hurt: usize,
+}
+
+impl Row {
+    fn add(&mut self, judgement: &Judgement) {
+        self.branches += 1;
+        self.without_command += usize::from(!judgement.met_command);
+        match judgement.verdict {
+            Verdict::Done => self.done += 1,
+            Verdict::Stranded => self.stranded += 1,
+            Verdict::Apart => self.apart += 1,
+            Verdict::Hurt => self.hurt += 1,
+        }
+    }
+
+    fn share(&self) -> f64 {
+        let counted = self.branches - self.apart;
+        if counted == 0 { 100.0 } else { 100.0 * self.done as f64 / counted as f64 }
+    }
+}
+
+/// A campaign that is over.
+pub struct Report<'a> {
+    job: &'a str,
+    parent: &'a Parent,
+    judgements: &'a [Judgement],
+    rows: Vec<Row>,
+    command: String,
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    job: &'a str,
+    /// Ticks and fingerprint of the undisturbed run.
+    ticks: u64,
+    digest: &'a str,
+    rows: &'a [Row],
+    branches: &'a [Judgement],
+}
+
+impl<'a> Report<'a> {
+    /// The report on these branches, which stand in the order of their interruptions.
+    #[must_use]
+    pub fn new(
+        job: &'a str,
+        parent: &'a Parent,
+        arguments: &CampaignArguments,
+        judgements: &'a [Judgement],
+    ) -> Self {
+        let mut rows: Vec<Row> = Vec::new();
+        for judgement in judgements {
+            if rows.last().is_none_or(|row| row.interruption != judgement.interruption) {
+                rows.push(Row { interruption: judgement.interruption.clone(), ..Row::default() });
+            }
+            if let Some(row) = rows.last_mut() {
+                row.add(judgement);
+            }
+        }
+        let command = format!("rcs-run campaign {} --seed {}", arguments.job, arguments.seed);
+        Self { job, parent, judgements, rows, command }
+    }
+
+    /// As one JSON object.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if it cannot be written.
+    pub fn json(&self) -> Result<String, Error> {
+        let Parent { ticks, digest, .. } = self.parent;
+        let (rows, branches) = (&self.rows, self.judgements);
+        let json = Json { job: self.job, ticks: *ticks, digest, rows, branches };
+        Ok(serde_json::to_string(&json).map_err(io::Error::from)? + "\n")
+    }
+
+    /// The table, as Markdown.
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        let mut text = String::from(
+            "| job | interruption | branches | done | stranded | hurt | apart | done of those not apart |\n\
+             |---|---|---:|---:|---:|---:|---:|---:|\n",
+        );
+        for row in &self.rows {
+            let Row { interruption, branches, done, stranded, apart, hurt, .. } = row;
+            let share = row.share();
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                text,
+                "| {} | {interruption} | {branches} | {done} | {stranded} | {hurt} | {apart} | {share:.1} % |",
+                self.job
+            );
+        }
+        text
+    }
+
+    /// For people.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "{:<24}{:>9}{:>7}{:>10}{:>6}{:>7}{:>8}  no command\n",
+            self.job, "branches", "done", "stranded", "hurt", "apart", "done %"
+        );
+        for row in &self.rows {
+            let _ = writeln!(
+                text,
+                "{:<24}{:>9}{:>7}{:>10}{:>6}{:>7}{:>8.1}{:>12}",
+                row.interruption,
+                row.branches,
+                row.done,
+                row.stranded,
+                row.hurt,
+                row.apart,
+                row.share(),
+                row.without_command
+            );
+        }
+        for (verdict, title) in
+            [(Verdict::Hurt, "Hurt"), (Verdict::Stranded, "Stranded"), (Verdict::Apart, "Apart")]
+        {
+            self.list(&mut text, verdict, title);
+        }
+        text
+    }
+
+    /// The branches of a verdict, by reason; the most frequent reason first.
+    fn list(&self, text: &mut String, verdict: Verdict, title: &str) {
+        let mut reasons: BTreeMap<&str, Vec<&Judgement>> = BTreeMap::new();
+        for judgement in self.judgements.iter().filter(|judgement| judgement.verdict == verdict) {
+            reasons.entry(&judgement.reason).or_default().push(judgement);
+        }
+        let mut reasons: Vec<_> = reasons.into_iter().collect();
+        reasons.sort_by_key(|(_, branches)| std::cmp::Reverse(branches.len()));
+        if !reasons.is_empty() {
+            let _ = writeln!(text, "\n{title}:");
+        }
+        for (reason, branches) in reasons {
+            let _ = writeln!(text, "{:>6}  {reason}", branches.len());
+            for branch in branches.iter().take(LISTED) {
+                let _ = writeln!(
+                    text,
+                    "        {} --at {} --interrupt {}  ({})\n            {}",
+                    self.command, branch.at, branch.interruption, branch.line, branch.detail
+                );
+            }
+            if branches.len() > LISTED {
+                let more: Vec<String> = branches
+                    .iter()
+                    .skip(LISTED)
+                    .map(|branch| format!("{} {}", branch.interruption, branch.at))
+                    .collect();
+                let _ = writeln!(text, "        and {}", more.join(", "));
+            }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! A single branch, told row by row: for those who mend the control processes.
+
+use std::fmt::Write as _;
+
+use executive::failure;
+use levels::ladder::{Ladder, ProcessId};
+use rcs_core::tick::Tick;
+
+use super::{
+    branch::Branch,
+    trial::{Judgement, Observer},
+};
+
+/// What is said of a process.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Said {
+    command: String,
+    report: &'static str,
+    table: u8,
+    row: u8,
+    step: String,
+    why: &'static str,
+}
+
+/// Tells what each process does: every change of command, status and step, and near the interruption every row.
+pub struct Story {
+    text: String,
+    at: u64,
+    around: u64,
+    last: Vec<Said>,
+}
+
+impl Story {
+    /// A story of a branch that is interrupted after tick `at`.
+    #[must_use]
+    pub fn new(at: u64, around: u64) -> Self {
+        Self { text: String::new(), at, around, last: Vec::new() }
+    }
+
+    /// The whole story.
+    #[must_use]
+    pub fn told(mut self, judgement: &Judgement) -> String {
+        let Judgement { at, interruption, verdict, detail, line, until, .. } = judgement;
+        let mut head = format!("{interruption} after tick {at}, in `{line}`\n");
+        for doing in &judgement.doing {
+            let _ = writeln!(head, "    {doing}");
+        }
+        let _ = writeln!(
+            self.text,
+            "\n{verdict:?} at tick {until}{}{detail}",
+            if detail.is_empty() { "" } else { ": " }
+        );
+        for ended in &judgement.ended {
+            let _ = writeln!(self.text, "    {ended}");
+        }
+        head + "\n" + &self.text
+    }
+
+    fn said(branch: &Branch<'_>) -> Vec<Said> {
+        let (hws, memory) = (&branch.external().hws, branch.memory());
+        let said = |process: &ProcessId| {
+            let (header, said) = (memory.header(*process), memory.said(*process));
+            Said {
+                command: failure::command(*process, hws, memory),
+                report: said.report,
+                table: header.table,
+                row: header.row,
+                step: header.step.to_string(),
+                why: said.fault.text(),
+            }
+        };
+        ProcessId::ALL.iter().map(said).collect()
+    }
+}
+
+impl Observer for Story {
+    fn tick(&mut self, branch: &Branch<'_>) {
+        let tick = branch.at().0;
+        let near = tick <= self.at + self.around;
+        let now = Self::said(branch);
+        let first = self.last.is_empty();
+        for (at, (said, process)) in now.iter().zip(Ladder::processes()).enumerate() {
+            let before = self.last.get(at).cloned().unwrap_or_default();
+            let row = (before.table, before.row) != (said.table, said.row);
+            let rest = Said { table: said.table, row: said.row, ..before.clone() } != *said;
+            let idle = said.command.is_empty();
+            if !(rest || row && near) || first && idle {
+                continue;
+            }
+            let table = process.table(said.table);
+            let text =
+                table.and_then(|table| table.row(said.row)).map_or_else(String::new, |row| row.to_string());
+            let name = table.map_or("no table", |table| table.name);
+            let why = if said.why.is_empty() { String::new() } else { format!(" [{}]", said.why) };
+            let _ = writeln!(
+                self.text,
+                "{tick:>6} {:<15} {:<44} {:<10}{why} {name} row {}{}{}: {text}",
+                process.name,
+                said.command,
+                said.report,
+                said.row,
+                if said.step.is_empty() { "" } else { ", " },
+                said.step
+            );
+        }
+        for event in &branch.events {
+            let _ = writeln!(self.text, "{tick:>6} cell: {event}");
+        }
+        self.last = now;
+    }
+
+    fn say(&mut self, tick: Tick, text: &str) {
+        let _ = writeln!(self.text, "{:>6} -- {text}", tick.0);
+    }
+}

@@ -1,0 +1,224 @@
+//! Forks are exact, and the judge finds what is planted. tests/campaign.rs compares a branch with an ordinary run.
+
+use std::path::Path;
+
+use neighbours::workstation::{Status, player::Hwsc};
+use plant::{Placement, WorkstationAction};
+use rcs_core::{digest::Digest, frame::Frame, interface::HwsCommand, tick::Tick};
+use taskdata::load::{Job, Source};
+
+use super::{
+    branch::{Branch, Commander, Facility, Fork},
+    interruption::Kind,
+    operator::Recovery,
+    parent::{Parent, Ticks, emulator},
+    pool,
+    trial::{self, Judgement, Nobody, Procedure, Until, Verdict},
+};
+use crate::run::{
+    setup::{CellFile, TaskFiles},
+    workstation::SimulatedWorkstation,
+};
+
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data");
+const PROCEDURE: Procedure = Procedure { recovery: Recovery::Pause, tries: 3, until: Until::Next };
+
+fn facility(job: &str) -> Facility {
+    let data = Path::new(DATA);
+    let TaskFiles { store, job, job_path, .. } =
+        TaskFiles::load(data, Some(job)).expect("the job is shipped");
+    let CellFile { description, .. } =
+        CellFile::load(data, &store, &job, &job_path).expect("the cell is shipped");
+    Facility { store, job, description, seed: 1 }
+}
+
+/// A facility with a job of its own.
+fn with_job(text: &str) -> Facility {
+    let shipped = facility("linkbar");
+    let source = Source { name: "try.job".into(), text: text.into() };
+    let (job, _) = Job::from_source(source, &shipped.store).expect("the job is right");
+    Facility { job, ..shipped }
+}
+
+fn kind(facility: &Facility, text: &str) -> Kind {
+    let mut kinds = Kind::named(text, Path::new(DATA), &facility.description).expect("it is known");
+    kinds.remove(0)
+}
+
+/// The emulator, whose commands another branch hears too.
+struct Tape<'h> {
+    hwsc: &'h mut Hwsc,
+    sent: Option<HwsCommand>,
+}
+
+impl Commander for Tape<'_> {
+    fn step(
+        &mut self,
+        tick: Tick,
+        status: &Status<'_>,
+        workstation: &mut SimulatedWorkstation,
+    ) -> Option<HwsCommand> {
+        self.sent = Commander::step(self.hwsc, tick, status, workstation);
+        self.sent
+    }
+}
+
+/// Sends what was sent elsewhere.
+struct Playback(Option<HwsCommand>);
+
+impl Commander for Playback {
+    fn step(&mut self, _: Tick, _: &Status<'_>, _: &mut SimulatedWorkstation) -> Option<HwsCommand> {
+        self.0
+    }
+}
+
+/// All ticks so far, and all that the next one depends on in the cell.
+fn fingerprint(branch: &Branch<'_>) -> (Digest, u64) {
+    (branch.digest(), branch.workstation.cell.digest())
+}
+
+#[test]
+fn a_fork_goes_on_as_its_parent_bit_for_bit() {
+    // STARTUP tells the Data System of the robot: an answer is under way at one of the forks.
+    let facility = with_job(
+        "== STARTUP -- +0 -- 0 +0 -- 0 -- 0\n\
+         ** tray UNIT_1 4 LINKBAR1_BH\n\
+         == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0 #17\n",
+    );
+    let mut branch = Branch::start(&facility).expect("the cell is sound");
+    let mut hwsc = emulator(&facility);
+    for fork_at in [1, 72, 107, 160, 700, 1600] {
+        while branch.at() < Tick(fork_at) {
+            branch.tick(&mut hwsc);
+        }
+        let fork = branch.fork().expect("the cell can be saved");
+        let mut other = Branch::resume(&facility, &fork).expect("the cell can be restored");
+        assert_eq!(fingerprint(&other), fingerprint(&branch), "at tick {fork_at}");
+        for _ in 0..35 {
+            let mut tape = Tape { hwsc: &mut hwsc, sent: None };
+            branch.tick(&mut tape);
+            let sent = tape.sent;
+            other.tick(&mut Playback(sent));
+            let tick = branch.at().0;
+            assert_eq!(other.external(), branch.external(), "in tick {tick} of the fork of {fork_at}");
+            assert_eq!(fingerprint(&other), fingerprint(&branch), "after tick {tick}");
+        }
+    }
+}
+
+/// An undisturbed move of the empty robot, and a state of it that can be tampered with.
+fn empty_move() -> (Facility, Parent, Fork) {
+    let facility = with_job("== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n");
+    let parent = Parent::run(&facility).expect("the job finishes");
+    let fork = pool::fork_at(&facility, 120).expect("the run can be forked");
+    (facility, parent, fork)
+}
+
+fn judged(facility: &Facility, parent: &Parent, fork: &Fork, text: &str) -> Judgement {
+    let kind = kind(facility, text);
+    trial::run(facility, parent, fork, &kind, PROCEDURE, &mut Nobody).expect("the fork goes on")
+}
+
+#[test]
+fn an_undisturbed_branch_is_done() {
+    let (facility, parent, fork) = empty_move();
+    let judgement = judged(&facility, &parent, &fork, "none");
+    assert_eq!((judgement.verdict, judgement.detail.as_str()), (Verdict::Done, ""));
+    assert_eq!((judgement.at, judgement.until), (120, parent.ticks));
+    assert!(judgement.doing[0].starts_with("Task: MOVE"), "{:?}", judgement.doing);
+}
+
+/// A part in the way of the hand: the contact, the tick and the command are named.
+#[test]
+fn the_judge_finds_a_contact_that_was_planted() {
+    let (facility, parent, fork) = empty_move();
+    let mut branch = Branch::resume(&facility, &fork).expect("the cell can be restored");
+    let ahead = {
+        let mut commander = Playback(None);
+        let mut scout = Branch::resume(&facility, &fork).expect("the cell can be restored");
+        (0..60).for_each(|_| scout.tick(&mut commander));
+        scout.workstation.cell.tool().position
+    };
+    let frame = Frame { position: ahead, ..Frame::identity() };
+    let put = WorkstationAction::Put { part: "LCLEVIS_BH".into(), frame };
+    branch.workstation.cell.workstation(&put).expect("there is room for it");
+    let planted = branch.fork().expect("the cell can be saved");
+    let judgement = judged(&facility, &parent, &planted, "none");
+    assert_eq!(judgement.verdict, Verdict::Hurt);
+    assert!(
+        judgement.detail.contains("LCLEVIS_BH") && judgement.detail.contains("MOV-TO-LOC"),
+        "{judgement:?}"
+    );
+    assert!(judgement.detail.starts_with("tick 1"), "{judgement:?}");
+}
+
+/// A part that stands where no command has put it: every command finishes, and the world is not as they say.
+#[test]
+fn the_judge_finds_a_world_that_is_unlike_what_a_command_says() {
+    let (facility, parent, fork) = empty_move();
+    let mut branch = Branch::resume(&facility, &fork).expect("the cell can be restored");
+    let place = WorkstationAction::Place {
+        part: "LINKBAR1_BH".into(),
+        unit: "UNIT_1".into(),
+        sector: 4,
+        placement: Placement::Random,
+    };
+    branch.workstation.cell.workstation(&place).expect("the tray is empty");
+    let planted = branch.fork().expect("the cell can be saved");
+    let judgement = judged(&facility, &parent, &planted, "none");
+    assert_eq!(judgement.verdict, Verdict::Hurt);
+    assert_eq!(judgement.reason, "MOVE is finished, but 1 parts in the cell, not 0");
+}
+
+#[test]
+fn all_threads_give_the_same_judgements_in_the_same_order() {
+    let (facility, parent, _) = empty_move();
+    let kinds: Vec<Kind> = ["pause", "refused", "hold"].map(|text| kind(&facility, text)).into();
+    let forks = parent.forks(&Ticks::Every(60));
+    let campaign = |threads: usize| {
+        let judgements = pool::run(&facility, &parent, &forks, &kinds, PROCEDURE, threads, &|_| {});
+        let judgements = judgements.expect("the branches can be run");
+        judgements.into_iter().map(|one| (one.interruption, one.at, one.digest)).collect::<Vec<_>>()
+    };
+    let one = campaign(1);
+    assert_eq!(one.len(), kinds.len() * forks.len());
+    assert_eq!(one, campaign(3));
+}
+
+#[test]
+fn every_interruption_has_a_name_that_is_read_back() {
+    let facility = facility("linkbar");
+    let all = Kind::named("all", Path::new(DATA), &facility.description).expect("there are some");
+    for kind in &all {
+        let again = Kind::named(&kind.to_string(), Path::new(DATA), &facility.description);
+        assert_eq!(again.expect("it is known"), std::slice::from_ref(kind));
+    }
+    let unknown = Kind::named("pauze", Path::new(DATA), &facility.description).expect_err("it is misspelt");
+    assert!(unknown.to_string().contains("expected none, pause"), "{unknown}");
+}
+
+/// docs/campaign.md says of each file of faults whether it can be switched on.
+#[test]
+fn the_page_lists_the_faults_that_can_be_switched_on() {
+    let facility = facility("linkbar");
+    let page = std::fs::read_to_string(Path::new(DATA).join("../docs/campaign.md")).expect("there is a page");
+    let switchable = Kind::named("fault", Path::new(DATA), &facility.description).expect("there are some");
+    let switchable: Vec<String> = switchable.iter().map(ToString::to_string).collect();
+    for entry in std::fs::read_dir(Path::new(DATA).join("faults")).expect("there are faults") {
+        let path = entry.expect("the directory can be read").path();
+        let name = path.file_stem().and_then(|name| name.to_str()).expect("names are text");
+        let can = switchable.contains(&format!("fault:{name}"));
+        let listed = format!("| `{name}` | {} |", if can { "yes" } else { "no" });
+        assert!(page.contains(&listed), "expected `{listed}` in docs/campaign.md");
+    }
+}
+
+#[test]
+fn forks_are_where_something_changes() {
+    let (_, parent, _) = empty_move();
+    let (every, changes) = (parent.forks(&Ticks::Every(50)), parent.forks(&Ticks::Changes));
+    assert!(every.iter().all(|tick| tick % 50 == 0) && changes.len() > 10);
+    let both = parent.forks(&Ticks::Both(50));
+    assert!(every.iter().chain(&changes).all(|tick| both.contains(tick)));
+    assert!(both.is_sorted_by(|a, b| a < b) && both.iter().all(|tick| *tick < parent.ticks));
+}

@@ -1,0 +1,352 @@
+//! One branch: it is interrupted, an operator follows the recovery procedure, and what became of it is judged.
+
+use executive::failure;
+use levels::ladder::{Ladder, ProcessId};
+use neighbours::workstation::player::Workstation as _;
+use rcs_core::{interface::HwsCommand, name::Name16, tick::Tick};
+use serde::Serialize;
+
+use super::{
+    branch::{Branch, Facility, Fork},
+    interruption::Kind,
+    judge::{Judge, World},
+    operator::{Operator, Recovery, Then},
+    parent::Parent,
+};
+use crate::error::Error;
+
+/// A location that no task data have.
+const MISSPELT: &str = "NOWHERRE";
+
+/// Ticks that a branch goes on after a commanded point has done damage: 2 s.
+const AFTERMATH: u64 = 50;
+
+/// When a branch is judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Until {
+    /// When the command after the interrupted one has ended
+    Next,
+    /// At the end of the job
+    Job,
+}
+
+/// How branches are run.
+#[derive(Clone, Copy, Debug)]
+pub struct Procedure {
+    /// What the operator does first.
+    pub recovery: Recovery,
+    /// How often the interrupted command is sent again.
+    pub tries: u32,
+    /// When a branch is judged.
+    pub until: Until,
+}
+
+/// What became of a branch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The job went on.
+    Done,
+    /// It did not, for the reason that is given.
+    Stranded,
+    /// An arm without pressure, its alignment, its own travel to HOME or a person has touched something.
+    Apart,
+    /// A commanded point has done damage, or a command that finished has not done what it says.
+    Hurt,
+}
+
+/// The verdict on a branch.
+#[derive(Clone, Debug, Serialize)]
+pub struct Judgement {
+    /// The tick after which it was interrupted.
+    pub at: u64,
+    /// How.
+    pub interruption: String,
+    /// What became of it.
+    pub verdict: Verdict,
+    /// Why it is not done; to be counted.
+    pub reason: String,
+    /// The same with numbers, the tick in which it began, and who said so.
+    pub detail: String,
+    /// Line of the job that was interrupted.
+    pub line: String,
+    /// It was a command.
+    pub met_command: bool,
+    /// What each process had to do when it was interrupted.
+    pub doing: Vec<String>,
+    /// What ended since: tick, command and how.
+    pub ended: Vec<String>,
+    /// Last tick of the branch.
+    pub until: u64,
+    /// Fingerprint of the branch.
+    pub digest: String,
+}
+
+/// Told of each tick of a branch.
+pub trait Observer {
+    /// A tick is over.
+    fn tick(&mut self, branch: &Branch<'_>);
+    /// Something was done between two ticks.
+    fn say(&mut self, tick: Tick, text: &str);
+}
+
+/// Nobody looks on.
+pub struct Nobody;
+
+impl Observer for Nobody {
+    fn tick(&mut self, _: &Branch<'_>) {}
+    fn say(&mut self, _: Tick, _: &str) {}
+}
+
+/// A branch with its operator and its judge.
+struct Trial<'f, 'p> {
+    parent: &'p Parent,
+    branch: Branch<'f>,
+    operator: Operator<'f>,
+    judge: Judge,
+    kind: &'p Kind,
+    begun_at: Tick,
+    line: usize,
+    /// The line with whose end the branch is judged.
+    goal: usize,
+    ended: Vec<String>,
+    mismatch: Option<(String, String)>,
+}
+
+/// Interrupt a fork after its last tick, and see what becomes of it.
+///
+/// # Errors
+/// [`Error`] if the fork cannot go on.
+pub fn run(
+    facility: &Facility,
+    parent: &Parent,
+    fork: &Fork,
+    kind: &Kind,
+    procedure: Procedure,
+    observer: &mut impl Observer,
+) -> Result<Judgement, Error> {
+    let branch = Branch::resume(facility, fork)?;
+    let at = branch.at();
+    let (line, began) = parent.line_at(at);
+    let mut operator = Operator::new(&facility.job.steps, line, began, branch.command(), procedure.tries)
+        .with_recovery(procedure.recovery);
+    if *kind == Kind::PauseTwice {
+        // Another place in each branch, the same in each run.
+        operator = operator.with_second_pause(1 + at.0 * 37 % 120);
+    }
+    let goal = match procedure.until {
+        Until::Job => usize::MAX,
+        Until::Next => {
+            let command = |line: usize| operator.command_at(line).is_some();
+            let commands = (line..=facility.job.steps.len()).filter(|line| command(*line));
+            // The interrupted command, or the next one, and the one after it.
+            commands.take(2).last().unwrap_or(usize::MAX)
+        }
+    };
+    let judge = Judge::from_now(&branch);
+    let doing = present(&branch);
+    let trial = Trial {
+        parent,
+        branch,
+        operator,
+        judge,
+        kind,
+        begun_at: at,
+        line,
+        goal,
+        ended: Vec::new(),
+        mismatch: None,
+    };
+    Ok(trial.play(doing, observer))
+}
+
+/// What each process has to do.
+fn present(branch: &Branch<'_>) -> Vec<String> {
+    let (hws, memory) = (&branch.external().hws, branch.memory());
+    let lines = ProcessId::ALL.iter().zip(Ladder::processes()).filter_map(|(id, process)| {
+        let command = failure::command(*id, hws, memory);
+        let header = memory.header(*id);
+        let table = process.table(header.table).map_or("no table", |table| table.name);
+        let said = memory.said(*id).report;
+        let step = if header.step.is_empty() { String::new() } else { format!(", {}", header.step) };
+        (!command.is_empty())
+            .then(|| format!("{}: {command}: {said} ({table} row {}{step})", process.name, header.row))
+    });
+    lines.collect()
+}
+
+impl Trial<'_, '_> {
+    fn play(mut self, doing: Vec<String>, observer: &mut impl Observer) -> Judgement {
+        let mut script = self.kind.script();
+        let mut following = self.kind.leaves_command();
+        let person = matches!(self.kind, Kind::Nudge | Kind::Away);
+        self.first(observer);
+        following |= matches!(self.kind, Kind::Refused | Kind::Replaced);
+        loop {
+            if let Some(refused) = script.step(&mut self.branch) {
+                observer.say(self.branch.at(), &format!("the cell refuses: {refused}"));
+            }
+            self.operator.is_waiting = !script.is_over();
+            if script.is_over() && !following {
+                following = true;
+                // PAUSE is what interrupts, or what an operator begins with who has worked at box or panel.
+                self.operator.pause(self.branch.at());
+            }
+            if following {
+                self.branch.tick(&mut self.operator);
+            } else {
+                self.branch.tick(&mut Silent);
+            }
+            self.judge.look(&self.branch, person && !script.is_over());
+            observer.tick(&self.branch);
+            if let Some(verdict) = self.verdict(observer) {
+                return self.judgement(verdict, doing);
+            }
+        }
+    }
+
+    /// A command that interrupts.
+    fn first(&mut self, observer: &mut impl Observer) {
+        let at = self.branch.at();
+        let under_way = self.operator.command_at(self.line).filter(|command| !command.destination.is_empty());
+        let (command, then) = match self.kind {
+            Kind::Refused => {
+                let known = under_way.unwrap_or_else(|| go("HOME"));
+                (HwsCommand { destination: Name16::clipped(MISSPELT), ..known }, Then::Recovery)
+            }
+            Kind::Replaced => (go("HOME"), Then::SameCommand),
+            _ => return,
+        };
+        observer.say(at, &format!("the operator sends {command}"));
+        self.operator.interject(at, &command, then);
+    }
+
+    /// Whether the branch can be judged.
+    fn verdict(&mut self, observer: &mut impl Observer) -> Option<Verdict> {
+        let mut reached = false;
+        for ended in self.operator.ended() {
+            let how = if ended.failure.is_empty() { "finished" } else { ended.failure.as_str() };
+            let text = format!("tick {}: {}: {how}", ended.tick.0, ended.command);
+            observer.say(ended.tick, &text);
+            self.ended.push(text);
+            if ended.of_job && ended.failure.is_empty() {
+                self.compare(ended.line, &ended.command);
+                reached |= ended.line >= self.goal;
+            }
+        }
+        let worst = self.judge.worst().map(|harm| (harm.commanded, harm.tick));
+        if self.mismatch.is_some() {
+            return Some(Verdict::Hurt);
+        }
+        if let Some((true, tick)) = worst {
+            // How deep it gets is worth knowing.
+            return (self.branch.at().since(tick) >= AFTERMATH).then_some(Verdict::Hurt);
+        }
+        let apart = worst.map(|_| Verdict::Apart);
+        if self.operator.stranded().is_some() || self.branch.check().is_stuck() {
+            return Some(apart.unwrap_or(Verdict::Stranded));
+        }
+        (reached || self.operator.is_over()).then(|| apart.unwrap_or(Verdict::Done))
+    }
+
+    /// A command says that it is finished: is the world as the undisturbed run has it then?
+    fn compare(&mut self, line: usize, command: &str) {
+        let Some(world) = self.parent.world_after(line) else { return };
+        // What has touched something without command may have displaced it.
+        if self.judge.worst().is_some() {
+            return;
+        }
+        if let Some(unlike) = World::of(&self.branch).unlike(world) {
+            let verb = command.split_whitespace().next().unwrap_or_default();
+            self.mismatch = Some((
+                format!("{verb} is finished, but {}", general(&unlike)),
+                format!("tick {}: {command} is finished, but {unlike}", self.branch.at().0),
+            ));
+        }
+    }
+
+    fn judgement(self, verdict: Verdict, doing: Vec<String>) -> Judgement {
+        let (reason, detail) = self.why(verdict);
+        let line = match self.line.checked_sub(1) {
+            None => "PAUSE".to_owned(),
+            Some(at) => self
+                .branch
+                .facility()
+                .job
+                .steps
+                .get(at)
+                .map_or("the end", |line| line.text.as_str())
+                .to_owned(),
+        };
+        Judgement {
+            at: self.begun_at.0,
+            interruption: self.kind.to_string(),
+            verdict,
+            reason,
+            detail,
+            line,
+            met_command: self.operator.command_at(self.line).is_some(),
+            doing,
+            ended: self.ended,
+            until: self.branch.at().0,
+            digest: self.branch.digest().to_string(),
+        }
+    }
+
+    /// Reason and detail.
+    fn why(&self, verdict: Verdict) -> (String, String) {
+        match verdict {
+            Verdict::Done => (String::new(), String::new()),
+            Verdict::Hurt | Verdict::Apart => {
+                if let Some(mismatch) = &self.mismatch {
+                    return mismatch.clone();
+                }
+                let stranded =
+                    self.operator.stranded().map_or_else(String::new, |why| format!("; stranded: {why}"));
+                self.judge.worst().map_or_else(Default::default, |harm| {
+                    (harm.kind.clone(), format!("tick {}: {}{stranded}", harm.tick.0, harm.what))
+                })
+            }
+            Verdict::Stranded => {
+                let reason = match self.operator.stranded() {
+                    Some(reason) => reason.to_owned(),
+                    None => "the robot stands in something".to_owned(),
+                };
+                let known = self.branch.watch().failure(Ladder::processes());
+                let emergency = self.branch.workstation.emergency();
+                let detail = known.map(|known| format!("tick {}: {}", known.tick.0, known.text));
+                let detail = detail.or(emergency).unwrap_or_else(|| reason.clone());
+                (reason, detail)
+            }
+        }
+    }
+}
+
+/// A sentence without its numbers, to be counted.
+fn general(text: &str) -> String {
+    let number = |word: &str| word.parse::<f64>().is_ok() && word.contains('.');
+    text.split(' ').map(|word| if number(word) { "some" } else { word }).collect::<Vec<_>>().join(" ")
+}
+
+/// MOVE to a location with nothing in the hand.
+fn go(location: &str) -> HwsCommand {
+    HwsCommand {
+        command: Name16::clipped("MOVE"),
+        destination: Name16::clipped(location),
+        ..HwsCommand::default()
+    }
+}
+
+/// Commands nothing: the command that Task has goes on.
+struct Silent;
+
+impl super::branch::Commander for Silent {
+    fn step(
+        &mut self,
+        _: Tick,
+        _: &neighbours::workstation::Status<'_>,
+        _: &mut crate::run::workstation::SimulatedWorkstation,
+    ) -> Option<HwsCommand> {
+        None
+    }
+}

@@ -1,0 +1,186 @@
+//! Where the robot is in the change of a gripper, and how far the change has come
+//! (docs/design/recovery.md "Exchange").
+//!
+//! ```text
+//!   bare:     above --- fast --- slow (seat)      QC-ATTACH reads it from left to right and down,
+//!                                 |               QC-DETACH the other way round
+//!   mated:       up --- lift --- back (low)
+//! ```
+//!
+//! All points follow from the pose of the holster and the relative moves of the two commands.
+
+use rcs_core::{
+    frame::{Frame, norm},
+    interface::{
+        CommonMemory,
+        emove::{EmoveCommand, EmoveVerb, Exchange},
+    },
+    pose::Pose,
+    process::Inputs,
+};
+use taskdata::files::{PoseId, TaskData};
+
+use super::{
+    fingers::gripper_on,
+    gripper::Gripper,
+    relative::Relative,
+    robot_place::{gone_to, present_frame, robot_at},
+    state::State,
+    tables::{Along, Shut},
+};
+
+/// The robot is at the seat within this, in: much less than a relative move is long.
+const AT_POINT: f64 = 0.12;
+/// It is at the low point within this, in: QCD-DOWN may go a little further until the sensors see the ears.
+const AT_LOW: f64 = 0.3;
+/// It is clear of the holster within this of the upper points, or beyond them, in.
+const CLEAR: f64 = 0.3;
+/// It is on a segment within this, in …
+const BESIDE: f64 = 0.35;
+/// … and radians (2 degrees).
+const TURNED: f64 = 2.0 * core::f64::consts::PI / 180.0;
+
+/// The points of the exchange in a holster.
+struct Points {
+    above: Frame,
+    fast: Frame,
+    slow: Frame,
+    back: Frame,
+    lift: Frame,
+    up: Frame,
+}
+
+impl Points {
+    /// The points for a command that names a holster, whose pose is `base`.
+    fn of(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Option<Self> {
+        let moved = |from: &Frame, relative: Relative| {
+            Some(data.moved(from, relative.record(command, data)?.movetable))
+        };
+        let slow = moved(base, Relative::QcaSlow)?;
+        Some(Self {
+            above: moved(&slow, Relative::QcdUp)?,
+            fast: moved(base, Relative::QcaFast)?,
+            slow,
+            back: moved(base, Relative::QcaBack)?,
+            lift: moved(base, Relative::QcaLift)?,
+            up: moved(base, Relative::QcaUp)?,
+        })
+    }
+
+    /// Where a frame is along them.
+    fn along(&self, present: &Frame) -> Along {
+        let at = |point: &Frame| norm(&(present.position - point.position));
+        let segments = [
+            (beside(present, &self.above, &self.fast), Along::Out),
+            (beside(present, &self.fast, &self.slow), Along::Coming),
+            (beside(present, &self.slow, &self.back), Along::Sliding),
+            (beside(present, &self.back, &self.lift), Along::Lifting),
+            (beside(present, &self.lift, &self.up), Along::Raising),
+        ];
+        let nearest = segments.into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b));
+        let turned = self.slow.distance(present).radians > TURNED;
+        if at(&self.slow) <= AT_POINT && !turned {
+            Along::Seat
+        } else if at(&self.back) <= AT_LOW && !turned {
+            Along::Low
+        } else if at(&self.above) <= CLEAR {
+            Along::Above
+        } else if at(&self.up) <= CLEAR {
+            Along::Clear
+        } else {
+            match nearest {
+                Some((distance, segment)) if distance <= BESIDE && !turned => segment,
+                _ => Along::Off,
+            }
+        }
+    }
+}
+
+/// How far a frame is from a straight segment, in.
+fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
+    let (along, offset) = (end.position - start.position, present.position - start.position);
+    let length = along.dot(&along);
+    let share = if length > 0.0 { (along.dot(&offset) / length).clamp(0.0, 1.0) } else { 0.0 };
+    norm(&(offset - along * share))
+}
+
+/// The pose of a command's location.
+fn base(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
+    match data.pose(PoseId::new(command.pose)) {
+        Some(record) => Some(record.frame),
+        None => memory.changing_pose(command.pose)?.to_frame().ok(),
+    }
+}
+
+const fn is_exchange(verb: EmoveVerb) -> bool {
+    matches!(verb, EmoveVerb::QcAttach | EmoveVerb::QcDetach)
+}
+
+impl State {
+    /// Where the robot is in the exchange that the command asks for.
+    pub(super) fn along(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Along {
+        if !is_exchange(command.command) {
+            return Along::Off;
+        }
+        let base = base(command, inputs.memory, inputs.data);
+        let points = base.and_then(|base| Points::of(command, &base, inputs.data));
+        match (points, present_frame(inputs.memory)) {
+            (Some(points), Some(present)) => points.along(&present),
+            _ => Along::Off,
+        }
+    }
+
+    /// Are the fingers at the opening with which the gripper goes through its holster?
+    pub(super) fn shut(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Shut {
+        let opening = gripper_on(&command.object, inputs.data).map(|on| on.appr_size);
+        let attached = Gripper::attached(inputs.memory);
+        match opening {
+            _ if attached.is_uncalibrated(inputs.memory) => Shut::Raw,
+            Some(opening) if attached.stands_at(opening, inputs.memory) => Shut::Shut,
+            _ => Shut::Open,
+        }
+    }
+
+    /// A relative move of the command is ordered: a robot that changes a gripper is in the holster.
+    pub(super) fn note_exchange(
+        &mut self,
+        command: &EmoveCommand,
+        memory: &CommonMemory,
+        data: &TaskData<'_>,
+    ) {
+        if let (true, Some(base)) = (is_exchange(command.command), base(command, memory, data)) {
+            let place = robot_at(command, gone_to(command), Pose::from_frame(&base));
+            self.beliefs.exchange = Some(Exchange { gripper: command.end_effector_id, place });
+        }
+    }
+
+    /// A robot that has been taken away from the holster, as by the joystick box, changes no gripper any more.
+    pub(super) fn sense_exchange(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
+        let (Some(exchange), Some(present)) = (self.beliefs.exchange, present_frame(inputs.memory)) else {
+            return;
+        };
+        let command = EmoveCommand {
+            location_kind: exchange.place.kind,
+            location_record: exchange.place.record,
+            location_array: exchange.place.array,
+            ..EmoveCommand::default()
+        };
+        let base = exchange.place.pose.to_frame().ok();
+        let points = base.and_then(|base| Points::of(&command, &base, inputs.data));
+        let along = points.map_or(Along::Off, |points| points.along(&present));
+        if along == Along::Off {
+            self.beliefs.exchange = None;
+        }
+    }
+
+    /// Where a gripper is left in the holster of a command.
+    pub(super) fn seat_pose(
+        &self,
+        command: &EmoveCommand,
+        memory: &CommonMemory,
+        data: &TaskData<'_>,
+    ) -> Option<Pose> {
+        let base = base(command, memory, data)?;
+        Some(Pose::from_frame(&Points::of(command, &base, data)?.slow))
+    }
+}

@@ -1,0 +1,272 @@
+//! Going on with a way that was interrupted (docs/design/recovery.md "On the way").
+//!
+//! ```text
+//!   from ---depart---> end of depart ---trajectory---> . ---approach---> to
+//!                           |     <==== back ====  robot  ==== on ===>
+//!                           `---trajectory---> . ---approach---> another goal
+//! ```
+//!
+//! The robot goes on to the same goal, or back along the way to the end of the depart leg and from there to
+//! another goal. Stopped inside the depart leg it goes out of it. The way itself is not remembered point by
+//! point: it follows from its two ends and the task data.
+
+use rcs_core::{
+    Plain,
+    frame::{Frame, norm},
+    interface::{
+        CommonMemory,
+        emove::{Direction, EmoveCommand, GoneTo, Leg as Part, RobotPlace, Way},
+        prim::{PrimReport, PrimVerb},
+    },
+    pose::Pose,
+    process::Inputs,
+};
+use taskdata::files::{TaskData, TrajParaId};
+
+use super::{
+    robot_place::{commanded_pose, place, present_frame},
+    route::{Ahead, Goal, Leg, LegGoal, Planning, Route, THERE_INCHES, THERE_RADIANS, near, same_location},
+    state::State,
+    tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
+};
+
+/// The robot is on its way if it is no more than this many inches from where it was commanded to be last …
+pub(super) const AWAY_INCHES: f64 = 0.5;
+/// … and this many radians (2 degrees).
+pub(super) const AWAY_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
+/// The farthest that a commanded pose moves in a tick, in: 14 in/s (A 2.3), and a little more.
+const STEP_INCHES: f64 = 0.6;
+/// The farthest that it turns in a tick, radians: 1 rad/s, and a little more.
+const STEP_RADIANS: f64 = 0.05;
+
+/// The part of an interrupted way that is flown back.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Back {
+    /// The way.
+    pub route: Route,
+    /// The point before which the robot is, in the direction of the goal: it goes to the one before that.
+    pub next: u16,
+    /// The end of the depart leg has been commanded.
+    pub complete: bool,
+}
+
+impl Back {
+    /// The next leg back. `None` if a record is missing.
+    fn leg(&self, data: &TaskData<'_>) -> Option<Leg> {
+        let (_, from) = self.route.point(self.next, data)?;
+        let (frame, to) = match self.next.checked_sub(1) {
+            Some(point) => self.route.point(point, data)?,
+            None => (self.route.from.pose.to_frame().ok()?, from),
+        };
+        Some(Leg { at: LegGoal::Computed(frame), parameters: slower(from, to, data) })
+    }
+
+    /// Note that it has been commanded.
+    fn advance(&mut self, data: &TaskData<'_>) {
+        if self.next <= self.route.depart_points(data) {
+            self.complete = true;
+        } else {
+            self.next = self.next.saturating_sub(1);
+        }
+    }
+}
+
+/// The parameters with the lower velocity: those of both ends of a segment hold when it is flown back.
+fn slower(a: TrajParaId, b: TrajParaId, data: &TaskData<'_>) -> TrajParaId {
+    let velocity = |id| data.traj_para(id).map_or(i32::MAX, |parameters| parameters.vel_max);
+    if velocity(b) < velocity(a) { b } else { a }
+}
+
+/// The route of a way, from its ends.
+fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
+    if way.straight {
+        let stop = Route::between(&way.from, &way.to, data).map(|route| route.stop)?;
+        Ok(Route::straight(&way.from, &way.to, stop))
+    } else {
+        Route::between(&way.from, &way.to, data)
+    }
+}
+
+/// Is a frame on the segment of the way that the robot is on? Points are passed within their break distance.
+fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<bool> {
+    let route = route_of(way, data).ok()?;
+    let (end, parameters) = route.point(way.next, data)?;
+    let (start, _) = match way.next.checked_sub(1) {
+        Some(point) => route.point(point, data)?,
+        None => (way.from.pose.to_frame().ok()?, parameters),
+    };
+    let (along, offset) = (end.position - start.position, present.position - start.position);
+    let length = along.dot(&along);
+    let share = if length > 0.0 { (along.dot(&offset) / length).clamp(0.0, 1.0) } else { 0.0 };
+    let beside = norm(&(offset - along * share));
+    let cut = f64::from(data.traj_para(parameters)?.brk_dst.max(0)) / 100.0;
+    let turn = start.distance(&end).radians;
+    let (before, after) = (present.distance(&start).radians, present.distance(&end).radians);
+    // On the shorter turn from one to the other, with the same tolerance.
+    let turned = before + after <= turn + AWAY_RADIANS;
+    Some(beside <= cut + AWAY_INCHES && turned)
+}
+
+impl State {
+    /// Follow the commanded pose while the robot moves, and note when the operator has moved it.
+    pub(super) fn sense_way(&mut self, memory: &CommonMemory) {
+        let Some(way) = &mut self.beliefs.way else { return };
+        let prim = &memory.prim.status;
+        match prim.report {
+            PrimReport::JoystickOn => way.by_hand = true,
+            PrimReport::Executing if memory.emove.prim.command != PrimVerb::RobotInit => {
+                let commanded = commanded_pose(memory);
+                let follows = |pose: &Pose| {
+                    let (Ok(now), Ok(before)) = (pose.to_frame(), way.rest.to_frame()) else { return false };
+                    near(&now, &before, STEP_INCHES, STEP_RADIANS)
+                };
+                if let Some(pose) = commanded.filter(follows) {
+                    way.rest = pose;
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// The way that the robot is on, if it has not left it.
+    pub(super) fn on_way(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Way> {
+        let (way, present) = (self.beliefs.way?, present_frame(inputs.memory)?);
+        let rest = way.rest.to_frame().ok()?;
+        let at_rest = near(&rest, &present, AWAY_INCHES, AWAY_RADIANS);
+        let moved = way.by_hand && is_in_corridor(&present, &way, inputs.data) == Some(true);
+        (at_rest || moved).then_some(way)
+    }
+
+    /// The state variables of RESUME for a goal.
+    fn start(&self, goal: &RobotPlace, way: Option<&Way>, data: &TaskData<'_>) -> Start {
+        let robot = match (self.beliefs.place, way) {
+            (Some(_), _) => Robot::AtPlace,
+            (None, Some(_)) => Robot::OnWay,
+            (None, None) => Robot::Lost,
+        };
+        let Some(way) = way else {
+            return Start { robot, goal: GoalOf::Another, back: WayBack::Free, leg: LegNow::Later };
+        };
+        let route = route_of(way, data).unwrap_or_default();
+        let departs = way.next < route.depart_points(data);
+        let here = same_location(&place(&way.from), &place(&way.to));
+        let closed = here
+            && !way.straight
+            && route.depart_points(data) == 0
+            && matches!(way.to.gone_to, GoneTo::Object(_));
+        Start {
+            robot,
+            goal: if is_same(&way.to, goal) { GoalOf::Way } else { GoalOf::Another },
+            back: if closed { WayBack::Closed } else { WayBack::Free },
+            leg: if departs { LegNow::Depart } else { LegNow::Later },
+        }
+    }
+
+    /// Plan the way of a motion command from where the robot is.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub(super) fn flight(
+        &self,
+        command: &EmoveCommand,
+        goal: &Goal,
+        inputs: &Inputs<'_, TaskData<'_>>,
+    ) -> Result<(Route, Option<Back>), Planning> {
+        let data = inputs.data;
+        let (to, way) = (goal.place(command), self.on_way(inputs));
+        let beginning = resume((), &self.start(&to, way.as_ref(), data)).action;
+        match (beginning, self.beliefs.place, way) {
+            (Beginning::Depart, Some(from), _) => Ok((Route::plan(command, goal, &from, data)?, None)),
+            (Beginning::GoOn, _, Some(way)) => {
+                let on = Route { commanded: way.next, opening: goal.opening, ..route_of(&way, data)? };
+                Ok((on, None))
+            }
+            (Beginning::GoOut, _, Some(way)) => {
+                let out = Route::between(&way.from, &to, data)?;
+                Ok((Route { commanded: way.next, opening: goal.opening, ..out }, None))
+            }
+            (Beginning::GoBack, _, Some(way)) => {
+                let (route, then) = (route_of(&way, data)?, Route::between(&way.from, &to, data)?);
+                let back = Back { route, next: way.next, complete: false };
+                let commanded = route.depart_points(data);
+                Ok((Route { commanded, opening: goal.opening, ..then }, Some(back)))
+            }
+            (Beginning::RefuseBack, ..) => Err(Planning::ForwardOnly),
+            _ => Err(Planning::NoStart),
+        }
+    }
+
+    /// What lies ahead: first the way back, then the route.
+    pub(super) fn ahead(&self, data: &TaskData<'_>) -> Ahead {
+        match (&self.back, &self.route) {
+            (Some(back), _) if !back.complete => {
+                if back.leg(data).is_some() {
+                    Ahead::Through
+                } else {
+                    Ahead::Missing
+                }
+            }
+            (_, Some(route)) => route.ahead(data),
+            (_, None) => Ahead::Nothing,
+        }
+    }
+
+    /// True while the fingers must not move yet: on the way back, and as long as the next point is a depart
+    /// point (docs/design/motion.md "Finger opening").
+    pub(super) fn departing(&self, data: &TaskData<'_>) -> bool {
+        let back = self.back.is_some_and(|back| !back.complete);
+        back || self.route.is_some_and(|route| route.departing(data))
+    }
+
+    /// The next leg, which is noted as commanded, with the way that the robot is then on.
+    pub(super) fn next_leg(&mut self, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Leg> {
+        let rest = commanded_pose(memory).unwrap_or_default();
+        let way = |route: &Route, next, direction| Way {
+            from: route.from,
+            to: route.to,
+            next,
+            leg: route.part(next, data),
+            direction,
+            straight: false,
+            rest,
+            by_hand: false,
+        };
+        if let Some(back) = self.back.as_mut().filter(|back| !back.complete) {
+            let leg = back.leg(data);
+            self.beliefs.way = Some(Way {
+                straight: self.beliefs.way.is_some_and(|way| way.straight),
+                ..way(&back.route, back.next, Direction::Back)
+            });
+            back.advance(data);
+            return leg;
+        }
+        let route = self.route.as_mut()?;
+        let leg = route.leg(data);
+        route.advance(data);
+        self.beliefs.way = Some(way(route, route.heading(), Direction::Forward));
+        leg
+    }
+}
+
+impl State {
+    /// The camera goes straight from one view to the next.
+    pub(super) fn leave_view(&mut self, to: RobotPlace, memory: &CommonMemory) {
+        let Some(from) = self.beliefs.place.take() else { return };
+        self.beliefs.way = Some(Way {
+            from,
+            to,
+            next: 0,
+            leg: Part::Approach,
+            straight: true,
+            direction: Direction::Forward,
+            rest: commanded_pose(memory).unwrap_or_default(),
+            by_hand: false,
+        });
+    }
+}
+
+/// Is it the same goal: same kind, place, object and grip, and the same pose?
+fn is_same(a: &RobotPlace, b: &RobotPlace) -> bool {
+    let (Ok(a_frame), Ok(b_frame)) = (a.pose.to_frame(), b.pose.to_frame()) else { return false };
+    a.gone_to == b.gone_to && place(a) == place(b) && near(&a_frame, &b_frame, THERE_INCHES, THERE_RADIANS)
+}

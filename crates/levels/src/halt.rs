@@ -1,0 +1,155 @@
+//! A new command number replaces what is under way, whatever it is (docs/design/recovery.md "Replaced").
+//!
+//! ```text
+//!              new command, something is under way below: Stop
+//!   Clear -----------------------------------------------------> Stopping
+//!     ^                                                              |
+//!     |                  what is below has come to rest              |
+//!     '--------------------------------------------------------------'
+//! ```
+//!
+//! [`HALT`] is consulted after EXECUTE and before ACCEPT, so that a command that is refused stops what was under way too, and its
+//! end is reported only when nothing moves any more. If nothing is under way, a command is accepted in the tick in which it comes.
+
+use rcs_core::{Actions, Plain, Variables, decision_table, handshake::Lower, interface::Reason};
+
+/// The command of a process, for [`HALT`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Intake {
+    /// It has been accepted or refused, or there is none.
+    Taken,
+    /// It is new and neither accepted nor refused yet.
+    Asked,
+    /// It was found at the start of the process and is not executed.
+    Adopted,
+}
+
+/// Does the new command stop what is below by itself?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Kind {
+    /// No.
+    Other,
+    /// Yes: its own table sends a pause down and waits for it.
+    Pause,
+}
+
+/// The joystick box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum JoystickBox {
+    /// It is off.
+    Off,
+    /// It is on: the operator has the robot, and nothing is sent.
+    On,
+}
+
+/// What the processes below are doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Below {
+    /// Nothing: what they were told last has ended, or they do not answer.
+    AtRest,
+    /// They were told to pause and are coming to rest.
+    Pausing,
+    /// Something else.
+    UnderWay,
+}
+
+impl Below {
+    /// By the status of one process below, and whether a pause was the last that it was told.
+    #[must_use]
+    pub const fn of(status: Lower, pausing: bool) -> Self {
+        match (status, pausing) {
+            (Lower::Pending | Lower::Executing, true) => Self::Pausing,
+            (Lower::Pending | Lower::Executing, false) => Self::UnderWay,
+            (Lower::Done | Lower::Error | Lower::Joystick | Lower::Lost, _) => Self::AtRest,
+        }
+    }
+
+    /// Of two processes.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::UnderWay, _) | (_, Self::UnderWay) => Self::UnderWay,
+            (Self::Pausing, _) | (_, Self::Pausing) => Self::Pausing,
+            (Self::AtRest, Self::AtRest) => Self::AtRest,
+        }
+    }
+}
+
+/// What a new command may replace, for [`HALT`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Replaced {
+    /// The command.
+    pub intake: Intake,
+    /// Does it stop what is below by itself?
+    pub kind: Kind,
+    /// The joystick box.
+    pub joystick: JoystickBox,
+    /// What the processes below are doing.
+    pub below: Below,
+}
+
+/// What [`HALT`] can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+pub enum Halting {
+    /// A pause to the processes below.
+    Stop,
+    /// Nothing new: they are coming to rest.
+    Wait,
+}
+
+decision_table! {
+    /// HALT: a new command replaces what is under way. It is accepted or refused when the processes below have
+    /// come to rest. What a process had under way before it was restarted is stopped too.
+    pub HALT: fn halt(enum Halt, Replaced) -> Halting or () {
+        any {
+            1:  joystick: On                                                    => consult;
+            2:  joystick: Off, intake: Taken                                    => consult;
+        }
+        /// Nothing was told to stop for the sake of a new command.
+        Clear {
+            3:  joystick: Off, intake: Asked, kind: Pause                       => consult;
+            4:  joystick: Off, intake: Asked | Adopted, below: AtRest           => consult;
+            5:  joystick: Off, intake: Adopted, below: Pausing                  => consult;
+            6:  joystick: Off, intake: Asked, kind: Other, below: Pausing       => Wait -> Stopping;
+            7:  joystick: Off, intake: Asked | Adopted, below: UnderWay         => Stop -> Stopping;
+        }
+        /// What is below is coming to rest.
+        Stopping {
+            8:  joystick: Off, intake: Asked | Adopted, below: Pausing | UnderWay => Wait;
+            9:  joystick: Off, intake: Asked | Adopted, below: AtRest           => Wait -> Clear;
+        }
+    }
+}
+
+/// An order to a process below, for [`EFFECT`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Order {
+    /// The row that fired orders nothing.
+    None,
+    /// It orders something, and did not order it last with the same state variables.
+    New,
+    /// It was the last one that ordered something, and the state variables are those of that time.
+    Repeated,
+}
+
+/// The row that fired, for [`EFFECT`].
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct Fired {
+    /// What it orders.
+    pub order: Order,
+}
+
+/// What [`EFFECT`] can ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+pub enum Futile {
+    /// Report an error.
+    Fail(Reason),
+}
+
+decision_table! {
+    /// EFFECT: an order that has changed no state variable is not given again by the same row. The command fails.
+    pub EFFECT: fn effect(Fired) -> Futile or () {
+        1: order: None | New    => consult;
+        2: order: Repeated      => Fail(NoEffect);
+    }
+}

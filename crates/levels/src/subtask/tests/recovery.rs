@@ -1,0 +1,497 @@
+//! Subtask after an interruption: what was under way is stopped, and the same command goes on
+//! (docs/design/recovery.md).
+
+use rcs_core::{
+    interface::{
+        Reason, Report,
+        emove::{EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Standing},
+        pedestal::{PedestalReport, PedestalVerb},
+        subtask::{Regrip, SubtaskVerb},
+    },
+    name::{Name10, Name16},
+};
+
+use super::{
+    bench::{Bench, DONE, Mishap},
+    error,
+};
+use crate::{coverage::Coverage, subtask::Subtask};
+
+/// FIX-GRIP of the part from grip 1 to grip -1.
+fn fix(bench: &mut Bench<'_>) -> (Report, Reason) {
+    bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), "")
+}
+
+/// Is E-move or the pedestal doing anything but pausing?
+fn is_under_way(bench: &Bench<'_>) -> bool {
+    let (subtask, emove, pedestal) =
+        (&bench.memory.subtask, &bench.memory.emove.status, &bench.memory.pedestal.status);
+    let robot = emove.report == Report::Executing || emove.echo != subtask.emove.number;
+    let part = pedestal.report == PedestalReport::Executing || pedestal.echo != subtask.pedestal.number;
+    (robot && subtask.emove.command != EmoveVerb::Pause)
+        || (part && subtask.pedestal.command != PedestalVerb::Pause)
+}
+
+#[test]
+fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
+    for (verb, object, location) in [
+        (SubtaskVerb::Pause, "", ""),
+        (SubtaskVerb::None, "", ""),
+        (SubtaskVerb::FixGrip, "BAR", ""),
+        (SubtaskVerb::GotoDest, "", "SAFE"),
+        (SubtaskVerb::Release, "PART", ""),
+    ] {
+        for ticks in 1..60 {
+            let mut bench = Bench::grasped("PART", 1);
+            bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+            for _ in 0..ticks {
+                bench.step();
+            }
+            bench.command(verb, object, (1, 2), location);
+            let (end, under_way) = (bench.finish(), is_under_way(&bench));
+            assert!(!under_way, "{verb} at tick {ticks} ends with {end:?} while something moves");
+            assert_eq!(bench.memory.emove.status.echo, bench.memory.subtask.emove.number);
+            assert_eq!(bench.memory.pedestal.status.echo, bench.memory.subtask.pedestal.number);
+        }
+    }
+}
+
+#[test]
+fn a_restarted_subtask_stops_what_it_had_commanded() {
+    for ticks in 1..60 {
+        let mut bench = Bench::grasped("PART", 1);
+        bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+        for _ in 0..ticks {
+            bench.step();
+        }
+        bench.process = Subtask::default();
+        bench.finish();
+        (0..10).for_each(|_| {
+            bench.step();
+        });
+        assert!(!is_under_way(&bench), "tick {ticks}");
+        assert_eq!(bench.memory.subtask.status.reason, Reason::Restarted);
+    }
+}
+
+#[test]
+fn an_interrupted_regrip_goes_on() {
+    for restart in [false, true] {
+        for ticks in 1..80 {
+            let mut bench = Bench::grasped("PART", 1);
+            bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+            for _ in 0..ticks {
+                bench.step();
+            }
+            if restart {
+                bench.process = Subtask::default();
+                bench.finish();
+                (0..10).for_each(|_| {
+                    bench.step();
+                });
+            } else {
+                assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
+            }
+            let trail: Vec<_> = {
+                bench.emove.received.clear();
+                bench.pedestal.received.clear();
+                bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+                (0..100)
+                    .map(|_| {
+                        let s = bench.step();
+                        (
+                            s.report,
+                            bench.memory.subtask.header.decided,
+                            bench.memory.subtask.emove.command,
+                            bench.memory.subtask.pedestal.command,
+                        )
+                    })
+                    .collect()
+            };
+            if trail.last().unwrap().0 != Report::Done {
+                panic!("{ticks} {restart} {trail:?}");
+            }
+            assert_eq!(fix(&mut bench), DONE, "interrupted after {ticks} ticks");
+            assert_eq!(
+                bench.memory.pedestal.status.table_position,
+                Some(-2135 + 1835),
+                "the angle is absolute"
+            );
+            let held = ObjectGrip { object: Name16::new("PART").unwrap(), grip: -1 };
+            assert_eq!(bench.memory.emove.status.held, Holding::Object(held));
+            assert_eq!(bench.memory.subtask.regrip, None);
+        }
+    }
+}
+
+#[test]
+fn a_table_that_was_stopped_half_way_turns_by_what_is_left() {
+    let mut bench = Bench::grasped("PART", 1);
+    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+    while bench.memory.subtask.pedestal.command != PedestalVerb::Flip {
+        bench.step();
+    }
+    assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
+    bench.pedestal.outputs.status.table_position = Some(-1000);
+    bench.step();
+    assert_eq!(fix(&mut bench), DONE);
+    let flip = bench.pedestal.received[0];
+    assert_eq!((flip.command, flip.table_angle), (PedestalVerb::Flip, 1000 - 300));
+}
+
+#[test]
+fn while_the_part_is_in_the_pedestal_nothing_else_is_done() {
+    let mut bench = Bench::grasped("PART", 1);
+    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+    while bench.memory.subtask.pedestal.command != PedestalVerb::Flip {
+        bench.step();
+    }
+    assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
+    assert!(bench.memory.subtask.status.pedestal_part);
+    for verb in [
+        SubtaskVerb::GetObject,
+        SubtaskVerb::PlaceObj,
+        SubtaskVerb::MoveObjToDest,
+        SubtaskVerb::GotoEndpt,
+        SubtaskVerb::GotoDest,
+        SubtaskVerb::Position,
+        SubtaskVerb::InsertTool,
+        SubtaskVerb::ReleaseTool,
+        SubtaskVerb::AcquireTool,
+        SubtaskVerb::RemoveTool,
+    ] {
+        assert_eq!(bench.run(verb, "PART", (1, 1), "SAFE"), error(Reason::PartInPedestal), "{verb}");
+        assert!(bench.sent().is_empty());
+    }
+    let other = bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "");
+    assert_eq!(other, error(Reason::PartInPedestal));
+    assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), ""), DONE);
+    assert_eq!(fix(&mut bench), DONE);
+    assert!(!bench.memory.subtask.status.pedestal_part);
+    // A hand that is opened at the pedestal is free.
+    let mut bench = Bench::grasped("PART", 1);
+    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+    while bench.memory.subtask.pedestal.command != PedestalVerb::Flip {
+        bench.step();
+    }
+    assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
+    bench.pedestal.outputs.status.grip_size = 500;
+    bench.step();
+    assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), DONE);
+}
+
+/// What E-move holds, as the tests put it.
+fn holding(held: &str) -> Holding {
+    let object = |name: &str, grip| Holding::Object(ObjectGrip { object: Name16::new(name).unwrap(), grip });
+    match held {
+        "source" => object("PART", 1),
+        "destination" => object("PART", -1),
+        "neither" => object("PART", 2),
+        "other" => object("BAR", 1),
+        "something" => Holding::Something,
+        "not known" => Holding::NotKnown,
+        _ => Holding::Nothing,
+    }
+}
+
+/// Where the robot stands: a location by name and the grip there.
+fn standing(bench: &Bench<'_>, at: Option<(&str, Option<i32>)>) -> Option<Standing> {
+    at.map(|(name, grip)| {
+        let location = Name10::new(name).unwrap();
+        let record = bench.data.locpt_named(&location).map(|id| id.number());
+        Standing { location, record, array: None, grip }
+    })
+}
+
+/// FIX-GRIP from every combination of its state variables, in a world that obeys or ignores: it ends. How often it was done.
+fn regrips(ignores: (bool, bool), rows: &mut Coverage) -> (usize, usize) {
+    let (mut done, mut worlds) = (0, 0);
+    let places = [
+        None,
+        Some(("SAFE", None)),
+        Some(("PED-SAFE", None)),
+        Some(("PEDESTAL", Some(1))),
+        Some(("PEDESTAL", Some(-1))),
+    ];
+    for held in ["", "source", "destination", "neither", "other", "something", "not known"] {
+        for in_hand in [None, Some("PART"), Some("BAR")] {
+            for table_position in [-2135, -300, -1000] {
+                for open in [500, 0] {
+                    for at in places {
+                        let mut bench = Bench::default();
+                        let grip_size = if in_hand.is_some() { 255 } else { open };
+                        let status = &mut bench.pedestal.outputs.status;
+                        (status.grip_size, status.table_position) = (grip_size, Some(table_position));
+                        bench.emove.outputs.status.held = holding(held);
+                        bench.emove.outputs.status.at = standing(&bench, at);
+                        bench.step();
+                        let object = |name| Name16::new(name).unwrap();
+                        bench.process.state.regrip = in_hand.map(|name| Regrip {
+                            object: object(name),
+                            grasp_size: 250,
+                            opening: Some(255),
+                        });
+                        (bench.emove.ignores, bench.pedestal.ignores) = ignores;
+                        bench.step();
+                        let end = fix(&mut bench);
+                        let is_right = bench.memory.emove.status.held == holding("destination");
+                        assert_eq!(
+                            end == DONE,
+                            is_right && bench.memory.subtask.regrip.is_none(),
+                            "{held}, {in_hand:?}, {table_position}, {open}, {at:?}: {end:?}"
+                        );
+                        if ignores == (false, false) && held == "source" && in_hand.is_none() {
+                            assert_eq!(end, DONE, "the robot has the part: {table_position}, {open}, {at:?}");
+                        }
+                        if ignores == (false, false) && held.is_empty() && in_hand == Some("PART") {
+                            assert_eq!(end, DONE, "the pedestal has the part: {table_position}, {at:?}");
+                        }
+                        assert_ne!(end.0, Report::Executing);
+                        done += usize::from(end == DONE);
+                        worlds += 1;
+                        rows.append(&mut bench.rows);
+                    }
+                }
+            }
+        }
+    }
+    (done, worlds)
+}
+
+#[test]
+fn a_regrip_ends_from_every_state_whether_the_world_obeys_or_ignores() {
+    let mut rows = Coverage::default();
+    let (obeys, worlds) = regrips((false, false), &mut rows);
+    let (ignores, _) = regrips((true, true), &mut rows);
+    regrips((true, false), &mut rows);
+    regrips((false, true), &mut rows);
+    assert!(obeys > ignores && obeys < worlds, "{obeys} and {ignores} of {worlds}");
+}
+
+/// GET-ENDEFF from every gripper and exchange: it ends, and only with the gripper on and clear of its holster.
+fn exchanges(ignores: bool, rows: &mut Coverage) {
+    for held in ["", "source", "something", "not known"] {
+        for attached in [0, 1, 2] {
+            for exchange in [None, Some(1), Some(2)] {
+                let mut bench = Bench::default();
+                let status = &mut bench.emove.outputs.status;
+                (status.end_effector_id, status.exchange, status.held) = (attached, exchange, holding(held));
+                bench.emove.ignores = ignores;
+                bench.step();
+                let end = bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "");
+                let status = &bench.memory.emove.status;
+                let right = (status.end_effector_id, status.exchange) == (2, None);
+                assert_eq!(end == DONE, right, "{held}, {attached}, {exchange:?}: {end:?}");
+                assert!(ignores || !held.is_empty() || end == DONE, "{attached}, {exchange:?}: {end:?}");
+                if let Some(id) = exchange {
+                    let word = if id == 2 { "QC-ATTACH" } else { "QC-DETACH" };
+                    assert_eq!(bench.sent()[0], word, "the exchange is finished first");
+                    assert_eq!(bench.emove.received[0].end_effector_id, id, "in the holster where it is");
+                }
+                rows.append(&mut bench.rows);
+            }
+        }
+    }
+}
+
+#[test]
+fn an_exchange_that_was_interrupted_is_finished_first() {
+    for ignores in [false, true] {
+        exchanges(ignores, &mut Coverage::default());
+    }
+    // Any gripper will do for an object that names none: also the one in whose holster the robot is.
+    let mut bench = Bench::default();
+    bench.emove.outputs.status.exchange = Some(1);
+    bench.step();
+    assert_eq!(bench.run(SubtaskVerb::GetEndeff, "GRIPPER-1", (1, 1), ""), DONE);
+    assert_eq!(bench.sent(), ["QC-ATTACH"]);
+}
+
+/// GET-OBJECT, PLACE-OBJ and MOVE-OBJ>D from everything that can be held.
+fn handling(ignores: bool, rows: &mut Coverage) {
+    for verb in [SubtaskVerb::GetObject, SubtaskVerb::PlaceObj, SubtaskVerb::MoveObjToDest] {
+        for held in ["", "source", "destination", "neither", "other", "something", "not known"] {
+            for at in [None, Some(("PFIXTURE", Some(1))), Some(("PFIXTURE", Some(-1))), Some(("SAFE", None))]
+            {
+                let mut bench = Bench::default();
+                bench.emove.outputs.status.held = holding(held);
+                bench.emove.outputs.status.at = standing(&bench, at);
+                bench.emove.ignores = ignores;
+                bench.step();
+                let end = bench.run(verb, "PART", (1, 1), "PFIXTURE");
+                if held == "something" && verb == SubtaskVerb::GetObject && !ignores {
+                    let there = at == Some(("PFIXTURE", Some(1)));
+                    assert_eq!(end, if there { DONE } else { error(Reason::UnknownHeld) }, "{at:?}");
+                    assert_eq!(bench.sent(), if there { vec!["GRASP-OBJ"] } else { vec![] });
+                }
+                if held == "not known" {
+                    assert_eq!(end, error(Reason::HeldNotKnown), "{verb}");
+                }
+                rows.append(&mut bench.rows);
+            }
+        }
+    }
+    for (verb, emove) in [
+        (SubtaskVerb::GetObject, EmoveVerb::GraspObj),
+        (SubtaskVerb::PlaceObj, EmoveVerb::MovObjTo),
+        (SubtaskVerb::MoveObjToDest, EmoveVerb::MovObjTo),
+        (SubtaskVerb::InsertTool, EmoveVerb::InsertTool),
+        (SubtaskVerb::AcquireTool, EmoveVerb::AcquireTool),
+        (SubtaskVerb::RemoveTool, EmoveVerb::RemoveTool),
+    ] {
+        for after in ["something", "not known"] {
+            let get = matches!(verb, SubtaskVerb::GetObject | SubtaskVerb::AcquireTool);
+            let object = if emove as u8 >= EmoveVerb::InsertTool as u8 { "TOOL-1" } else { "PART" };
+            let mut bench = if get { Bench::default() } else { Bench::grasped(object, 1) };
+            bench.emove.mishap = Some((emove, Mishap::NoEffect));
+            bench.command(verb, object, (1, 1), "PFIXTURE");
+            while bench.memory.subtask.emove.command != emove {
+                bench.step();
+            }
+            bench.emove.outputs.status.held = holding(after);
+            let reason = if after == "something" { Reason::UnknownHeld } else { Reason::HeldNotKnown };
+            assert_eq!(bench.finish(), error(reason), "{verb}, {after}");
+            rows.append(&mut bench.rows);
+        }
+    }
+}
+
+#[test]
+fn what_is_held_and_not_known_is_neither_taken_nor_placed() {
+    for ignores in [false, true] {
+        handling(ignores, &mut Coverage::default());
+    }
+}
+
+#[test]
+fn an_object_that_is_placed_is_not_placed_again() {
+    let mut bench = Bench::grasped("PART", 1);
+    assert_eq!(bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE"), DONE);
+    assert_eq!(bench.run(SubtaskVerb::PlaceObj, "PART", (1, 1), "SAFE"), DONE);
+    assert!(bench.sent().is_empty());
+    let placed = bench.memory.subtask.status.placed.unwrap();
+    let expected = PlacedObject { object: Name16::new("PART").unwrap(), grip: 1, ..placed };
+    assert_eq!((placed.location.as_str(), placed), ("SAFE", expected));
+    for (object, grips, location) in
+        [("PART", (1, 1), "HOME"), ("PART", (1, 2), "SAFE"), ("BAR", (1, 1), "SAFE")]
+    {
+        let end = bench.run(SubtaskVerb::PlaceObj, object, grips, location);
+        assert_eq!(end, error(Reason::NothingHeld), "{object} {grips:?} {location}");
+    }
+}
+
+#[test]
+fn what_vision_has_found_is_not_looked_for_again() {
+    let mut bench = Bench::default();
+    let record = bench.data.locpt_named(&Name10::new("UNIT_1").unwrap()).map(|id| id.number());
+    let object = Name16::new("BAR").unwrap();
+    bench.emove.outputs.status.located = Some(LocatedObject { object, record, array: None });
+    bench.step();
+    assert_eq!(bench.run(SubtaskVerb::GetObject, "BAR", (1, 1), "UNIT_1"), DONE);
+    assert_eq!(bench.sent(), ["MOV-TO-OBJ", "GRASP-OBJ"]);
+}
+
+/// The tool commands with fingers in the drum, outside, or at no place.
+fn tools(rows: &mut Coverage) {
+    for verb in
+        [SubtaskVerb::InsertTool, SubtaskVerb::ReleaseTool, SubtaskVerb::AcquireTool, SubtaskVerb::RemoveTool]
+    {
+        for held in ["", "other", "something", "not known"] {
+            for (drum, at) in
+                [(true, Some(("TOOL-TRNS", None))), (false, Some(("SAFE", None))), (false, None)]
+            {
+                let mut bench = Bench::default();
+                bench.emove.outputs.status.held = holding(held);
+                bench.emove.outputs.status.at = standing(&bench, at);
+                bench.emove.outputs.status.drum = drum;
+                bench.step();
+                let end = bench.run(verb, "TOOL-1", (1, 1), "");
+                if verb == SubtaskVerb::ReleaseTool {
+                    let led_out = (drum && held != "other") || (held.is_empty() && at.is_none());
+                    assert_eq!(end == DONE, led_out, "{held}, {drum}, {at:?}: {end:?}");
+                }
+                rows.append(&mut bench.rows);
+            }
+        }
+    }
+}
+
+#[test]
+fn fingers_that_have_let_go_are_led_out_of_the_drum() {
+    tools(&mut Coverage::default());
+}
+
+/// What a pause waits for, and what a command that comes then does.
+fn pauses(rows: &mut Coverage) {
+    let mut play = |bench: &mut Bench<'_>| rows.append(&mut bench.rows);
+    let moving = |verb, mishap| {
+        let mut bench = Bench::grasped("PART", 1);
+        bench.pedestal.mishap = mishap;
+        bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+        while bench.memory.subtask.pedestal.command != verb {
+            bench.step();
+        }
+        bench.step();
+        bench
+    };
+    // The pedestal does not answer to the pause; E-move does not, while it does.
+    let mut bench = moving(PedestalVerb::Flip, Some((PedestalVerb::Pause, Mishap::Silence)));
+    let end = bench.run(SubtaskVerb::Pause, "", (0, 0), "");
+    assert_eq!(end, error(Reason::PedestalSilent));
+    play(&mut bench);
+    let mut bench = moving(PedestalVerb::Flip, None);
+    bench.emove.mishap = Some((EmoveVerb::Pause, Mishap::Error(Reason::LinkOff)));
+    assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), error(Reason::LinkOff));
+    play(&mut bench);
+    // A pause that is replaced is waited for.
+    let mut bench = moving(PedestalVerb::Flip, None);
+    bench.command(SubtaskVerb::Pause, "", (0, 0), "");
+    bench.step();
+    bench.step();
+    assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), DONE);
+    assert!(!bench.sent_to_pedestal().contains(&"PAUSE"));
+    play(&mut bench);
+    // A restarted Subtask finds a pause under way.
+    let mut bench = moving(PedestalVerb::Flip, None);
+    bench.command(SubtaskVerb::Pause, "", (0, 0), "");
+    bench.step();
+    bench.step();
+    bench.process = Subtask::default();
+    bench.finish();
+    play(&mut bench);
+    let mut bench = moving(PedestalVerb::Flip, None);
+    assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "SAFE"), error(Reason::PartInPedestal));
+    play(&mut bench);
+}
+
+#[test]
+fn a_pause_waits_for_robot_and_pedestal() {
+    pauses(&mut Coverage::default());
+}
+
+/// Rows that only an interruption fires.
+pub(super) fn all_rows(rows: &mut Coverage) {
+    for ignores in [(false, false), (true, true), (true, false), (false, true)] {
+        regrips(ignores, rows);
+    }
+    for ignores in [false, true] {
+        exchanges(ignores, rows);
+        handling(ignores, rows);
+    }
+    tools(rows);
+    pauses(rows);
+    let mut bench = Bench::grasped("PART", 1);
+    bench.command(SubtaskVerb::FixGrip, "PART", (1, -1), "");
+    while bench.memory.subtask.pedestal.command != PedestalVerb::Flip {
+        bench.step();
+    }
+    bench.run(SubtaskVerb::Pause, "", (0, 0), "");
+    for verb in
+        [SubtaskVerb::GetObject, SubtaskVerb::GotoDest, SubtaskVerb::InsertTool, SubtaskVerb::AcquireTool]
+    {
+        bench.run(verb, "PART", (1, 1), "SAFE");
+        rows.append(&mut bench.rows);
+    }
+    bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "");
+    rows.append(&mut bench.rows);
+}

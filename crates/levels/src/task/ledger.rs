@@ -1,0 +1,78 @@
+//! The ledger: the last command about an object or a tool that was accepted and has not been finished
+//! (docs/design/recovery.md "Ledger").
+//!
+//! It is an output of Task, and read from there: so a Task that is restarted has it too. It tells a command that
+//! is sent *again* from one that is sent *anew*: a TRANSFER that was interrupted behind its RELEASE goes on with
+//! the update and the way to its end-at location, while the same TRANSFER after a finished one begins anew. What
+//! has been achieved is not in the ledger; the statuses from below say that.
+
+use rcs_core::{
+    Plain,
+    interface::{
+        hws::{HwsCommand, Ledger},
+        subtask::{SubtaskStatus, SubtaskVerb},
+    },
+};
+
+use super::plan::{Plan, Resumed};
+
+/// Has the command placed its object already?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Placed {
+    /// No, or it was not sent before.
+    Not,
+    /// It is what the gripper has let go last, at the destination.
+    AtDestination,
+}
+
+/// Is the part in the pedestal's hand?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Part {
+    /// No.
+    Elsewhere,
+    /// Yes, alone or together with the robot.
+    InPedestal,
+}
+
+/// The content of a command: all but its number.
+#[must_use]
+pub const fn content(command: &HwsCommand) -> HwsCommand {
+    HwsCommand { number: 0, ..*command }
+}
+
+/// Was a command sent before and not finished?
+#[must_use]
+pub fn resumed(command: &HwsCommand, ledger: Option<&Ledger>) -> Resumed {
+    match ledger.filter(|ledger| ledger.command == content(command)).map(|ledger| ledger.last) {
+        None => Resumed::Not,
+        Some(SubtaskVerb::GotoEndpt) => Resumed::Leaving,
+        Some(
+            SubtaskVerb::InsertTool
+            | SubtaskVerb::ReleaseTool
+            | SubtaskVerb::AcquireTool
+            | SubtaskVerb::RemoveTool,
+        ) => Resumed::AtTool,
+        Some(_) => Resumed::Begun,
+    }
+}
+
+/// Has the command of a plan placed its object already?
+#[must_use]
+pub fn placed(plan: &Plan, below: &SubtaskStatus) -> Placed {
+    let destination = plan.destination.location.map(|location| (location.record, location.array));
+    let at_destination = below.placed.is_some_and(|placed| {
+        plan.object == Some(placed.object)
+            && plan.destination.grip == placed.grip
+            && destination == Some((placed.record, placed.array))
+    });
+    if at_destination && plan.resumed != Resumed::Not { Placed::AtDestination } else { Placed::Not }
+}
+
+/// The ledger when a command has been accepted. A command that is about no object says nothing of one that is.
+#[must_use]
+pub fn opened(ledger: Option<Ledger>, command: &HwsCommand, plan: &Plan) -> Option<Ledger> {
+    if !plan.is_about_something() || plan.resumed != Resumed::Not {
+        return ledger;
+    }
+    Some(Ledger { command: content(command), last: SubtaskVerb::None, told: false })
+}

@@ -1,0 +1,472 @@
+//! A command that is interrupted, replaced or cut off by a restart, and sent again (docs/design/recovery.md).
+
+use rcs_core::{
+    interface::{
+        Reason, Report,
+        data_base::{Connection, DataBaseVerb},
+        emove::Holding,
+        hws::HwsReport,
+        subtask::SubtaskVerb,
+    },
+    name::Name16,
+};
+
+use super::{
+    ACQUIRE, INSERT, RELEASE, REMOVE,
+    bench::{Answer, Bench, FINISHED, Mishap},
+    error,
+};
+use crate::{coverage::Coverage, task::Task};
+
+const PAUSE: &str = "PAUSE -- 0 -- 0 0 -- 0 -- 0";
+const STARTUP: &str = "STARTUP -- 0 -- 0 0 -- 0 -- 0";
+const SHUTDOWN: &str = "SHUTDOWN -- 0 -- 0 0 -- 0 -- 0";
+const HOME: &str = "MOVE -- 0 -- 0 0 HOME 0 -- 0";
+const NOWHERE: &str = "MOVE -- 0 -- 0 0 NOWHERE 0 -- 0";
+const TRANSFER: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 SAFE 0";
+const TRANSFER_AND_STAY: &str = "TRANSFER PART +1 PFIXTURE 0 +1 UNIT_1 2 -- 0";
+const REGRIP: &str = "TRANSFER PART +1 PFIXTURE 0 -1 UNIT_1 2 SAFE 0";
+const FROM_TRAY: &str = "MOVE PART +1 UNIT_1 2 +1 PFIXTURE 0 -- 0";
+const SEAT: &str = "POSITION PART +1 PFIXTURE 0 0 -- 0 -- 0";
+const SEAT_BY_DESTINATION: &str = "POSITION PART 0 -- 0 +1 PFIXTURE 0 -- 0";
+
+/// A bench whose robot is at no known place while it moves.
+fn moving_bench() -> Bench<'static> {
+    let mut bench = Bench::connected();
+    bench.subtask.loses_place = true;
+    bench
+}
+
+/// Is Subtask doing anything but pausing?
+fn is_under_way(bench: &Bench<'_>) -> bool {
+    let pausing = bench.memory.task.subtask.command == SubtaskVerb::Pause;
+    let status = &bench.memory.subtask.status;
+    !pausing && (status.report == Report::Executing || status.echo != bench.memory.task.subtask.number)
+}
+
+#[test]
+fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
+    for line in [PAUSE, HOME, NOWHERE, STARTUP, SHUTDOWN, TRANSFER, SEAT, ACQUIRE] {
+        for ticks in 1..25 {
+            let mut bench = Bench::default();
+            bench.data_system.answer = Answer::After(2);
+            bench.command(TRANSFER);
+            bench.wait(ticks);
+            let under_way = is_under_way(&bench);
+            let before = bench.subtask.received.len();
+            bench.command(line);
+            bench.step();
+            if under_way {
+                assert_eq!(bench.memory.task.subtask.command, SubtaskVerb::Pause, "{line}, tick {ticks}");
+                assert_eq!(bench.memory.task.status.report, HwsReport::Executing);
+            }
+            while bench.memory.task.status.report == HwsReport::Executing {
+                bench.step();
+            }
+            assert!(!is_under_way(&bench), "{line}, tick {ticks}: Subtask goes on");
+            assert_eq!(bench.memory.subtask.status.report, Report::Done);
+            if under_way && line == NOWHERE {
+                assert_eq!(bench.sent()[before..].last(), Some(&"S-PAUSE"));
+                assert_eq!(bench.memory.task.status.reason, Reason::UnknownLocation);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_command_that_replaces_nothing_is_accepted_in_the_tick_in_which_it_comes() {
+    let mut bench = Bench::default();
+    for line in [TRANSFER, HOME] {
+        bench.command(line);
+        let number = bench.memory.task.subtask.number;
+        bench.step();
+        assert_ne!(bench.memory.task.subtask.number, number);
+        assert_ne!(bench.memory.task.subtask.command, SubtaskVerb::Pause);
+        bench.finish();
+    }
+}
+
+#[test]
+fn a_pause_that_is_replaced_is_waited_for() {
+    let mut bench = Bench::default();
+    bench.command(TRANSFER);
+    bench.wait(6);
+    bench.command(PAUSE);
+    bench.wait(2);
+    assert_eq!(bench.run(HOME), FINISHED);
+    assert_eq!(bench.sent(), ["GOTO-DEST"], "one S-PAUSE is enough");
+}
+
+#[test]
+fn a_restarted_task_stops_what_it_had_commanded() {
+    for ticks in 1..25 {
+        let mut bench = Bench::default();
+        bench.command(TRANSFER);
+        bench.wait(ticks);
+        let under_way = is_under_way(&bench);
+        bench.process = Task::default();
+        assert_eq!(bench.finish(), error(Reason::Restarted));
+        bench.wait(10);
+        assert!(!is_under_way(&bench));
+        assert_eq!(bench.sent().last() == Some(&"S-PAUSE"), under_way, "tick {ticks}");
+        assert_eq!(bench.memory.task.status.reason, Reason::Restarted);
+        assert_eq!(bench.run(TRANSFER), FINISHED);
+    }
+}
+
+#[test]
+fn the_operator_with_the_box_is_sent_nothing() {
+    let mut bench = Bench::default();
+    bench.command(TRANSFER);
+    bench.wait(6);
+    bench.subtask.joystick = true;
+    bench.wait(10);
+    let sent = bench.sent().len();
+    for line in [NOWHERE, HOME] {
+        bench.command(line);
+        bench.wait(10);
+        assert_eq!(bench.sent().len(), sent, "{line}");
+    }
+}
+
+/// What comes between a command and the same command again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Interruption {
+    Command(&'static str),
+    Restart,
+}
+
+const INTERRUPTIONS: [Interruption; 4] = [
+    Interruption::Command(PAUSE),
+    Interruption::Command(NOWHERE),
+    Interruption::Command(HOME),
+    Interruption::Restart,
+];
+
+/// Interrupt a line after so many ticks. False if it had ended by then.
+fn interrupt(bench: &mut Bench<'_>, line: &str, ticks: u32, by: Interruption) -> bool {
+    bench.command(line);
+    bench.wait(ticks);
+    if bench.memory.task.status.report != HwsReport::Executing {
+        return false;
+    }
+    match by {
+        Interruption::Command(other) => bench.command(other),
+        Interruption::Restart => bench.process = Task::default(),
+    }
+    bench.finish();
+    bench.wait(10);
+    true
+}
+
+#[test]
+fn an_interrupted_transfer_goes_on() {
+    for line in [TRANSFER, TRANSFER_AND_STAY, REGRIP] {
+        for by in INTERRUPTIONS {
+            for ticks in 1..60 {
+                let mut bench = moving_bench();
+                if !interrupt(&mut bench, line, ticks, by) {
+                    continue;
+                }
+                let placed = bench.memory.subtask.status.placed.is_some();
+                let told =
+                    bench.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
+                let told = told.count();
+                if by == Interruption::Restart {
+                    // A restarted Task is not connected.
+                    assert_eq!(bench.run(STARTUP), FINISHED);
+                }
+                assert_eq!(bench.run(line), FINISHED, "{line}, tick {ticks}, {by:?}");
+                if placed {
+                    let rest: &[&str] = if line == TRANSFER_AND_STAY { &[] } else { &["GOTO-ENDPT"] };
+                    assert_eq!(bench.sent(), rest, "{line}, tick {ticks}, {by:?}");
+                    assert_eq!(told + bench.asked().len(), 1, "{line}, tick {ticks}, {by:?}: told once");
+                } else {
+                    assert!(bench.sent().contains(&"PLACE-OBJ"));
+                }
+                // What is finished begins anew.
+                assert_eq!(bench.memory.task.ledger, None);
+                assert_eq!(bench.run(line), FINISHED);
+                assert_eq!(bench.sent()[..2], ["GET-ENDEFF", "GET-OBJECT"]);
+            }
+        }
+    }
+}
+
+#[test]
+fn another_command_about_an_object_ends_what_was_interrupted() {
+    let mut bench = moving_bench();
+    assert!(interrupt(
+        &mut bench,
+        TRANSFER,
+        26,
+        Interruption::Command("ACQUIRE BAR +1 PFIXTURE 0 0 -- 0 -- 0")
+    ));
+    bench.subtask.hold("");
+    assert_eq!(bench.run(TRANSFER), FINISHED);
+    assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ", "GOTO-ENDPT"]);
+}
+
+#[test]
+fn a_part_in_the_pedestal_is_regripped_first() {
+    for (line, words) in [
+        (REGRIP, &["FIX-GRIP", "PLACE-OBJ", "GOTO-ENDPT"][..]),
+        ("MOVE PART +1 PFIXTURE 0 -1 SAFE 0 -- 0", &["FIX-GRIP", "MOVE-OBJ>D"]),
+        ("REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0", &["FIX-GRIP", "MOVE-OBJ>D"]),
+        // Nothing is to be regripped: Subtask says what hinders it.
+        (TRANSFER, &["GET-ENDEFF", "GET-OBJECT", "PLACE-OBJ", "GOTO-ENDPT"]),
+    ] {
+        let mut bench = Bench::default();
+        bench.subtask.outputs.status.pedestal_part = true;
+        bench.step();
+        assert_eq!(bench.run(line), FINISHED);
+        assert_eq!(bench.sent(), words, "{line}");
+    }
+}
+
+#[test]
+fn an_interrupted_tool_command_goes_on() {
+    for (line, object, at) in [
+        (INSERT, "TOOL-1", "TOOL-SAFE"),
+        (RELEASE, "TOOL-1", "TOOL-TRNS"),
+        (ACQUIRE, "", "HOME"),
+        (REMOVE, "TOOL-1", "TOOL-TRNS"),
+    ] {
+        for by in [Interruption::Command(PAUSE), Interruption::Restart] {
+            for ticks in 1..40 {
+                let mut bench = moving_bench();
+                bench.set(3, object, at);
+                if interrupt(&mut bench, line, ticks, by) {
+                    assert_eq!(bench.run(line), FINISHED, "{line}, tick {ticks}, {by:?}");
+                    let status = &bench.memory.subtask.status;
+                    let held = matches!(line, INSERT | ACQUIRE | REMOVE);
+                    let drum = matches!(line, INSERT | ACQUIRE);
+                    assert_eq!((status.held.is_held(), status.drum), (held, drum), "{line}, tick {ticks}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn nothing_is_let_go_before_it_is_known_that_the_robot_can_leave() {
+    for (at, reason) in [("", Reason::UnknownStart), ("HOME", Reason::NoTrajectory)] {
+        let mut bench = Bench::default();
+        bench.set(1, "PART", at);
+        assert_eq!(bench.run(SEAT), error(reason), "{at}");
+        assert!(bench.sent().is_empty());
+    }
+}
+
+#[test]
+fn what_is_unknown_is_let_go_by_position_alone() {
+    for holding in [Holding::Something, Holding::NotKnown] {
+        let mut bench = Bench::default();
+        bench.set(1, "", "PFIXTURE");
+        bench.subtask.outputs.status.held = holding;
+        bench.step();
+        assert_eq!(bench.run(SEAT), FINISHED);
+        assert_eq!(bench.sent(), ["RELEASE", ">POSITION"]);
+    }
+}
+
+/// What the updates say that the Data System has taken: item and position.
+fn updates(bench: &Bench<'_>) -> Vec<(String, i32)> {
+    let told = bench.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
+    told.map(|told| (told.position.to_string(), told.sector)).collect()
+}
+
+#[test]
+fn the_books_follow_an_object_out_of_the_hand() {
+    for seat in [SEAT, SEAT_BY_DESTINATION] {
+        let mut bench = Bench::connected();
+        assert_eq!(bench.run(FROM_TRAY), FINISHED);
+        assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0)]);
+        assert_eq!(bench.run(seat), FINISHED);
+        assert_eq!(updates(&bench), [("PFIXTURE".to_owned(), 0)]);
+        let told = bench.data_system.received[0];
+        assert_eq!((told.item, told.serial), (Name16::new("PART").unwrap(), Name16::new("S-17").unwrap()));
+        assert_eq!(bench.run(seat), FINISHED);
+        assert!(updates(&bench).is_empty(), "nothing is held");
+    }
+    // Taken from a tray with ACQUIRE, and let go in the tray to which a MOVE has brought it.
+    let mut bench = Bench::connected();
+    assert_eq!(bench.run("ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0"), FINISHED);
+    assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0)]);
+    assert_eq!(bench.run("MOVE PART +1 UNIT_1 2 +1 UNIT_1 1 -- 0"), FINISHED);
+    assert_eq!(bench.run("POSITION PART +1 UNIT_1 1 0 -- 0 -- 0"), FINISHED);
+    assert_eq!(updates(&bench), [("UNIT_1".to_owned(), 1)]);
+    // An object that the data base does not know as the robot's is none of its business.
+    let mut bench = Bench::connected();
+    assert_eq!(bench.run("MOVE PART +1 PFIXTURE 0 +1 PFIXTURE 0 -- 0"), FINISHED);
+    assert_eq!(bench.run(SEAT), FINISHED);
+    assert!(updates(&bench).is_empty());
+}
+
+/// A bench with two updates that have not been taken: of an object that was taken, and of where it was let go.
+fn owing_two(trouble: Answer) -> Bench<'static> {
+    let mut bench = Bench::connected();
+    bench.data_system.answer = trouble;
+    bench.run(FROM_TRAY);
+    bench.run(SEAT);
+    bench
+}
+
+#[test]
+fn two_updates_are_kept_and_told_in_order() {
+    for trouble in [Answer::Absent, Answer::Refuse] {
+        for line in [TRANSFER, FROM_TRAY, "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0", STARTUP] {
+            let mut bench = owing_two(trouble);
+            assert!(!bench.memory.subtask.status.held.is_held(), "the object is let go all the same");
+            bench.data_system.answer = Answer::After(1);
+            assert_eq!(bench.run(line), FINISHED);
+            assert_eq!(
+                updates(&bench)[..2],
+                [("H_ROBOT".to_owned(), 0), ("PFIXTURE".to_owned(), 0)],
+                "{line}, {trouble:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_told_survives_a_command_that_replaces_it() {
+    for by in [PAUSE, HOME, NOWHERE] {
+        let mut bench = Bench::connected();
+        bench.data_system.answer = Answer::Absent;
+        bench.command(TRANSFER);
+        while bench.asked().is_empty() {
+            bench.step();
+        }
+        bench.command(by);
+        bench.finish();
+        bench.data_system.answer = Answer::After(1);
+        assert_eq!(bench.run("ACQUIRE BAR +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
+        // It was written once more: the Data System has not answered the first.
+        assert!(updates(&bench).len() <= 1);
+        assert!(bench.process.state.data_system.owed.iter().all(Option::is_none), "{by}");
+    }
+}
+
+#[test]
+fn an_interrupted_startup_says_that_nothing_is_told() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.memory.task.connection, Connection::Closed);
+    bench.command(STARTUP);
+    bench.wait(3);
+    assert_eq!(bench.memory.task.connection, Connection::Opening);
+    assert_eq!(bench.run(TRANSFER), FINISHED);
+    assert_eq!(bench.memory.task.connection, Connection::Interrupted);
+    assert!(updates(&bench).is_empty());
+    bench.data_system.answer = Answer::After(1);
+    assert_eq!(bench.run(STARTUP), FINISHED);
+    assert_eq!(bench.memory.task.connection, Connection::Open);
+    assert_eq!(bench.run(SHUTDOWN), FINISHED);
+    assert_eq!(bench.memory.task.connection, Connection::Closed);
+}
+
+/// Rows that only an interruption or trouble fires.
+pub(super) fn all_rows(rows: &mut Coverage) {
+    let mut play = |bench: &mut Bench<'_>| rows.append(&mut bench.rows);
+    let tools = [
+        (INSERT, "TOOL-1", "TOOL-SAFE"),
+        (RELEASE, "TOOL-1", "TOOL-TRNS"),
+        (ACQUIRE, "", "HOME"),
+        (REMOVE, "TOOL-1", "TOOL-TRNS"),
+    ];
+    let lines = [(TRANSFER, "", ""), (REGRIP, "", "")];
+    for (line, object, at) in tools.into_iter().chain(lines) {
+        for ticks in 1..45 {
+            let mut bench = moving_bench();
+            bench.set(3, object, at);
+            interrupt(&mut bench, line, ticks, Interruption::Command(PAUSE));
+            bench.run(line);
+            play(&mut bench);
+        }
+    }
+    // Interrupted when the tool command is done and not seen to be.
+    for (line, held, at) in [
+        (RELEASE, "", "HOME"),
+        (RELEASE, "", "TOOL-SAFE"),
+        (REMOVE, "TOOL-1", "HOME"),
+        ("RELEASE-TOOL TOOL-1 +1 -- 0 0 -- 0 -- 0", "", "HOME"),
+        ("REMOVE-TOOL TOOL-1 +1 -- 0 0 -- 0 -- 0", "TOOL-1", "HOME"),
+    ] {
+        let mut bench = Bench::default();
+        bench.set(3, "TOOL-1", "TOOL-TRNS");
+        interrupt(&mut bench, line, 3, Interruption::Command(PAUSE));
+        bench.set(3, held, at);
+        bench.run(line);
+        play(&mut bench);
+    }
+    for holding in [Holding::Something, Holding::NotKnown] {
+        for line in [INSERT, RELEASE, ACQUIRE, REMOVE, "REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0"] {
+            let mut bench = Bench::default();
+            bench.set(3, "", "HOME");
+            bench.subtask.outputs.status.held = holding;
+            bench.step();
+            bench.run(line);
+            play(&mut bench);
+        }
+    }
+    for (line, held, at) in [(ACQUIRE, "", "TOOL-TRNS"), (RELEASE, "TOOL-1", "")] {
+        let mut bench = Bench::default();
+        bench.set(3, held, at);
+        bench.run(line);
+        play(&mut bench);
+    }
+    // The Data System begins to answer when it has been told the first of two updates again.
+    let mut bench = Bench::connected();
+    bench.data_system.answer = Answer::Absent;
+    bench.run(FROM_TRAY);
+    bench.data_system.received.clear();
+    bench.command(SEAT);
+    while bench.data_system.received.is_empty() {
+        bench.step();
+    }
+    bench.data_system.answer = Answer::After(1);
+    assert_eq!(bench.finish(), FINISHED);
+    assert_eq!(updates(&bench), [("H_ROBOT".to_owned(), 0), ("PFIXTURE".to_owned(), 0)]);
+    play(&mut bench);
+    for line in
+        [REGRIP, "MOVE PART +1 PFIXTURE 0 -1 SAFE 0 -- 0", "REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0"]
+    {
+        let mut bench = Bench::default();
+        bench.subtask.outputs.status.pedestal_part = true;
+        bench.step();
+        bench.run(line);
+        play(&mut bench);
+    }
+    for line in
+        [TRANSFER, FROM_TRAY, "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0", STARTUP, SEAT, SEAT_BY_DESTINATION]
+    {
+        let mut bench = owing_two(Answer::Absent);
+        bench.data_system.answer = Answer::After(1);
+        bench.run(line);
+        play(&mut bench);
+    }
+    for seat in [SEAT, SEAT_BY_DESTINATION] {
+        for answer in [Answer::After(1), Answer::After(100)] {
+            let mut bench = Bench::connected();
+            bench.run(FROM_TRAY);
+            bench.data_system.answer = answer;
+            bench.run(seat);
+            play(&mut bench);
+        }
+    }
+    // A pause that does not end at once is waited for.
+    let mut bench = Bench::default();
+    bench.command(TRANSFER);
+    bench.wait(6);
+    bench.command(PAUSE);
+    bench.wait(2);
+    bench.run(HOME);
+    play(&mut bench);
+    // Subtask fails at the pause.
+    let mut bench = Bench::default();
+    bench.subtask.mishap = Some((SubtaskVerb::Pause, Mishap::Error(Reason::LinkOff)));
+    bench.command(TRANSFER);
+    bench.wait(6);
+    bench.run(HOME);
+    play(&mut bench);
+}
