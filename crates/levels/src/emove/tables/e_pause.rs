@@ -38,8 +38,8 @@ decision_table! {
             15: button: Close                                          => CloseByHand;
             16: button: None, prim: Joystick                           => Manual;
             17: button: None, prim: Done                               => Finish;
-            18: button: None, prim: Pending | Executing                => Wait;
-            19: button: None, prim: Error | Lost                       => PassUp;
+            18: button: None, prim: Pending | Executing | Lost         => Wait;
+            19: button: None, prim: Error                              => PassUp;
         }
     }
 }
