@@ -144,7 +144,7 @@ fn a_linkbar_survives_an_answer_that_is_lost_damaged_or_late_and_a_silence() {
         "kind = \"stall\"\nticks = 75\n",
     ];
     for (number, fault) in faults.iter().enumerate() {
-        for at in [200, 1500, 2700, 3900, 5200] {
+        for at in [200, 3900] {
             let at = at + 37 * u32::try_from(number).expect("four kinds");
             let outcome = linkbar_with(fault, at);
             assert_eq!(outcome.status, Some(0), "{fault} at {at}: {}", outcome.last_words);
