@@ -118,6 +118,46 @@ fn lost_hydraulics_stop_the_run() {
     assert_eq!(outcome.status, Some(3), "{}", outcome.last_words);
 }
 
+/// A linkbar on a line with one fault.
+fn linkbar_with(fault: &str, at: u32) -> Outcome {
+    let name = fault.split('"').nth(1).unwrap_or("fault");
+    run("linkbar", 1, &format!("line-{name}-{at}"), |scratch| {
+        scratch.faults(&format!("[[fault]]\ndirection = \"to-host\"\nat = {at}\n{fault}"));
+    })
+}
+
+#[test]
+fn a_linkbar_survives_an_answer_that_is_lost_damaged_or_late_and_a_silence() {
+    let undisturbed = run("linkbar", 1, "line-undisturbed", |_| {});
+    let end = |outcome: &Outcome| {
+        let parts = outcome.result["parts"].as_array().cloned().unwrap_or_default();
+        let places = parts
+            .into_iter()
+            .map(|part| [part["name"].clone(), part["location"].clone(), part["sector"].clone()]);
+        places.collect::<Vec<_>>()
+    };
+    // Lost, damaged, late by 5 ticks, and nothing for 3 s.
+    let faults = [
+        "kind = \"drop\"\n",
+        "kind = \"flip\"\n",
+        "kind = \"delay\"\nticks = 5\n",
+        "kind = \"stall\"\nticks = 75\n",
+    ];
+    for (number, fault) in faults.iter().enumerate() {
+        for at in [200, 3900] {
+            let at = at + 37 * u32::try_from(number).expect("four kinds");
+            let outcome = linkbar_with(fault, at);
+            assert_eq!(outcome.status, Some(0), "{fault} at {at}: {}", outcome.last_words);
+            assert!(
+                outcome.result["faults"]["total"].as_u64() > Some(0),
+                "{fault} at {at}: it has not struck"
+            );
+            assert!(in_place("linkbar", &outcome.result), "{fault} at {at}: {}", outcome.result["parts"]);
+            assert_eq!(end(&outcome), end(&undisturbed), "{fault} at {at}");
+        }
+    }
+}
+
 /// A linkbar job whose blank throws back so much light.
 fn with_reflectance(reflectance: f64) -> Outcome {
     run("linkbar", 1, &format!("reflectance-{reflectance}"), |scratch| {

@@ -135,8 +135,8 @@ impl Receiving {
 #[derive(Default)]
 pub struct Prim {
     receiving: Receiving,
-    report: PrimReport,
-    reason: Reason,
+    pub report: PrimReport,
+    pub reason: Reason,
     link: bool,
     poses: u32,
 }

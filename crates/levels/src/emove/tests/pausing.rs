@@ -37,7 +37,32 @@ pub const SCENARIOS: &[fn()] = &[
     the_operator_moves_the_robot_and_the_fingers,
     the_operator_interrupts_a_command,
     a_restarted_e_move_executes_nothing,
+    a_link_that_fails_in_a_pause_is_initialized_again_or_reported,
 ];
+
+#[test]
+fn a_link_that_fails_in_a_pause_is_initialized_again_or_reported() {
+    // The gripper is not calibrated yet.
+    let mut bench = Bench::new("HOME", 1);
+    bench.spoil("PAUSE", Mishap::Never);
+    bench.command(Pause, "", 0, "", 0);
+    bench.steps(40);
+    (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
+    let before = bench.log().len();
+    bench.steps(40);
+    assert_eq!(bench.log()[before..before + 2], ["ROBOT-INIT", "PAUSE"]);
+    assert_eq!(bench.memory.emove.status.report, Report::Executing);
+    bench.dead.push("Prim");
+    assert_eq!(bench.finish(), error(Reason::NeighbourLost));
+    // The pause is done and stands.
+    let mut bench = Bench::ready("HOME", 1);
+    assert_eq!(bench.pause(), DONE);
+    (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
+    bench.steps(3);
+    let status = &bench.memory.emove.status;
+    assert_eq!((status.report, status.reason), error(Reason::LinkError));
+    assert_eq!(bench.pause(), DONE);
+}
 
 #[test]
 fn the_first_pause_brings_the_link_up() {

@@ -13,19 +13,22 @@ decision_table! {
         }
         any {
             2:  t3i: Silent                                 => Fail(InterfaceSilent);
-            3:  t3i: LinkOff | LinkSilent                   => Fail(LinkOff);
-            4:  t3i: LinkError                              => Fail(LinkError);
-            5:  t3i: Refused                                => Fail(InterfaceRefused);
-            6:  emove: Lost                                 => Fail(NeighbourLost);
+            3:  t3i: LinkOff                                => Fail(LinkOff);
+            4:  t3i: LinkSilent, report: NoReport           => Fail(LinkOff);
+            5:  t3i: LinkError, report: NoReport            => Fail(LinkError);
+            6:  t3i: LinkSilent | LinkError, restarts: Many => Fail(LinkError);
+            7:  t3i: LinkSilent | LinkError, restarts: Few  => Recover;
+            8:  t3i: Refused                                => Fail(InterfaceRefused);
+            9:  emove: Lost                                 => Fail(NeighbourLost);
         }
         Start {
-            7:  posture: Unpositioned | Standing            => Restart          -> Restarting;
-            8:  posture: Moving | Ending                    => Halt;
+            10: posture: Unpositioned | Standing            => Restart          -> Restarting;
+            11: posture: Moving | Ending                    => Halt;
         }
-        /// RESTART is sent.
+        /// RESTART is sent. A link that fails again after its report is restarted again.
         Restarting {
-            9:  link: Down                                  => Wait;
-            10: link: Running                               => TakePosition;
+            12: link: Down                                  => Wait;
+            13: link: Running                               => TakePosition;
         }
     }
 }

@@ -216,6 +216,19 @@ fn a_robot_that_is_elsewhere_waits_for_robot_init() {
 }
 
 #[test]
+fn robot_init_restarts_a_link_that_fails_after_its_report() {
+    let most = u32::try_from(MOST_RESTARTS).unwrap();
+    for (faults, report) in
+        [(1, PrimReport::Done), (most, PrimReport::Done), (most + 2, PrimReport::T3LinkErr)]
+    {
+        let mut rig = Rig::new();
+        rig.steps(3);
+        rig.t3i.more_faults = faults;
+        assert_eq!(rig.run(PrimVerb::RobotInit, 0), report, "{faults}");
+    }
+}
+
+#[test]
 fn a_restarted_prim_goes_on_where_the_robot_stands() {
     let mut rig = Rig::initialized();
     rig.command(PrimVerb::GotoPt, 3);

@@ -54,6 +54,24 @@ fn hindered(fired: &mut Fired) {
     fired.during(PrimVerb::GotoPt, 20, |rig| {
         rig.run(PrimVerb::RobotInit, 0);
     });
+    // ROBOT-INIT whose link fails for ever, or again and again.
+    for fault in FAULTS {
+        fired.run(Rig::new(), |rig| {
+            rig.steps(3);
+            rig.t3i.broken = fault;
+            rig.run(PrimVerb::RobotInit, 0);
+        });
+    }
+    fired.run(Rig::new(), |rig| {
+        rig.steps(3);
+        rig.t3i.more_faults = 20;
+        rig.run(PrimVerb::RobotInit, 0);
+    });
+    fired.run(Rig::new(), |rig| {
+        rig.steps(3);
+        (rig.t3i.dtr_off, rig.t3i.broken) = (true, LinkFault::NotResponding);
+        rig.run(PrimVerb::RobotInit, 0);
+    });
 }
 
 /// A link that fails, and fails again.
