@@ -83,7 +83,7 @@ impl State {
             asked: Asked::Now,
             verb: command.command,
             gripper: attached(command, memory),
-            start: if self.beliefs.place.is_some() { Knowledge::Known } else { Knowledge::Unknown },
+            start: if self.place().is_some() { Knowledge::Known } else { Knowledge::Unknown },
             coupling: coupling(memory),
             exchange: if self.beliefs.exchange.is_some() { Exchange::HalfDone } else { Exchange::None },
             target: target(command, inputs.data),

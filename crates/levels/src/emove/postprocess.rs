@@ -313,9 +313,9 @@ impl State {
                 array,
             }),
             end_effector_id: inputs.memory.quick_change.status.end_effector_id,
-            at: self.beliefs.place.as_ref().map(standing),
+            at: self.place().as_ref().map(standing),
             exchange: self.beliefs.exchange.map(|exchange| exchange.gripper),
-            drum: matches!(self.beliefs.place, Some(RobotPlace { gone_to: GoneTo::Drum, .. })),
+            drum: matches!(self.place(), Some(RobotPlace { gone_to: GoneTo::Drum, .. })),
         };
     }
 }

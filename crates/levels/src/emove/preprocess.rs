@@ -162,7 +162,7 @@ impl State {
             let there = |pose: &Pose| {
                 pose.to_frame().is_ok_and(|frame| near(&frame, present, LOST_INCHES, LOST_RADIANS))
             };
-            self.beliefs.place = self.beliefs.place.filter(|place| there(&place.pose));
+            self.away = self.beliefs.place.is_some_and(|place| !there(&place.pose));
         }
         let watch = Watch {
             pause: match (command.command, self.step) {
@@ -171,7 +171,7 @@ impl State {
                 _ => Pause::Other,
             },
             outcome: self.execution.outcome,
-            place: self.whereabouts(inputs.data),
+            place: self.whereabouts(inputs),
             resolvers: known(present.is_some()),
         };
         match (search(self.step, &watch).action, &present) {
@@ -198,17 +198,23 @@ impl State {
                     array: None,
                     pose: Pose::from_frame(present),
                 });
-                self.beliefs.way = None;
+                (self.beliefs.way, self.away) = (None, false);
                 return;
             }
         }
     }
 
+    /// The place where the robot stands, unless it has been moved away from there. If it is moved back, as by the
+    /// joystick box, it stands there again.
+    pub(super) fn place(&self) -> Option<RobotPlace> {
+        self.beliefs.place.filter(|_| !self.away)
+    }
+
     /// Is it known where the robot is?
-    fn whereabouts(&self, data: &TaskData<'_>) -> Whereabouts {
-        if self.beliefs.place.is_some() || self.beliefs.way.is_some() || self.beliefs.exchange.is_some() {
+    fn whereabouts(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Whereabouts {
+        if self.place().is_some() || self.beliefs.exchange.is_some() || self.on_way(inputs).is_some() {
             Whereabouts::Known
-        } else if data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
+        } else if inputs.data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
             Whereabouts::Searching
         } else {
             Whereabouts::Unknown
@@ -280,7 +286,7 @@ impl State {
             link: if memory.prim.status.link_running { Link::Up } else { Link::Down },
             prim,
             tooling: self.tooling(ring, gripper, memory),
-            place: self.whereabouts(inputs.data),
+            place: self.whereabouts(inputs),
             button: match memory.prim.status.joystick_grip {
                 pressed if pressed == self.button => JoystickGrip::None,
                 pressed => pressed,
@@ -301,7 +307,7 @@ impl State {
 
     /// Where the robot is, seen from the command's location.
     fn at(&self, command: &EmoveCommand) -> At {
-        match self.beliefs.place {
+        match self.place() {
             Some(at) if same_location(&place(&at), &place_named(command)) => match at.gone_to {
                 GoneTo::Drum => At::InDrum,
                 GoneTo::Location | GoneTo::Object(_) | GoneTo::View(_) => At::There,
