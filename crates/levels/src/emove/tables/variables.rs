@@ -53,35 +53,6 @@ pub enum Pause {
     Standing,
 }
 
-/// What is asked of E-move in this tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Demand {
-    /// Nothing new.
-    Before,
-    /// E-move was restarted in this tick: a command stands in its buffer that it has not begun.
-    Restarted,
-    /// A new command.
-    Now,
-}
-
-/// Robot, ring and fingers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Rest {
-    /// They are at rest.
-    AtRest,
-    /// At least one of them moves.
-    Moving,
-}
-
-/// The pause that a new command waits for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Halt {
-    /// Not ordered yet.
-    NotOrdered,
-    /// Ordered.
-    Ordered,
-}
-
 /// How the gripper hangs on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Coupling {
