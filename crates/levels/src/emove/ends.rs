@@ -40,7 +40,7 @@ impl State {
         if let Some(pose) = commanded_pose(inputs.memory) {
             self.beliefs.place = Some(robot_at(command, gone_to, pose));
         }
-        self.beliefs.exchange = None;
+        (self.beliefs.exchange, self.beliefs.drum) = (None, None);
         self.finish();
     }
 

@@ -89,6 +89,7 @@ impl State {
         self.sense_held(command, inputs);
         let watch = self.sense_place(command, inputs);
         self.sense_exchange(inputs);
+        self.sense_drum(inputs);
         let below = self.below(demand, &watch, inputs);
         let request = match below {
             Below { demand: Demand::Now, rest: Rest::AtRest, .. }
@@ -206,7 +207,9 @@ impl State {
 
     /// Is it known where the robot is?
     fn whereabouts(&self, data: &TaskData<'_>) -> Whereabouts {
-        if self.beliefs.place.is_some() || self.beliefs.way.is_some() || self.beliefs.exchange.is_some() {
+        let beliefs = &self.beliefs;
+        let half_way = beliefs.exchange.is_some() || beliefs.drum.is_some();
+        if beliefs.place.is_some() || beliefs.way.is_some() || half_way {
             Whereabouts::Known
         } else if data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
             Whereabouts::Searching
@@ -274,6 +277,7 @@ impl State {
             along: self.along(command, inputs),
             shut: self.shut(command, inputs),
             at: self.at(command),
+            drum: self.at_drum(command, inputs),
             sight: sight(inputs),
             aim: known(self.aim(command, inputs).is_some()),
             tries: if self.tries.saturating_add(1) < MAX_TRIES { Tries::Left } else { Tries::Spent },
