@@ -41,7 +41,7 @@ impl State {
             self.beliefs.place = Some(robot_at(command, gone_to, pose));
             self.away = false;
         }
-        self.beliefs.exchange = None;
+        (self.beliefs.exchange, self.beliefs.drum) = (None, None);
         self.finish();
     }
 

@@ -18,6 +18,7 @@
 //! * [`route`]: depart, trajectory, approach and stop as one list of points;
 //! * [`way`]: going on with a way that was interrupted;
 //! * [`exchange`]: where the robot is in the change of a gripper;
+//! * [`drum`]: where it is at the tool drum;
 //! * [`locate`]: from a picture to a part frame;
 //! * [`relative`]: the short moves at holsters and tool drum;
 //! * [`gripper`]: the three grippers as one;
@@ -27,6 +28,7 @@
 //! * [`postprocess`], [`camera`] and [`ends`]: the outputs that a row asks for.
 
 pub mod camera;
+pub mod drum;
 pub mod ends;
 pub mod exchange;
 pub mod fingers;

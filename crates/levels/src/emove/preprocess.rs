@@ -89,6 +89,7 @@ impl State {
         self.sense_held(command, inputs);
         let watch = self.sense_place(command, inputs);
         self.sense_exchange(inputs);
+        self.sense_drum(inputs);
         let asked = self.execution.asked(arrival);
         let replaced = self.replaced(&watch, inputs);
         let at_rest = replaced.below == Below::AtRest || replaced.joystick == BoxState::On;
@@ -215,7 +216,8 @@ impl State {
 
     /// Is it known where the robot is?
     fn whereabouts(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Whereabouts {
-        if self.place().is_some() || self.beliefs.exchange.is_some() || self.on_way(inputs).is_some() {
+        let half_way = self.beliefs.exchange.is_some() || self.beliefs.drum.is_some();
+        if self.place().is_some() || half_way || self.on_way(inputs).is_some() {
             Whereabouts::Known
         } else if inputs.data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
             Whereabouts::Searching
@@ -283,6 +285,7 @@ impl State {
             along: self.along(command, inputs),
             shut: self.shut(command, inputs),
             at: self.at(command),
+            drum: self.at_drum(command, inputs),
             sight: sight(inputs),
             aim: known(self.aim(command, inputs).is_some()),
             tries: if self.tries.saturating_add(1) < MAX_TRIES { Tries::Left } else { Tries::Spent },

@@ -5,7 +5,7 @@ use rcs_core::decision_table;
 decision_table! {
     /// ACCEPT: a new command is refused if the gripper is not the right one, or if a record that it needs is
     /// missing; nothing has been ordered then, since HALT has stopped what was under way. A robot that changes a
-    /// gripper, or whose gripper is not locked, goes nowhere. Quick change commands have rows of their own
+    /// gripper, is half way at the tool drum, or whose gripper is not locked, goes nowhere. Quick change commands have rows of their own
     /// for the gripper.
     pub ACCEPT: fn accept(super::Request) -> super::Action or () {
         1:  asked: Before                                              => consult;
@@ -25,21 +25,24 @@ decision_table! {
         15: verb: MovToVu | MovToHol | Withdraw, exchange: HalfDone    => Refuse(InHolster);
         16: verb: InsertTool | ReleaseTool, exchange: HalfDone         => Refuse(InHolster);
         17: verb: AcquireTool | RemoveTool, exchange: HalfDone         => Refuse(InHolster);
-        18: verb: MovToLoc | MovToObj | MovObjTo, coupling: Loose      => Refuse(RingNotLocked);
-        19: verb: MovToVu | MovToHol | Withdraw, coupling: Loose       => Refuse(RingNotLocked);
-        20: target: Holster                                            => Refuse(HolsterOnly);
-        21: moves: Missing                                             => Refuse(NoRelativeMove);
-        22: moves: Unguarded                                           => Refuse(UnknownSensor);
-        23: moves: NoPose                                              => Refuse(NoDestination);
-        24: route: NoPose                                              => Refuse(NoDestination);
-        25: route: BadPose | NoView                                    => Refuse(BadRecord);
-        26: route: NoSizes                                             => Refuse(UnknownGrip);
-        27: route: NoGrip                                              => Refuse(NoGripMovetable);
-        28: route: NoApproach | NoSpeed                                => Refuse(NoApproach);
-        29: route: NoStart                                             => Refuse(UnknownStart);
-        30: route: ForwardOnly                                         => Refuse(ForwardOnly);
-        31: route: InDrum                                              => Refuse(NotPrepared);
-        32: route: NoTrajectory                                        => Refuse(NoTrajectory);
-        33: route: Planned                                             => consult;
+        18: verb: MovToLoc | MovToObj | MovObjTo, drum: HalfDone       => Refuse(InDrum);
+        19: verb: MovToVu | MovToHol | Withdraw, drum: HalfDone        => Refuse(InDrum);
+        20: verb: QcDetach | QcAttach, drum: HalfDone                  => Refuse(InDrum);
+        21: verb: MovToLoc | MovToObj | MovObjTo, coupling: Loose      => Refuse(RingNotLocked);
+        22: verb: MovToVu | MovToHol | Withdraw, coupling: Loose       => Refuse(RingNotLocked);
+        23: target: Holster                                            => Refuse(HolsterOnly);
+        24: moves: Missing                                             => Refuse(NoRelativeMove);
+        25: moves: Unguarded                                           => Refuse(UnknownSensor);
+        26: moves: NoPose                                              => Refuse(NoDestination);
+        27: route: NoPose                                              => Refuse(NoDestination);
+        28: route: BadPose | NoView                                    => Refuse(BadRecord);
+        29: route: NoSizes                                             => Refuse(UnknownGrip);
+        30: route: NoGrip                                              => Refuse(NoGripMovetable);
+        31: route: NoApproach | NoSpeed                                => Refuse(NoApproach);
+        32: route: NoStart                                             => Refuse(UnknownStart);
+        33: route: ForwardOnly                                         => Refuse(ForwardOnly);
+        34: route: InDrum                                              => Refuse(NotPrepared);
+        35: route: NoTrajectory                                        => Refuse(NoTrajectory);
+        36: route: Planned                                             => consult;
     }
 }

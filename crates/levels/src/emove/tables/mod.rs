@@ -32,9 +32,9 @@ use rcs_core::{
 };
 
 pub use self::variables::{
-    Along, At, Attached, Contact, Coupling, Exchange, Fingers, Held, Holster, HolsterData, Knowledge, Link,
-    Load, Lock, Mate, Opening, Ordered, Pause, Readiness, Record, Ring, Shut, Sight, Spread, Target, Tooling,
-    Tries, Vision, Whereabouts,
+    Along, At, AtDrum, Attached, Contact, Coupling, Exchange, Fingers, Held, Holster, HolsterData, Knowledge,
+    Link, Load, Lock, Mate, Opening, Ordered, Pause, Readiness, Record, Ring, Shut, Sight, Spread, Target,
+    ToolWork, Tooling, Tries, Vision, Whereabouts,
 };
 use self::{accept::accept, carried::carried, ordered::ordered};
 use super::{
@@ -61,6 +61,8 @@ pub struct Request {
     pub coupling: Coupling,
     /// The change of a gripper.
     pub exchange: Exchange,
+    /// A tool command.
+    pub drum: ToolWork,
     /// The location of the command.
     pub target: Target,
     /// Sizes of object and grip: END-EFF-PARA.
@@ -140,6 +142,8 @@ pub struct Situation {
     pub shut: Shut,
     /// Is the robot at the command's location?
     pub at: At,
+    /// Is it half way at the drum?
+    pub drum: AtDrum,
     /// What vision has answered.
     pub sight: Sight,
     /// Where the camera is to go next.

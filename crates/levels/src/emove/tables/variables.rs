@@ -217,6 +217,32 @@ pub enum At {
     InDrum,
 }
 
+/// Where the robot is at the drum of the command, if a tool command was interrupted there, by the resolvers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum AtDrum {
+    /// Nowhere there, or no tool command was interrupted.
+    Off,
+    /// Before it: neither a held tool nor the fingers touch anything.
+    Before,
+    /// On the way in: a held tool may touch the drum.
+    Entering,
+    /// Where a held tool is in its place, and empty fingers are around one.
+    Inside,
+    /// Between there and the strike plate: the fingers are half around the tool in the drum.
+    Sliding,
+    /// To the right of the tool, clear of it, at the strike plate or before it.
+    Beside,
+}
+
+/// A tool command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum ToolWork {
+    /// None is under way.
+    None,
+    /// The robot is at the tool drum, between the first and the last point of one.
+    HalfDone,
+}
+
 /// What is mated with the quick change, seen from the gripper of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Mate {
