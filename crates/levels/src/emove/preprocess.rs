@@ -171,7 +171,7 @@ impl State {
                 _ => Pause::Other,
             },
             outcome: self.execution.outcome,
-            place: self.whereabouts(inputs.data),
+            place: self.whereabouts(inputs),
             resolvers: known(present.is_some()),
         };
         match (search(self.step, &watch).action, &present) {
@@ -204,11 +204,15 @@ impl State {
         }
     }
 
-    /// Is it known where the robot is?
-    fn whereabouts(&self, data: &TaskData<'_>) -> Whereabouts {
-        if self.beliefs.place.is_some() || self.beliefs.way.is_some() || self.beliefs.exchange.is_some() {
+    /// Is it known where the robot is? A way that it has left says nothing any more, once it is at rest.
+    fn whereabouts(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Whereabouts {
+        let prim = &inputs.memory.prim;
+        let prim = self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
+        let moving = matches!(prim, Lower::Pending | Lower::Executing);
+        let on_way = self.beliefs.way.is_some() && (moving || self.on_way(inputs).is_some());
+        if self.beliefs.place.is_some() || on_way || self.beliefs.exchange.is_some() {
             Whereabouts::Known
-        } else if data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
+        } else if inputs.data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
             Whereabouts::Searching
         } else {
             Whereabouts::Unknown
@@ -280,7 +284,7 @@ impl State {
             link: if memory.prim.status.link_running { Link::Up } else { Link::Down },
             prim,
             tooling: self.tooling(ring, gripper, memory),
-            place: self.whereabouts(inputs.data),
+            place: self.whereabouts(inputs),
             button: match memory.prim.status.joystick_grip {
                 pressed if pressed == self.button => JoystickGrip::None,
                 pressed => pressed,
