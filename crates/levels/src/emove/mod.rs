@@ -20,7 +20,7 @@
 //! * [`exchange`]: where the robot is in the change of a gripper;
 //! * [`locate`]: from a picture to a part frame;
 //! * [`relative`]: the short moves at holsters and tool drum;
-//! * [`gripper`]: the three grippers as one;
+//! * [`gripper`] and [`order`]: the three grippers as one;
 //! * [`preprocess`] and [`plan`]: the state variables, and what a new command needs;
 //! * [`fingers`]: openings as state variables and as orders;
 //! * [`tables`]: the decision tables, a file a command;
@@ -32,6 +32,7 @@ pub mod exchange;
 pub mod fingers;
 pub mod gripper;
 pub mod locate;
+pub mod order;
 pub mod plan;
 pub mod postprocess;
 pub mod preprocess;

@@ -9,20 +9,20 @@ decision_table! {
     /// at once if the gripper is locked on and clear of its holster.
     pub QC_ATTACH: fn qc_attach(enum QcAttachStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                                                                => Wait;
-            2: lock: Faulty                                                         => FailRing;
+            1:  work: Busy                                                                => Wait;
+            2:  lock: Faulty                                                         => FailRing;
         }
         /// Nothing done yet.
         Start {
-            3: mate: Wrong                                                               => Fail(WrongGripper);
-            4: mate: Right, at: There, holster: Empty, lock: Locked                      => Finish;
-            5: mate: Right, along: Off, holster: Partial | Full                          => Fail(NotPrepared);
-            6: mate: Right, along: Off, holster: Empty, lock: Locked                     => Finish;
-            7: mate: Right, along: Off, holster: Empty, lock: Unlocked | Between         => Fail(RingNotLocked);
-            8: mate: None, along: Above | Out, holster: Empty | Partial                  => Fail(HolsterEmpty);
+            3:  mate: Wrong                                                               => Fail(WrongGripper);
+            4:  mate: Right, at: There, holster: Empty, lock: Locked                      => Finish;
+            5:  mate: Right, along: Off, holster: Partial | Full                          => Fail(NotPrepared);
+            6:  mate: Right, along: Off, holster: Empty, lock: Locked                     => Finish;
+            7:  mate: Right, along: Off, holster: Empty, lock: Unlocked | Between         => Fail(RingNotLocked);
+            8:  mate: None, along: Above | Out, holster: Empty | Partial                  => Fail(HolsterEmpty);
         }
         any {
-            9: mate: Wrong                                                               => Fail(WrongGripperId);
+            9:  mate: Wrong                                                               => Fail(WrongGripperId);
             10: along: Off                                                                => Fail(NotPrepared);
             11: mate: Right, along: Above | Out                                          => Fail(NotPrepared);
         }

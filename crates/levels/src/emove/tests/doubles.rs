@@ -128,7 +128,7 @@ impl World {
         } else if text.contains("QCD-UP") && !self.locked {
             self.resident[which] = self.mated;
             self.mated = 0;
-        } else if text.contains("QCA-SLOW") {
+        } else if text.contains("QCA-SLOW") && self.mated == 0 {
             self.mated = self.resident[which];
         } else if text.contains("QCA-LIFT") {
             *seen = 0;
@@ -245,7 +245,8 @@ impl Prim {
                 "HOL-SEAT" => 0b1111,
                 _ => return false,
             };
-            world.holsters.iter().any(|seen| seen & bits == bits)
+            let which = usize::from(memory.subtask.emove.end_effector_id.clamp(1, 3)) - 1;
+            world.holsters[which] & bits == bits
         };
         if command.command == PrimVerb::GoUntil && condition(world) {
             return true;

@@ -233,8 +233,7 @@ fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
         let mut bench = loaded();
         bench.at_every_tick(TO_VISE, |fork| {
             let prim = &fork.memory.prim.status;
-            let moving =
-                prim.echo != fork.memory.emove.prim.number || prim.report == PrimReport::Executing;
+            let moving = prim.echo != fork.memory.emove.prim.number || prim.report == PrimReport::Executing;
             let before = fork.world.log.len();
             let (verb, object, grip, location, gripper) = next;
             fork.write(verb, object, grip, location, gripper);
@@ -280,9 +279,13 @@ fn a_restarted_e_move_believes_what_it_believed() {
     // Before the grasp what vision has located, after it what is held, and then what was let go.
     let mut bench = Bench::ready("HOME", 1);
     assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
-    for (verb, location) in
-        [(LocateObj, "BENCH"), (MovToObj, "BENCH"), (EmoveVerb::GraspObj, "BENCH"), (MovObjTo, "VISE"), (Release, "VISE")]
-    {
+    for (verb, location) in [
+        (LocateObj, "BENCH"),
+        (MovToObj, "BENCH"),
+        (EmoveVerb::GraspObj, "BENCH"),
+        (MovObjTo, "VISE"),
+        (Release, "VISE"),
+    ] {
         if verb == EmoveVerb::GraspObj {
             bench.world.object = Some(75);
         }

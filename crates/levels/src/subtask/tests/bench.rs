@@ -5,7 +5,7 @@ use rcs_core::{
     handshake::{Arrival, Receiver},
     interface::{
         CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, Report,
-        emove::{EmoveCommand, EmoveVerb, ObjectGrip, Holding, PlacedObject, Standing},
+        emove::{EmoveCommand, EmoveVerb, Holding, ObjectGrip, PlacedObject, Standing},
         grip::Felt,
         pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
         subtask::{SubtaskCommand, SubtaskStatus, SubtaskVerb},

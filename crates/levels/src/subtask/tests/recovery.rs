@@ -4,7 +4,7 @@
 use rcs_core::{
     interface::{
         Reason, Report,
-        emove::{EmoveVerb, ObjectGrip, Holding, LocatedObject, PlacedObject, Standing},
+        emove::{EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Standing},
         grip::Felt,
         pedestal::{PedestalReport, PedestalVerb},
         subtask::{Regrip, SubtaskVerb},
