@@ -53,6 +53,8 @@ pub enum Mishap {
     Joystick,
     /// What is between the fingers slips out.
     Slip,
+    /// Prim reports done, and the robot has not moved.
+    Stays,
     /// The gripper stays on the robot, or drops off it, or is another one.
     Mated(u8),
     /// The sensors of the holster see this.
@@ -265,6 +267,9 @@ impl Prim {
             Some(Mishap::Joystick) => (world.joystick, self.report) = (true, PrimReport::JoystickOn),
             Some(Mishap::Slip) => world.object = None,
             _ => {}
+        }
+        if matches!(world.mishap(text), Some(Mishap::Stays)) {
+            return;
         }
         match command.command {
             PrimVerb::RobotInit => self.link = self.report == PrimReport::Done,

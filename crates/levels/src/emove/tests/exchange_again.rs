@@ -26,6 +26,7 @@ pub const SCENARIOS: &[fn()] = &[
     a_gripper_is_detached_from_every_tick,
     an_exchange_goes_on_from_where_it_is,
     what_cannot_be_attached_is_named,
+    an_order_without_effect_ends_the_command,
     what_cannot_be_detached_is_named,
     in_a_holster_only_the_exchange_goes_on,
     a_grasp_is_made_again_from_every_tick,
@@ -218,6 +219,26 @@ fn what_cannot_be_attached_is_named() {
     bench.world.resident[0] = 0;
     assert_eq!(send(&mut bench, ATTACH), error(Reason::NotAttached));
     assert_eq!(bench.log()[0], "DELTA-MOVE QCA-FAST");
+}
+
+#[test]
+fn an_order_without_effect_ends_the_command() {
+    for (at, mated, locked, bits, word) in [
+        (FAST, 0, false, 0b1111, "QCA-SLOW"),
+        (LOW, 1, false, 0b0011, "QCA-SLOW"),
+        (SEAT, 0, false, 0b1111, "QCA-FAST"),
+        (SEAT, 1, true, 0b1111, "QCA-BACK"),
+        (LOW, 1, true, 0b0011, "QCA-LIFT"),
+        (RAISED, 1, true, 0, "QCA-UP"),
+    ] {
+        let mut bench = halfway(at, mated, locked, bits);
+        bench.spoil(word, Mishap::Stays);
+        assert_eq!(send(&mut bench, ATTACH), error(Reason::NoEffect), "{word} {:?}", bench.world.log);
+    }
+    let mut bench = halfway(LOW, 1, false, 0b0011);
+    bench.ring.half = true;
+    bench.spoil("QCA-SLOW", Mishap::Stays);
+    assert_eq!(send(&mut bench, ATTACH), error(Reason::NoEffect));
 }
 
 #[test]

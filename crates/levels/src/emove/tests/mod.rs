@@ -5,6 +5,7 @@ mod doubles;
 mod drum;
 mod exchange;
 mod exchange_again;
+mod futile;
 mod motion;
 mod nonsense;
 mod pausing;
