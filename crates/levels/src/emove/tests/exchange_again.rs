@@ -1,5 +1,5 @@
-//! QC-ATTACH, QC-DETACH and GRASP-OBJ that are interrupted and sent again (docs/design/recovery.md "Exchange",
-//! "Held").
+//! QC-ATTACH, QC-DETACH and GRASP-OBJ that are interrupted and sent again (docs/design/recovery.md
+//! "Exchange", "Held").
 
 use rcs_core::interface::{
     Reason,
