@@ -16,7 +16,8 @@ use rcs_core::{
 use taskdata::files::{EndEffId, EndEffPara, TaskData};
 
 use super::{
-    gripper::{Gripper, Order, Request},
+    gripper::Gripper,
+    order::{Order, Request},
     robot_place::present_frame,
     route::{FULL_OPENING, near},
     state::State,

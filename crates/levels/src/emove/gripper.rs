@@ -29,6 +29,7 @@ use rcs_core::{
     units::hundredths,
 };
 
+use super::order::{Order, Request};
 use crate::jaws::{CylindricalPartGripper, Kind, Parameters, ToolGripper};
 
 /// Opening at which the parts gripper is closed, 0.01 in.
@@ -121,6 +122,18 @@ impl Gripper {
             grip: !matches!(self, Self::Parts),
             v_grip: !matches!(self, Self::V),
             tool_grip: !matches!(self, Self::Tool),
+        }
+    }
+
+    /// Does its process sleep, or has it been woken in this tick? What it is told now it does not execute
+    /// (docs/design/handshake.md "Wake").
+    const fn is_asleep(self, memory: &CommonMemory) -> bool {
+        let dormant = &memory.emove.dormant;
+        match self {
+            Self::None => false,
+            Self::Parts => dormant.grip,
+            Self::V => dormant.v_grip,
+            Self::Tool => dormant.tool_grip,
         }
     }
 
@@ -223,43 +236,6 @@ impl Gripper {
     }
 }
 
-/// What is asked of the attached gripper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Order {
-    /// Nothing yet.
-    #[text = ""]
-    None,
-    /// Leave the fingers as they are.
-    Pause,
-    /// Bring the fingers to an opening, nothing between them.
-    Stand,
-    /// Open and let go.
-    Release,
-    /// Close on an object.
-    Grasp,
-    /// Calibrate the sensors.
-    Calibrate,
-}
-
-/// An [`Order`] with what goes with it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Request {
-    /// What to do.
-    pub order: Order,
-    /// Opening, or size of the object, 0.01 in.
-    pub opening: i32,
-    /// Force of a grasp, lb.
-    pub force: i32,
-}
-
-impl Request {
-    /// A request that needs an opening and no force.
-    #[must_use]
-    pub const fn to(order: Order, opening: i32) -> Self {
-        Self { order, opening, force: 0 }
-    }
-}
-
 /// E-move's side of the interfaces to the three gripper processes, and the order that was given last.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Grippers {
@@ -288,9 +264,10 @@ impl Grippers {
         self.tool.start_from(tick, written.tool_grip.number, memory.tool_grip.status.echo);
     }
 
-    /// Give the attached gripper an order; without a gripper it only counts as given.
+    /// Give the attached gripper an order; without a gripper, or while it sleeps, it only counts as given.
     pub fn send(&mut self, request: Request, tick: Tick, memory: &CommonMemory, outputs: &mut EmoveOutputs) {
-        self.to = Gripper::attached(memory);
+        let attached = Gripper::attached(memory);
+        self.to = if attached.is_asleep(memory) { Gripper::None } else { attached };
         self.order = request.order;
         match self.to {
             Gripper::None => {}

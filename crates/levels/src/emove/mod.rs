@@ -21,7 +21,7 @@
 //! * [`drum`]: where it is at the tool drum;
 //! * [`locate`]: from a picture to a part frame;
 //! * [`relative`]: the short moves at holsters and tool drum;
-//! * [`gripper`]: the three grippers as one;
+//! * [`gripper`] and [`order`]: the three grippers as one;
 //! * [`preprocess`] and [`plan`]: the state variables, and what a new command needs;
 //! * [`fingers`]: openings as state variables and as orders;
 //! * [`tables`]: the decision tables, a file a command;
@@ -34,6 +34,7 @@ pub mod exchange;
 pub mod fingers;
 pub mod gripper;
 pub mod locate;
+pub mod order;
 pub mod plan;
 pub mod postprocess;
 pub mod preprocess;

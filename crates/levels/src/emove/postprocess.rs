@@ -16,7 +16,8 @@ use rcs_core::{
 use taskdata::files::{TaskData, TrajParaId};
 
 use super::{
-    gripper::{Gripper, Order, Request},
+    gripper::Gripper,
+    order::{Order, Request},
     relative::{Reference, Relative},
     robot_place::{commanded_pose, standing},
     route::LegGoal,

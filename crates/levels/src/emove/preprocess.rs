@@ -214,10 +214,14 @@ impl State {
         self.beliefs.place.filter(|_| !self.away)
     }
 
-    /// Is it known where the robot is?
+    /// Is it known where the robot is? A way that it has left says nothing any more, once it is at rest.
     fn whereabouts(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Whereabouts {
+        let prim = &inputs.memory.prim;
+        let prim = self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
+        let moving = matches!(prim, Lower::Pending | Lower::Executing);
+        let on_way = self.beliefs.way.is_some() && (moving || self.on_way(inputs).is_some());
         let half_way = self.beliefs.exchange.is_some() || self.beliefs.drum.is_some();
-        if self.place().is_some() || half_way || self.on_way(inputs).is_some() {
+        if self.place().is_some() || half_way || on_way {
             Whereabouts::Known
         } else if inputs.data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
             Whereabouts::Searching

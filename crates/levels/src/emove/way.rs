@@ -107,6 +107,17 @@ fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<boo
     Some(beside <= cut + AWAY_INCHES && turned)
 }
 
+/// Does Prim still move the robot for its order, or for the one before? A GO-THRU is done before it is at rest.
+fn moves(memory: &CommonMemory) -> bool {
+    let (order, status) = (&memory.emove.prim, &memory.prim.status);
+    let pending = status.echo != order.number;
+    match order.command {
+        PrimVerb::RobotInit => false,
+        PrimVerb::None | PrimVerb::Pause => pending || status.report == PrimReport::Executing,
+        _ => true,
+    }
+}
+
 impl State {
     /// Follow the commanded pose while the robot moves, and note when the operator has moved it.
     pub(super) fn sense_way(&mut self, memory: &CommonMemory) {
@@ -114,7 +125,7 @@ impl State {
         let prim = &memory.prim.status;
         match prim.report {
             PrimReport::JoystickOn => way.by_hand = true,
-            PrimReport::Executing if memory.emove.prim.command != PrimVerb::RobotInit => {
+            PrimReport::Executing | PrimReport::Done if moves(memory) => {
                 let commanded = commanded_pose(memory);
                 let follows = |pose: &Pose| {
                     let (Ok(now), Ok(before)) = (pose.to_frame(), way.rest.to_frame()) else { return false };
@@ -153,7 +164,7 @@ impl State {
         let closed = here
             && !way.straight
             && route.depart_points(data) == 0
-            && matches!(way.to.gone_to, GoneTo::Object(_));
+            && matches!((way.from.gone_to, way.to.gone_to), (GoneTo::Object(_), GoneTo::Object(_)));
         Start {
             robot,
             goal: if is_same(&way.to, goal) { GoalOf::Way } else { GoalOf::Another },

@@ -9,60 +9,61 @@ decision_table! {
     /// (docs/design/recovery.md "Exchange"). Done at once if the gripper is in its holster and the robot clear.
     pub QC_DETACH: fn qc_detach(enum QcDetachStep, super::Situation) -> super::Action {
         any {
-            1:  work: Busy                                                          => Wait;
-            2:  lock: Faulty                                                        => FailRing;
+            1:  work: Busy                                                   => Wait;
+            2:  lock: Faulty                                                 => FailRing;
         }
         /// Nothing done yet.
         Start {
-            3:  mate: None, holster: Full, at: There | Before | InDrum              => Finish;
-            4:  mate: None, holster: Full, along: Off | Above | Clear               => Finish;
-            5:  mate: None, holster: Empty | Partial                                => Fail(WrongGripper);
+            3:  mate: None, holster: Full, at: There | Before | InDrum       => Finish;
+            4:  mate: None, holster: Full, along: Above | Clear              => Stand;
+            5:  mate: None, holster: Full, along: Off                        => Finish;
+            6:  mate: None, holster: Empty | Partial                         => Fail(WrongGripper);
         }
         /// The robot is moving up out of the gripper.
         Rising {
-            6:  mate: Right | Wrong                                                 => Fail(NotDetached);
-            7:  mate: None, holster: Empty | Partial                                => Fail(NotDetached);
-            8:  lock: Locked | Between                                              => FailRing;
-            9:  mate: None, holster: Full                                           => Stand;
+            7:  mate: Right | Wrong                                          => Fail(NotDetached);
+            8:  mate: None, holster: Empty | Partial                         => Fail(NotDetached);
+            9:  lock: Locked | Between                                       => FailRing;
+            10: mate: None, holster: Full                                    => Stand;
         }
         /// The gripper is moving down into the holster.
         Lowering {
-            10: mate: Right, lock: Locked | Between                                 => Unlock -> Unlocking;
+            11: mate: Right, lock: Locked | Between                          => Unlock -> Unlocking;
         }
         /// The gripper is being pushed to its seat.
         Seating {
-            11: mate: Right, lock: Unlocked                                         => DeltaMove(QcdUp) -> Rising;
+            12: mate: Right, lock: Unlocked                                  => DeltaMove(QcdUp) -> Rising;
         }
         any {
-            12: mate: Wrong                                                         => Fail(WrongGripper);
-            13: mate: None, holster: Empty | Partial                                => Fail(NotDetached);
-            14: mate: None, along: Off | Above | Clear                              => Fail(NotDetached);
-            15: mate: None, along: Sliding | Low | Lifting | Raising                => Fail(NotDetached);
-            16: mate: Right, along: Off                                             => Fail(NotPrepared);
-            17: mate: Right, along: Above | Out | Coming                            => Fail(NotDetached);
+            13: mate: Wrong                                                  => Fail(WrongGripper);
+            14: mate: None, holster: Empty | Partial                         => Fail(NotDetached);
+            15: mate: None, along: Off | Above | Clear                       => Fail(NotDetached);
+            16: mate: None, along: Sliding | Low | Lifting | Raising         => Fail(NotDetached);
+            17: mate: Right, along: Off                                      => Fail(NotPrepared);
+            18: mate: Right, along: Above | Out | Coming                     => Fail(NotDetached);
         }
         /// The quick change is unlocking; the gripper drops.
         Unlocking {
-            18: lock: Locked | Between                                              => FailRing;
-            19: mate: Right, lock: Unlocked                                         => GoUntil(QcdSeat) -> Seating;
+            19: lock: Locked | Between                                       => FailRing;
+            20: mate: Right, lock: Unlocked                                  => GoUntil(QcdSeat) -> Seating;
         }
         any {
-            20: mate: None, along: Out | Coming | Seat, lock: Locked | Between      => Unlock -> Unlocking;
-            21: mate: None, along: Out | Coming | Seat, lock: Unlocked              => DeltaMove(QcdOut) -> Rising;
+            21: mate: None, along: Out | Coming | Seat, lock: Locked | Between => Unlock -> Unlocking;
+            22: mate: None, along: Out | Coming | Seat, lock: Unlocked       => DeltaMove(QcdOut) -> Rising;
         }
         any {
-            22: along: Raising | Clear, lock: Unlocked | Between                    => Fail(RingNotLocked);
-            23: along: Lifting, holster: Empty, lock: Unlocked | Between            => Fail(RingNotLocked);
-            24: along: Lifting | Raising | Clear, lock: Locked, held: Right | Other => Fail(AlreadyHolding);
-            25: along: Lifting | Raising | Clear, lock: Locked, held: Something     => Fail(AlreadyHolding);
-            26: along: Lifting | Raising | Clear, lock: Locked, held: NotKnown      => Fail(HeldNotKnown);
-            27: along: Raising | Clear, holster: Partial | Full                     => Fail(HolsterOccupied);
-            28: along: Lifting | Raising | Clear, lock: Locked                      => GoUntil(QcdDown) -> Lowering;
-            29: along: Low, holster: Empty, lock: Locked                            => GoUntil(QcdDown) -> Lowering;
-            30: along: Lifting | Low | Sliding | Seat, lock: Locked | Between       => Unlock -> Unlocking;
-            31: along: Lifting | Low | Sliding, lock: Unlocked                      => GoUntil(QcdSeat) -> Seating;
-            32: along: Seat, holster: Empty | Partial, lock: Unlocked               => GoUntil(QcdSeat) -> Seating;
-            33: along: Seat, holster: Full, lock: Unlocked                          => DeltaMove(QcdUp) -> Rising;
+            23: along: Raising | Clear, lock: Unlocked | Between             => Fail(RingNotLocked);
+            24: along: Lifting, holster: Empty, lock: Unlocked | Between     => Fail(RingNotLocked);
+            25: along: Lifting | Raising | Clear, lock: Locked, held: Right | Other => Fail(AlreadyHolding);
+            26: along: Lifting | Raising | Clear, lock: Locked, held: Something => Fail(AlreadyHolding);
+            27: along: Lifting | Raising | Clear, lock: Locked, held: NotKnown => Fail(HeldNotKnown);
+            28: along: Raising | Clear, holster: Partial | Full              => Fail(HolsterOccupied);
+            29: along: Lifting | Raising | Clear, lock: Locked               => GoUntil(QcdDown) -> Lowering;
+            30: along: Low, holster: Empty, lock: Locked                     => GoUntil(QcdDown) -> Lowering;
+            31: along: Lifting | Low | Sliding | Seat, lock: Locked | Between => Unlock -> Unlocking;
+            32: along: Lifting | Low | Sliding, lock: Unlocked               => GoUntil(QcdSeat) -> Seating;
+            33: along: Seat, holster: Empty | Partial, lock: Unlocked        => GoUntil(QcdSeat) -> Seating;
+            34: along: Seat, holster: Full, lock: Unlocked                   => DeltaMove(QcdUp) -> Rising;
         }
     }
 }

@@ -72,6 +72,7 @@ pub fn moved(frame: Frame, movetables: &[&str]) -> Frame {
     })
 }
 
+#[derive(Clone)]
 pub struct Bench {
     pub process: Emove,
     pub memory: CommonMemory,
@@ -163,6 +164,9 @@ impl Bench {
         }
         if alive("Prim") {
             after.prim = self.prim.step(self.tick, &before, &data, &mut self.world);
+            if self.prim.by_steps {
+                self.world.feel_holsters(["HOLSTER-R", "HOLSTER-L", "HOLSTER-C"].map(frame_of));
+            }
         }
         if let Some(real) = &mut self.real {
             real.step(self.tick, &before, &mut self.external, &data, &mut self.world, after);
@@ -258,6 +262,32 @@ impl Bench {
 
     pub fn pause(&mut self) -> (Report, Reason) {
         self.run(EmoveVerb::Pause, "", 0, "", 0)
+    }
+
+    /// The motions that Prim was told of.
+    pub fn motions(&self) -> Vec<String> {
+        let motions = ["GO-THRU", "GOTO-PT", "GO-UNTIL", "DELTA-MOVE"];
+        let is_motion = |text: &&String| motions.iter().any(|motion| text.starts_with(motion));
+        self.world.log.iter().filter(is_motion).cloned().collect()
+    }
+
+    /// Give a command and try something in a copy of the cell at every tick of it.
+    pub fn at_every_tick(
+        &mut self,
+        (verb, object, grip, location, gripper): (EmoveVerb, &str, i32, &str, u8),
+        mut attempt: impl FnMut(&mut Self),
+    ) {
+        self.world.log.clear();
+        self.write(verb, object, grip, location, gripper);
+        for _ in 0..1000 {
+            self.step();
+            attempt(&mut self.clone());
+            let status = self.memory.emove.status;
+            if status.echo == self.memory.subtask.emove.number && status.report != Report::Executing {
+                return;
+            }
+        }
+        panic!("never over: {:#?} {:?}", self.process.state().execution, self.world.log);
     }
 
     /// Let something go wrong in the command whose text contains a word.

@@ -2,7 +2,7 @@
 //! process, and the little world that they share.
 
 use rcs_core::{
-    frame::Frame,
+    frame::{Frame, rotation_by, rotation_vector},
     handshake::{Arrival, Receiver},
     interface::{
         CommonMemory, ExternalInputs, GripOutputs, Header, JawsOutputs, PrimOutputs, QuickChangeOutputs,
@@ -22,6 +22,22 @@ use taskdata::files::{MovtabId, PoseId, TaskData};
 /// Ticks that a double takes for a command.
 const TICKS: u32 = 4;
 
+/// The farthest that Prim goes in a tick if it goes by steps, in.
+const STEP: f64 = 0.5;
+/// It turns to the next point this far before a point that it goes through, in.
+const ROUNDED: f64 = 1.0;
+
+const fn is_motion(verb: PrimVerb) -> bool {
+    !matches!(verb, PrimVerb::None | PrimVerb::Pause | PrimVerb::RobotInit | PrimVerb::CalSensor)
+}
+
+/// A share of the way from one frame to another.
+fn toward(from: &Frame, to: &Frame, share: f64) -> Frame {
+    let turn = rotation_vector(&(from.rotation.inverse() * to.rotation));
+    Frame { position: from.position + (to.position - from.position) * share, ..*from }
+        .turned(&rotation_by(&(turn * share)))
+}
+
 /// What happens to a command whose text contains a word.
 #[derive(Clone, Copy, Debug)]
 pub enum Mishap {
@@ -37,6 +53,8 @@ pub enum Mishap {
     Joystick,
     /// What is between the fingers slips out.
     Slip,
+    /// Prim reports done, and the robot has not moved.
+    Stays,
     /// The gripper stays on the robot, or drops off it, or is another one.
     Mated(u8),
     /// The sensors of the holster see this.
@@ -46,6 +64,7 @@ pub enum Mishap {
 }
 
 /// What is where.
+#[derive(Clone)]
 pub struct World {
     /// Where the robot is.
     pub frame: Frame,
@@ -78,6 +97,28 @@ impl World {
         self.mishaps.iter().find(|(word, _)| text.contains(word)).map(|(_, mishap)| *mishap)
     }
 
+    /// What the holsters feel of the robot where it is, and what mates with it or drops off it there. `seats` are
+    /// the poses of the holsters right, left, centre.
+    pub fn feel_holsters(&mut self, seats: [Frame; 3]) {
+        for ((which, id), base) in (0..3).zip(1..).zip(seats) {
+            let Frame { position: at, .. } = base.inverse().compose(&self.frame);
+            let beside = at.y.abs() < 1.0 && at.z > -1.0 && at.z < 2.0;
+            let seated = (at.z - 1.5).abs() < 0.06;
+            if self.mated == id && !self.locked && seated && beside && at.x < -0.05 {
+                (self.mated, self.resident[which]) = (0, id);
+            } else if self.mated == 0 && self.resident[which] == id && seated && beside && at.x > -0.05 {
+                (self.mated, self.resident[which]) = (id, 0);
+            }
+            self.holsters[which] = match (self.mated == id && beside, self.resident[which] == id) {
+                (_, true) => 0b1111,
+                (true, _) if seated && at.x > -0.05 => 0b1111,
+                (true, _) if at.x > -0.05 => 0b0011,
+                (true, _) if at.x > -1.0 => 0b0001,
+                _ => 0,
+            };
+        }
+    }
+
     /// A motion has ended: what that does to grippers and holsters.
     fn moved(&mut self, text: &str, gripper: u8) {
         let which = usize::from(gripper.clamp(1, 3)) - 1;
@@ -89,7 +130,7 @@ impl World {
         } else if text.contains("QCD-UP") && !self.locked {
             self.resident[which] = self.mated;
             self.mated = 0;
-        } else if text.contains("QCA-SLOW") {
+        } else if text.contains("QCA-SLOW") && self.mated == 0 {
             self.mated = self.resident[which];
         } else if text.contains("QCA-LIFT") {
             *seen = 0;
@@ -104,7 +145,7 @@ impl World {
 }
 
 /// Receives commands and counts the ticks that they take.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Receiving {
     receiver: Receiver,
     left: u32,
@@ -131,9 +172,11 @@ impl Receiving {
     }
 }
 
-/// Prim: is where it is sent after a while.
-#[derive(Default)]
+/// Prim: is where it is sent after a while, or goes there by steps.
+#[derive(Clone, Default)]
 pub struct Prim {
+    /// It goes by steps.
+    pub by_steps: bool,
     receiving: Receiving,
     pub report: PrimReport,
     pub reason: Reason,
@@ -172,9 +215,13 @@ impl Prim {
     ) -> PrimOutputs {
         let command = &memory.emove.prim;
         let new = command.number != self.receiving.receiver.echo;
-        let ends = self.receiving.step(command.number, TICKS, || Self::text(memory, data), &mut world.log);
+        let steps = self.by_steps && is_motion(command.command);
+        let ticks = if steps { u32::MAX } else { TICKS };
+        let ends = self.receiving.step(command.number, ticks, || Self::text(memory, data), &mut world.log);
         if new {
             (self.report, self.reason) = (PrimReport::Executing, Reason::None);
+        } else if steps && self.report == PrimReport::Executing && Self::go(memory, data, world) {
+            self.report = PrimReport::Done;
         }
         let text = self.receiving.text.clone();
         if ends && self.report == PrimReport::Executing {
@@ -189,6 +236,29 @@ impl Prim {
         self.outputs(tick, world)
     }
 
+    /// A step towards the goal. True if the motion has come to its end.
+    fn go(memory: &CommonMemory, data: &TaskData<'_>, world: &mut World) -> bool {
+        let command = &memory.emove.prim;
+        let goal = Self::goal(memory, data).expect("Prim is sent to records that exist");
+        let sensor = command.sensor.unwrap_or_default();
+        let condition = |world: &World| {
+            let bits = match sensor.as_str() {
+                "HOL-NEAR" => 0b0011,
+                "HOL-SEAT" => 0b1111,
+                _ => return false,
+            };
+            let which = usize::from(memory.subtask.emove.end_effector_id.clamp(1, 3)) - 1;
+            world.holsters[which] & bits == bits
+        };
+        if command.command == PrimVerb::GoUntil && condition(world) {
+            return true;
+        }
+        let distance = world.frame.distance(&goal).path();
+        let near = if command.command == PrimVerb::GoThru { ROUNDED } else { 0.0 };
+        world.frame = toward(&world.frame, &goal, (STEP / distance.max(STEP)).min(1.0));
+        distance <= STEP.max(near)
+    }
+
     fn end(&mut self, text: &str, memory: &CommonMemory, data: &TaskData<'_>, world: &mut World) {
         let command = &memory.emove.prim;
         self.report = PrimReport::Done;
@@ -197,6 +267,9 @@ impl Prim {
             Some(Mishap::Joystick) => (world.joystick, self.report) = (true, PrimReport::JoystickOn),
             Some(Mishap::Slip) => world.object = None,
             _ => {}
+        }
+        if matches!(world.mishap(text), Some(Mishap::Stays)) {
+            return;
         }
         match command.command {
             PrimVerb::RobotInit => self.link = self.report == PrimReport::Done,
@@ -229,10 +302,12 @@ impl Prim {
 }
 
 /// Quick Change: locks and unlocks.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Ring {
     receiving: Receiving,
     failed: Option<QuickChangeReport>,
+    /// It stands half-way until it is told to turn.
+    pub half: bool,
 }
 
 impl Ring {
@@ -243,8 +318,8 @@ impl Ring {
         if self.receiving.step(command.number, TICKS, text, &mut world.log) {
             match world.mishap(command.command.text()) {
                 Some(Mishap::Ring(report)) => self.failed = Some(report),
-                _ if command.command == QuickChangeVerb::Lock => world.locked = true,
-                _ if command.command == QuickChangeVerb::Unlock => world.locked = false,
+                _ if command.command == QuickChangeVerb::Lock => (self.half, world.locked) = (false, true),
+                _ if command.command == QuickChangeVerb::Unlock => (self.half, world.locked) = (false, false),
                 _ => {}
             }
         } else if new {
@@ -259,6 +334,7 @@ impl Ring {
         outputs.status.ring = match self.failed {
             Some(QuickChangeReport::SensorMalfunction) => RingPosition::Implausible,
             Some(_) => RingPosition::Between,
+            None if self.half => RingPosition::Between,
             None if world.locked => RingPosition::Locked,
             None => RingPosition::Unlocked,
         };
@@ -278,6 +354,7 @@ fn sleep(header: &mut Header, tick: Tick) {
 }
 
 /// Grip: opens and closes to what it is told, or to the object.
+#[derive(Clone)]
 pub struct Grip {
     receiving: Receiving,
     report: GripReport,
@@ -341,6 +418,7 @@ impl Grip {
 }
 
 /// V-Grip or Tool-Grip: opens and closes, and finds an object on the way.
+#[derive(Clone)]
 pub struct Jaws {
     receiving: Receiving,
     report: JawsReport,
@@ -405,7 +483,7 @@ impl Jaws {
 }
 
 /// Vision: answers what it is told to, a little off the middle of the picture.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Vision {
     left: u32,
 }

@@ -36,7 +36,7 @@ const FLOWS: [(u8, f64); 6] = [
 const WAYS: [(f64, f64); 3] = [(0.10, 5.00), (0.50, 3.50), (1.00, 4.00)];
 
 /// The processes and their devices.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Real {
     quick_change: QuickChange,
     grip: Grip,

@@ -1,0 +1,411 @@
+//! QC-ATTACH, QC-DETACH and GRASP-OBJ that are interrupted and sent again (docs/design/recovery.md
+//! "Exchange", "Held").
+
+use rcs_core::interface::{
+    Reason,
+    emove::{
+        EmoveVerb::{
+            self, AcquireTool, GraspObj, InsertTool, LocateObj, MovObjTo, MovToHol, MovToLoc, MovToObj,
+            MovToVu, Pause, QcAttach, QcDetach, Release, ReleaseTool, RemoveTool, Withdraw,
+        },
+        Holding,
+    },
+    quick_change::QuickChangeReport,
+};
+
+use super::{
+    bench::{Bench, DONE, error, frame_of, moved},
+    doubles::Mishap,
+    recovery::send,
+    together::Real,
+};
+use crate::emove::Emove;
+
+pub const SCENARIOS: &[fn()] = &[
+    a_gripper_is_attached_from_every_tick,
+    a_gripper_is_detached_from_every_tick,
+    an_exchange_goes_on_from_where_it_is,
+    what_cannot_be_attached_is_named,
+    an_order_without_effect_ends_the_command,
+    what_cannot_be_detached_is_named,
+    in_a_holster_only_the_exchange_goes_on,
+    a_grasp_is_made_again_from_every_tick,
+    what_is_not_known_is_held,
+];
+
+/// How a command ends before it is sent again.
+#[derive(Clone, Copy, PartialEq)]
+enum Interruption {
+    Paused,
+    Restarted,
+}
+
+impl Interruption {
+    const ALL: [Self; 2] = [Self::Paused, Self::Restarted];
+
+    fn of(self, bench: &mut Bench) {
+        if self == Self::Restarted {
+            bench.process = Emove::default();
+            assert_eq!(bench.finish(), error(Reason::Restarted));
+        }
+        bench.write(Pause, "", 0, "", 0);
+        // A ring that stands half-way is no pause as it should be.
+        let end = bench.finish();
+        assert!(
+            end == DONE || end == error(Reason::QuickChangeStuck),
+            "{end:?} {:?} {:?}",
+            bench.world.log,
+            bench.memory.emove.header
+        );
+        bench.world.log.clear();
+    }
+}
+
+/// A bare robot above the holster of gripper 1, 2 or 3, with the real processes.
+fn bare(gripper: u8) -> Bench {
+    let mut bench = Bench::with("HOME", 0, Some(Real::default()));
+    assert_eq!(bench.pause(), DONE);
+    let (object, holster) = holster(gripper);
+    assert_eq!(bench.run(MovToHol, object, 2, holster, gripper), DONE);
+    bench.prim.by_steps = true;
+    bench
+}
+
+/// A robot above the holster of the gripper that it has, with the real processes.
+fn with(gripper: u8) -> Bench {
+    let mut bench = Bench::with("HOME", gripper, Some(Real::default()));
+    assert_eq!(bench.pause(), DONE);
+    let (object, holster) = holster(gripper);
+    assert_eq!(bench.run(MovToHol, object, 1, holster, gripper), DONE);
+    bench.prim.by_steps = true;
+    bench
+}
+
+fn holster(gripper: u8) -> (&'static str, &'static str) {
+    [("GRIPPER-1", "HOLSTER-R"), ("GRIPPER-2", "HOLSTER-L"), ("GRIPPER-3", "HOLSTER-C")]
+        [usize::from(gripper) - 1]
+}
+
+#[test]
+fn a_gripper_is_attached_from_every_tick() {
+    for gripper in 1..=3 {
+        let (object, holster) = holster(gripper);
+        let attach = (QcAttach, object, 2, holster, gripper);
+        for interruption in Interruption::ALL {
+            let mut bench = bare(gripper);
+            bench.at_every_tick(attach, |fork| {
+                interruption.of(fork);
+                assert_eq!(send(fork, attach), DONE, "{:?}", fork.world.log);
+                assert_eq!((fork.world.mated, fork.world.locked), (gripper, true));
+                assert!(fork.off(&moved(frame_of(holster), &["QCA-UP"])) < 0.31, "clear of the holster");
+                assert_eq!(send(fork, (MovToLoc, "", 0, "HOME", 0)), DONE);
+            });
+        }
+    }
+}
+
+#[test]
+fn a_gripper_is_detached_from_every_tick() {
+    for gripper in 1..=3 {
+        let (object, holster) = holster(gripper);
+        let detach = (QcDetach, object, 1, holster, gripper);
+        for interruption in Interruption::ALL {
+            let mut bench = with(gripper);
+            bench.at_every_tick(detach, |fork| {
+                interruption.of(fork);
+                assert_eq!(send(fork, detach), DONE, "{:?}", fork.world.log);
+                assert_eq!((fork.world.mated, fork.world.resident[usize::from(gripper) - 1]), (0, gripper));
+                assert_eq!(send(fork, (MovToLoc, "", 0, "HOME", 0)), DONE);
+            });
+        }
+    }
+}
+
+/// Where a robot is in an exchange, from the pose of the holster.
+const ABOVE: &[&str] = &["QCA-SLOW", "QCD-UP"];
+const BARE: &[&str] = &["HOL-BARE"];
+const FAST: &[&str] = &["QCA-FAST"];
+const SEAT: &[&str] = &["QCA-SLOW"];
+const LOW: &[&str] = &["QCA-BACK"];
+const LIFTING: &[&str] = &["WITHDRAW"];
+const LIFTED: &[&str] = &["QCA-LIFT"];
+const RAISED: &[&str] = &["HOL-ABOVE"];
+const CLEAR: &[&str] = &["QCA-UP"];
+const AWAY: &[&str] = &["QCA-UP", "300ty", "300ty"];
+
+/// A robot in the holster of gripper 1: where it is, what it has, whether its ring is locked, and what the
+/// sensors of the holster see.
+fn halfway(at: &[&str], mated: u8, locked: bool, holster: u8) -> Bench {
+    let mut bench = Bench::ready("HOME", mated);
+    bench.world.frame = moved(frame_of("HOLSTER-R"), at);
+    bench.world.holsters[0] = holster;
+    bench.world.locked = locked;
+    bench.world.resident[0] = if mated == 0 { 1 } else { 0 };
+    bench.grip.opening = 100;
+    bench
+}
+
+/// What the sensors of a holster see of no gripper, and of one that is not quite at its seat.
+const BLIND: u8 = 0;
+const SLIPPED: u8 = 0b0111;
+
+const ATTACH: (EmoveVerb, &str, i32, &str, u8) = (QcAttach, "GRIPPER-1", 2, "HOLSTER-R", 1);
+const DETACH: (EmoveVerb, &str, i32, &str, u8) = (QcDetach, "GRIPPER-1", 1, "HOLSTER-R", 1);
+
+#[test]
+fn an_exchange_goes_on_from_where_it_is() {
+    let from = |at: &[&str], mated, locked, bits, command, first: &str| {
+        let mut bench = halfway(at, mated, locked, bits);
+        // The sensors of the holster are those of the place, or what is given.
+        bench.prim.by_steps = bits != BLIND && bits != SLIPPED;
+        assert_eq!(send(&mut bench, command), DONE, "{at:?} {:?}", bench.world.log);
+        assert_eq!(bench.log().first().copied().unwrap_or_default(), first, "{at:?}");
+    };
+    from(BARE, 0, false, 0b1111, ATTACH, "DELTA-MOVE QCA-FAST");
+    from(FAST, 0, false, 0b1111, ATTACH, "DELTA-MOVE QCA-SLOW");
+    from(SEAT, 1, false, 0b1111, ATTACH, "QC-LOCK");
+    from(LOW, 1, false, 0b0011, ATTACH, "DELTA-MOVE QCA-SLOW");
+    from(SEAT, 1, true, 0b1111, ATTACH, "DELTA-MOVE QCA-BACK");
+    from(LOW, 1, true, 0b0011, ATTACH, "DELTA-MOVE QCA-LIFT");
+    from(RAISED, 1, true, 0, ATTACH, "DELTA-MOVE QCA-UP");
+    from(CLEAR, 1, true, 0, ATTACH, "");
+    from(RAISED, 1, true, 0, DETACH, "GO-UNTIL QCD-DOWN HOL-NEAR");
+    from(LIFTED, 1, true, 0, DETACH, "GO-UNTIL QCD-DOWN HOL-NEAR");
+    from(LOW, 1, true, BLIND, DETACH, "GO-UNTIL QCD-DOWN HOL-NEAR");
+    from(LOW, 1, true, 0b0011, DETACH, "QC-UNLOCK");
+    from(LOW, 1, false, 0b0011, DETACH, "GO-UNTIL QCD-SEAT HOL-SEAT");
+    from(SEAT, 1, true, 0b1111, DETACH, "QC-UNLOCK");
+    from(SEAT, 1, false, 0b1111, DETACH, "DELTA-MOVE QCD-UP");
+    from(FAST, 0, false, 0b1111, DETACH, "DELTA-MOVE QCD-UP");
+    from(FAST, 0, true, 0b1111, DETACH, "QC-UNLOCK");
+    from(BARE, 0, false, 0b1111, DETACH, "DELTA-MOVE QCD-UP");
+    from(ABOVE, 0, false, 0b1111, DETACH, "");
+    // At the seat, and the small sensors do not see it yet.
+    from(SEAT, 1, false, SLIPPED, DETACH, "GO-UNTIL QCD-SEAT HOL-SEAT");
+    // The gripper needs calibrating, and the command had ended before.
+    let mut bench = halfway(CLEAR, 1, true, 0);
+    bench.grip.initialized = false;
+    assert_eq!(send(&mut bench, ATTACH), DONE);
+    assert_eq!(bench.log(), ["UP-INIT"]);
+}
+
+#[test]
+fn what_cannot_be_attached_is_named() {
+    let fails = |at: &[&str], mated, locked, bits, reason: Reason| {
+        let mut bench = halfway(at, mated, locked, bits);
+        assert_eq!(send(&mut bench, ATTACH), error(reason), "{at:?} {:?}", bench.world.log);
+        let there = bench.world.frame;
+        bench.steps(8);
+        assert!(bench.off(&there) < 0.01, "it stands");
+    };
+    fails(AWAY, 1, true, 0b0001, Reason::NotPrepared);
+    fails(AWAY, 1, false, 0, Reason::RingNotLocked);
+    fails(BARE, 1, true, 0, Reason::NotPrepared);
+    fails(LOW, 0, false, 0b1111, Reason::NotAttached);
+    fails(RAISED, 0, false, 0b1111, Reason::NotAttached);
+    fails(RAISED, 1, false, 0, Reason::RingNotLocked);
+    fails(FAST, 1, true, 0b0001, Reason::RingNotLocked);
+    // Done at once far from its holster.
+    let mut bench = halfway(AWAY, 1, true, 0);
+    assert_eq!(send(&mut bench, ATTACH), DONE);
+    assert!(bench.log().is_empty());
+    // A gripper that came loose below the seat, with a ring that is neither locked nor unlocked.
+    let mut bench = halfway(LOW, 1, false, 0b0011);
+    bench.ring.half = true;
+    assert_eq!(send(&mut bench, ATTACH), DONE);
+    assert_eq!(bench.log()[..2], ["DELTA-MOVE QCA-SLOW", "QC-LOCK"]);
+    // The robot is at the seat, and nothing mates there: it goes a little away, and says so.
+    let mut bench = halfway(SEAT, 0, false, 0b1111);
+    bench.world.resident[0] = 0;
+    assert_eq!(send(&mut bench, ATTACH), error(Reason::NotAttached));
+    assert_eq!(bench.log()[0], "DELTA-MOVE QCA-FAST");
+}
+
+#[test]
+fn an_order_without_effect_ends_the_command() {
+    for (at, mated, locked, bits, word) in [
+        (FAST, 0, false, 0b1111, "QCA-SLOW"),
+        (LOW, 1, false, 0b0011, "QCA-SLOW"),
+        (SEAT, 0, false, 0b1111, "QCA-FAST"),
+        (SEAT, 1, true, 0b1111, "QCA-BACK"),
+        (LOW, 1, true, 0b0011, "QCA-LIFT"),
+        (RAISED, 1, true, 0, "QCA-UP"),
+    ] {
+        let mut bench = halfway(at, mated, locked, bits);
+        bench.spoil(word, Mishap::Stays);
+        assert_eq!(send(&mut bench, ATTACH), error(Reason::NoEffect), "{word} {:?}", bench.world.log);
+    }
+    let mut bench = halfway(LOW, 1, false, 0b0011);
+    bench.ring.half = true;
+    bench.spoil("QCA-SLOW", Mishap::Stays);
+    assert_eq!(send(&mut bench, ATTACH), error(Reason::NoEffect));
+}
+
+#[test]
+fn what_cannot_be_detached_is_named() {
+    let fails = |at: &[&str], mated, locked, bits, reason: Reason| {
+        let mut bench = halfway(at, mated, locked, bits);
+        assert_eq!(send(&mut bench, DETACH), error(reason), "{at:?} {:?}", bench.world.log);
+        let there = bench.world.frame;
+        bench.steps(8);
+        assert!(bench.off(&there) < 0.01, "it stands");
+    };
+    fails(FAST, 1, true, 0b0001, Reason::NotDetached);
+    fails(LOW, 0, false, 0b1111, Reason::NotDetached);
+    fails(RAISED, 1, false, 0, Reason::RingNotLocked);
+    fails(LIFTING, 1, false, 0, Reason::RingNotLocked);
+    let mut bench = halfway(LOW, 1, true, 0b0011);
+    bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::SensorMalfunction));
+    assert_eq!(bench.pause(), error(Reason::QuickChangeFault));
+    assert_eq!(send(&mut bench, DETACH), error(Reason::QuickChangeFault));
+    // The gripper is in its holster, and the bare robot at no known location.
+    let mut bench = halfway(AWAY, 0, false, 0b1111);
+    assert_eq!(send(&mut bench, DETACH), DONE);
+    assert!(bench.log().is_empty());
+    // What is felt above the holster must not go into it.
+    let mut bench = halfway(RAISED, 1, true, 0);
+    bench.world.object = Some(bench.grip.opening);
+    bench.steps(3);
+    bench.process = Emove::default();
+    bench.memory.emove.beliefs.empty = false;
+    bench.pause();
+    assert_eq!(send(&mut bench, DETACH), error(Reason::AlreadyHolding));
+    let mut bench = halfway(RAISED, 1, true, 0);
+    bench.grip.initialized = false;
+    bench.steps(3);
+    bench.process = Emove::default();
+    bench.memory.emove.beliefs.empty = false;
+    bench.pause();
+    assert_eq!(send(&mut bench, DETACH), error(Reason::HeldNotKnown));
+    // The gripper goes while it is being lowered or pushed to its seat, and is not where it should be.
+    for (word, at, bits) in
+        [("QC-UNLOCK", LOW, 0b0011), ("QC-UNLOCK", LOW, 0b1111), ("QC-UNLOCK", CLEAR, 0b1111)]
+    {
+        let mut bench = halfway(LOW, 1, true, 0b0011);
+        bench.command(DETACH.0, DETACH.1, 1, DETACH.3, 1);
+        while !bench.log().iter().any(|text| text.starts_with(word)) {
+            bench.step();
+        }
+        (bench.world.mated, bench.world.holsters[0]) = (0, bits);
+        bench.world.frame = moved(frame_of("HOLSTER-R"), at);
+        assert_eq!(bench.finish(), error(Reason::NotDetached), "{word} {bits:b}");
+    }
+}
+
+#[test]
+fn in_a_holster_only_the_exchange_goes_on() {
+    let commands = [
+        (MovToLoc, "", "HOME"),
+        (MovToObj, "BLOCK", "BENCH"),
+        (MovObjTo, "BLOCK", "BENCH"),
+        (MovToVu, "BLOCK", "BENCH"),
+        (MovToHol, "GRIPPER-1", "HOLSTER-R"),
+        (Withdraw, "", "BENCH"),
+        (LocateObj, "BLOCK", "BENCH"),
+        (GraspObj, "BLOCK", "BENCH"),
+        (InsertTool, "CUTTER", "TOOL-TRNS"),
+        (ReleaseTool, "CUTTER", "TOOL-TRNS"),
+        (AcquireTool, "CUTTER", "TOOL-TRNS"),
+        (RemoveTool, "CUTTER", "TOOL-TRNS"),
+    ];
+    for (verb, object, location) in commands {
+        let mut bench = halfway(LOW, 1, true, 0b0011);
+        bench.prim.by_steps = true;
+        bench.command(ATTACH.0, ATTACH.1, 2, ATTACH.3, 1);
+        bench.steps(6);
+        assert_eq!(bench.pause(), DONE);
+        let there = bench.world.frame;
+        assert_eq!(bench.run(verb, object, 1, location, 1), error(Reason::InHolster), "{verb}");
+        assert!(bench.off(&there) < 0.01 && bench.log().is_empty());
+        // Either way out of it is left.
+        let mut other = bench.clone();
+        assert_eq!(send(&mut other, DETACH), DONE, "{:?}", other.world.log);
+        assert_eq!(send(&mut bench, ATTACH), DONE, "{:?}", bench.world.log);
+        assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
+    }
+    // A bare robot.
+    let mut bench = bare(1);
+    bench.command(ATTACH.0, ATTACH.1, 2, ATTACH.3, 1);
+    bench.steps(4);
+    assert_eq!(bench.pause(), DONE);
+    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::InHolster));
+    // The operator who takes it out of the holster ends the exchange.
+    bench.world.joystick = true;
+    bench.steps(3);
+    bench.world.frame = frame_of("HOME");
+    bench.steps(3);
+    bench.world.joystick = false;
+    assert_eq!(bench.pause(), DONE);
+    assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE);
+}
+
+#[test]
+fn a_grasp_is_made_again_from_every_tick() {
+    for (gripper, object, size) in [(1, "BLOCK", 75), (2, "SHAFT", 204), (3, "CUTTER", 246)] {
+        let grasp = (GraspObj, object, 1, "BENCH", gripper);
+        for interruption in Interruption::ALL {
+            for present in [true, false] {
+                let mut bench = Bench::with("HOME", gripper, Some(Real::default()));
+                assert_eq!(bench.pause(), DONE);
+                assert_eq!(bench.run(MovToObj, object, 1, "BENCH", gripper), DONE);
+                bench.world.object = present.then_some(size);
+                bench.at_every_tick(grasp, |fork| {
+                    interruption.of(fork);
+                    let end = if present { DONE } else { error(Reason::GraspMissed) };
+                    assert_eq!(send(fork, grasp), end, "{object} {:?}", fork.world.log);
+                    if present {
+                        assert_eq!(send(fork, (MovObjTo, object, 1, "VISE", gripper)), DONE);
+                        assert_eq!(send(fork, (Release, object, 1, "VISE", gripper)), DONE);
+                    }
+                });
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_not_known_is_held() {
+    // Not calibrated: it may hold something.
+    let blind = |location: &str| {
+        let mut bench = Bench::new(location, 1);
+        bench.grip.initialized = false;
+        bench.steps(3);
+        bench.process = Emove::default();
+        bench.memory.emove.beliefs.empty = false;
+        assert_eq!(bench.pause(), DONE);
+        assert_eq!(bench.memory.emove.status.held, Holding::NotKnown);
+        bench
+    };
+    // Felt, and nobody knows what it is.
+    let felt = |location: &str| {
+        let mut bench = Bench::new(location, 1);
+        (bench.grip.opening, bench.world.object) = (75, Some(75));
+        bench.steps(3);
+        bench.process = Emove::default();
+        bench.memory.emove.beliefs.empty = false;
+        assert_eq!(bench.pause(), DONE);
+        assert_eq!(bench.memory.emove.status.held, Holding::Something);
+        bench
+    };
+    for (verb, object, location, something, not_known) in [
+        (MovToObj, "BLOCK", "BENCH", Reason::AlreadyHolding, Reason::HeldNotKnown),
+        (MovToVu, "BLOCK", "BENCH", Reason::AlreadyHolding, Reason::HeldNotKnown),
+        (MovObjTo, "BLOCK", "BENCH", Reason::NothingHeld, Reason::HeldNotKnown),
+        (MovToHol, "GRIPPER-1", "HOLSTER-R", Reason::AlreadyHolding, Reason::HeldNotKnown),
+        (GraspObj, "BLOCK", "BENCH", Reason::AlreadyHolding, Reason::HeldNotKnown),
+    ] {
+        let mut bench = felt("HOME");
+        assert_eq!(bench.run(verb, object, 1, location, 1), error(something), "{verb}");
+        let mut bench = blind("HOME");
+        assert_eq!(bench.run(verb, object, 1, location, 1), error(not_known), "{verb}");
+    }
+    // At the object it is grasped anew.
+    let mut bench = felt("BENCH");
+    assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
+    assert_eq!(bench.memory.emove.status.held.object().unwrap_or_default().as_str(), "BLOCK");
+    // RELEASE lets go of whatever it is.
+    for mut bench in [felt("HOME"), blind("HOME")] {
+        assert_eq!(bench.run(Release, "BLOCK", 1, "HOME", 1), DONE);
+        assert_eq!(bench.log(), ["OPEN-GRIP"]);
+    }
+}

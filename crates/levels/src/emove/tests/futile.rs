@@ -1,0 +1,91 @@
+//! The tables of a gripper change against a world in which no order has an effect (docs/design/recovery.md
+//! "Exchange").
+
+use rcs_core::{handshake::Lower, interface::prim::JoystickGrip};
+
+use crate::{
+    emove::{
+        route::Ahead,
+        tables::{
+            Action, Along, At, Fingers, Held, Holster, Knowledge, Link, Lock, Mate, Opening, Readiness, Shut,
+            Sight, Situation, Spread, Tooling, Tries, Whereabouts,
+            qc_attach::{QcAttachStep, qc_attach},
+            qc_detach::{QcDetachStep, qc_detach},
+        },
+    },
+    execution::Work,
+};
+
+/// All that the two tables ask for.
+fn situations() -> impl Iterator<Item = Situation> {
+    let exchange = Mate::ALL.iter().flat_map(|&mate| {
+        Lock::ALL.iter().flat_map(move |&lock| {
+            Holster::ALL
+                .iter()
+                .flat_map(move |&holster| Along::ALL.iter().map(move |&along| (mate, lock, holster, along)))
+        })
+    });
+    exchange.flat_map(|(mate, lock, holster, along)| {
+        Held::ALL.iter().flat_map(move |&held| {
+            Shut::ALL.iter().flat_map(move |&shut| {
+                Readiness::ALL.iter().flat_map(move |&readiness| {
+                    At::ALL.iter().map(move |&at| Situation {
+                        work: Work::Over,
+                        ahead: Ahead::Nothing,
+                        opening: Opening::Set,
+                        held,
+                        fingers: Fingers::Empty,
+                        spread: Spread::Narrow,
+                        readiness,
+                        mate,
+                        lock,
+                        holster,
+                        along,
+                        shut,
+                        at,
+                        sight: Sight::Missing,
+                        aim: Knowledge::Unknown,
+                        tries: Tries::Left,
+                        link: Link::Up,
+                        prim: Lower::Done,
+                        tooling: Tooling::Ready,
+                        place: Whereabouts::Known,
+                        button: JoystickGrip::None,
+                    })
+                })
+            })
+        })
+    })
+}
+
+/// The orders that a table gives from its first step until it ends, if nothing changes.
+fn orders<Step: Copy>(first: Step, decide: impl Fn(Step) -> (Action, Step)) -> Vec<Action> {
+    let (mut step, mut orders) = (first, Vec::new());
+    loop {
+        let (action, next) = decide(step);
+        let ended = matches!(
+            action,
+            Action::Finish | Action::Stand | Action::Fail(_) | Action::FailRing | Action::FailGrip
+        );
+        orders.push(action);
+        if ended {
+            return orders;
+        }
+        assert!(orders.len() < 12, "no end: {orders:?}");
+        step = next;
+    }
+}
+
+#[test]
+fn a_gripper_change_ends_in_a_world_that_ignores_every_order() {
+    for situation in situations() {
+        orders(QcAttachStep::Start, |step| {
+            let decision = qc_attach(step, &situation);
+            (decision.action, decision.next)
+        });
+        orders(QcDetachStep::Start, |step| {
+            let decision = qc_detach(step, &situation);
+            (decision.action, decision.next)
+        });
+    }
+}
