@@ -7,9 +7,11 @@ use rcs_core::{
         emove::EmoveVerb::{
             self, AcquireTool, InsertTool, MovToLoc, Pause, Release, ReleaseTool, RemoveTool,
         },
+        grip::Felt,
         jaws::JawsReport,
         prim::PrimReport,
     },
+    process::Process,
 };
 
 use taskdata::files::Index;
@@ -34,6 +36,7 @@ pub const SCENARIOS: &[fn()] = &[
     an_interrupted_acquisition_goes_on,
     an_interrupted_removal_goes_on,
     a_robot_half_way_at_the_drum_goes_nowhere_else,
+    what_is_unknown_is_neither_inserted_nor_let_go,
     a_robot_that_is_taken_away_is_no_longer_half_way,
 ];
 
@@ -418,5 +421,21 @@ fn a_robot_that_is_taken_away_is_no_longer_half_way() {
         bench.steps(3);
         assert!(bench.memory.emove.beliefs.drum.is_none());
         assert_eq!(run(&mut bench, InsertTool), error(Reason::UnknownStart));
+    }
+}
+
+#[test]
+fn what_is_unknown_is_neither_inserted_nor_let_go() {
+    for (felt, verb, reason) in [
+        (Felt::NotKnown, InsertTool, Reason::HeldNotKnown),
+        (Felt::NotKnown, AcquireTool, Reason::HeldNotKnown),
+        (Felt::NotKnown, RemoveTool, Reason::HeldNotKnown),
+        (Felt::Something, AcquireTool, Reason::AlreadyHolding),
+    ] {
+        let mut bench = empty();
+        bench.dead.push("gripper");
+        bench.memory.tool_grip.status.felt = felt;
+        bench.process.state_mut().beliefs.empty = false;
+        assert_eq!(run(&mut bench, verb), error(reason), "{verb}");
     }
 }
