@@ -103,7 +103,7 @@ impl Points {
             AtDrum::Off
         } else if depth >= long - SEATED && is_around {
             AtDrum::Inside
-        } else if !is_deep && right.abs() <= WIDE_IN {
+        } else if is_around || (!is_deep && right.abs() <= WIDE_IN) {
             AtDrum::Entering
         } else if is_deep && (AROUND..aside - SEATED / 2.0).contains(&right) {
             AtDrum::Sliding

@@ -271,6 +271,7 @@ fn an_interrupted_insertion_goes_on() {
         ("INS-NEAR", -5.0, WHOLE),
         ("CAL-SENSOR", -2.0, WHOLE),
         ("INS-IN", -1.0, &WHOLE[2..]),
+        ("INS-IN", -0.25, &WHOLE[2..]),
         ("INS-IN", -0.1, &WHOLE[2..]),
     ] {
         let mut bench = loaded();
@@ -382,6 +383,7 @@ fn an_interrupted_removal_goes_on() {
     for (word, x, orders) in [
         ("CAL-SENSOR", 0.0, &["CAL-SENSOR", "GO-WHILE REM-OUT REM-FX"][..]),
         ("REM-OUT", -0.1, &["GO-WHILE REM-OUT REM-FX"]),
+        ("REM-OUT", -0.25, &["GO-WHILE REM-OUT REM-FX"]),
         ("REM-OUT", -1.0, &["GO-WHILE REM-OUT REM-FX"]),
         ("REM-OUT", -3.0, &[]),
     ] {
