@@ -29,11 +29,15 @@ use super::{
     state::State,
     tables::AtDrum,
 };
+use crate::execution::Outcome;
 
 /// A tool is in its place within this along the way in: the fingers of the drum close on it there, in.
 const SEATED: f64 = 0.15;
-/// The fingers are around it within this across the way in: ACQ-SLIDE ends where its sensor says, in.
+/// The fingers are around it up to this far to the right of the way in, and to the end of ACQ-SLIDE, which ends
+/// where its sensor says, and this much more to the left, in.
 const AROUND: f64 = 0.25;
+/// A tool that is not in its place is on the way in within this to the left and right, in.
+const WIDE_IN: f64 = 0.75;
 /// The robot is on a segment within this, in …
 const ASIDE: f64 = 0.35;
 /// … and radians (2 degrees).
@@ -53,6 +57,7 @@ struct Points {
     inside: Frame,
     slid: Frame,
     aside: Frame,
+    around: Frame,
 }
 
 impl Points {
@@ -62,11 +67,13 @@ impl Points {
             Some(data.moved(from, relative.record(command, data)?.movetable))
         };
         let inside = moved(base, Relative::InsIn)?;
+        let aside = moved(base, Relative::AcqNear)?;
         Some(Self {
             near: moved(base, Relative::InsNear)?,
             inside,
             slid: moved(&inside, Relative::RelSlide)?,
-            aside: moved(base, Relative::AcqNear)?,
+            around: moved(&aside, Relative::AcqSlide)?,
+            aside,
         })
     }
 
@@ -83,7 +90,9 @@ impl Points {
         let depth = offset.dot(&way_in) / long + long;
         let right = offset.dot(&way_out) / wide;
         let across = norm(&(offset - way_in * ((depth - long) / long) - way_out * (right / wide)));
-        let aside = (self.aside.position - self.inside.position).dot(&way_out) / wide;
+        let to_the_right = |point: &Frame| (point.position - self.inside.position).dot(&way_out) / wide;
+        let aside = to_the_right(&self.aside);
+        let is_around = right <= AROUND && right >= to_the_right(&self.around).min(0.0) - AROUND;
         let is_clear = right >= aside - ASIDE && right <= wide + ASIDE;
         let is_deep = (depth - long).abs() <= ASIDE;
         if depth < -FAR || depth > long + ASIDE || across > WIDE {
@@ -92,9 +101,9 @@ impl Points {
             if right.abs() <= WIDE { AtDrum::Before } else { AtDrum::Off }
         } else if across > ASIDE {
             AtDrum::Off
-        } else if (depth - long).abs() <= SEATED && right.abs() <= AROUND {
+        } else if depth >= long - SEATED && is_around {
             AtDrum::Inside
-        } else if right.abs() <= AROUND {
+        } else if is_around || (!is_deep && right.abs() <= WIDE_IN) {
             AtDrum::Entering
         } else if is_deep && (AROUND..aside - SEATED / 2.0).contains(&right) {
             AtDrum::Sliding
@@ -169,7 +178,7 @@ impl State {
         });
         match at {
             AtDrum::Off => self.beliefs.drum = None,
-            AtDrum::Inside if grasped_here && self.beliefs.way.is_none() => {
+            AtDrum::Inside if grasped_here && self.execution.outcome != Outcome::Executing => {
                 let pose = commanded_pose(inputs.memory).unwrap_or_else(|| Pose::from_frame(&present));
                 self.beliefs.place = Some(RobotPlace { pose, ..drum });
                 self.beliefs.drum = None;

@@ -18,9 +18,9 @@ decision_table! {
             4:  at: There                                  => Finish;
             5:  at: Before                                 => Fail(NotPrepared);
             6:  at: InDrum                                 => CalSensor          -> Calibrating;
-            7:  drum: Inside | Entering                    => GoWhile(RemOutOn)  -> Removing;
+            7:  drum: Inside | Entering | Sliding          => GoWhile(RemOutOn)  -> Removing;
             8:  drum: Before                               => Stand;
-            9:  drum: Off | Sliding | Beside               => Fail(NotPrepared);
+            9:  drum: Off | Beside                         => Fail(NotPrepared);
         }
         /// The force sensor is being calibrated.
         Calibrating {
