@@ -229,12 +229,19 @@ mod tests {
         assert_eq!(said, [(7, "Subtask".to_owned()), (8, "Task".to_owned())]);
     }
 
+    /// A row of a table of Subtask.
+    fn subtask(table: &str, row: u8) -> Decided {
+        let tables = levels::subtask::tables::TABLES;
+        let at = tables.iter().position(|known| known.name == table).unwrap();
+        Decided { table: u8::try_from(at + 1).unwrap(), row }
+    }
+
     /// ORDERED has passed the decision on as long as E-move was busy: that E-move has the order is not new.
     #[test]
     fn a_table_above_tells_what_it_did_not_pass_on() {
         let history = history(&[
-            |_, memory| memory.subtask.header.decided = Some(Decided { table: 6, row: 1 }),
-            |_, memory| memory.subtask.header.decided = Some(Decided { table: 3, row: 4 }),
+            |_, memory| memory.subtask.header.decided = Some(subtask("GET-OBJECT", 1)),
+            |_, memory| memory.subtask.header.decided = Some(subtask("ORDERED", 4)),
         ]);
         let fired = history.row(ProcessId::Subtask, 2).unwrap();
         let found = news(&history, Root { process: ProcessId::Subtask, tick: 2 }, fired);

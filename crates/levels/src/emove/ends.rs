@@ -27,7 +27,7 @@ impl State {
     pub(super) fn settle(&mut self, command: &EmoveCommand, gone_to: GoneTo, outputs: &EmoveOutputs) {
         let [_, goal, ..] = outputs.poses;
         self.beliefs.place = Some(robot_at(command, gone_to, goal.pose));
-        self.beliefs.way = None;
+        (self.beliefs.way, self.away) = (None, false);
     }
 
     /// The robot stands where relative moves have led it: it is at the location of the command. Report done.
@@ -39,8 +39,9 @@ impl State {
     ) {
         if let Some(pose) = commanded_pose(inputs.memory) {
             self.beliefs.place = Some(robot_at(command, gone_to, pose));
+            self.away = false;
         }
-        self.beliefs.exchange = None;
+        (self.beliefs.exchange, self.beliefs.drum) = (None, None);
         self.finish();
     }
 

@@ -105,7 +105,7 @@ fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
 }
 
 /// The pose of a command's location.
-fn base(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
+pub(super) fn base(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
     match data.pose(PoseId::new(command.pose)) {
         Some(record) => Some(record.frame),
         None => memory.changing_pose(command.pose)?.to_frame().ok(),

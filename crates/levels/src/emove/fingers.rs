@@ -125,7 +125,7 @@ impl State {
                 record: at.record,
                 array: at.array,
             };
-            self.beliefs.placed = self.beliefs.place.filter(|_| self.releasing && !gone).map(let_go);
+            self.beliefs.placed = self.place().filter(|_| self.releasing && !gone).map(let_go);
         }
     }
 

@@ -18,6 +18,7 @@
 //! * [`route`]: depart, trajectory, approach and stop as one list of points;
 //! * [`way`]: going on with a way that was interrupted;
 //! * [`exchange`]: where the robot is in the change of a gripper;
+//! * [`drum`]: where it is at the tool drum;
 //! * [`locate`]: from a picture to a part frame;
 //! * [`relative`]: the short moves at holsters and tool drum;
 //! * [`gripper`] and [`order`]: the three grippers as one;
@@ -27,6 +28,7 @@
 //! * [`postprocess`], [`camera`] and [`ends`]: the outputs that a row asks for.
 
 pub mod camera;
+pub mod drum;
 pub mod ends;
 pub mod exchange;
 pub mod fingers;
@@ -54,9 +56,9 @@ use taskdata::files::TaskData;
 
 use self::{
     state::State,
-    tables::{Action, Demand, Seen, Step, Watch, attend::attend, halt::halt, number},
+    tables::{Action, Seen, Step, Watch, attend::attend},
 };
-use crate::execution::{Asked, Course};
+use crate::execution::Course;
 
 /// The E-move process.
 #[derive(Clone, Debug, Default)]
@@ -79,24 +81,21 @@ impl<'d> Process<TaskData<'d>> for Emove {
 
     fn decide(&mut self, seen: &Seen) -> Action {
         let state = &mut self.state;
-        match state.execution.course(seen.arrival) {
-            Course::Refuse => {
-                return match halt(state.step, &seen.below) {
-                    Verdict::Decided(decision) => decision.action,
-                    Verdict::Passed(()) => Action::Wait,
-                };
-            }
-            Course::Rest => {
+        let course = state.execution.course(seen.arrival);
+        match state.execution.admit(course, &seen.replaced) {
+            Err(halting) => return halting.into(),
+            Ok(Course::Refuse) => return Action::Wait,
+            Ok(Course::Rest) => {
                 let watch = Watch { outcome: state.execution.outcome, ..seen.watch };
                 if let Verdict::Decided(decision) = attend(state.step, &watch) {
                     return decision.action;
                 }
             }
-            Course::Begin => state.step = Step::first(seen.verb),
-            Course::Continue => {}
+            Ok(Course::Begin) => state.step = Step::first(seen.verb),
+            Ok(Course::Continue) => {}
         }
-        let choice = tables::decide(state.step, seen);
-        state.halting = seen.below.demand == Demand::Now && choice.table == number::HALT;
+        let variables = seen.situation.code() | seen.progress;
+        let choice = state.execution.effective(tables::decide(state.step, seen), variables);
         state.execution.note(&choice);
         state.step = choice.next;
         choice.action
@@ -110,7 +109,7 @@ impl<'d> Process<TaskData<'d>> for Emove {
         outputs: &mut EmoveOutputs,
     ) {
         let state = &mut self.state;
-        if seen.request.asked == Asked::Now && !state.execution.is_refused() {
+        if state.execution.accepted(seen.asked) {
             state.publish_route(outputs);
         }
         state.act(action, seen, inputs, outputs);

@@ -21,7 +21,9 @@ use super::{
     robot_place::place_named,
     route::{Goal, Planning, Route},
     state::State,
-    tables::{Attached, Coupling, Exchange, HolsterData, Knowledge, Ordered, Record, Request, Target},
+    tables::{
+        Attached, Coupling, Exchange, HolsterData, Knowledge, Ordered, Record, Request, Target, ToolWork,
+    },
     way::Back,
 };
 use crate::execution::Asked;
@@ -83,9 +85,13 @@ impl State {
             asked: Asked::Now,
             verb: command.command,
             gripper: attached(command, memory),
-            start: if self.beliefs.place.is_some() { Knowledge::Known } else { Knowledge::Unknown },
+            start: match (self.place(), self.beliefs.drum) {
+                (None, None) => Knowledge::Unknown,
+                _ => Knowledge::Known,
+            },
             coupling: coupling(memory),
             exchange: if self.beliefs.exchange.is_some() { Exchange::HalfDone } else { Exchange::None },
+            drum: if self.beliefs.drum.is_some() { ToolWork::HalfDone } else { ToolWork::None },
             target: target(command, inputs.data),
             sizes: record(sizes(command, data).is_some()),
             view: record(view_of(command, data).is_some()),

@@ -5,7 +5,7 @@ use rcs_core::{
     interface::{
         ChangingPose, EmoveOutputs, Reason, Report,
         device::Picture,
-        emove::{EmoveCommand, EmoveStatus, GoneTo, Located, LocatedObject, RobotPlace},
+        emove::{EmoveCommand, EmoveStatus, GoneTo, Located, LocatedObject},
         pose_range,
         prim::{PrimCommand, PrimReport, PrimVerb},
         quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
@@ -214,6 +214,9 @@ impl State {
             Reference::Seat => self
                 .seat_pose(command, inputs.memory, inputs.data)
                 .map(|pose| self.publish(Slot::Departure, pose, outputs)),
+            Reference::Start => self
+                .start_of(relative, command, inputs.memory, inputs.data)
+                .map(|pose| self.publish(Slot::Departure, pose, outputs)),
             Reference::Stand => {
                 commanded_pose(inputs.memory).map(|pose| self.publish(Slot::Departure, pose, outputs))
             }
@@ -231,6 +234,7 @@ impl State {
         self.undetected = 0;
         (self.beliefs.place, self.beliefs.way) = (None, None);
         self.note_exchange(command, inputs.memory, inputs.data);
+        self.note_drum(command, inputs.memory, inputs.data);
     }
 
     /// Give the attached gripper the order that an action stands for.
@@ -314,9 +318,9 @@ impl State {
                 array,
             }),
             end_effector_id: inputs.memory.quick_change.status.end_effector_id,
-            at: self.beliefs.place.as_ref().map(standing),
+            at: self.place().as_ref().map(standing),
             exchange: self.beliefs.exchange.map(|exchange| exchange.gripper),
-            drum: matches!(self.beliefs.place, Some(RobotPlace { gone_to: GoneTo::Drum, .. })),
+            drum: self.is_around_tool(inputs.memory, inputs.data),
         };
     }
 }

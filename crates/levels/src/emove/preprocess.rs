@@ -4,13 +4,13 @@ use core::mem;
 
 use rcs_core::{
     frame::Frame,
-    handshake::{Arrival, Lower},
+    handshake::Lower,
     interface::{
         CommonMemory, EmoveOutputs,
         device::VisionStatus,
         emove::{EmoveCommand, EmoveVerb, GoneTo, Holding, RobotPlace},
-        prim::{JoystickGrip, PrimReport},
-        quick_change::{QuickChangeReport, RingPosition},
+        prim::{JoystickGrip, PrimReport, PrimVerb},
+        quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
         subtask::LocationKind,
     },
     name::Name10,
@@ -21,22 +21,22 @@ use taskdata::files::{LocptId, Place, TaskData};
 
 use super::{
     fingers::fingers,
-    gripper::Gripper,
+    gripper::{Gripper, Order},
     locate::{is_another, is_plausible},
     relative::Relative,
     robot_place::{place, place_named, present_frame},
     route::{near, same_location},
     state::State,
     tables::{
-        At, Below, Contact, Demand, Halt, Held, Holster, Knowledge, Link, Load, Lock, Mate, Orders, Pause,
-        Readiness, Request, Rest, Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch,
-        Whereabouts,
+        At, Contact, Held, Holster, Knowledge, Link, Load, Lock, Mate, Orders, Pause, Readiness, Request,
+        Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch, Whereabouts,
         e_pause::EPauseStep,
         search::{Look, search},
     },
 };
 use crate::{
-    execution::Work,
+    execution::{Asked, Work},
+    halt::{Below, BoxState, Intake, Kind, Replaced},
     places::{named, place_of},
 };
 
@@ -83,25 +83,28 @@ impl State {
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &EmoveOutputs) -> Seen {
         let command = &inputs.memory.subtask.emove;
         let arrival = self.execution.receiver.observe(command.number);
-        let demand = self.demand(arrival, outputs);
+        self.adopt(outputs);
         self.sense_neighbours(inputs);
         self.sense_way(inputs.memory);
         self.sense_held(command, inputs);
         let watch = self.sense_place(command, inputs);
         self.sense_exchange(inputs);
-        let below = self.below(demand, &watch, inputs);
-        let request = match below {
-            Below { demand: Demand::Now, rest: Rest::AtRest, .. }
-            | Below { demand: Demand::Now, pause: Pause::UnderWay | Pause::Standing, .. } => {
-                self.look_up(command, inputs)
-            }
-            _ => Request::default(),
+        self.sense_drum(inputs);
+        let asked = self.execution.asked(arrival);
+        let replaced = self.replaced(&watch, inputs);
+        let at_rest = replaced.below == Below::AtRest || replaced.joystick == BoxState::On;
+        let request = if asked == Asked::Now && (at_rest || replaced.kind == Kind::Pause) {
+            self.look_up(command, inputs)
+        } else {
+            Request::default()
         };
         let orders = self.orders(command, inputs);
         let seen = Seen {
             arrival,
             verb: command.command,
-            below,
+            asked,
+            replaced,
+            progress: self.progress(),
             request,
             watch,
             orders,
@@ -111,35 +114,36 @@ impl State {
         seen
     }
 
-    /// What is asked of E-move. In its first tick it takes over what it believed before a restart.
-    fn demand(&mut self, arrival: Arrival, outputs: &EmoveOutputs) -> Demand {
-        let first = !mem::replace(&mut self.started, true);
-        if first {
+    /// In its first tick E-move takes over what it believed before a restart.
+    fn adopt(&mut self, outputs: &EmoveOutputs) {
+        if !mem::replace(&mut self.started, true) {
             self.beliefs = outputs.beliefs;
-        }
-        match arrival {
-            Arrival::Restarted if first => Demand::Restarted,
-            Arrival::New => Demand::Now,
-            Arrival::Same if self.halting => Demand::Now,
-            Arrival::Nothing | Arrival::Same | Arrival::Restarted => Demand::Before,
         }
     }
 
-    /// Is everything below at rest?
-    fn below(&self, demand: Demand, watch: &Watch, inputs: &Inputs<'_, TaskData<'_>>) -> Below {
+    /// What a new command replaces: motion, ring or fingers that are under way.
+    fn replaced(&self, watch: &Watch, inputs: &Inputs<'_, TaskData<'_>>) -> Replaced {
         let (tick, memory) = (inputs.tick, inputs.memory);
-        let prim = &memory.prim;
-        let prim = self.prim.read(tick, &prim.header, prim.status.echo, prim.status.report.lower());
+        let (prim, written) = (&memory.prim, &memory.emove);
+        let robot = self.prim.read(tick, &prim.header, prim.status.echo, prim.status.report.lower());
         let fingers = self.grippers.status(tick, memory);
-        let moves = |lower| matches!(lower, Lower::Pending | Lower::Executing);
-        let moving = moves(prim) || moves(fingers) || moves(self.ring_order(inputs));
-        Below {
-            demand,
-            pause: watch.pause,
-            prim,
-            rest: if moving { Rest::Moving } else { Rest::AtRest },
-            halt: if self.halting { Halt::Ordered } else { Halt::NotOrdered },
+        let below = Below::of(robot, written.prim.command == PrimVerb::Pause)
+            .and(Below::of(fingers, self.grippers.order == Order::Pause))
+            .and(Below::of(self.ring_order(inputs), written.quick_change.command == QuickChangeVerb::Pause));
+        Replaced {
+            intake: Intake::Taken,
+            kind: if watch.pause == Pause::Other { Kind::Other } else { Kind::Pause },
+            joystick: if robot == Lower::Joystick { BoxState::On } else { BoxState::Off },
+            below,
         }
+    }
+
+    /// Where in its command E-move is, beside the state variables: the points that were sent, on and back, and the
+    /// pictures that were tried. Above bit 40, which the number of the state variables does not reach.
+    fn progress(&self) -> u64 {
+        let back = self.back.map_or(0, |back| u64::from(back.next & 0xFF) << 1 | u64::from(back.complete));
+        let on = self.route.map_or(0, |route| u64::from(route.commanded & 0xFF));
+        (back << 10 | on << 2 | u64::from(self.tries & 0x3)) << 40
     }
 
     /// Follow the echoes until the first command, and count how long Prim has not detected anything.
@@ -162,7 +166,7 @@ impl State {
             let there = |pose: &Pose| {
                 pose.to_frame().is_ok_and(|frame| near(&frame, present, LOST_INCHES, LOST_RADIANS))
             };
-            self.beliefs.place = self.beliefs.place.filter(|place| there(&place.pose));
+            self.away = self.beliefs.place.is_some_and(|place| !there(&place.pose));
         }
         let watch = Watch {
             pause: match (command.command, self.step) {
@@ -198,10 +202,16 @@ impl State {
                     array: None,
                     pose: Pose::from_frame(present),
                 });
-                self.beliefs.way = None;
+                (self.beliefs.way, self.away) = (None, false);
                 return;
             }
         }
+    }
+
+    /// The place where the robot stands, unless it has been moved away from there. If it is moved back, as by the
+    /// joystick box, it stands there again.
+    pub(super) fn place(&self) -> Option<RobotPlace> {
+        self.beliefs.place.filter(|_| !self.away)
     }
 
     /// Is it known where the robot is? A way that it has left says nothing any more, once it is at rest.
@@ -210,7 +220,8 @@ impl State {
         let prim = self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
         let moving = matches!(prim, Lower::Pending | Lower::Executing);
         let on_way = self.beliefs.way.is_some() && (moving || self.on_way(inputs).is_some());
-        if self.beliefs.place.is_some() || on_way || self.beliefs.exchange.is_some() {
+        let half_way = self.beliefs.exchange.is_some() || self.beliefs.drum.is_some();
+        if self.place().is_some() || half_way || on_way {
             Whereabouts::Known
         } else if inputs.data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
             Whereabouts::Searching
@@ -278,6 +289,7 @@ impl State {
             along: self.along(command, inputs),
             shut: self.shut(command, inputs),
             at: self.at(command),
+            drum: self.at_drum(command, inputs),
             sight: sight(inputs),
             aim: known(self.aim(command, inputs).is_some()),
             tries: if self.tries.saturating_add(1) < MAX_TRIES { Tries::Left } else { Tries::Spent },
@@ -305,7 +317,7 @@ impl State {
 
     /// Where the robot is, seen from the command's location.
     fn at(&self, command: &EmoveCommand) -> At {
-        match self.beliefs.place {
+        match self.place() {
             Some(at) if same_location(&place(&at), &place_named(command)) => match at.gone_to {
                 GoneTo::Drum => At::InDrum,
                 GoneTo::Location | GoneTo::Object(_) | GoneTo::View(_) => At::There,

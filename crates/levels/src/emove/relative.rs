@@ -49,16 +49,28 @@ pub enum Relative {
     InsIn,
     /// RELEASE-TOOL: to the right until the strike plate gives a moment.
     RelSlide,
+    /// RELEASE-TOOL: the rest of the slide.
+    #[text = "REL-SLIDE"]
+    RelSlideOn,
     /// RELEASE-TOOL: back from the machine tool.
     RelBack,
+    /// RELEASE-TOOL: the rest of the way back.
+    #[text = "REL-BACK"]
+    RelBackOn,
     /// ACQUIRE-TOOL: towards the machine tool.
     AcqNear,
     /// ACQUIRE-TOOL: on until the strike plate is touched.
     AcqStrike,
     /// ACQUIRE-TOOL: to the left until the fingers are around the tool.
     AcqSlide,
+    /// ACQUIRE-TOOL: the rest of the slide.
+    #[text = "ACQ-SLIDE"]
+    AcqSlideOn,
     /// REMOVE-TOOL: out, unless the extraction force is too great.
     RemOut,
+    /// REMOVE-TOOL: the rest of the way out.
+    #[text = "REM-OUT"]
+    RemOutOn,
 }
 
 /// From where a relative move leads.
@@ -70,6 +82,8 @@ pub enum Reference {
     Stand,
     /// From where a gripper is at its seat in the holster.
     Seat,
+    /// From where an interrupted move at the drum began.
+    Start,
 }
 
 impl Relative {
@@ -78,6 +92,7 @@ impl Relative {
     pub const fn reference(self) -> Reference {
         match self {
             Self::QcdOut => Reference::Seat,
+            Self::RelSlideOn | Self::RelBackOn | Self::AcqSlideOn | Self::RemOutOn => Reference::Start,
             Self::QcdSeat
             | Self::QcdUp
             | Self::Withdraw
@@ -107,9 +122,12 @@ impl Relative {
                 | Self::QcdSeat
                 | Self::InsIn
                 | Self::RelSlide
+                | Self::RelSlideOn
                 | Self::AcqStrike
                 | Self::AcqSlide
+                | Self::AcqSlideOn
                 | Self::RemOut
+                | Self::RemOutOn
         )
     }
 

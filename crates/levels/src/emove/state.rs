@@ -43,8 +43,8 @@ pub struct State {
     pub beliefs: Beliefs,
     /// The beliefs of the time before the start have been adopted.
     pub started: bool,
-    /// A new command waits until robot, ring and fingers are at rest.
-    pub halting: bool,
+    /// The robot has been moved away from its place.
+    pub away: bool,
     /// How many location points have been looked at to find out where the robot is.
     pub searched: u32,
     /// `endeff-id#` of the gripper on the robot in the tick before.

@@ -150,7 +150,7 @@ impl State {
 
     /// The state variables of RESUME for a goal.
     fn start(&self, goal: &RobotPlace, way: Option<&Way>, data: &TaskData<'_>) -> Start {
-        let robot = match (self.beliefs.place, way) {
+        let robot = match (self.place(), way) {
             (Some(_), _) => Robot::AtPlace,
             (None, Some(_)) => Robot::OnWay,
             (None, None) => Robot::Lost,
@@ -186,7 +186,7 @@ impl State {
         let data = inputs.data;
         let (to, way) = (goal.place(command), self.on_way(inputs));
         let beginning = resume((), &self.start(&to, way.as_ref(), data)).action;
-        match (beginning, self.beliefs.place, way) {
+        match (beginning, self.place(), way) {
             (Beginning::Depart, Some(from), _) => Ok((Route::plan(command, goal, &from, data)?, None)),
             (Beginning::GoOn, _, Some(way)) => {
                 let on = Route { commanded: way.next, opening: goal.opening, ..route_of(&way, data)? };

@@ -323,6 +323,9 @@ pub struct Beliefs {
     pub located: Option<Located>,
     /// The holster in which the robot changes a gripper.
     pub exchange: Option<Exchange>,
+    /// The tool drum at which the robot is half way, between the first and the last point of a tool command. Its
+    /// pose is that of the location.
+    pub drum: Option<RobotPlace>,
 }
 
 /// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.

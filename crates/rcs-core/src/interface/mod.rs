@@ -251,6 +251,8 @@ pub enum Reason {
     TableAngleUnknown,
     /// The robot is not where it was sent. Look where it is; PAUSE takes its position over.
     RobotElsewhere,
+    /// The robot is half way at the tool drum: send the tool command again.
+    InDrum,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

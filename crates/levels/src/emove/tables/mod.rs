@@ -7,7 +7,6 @@ pub mod attend;
 pub mod carried;
 pub mod e_pause;
 pub mod grasp_obj;
-pub mod halt;
 pub mod insert_tool;
 pub mod locate_obj;
 pub mod motion;
@@ -33,16 +32,19 @@ use rcs_core::{
 };
 
 pub use self::variables::{
-    Along, At, Attached, Contact, Coupling, Demand, Exchange, Fingers, Halt, Held, Holster, HolsterData,
-    Knowledge, Link, Load, Lock, Mate, Opening, Ordered, Pause, Readiness, Record, Rest, Ring, Shut, Sight,
-    Spread, Target, Tooling, Tries, Vision, Whereabouts,
+    Along, At, AtDrum, Attached, Contact, Coupling, Exchange, Fingers, Held, Holster, HolsterData, Knowledge,
+    Link, Load, Lock, Mate, Opening, Ordered, Pause, Readiness, Record, Ring, Shut, Sight, Spread, Target,
+    ToolWork, Tooling, Tries, Vision, Whereabouts,
 };
-use self::{accept::accept, carried::carried, halt::halt, ordered::ordered};
+use self::{accept::accept, carried::carried, ordered::ordered};
 use super::{
     relative::{Relative, RelativeMoves},
     route::{Ahead, Planning},
 };
-use crate::execution::{Asked, EXECUTE, Outcome, Work};
+use crate::{
+    execution::{Asked, EXECUTE, Orders as Commander, Outcome, Work},
+    halt::{EFFECT, Futile, HALT, Halting, Replaced},
+};
 
 /// What a new command needs, for [`accept::ACCEPT`].
 #[derive(Clone, Copy, Debug, Default, Variables)]
@@ -59,6 +61,8 @@ pub struct Request {
     pub coupling: Coupling,
     /// The change of a gripper.
     pub exchange: Exchange,
+    /// A tool command.
+    pub drum: ToolWork,
     /// The location of the command.
     pub target: Target,
     /// Sizes of object and grip: END-EFF-PARA.
@@ -71,21 +75,6 @@ pub struct Request {
     pub moves: RelativeMoves,
     /// The way to its goal.
     pub route: Planning,
-}
-
-/// Whether a new command has to wait, for [`halt::HALT`].
-#[derive(Clone, Copy, Debug, Variables)]
-pub struct Below {
-    /// What is asked.
-    pub demand: Demand,
-    /// Is the command E-PAUSE?
-    pub pause: Pause,
-    /// Status of Prim.
-    pub prim: Lower,
-    /// Robot, ring and fingers.
-    pub rest: Rest,
-    /// The pause that the command waits for.
-    pub halt: Halt,
 }
 
 /// What goes on whatever the command, for [`attend::ATTEND`] and [`search::SEARCH`].
@@ -153,6 +142,8 @@ pub struct Situation {
     pub shut: Shut,
     /// Is the robot at the command's location?
     pub at: At,
+    /// Is it half way at the drum?
+    pub drum: AtDrum,
     /// What vision has answered.
     pub sight: Sight,
     /// Where the camera is to go next.
@@ -178,8 +169,12 @@ pub struct Seen {
     pub arrival: Arrival,
     /// The command in it.
     pub verb: EmoveVerb,
-    /// Whether a new command has to wait.
-    pub below: Below,
+    /// Is the command to be accepted or refused in this tick?
+    pub asked: Asked,
+    /// What it replaces.
+    pub replaced: Replaced,
+    /// Where in its command it is, beside the state variables: the leg, and how often a picture was tried.
+    pub progress: u64,
     /// What a new command needs.
     pub request: Request,
     /// What goes on whatever the command.
@@ -271,10 +266,47 @@ pub enum Action {
     PassUp,
 }
 
+impl From<Halting> for Action {
+    fn from(halting: Halting) -> Self {
+        match halting {
+            Halting::Stop => Self::Pause,
+            Halting::Wait => Self::Wait,
+        }
+    }
+}
+
+impl From<Futile> for Action {
+    fn from(Futile::Fail(reason): Futile) -> Self {
+        Self::Fail(reason)
+    }
+}
+
+impl Commander for Action {
+    fn is_order(&self) -> bool {
+        matches!(
+            self,
+            Self::GoThru
+                | Self::GotoPt
+                | Self::DeltaMove(_)
+                | Self::GoUntil(_)
+                | Self::GoWhile(_)
+                | Self::CalSensor
+                | Self::Lock
+                | Self::Unlock
+                | Self::Open
+                | Self::OpenToApproach
+                | Self::CloseForHolster
+                | Self::Close
+                | Self::OpenToDepart
+                | Self::Calibrate
+        )
+    }
+}
+
 commands! {
     /// Consult the tables of a command.
     pub fn of_command(EmoveVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, halt::HALT, attend::ATTEND, search::SEARCH, resume::RESUME, carried::CARRIED, ordered::ORDERED;
+        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME, carried::CARRIED, ordered::ORDERED;
         None | Pause            => e_pause::e_pause;
         MovToLoc                => motion::motion;
         MovToObj | MovToVu      => mov_to_obj::mov_to_obj then motion::motion;
@@ -297,10 +329,8 @@ commands! {
 #[must_use]
 pub fn decide(step: Step, seen: &Seen) -> Choice<Action, Step> {
     let of_command = |work| of_command(seen.verb, step, &Situation { work, ..seen.situation });
-    halt(step, &seen.below).then(number::HALT, |()| {
-        accept(step, &seen.request).then(number::ACCEPT, |()| {
-            carried(step, &seen.orders)
-                .then(number::CARRIED, |()| ordered(step, &seen.orders).then(number::ORDERED, of_command))
-        })
+    accept(step, &seen.request).then(number::ACCEPT, |()| {
+        carried(step, &seen.orders)
+            .then(number::CARRIED, |()| ordered(step, &seen.orders).then(number::ORDERED, of_command))
     })
 }

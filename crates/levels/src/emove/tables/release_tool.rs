@@ -5,32 +5,39 @@ use rcs_core::decision_table;
 decision_table! {
     /// RELEASE-TOOL (V.2.1): open the tool gripper, calibrate, slide to the right until the strike plate
     /// gives a moment, pull back. Done at once if the robot is before the drum with open fingers and nothing
-    /// in them.
+    /// in them. Sent again after an interruption it goes on from where the robot is at the drum
+    /// (docs/design/recovery.md "Drum").
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
-            1: work: Busy                             => Wait;
+            1:  work: Busy                                 => Wait;
         }
         /// Nothing done yet.
         Start {
-            2: at: InDrum                             => OpenToDepart       -> Opening;
-            3: at: There, held: Nothing, spread: Open => Finish;
-            4: at: There | Before | Elsewhere         => Fail(NotPrepared);
+            2:  at: InDrum                                 => OpenToDepart         -> Opening;
+            3:  at: There, held: Nothing, spread: Open     => Finish;
+            4:  at: There | Before                         => Fail(NotPrepared);
+            5:  drum: Inside                               => OpenToDepart         -> Opening;
+            6:  drum: Off | Entering                       => Fail(NotPrepared);
+            7:  held: Right | Other | Something | NotKnown => Fail(NotPrepared);
+            8:  spread: Narrow                             => Fail(NotPrepared);
+            9:  drum: Sliding                              => GoUntil(RelSlideOn)  -> Sliding;
+            10: drum: Beside | Before                      => DeltaMove(RelBackOn) -> Withdrawing;
         }
         /// The gripper is opening.
         Opening {
-            5: work: Over                             => CalSensor          -> Calibrating;
+            11: work: Over                                 => CalSensor            -> Calibrating;
         }
         /// The force sensor is being calibrated.
         Calibrating {
-            6: work: Over                             => GoUntil(RelSlide)  -> Sliding;
+            12: work: Over                                 => GoUntil(RelSlide)    -> Sliding;
         }
         /// The gripper is sliding to the right.
         Sliding {
-            7: work: Over                             => DeltaMove(RelBack) -> Withdrawing;
+            13: work: Over                                 => DeltaMove(RelBack)   -> Withdrawing;
         }
         /// The robot is pulling back.
         Withdrawing {
-            8: work: Over                             => Stand;
+            14: work: Over                                 => Stand;
         }
     }
 }

@@ -53,35 +53,6 @@ pub enum Pause {
     Standing,
 }
 
-/// What is asked of E-move in this tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Demand {
-    /// Nothing new.
-    Before,
-    /// E-move was restarted in this tick: a command stands in its buffer that it has not begun.
-    Restarted,
-    /// A new command.
-    Now,
-}
-
-/// Robot, ring and fingers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Rest {
-    /// They are at rest.
-    AtRest,
-    /// At least one of them moves.
-    Moving,
-}
-
-/// The pause that a new command waits for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Halt {
-    /// Not ordered yet.
-    NotOrdered,
-    /// Ordered.
-    Ordered,
-}
-
 /// How the gripper hangs on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Coupling {
@@ -244,6 +215,32 @@ pub enum At {
     There,
     /// There, with the fingers around a tool in the drum.
     InDrum,
+}
+
+/// Where the robot is at the drum of the command, if a tool command was interrupted there, by the resolvers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum AtDrum {
+    /// Nowhere there, or no tool command was interrupted.
+    Off,
+    /// Before it: neither a held tool nor the fingers touch anything.
+    Before,
+    /// On the way in: a held tool may touch the drum.
+    Entering,
+    /// Where a held tool is in its place, and empty fingers are around one.
+    Inside,
+    /// Between there and the strike plate: the fingers are half around the tool in the drum.
+    Sliding,
+    /// To the right of the tool, clear of it, at the strike plate or before it.
+    Beside,
+}
+
+/// A tool command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum ToolWork {
+    /// None is under way.
+    None,
+    /// The robot is at the tool drum, between the first and the last point of one.
+    HalfDone,
 }
 
 /// What is mated with the quick change, seen from the gripper of the command.

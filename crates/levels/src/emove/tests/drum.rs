@@ -1,10 +1,17 @@
 //! INSERT-TOOL, RELEASE-TOOL, ACQUIRE-TOOL and REMOVE-TOOL.
 
-use rcs_core::interface::{
-    Reason, Report,
-    emove::EmoveVerb::{self, AcquireTool, InsertTool, MovToLoc, Release, ReleaseTool, RemoveTool},
-    jaws::JawsReport,
-    prim::PrimReport,
+use rcs_core::{
+    frame::{Frame, Vector},
+    interface::{
+        Reason, Report,
+        emove::EmoveVerb::{
+            self, AcquireTool, InsertTool, MovToLoc, Pause, Release, ReleaseTool, RemoveTool,
+        },
+        grip::Felt,
+        jaws::JawsReport,
+        prim::PrimReport,
+    },
+    process::Process,
 };
 
 use taskdata::files::Index;
@@ -24,6 +31,13 @@ pub const SCENARIOS: &[fn()] = &[
     a_tool_that_slips_is_noticed,
     a_failing_gripper_ends_the_command,
     a_failing_motion_ends_the_command,
+    an_interrupted_insertion_goes_on,
+    an_interrupted_release_goes_on,
+    an_interrupted_acquisition_goes_on,
+    an_interrupted_removal_goes_on,
+    a_robot_half_way_at_the_drum_goes_nowhere_else,
+    what_is_unknown_is_neither_inserted_nor_let_go,
+    a_robot_that_is_taken_away_is_no_longer_half_way,
 ];
 
 /// Size of the tool, 0.01 in.
@@ -116,7 +130,9 @@ fn a_tool_in_the_drum_is_not_dragged_away() {
     assert_eq!(run(&mut bench, ReleaseTool), DONE);
     let mut bench = inserted();
     assert_eq!(bench.run(Release, "CUTTER", 1, "", 3), DONE, "the fingers are open and around the tool");
-    assert_eq!(run(&mut bench, AcquireTool), error(Reason::NotPrepared));
+    bench.world.object = Some(SIZE);
+    assert_eq!(run(&mut bench, AcquireTool), DONE);
+    assert_eq!(bench.log(), ["GRASP 250"]);
 }
 
 #[test]
@@ -227,5 +243,201 @@ fn a_failing_motion_ends_the_command() {
             bench.spoil(word, failed);
             assert_eq!(run(&mut bench, verb), error(Reason::SensorError), "{verb} {word}");
         }
+    }
+}
+
+/// A robot that is off the place of a tool in the drum, in, into the drum and to the left.
+fn at(x: f64, z: f64) -> Frame {
+    frame_of("TOOL-TRNS").shifted(Vector::new(x, 0.0, z))
+}
+
+/// PAUSE after the order with a word, with the robot somewhere; what was ordered is no longer in the log.
+fn interrupt(bench: &mut Bench, verb: EmoveVerb, word: &str, frame: Frame) {
+    bench.world.log.clear();
+    bench.command(verb, "CUTTER", 1, "TOOL-TRNS", 3);
+    while !bench.log().iter().any(|order| order.contains(word)) {
+        bench.step();
+    }
+    bench.world.frame = frame;
+    bench.write(Pause, "", 0, "", 0);
+    assert_eq!(bench.finish(), DONE);
+    bench.world.log.clear();
+}
+
+#[test]
+fn an_interrupted_insertion_goes_on() {
+    const WHOLE: &[&str] = &["DELTA-MOVE INS-NEAR", "CAL-SENSOR", "GO-WHILE INS-IN INS-FX"];
+    for (word, x, orders) in [
+        ("INS-NEAR", -5.0, WHOLE),
+        ("CAL-SENSOR", -2.0, WHOLE),
+        ("INS-IN", -1.0, &WHOLE[2..]),
+        ("INS-IN", -0.25, &WHOLE[2..]),
+        ("INS-IN", -0.1, &WHOLE[2..]),
+    ] {
+        let mut bench = loaded();
+        interrupt(&mut bench, InsertTool, word, at(x, 0.0));
+        assert!(!bench.memory.emove.status.drum, "{word} {x}");
+        assert_eq!(run(&mut bench, InsertTool), DONE, "{word} {x}");
+        assert_eq!(bench.log(), orders, "{word} {x}");
+        assert!(bench.off(&moved(frame_of("TOOL-TRNS"), &["INS-IN"])) < 0.02);
+        assert!(bench.memory.emove.status.drum);
+        assert_eq!(run(&mut bench, ReleaseTool), DONE);
+    }
+    // It may be undone as well.
+    let mut bench = loaded();
+    interrupt(&mut bench, InsertTool, "INS-IN", at(-1.0, 0.0));
+    assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared), "the tool is half in");
+    assert_eq!(run(&mut bench, AcquireTool), error(Reason::NotPrepared));
+    assert_eq!(run(&mut bench, RemoveTool), DONE);
+    assert_eq!(bench.log().last(), Some(&"GO-WHILE REM-OUT REM-FX"));
+    assert!(!bench.log().contains(&"CAL-SENSOR"), "nothing is calibrated against a force");
+    assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
+    let mut bench = loaded();
+    interrupt(&mut bench, InsertTool, "INS-NEAR", at(-5.0, 0.0));
+    assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared), "the tool is not in the drum");
+    assert_eq!(run(&mut bench, RemoveTool), DONE);
+    assert!(!bench.log().iter().any(|order| order.contains("REM-OUT")), "the tool is out");
+    // From where nothing is known to be a way.
+    for verb in [InsertTool, RemoveTool] {
+        let mut bench = Bench::ready("HOME", 3);
+        bench.hold("CUTTER", SIZE, 3);
+        assert_eq!(run(&mut bench, verb), error(Reason::NotPrepared), "{verb}");
+    }
+}
+
+#[test]
+fn an_interrupted_release_goes_on() {
+    const WHOLE: &[&str] = &["RELEASE 400", "CAL-SENSOR", "GO-UNTIL REL-SLIDE REL-MY", "DELTA-MOVE REL-BACK"];
+    for (word, x, z, orders) in [
+        ("RELEASE", 0.0, 0.0, WHOLE),
+        ("CAL-SENSOR", 0.0, 0.0, WHOLE),
+        ("REL-SLIDE", 0.0, -0.1, WHOLE),
+        ("REL-SLIDE", 0.0, -1.0, &WHOLE[2..]),
+        ("REL-BACK", 0.0, -1.8, &WHOLE[3..]),
+        ("REL-BACK", -3.0, -1.8, &WHOLE[3..]),
+    ] {
+        let mut bench = inserted();
+        interrupt(&mut bench, ReleaseTool, word, at(x, z));
+        assert_eq!(run(&mut bench, ReleaseTool), DONE, "{word} {x} {z}");
+        assert_eq!(bench.log(), orders, "{word} {x} {z}");
+        let end = if orders == WHOLE { -2.0 + z } else { z.min(-2.0).max(if z < -1.5 { z } else { -2.0 }) };
+        assert!(bench.off(&at(-4.99, end)) < 0.03, "{word} {x} {z}: the moves end where they would have");
+        assert!(!bench.memory.emove.status.held.is_held() && !bench.memory.emove.status.drum);
+        assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
+    }
+    // Fingers that were closed since would tear at the drum.
+    for (verb, z) in [(ReleaseTool, -1.0), (AcquireTool, -1.0), (ReleaseTool, -1.8)] {
+        let mut bench = inserted();
+        interrupt(&mut bench, ReleaseTool, "REL-SLIDE", at(0.0, z));
+        bench.tool_grip.opening = 100;
+        assert_eq!(run(&mut bench, verb), error(Reason::NotPrepared), "{verb} {z}");
+    }
+    let mut bench = Bench::ready("HOME", 3);
+    assert_eq!(run(&mut bench, ReleaseTool), error(Reason::NotPrepared));
+}
+
+#[test]
+fn an_interrupted_acquisition_goes_on() {
+    const WHOLE: &[&str] = &[
+        "POSE 400",
+        "DELTA-MOVE ACQ-NEAR",
+        "CAL-SENSOR",
+        "GO-UNTIL ACQ-STRIKE ACQ-FX",
+        "CAL-SENSOR",
+        "GO-UNTIL ACQ-SLIDE ACQ-MY",
+        "GRASP 250",
+    ];
+    for (word, x, z, orders) in [
+        ("ACQ-NEAR", -3.0, -0.8, WHOLE),
+        ("ACQ-NEAR", -1.0, -1.5, WHOLE),
+        ("ACQ-STRIKE", 0.0, -1.65, WHOLE),
+        ("ACQ-SLIDE", 0.1, -1.0, &WHOLE[5..]),
+        ("ACQ-SLIDE", 0.1, 0.1, &WHOLE[6..]),
+    ] {
+        let mut bench = empty();
+        interrupt(&mut bench, AcquireTool, word, at(x, z));
+        assert_eq!(acquire_from(&mut bench), DONE, "{word} {x} {z}");
+        assert_eq!(bench.log(), orders, "{word} {x} {z}");
+        let end = if orders == WHOLE { at(0.25, 0.5) } else { at(x, z.max(0.5 * f64::from(z < 0.0))) };
+        assert!(bench.off(&end) < 0.03, "{word} {x} {z}: the slide ends where it would have");
+        assert!(bench.memory.emove.status.held.object().is_some() && bench.memory.emove.status.drum);
+        assert_eq!(run(&mut bench, RemoveTool), DONE);
+    }
+    let mut bench = Bench::ready("HOME", 3);
+    assert_eq!(run(&mut bench, AcquireTool), error(Reason::NotPrepared));
+}
+
+/// ACQUIRE-TOOL sent again; the tool is between the fingers before they close.
+fn acquire_from(bench: &mut Bench) -> (Report, Reason) {
+    bench.world.log.clear();
+    bench.command(AcquireTool, "CUTTER", 1, "TOOL-TRNS", 3);
+    while !bench.log().contains(&"GRASP 250") {
+        bench.step();
+    }
+    bench.world.object = Some(SIZE);
+    bench.finish()
+}
+
+#[test]
+fn an_interrupted_removal_goes_on() {
+    for (word, x, orders) in [
+        ("CAL-SENSOR", 0.0, &["CAL-SENSOR", "GO-WHILE REM-OUT REM-FX"][..]),
+        ("REM-OUT", -0.1, &["GO-WHILE REM-OUT REM-FX"]),
+        ("REM-OUT", -0.25, &["GO-WHILE REM-OUT REM-FX"]),
+        ("REM-OUT", -1.0, &["GO-WHILE REM-OUT REM-FX"]),
+        ("REM-OUT", -3.0, &[]),
+    ] {
+        let mut bench = inserted();
+        interrupt(&mut bench, RemoveTool, word, at(x, 0.0));
+        assert_eq!(run(&mut bench, RemoveTool), DONE, "{word} {x}");
+        assert_eq!(bench.log(), orders, "{word} {x}");
+        let end = if orders.is_empty() { x } else { -6.0 };
+        assert!(bench.off(&at(end, 0.0)) < 0.03, "{word} {x}: the move ends where it would have");
+        assert!(bench.memory.emove.status.held.is_held() && !bench.memory.emove.status.drum);
+        assert_eq!(bench.run(MovToLoc, "", 0, "TOOL-SAFE", 0), DONE);
+    }
+    // Or back in.
+    let mut bench = inserted();
+    interrupt(&mut bench, RemoveTool, "REM-OUT", at(-0.5, 0.0));
+    assert_eq!(run(&mut bench, InsertTool), DONE);
+    assert_eq!(bench.log(), ["GO-WHILE INS-IN INS-FX"]);
+}
+
+#[test]
+fn a_robot_half_way_at_the_drum_goes_nowhere_else() {
+    let mut bench = loaded();
+    interrupt(&mut bench, InsertTool, "INS-IN", at(-1.0, 0.0));
+    for verb in [MovToLoc, EmoveVerb::Withdraw] {
+        assert_eq!(bench.run(verb, "", 0, "BENCH", 0), error(Reason::InDrum), "{verb}");
+    }
+    assert_eq!(bench.run(EmoveVerb::QcDetach, "GRIPPER-3", 1, "HOLSTER-C", 3), error(Reason::InDrum));
+    assert_eq!(run(&mut bench, InsertTool), DONE);
+}
+
+#[test]
+fn a_robot_that_is_taken_away_is_no_longer_half_way() {
+    for away in [at(-1.0, 3.5), at(-20.0, 0.0), at(1.0, 0.0), at(-1.0, -1.0), at(-5.0, 5.0)] {
+        let mut bench = loaded();
+        interrupt(&mut bench, InsertTool, "INS-IN", at(-1.0, 0.0));
+        bench.world.frame = away;
+        bench.steps(3);
+        assert!(bench.memory.emove.beliefs.drum.is_none());
+        assert_eq!(run(&mut bench, InsertTool), error(Reason::UnknownStart));
+    }
+}
+
+#[test]
+fn what_is_unknown_is_neither_inserted_nor_let_go() {
+    for (felt, verb, reason) in [
+        (Felt::NotKnown, InsertTool, Reason::HeldNotKnown),
+        (Felt::NotKnown, AcquireTool, Reason::HeldNotKnown),
+        (Felt::NotKnown, RemoveTool, Reason::HeldNotKnown),
+        (Felt::Something, AcquireTool, Reason::AlreadyHolding),
+    ] {
+        let mut bench = empty();
+        bench.dead.push("gripper");
+        bench.memory.tool_grip.status.felt = felt;
+        bench.process.state_mut().beliefs.empty = false;
+        assert_eq!(run(&mut bench, verb), error(reason), "{verb}");
     }
 }

@@ -1,0 +1,208 @@
+//! Where the robot is at the tool drum (docs/design/recovery.md "Drum").
+//!
+//! ```text
+//!                 z (left)          - near -- Entering -- in  Inside        x into the drum,
+//!                  |               /                      |                 seen from above
+//!            x ----+    TOOL-SAFE       Before         Sliding
+//!                                  \                      |
+//!                                   - back -- Beside -- slid, strike
+//! ```
+//!
+//! All points follow from the pose of the drum's location and the relative moves of the four tool commands.
+
+use rcs_core::{
+    frame::{Frame, norm},
+    interface::{
+        CommonMemory,
+        emove::{EmoveCommand, EmoveVerb, GoneTo, RobotPlace},
+    },
+    pose::Pose,
+    process::Inputs,
+};
+use taskdata::files::TaskData;
+
+use super::{
+    exchange::base,
+    relative::Relative,
+    robot_place::{commanded_pose, place, place_named, present_frame, robot_at},
+    route::{near, same_location},
+    state::State,
+    tables::AtDrum,
+};
+use crate::execution::Outcome;
+
+/// A tool is in its place within this along the way in: the fingers of the drum close on it there, in.
+const SEATED: f64 = 0.15;
+/// The fingers are around it up to this far to the right of the way in, and to the end of ACQ-SLIDE, which ends
+/// where its sensor says, and this much more to the left, in.
+const AROUND: f64 = 0.25;
+/// A tool that is not in its place is on the way in within this to the left and right, in.
+const WIDE_IN: f64 = 0.75;
+/// The robot is on a segment within this, in …
+const ASIDE: f64 = 0.35;
+/// … and radians (2 degrees).
+const TURNED: f64 = 2.0 * core::f64::consts::PI / 180.0;
+/// A tool that is this much nearer than INS-NEAR meets nothing yet, in.
+const FREE: f64 = 0.15;
+/// The robot is before the drum up to this far from INS-NEAR …
+const FAR: f64 = 10.0;
+/// … and this far beside the way in, in: TOOL-SAFE is 6.1 in away.
+const WIDE: f64 = 3.0;
+/// A tool has not moved since it was grasped if the robot is within this of the place of the grasp, in.
+const UNMOVED: f64 = 0.1;
+
+/// The points at the drum, as frames.
+struct Points {
+    near: Frame,
+    inside: Frame,
+    slid: Frame,
+    aside: Frame,
+    around: Frame,
+}
+
+impl Points {
+    /// The points for a command that names the drum, whose pose is `base`.
+    fn of(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Option<Self> {
+        let moved = |from: &Frame, relative: Relative| {
+            Some(data.moved(from, relative.record(command, data)?.movetable))
+        };
+        let inside = moved(base, Relative::InsIn)?;
+        let aside = moved(base, Relative::AcqNear)?;
+        Some(Self {
+            near: moved(base, Relative::InsNear)?,
+            inside,
+            slid: moved(&inside, Relative::RelSlide)?,
+            around: moved(&aside, Relative::AcqSlide)?,
+            aside,
+        })
+    }
+
+    /// Where a frame is among them.
+    fn locate(&self, present: &Frame) -> AtDrum {
+        let way_in = self.inside.position - self.near.position;
+        let way_out = self.slid.position - self.inside.position;
+        let offset = present.position - self.inside.position;
+        let (long, wide) = (norm(&way_in), norm(&way_out));
+        if long <= 0.0 || wide <= 0.0 || self.inside.distance(present).radians > TURNED {
+            return AtDrum::Off;
+        }
+        // How far the robot is in from INS-NEAR, how far to the right, and how far from that plane.
+        let depth = offset.dot(&way_in) / long + long;
+        let right = offset.dot(&way_out) / wide;
+        let across = norm(&(offset - way_in * ((depth - long) / long) - way_out * (right / wide)));
+        let to_the_right = |point: &Frame| (point.position - self.inside.position).dot(&way_out) / wide;
+        let aside = to_the_right(&self.aside);
+        let is_around = right <= AROUND && right >= to_the_right(&self.around).min(0.0) - AROUND;
+        let is_clear = right >= aside - ASIDE && right <= wide + ASIDE;
+        let is_deep = (depth - long).abs() <= ASIDE;
+        if depth < -FAR || depth > long + ASIDE || across > WIDE {
+            AtDrum::Off
+        } else if depth <= FREE {
+            if right.abs() <= WIDE { AtDrum::Before } else { AtDrum::Off }
+        } else if across > ASIDE {
+            AtDrum::Off
+        } else if depth >= long - SEATED && is_around {
+            AtDrum::Inside
+        } else if is_around || (!is_deep && right.abs() <= WIDE_IN) {
+            AtDrum::Entering
+        } else if is_deep && (AROUND..aside - SEATED / 2.0).contains(&right) {
+            AtDrum::Sliding
+        } else if is_clear {
+            AtDrum::Beside
+        } else {
+            AtDrum::Off
+        }
+    }
+}
+
+const fn is_tool_command(verb: EmoveVerb) -> bool {
+    matches!(
+        verb,
+        EmoveVerb::InsertTool | EmoveVerb::ReleaseTool | EmoveVerb::AcquireTool | EmoveVerb::RemoveTool
+    )
+}
+
+/// A command that names a place.
+fn command_at(place: &RobotPlace) -> EmoveCommand {
+    EmoveCommand {
+        location_kind: place.kind,
+        location_record: place.record,
+        location_array: place.array,
+        ..EmoveCommand::default()
+    }
+}
+
+/// Where a frame is at a drum.
+fn locate(drum: &RobotPlace, memory: &CommonMemory, data: &TaskData<'_>) -> AtDrum {
+    let points = drum.pose.to_frame().ok().and_then(|base| Points::of(&command_at(drum), &base, data));
+    match (points, present_frame(memory)) {
+        (Some(points), Some(present)) => points.locate(&present),
+        _ => AtDrum::Off,
+    }
+}
+
+impl State {
+    /// Where the robot is at the drum of the command, if it is half way there.
+    pub(super) fn at_drum(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> AtDrum {
+        match &self.beliefs.drum {
+            Some(drum) if same_location(&place(drum), &place_named(command)) => {
+                locate(drum, inputs.memory, inputs.data)
+            }
+            _ => AtDrum::Off,
+        }
+    }
+
+    /// The fingers are around a tool in the drum, which they hold only if nothing has moved it since.
+    pub(super) fn is_around_tool(&self, memory: &CommonMemory, data: &TaskData<'_>) -> bool {
+        match (&self.beliefs.place, &self.beliefs.drum, self.beliefs.held) {
+            (Some(place), _, _) => place.gone_to == GoneTo::Drum,
+            (None, Some(drum), None) => locate(drum, memory, data) == AtDrum::Inside,
+            _ => false,
+        }
+    }
+
+    /// A relative move of the command is ordered: a robot with a tool command is half way at the drum.
+    pub(super) fn note_drum(&mut self, command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) {
+        if let (true, Some(base)) = (is_tool_command(command.command), base(command, memory, data)) {
+            self.beliefs.drum = Some(robot_at(command, GoneTo::Drum, Pose::from_frame(&base)));
+        }
+    }
+
+    /// A robot that has been taken away from the drum, as by the joystick box, is no longer half way there. One
+    /// whose fingers have closed on a tool in the drum stands there, also if the command did not come to that.
+    pub(super) fn sense_drum(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
+        let (Some(drum), Some(present)) = (self.beliefs.drum, present_frame(inputs.memory)) else { return };
+        let at = locate(&drum, inputs.memory, inputs.data);
+        let grasped_here = self.beliefs.held.is_some_and(|held| {
+            held.pose.to_frame().is_ok_and(|pose| near(&pose, &present, UNMOVED, TURNED))
+        });
+        match at {
+            AtDrum::Off => self.beliefs.drum = None,
+            AtDrum::Inside if grasped_here && self.execution.outcome != Outcome::Executing => {
+                let pose = commanded_pose(inputs.memory).unwrap_or_else(|| Pose::from_frame(&present));
+                self.beliefs.place = Some(RobotPlace { pose, ..drum });
+                self.beliefs.drum = None;
+            }
+            _ => {}
+        }
+    }
+
+    /// From where a relative move at the drum leads that was interrupted: where the robot stands, but as far
+    /// back along the move as it began, so that it ends where it would have ended.
+    pub(super) fn start_of(
+        &self,
+        relative: Relative,
+        command: &EmoveCommand,
+        memory: &CommonMemory,
+        data: &TaskData<'_>,
+    ) -> Option<Pose> {
+        let points = Points::of(command, &base(command, memory, data)?, data)?;
+        let start = if relative == Relative::AcqSlideOn { points.aside } else { points.inside };
+        let end = data.moved(&start, relative.record(command, data)?.movetable);
+        let stand = commanded_pose(memory)?.to_frame().ok()?;
+        let way = end.position - start.position;
+        let square = way.dot(&way);
+        let share = if square > 0.0 { (stand.position - start.position).dot(&way) / square } else { 0.0 };
+        Some(Pose::from_frame(&Frame { position: stand.position - way * share, ..stand }))
+    }
+}
