@@ -7,8 +7,8 @@ use crate::{
     emove::{
         route::Ahead,
         tables::{
-            Action, Along, At, Fingers, Held, Holster, Knowledge, Link, Lock, Mate, Opening, Readiness, Shut,
-            Sight, Situation, Spread, Tooling, Tries, Whereabouts,
+            Action, Along, At, AtDrum, Fingers, Held, Holster, Knowledge, Link, Lock, Mate, Opening,
+            Readiness, Shut, Sight, Situation, Spread, Tooling, Tries, Whereabouts,
             qc_attach::{QcAttachStep, qc_attach},
             qc_detach::{QcDetachStep, qc_detach},
         },
@@ -43,6 +43,7 @@ fn situations() -> impl Iterator<Item = Situation> {
                         along,
                         shut,
                         at,
+                        drum: AtDrum::Off,
                         sight: Sight::Missing,
                         aim: Knowledge::Unknown,
                         tries: Tries::Left,
