@@ -14,7 +14,7 @@
 //! ```
 //!
 //! * [`state`]: what E-move remembers;
-//! * [`robot_place`]: where the robot is;
+//! * [`robot_place`] and [`whereabouts`]: where the robot is;
 //! * [`route`]: depart, trajectory, approach and stop as one list of points;
 //! * [`way`]: going on with a way that was interrupted;
 //! * [`exchange`]: where the robot is in the change of a gripper;
@@ -46,6 +46,7 @@ pub mod tables;
 #[cfg(test)]
 mod tests;
 pub mod way;
+pub mod whereabouts;
 
 use rcs_core::{
     interface::EmoveOutputs,

@@ -3,51 +3,41 @@
 use core::mem;
 
 use rcs_core::{
-    frame::Frame,
     handshake::Lower,
     interface::{
         CommonMemory, EmoveOutputs,
         device::VisionStatus,
-        emove::{EmoveCommand, EmoveVerb, GoneTo, Holding, RobotPlace},
+        emove::{EmoveCommand, EmoveVerb, GoneTo, Holding},
         prim::{JoystickGrip, PrimReport, PrimVerb},
         quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
-        subtask::LocationKind,
     },
-    name::Name10,
     pose::Pose,
     process::Inputs,
 };
-use taskdata::files::{LocptId, Place, TaskData};
+use taskdata::files::TaskData;
 
 use super::{
     fingers::fingers,
     gripper::Gripper,
     locate::{is_another, is_plausible},
     order::Order,
-    relative::Relative,
     robot_place::{place, place_named, present_frame},
     route::{near, same_location},
     state::State,
     tables::{
         At, Contact, Held, Holster, Knowledge, Link, Load, Lock, Mate, Orders, Pause, Readiness, Request,
-        Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch, Whereabouts,
+        Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch,
         e_pause::EPauseStep,
         search::{Look, search},
     },
+    whereabouts::{LOST_INCHES, LOST_RADIANS},
 };
 use crate::{
     execution::{Asked, Work},
     halt::{Below, BoxState, Intake, Kind, Replaced},
-    places::{named, place_of},
+    places::named,
 };
 
-/// The robot is no longer where its last move ended if it is more than this many inches …
-/// (docs/design/motion.md "Where the robot is")
-const LOST_INCHES: f64 = 0.5;
-/// … or radians (2 degrees) off.
-const LOST_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
-/// Location points that are looked at in a tick to find out where the robot is.
-const SEARCH_PER_TICK: u32 = 64;
 /// Ticks after which vision counts as silent (4 s).
 const VISION_LIMIT: u64 = 100;
 /// Pictures of a kind that are taken in vain before LOCATE-OBJ gives up.
@@ -187,51 +177,6 @@ impl State {
             (Look::Look, None) | (Look::Rest, _) => {}
         }
         watch
-    }
-
-    /// Look through some more location points for the one at which the robot stands.
-    fn search(&mut self, present: &Frame, data: &TaskData<'_>) {
-        for _ in 0..SEARCH_PER_TICK {
-            let next = LocptId::new(self.searched.saturating_add(1));
-            let Some(locpt) = data.locpt(next) else { return };
-            self.searched = next.number();
-            let place = place_of(LocationKind::Point, next.to_option(), None);
-            let plain = is_plain(&locpt.name, &place, data);
-            if plain && near(&locpt.frame, present, LOST_INCHES, LOST_RADIANS) {
-                self.beliefs.place = Some(RobotPlace {
-                    gone_to: GoneTo::Location,
-                    location: locpt.name,
-                    kind: LocationKind::Point,
-                    record: next.to_option(),
-                    array: None,
-                    pose: Pose::from_frame(present),
-                });
-                (self.beliefs.way, self.away) = (None, false);
-                return;
-            }
-        }
-    }
-
-    /// The place where the robot stands, unless it has been moved away from there. If it is moved back, as by the
-    /// joystick box, it stands there again.
-    pub(super) fn place(&self) -> Option<RobotPlace> {
-        self.beliefs.place.filter(|_| !self.away)
-    }
-
-    /// Is it known where the robot is? A way that it has left says nothing any more, once it is at rest.
-    fn whereabouts(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Whereabouts {
-        let prim = &inputs.memory.prim;
-        let prim = self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
-        let moving = matches!(prim, Lower::Pending | Lower::Executing);
-        let on_way = self.beliefs.way.is_some() && (moving || self.on_way(inputs).is_some());
-        let half_way = self.beliefs.exchange.is_some() || self.beliefs.drum.is_some();
-        if self.place().is_some() || half_way || on_way {
-            Whereabouts::Known
-        } else if inputs.data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
-            Whereabouts::Searching
-        } else {
-            Whereabouts::Unknown
-        }
     }
 
     /// How the last order stands.
@@ -388,13 +333,6 @@ impl State {
             Vision::Waiting
         }
     }
-}
-
-/// Can a robot that stands at a location point be there as such? Not in a holster, at the tool drum, or at the
-/// pedestal: there it depends on gripper, tool and part how it may leave.
-fn is_plain(name: &Name10, place: &Place, data: &TaskData<'_>) -> bool {
-    let has = |relative: Relative| data.relative_move(&Name10::clipped(relative.text()), place).is_some();
-    !has(Relative::QcaBack) && !has(Relative::InsIn) && name.as_str() != named::PEDESTAL
 }
 
 /// What vision has answered.

@@ -40,66 +40,62 @@ decision_table! {
         /// The seat was empty: the robot moves away from it.
         Undoing {
             15: mate: None, along: Above | Out | Coming                   => Fail(NotAttached);
-            16: mate: None, along: Seat                                   => Fail(NoEffect);
         }
         /// The robot is moving slowly onto the gripper.
         Mating {
-            17: mate: None, along: Above | Out | Coming                   => Fail(NoEffect);
-            18: mate: Right, along: Coming | Sliding | Low, lock: Unlocked => Fail(NoEffect);
-            19: mate: Right, along: Sliding | Low, lock: Between          => Fail(NoEffect);
-            20: mate: Right, along: Seat                                  => Lock -> Locking;
+            16: mate: None, along: Above | Out                            => Fail(NoEffect);
+            17: mate: Right, along: Seat                                  => Lock -> Locking;
         }
         any {
-            21: mate: None, along: Above | Out                          => DeltaMove(QcaFast) -> Approaching;
-            22: mate: None, along: Coming                                 => DeltaMove(QcaSlow) -> Mating;
-            23: mate: None, along: Seat                                   => DeltaMove(QcaFast) -> Undoing;
-            24: mate: None, along: Sliding | Low                          => Fail(NotAttached);
-            25: mate: None, along: Lifting | Raising | Clear              => Fail(NotAttached);
-            26: mate: Right, along: Coming | Sliding | Low, lock: Unlocked => DeltaMove(QcaSlow) -> Mating;
-            27: mate: Right, along: Coming, lock: Locked | Between        => Fail(RingNotLocked);
-            28: mate: Right, along: Sliding | Low, lock: Between          => DeltaMove(QcaSlow) -> Mating;
-            29: along: Lifting | Raising | Clear, lock: Unlocked | Between => Fail(RingNotLocked);
+            18: mate: None, along: Above | Out                          => DeltaMove(QcaFast) -> Approaching;
+            19: mate: None, along: Coming                                 => DeltaMove(QcaSlow) -> Mating;
+            20: mate: None, along: Seat                                   => DeltaMove(QcaFast) -> Undoing;
+            21: mate: None, along: Sliding | Low                          => Fail(NotAttached);
+            22: mate: None, along: Lifting | Raising | Clear              => Fail(NotAttached);
+            23: mate: Right, along: Coming | Sliding | Low, lock: Unlocked => DeltaMove(QcaSlow) -> Mating;
+            24: mate: Right, along: Coming, lock: Locked | Between        => Fail(RingNotLocked);
+            25: mate: Right, along: Sliding | Low, lock: Between          => DeltaMove(QcaSlow) -> Mating;
+            26: along: Lifting | Raising | Clear, lock: Unlocked | Between => Fail(RingNotLocked);
         }
         /// The quick change is locking.
         Locking {
-            30: mate: Right, along: Seat, lock: Unlocked | Between        => FailRing;
+            27: mate: Right, along: Seat, lock: Unlocked | Between        => FailRing;
         }
         /// The gripper is closing.
         Closing {
-            31: mate: Right, along: Seat | Sliding, lock: Locked          => DeltaMove(QcaBack) -> Backing;
+            28: mate: Right, along: Seat | Sliding, lock: Locked          => DeltaMove(QcaBack) -> Backing;
         }
         /// The gripper is sliding back out of its seat.
         Backing {
-            32: mate: Right, along: Low | Lifting, lock: Locked           => DeltaMove(QcaLift) -> Lifting;
-            33: mate: Right, along: Seat | Sliding, lock: Locked          => Fail(NoEffect);
+            29: mate: Right, along: Low | Lifting, lock: Locked           => DeltaMove(QcaLift) -> Lifting;
+            30: mate: Right, along: Seat | Sliding, lock: Locked          => Fail(NoEffect);
         }
         any {
-            34: mate: Right, along: Seat, lock: Unlocked | Between        => Lock -> Locking;
-            35: mate: Right, along: Seat | Sliding, lock: Locked, shut: Open => CloseForHolster -> Closing;
-            36: mate: Right, along: Seat | Sliding, lock: Locked           => DeltaMove(QcaBack) -> Backing;
+            31: mate: Right, along: Seat, lock: Unlocked | Between        => Lock -> Locking;
+            32: mate: Right, along: Seat | Sliding, lock: Locked, shut: Open => CloseForHolster -> Closing;
+            33: mate: Right, along: Seat | Sliding, lock: Locked           => DeltaMove(QcaBack) -> Backing;
         }
         /// It is being lifted a distance out of the holster.
         Lifting {
-            37: mate: Right, along: Lifting | Raising, lock: Locked       => DeltaMove(QcaUp) -> Raising;
-            38: mate: Right, along: Low, lock: Locked                     => Fail(NoEffect);
+            34: mate: Right, along: Lifting | Raising, lock: Locked       => DeltaMove(QcaUp) -> Raising;
         }
         /// It is being lifted completely out of the holster.
         Raising {
-            39: along: Clear, readiness: Uncalibrated                     => Calibrate -> Calibrating;
-            40: mate: Right, along: Low | Lifting | Raising, lock: Locked => Fail(NoEffect);
+            35: along: Clear, readiness: Uncalibrated                     => Calibrate -> Calibrating;
+            36: mate: Right, along: Lifting, lock: Locked                 => Fail(NoEffect);
         }
         any {
-            41: mate: Right, along: Low | Lifting, lock: Locked           => DeltaMove(QcaLift) -> Lifting;
-            42: mate: Right, along: Raising, lock: Locked                 => DeltaMove(QcaUp) -> Raising;
+            37: mate: Right, along: Low | Lifting, lock: Locked           => DeltaMove(QcaLift) -> Lifting;
+            38: mate: Right, along: Raising, lock: Locked                 => DeltaMove(QcaUp) -> Raising;
         }
         /// It is being calibrated.
         Calibrating {
-            43: along: Clear, readiness: Uncalibrated                     => FailGrip;
+            39: along: Clear, readiness: Uncalibrated                     => FailGrip;
         }
         any {
-            44: along: Clear, readiness: Uncalibrated                     => Calibrate -> Calibrating;
-            45: along: Clear, readiness: Ready                            => Stand;
-            46: along: Clear, readiness: Faulty                           => FailGrip;
+            40: along: Clear, readiness: Uncalibrated                     => Calibrate -> Calibrating;
+            41: along: Clear, readiness: Ready                            => Stand;
+            42: along: Clear, readiness: Faulty                           => FailGrip;
         }
     }
 }

@@ -230,6 +230,9 @@ fn an_order_without_effect_ends_the_command() {
         (SEAT, 1, true, 0b1111, "QCA-BACK"),
         (LOW, 1, true, 0b0011, "QCA-LIFT"),
         (RAISED, 1, true, 0, "QCA-UP"),
+        // Two rows that could take turns.
+        (BARE, 0, false, 0b1111, "QCA-"),
+        (LIFTING, 1, true, 0b0011, "QCA-"),
     ] {
         let mut bench = halfway(at, mated, locked, bits);
         bench.spoil(word, Mishap::Stays);

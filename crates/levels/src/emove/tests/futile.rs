@@ -1,7 +1,7 @@
 //! The tables of a gripper change against a world in which no order has an effect (docs/design/recovery.md
 //! "Exchange").
 
-use rcs_core::{handshake::Lower, interface::prim::JoystickGrip};
+use rcs_core::{handshake::Lower, interface::prim::JoystickGrip, table::Decision};
 
 use crate::{
     emove::{
@@ -13,7 +13,7 @@ use crate::{
             qc_detach::{QcDetachStep, qc_detach},
         },
     },
-    execution::Work,
+    execution::{Orders, Work},
 };
 
 /// All that the two tables ask for.
@@ -59,34 +59,27 @@ fn situations() -> impl Iterator<Item = Situation> {
     })
 }
 
-/// The orders that a table gives from its first step until it ends, if nothing changes.
-fn orders<Step: Copy>(first: Step, decide: impl Fn(Step) -> (Action, Step)) -> Vec<Action> {
-    let (mut step, mut orders) = (first, Vec::new());
+/// The orders that a table gives from its first step until it ends, or until EFFECT ends it: the row that ordered
+/// last orders again, and nothing has changed.
+fn orders<Step: Copy>(first: Step, decide: impl Fn(Step) -> Decision<Action, Step>) {
+    let (mut step, mut last) = (first, None);
+    let mut orders = Vec::new();
     loop {
-        let (action, next) = decide(step);
-        let ended = matches!(
-            action,
-            Action::Finish | Action::Stand | Action::Fail(_) | Action::FailRing | Action::FailGrip
-        );
-        orders.push(action);
-        if ended {
-            return orders;
+        let decision = decide(step);
+        let futile = last == Some(decision.row);
+        if futile || !decision.action.is_order() {
+            return;
         }
+        orders.push(decision.action);
         assert!(orders.len() < 12, "no end: {orders:?}");
-        step = next;
+        (step, last) = (decision.next, Some(decision.row));
     }
 }
 
 #[test]
 fn a_gripper_change_ends_in_a_world_that_ignores_every_order() {
     for situation in situations() {
-        orders(QcAttachStep::Start, |step| {
-            let decision = qc_attach(step, &situation);
-            (decision.action, decision.next)
-        });
-        orders(QcDetachStep::Start, |step| {
-            let decision = qc_detach(step, &situation);
-            (decision.action, decision.next)
-        });
+        orders(QcAttachStep::Start, |step| qc_attach(step, &situation));
+        orders(QcDetachStep::Start, |step| qc_detach(step, &situation));
     }
 }

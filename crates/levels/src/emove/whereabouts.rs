@@ -1,0 +1,79 @@
+//! Whether it is known where the robot is, and looking for the location point at which it stands.
+
+use rcs_core::{
+    frame::Frame,
+    handshake::Lower,
+    interface::{
+        emove::{GoneTo, RobotPlace},
+        subtask::LocationKind,
+    },
+    name::Name10,
+    pose::Pose,
+    process::Inputs,
+};
+use taskdata::files::{LocptId, Place, TaskData};
+
+use super::{relative::Relative, route::near, state::State, tables::Whereabouts};
+use crate::places::{named, place_of};
+
+/// The robot is no longer where its last move ended if it is more than this many inches …
+/// (docs/design/motion.md "Where the robot is")
+pub(super) const LOST_INCHES: f64 = 0.5;
+/// … or radians (2 degrees) off.
+pub(super) const LOST_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
+/// Location points that are looked at in a tick to find out where the robot is.
+const SEARCH_PER_TICK: u32 = 64;
+
+impl State {
+    /// Look through some more location points for the one at which the robot stands.
+    pub(super) fn search(&mut self, present: &Frame, data: &TaskData<'_>) {
+        for _ in 0..SEARCH_PER_TICK {
+            let next = LocptId::new(self.searched.saturating_add(1));
+            let Some(locpt) = data.locpt(next) else { return };
+            self.searched = next.number();
+            let place = place_of(LocationKind::Point, next.to_option(), None);
+            let plain = is_plain(&locpt.name, &place, data);
+            if plain && near(&locpt.frame, present, LOST_INCHES, LOST_RADIANS) {
+                self.beliefs.place = Some(RobotPlace {
+                    gone_to: GoneTo::Location,
+                    location: locpt.name,
+                    kind: LocationKind::Point,
+                    record: next.to_option(),
+                    array: None,
+                    pose: Pose::from_frame(present),
+                });
+                (self.beliefs.way, self.away) = (None, false);
+                return;
+            }
+        }
+    }
+
+    /// The place where the robot stands, unless it has been moved away from there. If it is moved back, as by the
+    /// joystick box, it stands there again.
+    pub(super) fn place(&self) -> Option<RobotPlace> {
+        self.beliefs.place.filter(|_| !self.away)
+    }
+
+    /// Is it known where the robot is? A way that it has left says nothing any more, once it is at rest.
+    pub(super) fn whereabouts(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Whereabouts {
+        let prim = &inputs.memory.prim;
+        let prim = self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
+        let moving = matches!(prim, Lower::Pending | Lower::Executing);
+        let on_way = self.beliefs.way.is_some() && (moving || self.on_way(inputs).is_some());
+        let half_way = self.beliefs.exchange.is_some() || self.beliefs.drum.is_some();
+        if self.place().is_some() || half_way || on_way {
+            Whereabouts::Known
+        } else if inputs.data.locpt(LocptId::new(self.searched.saturating_add(1))).is_some() {
+            Whereabouts::Searching
+        } else {
+            Whereabouts::Unknown
+        }
+    }
+}
+
+/// Can a robot that stands at a location point be there as such? Not in a holster, at the tool drum, or at the
+/// pedestal: there it depends on gripper, tool and part how it may leave.
+fn is_plain(name: &Name10, place: &Place, data: &TaskData<'_>) -> bool {
+    let has = |relative: Relative| data.relative_move(&Name10::clipped(relative.text()), place).is_some();
+    !has(Relative::QcaBack) && !has(Relative::InsIn) && name.as_str() != named::PEDESTAL
+}
