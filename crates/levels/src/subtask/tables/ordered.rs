@@ -3,7 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ORDERED: E-move or the pedestal is busy with the last order, or it is done. A failure ends the command.
+    /// ORDERED: E-move or the pedestal is busy with the last order, or it is done. A failure ends the command. A
+    /// pause of both waits for a pedestal that moves; one that is silent cannot be waited for.
     pub ORDERED: fn ordered(super::Orders) -> super::Action or crate::execution::Work {
         1:  ordered: Nothing                                => consult(Over);
         2:  ordered: Emove, emove: Pending | Executing      => consult(Busy);
@@ -15,9 +16,11 @@ decision_table! {
         8:  ordered: Pedestal, pedestal: Faulty             => PassUpPedestal(PedestalError);
         9:  ordered: Pedestal, pedestal: Silent             => PassUpPedestal(PedestalSilent);
         10: ordered: Both, emove: Error | Joystick | Lost   => PassUp;
-        11: ordered: Both, pedestal: Silent                 => PassUpPedestal(PedestalSilent);
-        12: ordered: Both, pedestal: Moving                 => consult(Busy);
-        13: ordered: Both, emove: Pending | Executing       => consult(Busy);
-        14: ordered: Both, emove: Done                      => consult(Over);
+        11: ordered: Both, emove: Pending | Executing       => consult(Busy);
+        12: ordered: Both, emove: Done, pedestal: Moving    => consult(Busy);
+        13: ordered: Both, emove: Done, pedestal: Done      => consult(Over);
+        14: ordered: Both, emove: Done, pedestal: Cannot    => consult(Over);
+        15: ordered: Both, emove: Done, pedestal: Faulty    => consult(Over);
+        16: ordered: Both, emove: Done, pedestal: Silent    => consult(Over);
     }
 }
