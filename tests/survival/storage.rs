@@ -119,7 +119,7 @@ fn a_full_disk_ends_the_log_and_not_the_run() {
     let scratch = Scratch::new("full-disk");
     let ended = Ended::run(&scratch.file(""), "linkbar", &["--ticks", "500", "--log", "small/run.mcap"]);
     assert_eq!(ended.status, Some(0), "the directory of a log is made: {}", ended.said);
-    let mount = "mkdir -p tiny && mount -t tmpfs -o size=256k tmpfs tiny";
+    let mount = "mkdir -p tiny && mount -t tmpfs -o size=512k tmpfs tiny";
     let more = ["--ticks", "2000", "--log", "tiny/run.mcap"];
     let Some(ended) = apart(&scratch.file(""), mount, &more) else {
         eprintln!("no right to mount: a full disk cannot be tried");
