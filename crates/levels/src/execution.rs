@@ -127,9 +127,32 @@ pub struct LastOrder {
 }
 
 /// The actions of a process that commands others.
-pub trait Orders: From<Halting> + From<Futile> {
+pub trait Orders: Sized {
+    /// A pause to the processes below.
+    const STOP: Self;
+    /// Nothing new.
+    const WAIT: Self;
+
+    /// Report an error.
+    fn fail(reason: Reason) -> Self;
+
     /// The action orders something of a process below that changes a state variable when it is carried out.
     fn is_order(&self) -> bool;
+
+    /// What HALT asks for.
+    #[must_use]
+    fn of_halt(halting: Halting) -> Self {
+        match halting {
+            Halting::Stop => Self::STOP,
+            Halting::Wait => Self::WAIT,
+        }
+    }
+
+    /// What EFFECT asks for.
+    #[must_use]
+    fn of_effect(Futile::Fail(reason): Futile) -> Self {
+        Self::fail(reason)
+    }
 }
 
 /// The current command of a process and how far it has come.
@@ -236,7 +259,7 @@ impl Execution {
     ) -> Option<Action> {
         let course = self.course(arrival);
         match self.admit(course, replaced) {
-            Err(halting) => return Some(halting.into()),
+            Err(halting) => return Some(Action::of_halt(halting)),
             Ok(Course::Rest | Course::Refuse) => return None,
             Ok(Course::Begin) => *step = first,
             Ok(Course::Continue) => {}
@@ -265,7 +288,7 @@ impl Execution {
                 choice
             }
             Verdict::Decided(Decision { row, action, .. }) => {
-                Choice { table: EFFECT_NUMBER, row, action: action.into(), next: choice.next }
+                Choice { table: EFFECT_NUMBER, row, action: Action::of_effect(action), next: choice.next }
             }
         }
     }

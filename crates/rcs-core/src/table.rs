@@ -134,6 +134,12 @@ pub struct ActionText {
     pub argument: Option<&'static EnumSchema>,
 }
 
+/// The state variables of a table.
+pub trait Variables {
+    /// The values of all variables as one number: equal numbers are equal situations.
+    fn code(&self) -> u64;
+}
+
 /// A row as text.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Row {

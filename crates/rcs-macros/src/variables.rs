@@ -34,10 +34,10 @@ pub fn derive(input: &DeriveInput) -> Result<TokenStream> {
                 doc: #docs,
                 values: <#types>::ENUM,
             }, )* ];
+        }
 
-            /// The values of all variables as one number: equal numbers are equal situations.
-            #[allow(dead_code, reason = "not every table is asked whether it repeats itself")]
-            pub fn code(&self) -> u64 {
+        impl ::rcs_core::table::Variables for #name {
+            fn code(&self) -> u64 {
                 let code = 0_u64;
                 #( let code = code.wrapping_mul(u64::try_from(<#types>::ALL.len()).unwrap_or(u64::MAX))
                     .wrapping_add(u64::from(self.#idents.code())); )*

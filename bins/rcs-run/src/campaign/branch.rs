@@ -1,4 +1,6 @@
-//! A run that can be forked: controller, cell, line, mailboxes and Data System, without log, clock, network and shared memory.
+//! A run that can be forked: controller, cell, line, mailboxes and Data System, without log, clock, network and
+//! shared memory.
+//!
 //!
 //! A [`Branch`] does in a tick what `rcs-run run` does in fast clock with the simulated robot, in the same order, so that
 //! both have the same digest. A [`Fork`] is what the next tick depends on; any number of branches can go on from it, each

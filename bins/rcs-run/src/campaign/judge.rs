@@ -98,7 +98,8 @@ pub struct Harm {
     pub what: String,
     /// What it is like, without numbers: to be counted.
     pub kind: String,
-    /// A commanded point has caused it, not an arm without pressure, a person at the box or the controller's own travel.
+    /// A commanded point has caused it: not an arm without pressure, a person at the joystick box, or the travel of
+    /// the robot controller to HOME.
     pub commanded: bool,
     /// Which contact it is, if it is one.
     contact: Option<usize>,
@@ -150,7 +151,7 @@ impl Judge {
         }
     }
 
-    /// An arm without pressure or a person has touched something: where parts are is no matter of the controller any more.
+    /// An arm without pressure or a person has touched something: the controller cannot know where parts are then.
     fn is_displaced(&self) -> bool {
         self.harms.iter().any(|harm| !harm.commanded)
     }

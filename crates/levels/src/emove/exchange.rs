@@ -25,6 +25,7 @@ use super::{
     gripper::Gripper,
     relative::Relative,
     robot_place::{gone_to, present_frame, robot_at},
+    route::beside,
     state::State,
     tables::{Along, Shut},
 };
@@ -94,14 +95,6 @@ impl Points {
             }
         }
     }
-}
-
-/// How far a frame is from a straight segment, in.
-fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
-    let (along, offset) = (end.position - start.position, present.position - start.position);
-    let length = along.dot(&along);
-    let share = if length > 0.0 { (along.dot(&offset) / length).clamp(0.0, 1.0) } else { 0.0 };
-    norm(&(offset - along * share))
 }
 
 /// The pose of a command's location.

@@ -51,7 +51,7 @@ pub mod whereabouts;
 use rcs_core::{
     interface::EmoveOutputs,
     process::{Inputs, Process},
-    table::{Table, Verdict},
+    table::{Table, Variables as _, Verdict},
 };
 use taskdata::files::TaskData;
 
@@ -59,7 +59,7 @@ use self::{
     state::State,
     tables::{Action, Seen, Step, Watch, attend::attend},
 };
-use crate::execution::Course;
+use crate::execution::{Course, Orders as _};
 
 /// The E-move process.
 #[derive(Clone, Debug, Default)]
@@ -84,7 +84,7 @@ impl<'d> Process<TaskData<'d>> for Emove {
         let state = &mut self.state;
         let course = state.execution.course(seen.arrival);
         match state.execution.admit(course, &seen.replaced) {
-            Err(halting) => return halting.into(),
+            Err(halting) => return Action::of_halt(halting),
             Ok(Course::Refuse) => return Action::Wait,
             Ok(Course::Rest) => {
                 let watch = Watch { outcome: state.execution.outcome, ..seen.watch };

@@ -9,7 +9,7 @@
 
 use rcs_core::{
     Plain,
-    frame::Frame,
+    frame::{Frame, norm},
     interface::emove::{EmoveCommand, EmoveVerb, GoneTo, Leg as Part, ObjectGrip, RobotPlace},
     pose::Pose,
 };
@@ -182,6 +182,15 @@ pub fn same_location(a: &Place, b: &Place) -> bool {
 pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
     let distance = a.distance(b);
     distance.inches <= inches && distance.radians <= radians
+}
+
+/// How far a frame is from a straight segment, in.
+#[must_use]
+pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
+    let (along, offset) = (end.position - start.position, present.position - start.position);
+    let length = along.dot(&along);
+    let share = if length > 0.0 { (along.dot(&offset) / length).clamp(0.0, 1.0) } else { 0.0 };
+    norm(&(offset - along * share))
 }
 
 impl Route {

@@ -12,7 +12,7 @@
 
 use rcs_core::{
     Plain,
-    frame::{Frame, norm},
+    frame::Frame,
     interface::{
         CommonMemory,
         emove::{Direction, EmoveCommand, GoneTo, Leg as Part, RobotPlace, Way},
@@ -25,7 +25,9 @@ use taskdata::files::{TaskData, TrajParaId};
 
 use super::{
     robot_place::{commanded_pose, place, present_frame},
-    route::{Ahead, Goal, Leg, LegGoal, Planning, Route, THERE_INCHES, THERE_RADIANS, near, same_location},
+    route::{
+        Ahead, Goal, Leg, LegGoal, Planning, Route, THERE_INCHES, THERE_RADIANS, beside, near, same_location,
+    },
     state::State,
     tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
 };
@@ -95,16 +97,12 @@ fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<boo
         Some(point) => route.point(point, data)?,
         None => (way.from.pose.to_frame().ok()?, parameters),
     };
-    let (along, offset) = (end.position - start.position, present.position - start.position);
-    let length = along.dot(&along);
-    let share = if length > 0.0 { (along.dot(&offset) / length).clamp(0.0, 1.0) } else { 0.0 };
-    let beside = norm(&(offset - along * share));
     let cut = f64::from(data.traj_para(parameters)?.brk_dst.max(0)) / 100.0;
     let turn = start.distance(&end).radians;
     let (before, after) = (present.distance(&start).radians, present.distance(&end).radians);
     // On the shorter turn from one to the other, with the same tolerance.
     let turned = before + after <= turn + AWAY_RADIANS;
-    Some(beside <= cut + AWAY_INCHES && turned)
+    Some(beside(present, &start, &end) <= cut + AWAY_INCHES && turned)
 }
 
 /// Does Prim still move the robot for its order, or for the one before? A GO-THRU is done before it is at rest.

@@ -31,7 +31,7 @@ pub(crate) mod tests;
 use rcs_core::{
     interface::SubtaskOutputs,
     process::{Inputs, Process},
-    table::Table,
+    table::{Table, Variables as _},
 };
 use taskdata::files::TaskData;
 

@@ -35,7 +35,7 @@ mod tests;
 use rcs_core::{
     interface::TaskOutputs,
     process::{Inputs, Process},
-    table::{Table, Verdict},
+    table::{Table, Variables as _, Verdict},
 };
 use taskdata::files::TaskData;
 
@@ -48,7 +48,7 @@ use self::{
     },
 };
 use crate::{
-    execution::Course,
+    execution::{Course, Orders as _},
     halt::{BoxState, Replaced},
 };
 
@@ -86,7 +86,7 @@ impl<'d> Process<TaskData<'d>> for Task {
         let manual = state.control == Control::Manual;
         let joystick = if manual { BoxState::On } else { BoxState::Off };
         match state.execution.admit(course, &Replaced { joystick, ..seen.replaced }) {
-            Err(halting) => return (takeover, halting.into()),
+            Err(halting) => return (takeover, Action::of_halt(halting)),
             Ok(Course::Rest | Course::Refuse) => return (takeover, Action::Wait),
             Ok(Course::Begin) => state.step = Step::first(seen.plan.verb),
             Ok(Course::Continue) => {}

@@ -43,7 +43,7 @@ use super::{
 };
 use crate::{
     execution::{Asked, EXECUTE, Orders as Commander, Outcome, Work},
-    halt::{EFFECT, Futile, HALT, Halting, Replaced},
+    halt::{EFFECT, HALT, Replaced},
 };
 
 /// What a new command needs, for [`accept::ACCEPT`].
@@ -266,22 +266,14 @@ pub enum Action {
     PassUp,
 }
 
-impl From<Halting> for Action {
-    fn from(halting: Halting) -> Self {
-        match halting {
-            Halting::Stop => Self::Pause,
-            Halting::Wait => Self::Wait,
-        }
-    }
-}
+impl Commander for Action {
+    const STOP: Self = Self::Pause;
+    const WAIT: Self = Self::Wait;
 
-impl From<Futile> for Action {
-    fn from(Futile::Fail(reason): Futile) -> Self {
+    fn fail(reason: Reason) -> Self {
         Self::Fail(reason)
     }
-}
 
-impl Commander for Action {
     fn is_order(&self) -> bool {
         matches!(
             self,

@@ -347,7 +347,7 @@ fn a_nudge_in_the_corridor_leaves_the_robot_on_its_way() {
         bench.steps(8);
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), end, "{aside} in");
     }
-    // Away, and at a known location: that is where it is, whoever brought it there.
+    // Off its way and at a known location: the search finds it there.
     for by_hand in [true, false] {
         let mut bench = Bench::ready("HOME", 0);
         bench.prim.by_steps = true;

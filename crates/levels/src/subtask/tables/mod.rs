@@ -32,7 +32,7 @@ pub use self::variables::{
 use self::{accept::accept, hindrance::hindrance, ordered::ordered};
 use crate::{
     execution::{Asked, EXECUTE, Orders as Commander, Work},
-    halt::{EFFECT, Futile, HALT, Halting, Replaced},
+    halt::{EFFECT, HALT, Replaced},
     places::Missing,
 };
 
@@ -192,22 +192,14 @@ pub enum Action {
     PassUpPedestal(Reason),
 }
 
-impl From<Halting> for Action {
-    fn from(halting: Halting) -> Self {
-        match halting {
-            Halting::Stop => Self::Pause,
-            Halting::Wait => Self::Wait,
-        }
-    }
-}
+impl Commander for Action {
+    const STOP: Self = Self::Pause;
+    const WAIT: Self = Self::Wait;
 
-impl From<Futile> for Action {
-    fn from(Futile::Fail(reason): Futile) -> Self {
+    fn fail(reason: Reason) -> Self {
         Self::Fail(reason)
     }
-}
 
-impl Commander for Action {
     fn is_order(&self) -> bool {
         !matches!(
             self,
