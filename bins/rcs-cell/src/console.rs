@@ -6,7 +6,7 @@ use plant::{EStop, Key};
 
 /// A line of the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Line {
+pub enum ConsoleCommand {
     /// Do something at the controller.
     Key(Key),
     /// Show everything.
@@ -42,7 +42,7 @@ status                      everything at a glance
 wait SECONDS                wait before the next line (for scripts)
 help, quit";
 
-impl FromStr for Line {
+impl FromStr for ConsoleCommand {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
@@ -104,10 +104,10 @@ fn one_of(word: &str, yes: &str, no: &str) -> Result<bool, String> {
     }
 }
 
-fn wait(seconds: &str) -> Result<Line, String> {
+fn wait(seconds: &str) -> Result<ConsoleCommand, String> {
     match seconds.parse::<f64>() {
         Ok(seconds) if (0.0..=LONGEST_WAIT_S).contains(&seconds) => {
-            Ok(Line::Wait((seconds * 1000.0).round() as u64))
+            Ok(ConsoleCommand::Wait((seconds * 1000.0).round() as u64))
         }
         _ => Err(format!("seconds from 0 to {LONGEST_WAIT_S} were expected, found {seconds}")),
     }
@@ -154,15 +154,15 @@ mod tests {
             for one in synopsis.split(", ") {
                 let one = one.split(['|', '[']).next().unwrap_or_default();
                 let one = one.replace("SECONDS", "1.5");
-                assert!(one.parse::<Line>().is_ok(), "{one}");
+                assert!(one.parse::<ConsoleCommand>().is_ok(), "{one}");
             }
         }
     }
 
     #[test]
     fn what_is_meant_is_found_and_what_is_wrong_is_said() {
-        assert_eq!("  Control POWER on ".parse(), Ok(Line::Key(Key::ControlPower(true))));
-        assert_eq!("align 3".parse(), Ok(Line::Key(Key::Align(Some(3)))));
+        assert_eq!("  Control POWER on ".parse(), Ok(ConsoleCommand::Key(Key::ControlPower(true))));
+        assert_eq!("align 3".parse(), Ok(ConsoleCommand::Key(Key::Align(Some(3)))));
         for key in [
             Key::ControlPower(false),
             Key::Hydraulics(false),
@@ -173,9 +173,9 @@ mod tests {
             Key::Board(false),
             Key::Transmitter(true),
         ] {
-            assert_eq!(key.text().parse(), Ok(Line::Key(key)));
+            assert_eq!(key.text().parse(), Ok(ConsoleCommand::Key(key)));
         }
-        assert_eq!("wait 0.25".parse(), Ok(Line::Wait(250)));
+        assert_eq!("wait 0.25".parse(), Ok(ConsoleCommand::Wait(250)));
         for (wrong, says) in [
             ("align 7", "1 to 6"),
             ("hold maybe", "on or off"),
@@ -187,7 +187,7 @@ mod tests {
             ("start", "no command"),
             ("estop door", "pedestal"),
         ] {
-            let error = wrong.parse::<Line>().expect_err(wrong);
+            let error = wrong.parse::<ConsoleCommand>().expect_err(wrong);
             assert!(error.contains(says), "{wrong}: {error}");
         }
     }

@@ -19,7 +19,7 @@ const PATIENCE_BYTES: u64 = 20;
 
 /// Both directions of the line.
 #[derive(Debug)]
-pub struct Line {
+pub struct SerialLine {
     byte_us: u64,
     rx: VecDeque<(u64, u8)>,
     tx: VecDeque<(u64, u8)>,
@@ -27,7 +27,7 @@ pub struct Line {
     tx_end: u64,
 }
 
-impl Line {
+impl SerialLine {
     /// A line of so many bits a second.
     #[must_use]
     pub fn new(baud: u32) -> Self {
@@ -113,7 +113,7 @@ impl Cadence {
 
     /// When the next step is due, as far as the bytes tell that are on the line now.
     #[must_use]
-    pub fn next(&self, line: &Line) -> u64 {
+    pub fn next(&self, line: &SerialLine) -> u64 {
         let regular = self.last + self.period_us;
         let Some(&(end, _)) = line.rx.back() else { return regular };
         let over = end + PAUSE_BYTES * line.byte_us;
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn bytes_take_their_time_in_both_directions() {
-        let mut line = Line::new(9600);
+        let mut line = SerialLine::new(9600);
         line.host_sent(1000, &[7; 16]);
         assert_eq!(line.arrived(2041).as_slice(), &[]);
         assert_eq!(line.arrived(2042).as_slice(), &[7]);
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn no_more_than_38_bytes_pass_in_40_ms() {
-        let mut line = Line::new(9600);
+        let mut line = SerialLine::new(9600);
         line.host_sent(0, &[1; 500]);
         assert_eq!(line.arrived(40_000).length, 38);
         line.host_sent(0, &[1; 1000]);
@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn every_phase_gives_a_command_a_period() {
         for phase in (0..40_000).step_by(500) {
-            let (mut line, mut cadence) = (Line::new(9600), Cadence::new(40_000, phase));
+            let (mut line, mut cadence) = (SerialLine::new(9600), Cadence::new(40_000, phase));
             let (mut sent, mut taken, mut acknowledged) = (0, 0, true);
             for tick in 0..100 {
                 let (now, end) = (tick * 40_000, (tick + 1) * 40_000);
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn a_frame_without_end_does_not_stop_the_steps() {
-        let (mut line, mut cadence) = (Line::new(9600), Cadence::new(40_000, 0));
+        let (mut line, mut cadence) = (SerialLine::new(9600), Cadence::new(40_000, 0));
         for now in (0..1_000_000).step_by(1000) {
             line.host_sent(now, &[1, 2]);
             if cadence.next(&line) <= now {

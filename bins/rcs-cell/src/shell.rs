@@ -26,7 +26,7 @@ use crate::{
     auto::Operator,
     cli::Cli,
     console::{self, Lines},
-    line::{Cadence, Line},
+    line::{Cadence, SerialLine},
     pty::{Pty, PtyError},
 };
 
@@ -54,7 +54,7 @@ pub struct Shell {
     stop: Arc<AtomicBool>,
     pty: Pty,
     host: bool,
-    line: Line,
+    line: SerialLine,
     faults: Option<Injector>,
     /// Steps of the controller: the ticks of the fault plan.
     tick: Tick,
@@ -80,7 +80,7 @@ impl Shell {
             stop,
             pty,
             host: false,
-            line: Line::new(BAUD),
+            line: SerialLine::new(BAUD),
             faults: plan.map(Injector::new),
             tick: Tick::BEFORE_START,
             cadence: Cadence::new(cli.period.period_us(), 0),
@@ -191,11 +191,13 @@ impl Shell {
             let Some(text) = self.waiting.pop_front() else { break };
             match text.parse() {
                 Err(error) => self.say(&format!("error: {error}"))?,
-                Ok(console::Line::Quit) => return Ok(true),
-                Ok(console::Line::Help) => self.say(console::HELP)?,
-                Ok(console::Line::Status) => self.status()?,
-                Ok(console::Line::Wait(milliseconds)) => self.wait_until = self.now() + milliseconds * 1000,
-                Ok(console::Line::Key(key)) => {
+                Ok(console::ConsoleCommand::Quit) => return Ok(true),
+                Ok(console::ConsoleCommand::Help) => self.say(console::HELP)?,
+                Ok(console::ConsoleCommand::Status) => self.status()?,
+                Ok(console::ConsoleCommand::Wait(milliseconds)) => {
+                    self.wait_until = self.now() + milliseconds * 1000
+                }
+                Ok(console::ConsoleCommand::Key(key)) => {
                     if self.operator.step_back() {
                         self.say("[auto] steps back: the console is yours")?;
                     }

@@ -16,7 +16,7 @@ use std::{
 use rcs_core::tick::Tick;
 use record::{Options, ReplayError, ReplayReport};
 use serde::Serialize;
-use taskdata::load::{Report, Store};
+use taskdata::load::{Diagnostics, Store};
 
 use crate::{Answer, DIFFERENT, Error, UNUSABLE, print};
 
@@ -96,7 +96,7 @@ impl OneLog {
 pub fn replay(arguments: &Arguments) -> Result<ExitCode, Error> {
     let data = arguments.data.as_deref().map(|data| {
         let unusable =
-            |report: Box<Report>| Error::Data { path: data.to_owned(), report: report.render(false) };
+            |report: Box<Diagnostics>| Error::Data { path: data.to_owned(), report: report.render(false) };
         Store::load(data).map(|(store, _)| store).map_err(unusable)
     });
     let options =

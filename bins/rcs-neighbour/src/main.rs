@@ -19,7 +19,7 @@ use neighbours::{
     },
 };
 use plant::description::DescriptionError;
-use taskdata::load::Report;
+use taskdata::load::Diagnostics;
 
 use crate::cli::{Cli, Command, ControllerArguments};
 
@@ -63,7 +63,7 @@ enum Error {
         /// Which.
         what: String,
         /// All that was found.
-        report: Box<Report>,
+        report: Box<Diagnostics>,
     },
     /// The job came to nothing.
     #[error("{0}")]

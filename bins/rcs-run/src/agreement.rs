@@ -10,15 +10,15 @@ use rcs_core::name::Name16;
 use taskdata::{
     files::TaskData,
     load::{
-        Job, Report, Source, Step, Store, job::JobLine, names::nearest, places::Places, report::Problems,
-        source::At,
+        Diagnostics, Job, Source, Step, Store, job::JobLine, names::nearest, places::Places,
+        report::Problems, source::At,
     },
 };
 
 use crate::{check::at, run::workstation::orders};
 
 /// What the lines `**` of a job ask of a cell that does not have it.
-pub fn of_job(job: &Job, cell: &CellDescription, path: &Path) -> Report {
+pub fn of_job(job: &Job, cell: &CellDescription, path: &Path) -> Diagnostics {
     let mut problems = Problems::default();
     for line in &job.steps {
         let (Step::Workstation(action) | Step::After { action, .. }) = &line.step else { continue };
@@ -32,7 +32,7 @@ pub fn of_job(job: &Job, cell: &CellDescription, path: &Path) -> Report {
             _ => problems.help(format!("what the cell has stands in {}", path.display())),
         }
     }
-    Report::new(problems, Places::in_lines(std::slice::from_ref(job.source())), 0, Vec::new())
+    Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(job.source())), 0, Vec::new())
 }
 
 /// Where a word of an action stands; its line if it is not in it.
@@ -50,13 +50,13 @@ fn place(source: &Source, line: &JobLine, word: Option<&str>) -> At {
 }
 
 /// What of the names in a cell description the task data do not have: errors for locations, warnings for what no job need use.
-pub fn of_cell(source: Source, cell: &CellDescription, store: &Store) -> Report {
+pub fn of_cell(source: Source, cell: &CellDescription, store: &Store) -> Diagnostics {
     let mut names = Names { text: &source.text, data: store.view(), problems: Problems::default() };
     names.locations(cell);
     names.sectors(cell);
     names.objects(cell);
     let problems = names.problems;
-    Report::new(problems, Places::in_lines(&[source]), 0, Vec::new())
+    Diagnostics::new(problems, Places::in_lines(&[source]), 0, Vec::new())
 }
 
 /// Looks up the names of a cell description.

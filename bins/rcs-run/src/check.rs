@@ -8,11 +8,11 @@ use std::{
 
 use plant::{
     Cell, CellDescription,
-    description::{DescriptionError, Place},
+    description::{DescriptionError, TextSpan},
 };
 use serde::Serialize;
 use taskdata::load::{
-    Diagnostic, Job, Report, Severity, Source, Store, places::Places, report::Problems, source::At,
+    Diagnostic, Diagnostics, Job, Severity, Source, Store, places::Places, report::Problems, source::At,
 };
 
 use crate::{
@@ -126,13 +126,13 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
 }
 
 /// The cell of a description, and what is wrong with that, by itself and beside the task data.
-fn cell(path: &Path, store: Option<&Store>) -> (Option<Cell>, Report) {
+fn cell(path: &Path, store: Option<&Store>) -> (Option<Cell>, Diagnostics) {
     let mut problems = Problems::default();
     let text = match fs::read_to_string(path) {
         Ok(text) => text,
         Err(error) => {
             problems.unreadable(&path.display().to_string(), &error);
-            return (None, Report::new(problems, Places::in_lines(&[]), 0, Vec::new()));
+            return (None, Diagnostics::new(problems, Places::in_lines(&[]), 0, Vec::new()));
         }
     };
     let description = match CellDescription::from_toml(&text) {
@@ -144,7 +144,7 @@ fn cell(path: &Path, store: Option<&Store>) -> (Option<Cell>, Report) {
         problems.general("cell", error.to_string());
     }
     let source = source(text);
-    let report = Report::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new());
+    let report = Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new());
     let report = match store {
         Some(store) => report.with(agreement::of_cell(source, &description, store)),
         None => report,
@@ -157,7 +157,7 @@ pub fn source(text: String) -> Source {
 }
 
 /// The faults of a cell description, told as those of task data are.
-pub fn cell_report(text: String, error: &DescriptionError) -> Report {
+pub fn cell_report(text: String, error: &DescriptionError) -> Diagnostics {
     let mut problems = Problems::default();
     match error {
         DescriptionError::Faults(faults) => {
@@ -177,11 +177,11 @@ pub fn cell_report(text: String, error: &DescriptionError) -> Report {
         }
         DescriptionError::Unreadable { .. } => problems.general("file", error.to_string()),
     }
-    Report::new(problems, Places::in_lines(&[source(text)]), 0, Vec::new())
+    Diagnostics::new(problems, Places::in_lines(&[source(text)]), 0, Vec::new())
 }
 
 /// A piece of a file without blocks.
-pub fn at(place: &Place) -> At {
+pub fn at(place: &TextSpan) -> At {
     let small = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
     At { source: 0, start: small(place.start), length: small(place.length) }
 }
@@ -218,7 +218,7 @@ fn finding(diagnostic: &Diagnostic) -> Finding {
     }
 }
 
-fn print(reports: &[(String, Report)]) {
+fn print(reports: &[(String, Diagnostics)]) {
     use std::io::IsTerminal as _;
     let graphical = io::stdout().is_terminal();
     for (what, report) in reports {

@@ -13,7 +13,7 @@ use neighbours::{
 };
 use plant::{CellError, fault::text::FaultFileError};
 use record::RecordError;
-use taskdata::load::Report;
+use taskdata::load::Diagnostics;
 
 /// Exit status of a job that failed.
 pub const FAILED: u8 = 1;
@@ -34,7 +34,7 @@ pub enum Error {
         /// Which.
         what: String,
         /// All that was found.
-        report: Box<Report>,
+        report: Box<Diagnostics>,
     },
     /// A command cannot be explained.
     #[error("nothing can be explained: {0}")]
@@ -145,7 +145,7 @@ impl Error {
     }
 }
 
-fn count(report: &Report) -> String {
+fn count(report: &Diagnostics) -> String {
     match report.errors().count() {
         1 => "1 error".to_owned(),
         count => format!("{count} errors"),

@@ -65,7 +65,7 @@ pub struct Step {
 }
 
 /// A straight line of the tool.
-struct Line<'a> {
+struct StraightLine<'a> {
     start: Frame,
     way: Vector,
     turn: Vector,
@@ -74,7 +74,7 @@ struct Line<'a> {
     from: &'a Plate,
 }
 
-impl Line<'_> {
+impl StraightLine<'_> {
     /// The words at a fraction of the way, and the tool frame that they are rounded from.
     fn at(&self, fraction: f64) -> Result<(Plate, Frame), Error> {
         let tool = if fraction >= 1.0 {
@@ -106,7 +106,7 @@ pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result
         // What the words round away at the pole can be a whole turn of D: there they say how the tool is turned.
         start.rotation = from.plate.to_frame().rotation;
     }
-    let line = Line {
+    let line = StraightLine {
         way: goal.position - start.position,
         turn: rotation_vector(&(goal.rotation * start.rotation.inverse())),
         start,
@@ -133,7 +133,7 @@ pub fn step(from: &Position, goal: &Frame, arm: &Arm, limits: &Limits) -> Result
 
 /// At the pole, and D more than `near` (0.01 degree) from the direction in which the line leaves it: the position with D and
 /// R turned.
-fn turn_at_the_pole(line: &Line<'_>, limits: &Limits, near: i32) -> Result<Option<Position>, Error> {
+fn turn_at_the_pole(line: &StraightLine<'_>, limits: &Limits, near: i32) -> Result<Option<Position>, Error> {
     let [.., d, e, r] = line.from.words;
     let Some((pole, sense)) = pole_near(e) else { return Ok(None) };
     let [.., way_out, _, _] = way_out(line)?.words;
@@ -163,7 +163,7 @@ fn pole_near(e: i16) -> Option<(i16, i32)> {
 }
 
 /// The first position on the line, of those at doubling distances, that is off the pole; the goal if none is.
-fn way_out(line: &Line<'_>) -> Result<Plate, Error> {
+fn way_out(line: &StraightLine<'_>) -> Result<Plate, Error> {
     let mut fraction = libm::ldexp(1.0, -20);
     loop {
         let (plate, _) = line.at(fraction)?;

@@ -19,7 +19,7 @@ use executive::{
     alloc::Counting,
     boards::{
         Board, Conductor, Fingerprint, Lost, Member, MemberError,
-        conductor::{How, News},
+        conductor::{BoardEvent, How},
         member::MemberEnd,
         pulse::RunCard,
     },
@@ -185,8 +185,8 @@ fn who_is_missing_is_said() {
             board(scope, &name, b, &stop);
         }
         let mut absent = Vec::new();
-        let error = conductor.gather(PATIENCE, &stop, |news, missing| {
-            assert!(matches!(news, News::Came { .. }), "{news:?}");
+        let error = conductor.gather(PATIENCE, &stop, |event, missing| {
+            assert!(matches!(event, BoardEvent::Came { .. }), "{event:?}");
             absent = missing.to_vec();
             // Who waits knows who is missing; that is enough here.
             stop.store(missing == [Board::Six], Ordering::Relaxed);

@@ -26,7 +26,7 @@ use reading::Document;
 
 pub use contact::{Kind, Pattern, Permit, Permits, commands, known};
 pub(crate) use fault::nearest;
-pub use fault::{Fault, Faults, Place};
+pub use fault::{Fault, Faults, TextSpan};
 pub use hydraulics::{Actuators, Hydraulics};
 pub use sensing::SensorModels;
 pub use tooling::{Drum, ForceGages, Holsters, Mounted, Plate, Points, QuickChange};
@@ -497,9 +497,9 @@ impl CellDescription {
     /// Where an entry stands in the text of a description, by the way to it: `gripper.parts.body[0]`; if it is not there, the
     /// nearest table around it.
     #[must_use]
-    pub fn place(text: &str, entry: &str) -> Place {
+    pub fn place(text: &str, entry: &str) -> TextSpan {
         let Range { start, end } = Document::parse(text).0.place(entry);
-        Place::of(text, start, end)
+        TextSpan::of(text, start, end)
     }
 
     /// Read a description from a file and check it.

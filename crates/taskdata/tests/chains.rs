@@ -10,7 +10,7 @@ use rcs_core::{
 };
 use taskdata::{
     files::{Location, SensorSource, TaskData},
-    load::{Report, Store},
+    load::{Diagnostics, Store},
 };
 
 fn data_directory() -> &'static Path {
@@ -18,7 +18,7 @@ fn data_directory() -> &'static Path {
 }
 
 fn load() -> Store {
-    let loaded: Result<(Store, Report), _> = Store::load(data_directory());
+    let loaded: Result<(Store, Diagnostics), _> = Store::load(data_directory());
     loaded.unwrap_or_else(|report| panic!("{report}")).0
 }
 

@@ -5,14 +5,14 @@ use std::path::Path;
 use rcs_core::{frame::Frame, name::Name16, units::radians};
 use taskdata::{
     files::{Location, Target, TaskData},
-    load::{Job, Report, Step, Store, Workstation},
+    load::{Diagnostics, Job, Step, Store, Workstation},
 };
 
 fn data_directory() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))
 }
 
-fn load() -> (Store, Report) {
+fn load() -> (Store, Diagnostics) {
     Store::load(data_directory()).unwrap_or_else(|report| panic!("{report}"))
 }
 

@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use taskdata::load::{Job, Report, Source, Store, source::read_blocks_under};
+use taskdata::load::{Diagnostics, Job, Source, Store, source::read_blocks_under};
 
 fn sources() -> Vec<Source> {
     read_blocks_under(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/sound"))).unwrap()
@@ -24,7 +24,7 @@ fn said(file: &str, from: &str, to: &str) -> String {
     shown(&report)
 }
 
-fn shown(report: &Report) -> String {
+fn shown(report: &Diagnostics) -> String {
     let text = report.to_string();
     let usual = text.find("warning: poses.blk: block 619");
     let mut lines: Vec<&str> = match usual {

@@ -12,7 +12,7 @@ use crate::story::Moment;
 
 /// A command from the tick on in which it was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Command {
+pub struct Commanded {
     /// The tick; the receiver sees it in the next one, Task in this one.
     pub tick: u64,
     /// Its number.
@@ -34,7 +34,7 @@ pub struct Fired {
 
 /// A report from the tick on in which it was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Report {
+pub struct Reported {
     /// The tick.
     pub tick: u64,
     /// `executing`, `done`, `not-detected` ...
@@ -46,9 +46,9 @@ pub struct Report {
 /// The history of a run.
 #[derive(Default)]
 pub struct History {
-    commands: [Vec<Command>; PROCESS_COUNT],
+    commands: [Vec<Commanded>; PROCESS_COUNT],
     rows: [Vec<Fired>; PROCESS_COUNT],
-    reports: [Vec<Report>; PROCESS_COUNT],
+    reports: [Vec<Reported>; PROCESS_COUNT],
 }
 
 impl History {
@@ -66,19 +66,19 @@ impl History {
             let (report, reason) = (said.report, said.fault.text());
             let reports = &mut self.reports[at];
             if reports.last().is_none_or(|last| (last.report, last.reason) != (report, reason)) {
-                reports.push(Report { tick, report, reason });
+                reports.push(Reported { tick, report, reason });
             }
             let number = moment.after.command_number(process).unwrap_or(moment.external.hws.number);
             let commands = &mut self.commands[at];
             if number != commands.last().map_or(0, |last| last.number) {
                 let text = failure::command(process, &moment.external.hws, &moment.after);
-                commands.push(Command { tick, number, text });
+                commands.push(Commanded { tick, number, text });
             }
         }
     }
 
     /// The command that a process had in a tick.
-    pub fn command(&self, process: ProcessId, tick: u64) -> Option<&Command> {
+    pub fn command(&self, process: ProcessId, tick: u64) -> Option<&Commanded> {
         // Every process but Task reads what was written a tick before.
         let written = if process == ProcessId::Task { tick } else { tick.saturating_sub(1) };
         latest(&self.commands[process.position()], written, |command| command.tick)
@@ -90,7 +90,7 @@ impl History {
     }
 
     /// What a process reported in a tick, and since when.
-    pub fn report(&self, process: ProcessId, tick: u64) -> Option<&Report> {
+    pub fn report(&self, process: ProcessId, tick: u64) -> Option<&Reported> {
         latest(&self.reports[process.position()], tick, |report| report.tick)
     }
 }

@@ -84,13 +84,13 @@ impl Commander for Hwsc {
 
 /// The line to the robot controller.
 #[derive(Clone, Copy, Debug, Default)]
-struct Line {
+struct RobotLine {
     injector: Option<Injector>,
     /// The next answer suffers this.
     armed: Option<FaultKind>,
 }
 
-impl Line {
+impl RobotLine {
     fn advance(&mut self, tick: Tick, cell: &mut Cell, outputs: &DeviceOutputs) -> DeviceInputs {
         let Some(injector) = &mut self.injector else {
             let mut inputs = cell.step(outputs);
@@ -136,7 +136,7 @@ struct Control {
     command_box: Mailbox,
     check: ContactCheck,
     inputs: DeviceInputs,
-    line: Line,
+    line: RobotLine,
     /// Generation of the task data, and how many were asked for.
     generation: u32,
     asked: Vec<u32>,
@@ -181,7 +181,7 @@ impl<'f> Branch<'f> {
             command_box: Mailbox::initialized(HWSC_COMMAND),
             check: ContactCheck::new(facility.description.contact.clone()),
             inputs: cell.inputs(),
-            line: Line::default(),
+            line: RobotLine::default(),
             generation: 0,
             asked: Vec::new(),
             told: Vec::new(),

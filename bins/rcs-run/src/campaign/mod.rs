@@ -12,8 +12,8 @@
 
 mod arguments;
 mod branch;
+mod harm;
 mod interruption;
-mod judge;
 mod operator;
 mod parent;
 mod pool;
@@ -36,8 +36,8 @@ use self::{
     branch::Facility,
     interruption::Kind,
     parent::{Parent, Ticks},
-    report::Report,
-    trial::{Judgement, Procedure, Verdict},
+    report::CampaignReport,
+    trial::{BranchResult, Procedure, Verdict},
 };
 use crate::{
     error::Error,
@@ -65,28 +65,25 @@ pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
     if let ([tick], [kind], false) = (&forks[..], &kinds[..], arguments.json) {
         let fork = pool::fork_at(&facility, *tick)?;
         let mut story = story::Story::new(*tick, arguments.around);
-        let judgement = trial::run(&facility, &parent, &fork, kind, procedure, &mut story)?;
-        print(&story.told(&judgement))?;
+        let result = trial::run(&facility, &parent, &fork, kind, procedure, &mut story)?;
+        print(&story.told(&result))?;
         return Ok(ExitCode::SUCCESS);
     }
     let bar = bar(forks.len() * kinds.len());
-    let done = |judgement: &Judgement| {
+    let done = |result: &BranchResult| {
         if let Some(bar) = &bar {
             bar.inc(1);
-            if judgement.verdict == Verdict::Hurt {
-                bar.println(format!(
-                    "hurt: {} at {}: {}",
-                    judgement.interruption, judgement.at, judgement.detail
-                ));
+            if result.verdict == Verdict::Hurt {
+                bar.println(format!("hurt: {} at {}: {}", result.interruption, result.at, result.detail));
             }
         }
     };
     let threads = usize::from(arguments.threads);
-    let judgements = pool::run(&facility, &parent, &forks, &kinds, procedure, threads, &done)?;
+    let results = pool::run(&facility, &parent, &forks, &kinds, procedure, threads, &done)?;
     if let Some(bar) = &bar {
         bar.finish_and_clear();
     }
-    let report = Report::new(&facility.job.name, &parent, arguments, &judgements);
+    let report = CampaignReport::new(&facility.job.name, &parent, arguments, &results);
     if let Some(path) = &arguments.markdown {
         let text = report.markdown();
         fs::write(path, text).map_err(|source| Error::Write { path: path.clone(), source })?;

@@ -7,7 +7,7 @@ use rcs_core::{interface::CommonMemory, name::Name16, tick::Tick};
 
 use super::{
     branch::{Branch, Facility},
-    judge::World,
+    harm::World,
 };
 use crate::error::Error;
 

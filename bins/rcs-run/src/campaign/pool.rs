@@ -7,14 +7,14 @@ use super::{
     branch::{Branch, Facility, Fork},
     interruption::Kind,
     parent::{Parent, emulator},
-    trial::{self, Judgement, Nobody, Procedure},
+    trial::{self, BranchResult, NoObserver, Procedure},
 };
 use crate::error::Error;
 
 /// A state, and what interrupts it.
 type Work = (Arc<Fork>, usize);
 
-/// Fork the job after each of `forks`, and run a branch for each kind of interruption. `done` is told of each judgement as it comes.
+/// Fork the job after each of `forks`, and run a branch for each kind of interruption. `done` is told of each result as it comes.
 ///
 /// # Errors
 /// [`Error`] if the run cannot be forked.
@@ -25,9 +25,9 @@ pub fn run(
     kinds: &[Kind],
     procedure: Procedure,
     threads: usize,
-    done: &(impl Fn(&Judgement) + Sync),
-) -> Result<Vec<Judgement>, Error> {
-    let judgements = Mutex::new(Vec::with_capacity(forks.len() * kinds.len()));
+    done: &(impl Fn(&BranchResult) + Sync),
+) -> Result<Vec<BranchResult>, Error> {
+    let results = Mutex::new(Vec::with_capacity(forks.len() * kinds.len()));
     // A branch takes longer than a fork: what waits is bounded.
     let (send, receive) = mpsc::sync_channel::<Work>(2 * threads);
     let receive = Mutex::new(receive);
@@ -41,12 +41,12 @@ pub fn run(
                         if outcome.is_err() {
                             continue;
                         }
-                        match trial::run(facility, parent, &fork, &kinds[kind], procedure, &mut Nobody) {
+                        match trial::run(facility, parent, &fork, &kinds[kind], procedure, &mut NoObserver) {
                             Err(error) => outcome = Err(error),
-                            Ok(judgement) => {
-                                done(&judgement);
-                                if let Ok(mut judgements) = judgements.lock() {
-                                    judgements.push((fork_order(&judgement, kind), judgement));
+                            Ok(result) => {
+                                done(&result);
+                                if let Ok(mut results) = results.lock() {
+                                    results.push((fork_order(&result, kind), result));
                                 }
                             }
                         }
@@ -65,9 +65,9 @@ pub fn run(
         worked.and(forked)
     });
     outcome?;
-    let mut judgements = judgements.into_inner().unwrap_or_default();
-    judgements.sort_by_key(|(order, _)| *order);
-    Ok(judgements.into_iter().map(|(_, judgement)| judgement).collect())
+    let mut results = results.into_inner().unwrap_or_default();
+    results.sort_by_key(|(order, _)| *order);
+    Ok(results.into_iter().map(|(_, result)| result).collect())
 }
 
 /// The next state to interrupt; none if there will be none.
@@ -76,8 +76,8 @@ fn next(receive: &Mutex<mpsc::Receiver<Work>>) -> Option<Work> {
 }
 
 /// Judgements stand in the order of their ticks, whichever thread was first.
-const fn fork_order(judgement: &Judgement, kind: usize) -> (usize, u64) {
-    (kind, judgement.at)
+const fn fork_order(result: &BranchResult, kind: usize) -> (usize, u64) {
+    (kind, result.at)
 }
 
 fn fork_all(

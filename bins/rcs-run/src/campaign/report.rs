@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::{
     arguments::CampaignArguments,
     parent::Parent,
-    trial::{Judgement, Verdict},
+    trial::{BranchResult, Verdict},
 };
 use crate::error::Error;
 
@@ -28,10 +28,10 @@ struct Row {
 }
 
 impl Row {
-    fn add(&mut self, judgement: &Judgement) {
+    fn add(&mut self, result: &BranchResult) {
         self.branches += 1;
-        self.without_command += usize::from(!judgement.met_command);
-        match judgement.verdict {
+        self.without_command += usize::from(!result.met_command);
+        match result.verdict {
             Verdict::Done => self.done += 1,
             Verdict::Stranded => self.stranded += 1,
             Verdict::Apart => self.apart += 1,
@@ -46,18 +46,18 @@ impl Row {
 }
 
 /// What branches are counted by: of one that is stranded, who failed in which command and in which row.
-fn cause(judgement: &Judgement) -> &str {
-    let known = (judgement.verdict == Verdict::Stranded)
-        .then(|| judgement.detail.strip_prefix("tick ")?.split_once(": "))
+fn cause(result: &BranchResult) -> &str {
+    let known = (result.verdict == Verdict::Stranded)
+        .then(|| result.detail.strip_prefix("tick ")?.split_once(": "))
         .flatten();
-    known.map_or(&judgement.reason, |(_, cause)| cause)
+    known.map_or(&result.reason, |(_, cause)| cause)
 }
 
 /// A campaign that is over.
-pub struct Report<'a> {
+pub struct CampaignReport<'a> {
     job: &'a str,
     parent: &'a Parent,
-    judgements: &'a [Judgement],
+    results: &'a [BranchResult],
     rows: Vec<Row>,
     command: String,
 }
@@ -69,29 +69,29 @@ struct Json<'a> {
     ticks: u64,
     digest: &'a str,
     rows: &'a [Row],
-    branches: &'a [Judgement],
+    branches: &'a [BranchResult],
 }
 
-impl<'a> Report<'a> {
+impl<'a> CampaignReport<'a> {
     /// The report on these branches, which stand in the order of their interruptions.
     #[must_use]
     pub fn new(
         job: &'a str,
         parent: &'a Parent,
         arguments: &CampaignArguments,
-        judgements: &'a [Judgement],
+        results: &'a [BranchResult],
     ) -> Self {
         let mut rows: Vec<Row> = Vec::new();
-        for judgement in judgements {
-            if rows.last().is_none_or(|row| row.interruption != judgement.interruption) {
-                rows.push(Row { interruption: judgement.interruption.clone(), ..Row::default() });
+        for result in results {
+            if rows.last().is_none_or(|row| row.interruption != result.interruption) {
+                rows.push(Row { interruption: result.interruption.clone(), ..Row::default() });
             }
             if let Some(row) = rows.last_mut() {
-                row.add(judgement);
+                row.add(result);
             }
         }
         let command = format!("rcs-run campaign {} --seed {}", arguments.job, arguments.seed);
-        Self { job, parent, judgements, rows, command }
+        Self { job, parent, results, rows, command }
     }
 
     /// As one JSON object.
@@ -100,7 +100,7 @@ impl<'a> Report<'a> {
     /// [`Error::Output`] if it cannot be written.
     pub fn json(&self) -> Result<String, Error> {
         let Parent { ticks, digest, .. } = self.parent;
-        let (rows, branches) = (&self.rows, self.judgements);
+        let (rows, branches) = (&self.rows, self.results);
         let json = Json { job: self.job, ticks: *ticks, digest, rows, branches };
         Ok(serde_json::to_string(&json).map_err(io::Error::from)? + "\n")
     }
@@ -157,8 +157,8 @@ impl<'a> Report<'a> {
     /// How often each reason of a verdict was given, the most frequent first.
     fn totals(&self, verdict: Verdict) -> String {
         let mut totals: BTreeMap<&str, usize> = BTreeMap::new();
-        for judgement in self.judgements.iter().filter(|judgement| judgement.verdict == verdict) {
-            *totals.entry(&judgement.reason).or_default() += 1;
+        for result in self.results.iter().filter(|result| result.verdict == verdict) {
+            *totals.entry(&result.reason).or_default() += 1;
         }
         let mut totals: Vec<_> = totals.into_iter().collect();
         totals.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
@@ -167,9 +167,9 @@ impl<'a> Report<'a> {
 
     /// The branches of a verdict, by cause; the most frequent one first.
     fn list(&self, text: &mut String, verdict: Verdict, title: &str) {
-        let mut reasons: BTreeMap<&str, Vec<&Judgement>> = BTreeMap::new();
-        for judgement in self.judgements.iter().filter(|judgement| judgement.verdict == verdict) {
-            reasons.entry(cause(judgement)).or_default().push(judgement);
+        let mut reasons: BTreeMap<&str, Vec<&BranchResult>> = BTreeMap::new();
+        for result in self.results.iter().filter(|result| result.verdict == verdict) {
+            reasons.entry(cause(result)).or_default().push(result);
         }
         let mut reasons: Vec<_> = reasons.into_iter().collect();
         reasons.sort_by_key(|(_, branches)| std::cmp::Reverse(branches.len()));
@@ -182,7 +182,7 @@ impl<'a> Report<'a> {
         for (reason, branches) in reasons {
             let _ = writeln!(text, "{:>6}  {reason}", branches.len());
             for branch in branches.iter().take(LISTED) {
-                let Judgement { at, interruption, line, detail, .. } = branch;
+                let BranchResult { at, interruption, line, detail, .. } = branch;
                 let command = &self.command;
                 let _ = writeln!(text, "        {command} --at {at} --interrupt {interruption}  ({line})");
                 if !detail.ends_with(reason) {

@@ -8,7 +8,7 @@ use rcs_core::{interface::Decided, tick::Tick};
 
 use super::{
     branch::Branch,
-    trial::{Judgement, Observer},
+    trial::{BranchResult, Observer},
 };
 
 /// What is said of a process.
@@ -38,10 +38,10 @@ impl Story {
 
     /// The whole story.
     #[must_use]
-    pub fn told(mut self, judgement: &Judgement) -> String {
-        let Judgement { at, interruption, verdict, detail, line, until, .. } = judgement;
+    pub fn told(mut self, result: &BranchResult) -> String {
+        let BranchResult { at, interruption, verdict, detail, line, until, .. } = result;
         let mut head = format!("{interruption} after tick {at}, in `{line}`\n");
-        for doing in &judgement.doing {
+        for doing in &result.doing {
             let _ = writeln!(head, "    {doing}");
         }
         let _ = writeln!(
@@ -49,7 +49,7 @@ impl Story {
             "\n{verdict:?} at tick {until}{}{detail}",
             if detail.is_empty() { "" } else { ": " }
         );
-        for ended in &judgement.ended {
+        for ended in &result.ended {
             let _ = writeln!(self.text, "    {ended}");
         }
         head + "\n" + &self.text

@@ -1,4 +1,4 @@
-//! Forks are exact, and the judge finds what is planted. tests/campaign.rs compares a branch with an ordinary run.
+//! Forks are exact, and the monitor finds what is planted. tests/campaign.rs compares a branch with an ordinary run.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use super::{
     operator::Recovery,
     parent::{Parent, Ticks, emulator},
     pool,
-    trial::{self, Judgement, Nobody, Procedure, Until, Verdict},
+    trial::{self, BranchResult, NoObserver, Procedure, Until, Verdict},
 };
 use crate::run::{
     setup::{CellFile, TaskFiles},
@@ -114,23 +114,23 @@ fn empty_move() -> (Facility, Parent, Fork) {
     (facility, parent, fork)
 }
 
-fn judged(facility: &Facility, parent: &Parent, fork: &Fork, text: &str) -> Judgement {
+fn judged(facility: &Facility, parent: &Parent, fork: &Fork, text: &str) -> BranchResult {
     let kind = kind(facility, text);
-    trial::run(facility, parent, fork, &kind, PROCEDURE, &mut Nobody).expect("the fork goes on")
+    trial::run(facility, parent, fork, &kind, PROCEDURE, &mut NoObserver).expect("the fork goes on")
 }
 
 #[test]
 fn an_undisturbed_branch_is_done() {
     let (facility, parent, fork) = empty_move();
-    let judgement = judged(&facility, &parent, &fork, "none");
-    assert_eq!((judgement.verdict, judgement.detail.as_str()), (Verdict::Done, ""));
-    assert_eq!((judgement.at, judgement.until), (120, parent.ticks));
-    assert!(judgement.doing[0].starts_with("Task: MOVE"), "{:?}", judgement.doing);
+    let result = judged(&facility, &parent, &fork, "none");
+    assert_eq!((result.verdict, result.detail.as_str()), (Verdict::Done, ""));
+    assert_eq!((result.at, result.until), (120, parent.ticks));
+    assert!(result.doing[0].starts_with("Task: MOVE"), "{:?}", result.doing);
 }
 
 /// A part in the way of the hand: the contact, the tick and the command are named.
 #[test]
-fn the_judge_finds_a_contact_that_was_planted() {
+fn the_monitor_finds_a_contact_that_was_planted() {
     let (facility, parent, fork) = empty_move();
     let mut branch = Branch::resume(&facility, &fork).expect("the cell can be restored");
     let ahead = {
@@ -143,18 +143,15 @@ fn the_judge_finds_a_contact_that_was_planted() {
     let put = WorkstationAction::Put { part: "LCLEVIS_BH".into(), frame };
     branch.workstation.cell.workstation(&put).expect("there is room for it");
     let planted = branch.fork().expect("the cell can be saved");
-    let judgement = judged(&facility, &parent, &planted, "none");
-    assert_eq!(judgement.verdict, Verdict::Hurt);
-    assert!(
-        judgement.detail.contains("LCLEVIS_BH") && judgement.detail.contains("MOV-TO-LOC"),
-        "{judgement:?}"
-    );
-    assert!(judgement.detail.starts_with("tick 1"), "{judgement:?}");
+    let result = judged(&facility, &parent, &planted, "none");
+    assert_eq!(result.verdict, Verdict::Hurt);
+    assert!(result.detail.contains("LCLEVIS_BH") && result.detail.contains("MOV-TO-LOC"), "{result:?}");
+    assert!(result.detail.starts_with("tick 1"), "{result:?}");
 }
 
 /// A part that stands where no command has put it: every command finishes, and the world is not as they say.
 #[test]
-fn the_judge_finds_a_world_that_is_unlike_what_a_command_says() {
+fn the_monitor_finds_a_world_that_is_unlike_what_a_command_says() {
     let (facility, parent, fork) = empty_move();
     let mut branch = Branch::resume(&facility, &fork).expect("the cell can be restored");
     let place = WorkstationAction::Place {
@@ -165,9 +162,9 @@ fn the_judge_finds_a_world_that_is_unlike_what_a_command_says() {
     };
     branch.workstation.cell.workstation(&place).expect("the tray is empty");
     let planted = branch.fork().expect("the cell can be saved");
-    let judgement = judged(&facility, &parent, &planted, "none");
-    assert_eq!(judgement.verdict, Verdict::Hurt);
-    assert_eq!(judgement.reason, "MOVE is finished, but 1 parts in the cell, not 0");
+    let result = judged(&facility, &parent, &planted, "none");
+    assert_eq!(result.verdict, Verdict::Hurt);
+    assert_eq!(result.reason, "MOVE is finished, but 1 parts in the cell, not 0");
 }
 
 #[test]
@@ -176,9 +173,9 @@ fn all_threads_give_the_same_judgements_in_the_same_order() {
     let kinds: Vec<Kind> = ["pause", "refused", "hold"].map(|text| kind(&facility, text)).into();
     let forks = parent.forks(&Ticks::Every(60));
     let campaign = |threads: usize| {
-        let judgements = pool::run(&facility, &parent, &forks, &kinds, PROCEDURE, threads, &|_| {});
-        let judgements = judgements.expect("the branches can be run");
-        judgements.into_iter().map(|one| (one.interruption, one.at, one.digest)).collect::<Vec<_>>()
+        let results = pool::run(&facility, &parent, &forks, &kinds, PROCEDURE, threads, &|_| {});
+        let results = results.expect("the branches can be run");
+        results.into_iter().map(|one| (one.interruption, one.at, one.digest)).collect::<Vec<_>>()
     };
     let one = campaign(1);
     assert_eq!(one.len(), kinds.len() * forks.len());

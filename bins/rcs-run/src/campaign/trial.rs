@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::{
     branch::{Branch, Facility, Fork},
+    harm::{HarmMonitor, World},
     interruption::Kind,
-    judge::{Judge, World},
     operator::{Operator, Recovery, Then},
     parent::Parent,
 };
@@ -57,7 +57,7 @@ pub enum Verdict {
 
 /// The verdict on a branch.
 #[derive(Clone, Debug, Serialize)]
-pub struct Judgement {
+pub struct BranchResult {
     /// The tick after which it was interrupted.
     pub at: u64,
     /// How.
@@ -90,20 +90,20 @@ pub trait Observer {
     fn say(&mut self, tick: Tick, text: &str);
 }
 
-/// Nobody looks on.
-pub struct Nobody;
+/// NoObserver looks on.
+pub struct NoObserver;
 
-impl Observer for Nobody {
+impl Observer for NoObserver {
     fn tick(&mut self, _: &Branch<'_>) {}
     fn say(&mut self, _: Tick, _: &str) {}
 }
 
-/// A branch with its operator and its judge.
+/// A branch with its operator and the monitor.
 struct Trial<'f, 'p> {
     parent: &'p Parent,
     branch: Branch<'f>,
     operator: Operator<'f>,
-    judge: Judge,
+    monitor: HarmMonitor,
     kind: &'p Kind,
     begun_at: Tick,
     line: usize,
@@ -124,7 +124,7 @@ pub fn run(
     kind: &Kind,
     procedure: Procedure,
     observer: &mut impl Observer,
-) -> Result<Judgement, Error> {
+) -> Result<BranchResult, Error> {
     let branch = Branch::resume(facility, fork)?;
     let at = branch.at();
     let (line, began) = parent.line_at(at);
@@ -143,13 +143,13 @@ pub fn run(
             commands.take(2).last().unwrap_or(usize::MAX)
         }
     };
-    let judge = Judge::from_now(&branch);
+    let monitor = HarmMonitor::from_now(&branch);
     let doing = present(&branch);
     let trial = Trial {
         parent,
         branch,
         operator,
-        judge,
+        monitor,
         kind,
         begun_at: at,
         line,
@@ -178,7 +178,7 @@ fn present(branch: &Branch<'_>) -> Vec<String> {
 }
 
 impl Trial<'_, '_> {
-    fn play(mut self, doing: Vec<String>, observer: &mut impl Observer) -> Judgement {
+    fn play(mut self, doing: Vec<String>, observer: &mut impl Observer) -> BranchResult {
         let mut script = self.kind.script();
         let mut following = self.kind.leaves_command();
         let person = matches!(self.kind, Kind::Nudge | Kind::Away);
@@ -199,10 +199,10 @@ impl Trial<'_, '_> {
             } else {
                 self.branch.tick(&mut Silent);
             }
-            self.judge.look(&self.branch, person && !script.is_over());
+            self.monitor.look(&self.branch, person && !script.is_over());
             observer.tick(&self.branch);
             if let Some(verdict) = self.verdict(observer) {
-                return self.judgement(verdict, doing);
+                return self.result(verdict, doing);
             }
         }
     }
@@ -236,7 +236,7 @@ impl Trial<'_, '_> {
                 reached |= ended.line >= self.goal;
             }
         }
-        let worst = self.judge.worst().map(|harm| (harm.commanded, harm.tick));
+        let worst = self.monitor.worst().map(|harm| (harm.commanded, harm.tick));
         if self.mismatch.is_some() {
             return Some(Verdict::Hurt);
         }
@@ -255,7 +255,7 @@ impl Trial<'_, '_> {
     fn compare(&mut self, line: usize, command: &str) {
         let Some(world) = self.parent.world_after(line) else { return };
         // What has touched something without command may have displaced it.
-        if self.judge.worst().is_some() {
+        if self.monitor.worst().is_some() {
             return;
         }
         if let Some(unlike) = World::of(&self.branch).unlike(world) {
@@ -267,7 +267,7 @@ impl Trial<'_, '_> {
         }
     }
 
-    fn judgement(self, verdict: Verdict, doing: Vec<String>) -> Judgement {
+    fn result(self, verdict: Verdict, doing: Vec<String>) -> BranchResult {
         let (reason, detail) = self.why(verdict);
         let line = match self.line.checked_sub(1) {
             None => "PAUSE".to_owned(),
@@ -280,7 +280,7 @@ impl Trial<'_, '_> {
                 .map_or("the end", |line| line.text.as_str())
                 .to_owned(),
         };
-        Judgement {
+        BranchResult {
             at: self.begun_at.0,
             interruption: self.kind.to_string(),
             verdict,
@@ -305,7 +305,7 @@ impl Trial<'_, '_> {
                 }
                 let stranded =
                     self.operator.stranded().map_or_else(String::new, |why| format!("; stranded: {why}"));
-                self.judge.worst().map_or_else(Default::default, |harm| {
+                self.monitor.worst().map_or_else(Default::default, |harm| {
                     (harm.kind.clone(), format!("tick {}: {}{stranded}", harm.tick.0, harm.what))
                 })
             }

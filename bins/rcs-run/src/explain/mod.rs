@@ -11,7 +11,7 @@ use std::{fmt, io, process::ExitCode};
 
 use rcs_core::{interface::HwsCommand, name::Name16};
 use serde::Serialize;
-use taskdata::load::{Job, Report, Source, Step, Store};
+use taskdata::load::{Diagnostics, Job, Source, Step, Store};
 
 use crate::{
     cli::CheckArguments,
@@ -88,7 +88,7 @@ struct Explanation {
 /// # Errors
 /// A command, a start or task data that cannot be read.
 pub fn explain(arguments: &CheckArguments, text: &str) -> Result<ExitCode, Error> {
-    let unusable = |what: String| move |report: Box<Report>| Error::Data { what, report };
+    let unusable = |what: String| move |report: Box<Diagnostics>| Error::Data { what, report };
     let (store, _) = Store::load(&arguments.data)
         .map_err(unusable(format!("the task data under {}", arguments.data.display())))?;
     let command = command_of(text, &store).map_err(unusable(format!("the command {text}")))?;
@@ -107,7 +107,7 @@ pub fn explain(arguments: &CheckArguments, text: &str) -> Result<ExitCode, Error
 }
 
 /// Read the nine fields, with or without `==`, as a job line.
-fn command_of(text: &str, store: &Store) -> Result<HwsCommand, Box<Report>> {
+fn command_of(text: &str, store: &Store) -> Result<HwsCommand, Box<Diagnostics>> {
     let fields = text.trim_start().trim_start_matches("==");
     let source = Source { name: "command".to_owned(), text: format!("== {fields}\n").into() };
     let (job, report) = Job::from_source(source, store)?;

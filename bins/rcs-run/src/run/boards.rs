@@ -8,7 +8,7 @@ use std::{
 };
 
 use executive::{
-    boards::{Board, Conductor, Fingerprint, Lost, SplitError, conductor::News, pulse::RunCard},
+    boards::{Board, Conductor, Fingerprint, Lost, SplitError, conductor::BoardEvent, pulse::RunCard},
     memory::RunName,
     runner::Levels,
 };
@@ -187,15 +187,15 @@ fn patience(arguments: &RunArguments) -> Duration {
 }
 
 /// Say who has come, who has left, and who is missing.
-fn announce(news: News, missing: &[Board]) {
+fn announce(event: BoardEvent, missing: &[Board]) {
     let missing: Vec<String> = missing.iter().map(|board| board.number().to_string()).collect();
     let rest = match missing.as_slice() {
         [] => "all are there".to_owned(),
         some => format!("missing: {}", some.join(", ")),
     };
-    match news {
-        News::Came { board, pid } => eprintln!("rcs-run: {board} is there (process {pid}); {rest}"),
-        News::Left { board, pid } => eprintln!("rcs-run: {board} is gone (process {pid}); {rest}"),
+    match event {
+        BoardEvent::Came { board, pid } => eprintln!("rcs-run: {board} is there (process {pid}); {rest}"),
+        BoardEvent::Left { board, pid } => eprintln!("rcs-run: {board} is gone (process {pid}); {rest}"),
     }
 }
 

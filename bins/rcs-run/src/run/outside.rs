@@ -9,7 +9,7 @@ use neighbours::{
     network::{Desk, News, Parting, hello::ClockKind, office::Presence},
     workstation::{
         Gate,
-        cell::{self, CellStatus, Line, Trouble},
+        cell::{self, CellLine, CellStatus, Trouble},
         player::{BegunStep, JobFailure, Outcome, Progress, Workstation as _},
     },
 };
@@ -182,9 +182,9 @@ impl OutsideWorkstation {
         self.line_read = mailbox.mailgram();
         let begun = match cell::decode_line(mailbox.data()) {
             Err(error) => Err(error.to_string()),
-            Ok(Line { number: 0, .. }) => Err("a number from 1 on was expected, found 0".to_owned()),
-            Ok(Line { number, text: Ok(_) }) if number == self.line => return,
-            Ok(Line { number, text }) => {
+            Ok(CellLine { number: 0, .. }) => Err("a number from 1 on was expected, found 0".to_owned()),
+            Ok(CellLine { number, text: Ok(_) }) if number == self.line => return,
+            Ok(CellLine { number, text }) => {
                 self.line = number;
                 text.map_err(|error| error.to_string()).and_then(|line| {
                     let action = job::own_line(line, store).map_err(|error| error.to_string())?;

@@ -19,7 +19,7 @@ use plant::{
     camera::Analysis,
     fault::text::{self, FaultFile},
 };
-use taskdata::load::{Job, Report, Source, Store};
+use taskdata::load::{Diagnostics, Job, Source, Store};
 
 use super::{
     neighbours::{Neighbours, Network, WorkstationSource},
@@ -233,7 +233,7 @@ fn faults(arguments: &RunArguments, cell: &CellDescription) -> Result<(FaultFile
 }
 
 /// Warnings do not keep a run from beginning; one line says that there are some.
-fn warning(report: &Report, what: &str) -> Option<String> {
+fn warning(report: &Diagnostics, what: &str) -> Option<String> {
     match report.warnings().count() {
         0 => None,
         1 => Some(format!("1 warning in {what}; rcs-run check shows it")),

@@ -58,7 +58,7 @@ impl Counts {
 
 /// One direction.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-struct Line {
+struct OneWay {
     numbers: Numbers,
     bytes: [u8; LINE_BYTES],
     due: [u64; LINE_BYTES],
@@ -74,17 +74,17 @@ struct Line {
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Injector {
     plan: Plan,
-    to_controller: Line,
-    to_host: Line,
+    to_controller: OneWay,
+    to_host: OneWay,
 }
 
 impl Injector {
     /// A line on which nothing has happened yet.
     #[must_use]
     pub fn new(plan: &Plan) -> Self {
-        let line = |direction: Direction| Line {
+        let line = |direction: Direction| OneWay {
             numbers: Numbers::new(plan.seed(), u64::from(direction.code())),
-            ..Line::default()
+            ..OneWay::default()
         };
         Self { plan: *plan, to_controller: line(Direction::ToController), to_host: line(Direction::ToHost) }
     }
@@ -128,7 +128,7 @@ struct Work<'a> {
     rules: &'a [Rule],
     direction: Direction,
     tick: u64,
-    line: &'a mut Line,
+    line: &'a mut OneWay,
     /// Faults allowed in the tick.
     most: u8,
     /// Faults so far.

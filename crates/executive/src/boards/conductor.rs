@@ -24,7 +24,7 @@ use taskdata::files::TaskData;
 use super::{
     BOARDS, Board,
     exchange::Readers,
-    pulse::{Epochs, Fingerprint, PulseGiver, Report, ReportReader, RunCard, SystemPulse, sleep},
+    pulse::{BoardReport, Epochs, Fingerprint, PulseGiver, ReportReader, RunCard, SystemPulse, sleep},
 };
 use crate::{
     failure,
@@ -160,9 +160,9 @@ impl Lost {
     }
 }
 
-/// What is heard of the boards while they come together.
+/// A change among the boards while they come together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum News {
+pub enum BoardEvent {
     /// One has come.
     Came {
         /// Which.
@@ -188,7 +188,7 @@ struct Seat {
     ports: Option<(Readers, ReportReader)>,
     /// Those of boards that had the place before.
     former: Vec<(Readers, ReportReader)>,
-    report: Report,
+    report: BoardReport,
     /// Allocations of those who had the place before.
     former_allocations: u64,
     times: Box<Histogram>,
@@ -201,7 +201,7 @@ impl Seat {
             child: None,
             ports: None,
             former: Vec::new(),
-            report: Report::ZERO,
+            report: BoardReport::ZERO,
             former_allocations: 0,
             times: Box::default(),
         }
@@ -306,19 +306,19 @@ impl Conductor {
         &mut self,
         patience: Duration,
         stop: &AtomicBool,
-        mut heard: impl FnMut(News, &[Board]),
+        mut heard: impl FnMut(BoardEvent, &[Board]),
     ) -> Result<(), SplitError> {
         let deadline = Instant::now() + patience;
         for look in 1_u32.. {
             for at in 0..self.seats.len() {
                 if self.look_for(at)? {
-                    let Seat { board, report: Report { pid, .. }, .. } = self.seats[at];
-                    heard(News::Came { board, pid }, &self.boards_that(|seat| !seat.has_come()));
+                    let Seat { board, report: BoardReport { pid, .. }, .. } = self.seats[at];
+                    heard(BoardEvent::Came { board, pid }, &self.boards_that(|seat| !seat.has_come()));
                 }
                 if look.is_multiple_of(LIFE)
-                    && let Some(news) = self.give_up_the_dead(at)
+                    && let Some(event) = self.give_up_the_dead(at)
                 {
-                    heard(news, &self.boards_that(|seat| !seat.has_come()));
+                    heard(event, &self.boards_that(|seat| !seat.has_come()));
                 }
             }
             let unready = self.boards_that(|seat| !seat.report.ready);
@@ -377,15 +377,15 @@ impl Conductor {
     }
 
     /// A board that was there and lives no more, before all have come together, leaves its place to the next one.
-    fn give_up_the_dead(&mut self, at: usize) -> Option<News> {
+    fn give_up_the_dead(&mut self, at: usize) -> Option<BoardEvent> {
         let seat = self.seats.get(at)?;
         let came = seat.child.is_none() && seat.ports.is_some();
         if !came || runs::has_living(&self.name, seat.board.name()) {
             return None;
         }
-        let news = News::Left { board: seat.board, pid: seat.report.pid };
+        let event = BoardEvent::Left { board: seat.board, pid: seat.report.pid };
         self.vacate(at);
-        Some(news)
+        Some(event)
     }
 
     /// Wait for a process that takes the place of a lost board. It comes under the next epoch: whatever the lost one still
@@ -399,7 +399,7 @@ impl Conductor {
         lost: &Lost,
         patience: Duration,
         stop: &AtomicBool,
-        heard: impl FnMut(News, &[Board]),
+        heard: impl FnMut(BoardEvent, &[Board]),
     ) -> Result<(), SplitError> {
         self.vacate(lost.board.index());
         self.gather(patience, stop, heard)
@@ -411,7 +411,7 @@ impl Conductor {
         // Kept until the successor has read from them what stands on the devices.
         seat.former.extend(seat.ports.take());
         seat.former_allocations += seat.report.allocations;
-        seat.report = Report::ZERO;
+        seat.report = BoardReport::ZERO;
         self.pulse.epochs[seat.board.index()] += 1;
         giver.give(&self.pulse);
     }

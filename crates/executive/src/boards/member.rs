@@ -23,7 +23,7 @@ use super::{
     BOARDS, Board,
     conductor::BOARD_0,
     exchange::{Readers, Writers},
-    pulse::{Fingerprint, PulseTaker, Report, ReportWriter, RunCard, SystemPulse, sleep},
+    pulse::{BoardReport, Fingerprint, PulseTaker, ReportWriter, RunCard, SystemPulse, sleep},
 };
 use crate::{
     alloc::{self, Section},
@@ -141,7 +141,7 @@ pub struct Member {
     /// Common memory by tick parity, as far as this board knows it.
     halves: [CommonMemory; 2],
     tick: Tick,
-    report: Report,
+    report: BoardReport,
     allocations_at_start: u64,
 }
 
@@ -176,7 +176,8 @@ impl Member {
             }
         };
         runs::reserve(name)?;
-        let report = Report { fingerprint, pid: std::process::id(), punctual: true, ..Report::ZERO };
+        let report =
+            BoardReport { fingerprint, pid: std::process::id(), punctual: true, ..BoardReport::ZERO };
         let mut halves = [CommonMemory::ZERO; 2];
         let (tick, epoch) = (pulse.tick.previous(), pulse.epochs[board.index()]);
         if pulse.tick != Tick::BEFORE_START {

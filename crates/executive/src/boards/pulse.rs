@@ -2,7 +2,7 @@
 //!
 //! Board 0 owns the service `pulse`: what every board must know of the run ([`RunCard`]), and for each tick its number and what
 //! came from outside ([`SystemPulse`]). It needs no halves: the next pulse is not given before all boards have stamped this one.
-//! Each board owns a service with its [`Report`], which it writes last in a tick.
+//! Each board owns a service with its [`BoardReport`], which it writes last in a tick.
 //!
 //! Two event services wake: `pulse/wake` the boards, `pulse/done` board 0. Events carry nothing; whoever wakes reads a number.
 
@@ -105,7 +105,7 @@ pub struct SystemPulse {
 
 /// What a board says of itself, after each tick.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Report {
+pub struct BoardReport {
     /// What it runs with.
     pub fingerprint: Fingerprint,
     /// Its process number in the operating system.
@@ -123,7 +123,7 @@ pub struct Report {
 /// Bytes of the entries.
 const PULSE: usize = entry_size::<SystemPulse>();
 const CARD: usize = entry_size::<RunCard>();
-const REPORT: usize = entry_size::<Report>();
+const REPORT: usize = entry_size::<BoardReport>();
 
 const PULSE_SERVICE: &str = "pulse";
 const WAKE: &str = "pulse/wake";
@@ -250,7 +250,7 @@ impl PulseTaker {
 }
 
 /// A board's own report.
-pub(super) struct ReportWriter(EntryWriter<REPORT, Report>);
+pub(super) struct ReportWriter(EntryWriter<REPORT, BoardReport>);
 
 impl ReportWriter {
     pub(super) fn create(
@@ -264,7 +264,7 @@ impl ReportWriter {
             .blackboard_creator::<u32>()
             .max_readers(READERS)
             .max_nodes(READERS + 1)
-            .add::<[u8; REPORT]>(0, stamped(Tick::BEFORE_START, &Report::ZERO))
+            .add::<[u8; REPORT]>(0, stamped(Tick::BEFORE_START, &BoardReport::ZERO))
             .create()
             .map_err(|error| failed(&error))?;
         let port = factory.writer_builder().create().map_err(|error| failed(&error))?;
@@ -272,13 +272,13 @@ impl ReportWriter {
     }
 
     /// The stamp: `tick` is done.
-    pub(super) fn write(&self, tick: Tick, report: &Report) {
+    pub(super) fn write(&self, tick: Tick, report: &BoardReport) {
         self.0.write(tick, report);
     }
 }
 
 /// A board's report as board 0 reads it.
-pub(super) struct ReportReader(EntryReader<REPORT, Report>);
+pub(super) struct ReportReader(EntryReader<REPORT, BoardReport>);
 
 impl ReportReader {
     pub(super) fn open(
@@ -297,7 +297,7 @@ impl ReportReader {
     }
 
     /// The tick that the board has stamped last, and what it says.
-    pub(super) fn read(&self) -> Result<(Tick, Report), DecodeError> {
+    pub(super) fn read(&self) -> Result<(Tick, BoardReport), DecodeError> {
         self.0.read()
     }
 }

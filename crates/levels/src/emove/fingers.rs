@@ -17,7 +17,7 @@ use taskdata::files::{EndEffId, EndEffPara, TaskData};
 
 use super::{
     gripper::Gripper,
-    order::{Order, Request},
+    order::{FingerOrder, FingerVerb},
     robot_place::present_frame,
     route::{FULL_OPENING, near},
     state::State,
@@ -101,7 +101,7 @@ impl State {
     /// Is what was held still there?
     fn sense_loss(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
-        let letting_go = self.grippers.order == Order::Release;
+        let letting_go = self.grippers.order == FingerVerb::Release;
         let Some(held) = self.beliefs.held else { return };
         let gripper = Gripper::of(held.gripper);
         // A part that was held with little force leaves the fingers where they are when it falls: only the
@@ -156,29 +156,31 @@ impl State {
         action: Action,
         command: &EmoveCommand,
         inputs: &Inputs<'_, TaskData<'_>>,
-    ) -> Request {
+    ) -> FingerOrder {
         let sizes = sizes(command, inputs.data).copied().unwrap_or_default();
         match action {
             Action::Open => {
                 let opening = self.route.and_then(|route| route.opening);
-                Request::to(Order::Stand, opening.unwrap_or_default())
+                FingerOrder::to(FingerVerb::Stand, opening.unwrap_or_default())
             }
-            Action::OpenToApproach => Request::to(Order::Stand, sizes.appr_size),
+            Action::OpenToApproach => FingerOrder::to(FingerVerb::Stand, sizes.appr_size),
             Action::CloseForHolster => {
                 let opening = gripper_on(&command.object, inputs.data).map_or(0, |on| on.appr_size);
-                Request::to(Order::Stand, opening)
+                FingerOrder::to(FingerVerb::Stand, opening)
             }
-            Action::OpenToDepart => Request::to(Order::Release, self.depart_opening(command, inputs.data)),
-            Action::OpenByHand => Request::to(Order::Release, FULL_OPENING),
+            Action::OpenToDepart => {
+                FingerOrder::to(FingerVerb::Release, self.depart_opening(command, inputs.data))
+            }
+            Action::OpenByHand => FingerOrder::to(FingerVerb::Release, FULL_OPENING),
             Action::Close => {
-                Request { order: Order::Grasp, opening: sizes.grasp_size, force: sizes.grasp_force }
+                FingerOrder { order: FingerVerb::Grasp, opening: sizes.grasp_size, force: sizes.grasp_force }
             }
             Action::CloseByHand => {
                 let opening = Gripper::attached(inputs.memory).closed();
-                Request { order: Order::Grasp, opening, force: HAND_FORCE }
+                FingerOrder { order: FingerVerb::Grasp, opening, force: HAND_FORCE }
             }
-            Action::Calibrate => Request { order: Order::Calibrate, ..Request::default() },
-            _ => Request { order: Order::Pause, ..Request::default() },
+            Action::Calibrate => FingerOrder { order: FingerVerb::Calibrate, ..FingerOrder::default() },
+            _ => FingerOrder { order: FingerVerb::Pause, ..FingerOrder::default() },
         }
     }
 

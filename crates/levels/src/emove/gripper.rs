@@ -3,7 +3,7 @@
 //!
 //! The parts gripper servoes an opening or a force and takes five commands (VI.3.1); v-gripper and tool
 //! gripper open or close, no more, and take four (VI.4.1, VI.5). The tables of E-move see neither: they give
-//! an [`Order`], read one [`Lower`] and know one opening. Which process is meant is what Quick Change reads
+//! an [`FingerVerb`], read one [`Lower`] and know one opening. Which process is meant is what Quick Change reads
 //! from the id pins, every tick anew; only that one is stepped.
 //!
 //! | order     | Grip                  | V-Grip, Tool-Grip                                          |
@@ -29,8 +29,8 @@ use rcs_core::{
     units::hundredths,
 };
 
-use super::order::{Order, Request};
-use crate::jaws::{CylindricalPartGripper, Kind, Parameters, ToolGripper};
+use super::order::{FingerOrder, FingerVerb};
+use crate::jaws::{CylindricalPartGripper, JawsKind, Parameters, ToolGripper};
 
 /// Opening at which the parts gripper is closed, 0.01 in.
 const PARTS_CLOSED: i32 = 10;
@@ -211,7 +211,7 @@ impl Gripper {
         }
     }
 
-    /// Do the fingers stand where [`Order::Stand`] with `opening` would bring them?
+    /// Do the fingers stand where [`FingerVerb::Stand`] with `opening` would bring them?
     #[must_use]
     pub fn stands_at(self, opening: i32, memory: &CommonMemory) -> bool {
         let Some(now) = self.opening(memory) else { return self == Self::None };
@@ -223,7 +223,7 @@ impl Gripper {
         at && self.is_still(memory)
     }
 
-    /// Are the fingers at least as wide open as [`Order::Release`] with `opening` would bring them? True
+    /// Are the fingers at least as wide open as [`FingerVerb::Release`] with `opening` would bring them? True
     /// without a gripper.
     #[must_use]
     pub fn is_open(self, opening: i32, memory: &CommonMemory) -> bool {
@@ -248,7 +248,7 @@ pub struct Grippers {
     /// The gripper that has the last order.
     pub to: Gripper,
     /// The last order.
-    pub order: Order,
+    pub order: FingerVerb,
     /// Size commanded last to jaws, 0.01 in.
     pub size: i32,
     /// Jaws were told to close by it.
@@ -265,7 +265,13 @@ impl Grippers {
     }
 
     /// Give the attached gripper an order; without a gripper, or while it sleeps, it only counts as given.
-    pub fn send(&mut self, request: Request, tick: Tick, memory: &CommonMemory, outputs: &mut EmoveOutputs) {
+    pub fn send(
+        &mut self,
+        request: FingerOrder,
+        tick: Tick,
+        memory: &CommonMemory,
+        outputs: &mut EmoveOutputs,
+    ) {
         let attached = Gripper::attached(memory);
         self.to = if attached.is_asleep(memory) { Gripper::None } else { attached };
         self.order = request.order;
@@ -275,11 +281,11 @@ impl Grippers {
                 outputs.grip = GripCommand {
                     number: self.parts.send(tick),
                     command: match request.order {
-                        Order::None | Order::Pause => GripVerb::Pause,
-                        Order::Stand => GripVerb::Position,
-                        Order::Release => GripVerb::OpenGrip,
-                        Order::Grasp => GripVerb::CloseGrip,
-                        Order::Calibrate => GripVerb::UpInit,
+                        FingerVerb::None | FingerVerb::Pause => GripVerb::Pause,
+                        FingerVerb::Stand => GripVerb::Position,
+                        FingerVerb::Release => GripVerb::OpenGrip,
+                        FingerVerb::Grasp => GripVerb::CloseGrip,
+                        FingerVerb::Calibrate => GripVerb::UpInit,
                     },
                     force: request.force,
                     position: request.opening,
@@ -293,14 +299,14 @@ impl Grippers {
     }
 
     /// The order as a command of the gripper with jaws that it goes to.
-    fn jaws_command(&mut self, request: Request, tick: Tick) -> JawsCommand {
+    fn jaws_command(&mut self, request: FingerOrder, tick: Tick) -> JawsCommand {
         let (closed, open) = self.to.stops().unwrap_or_default();
         let command = match request.order {
-            Order::None | Order::Pause | Order::Calibrate => JawsVerb::Pause,
-            Order::Stand if self.to.closes_for(request.opening) => JawsVerb::Grasp,
-            Order::Stand => JawsVerb::Pose,
-            Order::Release => JawsVerb::Release,
-            Order::Grasp => JawsVerb::Grasp,
+            FingerVerb::None | FingerVerb::Pause | FingerVerb::Calibrate => JawsVerb::Pause,
+            FingerVerb::Stand if self.to.closes_for(request.opening) => JawsVerb::Grasp,
+            FingerVerb::Stand => JawsVerb::Pose,
+            FingerVerb::Release => JawsVerb::Release,
+            FingerVerb::Grasp => JawsVerb::Grasp,
         };
         if command != JawsVerb::Pause {
             self.size = request.opening.clamp(closed, open);
@@ -337,14 +343,14 @@ impl Grippers {
         match commander.read(tick, &jaws.header, jaws.status.echo, report.lower()) {
             // Fingers that are to be left alone may stand anywhere: on an object of another size, or moved by
             // hand.
-            Lower::Error if self.order == Order::Pause && report == JawsReport::Stuck => Lower::Done,
+            Lower::Error if self.order == FingerVerb::Pause && report == JawsReport::Stuck => Lower::Done,
             Lower::Done if self.moves_fingers() && report == self.wrong_end() => Lower::Error,
             lower => lower,
         }
     }
 
     const fn moves_fingers(&self) -> bool {
-        matches!(self.order, Order::Stand | Order::Release | Order::Grasp)
+        matches!(self.order, FingerVerb::Stand | FingerVerb::Release | FingerVerb::Grasp)
     }
 
     /// The report of jaws that went nowhere.
@@ -370,9 +376,9 @@ impl Grippers {
         }
     }
 
-    /// True when the attached gripper has done what [`Order::Release`] asks for: nothing is held any more.
+    /// True when the attached gripper has done what [`FingerVerb::Release`] asks for: nothing is held any more.
     #[must_use]
     pub fn has_let_go(&self, tick: Tick, memory: &CommonMemory) -> bool {
-        self.order == Order::Release && self.status(tick, memory) == Lower::Done
+        self.order == FingerVerb::Release && self.status(tick, memory) == Lower::Done
     }
 }

@@ -4,7 +4,7 @@ use rcs_core::Plain;
 
 /// What is asked of the attached gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Order {
+pub enum FingerVerb {
     /// Nothing yet.
     #[text = ""]
     None,
@@ -20,21 +20,21 @@ pub enum Order {
     Calibrate,
 }
 
-/// An [`Order`] with what goes with it.
+/// An [`FingerVerb`] with what goes with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Request {
+pub struct FingerOrder {
     /// What to do.
-    pub order: Order,
+    pub order: FingerVerb,
     /// Opening, or size of the object, 0.01 in.
     pub opening: i32,
     /// Force of a grasp, lb.
     pub force: i32,
 }
 
-impl Request {
+impl FingerOrder {
     /// A request that needs an opening and no force.
     #[must_use]
-    pub const fn to(order: Order, opening: i32) -> Self {
+    pub const fn to(order: FingerVerb, opening: i32) -> Self {
         Self { order, opening, force: 0 }
     }
 }

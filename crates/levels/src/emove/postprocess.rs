@@ -17,7 +17,7 @@ use taskdata::files::{TaskData, TrajParaId};
 
 use super::{
     gripper::Gripper,
-    order::{Order, Request},
+    order::{FingerOrder, FingerVerb},
     relative::{Reference, Relative},
     robot_place::{commanded_pose, standing},
     route::LegGoal,
@@ -151,7 +151,7 @@ impl State {
     fn pause_all(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
         self.searched = 0;
         self.send_prim(PrimVerb::Pause, inputs, outputs);
-        let request = Request { order: Order::Pause, ..Request::default() };
+        let request = FingerOrder { order: FingerVerb::Pause, ..FingerOrder::default() };
         self.grippers.send(request, inputs.tick, inputs.memory, outputs);
         self.send_quick_change(QuickChangeVerb::Pause, inputs, outputs);
     }
@@ -246,14 +246,18 @@ impl State {
         outputs: &mut EmoveOutputs,
     ) {
         let request = self.request(action, command, inputs);
-        self.releasing = request.order == Order::Release;
+        self.releasing = request.order == FingerVerb::Release;
         match request.order {
-            Order::Grasp => {
+            FingerVerb::Grasp => {
                 let by_name = action == Action::Close;
                 self.beliefs.grasping = by_name.then(|| self.grasp_of(command, inputs));
                 self.beliefs.empty = false;
             }
-            Order::Stand | Order::Release | Order::Calibrate | Order::None | Order::Pause => {}
+            FingerVerb::Stand
+            | FingerVerb::Release
+            | FingerVerb::Calibrate
+            | FingerVerb::None
+            | FingerVerb::Pause => {}
         }
         if let Some(route) = &mut self.route {
             route.opening_sent |= action == Action::Open;

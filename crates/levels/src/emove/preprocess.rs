@@ -20,7 +20,7 @@ use super::{
     fingers::fingers,
     gripper::Gripper,
     locate::{is_another, is_plausible},
-    order::Order,
+    order::FingerVerb,
     robot_place::{place, place_named, present_frame},
     route::{near, same_location},
     state::State,
@@ -122,7 +122,7 @@ impl State {
         let robot = if flies_on { Lower::Executing } else { robot };
         let fingers = self.grippers.status(tick, memory);
         let below = Below::of(robot, written.prim.command == PrimVerb::Pause)
-            .and(Below::of(fingers, self.grippers.order == Order::Pause))
+            .and(Below::of(fingers, self.grippers.order == FingerVerb::Pause))
             .and(Below::of(self.ring_order(inputs), written.quick_change.command == QuickChangeVerb::Pause));
         Replaced {
             intake: Intake::Taken,

@@ -14,7 +14,7 @@ pub struct Parameters {
 }
 
 /// A gripper that opens and closes.
-pub trait Kind {
+pub trait JawsKind {
     /// The manual's name of its process.
     const NAME: &'static str;
     /// Its parameters.
@@ -28,7 +28,7 @@ pub trait Kind {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CylindricalPartGripper;
 
-impl Kind for CylindricalPartGripper {
+impl JawsKind for CylindricalPartGripper {
     const NAME: &'static str = "V-Grip";
     /// The way of the fingers is ASSUMED.
     const PARAMETERS: Parameters = Parameters { end_effector_id: 2, closed: 0.50, opened: 3.50 };
@@ -42,7 +42,7 @@ impl Kind for CylindricalPartGripper {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ToolGripper;
 
-impl Kind for ToolGripper {
+impl JawsKind for ToolGripper {
     const NAME: &'static str = "Tool-Grip";
     /// The way of the fingers is ASSUMED.
     const PARAMETERS: Parameters = Parameters { end_effector_id: 3, closed: 1.00, opened: 4.00 };

@@ -1,6 +1,6 @@
 //! V-Grip (VI.4) and Tool-Grip (VI.5): grippers that open and close by air, and tell where their fingers are.
 //!
-//! TG-LEVEL is VG-LEVEL with other parameters, so there is one process here and a [`Kind`] each. Nothing is
+//! TG-LEVEL is VG-LEVEL with other parameters, so there is one process here and a [`JawsKind`] each. Nothing is
 //! servoed: a command gives air to one side, waits until the potentiometer stands still, and reports where
 //! the fingers have stopped.
 //!
@@ -43,7 +43,7 @@ pub mod tables;
 mod tests;
 
 pub use self::{
-    kind::{CylindricalPartGripper, Kind, Parameters, ToolGripper},
+    kind::{CylindricalPartGripper, JawsKind, Parameters, ToolGripper},
     preprocess::{POTENTIOMETER_OFFSET, POTENTIOMETER_SCALE},
 };
 
@@ -73,7 +73,7 @@ pub type VGrip = Jaws<CylindricalPartGripper>;
 /// The Tool-Grip process.
 pub type ToolGrip = Jaws<ToolGripper>;
 
-impl<K: Kind, Data: ?Sized> Process<Data> for Jaws<K> {
+impl<K: JawsKind, Data: ?Sized> Process<Data> for Jaws<K> {
     type State = State;
     type Outputs = JawsOutputs;
     type Seen = Seen;

@@ -9,7 +9,7 @@ use rcs_core::{
 };
 
 use super::{
-    kind::{Kind, Parameters},
+    kind::{JawsKind, Parameters},
     state::{State, WINDOW},
     tables::{Addressee, Gripper, Motion, Request, Seen, Situation, Size, Stop},
 };
@@ -38,7 +38,7 @@ const SIZE_BAND: f64 = 0.10;
 
 impl State {
     /// Read the inputs of a tick. A process whose outputs were republished was dormant in the tick before.
-    pub(super) fn sense<K: Kind, Data: ?Sized>(
+    pub(super) fn sense<K: JawsKind, Data: ?Sized>(
         &mut self,
         inputs: &Inputs<'_, Data>,
         outputs: &JawsOutputs,

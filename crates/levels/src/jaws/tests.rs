@@ -16,7 +16,7 @@ use rcs_core::{
 };
 
 use super::{
-    Jaws, Kind, POTENTIOMETER_OFFSET, POTENTIOMETER_SCALE, ToolGrip, VGrip, preprocess::LIMIT_TICKS,
+    Jaws, JawsKind, POTENTIOMETER_OFFSET, POTENTIOMETER_SCALE, ToolGrip, VGrip, preprocess::LIMIT_TICKS,
     state::State, tables::TABLES,
 };
 use crate::coverage::Coverage;
@@ -38,7 +38,7 @@ struct Fingers {
 }
 
 impl Fingers {
-    fn new<K: Kind>(opening: f64) -> Self {
+    fn new<K: JawsKind>(opening: f64) -> Self {
         let ends = (K::PARAMETERS.closed, K::PARAMETERS.opened);
         Self { opening, ends, speed: 3.0, object: None, noise: 1, random: 1987 }
     }
@@ -73,7 +73,7 @@ struct Bench<K> {
 }
 
 /// Where the processes have their command buffers, for writing.
-fn memory_with<K: Kind>(command: JawsCommand) -> CommonMemory {
+fn memory_with<K: JawsKind>(command: JawsCommand) -> CommonMemory {
     let mut memory = CommonMemory::default();
     match K::PARAMETERS.end_effector_id {
         2 => memory.emove.v_grip = command,
@@ -82,7 +82,7 @@ fn memory_with<K: Kind>(command: JawsCommand) -> CommonMemory {
     memory
 }
 
-impl<K: Kind + Default> Bench<K> {
+impl<K: JawsKind + Default> Bench<K> {
     /// A bench with the gripper attached, after a tick in which nothing was commanded.
     fn new(opening: f64) -> Self {
         let mut bench = Self {

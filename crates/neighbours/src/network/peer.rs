@@ -114,7 +114,7 @@ pub(super) trait Inlet: Send {
 }
 
 /// A connection, whatever it goes over.
-pub(super) struct Line {
+pub(super) struct Connection {
     pub sender: Box<dyn Outlet>,
     pub receiver: Box<dyn Inlet>,
     pub clock: ClockKind,
@@ -149,7 +149,7 @@ impl Peer {
         secret: Option<&Secret>,
     ) -> Result<Self, PeerError> {
         let until = Instant::now() + limit;
-        let Line { sender, receiver, clock } = match address {
+        let Connection { sender, receiver, clock } = match address {
             Address::Unix(_) | Address::Tcp(_) => loop {
                 match over_socket(address, role, secret) {
                     Err(error) if error.is_passing() && Instant::now() < until => thread::sleep(PAUSE),
@@ -234,7 +234,7 @@ impl Peer {
 }
 
 /// Connect at a socket.
-fn over_socket(address: &Address, role: Role, secret: Option<&Secret>) -> Result<Line, PeerError> {
+fn over_socket(address: &Address, role: Role, secret: Option<&Secret>) -> Result<Connection, PeerError> {
     let failed = |source| PeerError::Line { address: address.clone(), source };
     let mistrusted = |source| PeerError::Hello { address: address.clone(), source };
     let mut stream = match address {
@@ -267,7 +267,7 @@ fn over_socket(address: &Address, role: Role, secret: Option<&Secret>) -> Result
         // Its time may stand still for as long as it likes; on the grid there is a pulse every 40 ms.
         stream.unlimited().map_err(failed)?;
     }
-    Ok(Line { sender: Box::new(sender), receiver: Box::new(receiver), clock: challenge.clock() })
+    Ok(Connection { sender: Box::new(sender), receiver: Box::new(receiver), clock: challenge.clock() })
 }
 
 /// The next frame, if it is not the last.

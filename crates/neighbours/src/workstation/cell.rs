@@ -61,7 +61,7 @@ pub fn encode_line(number: u16, line: &str) -> [u8; COMMAND] {
 
 /// A line with its number, which is known even if the rest cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Line<'a> {
+pub struct CellLine<'a> {
     /// The number.
     pub number: u16,
     /// The line, or why it cannot be read.
@@ -72,9 +72,9 @@ pub struct Line<'a> {
 ///
 /// # Errors
 /// [`FieldError`] if it has no number.
-pub fn decode_line(bytes: &[u8]) -> Result<Line<'_>, FieldError> {
+pub fn decode_line(bytes: &[u8]) -> Result<CellLine<'_>, FieldError> {
     let mut fields = Unpacker::new(bytes);
-    Ok(Line { number: fields.word("number")?, text: fields.text("line", TEXT) })
+    Ok(CellLine { number: fields.word("number")?, text: fields.text("line", TEXT) })
 }
 
 impl<'a> CellStatus<'a> {
@@ -116,8 +116,8 @@ mod tests {
     fn lines_and_statuses_come_back() {
         let bytes = encode_line(7, "vise close PFIXTURE");
         assert_eq!(&bytes[..24], b"\x07\x00vise close PFIXTURE   ");
-        assert_eq!(decode_line(&bytes), Ok(Line { number: 7, text: Ok("vise close PFIXTURE") }));
-        let short = Line { number: 7, text: Err(FieldError::End { field: "line" }) };
+        assert_eq!(decode_line(&bytes), Ok(CellLine { number: 7, text: Ok("vise close PFIXTURE") }));
+        let short = CellLine { number: 7, text: Err(FieldError::End { field: "line" }) };
         assert_eq!(decode_line(&bytes[..100]), Ok(short));
         assert_eq!(decode_line(&bytes[..1]), Err(FieldError::End { field: "number" }));
         let status =

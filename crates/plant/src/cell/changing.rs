@@ -25,7 +25,7 @@ pub(super) const ROBOT_HANDS: [Hand; 3] = [Hand::Parts, Hand::V, Hand::Tool];
 
 /// Where a gripper is.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
-pub(super) enum Place {
+pub(super) enum GripperPlace {
     /// The ring of the quick change has it.
     Robot,
     /// On a holster, right, left, centre.
@@ -41,7 +41,7 @@ pub(super) struct Changer {
     ring: Ring,
     holsters: [Holster; 3],
     /// Of the parts gripper, the v-gripper, the tool gripper.
-    places: [Place; 3],
+    places: [GripperPlace; 3],
     /// The one whose pins touch.
     mated: Option<Hand>,
     /// The holster whose lips are over the ears of the gripper that the ring has.
@@ -62,9 +62,9 @@ impl Changer {
             Mounted::V => Some(Hand::V),
             Mounted::Tool => Some(Hand::Tool),
         };
-        let mut places = [0, 1, 2].map(|which| Place::Holster(which, holsters[which].seated()));
+        let mut places = [0, 1, 2].map(|which| GripperPlace::Holster(which, holsters[which].seated()));
         if let Some(slot) = mated.and_then(Hand::slot) {
-            places[slot] = Place::Robot;
+            places[slot] = GripperPlace::Robot;
         }
         let ring = Ring::new(&cell.quick_change, mated.is_some());
         Self {
@@ -86,53 +86,53 @@ impl Changer {
 
     /// The gripper that the ring has.
     pub(super) fn carried(&self) -> Option<Hand> {
-        ROBOT_HANDS.into_iter().find(|hand| self.place(*hand) == Some(Place::Robot))
+        ROBOT_HANDS.into_iter().find(|hand| self.place(*hand) == Some(GripperPlace::Robot))
     }
 
     /// Where a gripper is; `None` for a hand that the robot cannot wear.
-    pub(super) fn place(&self, hand: Hand) -> Option<Place> {
+    pub(super) fn place(&self, hand: Hand) -> Option<GripperPlace> {
         hand.slot().map(|slot| self.places[slot])
     }
 
     /// Tool frame of a gripper that is led, by the robot at `robot` or by a holster.
     fn frame(&self, hand: Hand, robot: &Frame) -> Option<Frame> {
         match self.place(hand)? {
-            Place::Robot => Some(*robot),
-            Place::Holster(which, perch) => Some(self.holsters[which].gripper(&perch)),
-            Place::Fallen => None,
+            GripperPlace::Robot => Some(*robot),
+            GripperPlace::Holster(which, perch) => Some(self.holsters[which].gripper(&perch)),
+            GripperPlace::Fallen => None,
         }
     }
 
     /// It needs bodies: it moves, or can be moved, or can move something.
     fn is_present(&self, hand: Hand) -> bool {
         match self.place(hand) {
-            Some(Place::Holster(_, perch)) => self.mated == Some(hand) || !perch.rests(),
+            Some(GripperPlace::Holster(_, perch)) => self.mated == Some(hand) || !perch.rests(),
             _ => true,
         }
     }
 
     fn is_empty(&self, holster: usize) -> bool {
-        !self.places.iter().any(|place| matches!(place, Place::Holster(which, _) if *which == holster))
+        !self.places.iter().any(|place| matches!(place, GripperPlace::Holster(which, _) if *which == holster))
     }
 
     /// Where a gripper lands that the ring lets go at `robot`.
-    fn land(&self, robot: &Frame) -> Place {
+    fn land(&self, robot: &Frame) -> GripperPlace {
         let caught = self.holsters.iter().enumerate().find_map(|(which, holster)| {
             let perch = holster.catch(&holster.offset(robot)).filter(|_| self.is_empty(which))?;
-            Some(Place::Holster(which, perch))
+            Some(GripperPlace::Holster(which, perch))
         });
-        caught.unwrap_or(Place::Fallen)
+        caught.unwrap_or(GripperPlace::Fallen)
     }
 
     /// The gripper that the ring has is torn off by a holster whose lips hold its ears down: where it stays.
-    fn torn(&mut self, robot: &Frame) -> Option<Place> {
+    fn torn(&mut self, robot: &Frame) -> Option<GripperPlace> {
         if let Some(which) = self.under_lips {
             let holster = &self.holsters[which];
             let offset = holster.offset(robot);
             if holster.tears(&offset) {
                 self.under_lips = None;
                 let forward = holster.slide(offset.forward);
-                return Some(Place::Holster(which, Perch { forward, ..holster.seated() }));
+                return Some(GripperPlace::Holster(which, Perch { forward, ..holster.seated() }));
             }
         }
         self.under_lips = self
@@ -144,26 +144,26 @@ impl Changer {
 
     /// A step of a gripper on its holster: it falls as far as there is room, slides with an engaged A plate, and is caught if
     /// the ring has just locked.
-    fn step_on_holster(&mut self, hand: Hand, which: usize, mut perch: Perch, step: &Step) -> Place {
+    fn step_on_holster(&mut self, hand: Hand, which: usize, mut perch: Perch, step: &Step) -> GripperPlace {
         let holster = &self.holsters[which];
         perch.fall(step.dt);
         let here = holster.gripper(&perch);
         if step.locks && Gap::between(&step.robot, &here).lies_together(&self.description) {
-            return Place::Robot;
+            return GripperPlace::Robot;
         }
         if self.mated == Some(hand) {
             let play = self.description.tolerance;
             let robot = holster.offset(&step.robot).forward;
             perch.forward = holster.slide(perch.forward.clamp(robot - play, robot + play));
         }
-        Place::Holster(which, perch)
+        GripperPlace::Holster(which, perch)
     }
 
     /// The gripper whose pins touch with the robot at `robot`.
     fn find_mated(&self, robot: &Frame) -> Option<Hand> {
         self.carried().or_else(|| {
             ROBOT_HANDS.into_iter().find(|hand| match self.place(*hand) {
-                Some(Place::Holster(which, perch)) if self.holsters[which].is_near(robot) => {
+                Some(GripperPlace::Holster(which, perch)) if self.holsters[which].is_near(robot) => {
                     Gap::between(robot, &self.holsters[which].gripper(&perch)).engaged(&self.description)
                 }
                 _ => false,
@@ -199,8 +199,8 @@ impl Cell {
         let step = Step { dt, robot, locks: self.changer.ring.locked() && !was_locked };
         for hand in ROBOT_HANDS {
             let next = match self.changer.place(hand) {
-                Some(Place::Robot) => self.keep_or_lose(hand, &robot),
-                Some(Place::Holster(which, perch)) => {
+                Some(GripperPlace::Robot) => self.keep_or_lose(hand, &robot),
+                Some(GripperPlace::Holster(which, perch)) => {
                     Some(self.changer.step_on_holster(hand, which, perch, &step))
                 }
                 _ => None,
@@ -226,11 +226,11 @@ impl Cell {
     }
 
     /// What becomes of the gripper that the ring has, if it does not stay there.
-    fn keep_or_lose(&mut self, hand: Hand, robot: &Frame) -> Option<Place> {
+    fn keep_or_lose(&mut self, hand: Hand, robot: &Frame) -> Option<GripperPlace> {
         if self.changer.ring.unlocked() {
             self.changer.under_lips = None;
             let place = self.changer.land(robot);
-            if place == Place::Fallen {
+            if place == GripperPlace::Fallen {
                 let weight = self.description.gripper.weight;
                 let (gripper, world) = self.hand_at_work(hand);
                 gripper.fall(world, weight);

@@ -14,7 +14,7 @@ use rcs_core::{
 
 use super::{
     Cell, CellEvent,
-    changing::{Place, ROBOT_HANDS},
+    changing::{GripperPlace, ROBOT_HANDS},
     outline::{CAMERA, palm},
 };
 use crate::{
@@ -172,7 +172,7 @@ impl Cell {
     /// The grippers that the robot does not wear and is not mated with, wherever they are.
     fn stored_gripper_bodies(&self) -> impl Iterator<Item = Body> {
         let apart = ROBOT_HANDS.into_iter().filter(|hand| {
-            self.changer.mated() != Some(*hand) && self.changer.place(*hand) != Some(Place::Robot)
+            self.changer.mated() != Some(*hand) && self.changer.place(*hand) != Some(GripperPlace::Robot)
         });
         apart.flat_map(|hand| {
             let (gripper, description) = (self.hand(hand), self.gripper_description(hand));

@@ -18,12 +18,12 @@ pub struct Fault {
     /// The nearest known key or name.
     pub nearest: Option<String>,
     /// Where it stands; `None` if the description does not come from a text.
-    pub place: Option<Place>,
+    pub place: Option<TextSpan>,
 }
 
 /// A piece of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct TextSpan {
     /// Line, from 1.
     pub line: usize,
     /// Column, from 1, in characters.
@@ -70,7 +70,7 @@ impl fmt::Display for Fault {
     }
 }
 
-impl Place {
+impl TextSpan {
     /// Where some bytes of a text stand. What goes over several lines is underlined in the first.
     pub(super) fn of(text: &str, start: usize, end: usize) -> Self {
         let start = (0..=start.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0);
@@ -124,9 +124,9 @@ mod tests {
     fn a_place_is_counted_in_lines_and_characters_and_ends_with_its_line() {
         let text = "a = 1\nb = \"é\" # x\nc = 3\n";
         let at = text.find('#').unwrap();
-        let place = Place::of(text, at, text.len());
+        let place = TextSpan::of(text, at, text.len());
         assert_eq!((place.line, place.column, place.start, place.length), (2, 9, at, 3));
-        let end = Place::of(text, 400, 500);
+        let end = TextSpan::of(text, 400, 500);
         assert_eq!((end.line, end.column, end.length), (4, 1, 0));
     }
 

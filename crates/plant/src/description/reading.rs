@@ -18,7 +18,7 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-use super::fault::{Fault, Faults, Place, nearest};
+use super::fault::{Fault, Faults, TextSpan, nearest};
 
 /// The way to an entry: `gripper.parts.body[0]`.
 pub(super) type Path = String;
@@ -88,7 +88,7 @@ impl<'a> Document<'a> {
             .into_iter()
             .map(|(fault, at)| {
                 let Range { start, end } = at.unwrap_or_else(|| self.place(&fault.entry));
-                Fault { place: Some(Place::of(text, start, end)), ..fault }
+                Fault { place: Some(TextSpan::of(text, start, end)), ..fault }
             })
             .collect();
         faults.sort_by_key(|fault| fault.place.map(|place| place.start));

@@ -16,7 +16,7 @@ use super::{
 use crate::{
     description::CellDescription,
     noise::Noise,
-    sensor::{Line, Sensor},
+    sensor::{DelayLine, Sensor},
 };
 
 /// Streams of numbers of faults begin here; those of devices are below ([`crate::noise::Stream`]).
@@ -44,7 +44,7 @@ struct Running {
     /// The word at which a stuck sensor was caught.
     caught: Option<i64>,
     /// Words on their way through a slow sensor.
-    late: Line,
+    late: DelayLine,
     times: u64,
     first: u64,
     last: u64,
@@ -111,7 +111,7 @@ impl Injector {
             began: 0,
             until: 0,
             caught: None,
-            late: Line::default(),
+            late: DelayLine::default(),
             times: 0,
             first: 0,
             last: 0,

@@ -10,9 +10,9 @@ use crate::description::SensorModels;
 
 /// Words on their way.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
-pub struct Line(VecDeque<i64>);
+pub struct DelayLine(VecDeque<i64>);
 
-impl Line {
+impl DelayLine {
     /// Put a word in, and take the one out that went in `ticks` ago; the oldest while the line fills.
     pub fn pass(&mut self, word: i64, ticks: u16) -> i64 {
         self.0.push_back(word);
@@ -30,7 +30,7 @@ impl Line {
 
 /// The dead times of a cell's sensors; those without any are not in it.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
-pub struct DeadTimes(Vec<(Sensor, u16, Line)>);
+pub struct DeadTimes(Vec<(Sensor, u16, DelayLine)>);
 
 impl DeadTimes {
     /// As a description has them.
@@ -43,7 +43,7 @@ impl DeadTimes {
             Group::Switch => models.switch_delay,
             Group::Other => 0,
         };
-        let late = Sensor::all().map(|sensor| (sensor, ticks(sensor), Line::default()));
+        let late = Sensor::all().map(|sensor| (sensor, ticks(sensor), DelayLine::default()));
         Self(late.filter(|(_, ticks, _)| *ticks > 0).collect())
     }
 
@@ -62,9 +62,9 @@ mod tests {
 
     #[test]
     fn words_come_out_as_they_went_in_but_later() {
-        let mut line = Line::default();
+        let mut line = DelayLine::default();
         assert_eq!([1, 2, 3, 4, 5].map(|word| line.pass(word, 2)), [1, 1, 1, 2, 3]);
-        let mut none = Line::default();
+        let mut none = DelayLine::default();
         assert_eq!([1, 2, 3].map(|word| none.pass(word, 0)), [1, 2, 3]);
     }
 

@@ -17,6 +17,6 @@ pub mod resolver;
 mod switch;
 
 pub use analog::Analog;
-pub use delay::{DeadTimes, Line};
+pub use delay::{DeadTimes, DelayLine};
 pub use name::{Group, Sensor};
 pub use switch::Switch;

@@ -12,7 +12,7 @@ use crate::{
     pose::Pose,
 };
 
-use super::words::{Place, words};
+use super::words::{LocationWords, words};
 
 /// Commands of E-move (V.2.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -372,6 +372,6 @@ pub struct EmoveOutputs {
 /// `MOV-TO-OBJ LINKBAR1 at TRAY`.
 impl fmt::Display for EmoveCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        words(f, self.command.text(), &[&self.object, &Place("at", &self.location, 0)])
+        words(f, self.command.text(), &[&self.object, &LocationWords("at", &self.location, 0)])
     }
 }

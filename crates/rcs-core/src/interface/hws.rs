@@ -13,7 +13,7 @@ use crate::{
     name::Name16,
 };
 
-use super::words::{Place, words};
+use super::words::{LocationWords, words};
 
 /// Command from the HWSC to Task. Words are text, since they come from outside; Task checks them.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -110,8 +110,8 @@ pub struct TaskOutputs {
 /// `TRANSFER LINKBAR1 at TRAY sector 3 to PFIXTURE`.
 impl fmt::Display for HwsCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let source = Place("at", &self.source, self.source_sector);
-        let destination = Place("to", &self.destination, self.destination_sector);
+        let source = LocationWords("at", &self.source, self.source_sector);
+        let destination = LocationWords("to", &self.destination, self.destination_sector);
         words(f, self.command.as_str(), &[&self.object, &source, &destination])
     }
 }

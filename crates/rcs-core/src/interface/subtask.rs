@@ -12,7 +12,7 @@ use crate::{
     name::{Name10, Name16},
 };
 
-use super::words::{Place, words};
+use super::words::{LocationWords, words};
 
 /// Commands of Subtask (V.3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -156,6 +156,6 @@ pub struct SubtaskOutputs {
 /// `GET-OBJECT LINKBAR1 at TRAY`.
 impl fmt::Display for SubtaskCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        words(f, self.command.text(), &[&self.object, &Place("at", &self.location, 0)])
+        words(f, self.command.text(), &[&self.object, &LocationWords("at", &self.location, 0)])
     }
 }

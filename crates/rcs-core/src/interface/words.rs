@@ -17,9 +17,9 @@ impl<const N: usize> Word for Name<N> {
 }
 
 /// A location with the word before it and its sector; a sector of 0 is not said.
-pub(super) struct Place<'a, const N: usize>(pub &'static str, pub &'a Name<N>, pub i32);
+pub(super) struct LocationWords<'a, const N: usize>(pub &'static str, pub &'a Name<N>, pub i32);
 
-impl<const N: usize> fmt::Display for Place<'_, N> {
+impl<const N: usize> fmt::Display for LocationWords<'_, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self(word, name, sector) = self;
         match sector {
@@ -29,7 +29,7 @@ impl<const N: usize> fmt::Display for Place<'_, N> {
     }
 }
 
-impl<const N: usize> Word for Place<'_, N> {
+impl<const N: usize> Word for LocationWords<'_, N> {
     fn is_silent(&self) -> bool {
         self.1.is_empty()
     }

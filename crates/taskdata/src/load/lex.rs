@@ -7,7 +7,7 @@
 
 use super::{
     report::Problems,
-    source::{At, Block, Line},
+    source::{At, Block, SourceLine},
 };
 
 /// A word and where it stands.
@@ -26,13 +26,13 @@ fn short(value: usize) -> u32 {
 }
 
 /// A piece of a line.
-fn piece(line: &Line<'_>, from: usize, length: usize) -> At {
+fn piece(line: &SourceLine<'_>, from: usize, length: usize) -> At {
     At { start: line.at.start.saturating_add(short(from)), length: short(length), ..line.at }
 }
 
 /// The words of one line, for text that is read line by line. An open comment ends with the line.
 #[must_use]
-pub fn words_of_line<'a>(line: &Line<'a>) -> Vec<Word<'a>> {
+pub fn words_of_line<'a>(line: &SourceLine<'a>) -> Vec<Word<'a>> {
     let mut words = Vec::new();
     let mut open = None;
     scan(line, &mut open, &mut words);
@@ -61,7 +61,7 @@ pub fn words<'a>(block: &Block<'a>, problems: &mut Problems) -> Vec<Word<'a>> {
 }
 
 /// Add the words of a line; `open` is where a comment in parentheses began that is not closed yet.
-fn scan<'a>(line: &Line<'a>, open: &mut Option<At>, words: &mut Vec<Word<'a>>) {
+fn scan<'a>(line: &SourceLine<'a>, open: &mut Option<At>, words: &mut Vec<Word<'a>>) {
     let bytes = line.text.as_bytes();
     let mut first = true;
     let mut position = 0;

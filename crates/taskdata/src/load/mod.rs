@@ -36,7 +36,7 @@ use std::path::Path;
 
 pub use job::{Job, Step, ViseOpening, Workstation};
 pub use origins::Origins;
-pub use report::{Diagnostic, Loaded, Report, Severity};
+pub use report::{Diagnostic, Diagnostics, Loaded, Severity};
 pub use source::{BlockNumber, Source};
 pub use store::Store;
 
@@ -47,13 +47,13 @@ impl Store {
     ///
     /// # Errors
     /// The report, if it holds an error; every error of the data is in it.
-    pub fn load(directory: &Path) -> Result<(Self, Report), Box<Report>> {
+    pub fn load(directory: &Path) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         match source::read_blocks_under(directory) {
             Ok(sources) => Self::from_sources(sources),
             Err((path, error)) => {
                 let mut problems = Problems::default();
                 problems.unreadable(&path, &error);
-                Err(Box::new(Report::new(problems, Places::in_blocks(&[]), 0, Vec::new())))
+                Err(Box::new(Diagnostics::new(problems, Places::in_blocks(&[]), 0, Vec::new())))
             }
         }
     }
@@ -62,7 +62,7 @@ impl Store {
     ///
     /// # Errors
     /// The report, if it holds an error; every error of the data is in it.
-    pub fn from_sources(sources: Vec<Source>) -> Result<(Self, Report), Box<Report>> {
+    pub fn from_sources(sources: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         Self::default().with_blocks(sources)
     }
 
@@ -79,7 +79,7 @@ impl Store {
     ///
     /// # Errors
     /// The report, if it holds an error; then there is no new generation.
-    pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Report), Box<Report>> {
+    pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let (store, mut problems, blocks) = self.linked(texts);
         if !problems.has_errors() {
             check::reach(&store.view(), &store.origins, &mut problems);
@@ -91,7 +91,7 @@ impl Store {
     ///
     /// # Errors
     /// The report, if it holds an error; then there is no new generation.
-    pub fn with_blocks_untried(&self, texts: Vec<Source>) -> Result<(Self, Report), Box<Report>> {
+    pub fn with_blocks_untried(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let (store, problems, blocks) = self.linked(texts);
         store.reported(self.sources.len(), problems, blocks)
     }
@@ -121,10 +121,10 @@ impl Store {
         before: usize,
         problems: Problems,
         blocks: usize,
-    ) -> Result<(Self, Report), Box<Report>> {
+    ) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let failed = problems.has_errors();
         let loaded = if failed { Vec::new() } else { self.loaded() };
-        let mut report = Report::new(problems, Places::in_blocks(&self.sources), blocks, loaded);
+        let mut report = Diagnostics::new(problems, Places::in_blocks(&self.sources), blocks, loaded);
         report.files = self.sources.len() - before;
         if failed { Err(Box::new(report)) } else { Ok((self, report)) }
     }

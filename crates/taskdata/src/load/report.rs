@@ -375,7 +375,7 @@ pub struct Loaded {
 
 /// The outcome of a load.
 #[derive(Clone, Debug, Default)]
-pub struct Report {
+pub struct Diagnostics {
     diagnostics: Vec<Diagnostic>,
     /// Files that were read.
     pub files: usize,
@@ -385,7 +385,7 @@ pub struct Report {
     pub loaded: Vec<Loaded>,
 }
 
-impl Report {
+impl Diagnostics {
     /// A report of what was found in the sources.
     #[must_use]
     pub fn new(problems: Problems, mut places: Places<'_>, blocks: usize, loaded: Vec<Loaded>) -> Self {
@@ -469,7 +469,7 @@ impl Report {
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for Diagnostics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for diagnostic in &self.diagnostics {
             diagnostic.plain(f)?;
@@ -478,4 +478,4 @@ impl fmt::Display for Report {
     }
 }
 
-impl std::error::Error for Report {}
+impl std::error::Error for Diagnostics {}

@@ -65,7 +65,7 @@ impl std::fmt::Display for BlockNumber {
 
 /// A line of a block, without its line number.
 #[derive(Clone, Copy, Debug)]
-pub struct Line<'a> {
+pub struct SourceLine<'a> {
     /// The text.
     pub text: &'a str,
     /// Where it stands.
@@ -80,7 +80,7 @@ pub struct Block<'a> {
     /// The header.
     pub header: At,
     /// Its lines.
-    pub lines: Vec<Line<'a>>,
+    pub lines: Vec<SourceLine<'a>>,
 }
 
 /// What is wrong with the blocks of a source.
@@ -204,7 +204,7 @@ pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockF
             continue;
         }
         match found.last_mut() {
-            Some(block) => block.lines.push(Line { text, at }),
+            Some(block) => block.lines.push(SourceLine { text, at }),
             None if text.trim().is_empty() => {}
             None => faults.push((at, BlockFault::NoHeader)),
         }
@@ -251,11 +251,11 @@ const LISTING_WIDTH: usize = 3;
 
 /// True if every line begins with its own number in two columns, as in the listings of the manual. No form can look so: the
 /// numbers of a movetable's lines begin at 1.
-fn is_listing(lines: &[Line<'_>]) -> bool {
+fn is_listing(lines: &[SourceLine<'_>]) -> bool {
     if lines.first().is_none_or(|line| !line.text.starts_with(" 0")) {
         return false;
     }
-    let own_number = |(number, line): (usize, &Line<'_>)| {
+    let own_number = |(number, line): (usize, &SourceLine<'_>)| {
         line.text
             .strip_prefix(format!("{number:2}").as_str())
             .is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))

@@ -41,7 +41,7 @@ use rcs_core::{Plain, frame::Frame, tick::TICK_S};
 use self::{
     limits::Limits,
     profile::{Along, Profile},
-    segment::{FrameData, Order, Segment},
+    segment::{FrameData, Segment, SegmentOrder},
 };
 
 /// The commanded motion of the tool frame.
@@ -56,7 +56,7 @@ pub struct Motion {
     /// The segment under way.
     pub current: Option<Segment>,
     /// What comes after it.
-    pub next: Option<Order>,
+    pub next: Option<SegmentOrder>,
     /// Everything is to come to rest before the next segment starts.
     pub halting: bool,
 }
@@ -102,7 +102,7 @@ impl Motion {
         self.halting = !self.is_passing();
         let goal = FrameData::from(goal);
         self.goal = goal;
-        self.next = Some(Order { goal, through, limits: *limits });
+        self.next = Some(SegmentOrder { goal, through, limits: *limits });
     }
 
     /// Come to rest as soon as the limits allow, and forget the goal.
@@ -158,7 +158,7 @@ impl Motion {
     }
 
     /// Take up the next order at rest, with all of its limits.
-    fn start_from_rest(&mut self, order: &Order, knob: u16) {
+    fn start_from_rest(&mut self, order: &SegmentOrder, knob: u16) {
         self.current = Some(Segment::new(&self.at.frame(), order));
         self.next = None;
         self.halting = false;
@@ -176,7 +176,7 @@ impl Motion {
     }
 
     /// Velocity that the current segment may have now, in/s.
-    fn velocity(&self, order: &Order, knob: u16) -> f64 {
+    fn velocity(&self, order: &SegmentOrder, knob: u16) -> f64 {
         if self.halting { 0.0 } else { order.limits.velocity_at(knob) }
     }
 
@@ -210,7 +210,7 @@ impl Motion {
 
     /// Start the segment of the next order as soon as the `old` one brakes. `before` is the clock of the old
     /// one a tick ago.
-    fn hand_over(&mut self, order: &Order, old: Segment, before: f64, knob: u16) {
+    fn hand_over(&mut self, order: &SegmentOrder, old: Segment, before: f64, knob: u16) {
         let clock = old.profile.clock;
         let Some(braking_point) = old.profile.braking_point().filter(|begin| clock >= *begin) else {
             return;

@@ -44,7 +44,7 @@ impl FrameData {
 
 /// Where to go, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Order {
+pub struct SegmentOrder {
     /// The goal.
     pub goal: FrameData,
     /// GO-THRU: the next segment may start before this one has ended. Path to the through point at which it
@@ -58,7 +58,7 @@ pub struct Order {
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Segment {
     /// Where it goes.
-    pub order: Order,
+    pub order: SegmentOrder,
     /// From start to goal, inches.
     pub translation: [f64; 3],
     /// From start to goal, axis times angle, radians.
@@ -92,7 +92,7 @@ impl Displacement {
 impl Segment {
     /// The line from `start` to the goal of `order`, without a profile.
     #[must_use]
-    pub fn new(start: &Frame, order: &Order) -> Self {
+    pub fn new(start: &Frame, order: &SegmentOrder) -> Self {
         let goal = order.goal.frame();
         let translation = goal.position - start.position;
         let rotation = rotation_vector(&(goal.rotation * start.rotation.inverse()));

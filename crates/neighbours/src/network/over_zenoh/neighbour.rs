@@ -25,7 +25,7 @@ use crate::network::{
     frame::{Frame, FrameError, LAST_WORDS, PULSE, WELCOME},
     hello::{Agreement, Challenge, ClockKind, HELLO, HelloError, check_welcome},
     office::Outlet,
-    peer::{Inlet, LIMIT, Line, PAUSE, last_words},
+    peer::{Connection, Inlet, LIMIT, PAUSE, last_words},
     seal::Seal,
     station::Station,
 };
@@ -50,7 +50,7 @@ pub fn connect(
     role: Role,
     secret: &Secret,
     until: Instant,
-) -> Result<Line, PeerError> {
+) -> Result<Connection, PeerError> {
     let broken = |source| PeerError::Line { address: address.clone(), source };
     let session = super::open(station, Side::Neighbour).map_err(broken)?;
     let keys = Keys::new(station);
@@ -65,7 +65,7 @@ pub fn connect(
                 let limit = (clock == ClockKind::Real).then_some(LIMIT);
                 let receiver =
                     Reading { unread, seal: agreement.down(), limit, _here: here, _session: session };
-                return Ok(Line { sender: Box::new(sender), receiver: Box::new(receiver), clock });
+                return Ok(Connection { sender: Box::new(sender), receiver: Box::new(receiver), clock });
             }
             Err(error) if error.is_passing() && Instant::now() < until => thread::sleep(PAUSE),
             Err(error) => return Err(error),

@@ -55,8 +55,8 @@ pub use action::{
 use super::{
     Store,
     places::Places,
-    report::{Problems, Report},
-    source::{At, Line, Source, lines_of, read},
+    report::{Diagnostics, Problems},
+    source::{At, Source, SourceLine, lines_of, read},
 };
 
 /// Input commands of Task (V.4.1).
@@ -98,7 +98,7 @@ pub struct JobLine {
     pub step: Step,
     /// The line as written, without its comment.
     pub text: String,
-    /// Line of the file from 1.
+    /// SourceLine of the file from 1.
     pub line: u32,
 }
 
@@ -119,13 +119,13 @@ impl Job {
     ///
     /// # Errors
     /// The report, if it holds an error; every error of the job is in it.
-    pub fn load(path: &Path, store: &Store) -> Result<(Self, Report), Box<Report>> {
+    pub fn load(path: &Path, store: &Store) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         match read(path, &path.display().to_string()) {
             Ok(source) => Self::from_source(source, store),
             Err(error) => {
                 let mut problems = Problems::default();
                 problems.unreadable(&path.display().to_string(), &error);
-                Err(Box::new(Report::new(problems, Places::in_lines(&[]), 0, Vec::new())))
+                Err(Box::new(Diagnostics::new(problems, Places::in_lines(&[]), 0, Vec::new())))
             }
         }
     }
@@ -134,7 +134,7 @@ impl Job {
     ///
     /// # Errors
     /// The report, if it holds an error.
-    pub fn from_source(source: Source, store: &Store) -> Result<(Self, Report), Box<Report>> {
+    pub fn from_source(source: Source, store: &Store) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         let mut problems = Problems::default();
         let reloads = reload::reloads(&source, store, &mut problems);
         let views = reloads.iter().map(|reload| reload.store.view()).collect();
@@ -142,7 +142,8 @@ impl Job {
         let steps = source_lines(&source).filter_map(|(number, line)| reader.line(number, &line)).collect();
         reader.end();
         let failed = problems.has_errors();
-        let report = Report::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new());
+        let report =
+            Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new());
         if failed {
             return Err(Box::new(report));
         }
@@ -158,9 +159,9 @@ impl Job {
 }
 
 /// The lines of a job, each with its number from 1.
-fn source_lines(source: &Source) -> impl Iterator<Item = (u32, Line<'_>)> {
+fn source_lines(source: &Source) -> impl Iterator<Item = (u32, SourceLine<'_>)> {
     let short = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
-    let line = move |(start, text): (usize, _)| Line {
+    let line = move |(start, text): (usize, _)| SourceLine {
         text,
         at: At { source: 0, start: short(start), length: short(text.len()) },
     };

@@ -10,8 +10,8 @@ use super::{
         Store,
         lex::words_of_line,
         places::Places,
-        report::{Problems, Report},
-        source::{At, Line, Source},
+        report::{Diagnostics, Problems},
+        source::{At, Source, SourceLine},
     },
     Workstation,
     read::{Fields, Reader},
@@ -56,7 +56,7 @@ impl std::error::Error for OwnLineError {}
 /// [`OwnLineError`].
 pub fn own_line(text: &str, store: &Store) -> Result<Workstation, OwnLineError> {
     let length = u32::try_from(text.len()).unwrap_or(u32::MAX);
-    let words = words_of_line(&Line { text, at: At { source: 0, start: 0, length } });
+    let words = words_of_line(&SourceLine { text, at: At { source: 0, start: 0, length } });
     match words.first().map(|word| word.text) {
         None => return Err(OwnLineError::Nothing),
         Some("load") => return Err(OwnLineError::Load),
@@ -71,7 +71,7 @@ pub fn own_line(text: &str, store: &Store) -> Result<Workstation, OwnLineError> 
         None => {
             let source = Source { name: String::new(), text: text.into() };
             let places = Places::in_lines(std::slice::from_ref(&source));
-            let report = Report::new(problems, places, 0, Vec::new());
+            let report = Diagnostics::new(problems, places, 0, Vec::new());
             let errors: Vec<_> = report.errors().map(|error| error.message().to_owned()).collect();
             Err(OwnLineError::Unreadable(errors.join("; ")))
         }

@@ -10,7 +10,7 @@ use super::{
         names::nearest,
         parse::is_integer,
         report::{Problems, Severity},
-        source::{At, Line},
+        source::{At, SourceLine},
     },
     JobLine, Step, TASK_COMMANDS,
     walk::{Visit, Visits, Walk},
@@ -105,7 +105,7 @@ impl Reader<'_, '_> {
     }
 
     /// The step of line `number`; `None` if it has none, or if it cannot be read, which is noted.
-    pub(super) fn line(&mut self, number: u32, line: &Line<'_>) -> Option<JobLine> {
+    pub(super) fn line(&mut self, number: u32, line: &SourceLine<'_>) -> Option<JobLine> {
         let words = words_of_line(line);
         let first = words.first()?;
         let mut fields = Fields { words: &words, next: 1 };

@@ -106,13 +106,13 @@ pub struct Harm {
 }
 
 /// Watches a branch.
-pub struct Judge {
+pub struct HarmMonitor {
     seen: usize,
     harms: Vec<Harm>,
 }
 
-impl Judge {
-    /// A judge of what happens from now on.
+impl HarmMonitor {
+    /// Watch what happens from now on.
     #[must_use]
     pub fn from_now(branch: &Branch<'_>) -> Self {
         Self { seen: branch.check().collisions().len(), harms: Vec::new() }
