@@ -28,6 +28,12 @@ const HELD: u64 = 50;
 pub const FAULT: u64 = 20;
 /// Ticks between the emergency stop and its release: time to walk there.
 const STOPPED: u64 = 100;
+/// How far a robot is led away, in.
+const RISE: f64 = 3.0;
+/// A robot that is led back goes on so far when the button is let go, in.
+const GOES_ON: f64 = 0.3;
+/// Ticks for which a button of the joystick box is held down at most.
+const LED: u64 = 100;
 /// Ticks for which a key of the panel is tried.
 const PATIENCE: u64 = 2000;
 /// Ticks from CYCLE START to the DEPC function: the program makes two short motions.
@@ -169,8 +175,8 @@ impl Kind {
             Self::AnswerLate => vec![Hand::Answer(FaultKind::Delay)],
             Self::AnswerDamaged => vec![Hand::Answer(FaultKind::Flip)],
             Self::Hold => vec![Hand::key(Key::Hold(true)), Hand::Wait(HOLD), Hand::key(Key::Hold(false))],
-            Self::Nudge => joystick(100, 11, false),
-            Self::Away => joystick(500, 31, true),
+            Self::Nudge => nudge(),
+            Self::Away => away(),
             Self::Held(process) => {
                 let bit = SWITCHES.iter().find(|(one, _)| one == process).map_or(0, |(_, bit)| *bit);
                 let hold = |action| Hand::Act(WorkstationAction::Joystick(action));
@@ -187,31 +193,41 @@ impl Kind {
                 vec![Hand::Faults(Arc::clone(file)), Hand::Wait(FAULT), Hand::Enter, Hand::StartUp]
             }
         };
-        Script { hands, at: 0, until: None }
+        Script { hands, at: 0, until: None, height: 0.0 }
     }
 }
 
-/// A stick that is deflected for some ticks, and back.
-fn joystick(knob: u16, ticks: u32, up: bool) -> Vec<Hand> {
-    let act = |action| Hand::Act(WorkstationAction::Joystick(action));
-    let stick = |x: i16| match (up, x > 0) {
-        (true, true) => BoxAction::Press(BoxButton::Up, ticks),
-        (true, false) => BoxAction::Press(BoxButton::Down, ticks),
-        (false, _) => BoxAction::Stick { x, y: 0, ticks },
-    };
-    vec![
-        act(BoxAction::Velocity(knob)),
-        act(BoxAction::Frame(joystick_frame::WORLD)),
-        // A motion that is under way ramps down first.
+/// A control of the joystick box.
+const fn at_box(action: BoxAction) -> Hand {
+    Hand::Act(WorkstationAction::Joystick(action))
+}
+
+/// What is done at the box between the two throws of the frame switch.
+fn joystick(knob: u16, hands: impl IntoIterator<Item = Hand>) -> Vec<Hand> {
+    // A motion that is under way ramps down first.
+    let mut all = vec![
+        at_box(BoxAction::Velocity(knob)),
+        at_box(BoxAction::Frame(joystick_frame::WORLD)),
         Hand::Wait(25),
-        act(stick(1000)),
-        Hand::Wait(u64::from(ticks) + 10),
-        act(stick(-1000)),
-        Hand::Wait(u64::from(ticks) + 10),
-        act(BoxAction::Frame(0)),
-        act(BoxAction::Velocity(KNOB_FULL)),
-        Hand::Wait(5),
-    ]
+    ];
+    all.extend(hands);
+    all.extend([at_box(BoxAction::Frame(0)), at_box(BoxAction::Velocity(KNOB_FULL)), Hand::Wait(5)]);
+    all
+}
+
+/// The stick is deflected along X for some ticks, and back.
+fn nudge() -> Vec<Hand> {
+    const TICKS: u32 = 11;
+    let stick =
+        |x: i16| [at_box(BoxAction::Stick { x, y: 0, ticks: TICKS }), Hand::Wait(u64::from(TICKS) + 10)];
+    joystick(100, [1000, -1000].into_iter().flat_map(stick))
+}
+
+/// The robot is stopped with the box, led up, and back by eye to the height at which it stopped.
+fn away() -> Vec<Hand> {
+    let stop = [at_box(BoxAction::Press(BoxButton::Up, 2)), Hand::Wait(25)];
+    let lead = [Hand::Rise, Hand::Wait(15), Hand::Sink, Hand::Wait(15)];
+    joystick(500, stop.into_iter().chain(lead))
 }
 
 /// The words of the command line.
@@ -284,6 +300,10 @@ enum Hand {
     StartUp,
     /// A key of the panel, as soon as the controller takes it.
     Key(Key),
+    /// The button D of the joystick box, until the robot is [`RISE`] higher, or goes no further.
+    Rise,
+    /// The button E, until it is almost at the height at which it rose.
+    Sink,
 }
 
 impl Hand {
@@ -301,6 +321,8 @@ pub struct Script {
     hands: Vec<Hand>,
     at: usize,
     until: Option<Tick>,
+    /// Height of the tool before it was led away, in.
+    height: f64,
 }
 
 impl Script {
@@ -329,6 +351,27 @@ impl Script {
                     let busy = branch.workstation.cell.t3().busy();
                     if now < until && (busy || branch.workstation.cell.press(key).is_err()) {
                         return refused;
+                    }
+                    self.until = None;
+                }
+                Hand::Rise | Hand::Sink => {
+                    let (now, height) = (branch.at(), branch.workstation.cell.tool().position.z);
+                    if self.until.is_none() && matches!(hand, Hand::Rise) {
+                        self.height = height;
+                    }
+                    let until = *self.until.get_or_insert(Tick(now.0 + LED));
+                    let (button, there) = match hand {
+                        Hand::Rise => (BoxButton::Up, height >= self.height + RISE),
+                        _ => (BoxButton::Down, height <= self.height + GOES_ON),
+                    };
+                    if now < until && !there {
+                        let press = WorkstationAction::Joystick(BoxAction::Press(button, 1));
+                        return branch
+                            .workstation
+                            .cell
+                            .workstation(&press)
+                            .err()
+                            .map(|error| error.to_string());
                     }
                     self.until = None;
                 }
