@@ -27,9 +27,11 @@ use super::{
     robot_place::{commanded_pose, place, place_named, present_frame, robot_at},
     route::{near, same_location},
     state::State,
-    tables::AtDrum,
+    tables::{
+        AtDrum,
+        drum::{AtTheDrum, Belief, Tool, drum},
+    },
 };
-use crate::execution::Outcome;
 
 /// A tool is in its place within this along the way in: the fingers of the drum close on it there, in.
 const SEATED: f64 = 0.15;
@@ -168,22 +170,27 @@ impl State {
         }
     }
 
-    /// A robot that has been taken away from the drum, as by the joystick box, is no longer half way there. One
-    /// whose fingers have closed on a tool in the drum stands there, also if the command did not come to that.
+    /// Does a robot that is half way at the drum stay so? The table DRUM says it.
     pub(super) fn sense_drum(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
-        let (Some(drum), Some(present)) = (self.beliefs.drum, present_frame(inputs.memory)) else { return };
-        let at = locate(&drum, inputs.memory, inputs.data);
+        let (Some(half_way), Some(present)) = (self.beliefs.drum, present_frame(inputs.memory)) else {
+            return;
+        };
         let grasped_here = self.beliefs.held.is_some_and(|held| {
             held.pose.to_frame().is_ok_and(|pose| near(&pose, &present, UNMOVED, TURNED))
         });
-        match at {
-            AtDrum::Off => self.beliefs.drum = None,
-            AtDrum::Inside if grasped_here && self.execution.outcome != Outcome::Executing => {
+        let situation = AtTheDrum {
+            at: locate(&half_way, inputs.memory, inputs.data),
+            tool: if grasped_here { Tool::Grasped } else { Tool::Loose },
+            outcome: self.execution.outcome,
+        };
+        match drum((), &situation).action {
+            Belief::Keep => {}
+            Belief::Leave => self.beliefs.drum = None,
+            Belief::Stand => {
                 let pose = commanded_pose(inputs.memory).unwrap_or_else(|| Pose::from_frame(&present));
-                self.beliefs.place = Some(RobotPlace { pose, ..drum });
+                self.beliefs.place = Some(RobotPlace { pose, ..half_way });
                 self.beliefs.drum = None;
             }
-            _ => {}
         }
     }
 

@@ -9,6 +9,7 @@ use rcs_core::{
         CommonMemory,
         emove::{EmoveCommand, EmoveVerb, Grasped, Holding, PlacedObject, RobotPlace},
         grip::Felt,
+        quick_change::RingPosition,
     },
     name::Name16,
     process::Inputs,
@@ -19,7 +20,7 @@ use super::{
     gripper::Gripper,
     order::{FingerOrder, FingerVerb},
     robot_place::present_frame,
-    route::{FULL_OPENING, near},
+    route::{Ahead, FULL_OPENING, near},
     state::State,
     tables::{Action, Fingers, Opening, Spread},
     way::{AWAY_INCHES, AWAY_RADIANS},
@@ -65,13 +66,20 @@ impl State {
     /// Is what was held still there, and is there something between the fingers?
     pub(super) fn sense_held(&mut self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
-        self.sense_loss(inputs);
         let attached = Gripper::attached(memory);
+        if self.is_misread(memory) {
+            return;
+        }
+        self.sense_loss(inputs);
         if attached.code() != mem::replace(&mut self.attached, attached.code()) {
             (self.beliefs.empty, self.beliefs.grasping) = (false, None);
         }
+        // Before the fingers have closed they feel nothing: that says nothing of what they will hold.
+        let closing =
+            self.grippers.order == FingerVerb::Grasp && self.grippers.are_moving(inputs.tick, memory);
+        self.beliefs.empty |= self.grippers.has_let_go(inputs.tick, memory);
         match attached.felt(memory) {
-            Felt::Nothing => self.beliefs.empty = true,
+            Felt::Nothing => self.beliefs.empty |= !closing,
             Felt::Something if self.beliefs.held.is_none() && self.may_adopt(command, inputs) => {
                 let at = |grasped: &Grasped| {
                     let (Ok(then), Some(now)) = (grasped.pose.to_frame(), present_frame(memory)) else {
@@ -86,6 +94,14 @@ impl State {
             }
             Felt::Something | Felt::NotKnown => {}
         }
+    }
+
+    /// Do the id pins say that the gripper has gone, while the ring has been locked ever since it was there? Then it is
+    /// on, and its pins have a bad contact. What it holds is not known until they read as before.
+    pub(super) fn is_misread(&self, memory: &CommonMemory) -> bool {
+        let read = Gripper::attached(memory).code();
+        let locked = memory.quick_change.status.ring == RingPosition::Locked;
+        locked && self.attached != 0 && read != self.attached
     }
 
     /// May something that is felt count as grasped? Not while the fingers move, nor before the command that
@@ -134,6 +150,8 @@ impl State {
     pub(super) fn holding(&self, memory: &CommonMemory) -> Holding {
         let attached = Gripper::attached(memory);
         match (self.beliefs.held, attached.felt(memory)) {
+            (None, _) if self.is_misread(memory) && self.beliefs.empty => Holding::Nothing,
+            _ if self.is_misread(memory) => Holding::NotKnown,
             (Some(held), _) => Holding::Object(held.object),
             (None, Felt::Nothing) => Holding::Nothing,
             (None, Felt::NotKnown) if self.beliefs.empty => Holding::Nothing,
@@ -171,7 +189,7 @@ impl State {
             Action::OpenToDepart => {
                 FingerOrder::to(FingerVerb::Release, self.depart_opening(command, inputs.data))
             }
-            Action::OpenByHand => FingerOrder::to(FingerVerb::Release, FULL_OPENING),
+            Action::OpenByHand | Action::OpenFully => FingerOrder::to(FingerVerb::Release, FULL_OPENING),
             Action::Close => {
                 FingerOrder { order: FingerVerb::Grasp, opening: sizes.grasp_size, force: sizes.grasp_force }
             }
@@ -199,6 +217,14 @@ impl State {
             Opening::Set
         } else if self.departing(inputs.data) {
             Opening::Departing
+        } else if Gripper::attached(inputs.memory).is_uncalibrated(inputs.memory)
+            && self.holding(inputs.memory) == Holding::Nothing
+        {
+            match (self.place(), self.ahead(inputs.data)) {
+                (None, _) => Opening::Uncalibrated,
+                (Some(_), Ahead::Through) => Opening::Departing,
+                (Some(_), _) => Opening::Due,
+            }
         } else {
             Opening::Due
         }
@@ -214,6 +240,10 @@ impl State {
         let attached = Gripper::attached(inputs.memory);
         let open = attached.is_open(self.depart_opening(command, inputs.data), inputs.memory);
         let at_rest = attached == Gripper::None || gripper == Lower::Done;
-        if open && at_rest { Spread::Open } else { Spread::Narrow }
+        match (attached.is_uncalibrated(inputs.memory), open && at_rest) {
+            (true, _) => Spread::Unknown,
+            (false, true) => Spread::Open,
+            (false, false) => Spread::Narrow,
+        }
     }
 }

@@ -20,7 +20,7 @@ use rcs_core::{
     Plain,
     handshake::{Commander, Lower},
     interface::{
-        CommonMemory, EmoveOutputs, JawsOutputs, Reason,
+        CommonMemory, EmoveOutputs, GripOutputs, JawsOutputs, Reason,
         emove::Dormancy,
         grip::{Felt, GripCommand, GripVerb},
         jaws::{JawsCommand, JawsReport, JawsVerb},
@@ -152,10 +152,11 @@ impl Gripper {
     pub fn opening(self, memory: &CommonMemory) -> Option<i32> {
         match self.jaws(memory) {
             Some(jaws) => (!jaws.header.republished).then_some(jaws.status.size),
-            None if self == Self::Parts && memory.grip.status.initialized => {
-                Some(memory.grip.status.position)
+            None => {
+                let GripOutputs { header, status, .. } = &memory.grip;
+                let known = self == Self::Parts && status.initialized && !header.republished;
+                known.then_some(status.position)
             }
-            None => None,
         }
     }
 
@@ -262,6 +263,41 @@ impl Grippers {
         self.parts.start_from(tick, written.grip.number, memory.grip.status.echo);
         self.v.start_from(tick, written.v_grip.number, memory.v_grip.status.echo);
         self.tool.start_from(tick, written.tool_grip.number, memory.tool_grip.status.echo);
+    }
+
+    /// In the first tick after a restart: the attached gripper may still be busy with what it was told before.
+    pub fn adopt(&mut self, memory: &CommonMemory) {
+        let (attached, written) = (Gripper::attached(memory), &memory.emove);
+        self.order = match attached {
+            Gripper::None => return,
+            Gripper::Parts => match written.grip.command {
+                GripVerb::None => return,
+                GripVerb::Pause => FingerVerb::Pause,
+                GripVerb::Position => FingerVerb::Stand,
+                GripVerb::OpenGrip => FingerVerb::Release,
+                GripVerb::CloseGrip => FingerVerb::Grasp,
+                GripVerb::UpInit => FingerVerb::Calibrate,
+            },
+            Gripper::V | Gripper::Tool => {
+                let jaws = if attached == Gripper::V { &written.v_grip } else { &written.tool_grip };
+                self.size = jaws.size;
+                match jaws.command {
+                    JawsVerb::None => return,
+                    JawsVerb::Pause => FingerVerb::Pause,
+                    JawsVerb::Pose => FingerVerb::Stand,
+                    JawsVerb::Release => FingerVerb::Release,
+                    JawsVerb::Grasp => FingerVerb::Grasp,
+                }
+            }
+        };
+        (self.to, self.closing) = (attached, self.order == FingerVerb::Grasp);
+    }
+
+    /// Are the fingers busy with an order that moves them?
+    #[must_use]
+    pub fn are_moving(&self, tick: Tick, memory: &CommonMemory) -> bool {
+        let busy = matches!(self.status(tick, memory), Lower::Pending | Lower::Executing);
+        busy && !matches!(self.order, FingerVerb::None | FingerVerb::Pause)
     }
 
     /// Give the attached gripper an order; without a gripper, or while it sleeps, it only counts as given.

@@ -89,7 +89,7 @@ impl State {
                 (None, None) => Knowledge::Unknown,
                 _ => Knowledge::Known,
             },
-            coupling: coupling(memory),
+            coupling: if self.is_misread(memory) { Coupling::Misread } else { coupling(memory) },
             exchange: if self.beliefs.exchange.is_some() { Exchange::HalfDone } else { Exchange::None },
             drum: if self.beliefs.drum.is_some() { ToolWork::HalfDone } else { ToolWork::None },
             target: target(command, inputs.data),

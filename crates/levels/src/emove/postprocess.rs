@@ -49,13 +49,15 @@ const fn ordered(action: Action) -> Option<Ordered> {
         | Action::Centre
         | Action::Align => Some(Ordered::Prim),
         Action::GoUntil(_) => Some(Ordered::GoUntil),
-        Action::OpenToApproach | Action::Close | Action::OpenToDepart | Action::Calibrate => {
-            Some(Ordered::Gripper)
-        }
+        Action::OpenToApproach
+        | Action::Close
+        | Action::OpenToDepart
+        | Action::OpenFully
+        | Action::Calibrate => Some(Ordered::Gripper),
         Action::CloseForHolster => Some(Ordered::GripperInHolster),
         Action::Lock | Action::Unlock => Some(Ordered::QuickChange),
         Action::Flood | Action::FloodAgain | Action::Precise | Action::PreciseAgain => Some(Ordered::Vision),
-        Action::Pause => Some(Ordered::All),
+        Action::Pause | Action::StopRobot => Some(Ordered::All),
         _ => None,
     }
 }
@@ -77,7 +79,12 @@ impl State {
         match action {
             Action::Wait => {}
             Action::RobotInit => self.send_prim(PrimVerb::RobotInit, inputs, outputs),
-            Action::Pause => self.pause_all(inputs, outputs),
+            Action::Pause => {
+                self.stop_robot(inputs, outputs);
+                let request = FingerOrder { order: FingerVerb::Pause, ..FingerOrder::default() };
+                self.grippers.send(request, inputs.tick, inputs.memory, outputs);
+            }
+            Action::StopRobot => self.stop_robot(inputs, outputs),
             Action::Manual => {
                 self.searched = 0;
                 self.execution.pass_up(Lower::Joystick, Reason::JoystickOn);
@@ -95,11 +102,16 @@ impl State {
             | Action::CloseForHolster
             | Action::Close
             | Action::OpenToDepart
+            | Action::OpenFully
             | Action::Calibrate
             | Action::OpenByHand
             | Action::CloseByHand => self.order(action, command, inputs, outputs),
             Action::Arrive | Action::Located => self.arrive(command, outputs),
             Action::Stand => self.stand(GoneTo::Location, command, inputs),
+            Action::Leave(reason) => {
+                self.stand(GoneTo::Location, command, inputs);
+                self.fail(reason, inputs, outputs);
+            }
             Action::StandInDrum => self.stand(GoneTo::Drum, command, inputs),
             Action::Grasped => self.grasped(command, inputs),
             Action::Acquired => {
@@ -147,12 +159,10 @@ impl State {
         }
     }
 
-    /// PAUSE to Prim, the gripper and Quick Change: ramp down and hold, and leave everything as it is.
-    fn pause_all(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
+    /// PAUSE to Prim and Quick Change: ramp down and hold, and leave the ring as it is.
+    fn stop_robot(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &mut EmoveOutputs) {
         self.searched = 0;
         self.send_prim(PrimVerb::Pause, inputs, outputs);
-        let request = FingerOrder { order: FingerVerb::Pause, ..FingerOrder::default() };
-        self.grippers.send(request, inputs.tick, inputs.memory, outputs);
         self.send_quick_change(QuickChangeVerb::Pause, inputs, outputs);
     }
 

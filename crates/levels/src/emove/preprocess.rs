@@ -25,8 +25,8 @@ use super::{
     route::{near, same_location},
     state::State,
     tables::{
-        At, Contact, Held, Holster, Knowledge, Link, Load, Lock, Mate, Orders, Pause, Readiness, Request,
-        Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch,
+        At, Contact, Held, Holster, Knowledge, Link, Load, Lock, Mate, Motion, Orders, Pause, Readiness,
+        Request, Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch,
         e_pause::EPauseStep,
         search::{Look, search},
     },
@@ -74,7 +74,7 @@ impl State {
     pub(super) fn sense(&mut self, inputs: &Inputs<'_, TaskData<'_>>, outputs: &EmoveOutputs) -> Seen {
         let command = &inputs.memory.subtask.emove;
         let arrival = self.execution.receiver.observe(command.number);
-        self.adopt(outputs);
+        self.adopt(inputs.memory, outputs);
         self.sense_neighbours(inputs);
         self.sense_way(inputs.memory);
         self.sense_held(command, inputs);
@@ -106,9 +106,13 @@ impl State {
     }
 
     /// In its first tick E-move takes over what it believed before a restart.
-    fn adopt(&mut self, outputs: &EmoveOutputs) {
+    fn adopt(&mut self, memory: &CommonMemory, outputs: &EmoveOutputs) {
         if !mem::replace(&mut self.started, true) {
             self.beliefs = outputs.beliefs;
+            // Another gripper may have come in the meantime; one whose pins read as none may still be on.
+            let (before, now) = (outputs.status.end_effector_id, Gripper::attached(memory).code());
+            self.attached = if now == 0 || now == before { before } else { 0 };
+            self.grippers.adopt(memory);
         }
     }
 
@@ -189,6 +193,7 @@ impl State {
             load: match self.beliefs.held {
                 None if self.carrying && self.gripper_gone => Load::GripperGone,
                 None if self.carrying => Load::Lost,
+                Some(_) if self.carrying && self.is_misread(memory) => Load::PinsFail,
                 _ => Load::Kept,
             },
             ordered: self.ordered,
@@ -212,7 +217,7 @@ impl State {
         orders: &Orders,
         inputs: &Inputs<'_, TaskData<'_>>,
     ) -> Situation {
-        let memory = inputs.memory;
+        let (tick, memory) = (inputs.tick, inputs.memory);
         let &Orders { prim, opening, gripper, ring, .. } = orders;
         Situation {
             work: Work::Busy,
@@ -244,7 +249,8 @@ impl State {
             tries: if self.tries.saturating_add(1) < MAX_TRIES { Tries::Left } else { Tries::Spent },
             link: if memory.prim.status.link_running { Link::Up } else { Link::Down },
             prim,
-            tooling: self.tooling(ring, gripper, memory),
+            motion: if self.grippers.are_moving(tick, memory) { Motion::Moving } else { Motion::AtRest },
+            tooling: self.tooling(ring, gripper, inputs),
             place: self.whereabouts(inputs),
             button: match memory.prim.status.joystick_grip {
                 pressed if pressed == self.button => JoystickGrip::None,
@@ -304,17 +310,16 @@ impl State {
     }
 
     /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is
-    /// (VI.3.1 UP-INIT); with no gripper, or one that has come since, there is nothing to wait for.
-    fn tooling(&self, ring: Ring, gripper: Lower, memory: &CommonMemory) -> Tooling {
-        let asked = self.grippers.to == Gripper::attached(memory);
+    /// (VI.3.1 UP-INIT); with no gripper, or one that has come since, there is nothing to wait for. A ring that
+    /// stands half-way is at rest, too: which commands it stands in the way of is said in ACCEPT.
+    fn tooling(&self, ring: Ring, gripper: Lower, inputs: &Inputs<'_, TaskData<'_>>) -> Tooling {
+        let asked = self.grippers.to == Gripper::attached(inputs.memory);
         match (ring, gripper) {
-            (Ring::Faulty, _) => Tooling::RingFaulty,
+            (Ring::Faulty, _) if self.lock(inputs) != Lock::Between => Tooling::RingFaulty,
             (Ring::Busy, _) => Tooling::Busy,
-            (Ring::Locked | Ring::Unlocked, Lower::Error | Lower::Joystick | Lower::Lost) if asked => {
-                Tooling::GripFaulty
-            }
-            (Ring::Locked | Ring::Unlocked, Lower::Pending | Lower::Executing) => Tooling::Busy,
-            (Ring::Locked | Ring::Unlocked, _) => Tooling::Ready,
+            (_, Lower::Error | Lower::Joystick | Lower::Lost) if asked => Tooling::GripFaulty,
+            (_, Lower::Pending | Lower::Executing) => Tooling::Busy,
+            (Ring::Faulty | Ring::Locked | Ring::Unlocked, _) => Tooling::Ready,
         }
     }
 

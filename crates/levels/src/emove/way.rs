@@ -40,6 +40,9 @@ pub(super) const AWAY_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
 const STEP_INCHES: f64 = 0.6;
 /// The farthest that it turns in a tick, radians: 1 rad/s, and a little more.
 const STEP_RADIANS: f64 = 0.05;
+/// Ticks of motion that a link that fails can cut off: between Prim and the arm are the queue of T3I, the line, and
+/// the robot controller, which ramps down.
+const CUT_OFF_TICKS: f64 = 5.0;
 
 /// The part of an interrupted way that is flown back.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -93,11 +96,12 @@ fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
 fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<bool> {
     let route = route_of(way, data).ok()?;
     let (end, parameters) = route.point(way.next, data)?;
-    let (start, _) = match way.next.checked_sub(1) {
+    let (start, passed) = match way.next.checked_sub(1) {
         Some(point) => route.point(point, data)?,
         None => (way.from.pose.to_frame().ok()?, parameters),
     };
-    let cut = f64::from(data.traj_para(parameters)?.brk_dst.max(0)) / 100.0;
+    let brk_dst = |id| data.traj_para(id).map_or(0, |parameters| parameters.brk_dst.max(0));
+    let cut = f64::from(brk_dst(parameters).max(brk_dst(passed))) / 100.0;
     let turn = start.distance(&end).radians;
     let (before, after) = (present.distance(&start).radians, present.distance(&end).radians);
     // On the shorter turn from one to the other, with the same tolerance.
@@ -123,6 +127,7 @@ impl State {
         let prim = &memory.prim.status;
         match prim.report {
             PrimReport::JoystickOn => way.by_hand = true,
+            PrimReport::T3LinkOff | PrimReport::T3LinkErr | PrimReport::NoRespT3i => way.cut_off = true,
             PrimReport::Executing | PrimReport::Done if moves(memory) => {
                 let commanded = commanded_pose(memory);
                 let follows = |pose: &Pose| {
@@ -142,8 +147,10 @@ impl State {
         let (way, present) = (self.beliefs.way?, present_frame(inputs.memory)?);
         let rest = way.rest.to_frame().ok()?;
         let at_rest = near(&rest, &present, AWAY_INCHES, AWAY_RADIANS);
-        let moved = way.by_hand && is_in_corridor(&present, &way, inputs.data) == Some(true);
-        (at_rest || moved).then_some(way)
+        let (inches, radians) = (CUT_OFF_TICKS * STEP_INCHES, CUT_OFF_TICKS * STEP_RADIANS);
+        let may_be_beside = way.by_hand || (way.cut_off && near(&rest, &present, inches, radians));
+        let beside = may_be_beside && is_in_corridor(&present, &way, inputs.data) == Some(true);
+        (at_rest || beside).then_some(way)
     }
 
     /// The state variables of RESUME for a goal.
@@ -239,6 +246,7 @@ impl State {
             straight: false,
             rest,
             by_hand: false,
+            cut_off: false,
         };
         if let Some(back) = self.back.as_mut().filter(|back| !back.complete) {
             let leg = back.leg(data);
@@ -270,6 +278,7 @@ impl State {
             direction: Direction::Forward,
             rest: commanded_pose(memory).unwrap_or_default(),
             by_hand: false,
+            cut_off: false,
         });
     }
 }

@@ -7,7 +7,8 @@
 //!
 //! The command selects the table. UP-INIT runs by itself when the system is booted, and a command that comes
 //! meanwhile waits; later it runs by command alone, and without a calibration commands that move the fingers are
-//! refused: UP-INIT closes with the whole supply pressure, and a part may be held.
+//! refused: UP-INIT closes with the whole supply pressure, and a part may be held. Only OPEN-GRIP to the open end
+//! works without: all open flows until the readings are steady, and the calibration stays deferred.
 //!
 //! ```text
 //!   a command                               the calibration (UP-INIT)
@@ -108,7 +109,7 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
             state.step = Step::Start;
         }
         let accepted = state.execution.accepts(&accept(state.step, &seen.request));
-        let command = Command::of(course, accepted, state.goal.verb);
+        let command = Command::of(course, accepted, &state.goal);
         let situation = Situation { command, ..seen.situation };
         match up_init(state.phase, &situation) {
             Verdict::Decided(decision) => {

@@ -28,7 +28,7 @@ impl State {
     /// Carry out what a row asks for. Without the gripper all valves are off.
     pub(super) fn act(&mut self, action: Action, seen: &Seen, tick: Tick) {
         match action {
-            Action::Begin => (self.since, self.steady) = (tick, Steady::default()),
+            Action::Begin | Action::Widen => (self.since, self.steady) = (tick, Steady::default()),
             Action::NoteClosed => self.closed = self.take_readings(),
             Action::NoteOpen => self.open = self.take_readings(),
             Action::Calibrate => self.calibrate(),
@@ -78,7 +78,7 @@ impl State {
             Action::Close(flow) => close(flow.min(limit)),
             Action::AwaitFinger => close(limit.min(Flow::Medium)),
             Action::Begin | Action::CloseFully => CLOSE_FULLY,
-            Action::NoteClosed | Action::OpenFully => OPEN_FULLY,
+            Action::NoteClosed | Action::OpenFully | Action::Widen => OPEN_FULLY,
             Action::NoteOpen | Action::Vent => valve::VENT,
         }
     }

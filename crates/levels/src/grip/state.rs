@@ -69,8 +69,8 @@ pub struct State {
 }
 
 impl State {
-    /// A calibration is under way.
+    /// A calibration, or an opening without one, is under way.
     pub(super) fn is_calibrating(&self) -> bool {
-        matches!(self.phase, Phase::Closing | Phase::Opening | Phase::Venting)
+        matches!(self.phase, Phase::Closing | Phase::Opening | Phase::Venting | Phase::Widening)
     }
 }

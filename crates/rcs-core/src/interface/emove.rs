@@ -262,6 +262,8 @@ pub struct Way {
     pub rest: Pose,
     /// The joystick box has moved the robot since.
     pub by_hand: bool,
+    /// The link has failed since: the robot has stopped short of where it was commanded to be.
+    pub cut_off: bool,
 }
 
 /// What the gripper holds, or has tried to grasp.

@@ -253,6 +253,9 @@ pub enum Reason {
     RobotElsewhere,
     /// The robot is half way at the tool drum: send the tool command again.
     InDrum,
+    /// The id pins of the quick change name no gripper while its ring is locked: see to their contact, send the command
+    /// again.
+    PinsFail,
 }
 
 /// Which process a changing pose record belongs to: part of its record number.

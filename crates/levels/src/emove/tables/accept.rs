@@ -5,48 +5,53 @@ use rcs_core::decision_table;
 decision_table! {
     /// ACCEPT: a new command is refused if the gripper is not the right one, or if a record that it needs is
     /// missing; nothing has been ordered then, since HALT has stopped what was under way. A robot that changes a
-    /// gripper, is half way at the tool drum, or whose gripper is not locked, goes nowhere. Quick change commands have rows of their own
-    /// for the gripper.
+    /// gripper, is half way at the tool drum, or whose gripper is not locked, goes nowhere; one whose id pins fail
+    /// only to a plain location. Quick change commands have rows of their own for the gripper.
     pub ACCEPT: fn accept(super::Request) -> super::Action or () {
         1:  asked: Before                                              => consult;
         2:  verb: None                                                 => Refuse(UnknownCommand);
-        3:  verb: MovToHol, gripper: Wrong                             => Refuse(WrongGripper);
-        4:  verb: MovToObj | MovObjTo | MovToVu, gripper: Wrong | None => Refuse(WrongGripper);
-        5:  verb: LocateObj | GraspObj, gripper: Wrong | None          => Refuse(WrongGripper);
-        6:  verb: InsertTool | ReleaseTool, gripper: Wrong | None      => Refuse(WrongGripper);
-        7:  verb: AcquireTool | RemoveTool, gripper: Wrong | None      => Refuse(WrongGripper);
-        8:  verb: MovToLoc | MovToObj | MovObjTo, exchange: HalfDone   => Refuse(InHolster);
-        9:  verb: MovToVu | MovToHol | Withdraw, exchange: HalfDone    => Refuse(InHolster);
-        10: verb: InsertTool | ReleaseTool, exchange: HalfDone         => Refuse(InHolster);
-        11: verb: AcquireTool | RemoveTool, exchange: HalfDone         => Refuse(InHolster);
-        12: verb: LocateObj | GraspObj, exchange: HalfDone             => Refuse(InHolster);
-        13: verb: MovToLoc | MovToObj | MovObjTo, drum: HalfDone       => Refuse(InDrum);
-        14: verb: MovToVu | MovToHol | Withdraw, drum: HalfDone        => Refuse(InDrum);
-        15: verb: QcDetach | QcAttach, drum: HalfDone                  => Refuse(InDrum);
-        16: verb: MovToLoc | MovToObj | MovObjTo, coupling: Loose      => Refuse(RingNotLocked);
-        17: verb: MovToVu | MovToHol | Withdraw, coupling: Loose       => Refuse(RingNotLocked);
-        18: verb: InsertTool | ReleaseTool, coupling: Loose            => Refuse(RingNotLocked);
-        19: verb: AcquireTool | RemoveTool, coupling: Loose            => Refuse(RingNotLocked);
-        20: verb: LocateObj | GraspObj, coupling: Loose                => Refuse(RingNotLocked);
-        21: target: Holster                                            => Refuse(HolsterOnly);
-        22: verb: InsertTool | ReleaseTool, start: Unknown             => Refuse(UnknownStart);
-        23: verb: AcquireTool | RemoveTool, start: Unknown             => Refuse(UnknownStart);
-        24: verb: GraspObj | AcquireTool, sizes: Missing               => Refuse(UnknownGrip);
-        25: verb: LocateObj, view: Missing                             => Refuse(BadRecord);
-        26: verb: QcDetach | QcAttach, holster: NoGripper              => Refuse(NoHolster);
-        27: verb: QcDetach | QcAttach, holster: NoOpening              => Refuse(UnknownGrip);
-        28: moves: Missing                                             => Refuse(NoRelativeMove);
-        29: moves: Unguarded                                           => Refuse(UnknownSensor);
-        30: moves: NoPose                                              => Refuse(NoDestination);
-        31: route: NoPose                                              => Refuse(NoDestination);
-        32: route: BadPose | NoView                                    => Refuse(BadRecord);
-        33: route: NoSizes                                             => Refuse(UnknownGrip);
-        34: route: NoGrip                                              => Refuse(NoGripMovetable);
-        35: route: NoApproach | NoSpeed                                => Refuse(NoApproach);
-        36: route: NoStart                                             => Refuse(UnknownStart);
-        37: route: ForwardOnly                                         => Refuse(ForwardOnly);
-        38: route: InDrum                                              => Refuse(NotPrepared);
-        39: route: NoTrajectory                                        => Refuse(NoTrajectory);
-        40: route: Planned                                             => consult;
+        3:  verb: MovToObj | MovObjTo | MovToVu, coupling: Misread     => Refuse(PinsFail);
+        4:  verb: MovToHol | QcDetach | QcAttach, coupling: Misread    => Refuse(PinsFail);
+        5:  verb: LocateObj | GraspObj, coupling: Misread              => Refuse(PinsFail);
+        6:  verb: InsertTool | ReleaseTool, coupling: Misread          => Refuse(PinsFail);
+        7:  verb: AcquireTool | RemoveTool, coupling: Misread          => Refuse(PinsFail);
+        8:  verb: MovToHol, gripper: Wrong                             => Refuse(WrongGripper);
+        9:  verb: MovToObj | MovObjTo | MovToVu, gripper: Wrong | None => Refuse(WrongGripper);
+        10: verb: LocateObj | GraspObj, gripper: Wrong | None          => Refuse(WrongGripper);
+        11: verb: InsertTool | ReleaseTool, gripper: Wrong | None      => Refuse(WrongGripper);
+        12: verb: AcquireTool | RemoveTool, gripper: Wrong | None      => Refuse(WrongGripper);
+        13: verb: MovToLoc | MovToObj | MovObjTo, exchange: HalfDone   => Refuse(InHolster);
+        14: verb: MovToVu | MovToHol | Withdraw, exchange: HalfDone    => Refuse(InHolster);
+        15: verb: InsertTool | ReleaseTool, exchange: HalfDone         => Refuse(InHolster);
+        16: verb: AcquireTool | RemoveTool, exchange: HalfDone         => Refuse(InHolster);
+        17: verb: LocateObj | GraspObj, exchange: HalfDone             => Refuse(InHolster);
+        18: verb: MovToLoc | MovToObj | MovObjTo, drum: HalfDone       => Refuse(InDrum);
+        19: verb: MovToVu | MovToHol | Withdraw, drum: HalfDone        => Refuse(InDrum);
+        20: verb: QcDetach | QcAttach, drum: HalfDone                  => Refuse(InDrum);
+        21: verb: MovToLoc | MovToObj | MovObjTo, coupling: Loose      => Refuse(RingNotLocked);
+        22: verb: MovToVu | MovToHol | Withdraw, coupling: Loose       => Refuse(RingNotLocked);
+        23: verb: InsertTool | ReleaseTool, coupling: Loose            => Refuse(RingNotLocked);
+        24: verb: AcquireTool | RemoveTool, coupling: Loose            => Refuse(RingNotLocked);
+        25: verb: LocateObj | GraspObj, coupling: Loose                => Refuse(RingNotLocked);
+        26: target: Holster                                            => Refuse(HolsterOnly);
+        27: verb: InsertTool | ReleaseTool, start: Unknown             => Refuse(UnknownStart);
+        28: verb: AcquireTool | RemoveTool, start: Unknown             => Refuse(UnknownStart);
+        29: verb: GraspObj | AcquireTool, sizes: Missing               => Refuse(UnknownGrip);
+        30: verb: LocateObj, view: Missing                             => Refuse(BadRecord);
+        31: verb: QcDetach | QcAttach, holster: NoGripper              => Refuse(NoHolster);
+        32: verb: QcDetach | QcAttach, holster: NoOpening              => Refuse(UnknownGrip);
+        33: moves: Missing                                             => Refuse(NoRelativeMove);
+        34: moves: Unguarded                                           => Refuse(UnknownSensor);
+        35: moves: NoPose                                              => Refuse(NoDestination);
+        36: route: NoPose                                              => Refuse(NoDestination);
+        37: route: BadPose | NoView                                    => Refuse(BadRecord);
+        38: route: NoSizes                                             => Refuse(UnknownGrip);
+        39: route: NoGrip                                              => Refuse(NoGripMovetable);
+        40: route: NoApproach | NoSpeed                                => Refuse(NoApproach);
+        41: route: NoStart                                             => Refuse(UnknownStart);
+        42: route: ForwardOnly                                         => Refuse(ForwardOnly);
+        43: route: InDrum                                              => Refuse(NotPrepared);
+        44: route: NoTrajectory                                        => Refuse(NoTrajectory);
+        45: route: Planned                                             => consult;
     }
 }

@@ -24,7 +24,7 @@ decision_table! {
             9:  at: Before | There                         => OpenToApproach       -> Opening;
             10: drum: Before | Beside                      => OpenToApproach       -> Opening;
             11: drum: Sliding, spread: Open                => GoUntil(AcqSlideOn)  -> Sliding;
-            12: drum: Sliding, spread: Narrow              => Fail(NotPrepared);
+            12: drum: Sliding, spread: Narrow | Unknown    => Fail(NotPrepared);
             13: drum: Off | Entering                       => Fail(NotPrepared);
         }
         /// The gripper is opening.

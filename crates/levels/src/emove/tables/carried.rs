@@ -11,5 +11,6 @@ decision_table! {
         3: verb: Release | ReleaseTool    => consult;
         4: load: Lost                     => Fail(ObjectLost);
         5: load: GripperGone              => Fail(GripperGone);
+        6: load: PinsFail                 => Fail(PinsFail);
     }
 }

@@ -5,6 +5,7 @@ pub mod accept;
 pub mod acquire_tool;
 pub mod attend;
 pub mod carried;
+pub mod drum;
 pub mod e_pause;
 pub mod grasp_obj;
 pub mod insert_tool;
@@ -33,8 +34,8 @@ use rcs_core::{
 
 pub use self::variables::{
     Along, At, AtDrum, Attached, Contact, Coupling, Exchange, Fingers, Held, Holster, HolsterData, Knowledge,
-    Link, Load, Lock, Mate, Opening, Ordered, Pause, Readiness, Record, Ring, Shut, Sight, Spread, Target,
-    ToolWork, Tooling, Tries, Vision, Whereabouts,
+    Link, Load, Lock, Mate, Motion, Opening, Ordered, Pause, Readiness, Record, Ring, Shut, Sight, Spread,
+    Target, ToolWork, Tooling, Tries, Vision, Whereabouts,
 };
 use self::{accept::accept, carried::carried, ordered::ordered};
 use super::{
@@ -154,6 +155,8 @@ pub struct Situation {
     pub link: Link,
     /// Status of Prim; done as long as the command does not need it.
     pub prim: Lower,
+    /// Do the fingers move?
+    pub motion: Motion,
     /// Quick change and gripper.
     pub tooling: Tooling,
     /// Is it known where the robot is?
@@ -194,6 +197,8 @@ pub enum Action {
     RobotInit,
     /// PAUSE to Prim and the gripper, QC-PAUSE to Quick Change.
     Pause,
+    /// PAUSE to Prim, QC-PAUSE to Quick Change; fingers that move do what they were told.
+    StopRobot,
     /// Report joystick-on: the operator has the robot.
     Manual,
     /// Open the fingers for the operator.
@@ -226,12 +231,16 @@ pub enum Action {
     Close,
     /// Open to the depart size.
     OpenToDepart,
+    /// Open as far as the gripper does.
+    OpenFully,
     /// UP-INIT to the gripper.
     Calibrate,
     /// Report done: the robot is at the goal.
     Arrive,
     /// Report done: the robot is at the location of the command, at rest where it was told to stand.
     Stand,
+    /// Report an error: the bare robot stands clear of the holster, and may go elsewhere.
+    Leave(Reason),
     /// Report done: the fingers are around a tool in the drum.
     StandInDrum,
     /// Report done: the object is held.
@@ -267,7 +276,7 @@ pub enum Action {
 }
 
 impl Commander for Action {
-    const STOP: Self = Self::Pause;
+    const STOP: Self = Self::StopRobot;
     const WAIT: Self = Self::Wait;
 
     fn fail(reason: Reason) -> Self {
@@ -290,6 +299,7 @@ impl Commander for Action {
                 | Self::CloseForHolster
                 | Self::Close
                 | Self::OpenToDepart
+                | Self::OpenFully
                 | Self::Calibrate
         )
     }
@@ -298,7 +308,7 @@ impl Commander for Action {
 commands! {
     /// Consult the tables of a command.
     pub fn of_command(EmoveVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME, carried::CARRIED, ordered::ORDERED;
+        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME, drum::DRUM, carried::CARRIED, ordered::ORDERED;
         None | Pause            => e_pause::e_pause;
         MovToLoc                => motion::motion;
         MovToObj | MovToVu      => mov_to_obj::mov_to_obj then motion::motion;

@@ -4,23 +4,25 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// MOTION: a series of GO-THRU and one GOTO-PT (V.2.1 MOV-TO-LOC). If the goal asks for an opening, the
-    /// fingers are brought to it once the last depart point is behind, and the final motion waits for them.
+    /// fingers are brought to it once the last depart point is behind, and the final motion waits for them. A
+    /// gripper that is not calibrated and holds nothing is calibrated on the way: nothing is between its fingers there.
     pub MOTION: fn motion(enum MotionStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                         => Wait;
         }
         /// On the way through points; nothing commanded yet at first.
         Moving {
-            2: opening: Due                                       => Open;
-            3: ahead: Through                                     => GoThru;
-            4: ahead: Missing                                     => Fail(BadRecord);
-            5: ahead: Stop | Nothing, opening: Departing | Moving => Wait;
-            6: ahead: Stop                                        => GotoPt -> Stopping;
-            7: ahead: Nothing                                     => Arrive;
+            2: opening: Uncalibrated                              => Calibrate;
+            3: opening: Due                                       => Open;
+            4: ahead: Through                                     => GoThru;
+            5: ahead: Missing                                     => Fail(BadRecord);
+            6: ahead: Stop | Nothing, opening: Departing | Moving => Wait;
+            7: ahead: Stop                                        => GotoPt -> Stopping;
+            8: ahead: Nothing                                     => Arrive;
         }
         /// On the final motion.
         Stopping {
-            8: work: Over                                         => Arrive;
+            9: work: Over                                         => Arrive;
         }
     }
 }

@@ -19,7 +19,7 @@ decision_table! {
             5:  drum: Inside                               => OpenToDepart         -> Opening;
             6:  drum: Off | Entering                       => Fail(NotPrepared);
             7:  held: Right | Other | Something | NotKnown => Fail(NotPrepared);
-            8:  spread: Narrow                             => Fail(NotPrepared);
+            8:  spread: Narrow | Unknown                   => Fail(NotPrepared);
             9:  drum: Sliding                              => GoUntil(RelSlideOn)  -> Sliding;
             10: drum: Beside | Before                      => DeltaMove(RelBackOn) -> Withdrawing;
         }

@@ -62,6 +62,8 @@ pub enum Coupling {
     Locked,
     /// It is mated, and the ring is not locked.
     Loose,
+    /// The ring has been locked ever since a gripper was mated, and the id pins do not say so any more.
+    Misread,
 }
 
 /// The change of a gripper.
@@ -121,6 +123,8 @@ pub enum Opening {
     Departing,
     /// To be commanded now.
     Due,
+    /// To be commanded now, but the gripper is not calibrated. It holds nothing, and the robot has left its place.
+    Uncalibrated,
     /// The fingers are moving.
     Moving,
     /// The gripper reports an error.
@@ -151,6 +155,8 @@ pub enum Load {
     Lost,
     /// The gripper has gone, and it with the gripper.
     GripperGone,
+    /// The ring is locked, and the id pins say that the gripper has gone.
+    PinsFail,
 }
 
 /// What closed fingers have between them.
@@ -169,6 +175,8 @@ pub enum Spread {
     Narrow,
     /// They are, or there are none.
     Open,
+    /// The gripper is not calibrated.
+    Unknown,
 }
 
 /// The DEPC link.
@@ -180,12 +188,21 @@ pub enum Link {
     Up,
 }
 
+/// Do the fingers do what they were told last?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Motion {
+    /// They have done it, or were told nothing that moves them.
+    AtRest,
+    /// They move.
+    Moving,
+}
+
 /// Quick change and gripper after the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Tooling {
     /// Not read or not calibrated yet.
     Busy,
-    /// Read, and calibrated if it must be.
+    /// Read, and calibrated if it must be. The ring may stand half-way.
     Ready,
     /// The quick change reports an error.
     RingFaulty,

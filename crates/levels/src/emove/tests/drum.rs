@@ -20,6 +20,13 @@ use super::{
     bench::{Bench, DONE, error, frame_of, moved},
     doubles::Mishap,
 };
+use crate::{
+    emove::tables::{
+        AtDrum,
+        drum::{AtTheDrum, Belief, Tool, drum},
+    },
+    execution::Outcome,
+};
 
 pub const SCENARIOS: &[fn()] = &[
     a_tool_is_put_into_the_drum_and_left,
@@ -439,5 +446,22 @@ fn what_is_unknown_is_neither_inserted_nor_let_go() {
         bench.memory.tool_grip.status.felt = felt;
         bench.process.state_mut().beliefs.empty = false;
         assert_eq!(run(&mut bench, verb), error(reason), "{verb}");
+    }
+}
+
+#[test]
+fn what_becomes_of_an_interrupted_tool_command_stands_in_a_table() {
+    let row = |at, tool, outcome| {
+        let decision = drum((), &AtTheDrum { at, tool, outcome });
+        (decision.row, decision.action)
+    };
+    for outcome in [Outcome::Idle, Outcome::Done, Outcome::Error, Outcome::Joystick] {
+        assert_eq!(row(AtDrum::Off, Tool::Grasped, outcome), (1, Belief::Leave));
+        assert_eq!(row(AtDrum::Inside, Tool::Grasped, outcome), (2, Belief::Stand));
+        assert_eq!(row(AtDrum::Inside, Tool::Loose, outcome), (4, Belief::Keep));
+    }
+    assert_eq!(row(AtDrum::Inside, Tool::Grasped, Outcome::Executing), (3, Belief::Keep));
+    for at in [AtDrum::Before, AtDrum::Entering, AtDrum::Sliding, AtDrum::Beside] {
+        assert_eq!(row(at, Tool::Grasped, Outcome::Done), (5, Belief::Keep));
     }
 }

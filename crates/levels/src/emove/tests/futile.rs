@@ -7,7 +7,7 @@ use crate::{
     emove::{
         route::Ahead,
         tables::{
-            Action, Along, At, AtDrum, Fingers, Held, Holster, Knowledge, Link, Lock, Mate, Opening,
+            Action, Along, At, AtDrum, Fingers, Held, Holster, Knowledge, Link, Lock, Mate, Motion, Opening,
             Readiness, Shut, Sight, Situation, Spread, Tooling, Tries, Whereabouts,
             qc_attach::{QcAttachStep, qc_attach},
             qc_detach::{QcDetachStep, qc_detach},
@@ -49,6 +49,7 @@ fn situations() -> impl Iterator<Item = Situation> {
                         tries: Tries::Left,
                         link: Link::Up,
                         prim: Lower::Done,
+                        motion: Motion::AtRest,
                         tooling: Tooling::Ready,
                         place: Whereabouts::Known,
                         button: JoystickGrip::None,

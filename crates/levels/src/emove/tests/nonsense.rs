@@ -9,7 +9,7 @@ use rcs_core::{
         grip::GripReport,
         jaws::JawsReport,
         prim::{JoystickGrip, PrimReport},
-        quick_change::QuickChangeReport,
+        quick_change::{QuickChangeReport, RingPosition},
     },
     plain::to_bytes,
     process::{Inputs, Process},
@@ -125,7 +125,9 @@ proptest! {
             prop_assert!(was.grip.number == is.grip.number || attached == Gripper::Parts);
             prop_assert!(was.v_grip.number == is.v_grip.number || attached == Gripper::V);
             prop_assert!(was.tool_grip.number == is.tool_grip.number || attached == Gripper::Tool);
-            prop_assert!(!is.status.held.is_held() || attached != Gripper::None);
+            // Id pins that name no gripper over a locked ring say nothing.
+            let locked = before.quick_change.status.ring == RingPosition::Locked;
+            prop_assert!(!is.status.held.is_held() || attached != Gripper::None || locked);
         }
     }
 }

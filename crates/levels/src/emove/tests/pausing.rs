@@ -9,7 +9,7 @@ use rcs_core::{
         },
         jaws::JawsReport,
         prim::{JoystickGrip, PrimReport},
-        quick_change::QuickChangeReport,
+        quick_change::{QuickChangeReport, RingPosition},
     },
     table::Verdict,
 };
@@ -33,6 +33,8 @@ pub const SCENARIOS: &[fn()] = &[
     a_pause_waits_for_the_calibration,
     only_the_process_of_the_attached_gripper_runs,
     a_pause_that_fails_says_why,
+    a_ring_that_stands_half_way_is_at_rest,
+    fingers_do_what_they_were_told_before_they_pause,
     the_robot_is_found_where_it_stands,
     the_operator_moves_the_robot_and_the_fingers,
     the_operator_interrupts_a_command,
@@ -112,14 +114,9 @@ fn only_the_process_of_the_attached_gripper_runs() {
 
 #[test]
 fn a_pause_that_fails_says_why() {
-    for (report, reason) in [
-        (QuickChangeReport::Stuck, Reason::QuickChangeStuck),
-        (QuickChangeReport::SensorMalfunction, Reason::QuickChangeFault),
-    ] {
-        let mut bench = Bench::new("HOME", 1);
-        bench.spoil("QC-PAUSE", Mishap::Ring(report));
-        assert_eq!(bench.pause(), error(reason));
-    }
+    let mut bench = Bench::new("HOME", 1);
+    bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::SensorMalfunction));
+    assert_eq!(bench.pause(), error(Reason::QuickChangeFault));
     let mut bench = Bench::new("HOME", 1);
     bench.command(Pause, "", 0, "", 0);
     bench.steps(10);
@@ -146,6 +143,38 @@ fn a_pause_that_fails_says_why() {
     bench.steps(3);
     bench.world.mated = 2;
     assert_eq!(bench.finish(), DONE, "a gripper that has come since is not waited for");
+}
+
+#[test]
+fn a_ring_that_stands_half_way_is_at_rest() {
+    let mut bench = Bench::new("HOME", 1);
+    bench.spoil("QC-PAUSE", Mishap::Ring(QuickChangeReport::Stuck));
+    assert_eq!(bench.pause(), DONE);
+    assert_eq!(bench.memory.quick_change.status.ring, RingPosition::Between);
+    assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), error(Reason::RingNotLocked));
+}
+
+#[test]
+fn fingers_do_what_they_were_told_before_they_pause() {
+    for (gripper, object, size) in [(1, "BLOCK", 75), (2, "SHAFT", 200), (3, "CUTTER", 250)] {
+        let mut bench = Bench::ready("HOME", gripper);
+        bench.world.object = Some(size);
+        bench.at_every_tick((GraspObj, object, 1, "", gripper), |fork| {
+            fork.write(Pause, "", 0, "", 0);
+            assert_eq!(fork.finish(), DONE);
+            let log = fork.log();
+            let closed = log.iter().position(|text| text.contains("CLOSE") || text.contains("GRASP"));
+            let paused = log.iter().rposition(|text| text.contains("PAUSE")).unwrap_or_default();
+            assert!(closed.is_none_or(|closed| closed < paused), "{log:?}");
+            let held = fork.memory.emove.status.held;
+            let named = held.object().is_some_and(|held| held.as_str() == object);
+            assert!(
+                closed.is_none() || named,
+                "what they have closed on has the name of the command: {held:?}"
+            );
+        });
+        assert!(bench.memory.emove.status.held.is_held());
+    }
 }
 
 #[test]
@@ -272,7 +301,7 @@ fn a_restarted_e_move_executes_nothing() {
     bench.process = crate::emove::Emove::default();
     assert_eq!(bench.finish(), error(Reason::Restarted));
     assert_eq!(bench.pause(), DONE);
-    assert_eq!(bench.memory.v_grip.status.report, JawsReport::Stuck, "it does not know the size any more");
+    assert_eq!(bench.memory.v_grip.status.report, JawsReport::AtPosition);
     bench.world.object = Some(200);
     assert_eq!(bench.run(GraspObj, "SHAFT", 1, "", 2), DONE);
 }

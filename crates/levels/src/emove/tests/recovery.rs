@@ -30,6 +30,7 @@ pub const SCENARIOS: &[fn()] = &[
     a_new_command_stops_what_is_under_way_before_it_is_answered,
     a_nudge_in_the_corridor_leaves_the_robot_on_its_way,
     a_gripper_on_an_open_ring_goes_nowhere,
+    a_robot_that_a_lost_link_stopped_short_is_on_its_way,
 ];
 
 type Command<'a> = (EmoveVerb, &'a str, i32, &'a str, u8);
@@ -363,6 +364,27 @@ fn a_nudge_in_the_corridor_leaves_the_robot_on_its_way() {
         paused(&mut bench);
         assert_eq!(bench.memory.emove.status.at.unwrap_or_default().location.as_str(), "BENCH");
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE, "{by_hand}");
+    }
+}
+
+#[test]
+fn a_robot_that_a_lost_link_stopped_short_is_on_its_way() {
+    for (short, aside, end) in
+        [(1.5, 0.0, DONE), (1.5, 4.5, error(Reason::UnknownStart)), (4.0, 0.0, error(Reason::UnknownStart))]
+    {
+        let mut bench = Bench::ready("HOME", 0);
+        bench.prim.by_steps = true;
+        bench.write(MovToLoc, "", 0, "VISE", 0);
+        bench.steps(90);
+        let heading = bench.world.frame.position;
+        bench.steps(1);
+        let along = (bench.world.frame.position - heading).normalize();
+        let across = along.cross(&Vector::new(0.0, 0.0, 1.0)).normalize();
+        (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
+        assert_eq!(bench.finish(), error(Reason::LinkOff));
+        bench.world.frame.position += across * aside - along * short;
+        paused(&mut bench);
+        assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), end, "{short} in short, {aside} in aside");
     }
 }
 

@@ -17,6 +17,7 @@ use rcs_core::{
     },
 };
 
+use super::goal::{Goal, OPEN_END};
 use crate::execution::{Asked, Course, EXECUTE};
 
 /// Step of all commands.
@@ -46,6 +47,8 @@ pub enum Phase {
     Opening,
     /// The air is let out, until the readings are steady.
     Venting,
+    /// The fingers open without a calibration, until the readings are steady.
+    Widening,
     /// Scale and offset of all sensors are known.
     Valid,
     /// The last attempt failed; UP-INIT tries again.
@@ -92,15 +95,18 @@ pub enum Command {
     UpInit,
     /// POSITION, OPEN-GRIP or CLOSE-GRIP.
     Motion,
+    /// OPEN-GRIP to the open end of travel.
+    OpenWide,
 }
 
 impl Command {
     /// What EXECUTE and ACCEPT leave of a command.
     #[must_use]
-    pub const fn of(course: Course, accepted: bool, verb: GripVerb) -> Self {
+    pub fn of(course: Course, accepted: bool, goal: &Goal) -> Self {
         match course {
             Course::Rest => Self::Nothing,
-            Course::Begin | Course::Continue if accepted => match verb {
+            Course::Begin | Course::Continue if accepted => match goal.verb {
+                GripVerb::OpenGrip if goal.opening >= OPEN_END => Self::OpenWide,
                 GripVerb::None => Self::Refused,
                 GripVerb::Pause => Self::Pause,
                 GripVerb::UpInit => Self::UpInit,
@@ -317,6 +323,8 @@ pub enum Action {
     Begin,
     /// All close flows.
     CloseFully,
+    /// The fingers begin to open without a calibration: all open flows.
+    Widen,
     /// The readings are those of the closed end; all open flows.
     NoteClosed,
     /// All open flows.

@@ -15,7 +15,7 @@ use super::{Grip, gripper::Gripper};
 use crate::coverage::Coverage;
 
 const OPEN: u8 = valve::OPEN_COARSE | valve::OPEN_MEDIUM | valve::OPEN_FINE;
-const CLOSE: u8 = valve::CLOSE_COARSE | valve::CLOSE_MEDIUM | valve::CLOSE_FINE;
+pub const CLOSE: u8 = valve::CLOSE_COARSE | valve::CLOSE_MEDIUM | valve::CLOSE_FINE;
 
 /// Process, inputs, plant, and what was seen.
 pub struct Bench {

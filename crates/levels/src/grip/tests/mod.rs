@@ -17,7 +17,7 @@ use rcs_core::{
 };
 
 use self::{
-    bench::Bench,
+    bench::{Bench, CLOSE},
     gripper::{Gripper, Object},
 };
 use super::{
@@ -672,13 +672,50 @@ fn every_row_fires() {
     bench.attach(true);
     bench.command(GripVerb::Position, 9.0, 0);
     bench.finish();
-    // UP-INIT 3, 4: a calibration from before a restart.
+    // UP-INIT 3, 21 to 23: OPEN-GRIP without a calibration.
+    for pauses in [false, true] {
+        bench.memory.grip.calibration = None;
+        bench.process = Grip::default();
+        bench.wait(2);
+        bench.command(GripVerb::OpenGrip, 5.0, 0);
+        bench.wait(4);
+        if pauses {
+            bench.command(GripVerb::Pause, 0.0, 0);
+        }
+        bench.finish();
+    }
+    bench.done(GripVerb::UpInit, 0.0, 0);
+    // UP-INIT 4, 5: a calibration from before a restart.
     bench.process = Grip::default();
     bench.wait(2);
     bench.process = Grip::default();
     bench.gripper.potentiometer.0 += 3000.0;
     bench.wait(2);
     assert_eq!(bench.rows.missing(TABLES), [""; 0]);
+}
+
+#[test]
+fn without_a_calibration_the_fingers_open_fully_and_no_less() {
+    let mut bench = holding(26);
+    bench.memory.grip.calibration = None;
+    bench.process = Grip::default();
+    bench.wait(2);
+    bench.command(GripVerb::OpenGrip, 4.9, 0);
+    assert_eq!(reason(&mut bench), Reason::GripNotCalibrated);
+    bench.done(GripVerb::OpenGrip, 5.0, 0);
+    assert_eq!(bench.gripper.opening, 5.0);
+    assert!(bench.patterns.iter().all(|bits| bits & CLOSE == 0), "{:?}", bench.patterns);
+    assert!(!bench.memory.grip.status.initialized);
+    assert_eq!(bench.wait(10).status.valves, 0);
+    // PAUSE waits until the fingers rest.
+    let mut bench = holding(27);
+    bench.memory.grip.calibration = None;
+    bench.process = Grip::default();
+    bench.wait(2);
+    bench.command(GripVerb::OpenGrip, 5.0, 0);
+    bench.wait(4);
+    bench.done(GripVerb::Pause, 0.0, 0);
+    assert_eq!(bench.gripper.opening, 5.0);
 }
 
 #[test]

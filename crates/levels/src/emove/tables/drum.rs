@@ -1,0 +1,50 @@
+//! What becomes of a tool command that was interrupted at the drum.
+
+use rcs_core::{Actions, Plain, Variables, decision_table};
+
+use super::AtDrum;
+use crate::execution::Outcome;
+
+/// What the fingers have in the drum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Tool {
+    /// They have closed on a tool, and nothing has moved it since.
+    Grasped,
+    /// They have not.
+    Loose,
+}
+
+/// The state variables.
+#[derive(Clone, Copy, Debug, Variables)]
+pub struct AtTheDrum {
+    /// Where the robot is at the drum.
+    pub at: AtDrum,
+    /// What its fingers have there.
+    pub tool: Tool,
+    /// How far the current command has come.
+    pub outcome: Outcome,
+}
+
+/// What is believed of the robot at the drum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
+pub enum Belief {
+    /// It is half way there still.
+    Keep,
+    /// It has left.
+    Leave,
+    /// It stands there with the fingers around the tool.
+    Stand,
+}
+
+decision_table! {
+    /// DRUM: a robot that has been taken away from the drum, as by the joystick box, is no longer half way there.
+    /// One whose fingers have closed on a tool in the drum stands there, also if the command did not come to that.
+    /// Preprocess consults it while a tool command is half done; no header names its rows.
+    pub DRUM: fn drum(self::AtTheDrum) -> self::Belief {
+        1: at: Off                                                                        => Leave;
+        2: at: Inside, tool: Grasped, outcome: Idle | Done | Error | Joystick             => Stand;
+        3: at: Inside, tool: Grasped, outcome: Executing                                  => Keep;
+        4: at: Inside, tool: Loose                                                        => Keep;
+        5: at: Before | Entering | Sliding | Beside                                       => Keep;
+    }
+}
