@@ -24,6 +24,8 @@
 //! value = [{ path = "*.status.reason", old = "", new = "none" }]
 //! ```
 
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program of the developers, at a terminal")]
+
 use std::{
     fs,
     path::{Path, PathBuf},

@@ -1,6 +1,8 @@
 //! `rcs-log why` on failures that were provoked: it must find the first cause, tell the commands that led there with their rows,
 //! what was sensed meanwhile, and how the failure went up.
 
+#![expect(clippy::print_stdout, reason = "what it says is what it is for")]
+
 use std::process::Command;
 
 use serde_json::Value;

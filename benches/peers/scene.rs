@@ -12,6 +12,8 @@
 //!
 //! All times are those of one core, as Linux counts them for the thread, so that other programs disturb little.
 
+#![expect(clippy::print_stdout, reason = "figures are what it is for")]
+
 #[path = "../../crates/plant/tests/rig/mod.rs"]
 mod rig;
 

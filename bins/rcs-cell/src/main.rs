@@ -72,6 +72,6 @@ fn plan(path: &Path) -> Result<Plan, String> {
 }
 
 fn fail(status: u8, reason: &str) -> ExitCode {
-    eprintln!("rcs-cell: {reason}");
+    os_io::stderr_line!("rcs-cell: {reason}");
     ExitCode::from(status)
 }

@@ -5,7 +5,7 @@
 
 use std::{
     collections::VecDeque,
-    io::{self, IsTerminal, Write},
+    io::{self, IsTerminal},
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -14,6 +14,7 @@ use std::{
 };
 
 use depc::fault::{Direction, Injector, Plan};
+use os_io::stdout_line;
 use plant::{
     Key,
     description::Actuators,
@@ -43,8 +44,8 @@ pub enum ShellError {
     /// The pseudo-terminal.
     #[error(transparent)]
     Pty(#[from] PtyError),
-    /// Standard input or output, or waiting.
-    #[error("standard input or output failed: {0}")]
+    /// Standard input, or waiting.
+    #[error("standard input failed: {0}")]
     Io(#[from] io::Error),
 }
 
@@ -68,7 +69,6 @@ pub struct Shell {
     /// A key waits for its step.
     pressed: bool,
     input_open: bool,
-    out: io::Stdout,
 }
 
 impl Shell {
@@ -91,7 +91,6 @@ impl Shell {
             wait_until: 0,
             pressed: false,
             input_open: true,
-            out: io::stdout(),
         }
     }
 
@@ -100,19 +99,16 @@ impl Shell {
     /// # Errors
     /// [`ShellError`].
     pub fn run(&mut self) -> Result<(), ShellError> {
-        self.say(&format!(
-            "[link] {} waits for a host; help lists the commands",
-            self.pty.slave().display()
-        ))?;
+        stdout_line!("[link] {} waits for a host; help lists the commands", self.pty.slave().display());
         while !self.stop.load(Ordering::Relaxed) {
             self.watch_host()?;
             self.take_bytes()?;
             self.take_input()?;
-            if self.obey()? {
+            if self.obey() {
                 break;
             }
             if self.cadence.next(&self.line) <= self.now() {
-                self.step()?;
+                self.step();
             }
             while let Some(byte) = self.line.delivered(self.now()) {
                 self.pty.write(byte)?;
@@ -127,11 +123,6 @@ impl Shell {
         u64::try_from(self.start.elapsed().as_micros()).unwrap_or(u64::MAX)
     }
 
-    fn say(&mut self, text: &str) -> io::Result<()> {
-        writeln!(self.out, "{text}")?;
-        self.out.flush()
-    }
-
     fn watch_host(&mut self) -> Result<(), ShellError> {
         let host = self.pty.has_host();
         if host == self.host {
@@ -139,7 +130,7 @@ impl Shell {
         }
         self.host = host;
         if host {
-            self.say("[link] a host has opened the link")?;
+            stdout_line!("[link] a host has opened the link");
         } else {
             self.line.clear();
             let text = if self.pty.renew()? {
@@ -147,7 +138,7 @@ impl Shell {
             } else {
                 "[link] the host has hung up".to_owned()
             };
-            self.say(&text)?;
+            stdout_line!("{text}");
         }
         Ok(())
     }
@@ -185,53 +176,52 @@ impl Shell {
     }
 
     /// The lines that are due; true if one of them was `quit`.
-    fn obey(&mut self) -> Result<bool, ShellError> {
+    fn obey(&mut self) -> bool {
         // A key counts in the next step; the key after it must find what this one has done.
         while self.wait_until <= self.now() && !self.pressed {
             let Some(text) = self.waiting.pop_front() else { break };
             match text.parse() {
-                Err(error) => self.say(&format!("error: {error}"))?,
-                Ok(console::ConsoleCommand::Quit) => return Ok(true),
-                Ok(console::ConsoleCommand::Help) => self.say(console::HELP)?,
-                Ok(console::ConsoleCommand::Status) => self.status()?,
+                Err(error) => stdout_line!("error: {error}"),
+                Ok(console::ConsoleCommand::Quit) => return true,
+                Ok(console::ConsoleCommand::Help) => stdout_line!("{}", console::HELP),
+                Ok(console::ConsoleCommand::Status) => self.status(),
                 Ok(console::ConsoleCommand::Wait(milliseconds)) => {
                     self.wait_until = self.now() + milliseconds * 1000
                 }
                 Ok(console::ConsoleCommand::Key(key)) => {
                     if self.operator.step_back() {
-                        self.say("[auto] steps back: the console is yours")?;
+                        stdout_line!("[auto] steps back: the console is yours");
                     }
-                    self.press(key)?;
+                    self.press(key);
                     self.pressed = true;
                 }
             }
         }
-        Ok(false)
+        false
     }
 
-    fn press(&mut self, key: Key) -> Result<(), ShellError> {
+    fn press(&mut self, key: Key) {
         match self.t3.press(key) {
             Ok(()) => self.show(),
-            Err(refusal) => Ok(self.say(&format!("refused: {refusal}"))?),
+            Err(refusal) => stdout_line!("refused: {refusal}"),
         }
     }
 
-    fn show(&mut self) -> Result<(), ShellError> {
+    fn show(&mut self) {
         for message in self.t3.messages() {
-            self.say(&message.to_string())?;
+            stdout_line!("{message}");
         }
-        Ok(())
     }
 
-    fn step(&mut self) -> Result<(), ShellError> {
+    fn step(&mut self) {
         let now = self.now();
         let elapsed = Duration::from_micros(now - self.cadence.last()).as_secs_f64();
         self.tick = self.tick.next();
         let arrived = self.line.arrived(now);
         let (rx, cts) = self.carry(Direction::ToController, arrived, self.host);
         if let Some(key) = self.operator.next(&self.t3, cts) {
-            self.say(&format!("[auto] {}", key.text()))?;
-            self.press(key)?;
+            stdout_line!("[auto] {}", key.text());
+            self.press(key);
         }
         self.t3.advance(elapsed.min(LONGEST_STEP_S), &[self.t3.arm().tool_weight()]);
         let out = self.t3.step(&StepInputs { rx, cts });
@@ -241,7 +231,7 @@ impl Shell {
         }
         self.pressed = false;
         self.cadence.stepped(now, out.busy);
-        self.show()
+        self.show();
     }
 
     /// Bytes and DTR of one end, with the faults of the plan.
@@ -252,7 +242,7 @@ impl Shell {
         }
     }
 
-    fn status(&mut self) -> Result<(), ShellError> {
+    fn status(&self) {
         let (t3, depc) = (&self.t3, self.t3.depc());
         let counts = t3.counts();
         let text = format!(
@@ -273,7 +263,7 @@ impl Shell {
             lines.push(format!("[status] {} faults on the line", injector.total().faults()));
         }
         lines.push(Message::Position(t3.position()).to_string());
-        Ok(self.say(&lines.join("\n"))?)
+        stdout_line!("{}", lines.join("\n"));
     }
 
     /// Sleep until something comes or is due.

@@ -155,25 +155,19 @@ fn main() -> ExitCode {
         Command::Golden(arguments) => golden::golden(&arguments),
     };
     outcome.unwrap_or_else(|error| {
-        eprintln!("rcs-log: {error}");
+        os_io::stderr_line!("rcs-log: {error}");
         ExitCode::from(UNUSABLE)
     })
 }
 
 /// Print an answer: as JSON, or as the lines that people read.
 fn print<T: serde::Serialize + std::fmt::Display>(answer: &T, json: bool) -> Result<(), Error> {
-    use io::Write as _;
-    let mut out = io::stdout().lock();
     let text = if json {
         serde_json::to_string(answer).map_err(io::Error::from)? + "\n"
     } else {
         answer.to_string()
     };
-    match out.write_all(text.as_bytes()) {
-        // Whoever reads has seen enough: `rcs-log why run.mcap | head`.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        written => Ok(written?),
-    }
+    Ok(os_io::console::answer(&text)?)
 }
 
 #[cfg(test)]

@@ -111,7 +111,7 @@ pub fn replay(arguments: &Arguments) -> Result<ExitCode, Error> {
     let status = outcome.logs.iter().map(worst).max().unwrap_or(0);
     if status != 0 {
         let failed = outcome.logs.iter().filter(|log| !log.same).count();
-        eprintln!("rcs-log: {failed} of {} logs did not replay", outcome.logs.len());
+        os_io::stderr_line!("rcs-log: {failed} of {} logs did not replay", outcome.logs.len());
     }
     Ok(ExitCode::from(status))
 }

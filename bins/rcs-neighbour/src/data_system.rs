@@ -14,7 +14,7 @@ pub fn serve(arguments: &DataSystemArguments) -> Result<(), Error> {
     let mut peer = connect(&arguments.controller, Role::DataSystem)?;
     loop {
         match attend(&mut peer, &mut server) {
-            Err(Error::Peer(error)) if error.is_passing() => println!("{error}"),
+            Err(Error::Peer(error)) if error.is_passing() => os_io::stdout_line!("{error}"),
             other => return other,
         }
         // The line is cut before the next one is made: there is one neighbour of a kind.
@@ -52,8 +52,8 @@ fn tell(bytes: &[u8], why: &str) {
         },
     );
     if why.is_empty() {
-        println!("{said}");
+        os_io::stdout_line!("{said}");
     } else {
-        println!("{said}: refused: {why}");
+        os_io::stdout_line!("{said}: refused: {why}");
     }
 }

@@ -96,9 +96,9 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             if let Error::Data { report, .. } = &error {
-                eprint!("{}", report.render_for_stderr());
+                os_io::stderr_line!("{}", report.render_for_stderr().trim_end());
             }
-            eprintln!("rcs-neighbour: {error}");
+            os_io::stderr_line!("rcs-neighbour: {error}");
             ExitCode::from(error.status())
         }
     }

@@ -19,7 +19,7 @@ pub fn serve(arguments: &PedestalArguments) -> Result<(), Error> {
     loop {
         match served.attend(&mut peer) {
             Err(Error::Peer(error)) if error.is_passing() => {
-                println!("{error}");
+                os_io::stdout_line!("{error}");
                 if matches!(error, PeerError::LastWords(_)) {
                     served = Served::default();
                 }
@@ -51,7 +51,7 @@ impl Served {
         loop {
             let Received::Pulse(pulse) = peer.receive()? else { continue };
             if !is_there {
-                println!("at work from tick {pulse} on");
+                os_io::stdout_line!("at work from tick {pulse} on");
                 is_there = true;
             }
             if pulse <= self.pulse {
@@ -82,9 +82,9 @@ impl Served {
         let command = self.station.command();
         let verb = if command.number == status.echo { command.command.text() } else { "" };
         match (says.2.as_str(), status.reason.text()) {
-            ("", "") => println!("{verb} {}: {}", says.0, says.1),
-            ("", why) => println!("{verb} {}: {}, {why}", says.0, says.1),
-            (refused, _) => println!("refused: {refused}"),
+            ("", "") => os_io::stdout_line!("{verb} {}: {}", says.0, says.1),
+            ("", why) => os_io::stdout_line!("{verb} {}: {}, {why}", says.0, says.1),
+            (refused, _) => os_io::stdout_line!("refused: {refused}"),
         }
         self.said = says;
     }

@@ -12,6 +12,7 @@ use executive::{
     },
     realtime::{self, Verdict},
 };
+use os_io::stderr_line;
 use signal_hook::consts::SIGINT;
 
 use crate::{
@@ -43,11 +44,11 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
     let real_time = member.is_real_time().then(|| realtime::acquire(arguments.cpu));
     let verdict = real_time.as_ref().map(|granted| &granted.verdict);
     if let Some(verdict) = verdict {
-        eprintln!("rcs-run: {name}: real time: {verdict}");
+        stderr_line!("rcs-run: {name}: real time: {verdict}");
     }
     let punctual = verdict.is_none_or(Verdict::complete);
     if arguments.parent.is_none() {
-        eprintln!("rcs-run: {name} of {} waits for the pulse", arguments.run);
+        stderr_line!("rcs-run: {name} of {} waits for the pulse", arguments.run);
     }
     // Generation 0 is what was loaded before the first tick, each reload of the job the next.
     let generation = |number: u32| match usize::try_from(number).ok()?.checked_sub(1) {
@@ -59,15 +60,15 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
     Ok(match end {
         MemberEnd::Over => ExitCode::SUCCESS,
         MemberEnd::Asked => {
-            eprintln!("rcs-run: {name} has left {}, which stops without it", arguments.run);
+            stderr_line!("rcs-run: {name} has left {}, which stops without it", arguments.run);
             ExitCode::SUCCESS
         }
         MemberEnd::Replaced => {
-            eprintln!("rcs-run: {name} ends: another process has its place in {}", arguments.run);
+            stderr_line!("rcs-run: {name} ends: another process has its place in {}", arguments.run);
             ExitCode::from(STOPPED)
         }
         MemberEnd::Orphaned => {
-            eprintln!("rcs-run: {name} ends: board 0 of {} is gone", arguments.run);
+            stderr_line!("rcs-run: {name} ends: board 0 of {} is gone", arguments.run);
             ExitCode::from(STOPPED)
         }
     })

@@ -6,6 +6,7 @@ use std::{
     process::ExitCode,
 };
 
+use os_io::console;
 use plant::{
     Cell, CellDescription,
     description::{DescriptionError, TextSpan},
@@ -19,7 +20,7 @@ use crate::{
     agreement,
     cli::CheckArguments,
     error::{Error, UNUSABLE},
-    explain,
+    explain, long_json,
     run::setup::{CELL, EXTENSION, JOBS},
 };
 
@@ -109,14 +110,9 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     let count = |severity| outcome.findings.iter().filter(|finding| finding.severity == severity).count();
     (outcome.errors, outcome.warnings) = (count("error"), count("warning"));
     outcome.ok = outcome.errors == 0;
-    if arguments.json {
-        serde_json::to_writer_pretty(io::stdout().lock(), &outcome).map_err(io::Error::from)?;
-        println!();
-    } else {
-        print(&reports);
-    }
+    console::answer(&if arguments.json { long_json(&outcome)? } else { text(&reports) })?;
     if !outcome.ok {
-        eprintln!(
+        os_io::stderr_line!(
             "rcs-run: {} cannot be used: {}",
             arguments.data.display(),
             amount(outcome.errors, "error")
@@ -218,12 +214,12 @@ fn finding(diagnostic: &Diagnostic) -> Finding {
     }
 }
 
-fn print(reports: &[(String, Diagnostics)]) {
+fn text(reports: &[(String, Diagnostics)]) -> String {
     use std::io::IsTerminal as _;
     let graphical = io::stdout().is_terminal();
-    for (what, report) in reports {
-        println!("{what}: {}", report.render(graphical).trim_end());
-    }
+    let line =
+        |(what, report): &(String, Diagnostics)| format!("{what}: {}\n", report.render(graphical).trim_end());
+    reports.iter().map(line).collect()
 }
 
 fn amount(count: usize, one: &str) -> String {

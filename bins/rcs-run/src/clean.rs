@@ -2,22 +2,22 @@
 
 use std::process::ExitCode;
 
+use os_io::console;
+
 use crate::error::{Error, UNUSABLE};
 
 /// Remove, and say what was done.
 pub fn clean() -> Result<ExitCode, Error> {
     let cleaned = executive::memory::clean()?;
-    for run in &cleaned.removed {
-        println!("removed {run}");
+    let removed = cleaned.removed.iter().map(|run| format!("removed {run}\n"));
+    let alive = cleaned.alive.iter().map(|run| format!("{run} is alive and was left alone\n"));
+    let mut text: String = removed.chain(alive).collect();
+    if text.is_empty() && cleaned.failed.is_empty() {
+        text.push_str("nothing was left behind\n");
     }
-    for run in &cleaned.alive {
-        println!("{run} is alive and was left alone");
-    }
-    if cleaned.removed.is_empty() && cleaned.alive.is_empty() && cleaned.failed.is_empty() {
-        println!("nothing was left behind");
-    }
+    console::answer(&text)?;
     for failure in &cleaned.failed {
-        eprintln!("rcs-run: {failure}");
+        os_io::stderr_line!("rcs-run: {failure}");
     }
     Ok(ExitCode::from(if cleaned.failed.is_empty() { 0 } else { UNUSABLE }))
 }

@@ -5,7 +5,7 @@
 //! tick's jitter; run it while the machine does what it will do beside the robot.
 
 use std::{
-    fmt, io,
+    fmt,
     process::ExitCode,
     sync::atomic::{AtomicBool, Ordering},
     time::Duration,
@@ -20,7 +20,7 @@ use executive::{
 use rcs_core::tick::TICK_MS;
 use serde::Serialize;
 
-use crate::{cli::LatencyArguments, error::Error, run::interruption};
+use crate::{answer, cli::LatencyArguments, error::Error, run::interruption};
 
 /// Length of a slot.
 const SLOT: Duration = Duration::from_millis(TICK_MS);
@@ -105,12 +105,7 @@ pub fn latency(arguments: &LatencyArguments) -> Result<ExitCode, Error> {
     let mut watch = Watch::new();
     watch.run(&mut Monotonic, slots, &interrupted);
     let measurement = watch.measurement(&machine.to_string(), &granted.verdict.to_string());
-    if arguments.json {
-        serde_json::to_writer(io::stdout().lock(), &measurement).map_err(io::Error::from)?;
-        println!();
-    } else {
-        print!("{measurement}");
-    }
+    answer(&measurement, arguments.json)?;
     Ok(ExitCode::SUCCESS)
 }
 

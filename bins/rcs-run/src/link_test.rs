@@ -9,7 +9,6 @@ mod dump;
 mod tally;
 
 use std::{
-    io,
     process::ExitCode,
     sync::atomic::Ordering,
     time::{Duration, Instant},
@@ -20,6 +19,7 @@ use depc::{
     wire::{DataCommand, FRAME_BYTES, NO_FUNCTION},
 };
 use executive::serial::{SerialLine, SerialSettings};
+use os_io::stderr_line;
 use rcs_core::{interface::device::LinkBytes, tick::TICK_MS};
 
 use self::{
@@ -27,6 +27,7 @@ use self::{
     tally::{Observed, Tally, Verdict},
 };
 use crate::{
+    answer,
     cli::{LinkTestArguments, RobotKind},
     error::{Error, FAILED, STOPPED},
     run::interruption,
@@ -45,7 +46,7 @@ pub fn link_test(arguments: &LinkTestArguments) -> Result<ExitCode, Error> {
     let line = match SerialLine::open(settings.clone()) {
         Ok(line) => line,
         Err(error) => {
-            eprintln!("rcs-run: no link: {error}");
+            stderr_line!("rcs-run: no link: {error}");
             return Ok(ExitCode::from(STOPPED));
         }
     };
@@ -53,15 +54,10 @@ pub fn link_test(arguments: &LinkTestArguments) -> Result<ExitCode, Error> {
     let ticks = u64::from(arguments.seconds) * 1000 / TICK_MS;
     test.run(ticks, || interrupted.load(Ordering::Relaxed));
     let tally = test.finish(settings);
-    if arguments.json {
-        serde_json::to_writer(io::stdout().lock(), &tally).map_err(io::Error::from)?;
-        println!();
-    } else {
-        print!("{tally}");
-    }
+    answer(&tally, arguments.json)?;
     Ok(match tally.failure() {
         Some(reason) => {
-            eprintln!("rcs-run: {reason}");
+            stderr_line!("rcs-run: {reason}");
             ExitCode::from(if tally.verdict == Verdict::NoLink { STOPPED } else { FAILED })
         }
         None => ExitCode::SUCCESS,

@@ -30,6 +30,7 @@ use crate::{
     cli::{Cli, Command},
     error::Error,
 };
+use os_io::stderr_line;
 
 // Counts what the controller allocates; the count is in the result of every run.
 #[global_allocator]
@@ -42,11 +43,29 @@ fn main() -> ExitCode {
         Ok(code) => code,
         Err(error) => {
             // The reason is the last line on standard error, whatever stands before it.
-            eprint!("{}", error.details());
-            eprintln!("rcs-run: {error}");
+            let details = error.details();
+            if !details.is_empty() {
+                stderr_line!("{}", details.trim_end());
+            }
+            stderr_line!("rcs-run: {error}");
             ExitCode::from(error::UNUSABLE)
         }
     }
+}
+
+/// Print an answer: as one line of JSON, or as the lines that people read.
+fn answer<T: serde::Serialize + std::fmt::Display>(answer: &T, json: bool) -> Result<(), Error> {
+    let text = if json {
+        serde_json::to_string(answer).map_err(std::io::Error::from)? + "\n"
+    } else {
+        answer.to_string()
+    };
+    Ok(os_io::console::answer(&text)?)
+}
+
+/// A long answer as JSON on many lines.
+fn long_json(answer: &impl serde::Serialize) -> Result<String, Error> {
+    Ok(serde_json::to_string_pretty(answer).map_err(std::io::Error::from)? + "\n")
 }
 
 fn execute(cli: Cli) -> Result<ExitCode, Error> {

@@ -1,13 +1,15 @@
 //! `rcs-run status`: what a run that goes on is doing, read from its shared memory.
 
-use std::{io, process::ExitCode};
+use std::process::ExitCode;
 
 use executive::{
     memory::{self, Attached, RunName, SharedMemoryError, mirror},
     status::Status,
 };
 
-use crate::{cli::StatusArguments, error::Error};
+use os_io::console;
+
+use crate::{answer, cli::StatusArguments, error::Error};
 
 /// Look at a run and print.
 ///
@@ -21,16 +23,11 @@ pub fn status(arguments: &StatusArguments) -> Result<ExitCode, Error> {
     };
     let run = Attached::open(&name)?;
     if arguments.directory {
-        println!("{}", mirror::directory(&name).display());
+        console::answer(&format!("{}\n", mirror::directory(&name).display()))?;
         return Ok(ExitCode::SUCCESS);
     }
     let status = Status::of(name.as_str(), &run.external()?, &run.memory()?, &run.pulse()?);
-    if arguments.json {
-        serde_json::to_writer(io::stdout().lock(), &status).map_err(io::Error::from)?;
-        println!();
-    } else {
-        print!("{status}");
-    }
+    answer(&status, arguments.json)?;
     Ok(ExitCode::SUCCESS)
 }
 

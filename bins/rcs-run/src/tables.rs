@@ -7,13 +7,10 @@
 #[cfg(test)]
 mod tests;
 
-use std::{
-    fmt::Write as _,
-    io::{self, ErrorKind, Write as _},
-    process::ExitCode,
-};
+use std::{fmt::Write as _, process::ExitCode};
 
 use levels::ladder::{Ladder, ProcessInfo};
+use os_io::console;
 use rcs_core::{
     plain::{EnumSchema, VariantSchema},
     table::{ActionText, Row, Table, Variable},
@@ -40,11 +37,8 @@ in small letters: `letting-go` for `LettingGo`.
 
 /// Print all tables.
 pub fn tables() -> Result<ExitCode, Error> {
-    match io::stdout().write_all(page(Ladder::processes()).as_bytes()) {
-        // A reader that has seen enough, such as `head`, is no failure.
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(ExitCode::SUCCESS),
-        other => Ok(other.map(|()| ExitCode::SUCCESS)?),
-    }
+    console::answer(&page(Ladder::processes()))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The tables of all processes.

@@ -11,6 +11,8 @@
 //!
 //! `DEPC_SCHEDULES` sets how many plans are tried.
 
+#![expect(clippy::print_stdout, reason = "the figures of a campaign are printed")]
+
 mod session;
 
 use depc::{

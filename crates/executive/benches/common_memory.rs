@@ -2,6 +2,8 @@
 //! it, and with readers attached. Each line is the median of rounds, so that a stall of the machine does not
 //! show.
 
+#![expect(clippy::print_stdout, reason = "figures are what it is for")]
+
 use std::{
     hint::black_box,
     sync::atomic::{AtomicBool, Ordering},

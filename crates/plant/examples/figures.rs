@@ -1,6 +1,8 @@
 //! The figures of the simulation: cost of a tick (one core's time, Linux), error at rest, sink of contacts, creep of a grip.
 //! The number of sub-steps can be given.
 
+#![expect(clippy::print_stdout, reason = "figures are what it is for")]
+
 #[path = "../tests/rig/mod.rs"]
 mod rig;
 

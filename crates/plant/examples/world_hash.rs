@@ -4,6 +4,8 @@
 //! is much slower: a minute or two). `--ticks` prints the digest of every tick, so that two outputs can be compared
 //! line by line where they should ever differ.
 
+#![expect(clippy::print_stdout, reason = "figures are what it is for")]
+
 #[path = "../tests/rig/mod.rs"]
 mod rig;
 

@@ -1,6 +1,8 @@
 //! What a tick pays for its record: time of [`Recorder::tick`] in the thread of the ticks, at the pace of a run in real time
 //! shortened to 1 ms, and beside it the time of [`Recorder::cell`], which belongs to the simulated cell.
 
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "figures are what it is for")]
+
 use std::{
     thread,
     time::{Duration, Instant},

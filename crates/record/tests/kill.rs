@@ -7,6 +7,8 @@
 //!
 //! `cargo test --release -p record --test kill` prints the ten moments, and what was left.
 
+#![expect(clippy::print_stdout, reason = "the figures of a campaign are printed")]
+
 use std::{
     env,
     io::{BufRead, BufReader, Write},

@@ -9,6 +9,8 @@ mod svg;
 
 use std::{fs, path::PathBuf, process::ExitCode};
 
+use os_io::console;
+
 use crate::{Error, story::open};
 
 /// Arguments of `report`.
@@ -28,6 +30,6 @@ pub fn report(arguments: &Arguments) -> Result<ExitCode, Error> {
     let output = arguments.output.clone().unwrap_or_else(|| arguments.file.with_extension("html"));
     fs::write(&output, page::page(&log, &run))
         .map_err(|source| Error::Write { path: output.clone(), source })?;
-    println!("{}", output.display());
+    console::answer(&format!("{}\n", output.display()))?;
     Ok(ExitCode::SUCCESS)
 }

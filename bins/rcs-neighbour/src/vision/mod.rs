@@ -31,7 +31,7 @@ pub fn serve(arguments: &VisionArguments) -> Result<(), Error> {
     loop {
         match attend(&mut peer, &mut vision) {
             Ok(()) => {}
-            Err(Error::Peer(error)) if error.is_passing() => println!("{error}"),
+            Err(Error::Peer(error)) if error.is_passing() => os_io::stdout_line!("{error}"),
             other => return other,
         }
         // The line is cut before the next one is made: there is one neighbour of a kind.
@@ -103,7 +103,9 @@ impl Vision {
     /// Read what the controller has written, and begin with a new request when its picture is there. What cannot be read is said,
     /// and not answered.
     fn look(&mut self, requests: &Mailbox, pictures: &Mailbox) -> Result<(), Error> {
-        let said = |what: &str, why: &VisionError| eprintln!("rcs-neighbour: {what} cannot be read: {why}");
+        let said = |what: &str, why: &VisionError| {
+            os_io::stderr_line!("rcs-neighbour: {what} cannot be read: {why}")
+        };
         if requests.mailgram() != self.read {
             self.read = requests.mailgram();
             // An initialized mailbox holds no request.
@@ -154,7 +156,7 @@ impl Vision {
     fn leaves(&self) -> bool {
         let leaves = self.fault == Some(Kind::Gone);
         if leaves {
-            println!("picture {}: the line is cut", self.pictures);
+            os_io::stdout_line!("picture {}: the line is cut", self.pictures);
         }
         leaves
     }
@@ -194,7 +196,7 @@ impl Vision {
         if let Some((word, _)) = Kind::ALL.into_iter().find(|(_, kind)| Some(*kind) == self.fault) {
             text += &format!("; fault: {word}");
         }
-        println!("{text}");
+        os_io::stdout_line!("{text}");
     }
 }
 

@@ -25,11 +25,12 @@ mod trial;
 
 use std::{
     fs,
-    io::{self, IsTerminal as _, Write as _},
+    io::{self, IsTerminal as _},
     process::ExitCode,
 };
 
 use indicatif::{ProgressBar, ProgressStyle};
+use os_io::console;
 
 pub use self::arguments::CampaignArguments;
 use self::{
@@ -66,7 +67,7 @@ pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
         let fork = pool::fork_at(&facility, *tick)?;
         let mut story = story::Story::new(*tick, arguments.around);
         let result = trial::run(&facility, &parent, &fork, kind, procedure, &mut story)?;
-        print(&story.told(&result))?;
+        console::answer(&story.told(&result))?;
         return Ok(ExitCode::SUCCESS);
     }
     let bar = bar(forks.len() * kinds.len());
@@ -88,7 +89,7 @@ pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
         let text = report.markdown();
         fs::write(path, text).map_err(|source| Error::Write { path: path.clone(), source })?;
     }
-    print(&if arguments.json { report.json()? } else { report.text() })?;
+    console::answer(&if arguments.json { report.json()? } else { report.text() })?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -123,8 +124,4 @@ fn bar(branches: usize) -> Option<ProgressBar> {
         }
         bar
     })
-}
-
-fn print(text: &str) -> Result<(), Error> {
-    Ok(io::stdout().write_all(text.as_bytes())?)
 }

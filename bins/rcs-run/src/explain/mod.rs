@@ -7,8 +7,9 @@
 mod steps;
 mod walk;
 
-use std::{fmt, io, process::ExitCode};
+use std::{fmt, process::ExitCode};
 
+use os_io::console;
 use rcs_core::{interface::HwsCommand, name::Name16};
 use serde::Serialize;
 use taskdata::load::{Diagnostics, Job, Source, Step, Store};
@@ -16,6 +17,7 @@ use taskdata::load::{Diagnostics, Job, Source, Step, Store};
 use crate::{
     cli::CheckArguments,
     error::{Error, UNUSABLE},
+    long_json,
 };
 
 /// Where something was entered.
@@ -94,14 +96,9 @@ pub fn explain(arguments: &CheckArguments, text: &str) -> Result<ExitCode, Error
     let command = command_of(text, &store).map_err(unusable(format!("the command {text}")))?;
     let explanation = explained(&store, &command, text, &arguments.from)?;
     let complete = explanation.phases.iter().all(|phase| phase.missing.is_none());
-    if arguments.json {
-        serde_json::to_writer_pretty(io::stdout().lock(), &explanation).map_err(io::Error::from)?;
-        println!();
-    } else {
-        print!("{explanation}");
-    }
+    console::answer(&if arguments.json { long_json(&explanation)? } else { explanation.to_string() })?;
     if !complete {
-        eprintln!("rcs-run: a way is missing: see the lines with MISSING");
+        os_io::stderr_line!("rcs-run: a way is missing: see the lines with MISSING");
     }
     Ok(ExitCode::from(if complete { 0 } else { UNUSABLE }))
 }

@@ -69,9 +69,9 @@ impl Dump {
     fn print(&self, at: Instant, way: Way, bytes: &[u8]) {
         let line = line(at.saturating_duration_since(self.begun).as_secs_f64(), way, bytes);
         if self.on_stderr {
-            eprintln!("{line}");
+            os_io::stderr_line!("{line}");
         } else {
-            println!("{line}");
+            os_io::stdout_line!("{line}");
         }
     }
 }

@@ -126,9 +126,11 @@ impl Controller {
             }
             conductor.gather(STARTING, stop, |_, _| ())?;
         } else {
-            eprintln!("rcs-run: {name} waits for its boards; start each with the same data and job:");
+            os_io::stderr_line!(
+                "rcs-run: {name} waits for its boards; start each with the same data and job:"
+            );
             for board in Board::ALL {
-                eprintln!("  {}", command_line(arguments, name, *board));
+                os_io::stderr_line!("  {}", command_line(arguments, name, *board));
             }
             conductor.gather(patience(arguments), stop, announce)?;
         }
@@ -142,11 +144,11 @@ impl Controller {
         if arguments.boards != Boards::Manual {
             return false;
         }
-        eprintln!("rcs-run: {lost}; the robot waits for another to take its place:");
-        eprintln!("  {}", command_line(arguments, conductor.name(), lost.board));
+        os_io::stderr_line!("rcs-run: {lost}; the robot waits for another to take its place:");
+        os_io::stderr_line!("  {}", command_line(arguments, conductor.name(), lost.board));
         let came = conductor.await_successor(lost, patience(arguments), stop, announce);
         if let Err(error) = &came {
-            eprintln!("rcs-run: {error}");
+            os_io::stderr_line!("rcs-run: {error}");
         }
         came.is_ok()
     }
@@ -194,8 +196,12 @@ fn announce(event: BoardEvent, missing: &[Board]) {
         some => format!("missing: {}", some.join(", ")),
     };
     match event {
-        BoardEvent::Came { board, pid } => eprintln!("rcs-run: {board} is there (process {pid}); {rest}"),
-        BoardEvent::Left { board, pid } => eprintln!("rcs-run: {board} is gone (process {pid}); {rest}"),
+        BoardEvent::Came { board, pid } => {
+            os_io::stderr_line!("rcs-run: {board} is there (process {pid}); {rest}")
+        }
+        BoardEvent::Left { board, pid } => {
+            os_io::stderr_line!("rcs-run: {board} is gone (process {pid}); {rest}")
+        }
     }
 }
 

@@ -20,7 +20,7 @@ mod verdict;
 pub mod workstation;
 
 use std::{
-    io::{self, Write as _},
+    io,
     process::ExitCode,
     sync::{
         Arc,
@@ -44,6 +44,7 @@ use executive::{
     timing::Stage,
 };
 use levels::ladder::LadderState;
+use os_io::console;
 use plant::CellEvent;
 use rcs_core::{
     interface::{CommonMemory, DeviceInputs, DeviceOutputs, ExternalInputs, device::LinkBytes},
@@ -175,7 +176,12 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         Ending::Finished | Ending::Stopped => ExitCode::SUCCESS,
         Ending::Failed(failure) => {
             let line = run_line.map_or_else(String::new, |line| format!(" in `{line}`"));
-            eprintln!("rcs-run: {} failed at tick {}{line}: {}", job.name, failure.tick, failure.text);
+            os_io::stderr_line!(
+                "rcs-run: {} failed at tick {}{line}: {}",
+                job.name,
+                failure.tick,
+                failure.text
+            );
             ExitCode::from(if failure.stopped { STOPPED } else { FAILED })
         }
     })
@@ -208,7 +214,7 @@ fn publisher(arguments: &RunArguments, name: &RunName) -> Option<Publisher> {
     match Publisher::create(name) {
         Ok(publisher) => Some(publisher),
         Err(error) => {
-            eprintln!("rcs-run: nobody can look on, shared memory cannot be had: {error}");
+            os_io::stderr_line!("rcs-run: nobody can look on, shared memory cannot be had: {error}");
             None
         }
     }
@@ -217,7 +223,7 @@ fn publisher(arguments: &RunArguments, name: &RunName) -> Option<Publisher> {
 /// So is the mirror of the status.
 fn mirror(publisher: &Publisher) -> Option<Mirror> {
     let mirror = Mirror::start(publisher);
-    mirror.inspect_err(|error| eprintln!("rcs-run: the status is not mirrored: {error}")).ok()
+    mirror.inspect_err(|error| os_io::stderr_line!("rcs-run: the status is not mirrored: {error}")).ok()
 }
 
 fn print(page: &Page<'_>, json: bool) -> Result<(), Error> {
@@ -226,7 +232,7 @@ fn print(page: &Page<'_>, json: bool) -> Result<(), Error> {
     } else {
         page.to_string()
     };
-    Ok(io::stdout().write_all(text.as_bytes())?)
+    Ok(console::answer(&text)?)
 }
 
 impl Run {
@@ -523,7 +529,7 @@ impl Run {
     fn items(&mut self) -> Vec<ItemResult> {
         self.neighbours.items().map_or_else(
             |why| {
-                eprintln!("rcs-run: the items cannot be listed: {why}");
+                os_io::stderr_line!("rcs-run: the items cannot be listed: {why}");
                 Vec::new()
             },
             |items| items.into_iter().map(Into::into).collect(),
@@ -554,7 +560,7 @@ impl Run {
                 format!("{file} ({size:.1} MB{lost}): rerun {file}, or open it in Foxglove or Lichtblick")
             }
             Err(error) => {
-                eprintln!("rcs-run: the log ended before the run did: {error}");
+                os_io::stderr_line!("rcs-run: the log ended before the run did: {error}");
                 format!("incomplete: {error}")
             }
         }

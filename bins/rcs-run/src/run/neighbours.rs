@@ -144,7 +144,10 @@ impl Neighbours {
                     return Err(Error::NobodyCommands(arguments.wait));
                 }
                 for counter in missing {
-                    eprintln!("rcs-run: {} has not come; the run begins without it", counter.role());
+                    os_io::stderr_line!(
+                        "rcs-run: {} has not come; the run begins without it",
+                        counter.role()
+                    );
                 }
                 return Ok(());
             }

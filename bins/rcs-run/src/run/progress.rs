@@ -55,7 +55,7 @@ impl Progress {
     pub fn say(&self, text: &str) {
         match &self.bar {
             Some(bar) => bar.println(text),
-            None => eprintln!("{text}"),
+            None => os_io::stderr_line!("{text}"),
         }
     }
 

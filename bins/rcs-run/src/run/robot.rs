@@ -96,11 +96,13 @@ impl Robot {
         while !port.line.is_ready() && !interrupted.load(Ordering::Relaxed) {
             let path = port.line.path().display();
             if started.elapsed() >= limit {
-                eprintln!("rcs-run: the robot controller at {path} has not switched DTR on within {wait} s");
+                os_io::stderr_line!(
+                    "rcs-run: the robot controller at {path} has not switched DTR on within {wait} s"
+                );
                 return;
             }
             if !said {
-                eprintln!(
+                os_io::stderr_line!(
                     "rcs-run: waiting for the robot controller at {path}: its DTR is off; power it up and start its program \
                      (IV.3.3)"
                 );

@@ -73,7 +73,7 @@ impl Setup {
         let TaskFiles { store, job, job_path, warnings } = TaskFiles::load(data, arguments.played())?;
         let CellFile { text: description_text, description, warning } =
             CellFile::load(data, &store, &job, &job_path)?;
-        warnings.into_iter().chain(warning).for_each(|line| eprintln!("rcs-run: {line}"));
+        warnings.into_iter().chain(warning).for_each(|line| os_io::stderr_line!("rcs-run: {line}"));
         let (faults, faults_text) = faults(arguments, &description)?;
         let cell = Cell::with_faults(&description, arguments.seed, &faults.cell)?;
         let sees_elsewhere = arguments.outside.contains(&Role::Vision);
@@ -187,7 +187,7 @@ fn neighbours(
             let desks = || commands.iter().chain(&items).chain(&regrips).chain(&sees);
             let address = address.clone().configured(arguments.zenoh_config.clone())?;
             let listener = Listener::start(&address, secret, desks())?;
-            eprintln!("rcs-run: neighbours can connect at {}", listener.address());
+            os_io::stderr_line!("rcs-run: neighbours can connect at {}", listener.address());
             Some(Network { counters: desks().map(Desk::counter).collect(), _listener: listener })
         }
         None => None,

@@ -1,0 +1,160 @@
+//! Standard output and standard error that go away: a tool ends quietly, and a run goes on.
+
+use std::{
+    fs::File,
+    io::{self, Read},
+    os::fd::OwnedFd,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+};
+
+use rustix::pty;
+
+/// A pipe whose reader has gone, as in `rcs-run | head`.
+fn closed_pipe() -> Stdio {
+    let (reader, writer) = io::pipe().unwrap();
+    drop(reader);
+    writer.into()
+}
+
+/// A disk without room.
+fn full() -> Stdio {
+    File::options().write(true).open("/dev/full").unwrap().into()
+}
+
+/// Both ends of a pseudo-terminal.
+fn terminal() -> (OwnedFd, File) {
+    let master = pty::openpt(pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY).unwrap();
+    pty::unlockpt(&master).unwrap();
+    let name = pty::ptsname(&master, Vec::new()).unwrap();
+    let flags = rustix::fs::OFlags::RDWR | rustix::fs::OFlags::NOCTTY;
+    let slave = rustix::fs::open(&*name, flags, rustix::fs::Mode::empty()).unwrap();
+    (master, slave.into())
+}
+
+/// A terminal whose window was closed.
+fn closed_terminal() -> Stdio {
+    let (master, slave) = terminal();
+    drop(master);
+    slave.into()
+}
+
+/// All ways to lose a stream.
+const LOST: [fn() -> Stdio; 3] = [closed_pipe, full, closed_terminal];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-run"));
+    command.args(arguments).current_dir(root()).stdin(Stdio::null());
+    command
+}
+
+/// A job that fails: the sentence about it goes to standard error.
+const FAILS: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0\n** tray UNIT_1 4 LINKBAR1_BH 0 0 0\n";
+
+/// A run into a log in `place`, with the streams as set by `streams`, has the status and a log with its end.
+fn assert_run(
+    place: &Path,
+    arguments: &[&str],
+    status: i32,
+    streams: impl FnOnce(&mut Command) -> &mut Command,
+) {
+    let log = place.join("run.mcap");
+    let mut command = command(arguments);
+    let output = streams(command.arg("--log").arg(&log)).output().unwrap();
+    assert_eq!(output.status.code(), Some(status), "{arguments:?}: {}", text(&output.stderr));
+    let log = record::Log::open(&log).unwrap();
+    assert!(log.complete && log.end.is_some(), "{arguments:?}: the log has no end");
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn a_run_goes_on_without_standard_error() {
+    let place = tempfile::tempdir().unwrap();
+    let job = place.path().join("fails.job");
+    std::fs::write(&job, FAILS).unwrap();
+    let fails = job.to_str().unwrap();
+    for (way, lost) in LOST.into_iter().enumerate() {
+        let ticks = ["--ticks", "40", "--shared-memory", "on"];
+        assert_run(place.path(), &ticks, 0, |command| command.stderr(lost()));
+        assert_run(place.path(), &[fails], 1, |command| command.stderr(lost()));
+        // Boards write to the standard error of the run.
+        assert_run(place.path(), &["--boards", "split", "--ticks", "40"], 0, |command| {
+            command.stderr(lost())
+        });
+        let unusable = command(&["--data", "/nowhere"]).stderr(lost()).output().unwrap();
+        assert_eq!(unusable.status.code(), Some(2), "way {way}");
+    }
+}
+
+#[test]
+fn a_terminal_that_is_closed_in_mid_run_does_not_end_the_run() {
+    let place = tempfile::tempdir().unwrap();
+    let (master, slave) = terminal();
+    let log = place.path().join("run.mcap");
+    let child = command(&["--clock", "real", "--ticks", "60", "--log", log.to_str().unwrap()])
+        .stderr(slave)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    // The first bytes on the terminal are those of the progress.
+    let mut reader = File::from(master);
+    reader.read_exact(&mut [0; 16]).unwrap();
+    drop(reader);
+    assert_eq!(child.wait_with_output().unwrap().status.code(), Some(0));
+    assert!(record::Log::open(&log).unwrap().complete);
+}
+
+/// What a program says on standard error whose standard output is lost.
+fn without_output(arguments: &[&str], lost: Stdio) -> Output {
+    command(arguments).stdout(lost).stderr(Stdio::piped()).spawn().unwrap().wait_with_output().unwrap()
+}
+
+const TOOLS: [&[&str]; 8] = [
+    &["check"],
+    &["check", "--json"],
+    &["check", "--explain", "MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0"],
+    &["tables"],
+    &["latency", "--seconds", "1"],
+    &["latency", "--seconds", "1", "--json"],
+    &["campaign", "linkbar", "--at", "15", "--interrupt", "none"],
+    &["clean"],
+];
+
+#[test]
+fn a_tool_without_a_reader_ends_quietly() {
+    for arguments in TOOLS {
+        let with_reader = command(arguments).output().unwrap();
+        let output = without_output(arguments, closed_pipe());
+        assert_eq!(output.status.code(), with_reader.status.code(), "{arguments:?}");
+        assert_eq!(text(&output.stderr), text(&with_reader.stderr), "{arguments:?}");
+    }
+}
+
+#[test]
+fn an_answer_that_finds_no_room_is_an_error_in_words() {
+    for arguments in TOOLS {
+        let output = without_output(arguments, full());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let said = text(&output.stderr);
+        assert!(
+            said.contains("No space left on device") && !said.contains("panicked"),
+            "{arguments:?}: {said}"
+        );
+    }
+}
+
+#[test]
+fn a_run_without_a_reader_of_its_result_has_its_own_status() {
+    let place = tempfile::tempdir().unwrap();
+    assert_run(place.path(), &["--ticks", "40"], 0, |command| command.stdout(closed_pipe()));
+    assert_run(place.path(), &["--ticks", "40"], 0, |command| {
+        command.stdout(closed_pipe()).stderr(closed_pipe())
+    });
+}
