@@ -118,9 +118,9 @@ fn a_tool_that_the_drum_does_not_let_go_is_not_torn_out() {
 }
 
 #[test]
-fn a_tool_is_not_forced_into_closed_drum_fingers() {
-    assert_fails_for("tool-change.job", "closed-drum", Reason::Detected, |scratch| {
-        scratch.job_with("tool-change.job", "== INSERT-TOOL", "** drum grip\n== INSERT-TOOL");
+fn a_tool_is_not_forced_into_the_drum() {
+    assert_fails_for("tool-change", "tight-drum", Reason::Detected, |scratch| {
+        scratch.data_with("cell.toml", "insertion_force = 30.0", "insertion_force = 95.0");
     });
 }
 

@@ -75,9 +75,9 @@ fn a_tool_that_the_drum_holds() {
 }
 
 #[test]
-fn closed_fingers_of_the_drum() {
-    let outcome = run("tool-change.job", 1, "why-closed", |scratch: &Scratch| {
-        scratch.job_with("tool-change.job", "== INSERT-TOOL", "** drum grip\n== INSERT-TOOL");
+fn a_drum_that_is_too_tight() {
+    let outcome = run("tool-change", 1, "why-tight", |scratch: &Scratch| {
+        scratch.data_with("cell.toml", "insertion_force = 30.0", "insertion_force = 95.0");
     });
     assert_explained(
         &outcome,

@@ -9,7 +9,7 @@ use neighbours::{
     workstation::{
         cell::{self, CellStatus, Trouble},
         command,
-        player::{Hwsc, Progress, TIME_LIMIT, Workstation},
+        player::{Hwsc, JobFailure, Progress, TIME_LIMIT, Workstation},
         status,
     },
 };
@@ -40,7 +40,8 @@ pub fn play(arguments: &WorkstationArguments) -> Result<(), Error> {
                 Progress::Running => {}
                 Progress::Over => return Ok(()),
                 Progress::Failed(failure) => {
-                    let line = hwsc.begun_steps().last().map_or("", |step| step.text.as_str());
+                    let last = hwsc.begun_steps().last().map_or("", |step| step.text.as_str());
+                    let line = if let JobFailure::Unfinished { line, .. } = &failure { line } else { last };
                     return Err(Error::Job(format!("`{line}` failed: {failure}")));
                 }
             }

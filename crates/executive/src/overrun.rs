@@ -144,7 +144,9 @@ impl Overruns {
             Overrun { slots, part: Some(part), taken: Duration::from_nanos(taken) }
         } else {
             self.waking += slots;
-            Overrun { slots, part: None, taken: late }
+            // A thread that woke too late for its slot has waited for a later one, and may be there in time.
+            let missed = SLOT * u32::try_from(slots).unwrap_or(u32::MAX);
+            Overrun { slots, part: None, taken: if late < SLOT { missed + late } else { late } }
         };
         self.react(overrun);
         Some(overrun)
@@ -248,8 +250,14 @@ mod tests {
         assert_eq!(overrun.to_string(), format!("2 slots of 40 ms skipped: cell took {taken:.1} ms"));
         let overrun = overruns.observe(1, &quick, LATE).expect("a slot was skipped");
         assert_eq!(overrun.to_string(), "1 slot of 40 ms skipped: woken up 95.0 ms late");
+        let punctual = overruns.observe(1, &quick, Duration::ZERO).expect("a slot was skipped");
+        assert_eq!(
+            punctual.to_string(),
+            "1 slot of 40 ms skipped: woken up 40.0 ms late",
+            "for the slot after"
+        );
         overruns.observe(3, &slow, LATE);
-        assert_eq!(overruns.by_part().collect::<Vec<_>>(), [(None, 1), (Some(Stage::Cell), 5)]);
+        assert_eq!(overruns.by_part().collect::<Vec<_>>(), [(None, 2), (Some(Stage::Cell), 5)]);
         assert_eq!((overruns.knob(700), overruns.is_holding()), (700, false));
     }
 

@@ -53,6 +53,9 @@ pub enum DescriptionError {
 pub struct CellDescription {
     /// A name for people.
     pub name: String,
+    /// A part that a command has put down lies within this distance of where it should be, in.
+    #[serde(default = "placing_tolerance")]
+    pub placing_tolerance: f64,
     /// Steps and stiffness of the simulation.
     pub physics: Physics,
     /// The arm's servos and outline.
@@ -427,6 +430,14 @@ pub struct PartType {
     /// It is a tool of the machine: it fits into the drum, its X along the drum's.
     #[serde(default)]
     pub tool: bool,
+    /// It is machined in the vise on a side that was not machined before.
+    #[serde(default)]
+    pub other_side: bool,
+}
+
+/// More than the 0.15 in by which the data of the linkbar put it beside the centre of its sector (SPECNOTES.md).
+const fn placing_tolerance() -> f64 {
+    0.25
 }
 
 const fn half() -> f64 {

@@ -30,6 +30,8 @@ pub struct Part {
     pub collider: ColliderHandle,
     /// It was last seen lying on the floor.
     pub fallen: bool,
+    /// Sides that were machined in the vise, as unit vectors along its own axes.
+    pub machined: Vec<[i8; 3]>,
 }
 
 impl Part {
@@ -40,7 +42,7 @@ impl Part {
         let builder = RigidBodyBuilder::dynamic().pose(to_pose(frame)).angular_damping(damping);
         let body = world.insert_body(builder);
         let collider = world.insert_collider(collider(kind), Some(body));
-        Self { kind: kind.clone(), id, body, collider, fallen: false }
+        Self { kind: kind.clone(), id, body, collider, fallen: false, machined: Vec::new() }
     }
 
     /// Make it another kind of part, its middle moved by `shift` (in its own axes, in).

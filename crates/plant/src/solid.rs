@@ -105,7 +105,16 @@ mod tests {
     use super::*;
 
     fn kind(shape: Shape, size: [f64; 3]) -> PartType {
-        PartType { name: "P".into(), shape, size, weight: 1.0, vision_id: 0, reflectance: 0.5, tool: false }
+        PartType {
+            name: "P".into(),
+            shape,
+            size,
+            weight: 1.0,
+            vision_id: 0,
+            reflectance: 0.5,
+            tool: false,
+            other_side: false,
+        }
     }
 
     #[test]

@@ -70,6 +70,23 @@ fn drum_and_wait() {
 }
 
 #[test]
+fn a_command_that_has_to_fail() {
+    let steps = |text: &str| {
+        let source = Source { name: "try.job".into(), text: text.into() };
+        Job::from_source(source, &store()).map(|(job, _)| job.steps).map_err(|report| report.to_string())
+    };
+    let expecting =
+        |text: &str| steps(text).unwrap().iter().map(|line| line.expects_error).collect::<Vec<_>>();
+    let lines = "== PAUSE -- +0 -- 0 +0 -- 0 -- 0\n\
+                 == PAUSE -- +0 -- 0 +0 -- 0 -- 0 expect error\n\
+                 == PAUSE -- +0 -- 0 +0 -- 0 -- 0 #17 expect error\n";
+    assert_eq!(expecting(lines), [false, true, true]);
+    let other = steps("== PAUSE -- +0 -- 0 +0 -- 0 -- 0 expect finished").unwrap_err();
+    assert!(other.contains("error was expected behind expect"), "{other}");
+    assert!(steps("** wait 5 expect error").is_err(), "only commands have statuses");
+}
+
+#[test]
 fn the_joystick_box() {
     let frames = [
         ("WORLD", JoystickFrame::World),

@@ -606,7 +606,7 @@ error: try.job: line 1, column 33: PFIXTURE has no sectors: 0 was expected, 3 fo
 error: try.job: line 1, column 50: the line should end before extra
     == MOVE LINKBAR1_BH +2 PFIXTURE 3 +2 HOME 0 -- 0 extra
                                                      ^^^^^
-    help: behind the nine fields only a serial number can stand: # and 1 to 16 characters, as in #17
+    help: behind the nine fields only a serial number can stand, # and 1 to 16 characters, as in #17, and `expect error`
 "#,
         ),
     ] {

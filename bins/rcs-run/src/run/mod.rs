@@ -12,6 +12,7 @@ pub mod neighbours;
 mod outside;
 mod pace;
 mod page;
+mod placement;
 mod progress;
 mod result;
 mod robot;
@@ -61,10 +62,11 @@ use self::{
     neighbours::Neighbours,
     pace::Pace,
     page::Page,
+    placement::PlacementCheck,
     progress::Progress,
     result::{
         CommandResult, EmergencyResult, Events, FailureResult, FaultsResult, ItemResult, PortResult,
-        RunResult,
+        RunResult, SIMULATED,
     },
     robot::Robot,
     setup::Setup,
@@ -92,6 +94,8 @@ struct Run {
     progress: Progress,
     /// What the robot touches.
     check: ContactCheck,
+    /// Where the parts are to be.
+    placement: PlacementCheck,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<(Level, &'static str, String)>,
     /// What has happened, for the result.
@@ -138,6 +142,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         log,
         progress: Progress::new(job.steps.len() + 1),
         pace: Pace::fast(arguments.overrun),
+        placement: PlacementCheck::new(&description),
         check: ContactCheck::new(description.contact),
         fresh: Vec::new(),
         events: Events::default(),
@@ -156,7 +161,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     }
     let ending = run.play(Generations::new(store), &job.reloads, arguments, &interrupted);
     let wall_s = started.elapsed().as_secs_f64();
-    let ending = ending.checked(&run.check);
+    let ending = run.checked(ending);
     run.progress.end();
     let mut result = run.result(&job, &ending, wall_s);
     let log_text = run.finish_log(&ending, &mut result, log_path);
@@ -168,14 +173,12 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         stopped: matches!(ending, Ending::Stopped),
     };
     print(&page, arguments.json)?;
-    let run_line = run.neighbours.last_line().map(ToOwned::to_owned);
     // What is shared goes before the last word: whoever reads it may start the next run at once.
     drop(mirror);
     drop(run);
-    Ok(match &ending {
-        Ending::Finished | Ending::Stopped => ExitCode::SUCCESS,
-        Ending::Failed(failure) => {
-            let line = run_line.map_or_else(String::new, |line| format!(" in `{line}`"));
+    Ok(match (&ending, &result.failure) {
+        (Ending::Failed(failure), Some(FailureResult { line, .. })) => {
+            let line = line.as_ref().map_or_else(String::new, |line| format!(" in `{line}`"));
             os_io::stderr_line!(
                 "rcs-run: {} failed at tick {}{line}: {}",
                 job.name,
@@ -184,6 +187,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
             );
             ExitCode::from(if failure.stopped { STOPPED } else { FAILED })
         }
+        _ => ExitCode::SUCCESS,
     })
 }
 
@@ -329,6 +333,9 @@ impl Run {
             self.runner.stage_times_mut().mark(Stage::Log);
             self.advance(tick, &outputs);
             self.observe(tick, Commands::from(&memory));
+            let cell = &self.workstation.cell;
+            let task = &memory.task.status;
+            self.placement.look(tick, &external.hws, task, cell.description(), &cell.parts());
             self.runner.stage_times_mut().mark(Stage::Cell);
             self.progress.show(self.neighbours.begun_steps(), &external.hws, &memory);
             let progress = self.neighbours.step(
@@ -512,6 +519,7 @@ impl Run {
             port: self.robot.port().map(PortResult::from),
             emergency_stop: self.workstation.last_emergency().map(EmergencyResult::from),
             digest: self.runner.digest().to_string(),
+            simulated: self.robot.port().map(|_| SIMULATED),
             parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
             data_base: self.items(),
             contacts: self.check.collisions().to_vec(),
@@ -519,7 +527,9 @@ impl Run {
             events: std::mem::take(&mut self.events),
             log: None,
             failure: match ending {
-                Ending::Failed(failure) => Some(FailureResult::from(failure)),
+                Ending::Failed(failure) => {
+                    Some(FailureResult::new(failure, self.neighbours.line_at(failure.tick)))
+                }
                 Ending::Finished | Ending::Stopped => None,
             },
         }

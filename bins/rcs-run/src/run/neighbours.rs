@@ -220,12 +220,16 @@ impl Neighbours {
         }
     }
 
-    /// The line that a failure is of: the last step of a job, or the command that whoever commands waits for.
+    /// The line that was under way in a tick; for what has failed at its start, the tick in which it was begun.
     #[must_use]
-    pub fn last_line(&self) -> Option<&str> {
-        let last = self.begun_steps().last()?;
-        let is_meant = !self.are_commanding() || last.outcome == Outcome::Executing;
-        is_meant.then_some(last.text.as_str())
+    pub fn line_at(&self, tick: Tick) -> Option<&str> {
+        let is_refused = |step: &BegunStep| step.outcome == Outcome::Failed && step.ticks == 0;
+        let goes_on = |step: &BegunStep| step.outcome == Outcome::Executing;
+        let is_meant = |step: &&BegunStep| {
+            let since = tick.since(step.began);
+            (tick > step.began || is_refused(step)) && (since <= step.ticks || goes_on(step))
+        };
+        self.begun_steps().iter().rev().find(is_meant).map(|step| step.text.as_str())
     }
 
     /// Once a tick, after controller and cell: all read what the tick has written. `inputs` are the device words of the next tick.

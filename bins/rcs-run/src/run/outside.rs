@@ -136,9 +136,13 @@ impl OutsideWorkstation {
     fn begin(&mut self, tick: Tick, command: &HwsCommand) {
         self.began = tick;
         if self.begun_steps.len() < REMEMBERED {
-            let step =
-                BegunStep { text: spelled(command), is_command: true, outcome: Outcome::Executing, ticks: 0 };
-            self.begun_steps.push(step);
+            self.begun_steps.push(BegunStep {
+                text: spelled(command),
+                is_command: true,
+                began: tick,
+                outcome: Outcome::Executing,
+                ticks: 0,
+            });
         }
     }
 

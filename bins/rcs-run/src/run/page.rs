@@ -43,6 +43,9 @@ impl fmt::Display for Page<'_> {
             writeln!(f, "  {:width$}  {seconds:7.1} s  {}", step.text, step.outcome.text())?;
         }
         writeln!(f)?;
+        if let Some(simulated) = result.simulated {
+            writeln!(f, "simulated  {simulated}")?;
+        }
         for part in &result.parts {
             writeln!(f, "part       {part}")?;
         }

@@ -305,6 +305,8 @@ impl From<BoardFigures<'_>> for BoardResult {
 pub struct FailureResult {
     /// Tick in which it began.
     pub tick: u64,
+    /// The line of the job, or the command, that was under way then.
+    pub line: Option<String>,
     /// The process that knows why.
     pub process: String,
     /// Its decision table, if one was used.
@@ -315,10 +317,13 @@ pub struct FailureResult {
     pub text: String,
 }
 
-impl From<&Failure> for FailureResult {
-    fn from(failure: &Failure) -> Self {
+impl FailureResult {
+    /// A failure in a line.
+    #[must_use]
+    pub fn new(failure: &Failure, line: Option<&str>) -> Self {
         Self {
             tick: failure.tick.0,
+            line: line.map(str::to_owned),
             process: failure.process.clone(),
             table: failure.table.clone(),
             row: failure.row,
@@ -363,6 +368,10 @@ impl Events {
         }
     }
 }
+
+/// What a run with a robot at a port says of a cell that only follows the robot.
+pub const SIMULATED: &str =
+    "parts, contacts, clearance and events are those of the simulated cell, which follows the robot";
 
 /// The result of a run. The names of the fields are those of the JSON object.
 #[derive(Clone, Debug, Serialize)]
@@ -417,6 +426,9 @@ pub struct RunResult {
     pub emergency_stop: Option<EmergencyResult>,
     /// Fingerprint of all output buffers of all ticks.
     pub digest: String,
+    /// Which of the statements are about the simulated cell, if the robot is not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simulated: Option<&'static str>,
     /// Where the parts are.
     pub parts: Vec<PartResult>,
     /// What the Data System was told of items of the MBD.

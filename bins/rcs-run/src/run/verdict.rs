@@ -8,7 +8,7 @@ use rcs_core::{
     tick::Tick,
 };
 
-use super::{Run, contacts::ContactCheck, robot::Port};
+use super::{Run, robot::Port};
 
 /// How a run ended.
 pub enum Ending {
@@ -21,14 +21,14 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// A job in which the robot ran into something has not finished; one that failed may have failed because of it.
-    pub fn checked(self, check: &ContactCheck) -> Self {
-        let Some(verdict) = check.verdict() else { return self };
+    /// A job in which something went wrong in the cell has not finished; one that failed may have failed because of it.
+    fn checked(self, verdict: Failure) -> Self {
         match self {
             Self::Finished | Self::Stopped => Self::Failed(verdict),
             Self::Failed(failure) if failure.text == verdict.text => Self::Failed(failure),
             Self::Failed(failure) => {
-                let text = format!("{}; before, {}", failure.text, verdict.text);
+                let when = if verdict.tick <= failure.tick { "before" } else { "later" };
+                let text = format!("{}; {when}, {}", failure.text, verdict.text);
                 Self::Failed(Failure { text, ..failure })
             }
         }
@@ -36,6 +36,19 @@ impl Ending {
 }
 
 impl Run {
+    /// The end of a run, with what went wrong in the cell: what the robot ran into, and what is not where it should be.
+    pub(super) fn checked(&self, ending: Ending) -> Ending {
+        let parts = self.workstation.cell.parts();
+        let mut verdicts: Vec<Failure> =
+            self.check.verdict().into_iter().chain(self.placement.verdict(&parts)).collect();
+        verdicts.sort_by_key(|verdict| verdict.tick);
+        let simulated = |verdict: Failure| match self.robot.port() {
+            Some(_) => Failure { text: format!("in the simulated cell, {}", verdict.text), ..verdict },
+            None => verdict,
+        };
+        verdicts.into_iter().map(simulated).fold(ending, Ending::checked)
+    }
+
     /// The end of a run that another process commands. It has no job that would fail because of it, so that it counts how the
     /// robot is left.
     pub(super) fn left(&self, ending: Ending) -> Ending {
@@ -92,6 +105,10 @@ impl Run {
             _ => known,
         });
         known.unwrap_or_else(|| {
+            let tick = match failure {
+                JobFailure::Unfinished { tick, .. } => *tick,
+                _ => self.runner.tick(),
+            };
             let text = match failure {
                 JobFailure::TimeLimit(_) => {
                     let doing = failure::present_commands(processes, &external.hws, self.runner.memory());
@@ -99,7 +116,7 @@ impl Run {
                 }
                 _ => format!("HWSC: {failure}"),
             };
-            outside(self.runner.tick(), "HWSC", text)
+            outside(tick, "HWSC", text)
         })
     }
 }

@@ -15,7 +15,10 @@
 //! ```
 //!
 //! An emergency ([`Workstation::emergency`]) ends the job at once, unless the job itself resets it further down, by a line with
-//! `** panel fault-reset`: then a command that comes to nothing meanwhile is noted as failed, and the job goes on.
+//! `** panel fault-reset`: then a command that comes to nothing meanwhile is noted as failed, and the job goes on. It must
+//! finish when the job sends it again, or the job has failed.
+//!
+//! A command whose line ends with `expect error` must fail: the job goes on when it has, and ends when it finishes.
 //!
 //! Actions that are to happen while the robot executes a command stand in the job before that command. They
 //! are kept until it is sent, and begun when their time comes, whatever step is going on then. A job is not
@@ -64,6 +67,8 @@ pub enum Outcome {
     Finished,
     /// It failed.
     Failed,
+    /// It failed, as its line says.
+    FailedAsExpected,
 }
 
 impl Outcome {
@@ -74,6 +79,7 @@ impl Outcome {
             Self::Executing => HwsReport::Executing.text(),
             Self::Finished => HwsReport::Finished.text(),
             Self::Failed => HwsReport::Error.text(),
+            Self::FailedAsExpected => "error as expected",
         }
     }
 }
@@ -85,6 +91,8 @@ pub struct BegunStep {
     pub text: String,
     /// It was a command for Task, not an action of the workstation.
     pub is_command: bool,
+    /// The tick after which it was begun.
+    pub began: Tick,
     /// How it ended.
     pub outcome: Outcome,
     /// Ticks from the one in which it was begun to the one in which its end was seen.
@@ -106,6 +114,19 @@ pub enum JobFailure {
     /// The operator has the robot.
     #[error("the joystick box is on")]
     Joystick,
+    /// A command has finished that should have failed.
+    #[error("finished, but its line expects an error")]
+    Unexpected,
+    /// A command has failed, and was not sent again with success.
+    #[error("{why}; the command has not finished since (`expect error` marks a line that has to fail)")]
+    Unfinished {
+        /// Its line.
+        line: String,
+        /// When it ended.
+        tick: Tick,
+        /// Why it failed.
+        why: &'static str,
+    },
     /// A step took too long.
     #[error("not finished within {} s", .0 * TICK_MS / 1000)]
     TimeLimit(u64),
@@ -150,9 +171,20 @@ pub struct Hwsc {
     /// The command is to be sent.
     to_send: bool,
     begun_steps: Vec<BegunStep>,
+    /// Commands that have failed while the job went on.
+    failed: Vec<FailedCommand>,
     progress: Progress,
     time_limit: u64,
     later: Vec<Later>,
+}
+
+/// A command that has failed while the job went on.
+#[derive(Debug)]
+struct FailedCommand {
+    /// Which one of the steps that were begun.
+    step: usize,
+    tick: Tick,
+    reason: Reason,
 }
 
 /// An action that waits for its time.
@@ -188,6 +220,7 @@ impl Hwsc {
             repeated: false,
             to_send: false,
             begun_steps,
+            failed: Vec::new(),
             progress: Progress::Running,
             time_limit,
             later: Vec::new(),
@@ -263,11 +296,17 @@ impl Hwsc {
         };
         match ended {
             None => {}
-            Some(Err(JobFailure::Command(_))) if emergency.is_some() => {
+            Some(Err(JobFailure::Command(_) | JobFailure::Joystick)) if self.expects_error() => {
+                self.finish(Outcome::FailedAsExpected);
+                self.next(tick, workstation);
+            }
+            Some(Err(JobFailure::Command(reason))) if emergency.is_some() => {
                 self.finish(Outcome::Failed);
+                self.failed.push(FailedCommand { step: self.begun_steps.len() - 1, tick, reason });
                 self.next(tick, workstation);
             }
             Some(Err(failure)) => self.fail(failure),
+            Some(Ok(())) if self.expects_error() => self.fail(JobFailure::Unexpected),
             Some(Ok(())) => {
                 if self.began.is_some() {
                     self.finish(Outcome::Finished);
@@ -289,6 +328,11 @@ impl Hwsc {
     fn next(&mut self, tick: Tick, workstation: &mut impl Workstation) {
         self.current += 1;
         self.begin(tick, workstation);
+    }
+
+    /// The command that is going on has to fail.
+    fn expects_error(&self) -> bool {
+        self.step_at(self.current).is_some_and(|line| line.expects_error)
     }
 
     /// How the step that is going on ended; `None` while it goes on.
@@ -368,8 +412,19 @@ impl Hwsc {
     /// After the last step: the last actions may still wait for their time.
     fn end(&mut self, workstation: &impl Workstation) {
         if self.later.is_empty() && !workstation.busy() {
-            self.progress = Progress::Over;
+            self.progress = self.unfinished().map_or(Progress::Over, Progress::Failed);
         }
+    }
+
+    /// The first command whose last attempt has failed.
+    fn unfinished(&self) -> Option<JobFailure> {
+        self.failed.iter().find_map(|FailedCommand { step, tick, reason }| {
+            let (failed, later) = self.begun_steps.get(*step..)?.split_first()?;
+            let again =
+                later.iter().any(|later| later.text == failed.text && later.outcome == Outcome::Finished);
+            let (line, why) = (failed.text.clone(), reason.text());
+            (!again).then_some(JobFailure::Unfinished { line, tick: *tick, why })
+        })
     }
 
     fn step_at(&self, position: usize) -> Option<&JobLine> {
@@ -406,6 +461,7 @@ impl Hwsc {
         self.begun_steps.push(BegunStep {
             text,
             is_command: command.is_some(),
+            began: tick,
             outcome: Outcome::Executing,
             ticks: 0,
         });

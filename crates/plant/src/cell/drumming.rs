@@ -91,12 +91,14 @@ impl Cell {
         self.drum.location()
     }
 
-    /// Close the fingers of the drum, on the tool that is in its place or on nothing, or open them.
+    /// Close the fingers of the drum on the tool that is in its place, or open them.
     ///
     /// # Errors
-    /// [`WorkstationError::NotInPlace`] if a tool stands in the way of the fingers.
+    /// [`WorkstationError::NothingToGrip`] if no tool is there, [`WorkstationError::NotInPlace`] if one stands in the way of the
+    /// fingers.
     pub(super) fn set_drum_fingers(&mut self, closed: bool) -> Result<(), WorkstationError> {
-        if closed && let Some((pocketed, entering)) = self.tool_at_drum() {
+        if closed {
+            let (pocketed, entering) = self.tool_at_drum().ok_or(WorkstationError::NothingToGrip)?;
             if !self.drum.can_grip(&entering) {
                 let tool = self.parts[pocketed.part].kind.name.clone();
                 let distance = libm::hypot(entering.left, entering.aside);

@@ -36,11 +36,16 @@ impl Cell {
         check_part(from, part, next)?;
         check_seat(part, self.vise_error(part), SEATED)?;
         let here = self.vise.frame().inverse().compose(&part.frame(&self.world));
+        let side = front(&here);
+        if next.other_side && part.machined.contains(&side) {
+            return Err(WorkstationError::SameSide { part: from.into() });
+        }
         let along = |kind: &PartType| sizes_along(&here, kind);
         let shift = self.vise.seat(step, &along(next)) - self.vise.seat(step, &along(&part.kind));
         let shift = here.rotation.inverse() * shift;
         self.unclamp();
         self.parts[index].become_kind(&mut self.world, next, shift);
+        self.parts[index].machined.push(side);
         if let Some(squeeze) = self.between_jaws_of(index, step) {
             let gap = self.vise.stop(step, squeeze.width);
             self.vise.follow(&mut self.world, gap);
@@ -119,6 +124,21 @@ fn askew(here: &Frame, shape: Shape) -> f64 {
     }
 }
 
+/// The side of a part that shows to the front of the vise, from where it is machined: along one of the part's axes.
+fn front(here: &Frame) -> [i8; 3] {
+    let out = nearest_square(here).rotation.inverse() * -Inches::x();
+    let sign = |along: f64| {
+        if along > 0.5 {
+            1
+        } else if along < -0.5 {
+            -1
+        } else {
+            0
+        }
+    };
+    [sign(out.x), sign(out.y), sign(out.z)]
+}
+
 /// Sizes of a part along the axes of the frame that `here` is given in.
 fn sizes_along(here: &Frame, kind: &PartType) -> Inches {
     let square = nearest_square(here);
@@ -152,12 +172,22 @@ mod tests {
             vision_id: 0,
             reflectance: 0.5,
             tool: false,
+            other_side: false,
         };
         // Part X down, Y along vise X, a little askew.
         let upright =
             rcs_core::frame::rotation_from_x_y(&Inches::new(0.02, 0.01, -1.0), &Inches::x()).unwrap();
         let here = Frame { position: Inches::zeros(), rotation: upright };
         assert!((sizes_along(&here, &kind) - Inches::new(2.0, 3.0, 1.0)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_part_that_is_turned_round_shows_its_other_side() {
+        let at = |along_x: f64| {
+            let rotation = rcs_core::frame::rotation_from_x_y(&Inches::new(along_x, 0.03, 0.0), &Inches::z());
+            front(&Frame { position: Inches::zeros(), rotation: rotation.unwrap() })
+        };
+        assert_eq!((at(1.0), at(-1.0)), ([-1, 0, 0], [1, 0, 0]));
     }
 
     #[test]

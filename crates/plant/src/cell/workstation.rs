@@ -221,6 +221,17 @@ pub enum WorkstationError {
         /// How far its axis is turned, degrees.
         degrees: f64,
     },
+    /// The fingers of the drum would close on nothing.
+    #[error("the drum has nothing to grip: no tool is in its place")]
+    NothingToGrip,
+    /// The side was machined before.
+    #[error(
+        "{part} is to be machined on its other side, but the one in front was machined before: turn it round first"
+    )]
+    SameSide {
+        /// The part.
+        part: String,
+    },
     /// The part is there, but not where it belongs.
     #[error(
         "{part} is {distance:.3} in and {degrees:.2} degrees from its seat; {} in and {} degrees are allowed",

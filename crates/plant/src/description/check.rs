@@ -287,6 +287,7 @@ impl CellDescription {
 
     fn check_trays(&self, check: &mut Check<'_>) {
         let shape = &self.tray_shape;
+        check.within("placing_tolerance", self.placing_tolerance, 0.001, 5.0);
         check.positive(
             "tray_shape",
             &[

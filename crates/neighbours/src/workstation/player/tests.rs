@@ -125,19 +125,24 @@ const RESET: Action = Action::Panel(Panel::FaultReset);
 
 fn command(verb: &str) -> JobLine {
     let command = HwsCommand { command: Name16::clipped(verb), ..HwsCommand::default() };
-    JobLine { step: Step::Command(command), text: format!("== {verb}"), line: 1 }
+    JobLine { step: Step::Command(command), text: format!("== {verb}"), line: 1, expects_error: false }
 }
 
 fn action(opening: ViseOpening, name: &str) -> JobLine {
     let name = Name10::new(name).unwrap();
     let location = Location { name, place: Place::default(), sector: 0, frame: Frame::identity() };
     let text = format!("** vise {opening:?} {name}");
-    JobLine { step: Step::Workstation(Action::Vise { opening, location, program: None }), text, line: 1 }
+    JobLine {
+        step: Step::Workstation(Action::Vise { opening, location, program: None }),
+        text,
+        line: 1,
+        expects_error: false,
+    }
 }
 
 fn later(ticks: u32, opening: ViseOpening) -> JobLine {
     let JobLine { step: Step::Workstation(action), text, .. } = vise(opening) else { unreachable!() };
-    JobLine { step: Step::After { ticks, action }, text, line: 1 }
+    JobLine { step: Step::After { ticks, action }, text, line: 1, expects_error: false }
 }
 
 fn vise(opening: ViseOpening) -> JobLine {
@@ -276,7 +281,7 @@ fn time_runs_out_for_a_command_and_for_an_action() {
 #[test]
 fn a_wait_takes_its_ticks_and_no_more() {
     let step = Step::Workstation(Action::Wait { ticks: 30 });
-    let wait = JobLine { step, text: "** wait 30".into(), line: 1 };
+    let wait = JobLine { step, text: "** wait 30".into(), line: 1, expects_error: false };
     let mut hwsc = Hwsc::new(vec![wait, command("MOVE")], 10);
     play(&mut hwsc, &mut Task::default(), &mut Vise::default());
     assert_eq!(*hwsc.progress(), Progress::Over, "the time limit is not for waiting");
@@ -347,15 +352,46 @@ fn an_emergency_ends_the_job_at_once_whatever_goes_on() {
 
 #[test]
 fn a_job_that_resets_an_emergency_goes_on_without_what_failed() {
-    let reset = JobLine { step: Step::Workstation(RESET), text: "** reset".into(), line: 1 };
-    let steps = vec![command("MOVE"), reset, command("ACQUIRE")];
-    let mut jaws = Vise { emergency: Some("the hand is caught"), ..Vise::default() };
-    let mut task = Task { fails_at: Some(2), ..Task::default() };
-    let mut hwsc = Hwsc::new(steps, 100);
-    play(&mut hwsc, &mut task, &mut jaws);
-    assert_eq!(*hwsc.progress(), Progress::Over);
-    assert_eq!(task.received, ["PAUSE", "MOVE", "ACQUIRE"]);
-    let outcomes: Vec<_> = hwsc.begun_steps().iter().map(|step| step.outcome).collect();
+    let reset =
+        JobLine { step: Step::Workstation(RESET), text: "** reset".into(), line: 1, expects_error: false };
+    let played = |last: &str| {
+        let steps = vec![command("MOVE"), reset.clone(), command(last)];
+        let mut jaws = Vise { emergency: Some("the hand is caught"), ..Vise::default() };
+        let mut task = Task { fails_at: Some(2), ..Task::default() };
+        let mut hwsc = Hwsc::new(steps, 100);
+        play(&mut hwsc, &mut task, &mut jaws);
+        assert_eq!(task.received, ["PAUSE", "MOVE", last]);
+        let outcomes: Vec<_> = hwsc.begun_steps().iter().map(|step| step.outcome).collect();
+        let (finished, failed) = (Outcome::Finished, Outcome::Failed);
+        assert_eq!(outcomes, [finished, failed, finished, finished]);
+        hwsc.progress().clone()
+    };
+    assert_eq!(played("MOVE"), Progress::Over, "the last attempt counts");
+    let (line, tick, why) = ("== MOVE".to_owned(), Tick(11), Reason::GraspMissed.text());
+    let unfinished = JobFailure::Unfinished { line, tick, why };
+    assert_eq!(played("ACQUIRE"), Progress::Failed(unfinished), "MOVE has never finished");
+}
+
+#[test]
+fn a_command_that_has_to_fail_fails() {
+    let played = |fails_at: Option<usize>, joystick: bool| {
+        let expecting = JobLine { expects_error: true, ..command("MOVE") };
+        let mut task = Task { fails_at, ..Task::default() };
+        let mut hwsc = Hwsc::new(vec![expecting, command("ACQUIRE")], 100);
+        let mut jaws = Vise::default();
+        for tick in 1..100 {
+            task.joystick = joystick && task.received.last().is_some_and(|last| last == "MOVE");
+            let status = task.step(&mut hwsc);
+            if *hwsc.step(Tick(tick), &status, &mut jaws) != Progress::Running {
+                break;
+            }
+        }
+        let outcomes: Vec<_> = hwsc.begun_steps().iter().map(|step| step.outcome).collect();
+        (hwsc.progress().clone(), outcomes)
+    };
     let (finished, failed) = (Outcome::Finished, Outcome::Failed);
-    assert_eq!(outcomes, [finished, failed, finished, finished]);
+    let as_it_should = (Progress::Over, vec![finished, Outcome::FailedAsExpected, finished]);
+    assert_eq!(played(Some(2), false), as_it_should);
+    assert_eq!(played(None, true), as_it_should, "the joystick box ends a command as well");
+    assert_eq!(played(None, false), (Progress::Failed(JobFailure::Unexpected), vec![finished, failed]));
 }

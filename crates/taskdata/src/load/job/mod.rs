@@ -3,7 +3,8 @@
 //! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the variables of
 //! V.4.2 without the serial number
 //! (SPECNOTES.md, contradiction 25): object, source grip, location and sector, destination grip, location
-//! and sector, end-at location and sector; `--` is a null field. A serial number may stand behind them: `#17` (ours). The manual's own forms of lines end there: vise, trays and
+//! and sector, end-at location and sector; `--` is a null field. A serial number may stand behind them: `#17` (ours), and
+//! `expect error` for a command that has to fail (ours). The manual's own forms of lines end there: vise, trays and
 //! machine belong to the HWSC, not to the robot. Lines that begin with `**` say what they do:
 //!
 //! ```text
@@ -100,6 +101,8 @@ pub struct JobLine {
     pub text: String,
     /// SourceLine of the file from 1.
     pub line: u32,
+    /// The command has to end with an error: its line ends with `expect error`.
+    pub expects_error: bool,
 }
 
 /// A job.

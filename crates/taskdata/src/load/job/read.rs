@@ -39,6 +39,13 @@ impl<'a, 'w> Fields<'a, 'w> {
         word
     }
 
+    /// Take the next word if it is this one.
+    fn take_if(&mut self, text: &str) -> Option<Word<'a>> {
+        let word = self.words.get(self.next).copied().filter(|word| word.text == text)?;
+        self.next += 1;
+        Some(word)
+    }
+
     /// Where the next word is, or the last one if there is no next.
     pub(super) fn at(&self) -> At {
         self.words.get(self.next).or_else(|| self.words.last()).map_or_else(At::default, |w| w.at)
@@ -122,11 +129,25 @@ impl Reader<'_, '_> {
                 None
             }
         }?;
+        let expects_error = matches!(step, Step::Command(_)) && self.expects_error(&mut fields)?;
         self.end_of_line(&mut fields)?;
         let end = words.last().map_or(0, |w| w.at.start.saturating_add(w.at.length));
         let length = usize::try_from(end.saturating_sub(line.at.start)).unwrap_or(0);
         let text = line.text.get(..length).unwrap_or(line.text);
-        Some(JobLine { step, text: text.trim().to_owned(), line: number })
+        Some(JobLine { step, text: text.trim().to_owned(), line: number, expects_error })
+    }
+
+    /// True if the line of a command ends with `expect error`; `None` if something else is expected, which is noted.
+    fn expects_error(&mut self, fields: &mut Fields<'_, '_>) -> Option<bool> {
+        if fields.take_if("expect").is_none() {
+            return Some(false);
+        }
+        if fields.take_if("error").is_some() {
+            return Some(true);
+        }
+        let help = "a command that has to fail ends with `expect error`; without it a command has to finish";
+        self.problems.error_help("job.fields", fields.at(), "error was expected behind expect", help);
+        None
     }
 
     /// `None` if a word is left, which is noted.
@@ -231,11 +252,11 @@ impl Reader<'_, '_> {
 
     /// The serial number of the object, if the line has one behind its nine fields: `#17`. What stands there instead is noted.
     fn serial(&mut self, fields: &mut Fields<'_, '_>) -> Name16 {
-        let Some(word) = fields.take() else { return Name16::EMPTY };
+        let word = fields.words.get(fields.next).filter(|word| word.text != "expect");
+        let Some(word) = word.and_then(|_| fields.take()) else { return Name16::EMPTY };
         let Some(number) = word.text.strip_prefix('#').filter(|number| !number.is_empty()) else {
             let message = format!("the line should end before {}", word.text);
-            let help =
-                "behind the nine fields only a serial number can stand: # and 1 to 16 characters, as in #17";
+            let help = "behind the nine fields only a serial number can stand, # and 1 to 16 characters, as in #17, and `expect error`";
             self.problems.error_help("job.fields", word.at, message, help);
             return Name16::EMPTY;
         };

@@ -1,0 +1,126 @@
+//! `finished` means done: a run whose parts are elsewhere than its commands say has failed, and so has one in which a command came to
+//! nothing, whatever the statuses were.
+
+use std::fs;
+
+use whole_system_tests::{Outcome, Scratch, run};
+
+/// The last command of the linkbar.
+const PUT_BACK: &str = "== TRANSFER LINKBAR1 +2 PFIXTURE 0 +2 UNIT_1 1 SAFE 0";
+
+/// A run that has failed, with a last line that holds all of `said`.
+fn assert_fails(outcome: &Outcome, said: &[&str]) {
+    assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
+    for words in said {
+        assert!(outcome.last_words.contains(words), "{words:?} is not in {}", outcome.last_words);
+    }
+}
+
+fn job(name: &str, text: &str) -> Outcome {
+    let file = format!("{name}.job");
+    run(&file, 1, name, |scratch: &Scratch| {
+        fs::write(scratch.file(&file), text).expect("the job can be written");
+    })
+}
+
+#[test]
+fn a_part_in_another_sector_than_the_command_said_has_not_arrived() {
+    // The sectors of the tray are taught 5.2 in beside their places.
+    let outcome = run("linkbar", 1, "finished-sector", |scratch| {
+        scratch.data_with(
+            "movetables.blk",
+            "    1    t      255     -525   -525",
+            "    1    t      255     -525   -1045",
+        );
+    });
+    assert_fails(
+        &outcome,
+        &[
+            PUT_BACK,
+            "LINKBAR1 at UNIT_1 sector 3, 5.15 in from the sector's centre",
+            "was to leave it at UNIT_1 sector 1, within 0.25 in",
+        ],
+    );
+    assert_eq!(outcome.result["failure"]["line"], PUT_BACK);
+    let commands = outcome.result["commands"].as_array().expect("a result has commands");
+    assert!(commands.iter().all(|command| command["status"] == "finished"), "{commands:?}");
+}
+
+#[test]
+fn a_part_that_slid_in_the_fingers_lies_beside_its_place() {
+    let outcome = run("linkbar", 1, "finished-force", |scratch| {
+        let weak = "-obj-  LINKBAR1         2     0300   0060   0 ";
+        scratch.data_with("objects/linkbar.blk", "-obj-  LINKBAR1         2     0300   0060   30", weak);
+    });
+    assert_fails(&outcome, &[PUT_BACK, "LINKBAR1 at UNIT_1 sector 1, 0.8", "within 0.25 in"]);
+}
+
+#[test]
+fn what_is_near_enough_is_said_in_the_cell_description() {
+    // The linkbar lies 0.15 in off by its data.
+    let outcome = run("linkbar", 1, "finished-near", |scratch| {
+        scratch.data_with("cell.toml", "placing_tolerance = 0.25", "placing_tolerance = 0.10");
+    });
+    assert_fails(&outcome, &["0.15 in from the sector's centre", "within 0.1 in"]);
+}
+
+#[test]
+fn a_part_that_lies_on_the_floor_is_named_with_the_tick_and_line_in_which_it_fell() {
+    // The jaws push it out of fingers that close without force.
+    let outcome = run("lost.job", 1, "finished-floor", |scratch| {
+        let weak = "-obj-  LINKBAR1_BH      2     0300   0060   0 ";
+        scratch.data_with("objects/linkbar.blk", "-obj-  LINKBAR1_BH      2     0300   0060   30", weak);
+        let job = "** tray UNIT_1 4 LINKBAR1_BH\n\
+                   ** vise partial PFIXTURE\n\
+                   == MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0\n\
+                   ** vise close PFIXTURE\n\
+                   == POSITION H-LINKBAR1_BH +1 PFIXTURE 0 +0 -- 0 -- 0\n";
+        fs::write(scratch.file("lost.job"), job).expect("the job can be written");
+    });
+    let line = "in `** vise close PFIXTURE`: LINKBAR1_BH at floor";
+    assert_fails(
+        &outcome,
+        &[line, "MOVE LINKBAR1_BH from UNIT_1:4 to PFIXTURE was to leave it in the gripper"],
+    );
+    assert!(outcome.last_words.contains("later, the robot ran into LINKBAR1_BH"), "{}", outcome.last_words);
+}
+
+#[test]
+fn a_line_that_has_nothing_to_act_on_fails_in_words() {
+    let nothing = job("finished-drum", "** drum grip\n");
+    assert_fails(&nothing, &["in `** drum grip`", "the drum has nothing to grip: no tool is in its place"]);
+    let nothing = job("finished-vise", "** machine LINKBAR1_BH LINKBAR1 PFIXTURE\n");
+    assert_fails(&nothing, &["LINKBAR1_BH is to be machined, but nothing is clamped in the vise"]);
+}
+
+#[test]
+fn a_clevis_is_not_machined_twice_on_the_same_side() {
+    let outcome = run("clevis.job", 1, "finished-side", |scratch| {
+        scratch.job_with("clevis.job", "== REFIXTURE LCLEVIS_IH", "% == REFIXTURE LCLEVIS_IH");
+    });
+    assert_fails(
+        &outcome,
+        &[
+            "in `** machine LCLEVIS_IH LCLEVIS PFIXTURE`",
+            "LCLEVIS_IH is to be machined on its other side, but the one in front was machined before",
+        ],
+    );
+}
+
+#[test]
+fn a_command_that_has_to_fail_is_marked() {
+    let failing = "** after 60 estop terminals\n== MOVE -- +0 -- 0 +0 SAFE 0 -- 0{mark}\n\
+                   ** wait 100\n** release terminals\n** panel fault-reset\n** panel hydraulics enable\n\
+                   ** panel manual on\n** panel align\n** panel auto\n** panel cycle-start\n** wait 25\n\
+                   == PAUSE -- +0 -- 0 +0 -- 0 -- 0\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n";
+    let marked = job("finished-marked", &failing.replace("{mark}", " expect error"));
+    assert_eq!(marked.status, Some(0), "{}", marked.last_words);
+    assert_eq!(marked.result["commands"][1]["status"], "error as expected");
+    let unmarked = job("finished-unmarked", &failing.replace("{mark}", ""));
+    assert_fails(
+        &unmarked,
+        &["in `== MOVE -- +0 -- 0 +0 SAFE 0 -- 0`", "the command has not finished since"],
+    );
+    let finished = job("finished-well", "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0 expect error\n");
+    assert_fails(&finished, &["finished, but its line expects an error"]);
+}
