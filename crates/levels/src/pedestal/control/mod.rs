@@ -17,8 +17,8 @@
 //!     can't-do                           error
 //! ```
 //!
-//! A failure sends nothing to the hand: what it holds, it goes on holding. A process that is restarted stops the
-//! table and leaves the hand alone.
+//! A failure sends nothing to the hand: what it holds, it goes on holding. Before a new command is accepted or
+//! refused the table stops, and the hand comes to the end of what it was told; so it is after a restart.
 //!
 //! * [`state`]: what the process remembers;
 //! * [`orders`]: what a command asks of hand and table;
@@ -37,14 +37,14 @@ mod tests;
 use rcs_core::{
     interface::PedestalOutputs,
     process::{Inputs, Process},
-    table::{Table, Verdict},
+    table::Table,
 };
 
 use self::{
     state::State,
-    tables::{Action, Seen, Step, number, restarted::restarted},
+    tables::{Action, Seen, Step},
 };
-use crate::execution::Course;
+use crate::{execution::Course, halt::Halting};
 
 /// The pedestal process.
 #[derive(Clone, Debug, Default)]
@@ -68,17 +68,12 @@ impl<Data: ?Sized> Process<Data> for Pedestal {
     fn decide(&mut self, seen: &Seen) -> Action {
         let state = &mut self.state;
         let verb = state.command.command;
-        match state.execution.course(seen.arrival) {
-            Course::Rest => return Action::Wait,
-            Course::Refuse => {
-                let Verdict::Decided(decision) = restarted(state.step, &seen.remains) else {
-                    return Action::Wait;
-                };
-                state.execution.note(&decision.of(number::RESTARTED));
-                return decision.action;
-            }
-            Course::Begin => state.step = Step::first(verb),
-            Course::Continue => {}
+        let course = state.execution.course(seen.arrival);
+        match state.execution.admit(course, &seen.replaced) {
+            Err(Halting::Stop) => return Action::StopTable,
+            Err(Halting::Wait) | Ok(Course::Rest | Course::Refuse) => return Action::Wait,
+            Ok(Course::Begin) => state.step = Step::first(verb),
+            Ok(Course::Continue) => {}
         }
         let choice = tables::decide(verb, state.step, seen);
         state.execution.note(&choice);

@@ -2,8 +2,12 @@
 //! table.
 
 use rcs_core::{
-    handshake::{Arrival, Lower},
-    interface::{CommonMemory, PedestalOutputs, grip::Felt, pedestal::PedestalVerb},
+    handshake::Lower,
+    interface::{
+        CommonMemory, PedestalOutputs,
+        grip::Felt,
+        pedestal::{PedestalVerb, TableVerb},
+    },
     process::Inputs,
     tick::Tick,
 };
@@ -11,9 +15,12 @@ use rcs_core::{
 use super::{
     orders::{angle, opening},
     state::State,
-    tables::{Calibration, Gripped, Object, Ordered, Orders, Remains, Request, Seen, Situation},
+    tables::{Calibration, Gripped, Object, Ordered, Orders, Request, Seen, Situation},
 };
-use crate::execution::{Asked, Work};
+use crate::{
+    execution::{Asked, Work},
+    halt::{Below, BoxState, Intake, Kind, Replaced},
+};
 
 impl State {
     /// Read the inputs of a tick.
@@ -35,26 +42,28 @@ impl State {
             self.gripped = outputs.status.gripped;
         }
         let arrival = self.execution.receiver.observe(command.number);
-        if arrival == Arrival::New {
+        let asked = self.execution.asked(arrival);
+        if asked == Asked::Now {
             (self.command, self.ordered) = (*command, Ordered::Nothing);
         }
         let object = self.object(felt(inputs), memory);
-        let hand = self.hand(memory, inputs.tick);
+        let (hand, table) = (self.hand(memory, tick), self.table(memory, tick));
         Seen {
             arrival,
+            replaced: Replaced {
+                intake: Intake::Taken,
+                kind: if command.command == PedestalVerb::Pause { Kind::Pause } else { Kind::Other },
+                joystick: BoxState::Off,
+                below: Below::of(hand, false)
+                    .and(Below::of(table, written.table.command == TableVerb::Pause)),
+            },
             request: Request {
-                asked: Asked::of(arrival),
+                asked,
                 verb: command.command,
                 angle: angle(command, &memory.table.status),
                 opening: opening(command),
             },
-            orders: Orders {
-                verb: self.command.command,
-                ordered: self.ordered,
-                hand,
-                table: self.table(memory, inputs.tick),
-                object,
-            },
+            orders: Orders { verb: self.command.command, ordered: self.ordered, hand, table, object },
             situation: Situation {
                 object,
                 calibration: if memory.hand.status.initialized {
@@ -68,7 +77,6 @@ impl State {
                     Lower::Done | Lower::Error | Lower::Joystick | Lower::Lost => Work::Over,
                 },
             },
-            remains: Remains { ordered: self.ordered },
         }
     }
 

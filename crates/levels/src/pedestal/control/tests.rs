@@ -225,6 +225,7 @@ fn pre_grip_calibrates_a_hand_that_was_not_told_to_grip() {
     let outputs = bench.hand(GripReport::Done, 500).step();
     assert_eq!((outputs.hand.command, outputs.table.command), (GripVerb::OpenGrip, TableVerb::Turn));
     // One that reports done and is not calibrated is not told again.
+    bench.hand(GripReport::Done, 500).table(PedestalReport::Done).step();
     bench.memory.hand.status.initialized = false;
     bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
     bench.step();
@@ -285,7 +286,8 @@ fn an_object_that_comes_loose_is_noticed_while_it_is_turned() {
         bench.hand(GripReport::Done, 256).end();
         bench.send(PedestalVerb::Flip, 0, 0, 1835);
         for _ in 0..when {
-            bench.table(PedestalReport::Executing).step();
+            bench.step();
+            bench.table(PedestalReport::Executing);
         }
         bench.memory.hand.status.felt = Felt::Nothing;
         assert_eq!(bench.end(), (PedestalReport::Error, Reason::HandLost));
@@ -353,18 +355,54 @@ fn pause_stops_the_table_and_waits_for_the_hand() {
 #[test]
 fn a_restarted_process_adopts_the_command_and_stops_the_table() {
     let mut bench = Bench::new();
-    bench.send(PedestalVerb::Release, 450, 0, 0);
+    bench.send(PedestalVerb::Flip, 0, 0, 100);
+    let before = bench.step();
+    bench.hand(GripReport::Done, 256).table(PedestalReport::Executing);
     bench.process = Pedestal::default();
-    bench.memory.pedestal = PedestalOutputs::default();
     assert_eq!(bench.end(), (PedestalReport::Error, Reason::Restarted));
     let PedestalOutputs { hand, table, .. } = bench.memory.pedestal;
-    assert_eq!((hand.number, table.command), (0, TableVerb::Pause), "the hand is not opened");
+    assert_eq!((hand, table.command), (before.hand, TableVerb::Pause), "the hand is told nothing");
     assert_eq!(bench.end(), (PedestalReport::Error, Reason::Restarted));
     assert_eq!(bench.memory.pedestal.table, table, "it is stopped once");
-    bench.table(PedestalReport::Done);
+    bench.table(PedestalReport::Done).step();
     bench.send(PedestalVerb::Flip, 0, 0, 100);
     bench.step();
     assert_eq!(bench.table(PedestalReport::Done).end(), DONE, "whatever the hand holds");
+}
+
+/// A new command while hand and table move.
+fn replaced(verb: PedestalVerb, paused: bool) -> Bench {
+    let mut bench = Bench::new();
+    bench.send(PedestalVerb::PreGrip, 450, 0, -1000);
+    let before = bench.step();
+    bench.hand(GripReport::Executing, 300).table(PedestalReport::Executing).step();
+    if paused {
+        bench.hand(GripReport::Done, 450).send(PedestalVerb::Pause, 0, 0, 0);
+        bench.step();
+    }
+    bench.send(verb, 250, 0, 0);
+    assert_eq!(bench.end(), EXECUTING, "{verb}");
+    let PedestalOutputs { hand, table, .. } = bench.memory.pedestal;
+    assert_eq!((hand, table.command), (before.hand, TableVerb::Pause));
+    assert_eq!(bench.end(), EXECUTING, "the table stops");
+    bench.table(PedestalReport::Done);
+    if !paused {
+        assert_eq!(bench.end(), EXECUTING, "the hand still moves");
+        bench.hand(GripReport::Done, 450);
+    }
+    assert_eq!(bench.end(), EXECUTING, "they have come to rest");
+    assert_eq!(bench.memory.pedestal.hand, before.hand);
+    bench
+}
+
+#[test]
+fn a_new_command_stops_the_table_and_waits_for_the_hand_before_it_is_answered() {
+    for paused in [false, true] {
+        let mut bench = replaced(PedestalVerb::None, paused);
+        assert_eq!(bench.end(), (PedestalReport::CannotDo, Reason::UnknownCommand));
+        let mut bench = replaced(PedestalVerb::Release, paused);
+        assert_eq!((bench.end(), bench.memory.pedestal.hand.position), (EXECUTING, 250));
+    }
 }
 
 #[test]
@@ -418,6 +456,7 @@ fn every_row_fires() {
             bench.hand(GripReport::Done, 256).table(PedestalReport::Done);
             bench.memory.hand.status.initialized |= calibrated;
             bench.step();
+            bench.hand(GripReport::Done, 256).table(PedestalReport::Done).step();
             bench.memory.hand.status.initialized = verb == PedestalVerb::Grip;
         }
     }
@@ -436,6 +475,10 @@ fn every_row_fires() {
     bench.process = Pedestal::default();
     bench.step();
     bench.step();
+    // HALT 6 to 9.
+    for paused in [false, true] {
+        bench.rows.append(&mut replaced(PedestalVerb::Release, paused).rows);
+    }
     assert_eq!(bench.rows.missing(TABLES), [""; 0]);
 }
 

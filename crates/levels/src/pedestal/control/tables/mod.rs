@@ -8,7 +8,6 @@ pub mod ordered;
 pub mod pause;
 pub mod pre_grip;
 pub mod release;
-pub mod restarted;
 
 use rcs_core::{
     Actions, Plain, Variables, commands,
@@ -18,7 +17,10 @@ use rcs_core::{
 };
 
 use self::{accept::accept, ordered::ordered};
-use crate::execution::{Asked, EXECUTE, Work};
+use crate::{
+    execution::{Asked, EXECUTE, Work},
+    halt::{HALT, Replaced},
+};
 
 /// Can the table turn as a command asks?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -125,27 +127,19 @@ pub struct Situation {
     pub fingers: Work,
 }
 
-/// What a process that was started in the middle of a job has done about what it had ordered before, for
-/// [`restarted::RESTARTED`].
-#[derive(Clone, Copy, Debug, Variables)]
-pub struct Remains {
-    /// The processes that have its orders.
-    pub ordered: Ordered,
-}
-
 /// What preprocess has found in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
     /// What the command buffer holds.
     pub arrival: Arrival,
+    /// What a new command replaces.
+    pub replaced: Replaced,
     /// What a new command needs.
     pub request: Request,
     /// How the orders of the command stand.
     pub orders: Orders,
     /// The state variables of the command's table.
     pub situation: Situation,
-    /// What has become of what a process ordered before a restart.
-    pub remains: Remains,
 }
 
 /// What a row can ask for.
@@ -180,7 +174,7 @@ pub enum Action {
 commands! {
     /// Consult the table of a command.
     pub fn of_command(PedestalVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, ordered::ORDERED, restarted::RESTARTED;
+        others: EXECUTE, accept::ACCEPT, HALT, ordered::ORDERED;
         None | Pause    => pause::pause;
         PreGrip         => pre_grip::pre_grip;
         Grip            => grip::grip;
