@@ -9,7 +9,7 @@ use levels::ladder::{PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
     Plain,
     handshake::Lower,
-    interface::{CommonMemory, ExternalInputs, Fault, Header, HwsCommand, Reason},
+    interface::{CommonMemory, Detail, ExternalInputs, Fault, Header, HwsCommand, Reason},
     table::{Row, Table},
     tick::Tick,
 };
@@ -42,6 +42,7 @@ struct Cause {
     external: HwsCommand,
     before: CommonMemory,
     header: Header,
+    detail: Detail,
 }
 
 /// Looks at every tick and keeps when, and amid what, each process began to report what it reports now.
@@ -75,7 +76,8 @@ impl Watch {
                 *cause = None;
             } else if fault != last {
                 let header = *after.header(*process);
-                *cause = Some(Cause { tick, fault, external: external.hws, before: *before, header });
+                let detail = Detail::of(*process, fault, &external.hws, after);
+                *cause = Some(Cause { tick, fault, external: external.hws, before: *before, header, detail });
             }
         }
         self.last = now;
@@ -100,8 +102,9 @@ impl Watch {
         let process = &processes[root.position()];
         let row = row_of(process, &cause.header);
         let text = format!(
-            "{}: {why}, {}{}",
+            "{}: {why}{}, {}{}",
             process.name,
+            cause.detail,
             while_doing(root, cause),
             row.map_or_else(String::new, |(table, row)| format!(
                 " (table {}, row {}: {row})",
@@ -183,6 +186,7 @@ mod tests {
         Actions, Plain, Variables, decision_table,
         interface::{
             Decided,
+            emove::{EmoveVerb, RobotPlace},
             grip::GripVerb,
             jaws::{JawsCommand, JawsVerb, TOOL_GRIPPER},
             pedestal::{PedestalVerb, TableCommand, TableVerb},
@@ -314,6 +318,25 @@ mod tests {
             failure.text,
             "Subtask: the object has no such grip, while it executed GET-OBJECT at UNIT_1"
         );
+    }
+
+    #[test]
+    fn a_reason_comes_with_its_names() {
+        let watch = watched(&[
+            |memory| {
+                memory.subtask.emove.command = EmoveVerb::MovToLoc;
+                memory.subtask.emove.location = Name10::new("VISE").unwrap();
+                let from = RobotPlace { location: Name10::new("BENCH").unwrap(), ..RobotPlace::default() };
+                memory.emove.beliefs.place = Some(from);
+            },
+            |memory| memory.emove.status.reason = Reason::NoTrajectory,
+            |memory| memory.subtask.status.reason = Reason::NoTrajectory,
+            |memory| memory.task.status.reason = Reason::NoTrajectory,
+        ]);
+        let failure = watch.failure(&processes()).expect("Task reports a reason");
+        let text = "E-move: no trajectory from the present location to the destination: none leads from BENCH to VISE (";
+        assert!(failure.text.starts_with(text), "{}", failure.text);
+        assert!(failure.text.ends_with(", while it executed MOV-TO-LOC at VISE"), "{}", failure.text);
     }
 
     #[test]

@@ -5,8 +5,9 @@
 //! by which row of which decision table.
 
 use rcs_core::{
+    handshake::Lower,
     interface::{
-        CommonMemory, Fault, Header, ProcessId,
+        CommonMemory, Detail, Fault, Header, ProcessId,
         data_base::Connection,
         emove::Holding,
         hws::{HwsCommand, HwsReport},
@@ -45,7 +46,7 @@ pub fn remarks(
     commands(headers, hws, before, after, &mut said);
     encounters(headers, before, after, &mut said);
     link(headers, before, after, &mut said);
-    failures(headers, before, after, &mut said);
+    failures(headers, hws, before, after, &mut said);
     said
 }
 
@@ -155,18 +156,27 @@ fn down(before: &CommonMemory, after: &CommonMemory, mut say: impl FnMut(Level, 
     }
 }
 
-fn failures(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, said: &mut Vec<Remark>) {
+fn failures(
+    headers: &[HeaderPlace],
+    hws: &HwsCommand,
+    before: &CommonMemory,
+    after: &CommonMemory,
+    said: &mut Vec<Remark>,
+) {
     for process in ProcessId::ALL.iter().copied() {
         let (was, is) = (before.said(process).fault, after.said(process).fault);
         if is != was && !is.is_none() {
-            // T3I mends many faults of the link itself; what it cannot mend Prim reports as an error.
-            let level = if matches!(is, Fault::Link(_)) { Level::Warning } else { Level::Error };
-            said.push(failure(headers, process.field(), after.header(process), level, is.text()));
+            // T3I mends many faults of the link itself; what it cannot mend Prim reports as an error. One that
+            // comes while PAUSE stands is reported beside `done`.
+            let failed = after.said(process).lower == Lower::Error && !matches!(is, Fault::Link(_));
+            let level = if failed { Level::Error } else { Level::Warning };
+            let reason = format!("{}{}", is.text(), Detail::of(process, is, hws, after));
+            said.push(failure(headers, process.field(), after.header(process), level, reason));
         }
     }
 }
 
-fn failure(headers: &[HeaderPlace], field: &str, header: &Header, level: Level, reason: &str) -> Remark {
+fn failure(headers: &[HeaderPlace], field: &str, header: &Header, level: Level, reason: String) -> Remark {
     let place = headers.iter().find(|place| place.field == field);
     let source = name_of(headers, field);
     match place.and_then(|place| place.row(header)) {
@@ -177,7 +187,7 @@ fn failure(headers: &[HeaderPlace], field: &str, header: &Header, level: Level, 
             file: table.file,
             line: table.line,
         },
-        None => Remark { level, source, text: reason.into(), ..Remark::default() },
+        None => Remark { level, source, text: reason, ..Remark::default() },
     }
 }
 
@@ -232,10 +242,11 @@ mod tests {
     use crate::channels::headers;
     use rcs_core::{
         interface::{
-            Decided, Reason,
+            Decided, Reason, Report,
             emove::ObjectGrip,
-            jaws::JawsVerb,
-            pedestal::{PedestalVerb, TableVerb},
+            grip::GripReport,
+            jaws::{JawsReport, JawsVerb},
+            pedestal::{PedestalReport, PedestalVerb, TableVerb},
         },
         name::{Name10, Name16},
     };
@@ -279,6 +290,33 @@ mod tests {
     }
 
     #[test]
+    fn a_command_after_an_interrupted_startup_says_that_nothing_is_told() {
+        let mut before = CommonMemory::default();
+        before.task.connection = Connection::Interrupted;
+        let mut after = before;
+        after.task.status.echo = 2;
+        let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
+        let told: Vec<_> = said.iter().map(|remark| (remark.level, remark.text.as_str())).collect();
+        let text = "STARTUP was interrupted: the Data System is told nothing until it is sent again";
+        assert!(told.contains(&(Level::Warning, text)), "{told:?}");
+        after.task.connection = Connection::Open;
+        assert_eq!(remarks(&headers(), &HwsCommand::default(), &before, &after).len(), 1);
+    }
+
+    #[test]
+    fn a_reason_beside_done_is_a_warning() {
+        let before = CommonMemory::default();
+        let mut after = before;
+        after.task.status.report = HwsReport::Finished;
+        after.task.status.reason = Reason::LinkOff;
+        let said = remarks(&headers(), &HwsCommand::default(), &after, &after);
+        assert!(said.is_empty(), "{said:?}");
+        let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
+        let told: Vec<_> = said.iter().map(|remark| (remark.level, remark.text.as_str())).collect();
+        assert!(told.contains(&(Level::Warning, Reason::LinkOff.text())), "{told:?}");
+    }
+
+    #[test]
     fn every_process_with_a_reason_is_heard() {
         let before = CommonMemory::default();
         let mut after = before;
@@ -287,6 +325,11 @@ mod tests {
         after.pedestal.status.reason = Reason::TableStuck;
         after.hand.status.reason = Reason::GripTimeout;
         after.table.status.reason = Reason::TableStuck;
+        after.v_grip.status.report = JawsReport::Stuck;
+        after.tool_grip.status.report = JawsReport::Stuck;
+        after.pedestal.status.report = PedestalReport::Error;
+        after.hand.status.report = GripReport::Serror;
+        after.table.status.report = PedestalReport::Error;
         let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
         let sources: Vec<_> = said.iter().map(|remark| remark.source.as_str()).collect();
         assert_eq!(sources, ["V-Grip", "Tool-Grip", "Active Pedestal", "Pedestal Hand", "Rotary Table"]);
@@ -343,6 +386,7 @@ mod tests {
         let before = CommonMemory::default();
         let mut after = before;
         after.subtask.status.reason = Reason::UnknownLocation;
+        after.subtask.status.report = Report::Error;
         after.subtask.header.decided = Some(Decided { table: 2, row: 5 });
         let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
         assert_eq!(said.len(), 1, "{said:?}");

@@ -5,7 +5,7 @@ use rcs_core::{
     interface::{
         ChangingPose, EmoveOutputs, Reason, Report,
         device::Picture,
-        emove::{EmoveCommand, EmoveStatus, GoneTo, Located, LocatedObject},
+        emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject},
         pose_range,
         prim::{PrimCommand, PrimReport, PrimVerb},
         quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
@@ -300,7 +300,8 @@ impl State {
 
     /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was
     /// done before; a command that was given up for it ends in an error and is not resumed
-    /// (docs/design/ownership.md "Joystick box").
+    /// (docs/design/ownership.md "Joystick box"). A link that fails while E-PAUSE stands is no failure of it: the
+    /// reason stands beside `done`.
     fn outcome(&self, inputs: &Inputs<'_, TaskData<'_>>) -> (Report, Reason) {
         let execution = &self.execution;
         let prim = &inputs.memory.prim;
@@ -309,6 +310,11 @@ impl State {
         match (taken, execution.outcome) {
             (true, Outcome::Done | Outcome::Joystick) => (Report::JoystickOn, Reason::JoystickOn),
             (false, Outcome::Joystick) => (Report::Error, Reason::JoystickOn),
+            (false, Outcome::Done) if inputs.memory.subtask.emove.command == EmoveVerb::Pause => {
+                let below =
+                    self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
+                (Report::Done, if below == Lower::Error { prim.status.reason } else { Reason::None })
+            }
             _ => (execution.report(), execution.reason),
         }
     }
@@ -319,6 +325,7 @@ impl State {
         outputs.header = self.execution.header(inputs.tick, self.step.text());
         outputs.dormant = Gripper::attached(inputs.memory).dormancy();
         outputs.beliefs = self.beliefs;
+        outputs.nearest = self.surroundings.nearest;
         outputs.status = EmoveStatus {
             echo: self.execution.receiver.echo,
             report,

@@ -176,6 +176,7 @@ impl State {
             place: self.whereabouts(inputs),
             resolvers: known(present.is_some()),
         };
+        self.look_around(watch.place, present.as_ref(), inputs.data);
         match (search(self.step, &watch).action, &present) {
             (Look::Look, Some(present)) => self.search(present, inputs.data),
             (Look::Look, None) | (Look::Rest, _) => {}

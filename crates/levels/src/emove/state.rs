@@ -11,6 +11,7 @@ use super::{
     route::Route,
     tables::{Ordered, Step},
     way::Back,
+    whereabouts::Surroundings,
 };
 use crate::execution::Execution;
 
@@ -47,6 +48,8 @@ pub struct State {
     pub away: bool,
     /// How many location points have been looked at to find out where the robot is.
     pub searched: u32,
+    /// The known places around a robot that is at none.
+    pub surroundings: Surroundings,
     /// `endeff-id#` of the gripper on the robot in the tick before.
     pub attached: u8,
     /// The fingers were told last to let go of what is held.

@@ -1,10 +1,11 @@
 //! Whether it is known where the robot is, and looking for the location point at which it stands.
 
 use rcs_core::{
+    Plain,
     frame::Frame,
     handshake::Lower,
     interface::{
-        emove::{GoneTo, RobotPlace},
+        emove::{GoneTo, NearPlace, RobotPlace},
         subtask::LocationKind,
     },
     name::Name10,
@@ -23,6 +24,49 @@ pub(super) const LOST_INCHES: f64 = 0.5;
 pub(super) const LOST_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
 /// Location points that are looked at in a tick to find out where the robot is.
 const SEARCH_PER_TICK: u32 = 64;
+/// Location points that are looked at in a tick for the nearest ones.
+const NEAREST_PER_TICK: u32 = 16;
+
+/// The known places around a robot that is at none: the location points are looked through again and again.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Surroundings {
+    /// Location points that have been looked at in this round.
+    looked: u32,
+    /// The nearest of them, the nearest first.
+    found: [Option<NearPlace>; 2],
+    /// Those of the last complete round.
+    pub nearest: [Option<NearPlace>; 2],
+}
+
+impl Surroundings {
+    /// Look at some more location points.
+    fn look(&mut self, present: &Frame, data: &TaskData<'_>) {
+        for _ in 0..NEAREST_PER_TICK {
+            let next = LocptId::new(self.looked.saturating_add(1));
+            let Some(locpt) = data.locpt(next) else {
+                *self = Self { nearest: self.found, ..Self::default() };
+                return;
+            };
+            self.looked = next.number();
+            if is_plain(&locpt.name, &place_of(LocationKind::Point, next.to_option(), None), data) {
+                let distance = locpt.frame.distance(present);
+                let (inches, degrees) = (distance.inches, distance.radians.to_degrees());
+                self.insert(NearPlace { location: locpt.name, inches, degrees });
+            }
+        }
+    }
+
+    /// Keep a place if it is one of the two nearest.
+    fn insert(&mut self, place: NearPlace) {
+        let nearer = |than: Option<NearPlace>| than.is_none_or(|than| place.inches < than.inches);
+        let [first, second] = self.found;
+        if nearer(first) {
+            self.found = [Some(place), first];
+        } else if nearer(second) {
+            self.found = [first, Some(place)];
+        }
+    }
+}
 
 impl State {
     /// Look through some more location points for the one at which the robot stands.
@@ -45,6 +89,17 @@ impl State {
                 (self.beliefs.way, self.away) = (None, false);
                 return;
             }
+        }
+    }
+
+    /// Which known places are nearest, as long as it is not known where the robot is.
+    pub(super) fn look_around(&mut self, place: Whereabouts, present: Option<&Frame>, data: &TaskData<'_>) {
+        match (place, present) {
+            (Whereabouts::Known, _) => self.surroundings = Surroundings::default(),
+            (Whereabouts::Searching | Whereabouts::Unknown, Some(present)) => {
+                self.surroundings.look(present, data);
+            }
+            (Whereabouts::Searching | Whereabouts::Unknown, None) => {}
         }
     }
 

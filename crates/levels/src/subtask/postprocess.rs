@@ -6,7 +6,7 @@ use rcs_core::{
         emove::{EmoveCommand, EmoveVerb},
         pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
         pose_range,
-        subtask::SubtaskStatus,
+        subtask::{SubtaskStatus, SubtaskVerb},
     },
     process::Inputs,
 };
@@ -157,6 +157,11 @@ impl State {
             (Report::JoystickOn, Reason::JoystickOn)
         } else if execution.outcome == Outcome::Joystick {
             (Report::Error, Reason::JoystickOn)
+        } else if execution.outcome == Outcome::Done
+            && inputs.memory.task.subtask.command == SubtaskVerb::Pause
+        {
+            // A link that fails while S-PAUSE stands is no failure of it.
+            (Report::Done, below.reason)
         } else {
             (execution.report(), execution.reason)
         };

@@ -330,6 +330,17 @@ pub struct Beliefs {
     pub drum: Option<RobotPlace>,
 }
 
+/// A known place, and how far the robot is from it (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct NearPlace {
+    /// Name of the location.
+    pub location: Name10,
+    /// Distance, inches.
+    pub inches: f64,
+    /// Angle between the orientations, degrees.
+    pub degrees: f64,
+}
+
 /// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Dormancy {
@@ -367,6 +378,8 @@ pub struct EmoveOutputs {
     pub vision: VisionRequest,
     /// What E-move believes (extension).
     pub beliefs: Beliefs,
+    /// The known places that are nearest, the nearest first, while it is not known where the robot is (extension).
+    pub nearest: [Option<NearPlace>; 2],
     /// Departure, goal, point between, located object.
     pub poses: [ChangingPose; EMOVE_POSES],
 }

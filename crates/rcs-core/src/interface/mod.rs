@@ -6,6 +6,7 @@
 //! *extension*.
 
 pub mod data_base;
+pub mod detail;
 pub mod device;
 pub mod emove;
 pub mod grip;
@@ -23,6 +24,7 @@ use crate::{Plain, handshake::Lower, name::Name16, pose::Pose, tick::Tick};
 
 pub use self::{
     data_base::{DataBaseCommand, DataBaseStatus},
+    detail::Detail,
     device::{DeviceInputs, DeviceOutputs},
     emove::EmoveOutputs,
     grip::GripOutputs,

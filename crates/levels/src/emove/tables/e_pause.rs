@@ -7,7 +7,7 @@ decision_table! {
     /// for the calibration of the parts gripper (VI.3.1 UP-INIT), and finds out where the robot is. Fingers that
     /// move do first what they were told: a valve that is left open would close them with the whole supply
     /// pressure. While it stands, the joystick box has robot and gripper. A link that fails before it is done is
-    /// initialized again; one that fails afterwards is reported.
+    /// initialized again; one that fails afterwards is reported beside `done`, and the next motion restarts it.
     pub E_PAUSE: fn e_pause(enum EPauseStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                              => Wait;
@@ -47,9 +47,8 @@ decision_table! {
             16: button: Open                                           => OpenByHand;
             17: button: Close                                          => CloseByHand;
             18: button: None, prim: Joystick                           => Manual;
-            19: button: None, prim: Done                               => Finish;
+            19: button: None, prim: Done | Error                       => Finish;
             20: button: None, prim: Pending | Executing | Lost         => Wait;
-            21: button: None, prim: Error                              => PassUp;
         }
     }
 }

@@ -432,6 +432,15 @@ fn missing_data_are_named() {
     bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
     bench.steps(2);
     assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), error(Reason::UnknownStart));
+    // The places that are nearest: HOME, three inches away, and another one.
+    assert_eq!(bench.memory.emove.nearest, [None; 2], "the location points are looked through");
+    bench.steps(60);
+    let [Some(first), Some(second)] = bench.memory.emove.nearest else { panic!("two places") };
+    assert_eq!(first.location.as_str(), "HOME");
+    assert!((first.inches - 3.0).abs() < 1e-9 && first.degrees.abs() < 1e-9 && second.inches > first.inches);
+    bench.world.frame = frame_of("HOME");
+    bench.steps(3);
+    assert_eq!(bench.memory.emove.nearest, [None; 2]);
     let mut bench = Bench::ready("VISE", 0);
     let nowhere = Target::LocationPoint(LocptId::new(9_999));
     let points: Vec<_> = data().path_points.iter().map(|p| PathPoint { target: nowhere, ..*p }).collect();

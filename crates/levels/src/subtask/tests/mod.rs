@@ -32,6 +32,18 @@ fn pose_of(bench: &Bench<'_>, number: u32) -> Option<rcs_core::pose::Pose> {
 }
 
 #[test]
+fn a_link_that_fails_while_a_pause_stands_is_reported_and_no_failure() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run(SubtaskVerb::Pause, "", (0, 0), ""), DONE);
+    bench.emove.outputs.status.reason = Reason::LinkOff;
+    bench.step();
+    bench.step();
+    let status = bench.memory.subtask.status;
+    assert_eq!((status.report, status.reason), (Report::Done, Reason::LinkOff));
+    assert_eq!(bench.run(SubtaskVerb::GotoDest, "", (0, 0), "HOME"), DONE);
+}
+
+#[test]
 fn the_right_gripper_is_not_fetched() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), "PFIXTURE"), DONE);
