@@ -11,7 +11,7 @@ use rcs_core::{
     handshake::Commander,
     interface::{
         DataBaseCommand, DataBaseStatus, TaskOutputs,
-        data_base::{Connection, DataBaseReport, DataBaseVerb},
+        data_base::{Books, Carried, Connection, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
         emove::Standing,
     },
     name::{Name10, Name16},
@@ -29,23 +29,6 @@ pub const ANSWER_LIMIT: u64 = 250;
 pub const MAX_TRIES: u8 = 3;
 /// `STORAGE-POS` of what the robot holds, which is also the name of the client (IX.2).
 pub const IN_HAND: &str = "H_ROBOT";
-/// Updates that are kept until they are taken: one of an object that is taken, and one of where it is let go.
-const QUEUE: usize = 2;
-
-/// An item that the robot holds: what the data base is told when it is let go.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Carried {
-    /// The object.
-    pub item: Name16,
-    /// Its serial number.
-    pub serial: Name16,
-    /// Where it was taken, or to where it was brought.
-    pub location: Name10,
-    /// Sector there.
-    pub sector: i32,
-    /// The data base knows it as the robot's.
-    pub told: bool,
-}
 
 /// What Task knows of the Data System.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -56,27 +39,28 @@ pub struct DataSystem {
     pub request: DataBaseCommand,
     /// How often it was written.
     pub tries: u8,
-    /// A STARTUP has succeeded, and no SHUTDOWN came since.
-    pub connected: bool,
-    /// A STARTUP has begun, and neither succeeded nor was followed by a SHUTDOWN.
-    pub connecting: bool,
-    /// The updates that have not been taken, the oldest first.
-    pub owed: [Option<DataBaseCommand>; QUEUE],
-    /// What the robot holds after a MOVE or an ACQUIRE.
-    pub carried: Option<Carried>,
+    /// What is believed of it: an output, adopted again after a restart.
+    pub books: Books,
 }
 
 impl DataSystem {
+    /// In its first tick Task takes over what it believed before a restart, and the command that it wrote last.
+    pub const fn adopt(&mut self, written: &TaskOutputs, tick: Tick) {
+        (self.books, self.request) = (written.books, written.data_base);
+        let number = written.data_base.number;
+        self.commander = Commander { number, sent: tick, started: number != 0 };
+    }
+
     /// Once a tick, before anything else: an update that is taken is owed no longer.
     pub fn observe(&mut self, status: &DataBaseStatus, tick: Tick) {
         self.commander.start(status.echo);
-        let [first, second] = self.owed;
+        let [first, second] = self.books.owed;
         let told = self.request.command == DataBaseVerb::Update
             && first.is_some_and(|first| {
                 DataBaseCommand { number: self.request.number, ..first } == self.request
             });
         if told && self.status(status, tick) == DataBase::Done {
-            self.owed = [second, None];
+            self.books.owed = [second, None];
         }
     }
 
@@ -96,7 +80,7 @@ impl DataSystem {
     /// Is the Data System told of moves? `executing` is the command that is.
     #[must_use]
     pub const fn connection(&self, executing: Option<TaskVerb>) -> Connection {
-        match (self.connected, self.connecting, executing) {
+        match (self.books.connected, self.books.connecting, executing) {
             (true, _, _) => Connection::Open,
             (false, true, Some(TaskVerb::Startup)) => Connection::Opening,
             (false, true, _) => Connection::Interrupted,
@@ -108,13 +92,13 @@ impl DataSystem {
     #[must_use]
     pub fn update(&self, plan: &Plan) -> Update {
         let connecting = plan.verb == TaskVerb::Startup;
-        let [owed, _] = self.owed;
-        if plan.verb == TaskVerb::Position && self.connected && plan.update_due {
+        let [owed, _] = self.books.owed;
+        if plan.verb == TaskVerb::Position && self.books.connected && plan.update_due {
             // What is let go is let go whether or not an earlier update is taken.
             Update::Due
-        } else if owed.is_some() && (self.connected || connecting) {
+        } else if owed.is_some() && (self.books.connected || connecting) {
             Update::Owed
-        } else if self.connected && plan.update_due {
+        } else if self.books.connected && plan.update_due {
             Update::Due
         } else {
             Update::None
@@ -124,7 +108,7 @@ impl DataSystem {
     /// Is the data base to be told where an object is let go?
     #[must_use]
     pub fn is_to_be_told_of(&self, object: Option<Name16>, in_mbd: bool) -> bool {
-        self.carried.is_some_and(|carried| Some(carried.item) == object && (carried.told || in_mbd))
+        self.books.carried.is_some_and(|carried| Some(carried.item) == object && (carried.told || in_mbd))
     }
 
     /// Write a command for the first time.
@@ -143,21 +127,21 @@ impl DataSystem {
 
     /// Write a reconfiguration command: one without an item.
     pub fn reconfigure(&mut self, command: DataBaseVerb, tick: Tick, outputs: &mut TaskOutputs) {
-        (self.connected, self.connecting) = (false, true);
+        (self.books.connected, self.books.connecting) = (false, true);
         self.ask(DataBaseCommand { command, ..DataBaseCommand::default() }, tick, outputs);
     }
 
     /// The Data System takes commands.
     pub const fn connect(&mut self) {
-        (self.connected, self.connecting) = (true, false);
+        (self.books.connected, self.books.connecting) = (true, false);
     }
 
     /// The robot holds the object of a MOVE or an ACQUIRE.
     pub fn carry(&mut self, plan: &Plan, told: bool) {
         let site = plan.destination.location.or(plan.source.location).unwrap_or_default();
         let item = plan.object.unwrap_or_default();
-        let told = told || self.carried.is_some_and(|carried| carried.item == item && carried.told);
-        self.carried =
+        let told = told || self.books.carried.is_some_and(|carried| carried.item == item && carried.told);
+        self.books.carried =
             Some(Carried { item, serial: plan.serial, location: site.name, sector: site.sector, told });
     }
 
@@ -170,7 +154,7 @@ impl DataSystem {
         if in_hand {
             self.carry(plan, true);
         } else {
-            self.carried = self.carried.filter(|carried| Some(carried.item) != plan.object);
+            self.books.carried = self.books.carried.filter(|carried| Some(carried.item) != plan.object);
         }
         let item = plan.object.unwrap_or_default();
         self.owe(item, plan.serial, position, sector);
@@ -179,7 +163,7 @@ impl DataSystem {
 
     /// REPORT-ITEM: write where the robot has let an object go, and keep it until it is taken.
     pub fn tell_released(&mut self, at: Option<Standing>, tick: Tick, outputs: &mut TaskOutputs) {
-        let Some(Carried { item, serial, location, sector, .. }) = self.carried.take() else { return };
+        let Some(Carried { item, serial, location, sector, .. }) = self.books.carried.take() else { return };
         let position = at.map_or(location, |at| at.location);
         self.owe(item, serial, position, if position == location { sector } else { 0 });
         self.tell_owed(tick, outputs);
@@ -189,7 +173,7 @@ impl DataSystem {
     fn owe(&mut self, item: Name16, serial: Name16, position: Name10, sector: i32) {
         let command = DataBaseVerb::Update;
         let update = Some(DataBaseCommand { number: 0, command, item, serial, position, sector });
-        self.owed = match self.owed {
+        self.books.owed = match self.books.owed {
             [None, _] => [update, None],
             [first, _] => [first, update],
         };
@@ -197,7 +181,7 @@ impl DataSystem {
 
     /// Write the oldest update that has not been taken.
     pub fn tell_owed(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
-        let [first, _] = self.owed;
+        let [first, _] = self.books.owed;
         if let Some(update) = first {
             self.ask(update, tick, outputs);
         }
@@ -205,8 +189,8 @@ impl DataSystem {
 
     /// The Data System is disconnected, and what was owed to it is dropped.
     pub fn disconnect(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
-        (self.owed, self.carried) = ([None; QUEUE], None);
+        (self.books.owed, self.books.carried) = ([None; KEPT_UPDATES], None);
         self.reconfigure(DataBaseVerb::Abort, tick, outputs);
-        self.connecting = false;
+        self.books.connecting = false;
     }
 }

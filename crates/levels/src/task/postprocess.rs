@@ -204,11 +204,16 @@ impl State {
             (Control::Manual, _) => (HwsReport::JoystickOn, Reason::JoystickOn),
             (Control::Automatic, Outcome::Idle) => (HwsReport::Idle, execution.reason),
             (Control::Automatic, Outcome::Executing) => (HwsReport::Executing, execution.reason),
+            // A link that fails while PAUSE stands is no failure of it.
+            (Control::Automatic, Outcome::Done) if self.plan.verb == TaskVerb::Pause => {
+                (HwsReport::Finished, inputs.memory.subtask.status.reason)
+            }
             (Control::Automatic, Outcome::Done) => (HwsReport::Finished, execution.reason),
             (Control::Automatic, Outcome::Error | Outcome::Joystick) => (HwsReport::Error, execution.reason),
         };
         let executing = Some(self.plan.verb).filter(|_| execution.outcome == Outcome::Executing);
         outputs.connection = self.data_system.connection(executing);
+        outputs.books = self.data_system.books;
         outputs.header = execution.header(inputs.tick, self.step.text());
         outputs.status =
             HwsStatus { echo: execution.receiver.echo, command: inputs.external.hws.command, report, reason };

@@ -71,6 +71,7 @@ impl State {
         self.subtask.start_from(inputs.tick, written.subtask.number, memory.subtask.status.echo);
         if !self.execution.receiver.started {
             self.last_pose = written.poses.iter().map(|pose| pose.number).max().unwrap_or_default();
+            self.data_system.adopt(written, inputs.tick);
         }
     }
 

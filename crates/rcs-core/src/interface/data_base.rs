@@ -66,6 +66,38 @@ pub enum Connection {
     Interrupted,
 }
 
+/// Updates that Task keeps until they are taken: one of an object that is taken, and one of where it is let go.
+pub const KEPT_UPDATES: usize = 2;
+
+/// An item that the robot holds: what the data base is told when it is let go.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Carried {
+    /// The object.
+    pub item: Name16,
+    /// Its serial number.
+    pub serial: Name16,
+    /// Where it was taken, or to where it was brought.
+    pub location: Name10,
+    /// Sector there.
+    pub sector: i32,
+    /// The data base knows it as the robot's.
+    pub told: bool,
+}
+
+/// What Task believes of the Data System. It is an output, so that a Task that is restarted has it
+/// (docs/design/recovery.md "Books"; extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Books {
+    /// A STARTUP has succeeded, and no SHUTDOWN came since.
+    pub connected: bool,
+    /// A STARTUP has begun, and neither succeeded nor was followed by a SHUTDOWN.
+    pub connecting: bool,
+    /// The updates that have not been taken, the oldest first.
+    pub owed: [Option<DataBaseCommand>; KEPT_UPDATES],
+    /// What the robot holds after a MOVE or an ACQUIRE.
+    pub carried: Option<Carried>,
+}
+
 impl DataBaseReport {
     /// The report as a state variable of Task.
     #[must_use]

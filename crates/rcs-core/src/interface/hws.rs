@@ -7,7 +7,7 @@ use crate::{
     handshake::Lower,
     interface::{
         ChangingPose, Header, Reason,
-        data_base::{Connection, DataBaseCommand},
+        data_base::{Books, Connection, DataBaseCommand},
         subtask::{SubtaskCommand, SubtaskVerb},
     },
     name::Name16,
@@ -101,6 +101,8 @@ pub struct TaskOutputs {
     pub data_base: DataBaseCommand,
     /// Is the Data System told of moves (extension)?
     pub connection: Connection,
+    /// What Task believes of the Data System (extension).
+    pub books: Books,
     /// The last command about an object or a tool that is not finished (extension).
     pub ledger: Option<Ledger>,
     /// T-POSE-1 …: poses that the commands name.

@@ -172,10 +172,6 @@ fn an_interrupted_transfer_goes_on() {
                 let told =
                     bench.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
                 let told = told.count();
-                if by == Interruption::Restart {
-                    // A restarted Task is not connected.
-                    assert_eq!(bench.run(STARTUP), FINISHED);
-                }
                 assert_eq!(bench.run(line), FINISHED, "{line}, tick {ticks}, {by:?}");
                 if placed {
                     let rest: &[&str] = if line == TRANSFER_AND_STAY { &[] } else { &["GOTO-ENDPT"] };
@@ -343,7 +339,7 @@ fn what_is_told_survives_a_command_that_replaces_it() {
         assert_eq!(bench.run("ACQUIRE BAR +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
         // It was written once more: the Data System has not answered the first.
         assert!(updates(&bench).len() <= 1);
-        assert!(bench.process.state.data_system.owed.iter().all(Option::is_none), "{by}");
+        assert!(bench.memory.task.books.owed.iter().all(Option::is_none), "{by}");
     }
 }
 
@@ -362,6 +358,54 @@ fn an_interrupted_startup_says_that_nothing_is_told() {
     assert_eq!(bench.memory.task.connection, Connection::Open);
     assert_eq!(bench.run(SHUTDOWN), FINISHED);
     assert_eq!(bench.memory.task.connection, Connection::Closed);
+}
+
+#[test]
+fn a_restarted_task_believes_what_it_believed() {
+    // It is connected, and tells what it owes, in order.
+    let mut bench = owing_two(Answer::Refuse);
+    bench.process = Task::default();
+    bench.step();
+    assert_eq!(bench.memory.task.connection, Connection::Open);
+    bench.data_system.answer = Answer::After(1);
+    assert_eq!(bench.run(FROM_TRAY), FINISHED);
+    assert_eq!(updates(&bench)[..2], [("H_ROBOT".to_owned(), 0), ("PFIXTURE".to_owned(), 0)]);
+    // It knows what the robot carries.
+    bench.process = Task::default();
+    bench.step();
+    assert_eq!(bench.run(SEAT), FINISHED);
+    assert_eq!(updates(&bench), [("PFIXTURE".to_owned(), 0)]);
+    // What is taken after the restart was told before it.
+    let mut bench = Bench::connected();
+    bench.data_system.answer = Answer::After(8);
+    bench.command(TRANSFER);
+    while bench.asked().is_empty() {
+        bench.step();
+    }
+    bench.process = Task::default();
+    bench.wait(12);
+    assert_eq!(bench.memory.task.books.owed, [None; 2]);
+    // A STARTUP that a restart has cut off is not forgotten.
+    let mut bench = Bench::default();
+    bench.command(STARTUP);
+    bench.wait(3);
+    bench.process = Task::default();
+    assert_eq!(bench.finish(), error(Reason::Restarted));
+    assert_eq!(bench.memory.task.connection, Connection::Interrupted);
+    assert_eq!(bench.run(TRANSFER), FINISHED);
+    assert_eq!(bench.memory.task.connection, Connection::Interrupted);
+    assert!(updates(&bench).is_empty());
+}
+
+#[test]
+fn a_link_that_fails_while_a_pause_stands_is_reported_and_no_failure() {
+    let mut bench = Bench::default();
+    assert_eq!(bench.run(PAUSE), FINISHED);
+    bench.subtask.outputs.status.reason = Reason::LinkOff;
+    bench.wait(3);
+    let status = bench.memory.task.status;
+    assert_eq!((status.report, status.reason), (HwsReport::Finished, Reason::LinkOff));
+    assert_eq!(bench.run(HOME), FINISHED);
 }
 
 /// Rows that only an interruption or trouble fires.
