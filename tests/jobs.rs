@@ -95,18 +95,24 @@ fn another_part_is_not_recognised() {
 #[test]
 fn a_part_that_slips_out_of_the_fingers_is_lost() {
     assert_fails_for("clevis", "slips", Reason::ObjectLost, |scratch| {
-        scratch.data_with("cell.toml", "friction = 0.30                  # pads on steel", "friction = 0.02");
+        // Enough for its weight, which `check` asks for, and not for the way.
+        scratch.data_with(
+            "cell.toml",
+            "friction = 0.30                  # pads on steel",
+            "friction = 0.026",
+        );
     });
 }
 
 #[test]
 fn a_pedestal_that_cannot_turn_so_far_is_reported() {
-    assert_fails_for("clevis", "pedestal", Reason::TableLimit, |scratch| {
-        scratch.data_with(
-            "objects/clevis.blk",
-            "ped-table-pos        <= -2135",
-            "ped-table-pos        <= 100",
-        );
+    assert_fails_for("clevis.job", "pedestal", Reason::TableLimit, |scratch| {
+        let pedestal = "BLOCK# 1 OFFSET 22000\n\
+            :S \"p-object\" <= LCLEVIS_IH ped-appr <= 500 ped-grasp-size <= 250\n\
+            ped-force <= 50 ped-release-size <= 450 ped-table-pos <= 100\n\
+            ped-flip-angle <= 1835 :R >FILE PED-PARA\n";
+        fs::write(scratch.file("pedestal.blk"), pedestal).expect("blocks can be written");
+        scratch.job_with("clevis.job", "** tray UNIT_1", "** load pedestal.blk\n** tray UNIT_1");
     });
 }
 

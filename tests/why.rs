@@ -127,7 +127,7 @@ fn a_condition_that_never_comes() {
 #[test]
 fn a_run_that_no_process_failed() {
     let outcome = run("linkbar.job", 1, "why-vise", |scratch: &Scratch| {
-        scratch.job_with("linkbar.job", "** vise partial PFIXTURE", "** vise close PFIXTURE");
+        scratch.job_with("linkbar.job", "% Close vise\n** vise close PFIXTURE", "%");
     });
     let (answer, text) = why(&outcome);
     assert!(answer["failure"].is_null(), "{text}");

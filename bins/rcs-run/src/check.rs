@@ -13,7 +13,10 @@ use plant::{
 };
 use serde::Serialize;
 use taskdata::load::{
-    Diagnostic, Diagnostics, Job, Severity, Source, Store, places::Places, report::Problems, source::At,
+    Diagnostic, Diagnostics, Job, Severity, Source, Store,
+    places::Places,
+    report::Problems,
+    source::{At, read_text},
 };
 
 use crate::{
@@ -63,6 +66,8 @@ struct Outcome {
 
 /// Load and report. Exit status 0 if a run could begin, else 2.
 pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
+    let named = arguments.directory.clone().unwrap_or_else(|| arguments.data.clone());
+    let arguments = &CheckArguments { data: named, ..arguments.clone() };
     if !arguments.data.is_dir() {
         return Err(Error::NoData(arguments.data.clone()));
     }
@@ -92,7 +97,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
         let name = job.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let report = match Job::load(&job, store) {
             Ok((job, report)) => match &cell {
-                Some(cell) => report.with(agreement::of_job(&job, cell.description(), &path)),
+                Some(cell) => report.with(agreement::of_job(&job, cell.description(), store, &path)),
                 None => report,
             },
             Err(report) => *report,
@@ -124,7 +129,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
 /// The cell of a description, and what is wrong with that, by itself and beside the task data.
 fn cell(path: &Path, store: Option<&Store>) -> (Option<Cell>, Diagnostics) {
     let mut problems = Problems::default();
-    let text = match fs::read_to_string(path) {
+    let text = match read_text(path) {
         Ok(text) => text,
         Err(error) => {
             problems.unreadable(&path.display().to_string(), &error);

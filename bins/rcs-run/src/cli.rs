@@ -237,8 +237,11 @@ pub struct StatusArguments {
 #[derive(Clone, Debug, Args)]
 pub struct CheckArguments {
     /// Task data, jobs and cell description
-    #[arg(value_name = "DIR", default_value = "data")]
+    #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
+    /// The same as --data DIR
+    #[arg(value_name = "DIR", conflicts_with = "data")]
+    pub directory: Option<PathBuf>,
     /// Print one JSON object on standard output, and nothing else there
     #[arg(long)]
     pub json: bool,

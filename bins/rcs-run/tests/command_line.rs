@@ -119,8 +119,10 @@ fn usage_errors_have_status_2_and_a_sentence() {
 
 #[test]
 fn the_data_of_the_repository_is_good() {
-    let output = rcs_run(&["check", "--json"]);
+    let output = rcs_run(&["check", "--json", "--data", "data"]);
     let found = json(&output);
+    assert_eq!(found["findings"], serde_json::json!([]), "nor is anything warned of");
+    assert_eq!(rcs_run(&["check", "data", "--data", "data"]).status.code(), Some(2), "one of the two");
     assert_eq!(
         (output.status.code(), &found["ok"], &found["errors"]),
         (Some(0), &true.into(), &0.into()),
@@ -234,6 +236,16 @@ fn a_command_is_explained_without_running() {
     let phases = found["phases"].as_array().unwrap();
     assert!(phases.iter().any(|phase| phase["what"].as_str().unwrap().starts_with("MOV-TO-VU")), "{found}");
     assert!(found["motion_s"].as_f64().is_some_and(|s| s > 5.0), "{found}");
+    for (command, names) in [
+        ("MOVE LINKBAR1_BH +3 UNIT_1 4 +3 PFIXTURE 0 -- 0", "LINKBAR1_BH has grip +2"),
+        ("ACQUIRE LCLEVIS_IH +1 TABLE 0 +0 -- 0 -- 0", "grip +1 of LCLEVIS_IH is for PFIXTURE, PEDESTAL"),
+        ("ACQUIRE LCLEVIS_IH +1 UNIT_1 1 +0 -- 0 -- 0", "(-o-loc-, VII.7.3) has LCLEVIS_IH"),
+    ] {
+        let refused = rcs_run(&["check", "--explain", command]);
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert_eq!(refused.status.code(), Some(2), "{said}");
+        assert!(said.contains(names), "{names}: {said}");
+    }
     let refused = rcs_run(&["check", "--explain", command, "--from", "NOWHERE"]);
     assert_eq!(refused.status.code(), Some(2));
     assert!(last_line(&refused).contains("--from NOWHERE: no location point"), "{}", last_line(&refused));

@@ -114,9 +114,8 @@ fn every_figure_is_read_without_complaint() {
 
 #[test]
 fn the_data_are_the_figures_but_for_the_readings_that_are_marked() {
-    let data = block_words(
-        &read_blocks_under(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))).unwrap(),
-    );
+    let data =
+        block_words(&read_blocks_under(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"))).0);
     let mut differences = Vec::new();
     for (number, printed) in block_words(&[figures()]) {
         let number = BlockNumber {
@@ -161,7 +160,7 @@ fn every_block_of_the_data_says_where_it_comes_from() {
     }
     let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"));
     let mut count = 0;
-    for (number, origin) in read_blocks_under(data).unwrap().iter().flat_map(origins) {
+    for (number, origin) in read_blocks_under(data).0.iter().flat_map(origins) {
         match figure_of.get(&number).map(Vec::as_slice) {
             None => {
                 assert!(origin.starts_with("derived") || origin.starts_with("taught"), "{number}: {origin}")

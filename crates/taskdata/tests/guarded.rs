@@ -180,8 +180,8 @@ fn relative_moves_are_those_that_commands_look_for() {
         ["INS-NEAR is no guarded move: nothing watches INS-FX", "leave the sensor out"]
     );
     assert_eq!(
-        warned("  -rel- INS-NAER lpt TOOL-TRNS 4 1 8 0 IN"),
-        ["no command looks for a relative move INS-NAER", "the nearest known name is INS-NEAR"]
+        said("  -rel- INS-NAER lpt TOOL-TRNS 4 1 8 0 IN"),
+        ["no command looks for a relative move INS-NAER", "help: the nearest known name is INS-NEAR"]
     );
 }
 

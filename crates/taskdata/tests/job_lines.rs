@@ -11,7 +11,7 @@ use taskdata::load::{
 
 fn store() -> Store {
     let sound = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/sound"));
-    match Store::from_sources(read_blocks_under(sound).unwrap()) {
+    match Store::from_sources(read_blocks_under(sound).0) {
         Ok((store, _)) => store,
         Err(report) => panic!("{report}"),
     }

@@ -19,7 +19,7 @@ use plant::{
     camera::Analysis,
     fault::text::{self, FaultFile},
 };
-use taskdata::load::{Diagnostics, Job, Source, Store};
+use taskdata::load::{Diagnostics, Job, Source, Store, source::read_text};
 
 use super::{
     neighbours::{Neighbours, Network, WorkstationSource},
@@ -148,13 +148,13 @@ impl CellFile {
     /// [`Error`], with all errors of the data.
     pub fn load(data: &Path, store: &Store, job: &Job, job_path: &Path) -> Result<Self, Error> {
         let path = data.join(CELL);
-        let text = fs::read_to_string(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
+        let text = read_text(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
         let description = CellDescription::from_toml(&text).map_err(|error| Error::Data {
             what: format!("the cell description {}", path.display()),
             report: Box::new(check::cell_report(text.clone(), &error)),
         })?;
         let report = agreement::of_cell(check::source(text.clone()), &description, store)
-            .with(agreement::of_job(job, &description, &path));
+            .with(agreement::of_job(job, &description, store, &path));
         if report.has_errors() {
             let what = format!("the job {} in the cell of {}", job_path.display(), path.display());
             return Err(Error::Data { what, report: Box::new(report) });
@@ -224,7 +224,7 @@ fn outbox(arguments: &RunArguments) -> Result<Outbox, Error> {
 /// The faults of `--faults`, none without it, with their text.
 fn faults(arguments: &RunArguments, cell: &CellDescription) -> Result<(FaultFile, String), Error> {
     let Some(path) = &arguments.faults else { return Ok(Default::default()) };
-    let text = fs::read_to_string(path).map_err(|source| Error::Read { path: path.clone(), source })?;
+    let text = read_text(path).map_err(|source| Error::Read { path: path.clone(), source })?;
     let faults = text::parse(&path.display().to_string(), &text, cell)?;
     if arguments.robot.kind != RobotKind::Sim && faults.line.is_some() {
         return Err(Error::FaultsAtPort);

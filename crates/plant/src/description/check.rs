@@ -10,11 +10,15 @@ use rcs_core::{
 };
 
 use super::{
-    CellDescription, DescriptionError, Gripper, Kind, PartType, Pattern, Points, Shape, commands,
+    CellDescription, DescriptionError, Gripper, Kind, Nest, PartType, Pattern, Points, Shape, ViseProgram,
+    commands,
     fault::{Fault, Faults},
     known,
     reading::{Path, element, join},
 };
+
+/// Nests whose seats are so near to each other are at one place, in: less than any part is wide.
+const SAME_PLACE: f64 = 0.1;
 
 impl CellDescription {
     /// Check all numbers and names.
@@ -278,6 +282,18 @@ impl CellDescription {
                 check.within(&path("ledge"), program.ledge, -vise.jaw[2], 0.0);
             }
             let (closed, open) = (2.0 * program.depth, program.opening_open);
+            let swallows = |other: &&ViseProgram| {
+                let over = other.back >= program.back
+                    && other.ledge <= program.ledge
+                    && other.depth >= program.depth;
+                let differs =
+                    [other.back, other.ledge, other.depth] != [program.back, program.ledge, program.depth];
+                over && differs
+            };
+            if let Some(other) = vise.program.iter().find(swallows) {
+                let expected = format!("a step that the step of {} does not cut away", other.name);
+                check.that(false, &path("back"), &expected, || program.back.to_string());
+            }
             if check.trusts(&path("depth")) && check.trusts(&path("opening_open")) {
                 check.within(&path("opening_partial"), program.opening_partial, closed, open);
                 check.within(&path("opening_open"), open, closed, 20.0);
@@ -385,6 +401,18 @@ impl CellDescription {
             for (part, name) in nest.parts.iter().enumerate() {
                 let path = element(&join(&path, "parts"), part);
                 check.known(&path, "a part of this description", name, &parts);
+            }
+            let mut earlier = self.nest.iter().take(number);
+            let same = |other: &Nest| {
+                let is_there = other.location == nest.location && other.sector == nest.sector;
+                is_there || (other.frame().position - nest.frame().position).norm() < SAME_PLACE
+            };
+            if let Some(other) = earlier.position(same) {
+                let expected = format!("another place than that of nest[{other}]");
+                check.that(false, &join(&path, "location"), &expected, || match nest.sector {
+                    0 => nest.location.clone(),
+                    sector => format!("{} sector {sector}", nest.location),
+                });
             }
             if let Some(tolerance) = nest.machining {
                 let allowed = [("inches", tolerance.inches), ("degrees", tolerance.degrees)];

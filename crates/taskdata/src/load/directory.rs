@@ -4,14 +4,16 @@
 //! further blocks with `n load` or `offset n OLOAD`, and so on. An area without such a root has no directory, and all its
 //! blocks are loaded in the order in which they stand.
 
-use std::collections::{BTreeSet, HashSet, hash_map::Entry};
+use std::collections::{BTreeSet, HashSet};
 
 use rustc_hash::FxHashMap;
 
 use super::{
     collected::Collected,
     entries::LoadLine,
-    lex, parallel,
+    lex,
+    orphans::Orphans,
+    parallel,
     parse::{Parsed, parse},
     report::Problems,
     source::{At, BLOCK_COLUMNS, BLOCK_LINES, Block, BlockFault, BlockNumber, LAST_BLOCK, Source, blocks},
@@ -36,6 +38,8 @@ pub(super) struct Read {
     pub broken: HashSet<String>,
     /// Blocks that were loaded.
     pub blocks: BTreeSet<BlockNumber>,
+    /// Blocks that were not, and numbers that lead to none.
+    pub orphans: Orphans,
 }
 
 /// Read the blocks that are to be loaded of all sources from position `first` on; `known` are those that were loaded before.
@@ -49,22 +53,32 @@ pub(super) fn read(
     let found = parallel::map(new.len(), |i| new.get(i).map(|source| blocks(first + i, source)));
     let mut all: FxHashMap<BlockNumber, Content> = FxHashMap::default();
     let mut order = Vec::new();
-    for (found, faults) in found.into_iter().flatten() {
+    let mut orphans = Orphans::default();
+    for (source, (found, faults)) in found.into_iter().flatten().enumerate() {
         for (at, fault) in faults {
             note(fault, at, problems);
         }
+        // A reload may have nothing in it.
+        if found.is_empty() && first == 0 {
+            let at = At { source: u32::try_from(first + source).unwrap_or(u32::MAX), ..At::default() };
+            let help = "a block begins with a header like `BLOCK# 619 OFFSET 21000`; give the file another name if it holds none";
+            problems.error_help("block.none", at, "this file has no block", help);
+            orphans.incomplete = true;
+        }
         for (block, content) in found.iter().zip(contents(&found)) {
-            if let Entry::Vacant(e) = all.entry(block.number) {
-                order.push(block.number);
-                e.insert(content);
+            let first = all.get(&block.number).map(|first| first.header);
+            if first.is_some() || block.number.offset == BlockNumber::UNREADABLE {
+                orphans.add(block.number, block.header, content.parsed, first);
             } else {
-                note(BlockFault::Duplicate, block.header, problems);
+                order.push(block.number);
+                all.insert(block.number, content);
             }
         }
     }
-    let mut loader = Loader { all, known, read: Read::default(), problems };
+    let read = Read { orphans, ..Read::default() };
+    let mut loader = Loader { all, known, read, problems };
     loader.load_roots(&order);
-    loader.unloaded();
+    loader.unloaded(&order);
     loader.read
 }
 
@@ -104,7 +118,15 @@ fn note(fault: BlockFault, at: At, problems: &mut Problems) {
         BlockFault::NotAscii => {
             problems.error("block.character", at, "a block has printable ASCII characters and blanks only");
         }
-        BlockFault::Duplicate => problems.error("block.duplicate", at, "this block is given twice"),
+        BlockFault::Tab(lines) => {
+            let more = if lines == 1 { "" } else { ", the first of this file" };
+            problems.error_help(
+                "block.tab",
+                at,
+                format!("a block has blanks, this line has a tab{more}"),
+                format!("replace the tabs, {lines} lines have some: `expand FILE`"),
+            );
+        }
     }
 }
 
@@ -120,7 +142,13 @@ fn contents(blocks: &[Block<'_>]) -> impl Iterator<Item = Content> + use<> {
     let read = |block: &Block<'_>| {
         let mut problems = Problems::default();
         let words = lex::words(block, &mut problems);
-        let parsed = parse(&words, block.number, block.header, &mut problems);
+        let open = problems.has_errors();
+        let mut parsed = parse(&words, block.number, block.header, &mut problems);
+        if open {
+            // What the comment hides is no entry; that is told already.
+            let hidden = block.lines.iter().flat_map(|line| line.text.split_whitespace());
+            parsed.broken.extend(hidden.map(str::to_owned));
+        }
         Content { header: block.header, parsed, problems }
     };
     let pieces = parallel::map_pieces(blocks.len(), BLOCKS_AT_A_TIME, |range| -> Vec<Content> {
@@ -156,35 +184,30 @@ impl Loader<'_, '_> {
     /// Load a block, unless it was; gives the blocks that it names.
     fn load(&mut self, number: BlockNumber, named: Option<At>) -> Vec<LoadLine> {
         let Some(block) = self.all.get_mut(&number) else {
-            if let Some(at) = named.filter(|_| !self.known.contains(&number)) {
-                self.problems.error("block.missing", at, format!("there is no {number}"));
-            }
+            let line = named.filter(|_| !self.known.contains(&number));
+            self.read.orphans.missing.extend(line.map(|at| LoadLine { block: number, at }));
             return Vec::new();
         };
         if !self.read.blocks.insert(number) {
-            if let Some(at) = named {
-                self.problems.warning("block.again", at, format!("{number} is loaded already"), None);
-            }
+            self.read.orphans.again.extend(named.map(|at| LoadLine { block: number, at }));
             return Vec::new();
         }
         let parsed = std::mem::take(&mut block.parsed);
         self.problems.append(&mut block.problems);
         parsed.entries.into_iter().for_each(|entry| self.read.entries.add(entry));
         self.read.broken.extend(parsed.broken);
+        if !parsed.loads.is_empty() {
+            let named = parsed.loads.iter().map(|line| line.block).collect();
+            self.read.orphans.directories.insert(number, named);
+        }
         parsed.loads
     }
 
     /// A block that no directory names would be missed silently.
-    fn unloaded(&mut self) {
-        // One whose number is refused cannot be named.
-        for (number, block) in self.all.iter().filter(|(number, _)| number.number <= LAST_BLOCK) {
-            if !self.read.blocks.contains(number) {
-                self.problems.warning(
-                    "block.unloaded",
-                    block.header,
-                    format!("{number} is not loaded: no directory block names it"),
-                    Some(format!("add `{} load` to a directory block that is loaded", number.number)),
-                );
+    fn unloaded(&mut self, order: &[BlockNumber]) {
+        for number in order.iter().filter(|number| !self.read.blocks.contains(number)) {
+            if let Some(block) = self.all.remove(number) {
+                self.read.orphans.add(*number, block.header, block.parsed, None);
             }
         }
     }

@@ -80,6 +80,9 @@ fn pose_entry(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let from = p.peek().map_or_else(|| p.last_at(), |w| w.at);
     for (point, name) in points.iter_mut().zip(["wrist", "tool", "finger"]) {
         for (value, axis) in point.iter_mut().zip(["x", "y", "z"]) {
+            if p.peek().is_some_and(|word| word.text == "-pose-") {
+                return Err(p.expected("a pose of nine numbers, wrist, tool and finger point,"));
+            }
             *value = p.integer(format_args!("{axis} of the {name} point"), COORDINATE)?;
         }
     }
@@ -173,7 +176,12 @@ pub fn point_at(p: &mut Parser<'_, '_>, what: &str) -> Result<PointAt, Skip> {
 /// `-arr-` (VII.4): the second dimension is left out if there is none (Figure VII.5, TL-SECTORS).
 pub fn array(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let name = p.name("name of the array")?;
+    let word = p.peek();
     let dimensions = p.integer("number of dimensions", 1..=2)?;
+    // With another number it is not known what the rest should be.
+    if word.is_some_and(|word| word.text.parse() != Ok(dimensions)) {
+        return Err(Skip);
+    }
     let columns = p.integer("elements in the first dimension", ELEMENTS)?;
     let rows = if dimensions == 2 { p.integer("elements in the second dimension", ELEMENTS)? } else { 1 };
     let column_step = p.name("movetable of the first dimension")?;
@@ -380,12 +388,13 @@ fn settings_of<const N: usize>(
             misspelt = true;
         } else if settings.iter().take(i).any(|(v, _)| v.text == variable.text) {
             p.flaw("show.twice", variable.at, format!("{} is set twice", variable.text), None);
+            misspelt = true;
         }
     }
     let value_of = |name: &str| settings.iter().find(|(v, _)| v.text == name).map(|(_, value)| *value);
     let missing: Vec<&str> = known().filter(|k| value_of(k).is_none()).collect();
     let Some(object) = value_of(name_variable).filter(|_| missing.is_empty()) else {
-        // A variable that is misspelt is missing too; one message will do.
+        // A variable that is misspelt, or another in its place, is missing too; one message will do.
         if !misspelt {
             p.flaw("show.missing", file.at, format!("{} needs {}", file.text, missing.join(", ")), None);
         }

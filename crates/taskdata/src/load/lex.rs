@@ -21,6 +21,11 @@ pub struct Word<'a> {
     pub first: bool,
 }
 
+/// Blanks separate words. A tab does too: it is an error in a block by itself, and its words none.
+const fn is_blank(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t')
+}
+
 fn short(value: usize) -> u32 {
     u32::try_from(value).unwrap_or(u32::MAX)
 }
@@ -76,7 +81,7 @@ fn scan<'a>(line: &SourceLine<'a>, open: &mut Option<At>, words: &mut Vec<Word<'
             position = end + 1;
             continue;
         }
-        let Some(begin) = next(position, |b| b != b' ') else { return };
+        let Some(begin) = next(position, |b| !is_blank(b)) else { return };
         match bytes.get(begin) {
             Some(b'%') | None => return,
             Some(b'(') => {
@@ -85,7 +90,7 @@ fn scan<'a>(line: &SourceLine<'a>, open: &mut Option<At>, words: &mut Vec<Word<'
                 position = begin + 1;
             }
             Some(_) => {
-                position = next(begin, |b| b == b' ').unwrap_or(bytes.len());
+                position = next(begin, is_blank).unwrap_or(bytes.len());
                 // Blanks are characters of their own, so a word begins and ends between characters.
                 let text = line.text.get(begin..position).unwrap_or_default();
                 words.push(Word { text, at: piece(line, begin, text.len()), first });

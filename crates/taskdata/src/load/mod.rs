@@ -24,6 +24,7 @@ pub mod lex;
 mod link;
 pub mod names;
 pub mod origins;
+mod orphans;
 mod parallel;
 pub mod parse;
 pub mod places;
@@ -48,14 +49,10 @@ impl Store {
     /// # Errors
     /// The report, if it holds an error; every error of the data is in it.
     pub fn load(directory: &Path) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
-        match source::read_blocks_under(directory) {
-            Ok(sources) => Self::from_sources(sources),
-            Err((path, error)) => {
-                let mut problems = Problems::default();
-                problems.unreadable(&path, &error);
-                Err(Box::new(Diagnostics::new(problems, Places::in_blocks(&[]), 0, Vec::new())))
-            }
-        }
+        let (sources, unreadable) = source::read_blocks_under(directory);
+        let mut problems = Problems::default();
+        unreadable.iter().for_each(|(path, error)| problems.unreadable(path, error));
+        Self::default().loaded_with(sources, problems)
     }
 
     /// Load texts that were read elsewhere, such as the attachments of a log.
@@ -80,7 +77,16 @@ impl Store {
     /// # Errors
     /// The report, if it holds an error; then there is no new generation.
     pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
-        let (store, mut problems, blocks) = self.linked(texts);
+        self.loaded_with(texts, Problems::default())
+    }
+
+    /// The next generation; errors are those of files that could not be read.
+    fn loaded_with(
+        &self,
+        texts: Vec<Source>,
+        problems: Problems,
+    ) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
+        let (store, mut problems, blocks) = self.linked(texts, problems);
         if !problems.has_errors() {
             check::reach(&store.view(), &store.origins, &mut problems);
         }
@@ -92,19 +98,21 @@ impl Store {
     /// # Errors
     /// The report, if it holds an error; then there is no new generation.
     pub fn with_blocks_untried(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
-        let (store, problems, blocks) = self.linked(texts);
+        let (store, problems, blocks) = self.linked(texts, Problems::default());
         store.reported(self.sources.len(), problems, blocks)
     }
 
     /// Read, link and check all but the reach; gives the number of blocks that were read too.
-    fn linked(&self, texts: Vec<Source>) -> (Self, Problems, usize) {
-        let mut problems = Problems::default();
+    fn linked(&self, texts: Vec<Source>, mut problems: Problems) -> (Self, Problems, usize) {
+        let incomplete = problems.has_errors();
         let first = self.sources.len();
         let mut sources = self.sources.clone();
         sources.extend(texts);
-        let read = directory::read(&sources, first, &self.blocks, &mut problems);
+        let mut read = directory::read(&sources, first, &self.blocks, &mut problems);
+        read.orphans.incomplete |= incomplete;
         let entries = self.entries.with(read.entries);
-        let (files, indexes, origins) = link::link(&entries, read.broken, &mut problems);
+        let (files, indexes, origins) = link::link(&entries, read.broken, &mut read.orphans, &mut problems);
+        read.orphans.report(&mut problems);
         let count = read.blocks.len();
         let blocks = self.blocks.union(&read.blocks).copied().collect();
         let store = Self { files, indexes, sources, entries, blocks, origins };

@@ -93,6 +93,8 @@ pub struct Parsed {
 pub struct Parser<'a, 'p> {
     words: &'p [Word<'a>],
     next: usize,
+    /// The first word of the entry that is read.
+    start: usize,
     block: BlockNumber,
     end: At,
     problems: &'p mut Problems,
@@ -102,10 +104,11 @@ pub struct Parser<'a, 'p> {
 /// Read the words of a block.
 pub fn parse(words: &[Word<'_>], block: BlockNumber, header: At, problems: &mut Problems) -> Parsed {
     let end = words.last().map_or(header, |w| w.at);
-    let mut parser = Parser { words, next: 0, block, end, problems, flawed: false };
+    let mut parser = Parser { words, next: 0, start: 0, block, end, problems, flawed: false };
     let mut parsed = Parsed::default();
     while let Some(word) = parser.peek() {
         let start = parser.next;
+        parser.start = start;
         parser.flawed = false;
         let entry = parser.entry(word, &mut parsed);
         if entry.is_err() {
@@ -170,11 +173,21 @@ impl<'a> Parser<'a, '_> {
 
     /// Note that something else was expected here.
     pub fn expected(&mut self, what: &str) -> Skip {
-        let (at, found) =
-            self.peek().map_or((self.end, "the end of the block".to_owned()), |w| (w.at, w.text.to_owned()));
-        self.problems.error("form.expected", at, format!("{what} was expected, {found} found"));
+        let start = self.words.get(self.start).map_or(self.end, |w| w.at);
+        let (at, found) = match self.peek() {
+            Some(word) if !self.is_next_entry(word) => (word.at, format!("{} found", word.text)),
+            // What is missing is missing in the entry before.
+            _ => (start.to(self.last_at()), "the entry ends before it".to_owned()),
+        };
+        self.problems.error("form.expected", at, format!("{what} was expected, {found}"));
         self.problems.expected(what);
         Skip
+    }
+
+    /// True if a word that was not expected begins another entry, and is not the first of its own.
+    fn is_next_entry(&self, word: Word<'_>) -> bool {
+        let begins = word.first && (is_compiling_word(word.text) || is_integer(word.text));
+        self.next > self.start && (begins || BEGINNINGS.contains(&word.text))
     }
 
     /// Note the nearest word, of the sort `what`, to the one that was just complained of.
@@ -217,6 +230,11 @@ impl<'a> Parser<'a, '_> {
             read => read,
         };
         let name = read.unwrap_or_else(|error| {
+            // Its character is noted as one that no block has.
+            if !word.text.is_ascii() {
+                self.flawed = true;
+                return Name::clipped("?");
+            }
             let message = match error {
                 NameError::TooLong { found, .. } => {
                     format!("{what} has at most {most} characters, {} has {found}", word.text)
@@ -270,6 +288,7 @@ impl<'a> Parser<'a, '_> {
         let mut one = Parser {
             words: &words,
             next: 0,
+            start: 0,
             block: self.block,
             end: word.at,
             problems: self.problems,
@@ -335,7 +354,7 @@ impl<'a> Parser<'a, '_> {
             _ => {
                 self.next -= 1;
                 let skip = self.expected("a compiling word or a number");
-                let near = nearest(word.text, BEGINNINGS.iter().copied());
+                let near = nearest(word.text, COMPILING_WORDS.iter().copied());
                 if let Some(near) = near {
                     self.problems.nearest("compiling word", near);
                 }

@@ -78,6 +78,24 @@ impl<'s> Places<'s> {
         Some(lines.in_block(at.start).unwrap_or_else(|| lines.in_file(at.start)))
     }
 
+    /// True if the remarks right above the line of a piece accept a warning: `%% accepted CODE: the reason`.
+    #[must_use]
+    pub fn accepts(&self, at: Option<At>, code: &str) -> bool {
+        let Some((at, source)) = at.and_then(|at| Some((at, self.source(at)?))) else { return false };
+        let before = usize::try_from(at.start).ok().and_then(|start| source.text.get(..start));
+        let mut above = before.unwrap_or_default().lines().rev();
+        // The beginning of the line itself, unless the piece is at its beginning.
+        if before.is_some_and(|before| !before.ends_with('\n')) {
+            above.next();
+        }
+        let remarks = above.map_while(|line| line.trim_start().strip_prefix(['%', '#']));
+        let accepted = |remark: &str| {
+            let (word, reason) = remark.trim_start_matches('%').trim_start().split_once(code)?;
+            Some(word == "accepted " && reason.strip_prefix(':').is_some_and(|why| !why.trim().is_empty()))
+        };
+        remarks.filter_map(accepted).any(|accepted| accepted)
+    }
+
     /// A place in words: file, block and line.
     #[must_use]
     pub fn words(&mut self, at: At) -> String {
@@ -121,6 +139,25 @@ impl Lines<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_remark_above_a_line_accepts_a_warning_by_its_code_and_a_reason() {
+        let accepts = |text: &str| {
+            let start = short(text.find('X').unwrap());
+            let sources = [Source { name: "f".to_owned(), text: text.into() }];
+            Places::in_lines(&sources).accepts(Some(At { source: 0, start, length: 1 }), "pose.square")
+        };
+        assert!(accepts("%% accepted pose.square: printed so\n%% more\n  X"));
+        assert!(accepts("# accepted pose.square: printed so\nX = 1"));
+        for not in [
+            "X",
+            "%% accepted pose.square:\nX",
+            "%% accepted reach: no\nX",
+            "%% accepted pose.square: a\n\nX",
+        ] {
+            assert!(!accepts(not), "{not}");
+        }
+    }
 
     #[test]
     fn lines_count_from_0_in_a_block_and_from_1_in_the_file() {

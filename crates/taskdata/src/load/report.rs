@@ -45,8 +45,8 @@ pub struct Problem {
     pub message: String,
     /// What to do, or the nearest known name.
     pub help: Option<String>,
-    /// The first of two things of which there must be one; it becomes the help.
-    pub first: Option<At>,
+    /// Another place that belongs to it, with the words before it; it becomes the help.
+    pub elsewhere: Option<(String, At)>,
     /// What was expected in its place, for programs; the message says it too.
     pub expected: Option<String>,
     /// The nearest known name, for programs; the help says it too.
@@ -79,8 +79,13 @@ impl Problems {
     /// Add an error of something that is there already.
     pub fn duplicate(&mut self, at: At, message: impl Into<String>, first: At) {
         self.error("duplicate", at, message);
+        self.elsewhere("the first is in", first);
+    }
+
+    /// Name another place that belongs to the last problem; it becomes the help.
+    pub fn elsewhere(&mut self, before: impl Into<String>, at: At) {
         if let Some(last) = self.list.last_mut() {
-            last.first = Some(first);
+            last.elsewhere = Some((before.into(), at));
         }
     }
 
@@ -104,7 +109,7 @@ impl Problems {
             at: Some(at),
             message,
             help,
-            first: None,
+            elsewhere: None,
             expected: None,
             nearest: None,
         });
@@ -119,6 +124,17 @@ impl Problems {
     pub fn help(&mut self, help: String) {
         if let Some(last) = self.list.last_mut() {
             last.help = Some(help);
+        }
+    }
+
+    /// Add to the help of a problem that was noted at a place.
+    pub fn add_help(&mut self, code: &str, at: At, more: &str) {
+        let noted = self.list.iter_mut().find(|problem| problem.code == code && problem.at == Some(at));
+        if let Some(problem) = noted {
+            problem.help = Some(match problem.help.take() {
+                Some(help) => format!("{help}; {more}"),
+                None => more.to_owned(),
+            });
         }
     }
 
@@ -145,7 +161,7 @@ impl Problems {
             at: None,
             message,
             help: None,
-            first: None,
+            elsewhere: None,
             expected: None,
             nearest: None,
         });
@@ -165,6 +181,7 @@ impl Problems {
     /// The problems tied to their sources, in the order of the text.
     #[must_use]
     pub fn into_diagnostics(mut self, places: &mut Places<'_>) -> Vec<Diagnostic> {
+        self.list.retain(|p| p.severity == Severity::Error || !places.accepts(p.at, p.code));
         self.list.sort_by_key(|p| p.at.map_or((0, 0), |at| (at.source, at.start)));
         self.list.into_iter().map(|p| Diagnostic::new(p, places)).collect()
     }
@@ -195,12 +212,12 @@ impl Diagnostic {
             source.zip(problem.at).and_then(|(s, at)| s.text.get(range(at))).unwrap_or_default().to_owned();
         let line_text =
             source.zip(position).map(|(s, position)| line_from(&s.text, position.begin).to_owned());
-        let first = problem.first.map(|first| format!("the first is in {}", places.words(first)));
+        let elsewhere = problem.elsewhere.map(|(before, at)| format!("{before} {}", places.words(at)));
         Self {
             severity: problem.severity,
             code: problem.code,
             message: problem.message,
-            help: problem.help.or(first),
+            help: problem.help.or(elsewhere),
             expected: problem.expected,
             nearest: problem.nearest,
             file: source.map(|s| s.name.clone()).unwrap_or_default(),

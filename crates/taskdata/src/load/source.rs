@@ -57,6 +57,11 @@ pub struct BlockNumber {
     pub number: u32,
 }
 
+impl BlockNumber {
+    /// Stands for the offset of a block whose header cannot be read.
+    pub const UNREADABLE: u32 = u32::MAX;
+}
+
 impl std::fmt::Display for BlockNumber {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "block {} (offset {})", self.number, self.offset)
@@ -98,48 +103,76 @@ pub enum BlockFault {
     TooWide(usize),
     /// A character that is not ASCII.
     NotAscii,
-    /// A block that the sources already have.
-    Duplicate,
+    /// The first tab of a file; how many lines have one.
+    Tab(usize),
 }
 
-/// Read one file. Only a regular one: whoever opens a pipe waits until somebody writes into it.
+/// Read one file. Only a regular one: opening a pipe would wait for a writer.
 ///
 /// # Errors
-/// What the operating system says, or that it is no regular file.
+/// See [`read_text`].
 pub fn read(path: &Path, shown: &str) -> io::Result<Source> {
+    Ok(Source { name: shown.to_owned(), text: read_text(path)?.into() })
+}
+
+/// The text of a regular file, in UTF-8, with or without a byte order mark; lines end with LF, CR LF or CR.
+///
+/// # Errors
+/// What the operating system says, that it is no regular file, or the first line that is not UTF-8.
+pub fn read_text(path: &Path) -> io::Result<String> {
     let kind = fs::metadata(path)?.file_type();
     if !kind.is_file() {
         let found = if kind.is_dir() { "a directory" } else { "a pipe, a socket or a device" };
         let why = format!("a regular file was expected, found {found}");
         return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
     }
-    Ok(Source { name: shown.to_owned(), text: fs::read_to_string(path)?.into() })
+    let text = String::from_utf8(fs::read(path)?).map_err(|error| {
+        let good = error.as_bytes().get(..error.utf8_error().valid_up_to()).unwrap_or_default();
+        let line = good.iter().filter(|byte| **byte == b'\n').count() + 1;
+        let why = format!("line {line} is not UTF-8: save the file as UTF-8 or as plain ASCII");
+        io::Error::new(io::ErrorKind::InvalidData, why)
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    Ok(if text.contains('\n') { text.to_owned() } else { text.replace('\r', "\n") })
 }
 
-/// All files `*.blk` under a directory, in the order of their paths, which are shown relative to the directory.
-///
-/// # Errors
-/// The path that could not be read, and what the operating system says.
-pub fn read_blocks_under(directory: &Path) -> Result<Vec<Source>, (String, io::Error)> {
-    let mut paths = Vec::new();
+/// What cannot be read: a path, and why.
+pub type Unreadable = (String, io::Error);
+
+/// All files `*.blk` under a directory, in the order of their paths, which are shown relative to the directory, and what of
+/// them cannot be read.
+#[must_use]
+pub fn read_blocks_under(directory: &Path) -> (Vec<Source>, Vec<Unreadable>) {
+    let (mut paths, mut unreadable) = (Vec::new(), Vec::new());
     let mut open = vec![directory.to_path_buf()];
     while let Some(folder) = open.pop() {
-        let shown = |e| (folder.display().to_string(), e);
-        for entry in fs::read_dir(&folder).map_err(shown)? {
-            let path = entry.map_err(shown)?.path();
-            if path.is_dir() {
-                open.push(path);
-            } else if path.extension().is_some_and(|e| e == "blk") {
-                paths.push(path);
+        let entries = match fs::read_dir(&folder) {
+            Ok(entries) => entries,
+            Err(error) => {
+                unreadable.push((folder.display().to_string(), error));
+                continue;
+            }
+        };
+        // What cannot be listed is named by its folder.
+        for entry in entries {
+            match entry.map(|entry| entry.path()) {
+                Ok(path) if path.extension().is_some_and(|e| e == "blk") => paths.push(path),
+                Ok(path) if path.is_dir() => open.push(path),
+                Ok(_) => {}
+                Err(error) => unreadable.push((folder.display().to_string(), error)),
             }
         }
     }
     paths.sort();
-    let one = |path: &std::path::PathBuf| {
-        let shown = path.strip_prefix(directory).unwrap_or(path).display().to_string();
-        read(path, &shown).map_err(|e| (path.display().to_string(), e))
-    };
-    paths.iter().map(one).collect()
+    let mut sources = Vec::with_capacity(paths.len());
+    for path in paths {
+        let shown = path.strip_prefix(directory).unwrap_or(&path).display().to_string();
+        match read(&path, &shown) {
+            Ok(source) => sources.push(source),
+            Err(error) => unreadable.push((path.display().to_string(), error)),
+        }
+    }
+    (sources, unreadable)
 }
 
 fn short(value: usize) -> u32 {
@@ -154,6 +187,12 @@ pub fn lines_of(text: &str) -> impl Iterator<Item = (usize, &str)> {
         start += line.len();
         (here, line.trim_end_matches(['\n', '\r']))
     })
+}
+
+/// True for a line that is a header, or was meant to be one.
+fn is_header(line: &str) -> bool {
+    let start = line.trim_start().as_bytes().get(..HEADER.len());
+    start.is_some_and(|start| start.eq_ignore_ascii_case(HEADER.as_bytes()))
 }
 
 /// The number and the offset in a header line.
@@ -175,6 +214,7 @@ fn header_number(line: &str) -> Option<BlockNumber> {
 pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockFault)>) {
     let mut found: Vec<Block<'_>> = Vec::new();
     let mut faults = Vec::new();
+    let mut tabs: Option<(At, usize)> = None;
     for (start, text) in lines_of(&source.text) {
         let at = At { source: short(index), start: short(start), length: short(text.len()) };
         let printable = |b: u8| (b' '..=b'~').contains(&b);
@@ -184,23 +224,26 @@ pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockF
             && !text.starts_with(REMARK)
             && let Some(position) = text.bytes().position(|b| !printable(b))
         {
-            let bad = text.get(position..).and_then(|rest| rest.chars().next()).map_or(1, char::len_utf8);
-            let bad_at = At { start: short(start + position), length: short(bad), ..at };
-            faults.push((bad_at, BlockFault::NotAscii));
+            let bad = text.get(position..).and_then(|rest| rest.chars().next()).unwrap_or_default();
+            let bad_at = At { start: short(start + position), length: short(bad.len_utf8()), ..at };
+            if bad == '\t' {
+                tabs.get_or_insert((bad_at, 0)).1 += 1;
+            } else {
+                faults.push((bad_at, BlockFault::NotAscii));
+            }
         }
         if text.starts_with(REMARK) {
             continue;
         }
-        if text.starts_with(HEADER) {
-            match header_number(text) {
-                Some(number) => {
-                    if number.number > LAST_BLOCK {
-                        faults.push((at, BlockFault::Number(number.number)));
-                    }
-                    found.push(Block { number, header: at, lines: Vec::with_capacity(BLOCK_LINES) });
-                }
-                None => faults.push((at, BlockFault::Header)),
+        if is_header(text) {
+            let number = header_number(text).unwrap_or_else(|| {
+                faults.push((at, BlockFault::Header));
+                BlockNumber { offset: BlockNumber::UNREADABLE, number: short(found.len()) }
+            });
+            if number.number > LAST_BLOCK && number.offset != BlockNumber::UNREADABLE {
+                faults.push((at, BlockFault::Number(number.number)));
             }
+            found.push(Block { number, header: at, lines: Vec::with_capacity(BLOCK_LINES) });
             continue;
         }
         match found.last_mut() {
@@ -212,6 +255,7 @@ pub fn blocks(index: usize, source: &Source) -> (Vec<Block<'_>>, Vec<(At, BlockF
     for block in &mut found {
         settle(block, &mut faults);
     }
+    faults.extend(tabs.map(|(at, lines)| (at, BlockFault::Tab(lines))));
     (found, faults)
 }
 

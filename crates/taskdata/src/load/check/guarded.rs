@@ -45,7 +45,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
         let name = record.name;
         let Some(known) = relative_move_named(name.as_str()) else {
             let near = nearest(name.as_str(), RELATIVE_MOVES.iter().map(|m| m.name));
-            findings.warning(
+            findings.error(
                 "relative.unused",
                 at,
                 format!("no command looks for a relative move {name}"),

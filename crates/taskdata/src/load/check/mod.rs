@@ -3,6 +3,7 @@
 //!
 //! * [`trays`]: sectors within their trays;
 //! * [`objects`]: objects that only the camera can tell apart;
+//! * [`sizes`]: openings in order, tray grips, flips;
 //! * [`routes`]: trajectories that no command can reach;
 //! * [`guarded`]: sensors and speeds of relative moves;
 //! * [`reach`]: every target that a command can send the robot to, against the arm. This takes time in proportion to all
@@ -12,6 +13,7 @@ mod guarded;
 mod objects;
 mod reach;
 mod routes;
+mod sizes;
 mod trays;
 
 use std::collections::HashMap;
@@ -34,6 +36,7 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Probl
     let mut findings = Findings::default();
     trays::check(data, origins, &mut findings);
     objects::check(data, origins, &mut findings);
+    sizes::check(data, origins, &mut findings);
     routes::check(data, origins, &mut findings);
     guarded::check(data, origins, &mut findings);
     findings.report(problems);

@@ -143,8 +143,15 @@ impl<'a> Reach<'a> {
         of_arrays.filter_map(|members| members.first()).map(|m| LocptId::new(m.member.number)).collect()
     }
 
+    /// Location points at which an object is gripped or looked at: what is there is driven to, and may be tilted, not the point.
+    fn bases(&self) -> HashSet<LocptId> {
+        let grips = self.data.grip_locs.iter().map(|entry| entry.at);
+        let named = grips.chain(self.data.visions.iter().map(|entry| entry.at));
+        named.filter(|at| at.kind == RefType::LocationPoint).map(|at| LocptId::new(at.number)).collect()
+    }
+
     fn location_points(&mut self, findings: &mut Findings) {
-        let corners = self.corners();
+        let (corners, bases) = (self.corners(), self.bases());
         let points = self.data.locpts;
         let tried = parallel::map_pieces(points.len(), ENTRIES_AT_A_TIME, |range| {
             let (mut findings, mut bad) = (Findings::default(), Vec::new());
@@ -152,8 +159,10 @@ impl<'a> Reach<'a> {
                 let Some(point) = points.get(i) else { continue };
                 let at = origin(&self.origins.locpts, i);
                 let what = || format!("location point {}", point.name);
-                if !self.target(&what, &point.frame, at, point.pose, &mut findings) {
+                if !self.reached(&what, &point.frame, at, point.pose, &mut findings) {
                     bad.push(LocptId::at(i));
+                } else if !bases.contains(&LocptId::at(i)) {
+                    vertical(&what, &point.frame, at, &mut findings);
                 }
             }
             (findings, bad)
@@ -166,10 +175,16 @@ impl<'a> Reach<'a> {
 
     /// Try a target that is derived from a pose; true if it is reached. One near the vertical is warned of.
     fn target(&self, what: What<'_>, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
-        let Some(found) = fault(frame) else {
+        let reached = self.reached(what, frame, at, base, findings);
+        if reached {
             vertical(what, frame, at, findings);
-            return true;
-        };
+        }
+        reached
+    }
+
+    /// Try a frame that is derived from a pose; true if it is reached.
+    fn reached(&self, what: What<'_>, frame: &Frame, at: At, base: PoseId, findings: &mut Findings) -> bool {
+        let Some(found) = fault(frame) else { return true };
         match self.data.pose(base).and_then(|pose| Some((pose.name, fault(&pose.frame)?))) {
             Some((name, cause)) => {
                 let at = origin(&self.origins.poses, base.index().unwrap_or(0));

@@ -36,6 +36,7 @@
 //! before the first tick.
 
 mod action;
+mod needs;
 mod own_line;
 mod read;
 mod reload;
@@ -124,13 +125,25 @@ impl Job {
     /// The report, if it holds an error; every error of the job is in it.
     pub fn load(path: &Path, store: &Store) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         match read(path, &path.display().to_string()) {
-            Ok(source) => Self::from_source(source, store),
+            Ok(source) => Self::from_source(source, store).and_then(Self::with_a_line),
             Err(error) => {
                 let mut problems = Problems::default();
                 problems.unreadable(&path.display().to_string(), &error);
                 Err(Box::new(Diagnostics::new(problems, Places::in_lines(&[]), 0, Vec::new())))
             }
         }
+    }
+
+    /// The job and its report, unless it has no line.
+    fn with_a_line((job, report): (Self, Diagnostics)) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
+        if !job.steps.is_empty() {
+            return Ok((job, report));
+        }
+        let mut problems = Problems::default();
+        let help = "a line with == sends a command, a line with ** says what the workstation does";
+        problems.error_help("job.empty", At::default(), "the job has no line", help);
+        let sources = std::slice::from_ref(&job.source);
+        Err(Box::new(report.with(Diagnostics::new(problems, Places::in_lines(sources), 0, Vec::new()))))
     }
 
     /// Check a job that was read elsewhere, such as the attachment of a log.

@@ -13,6 +13,7 @@ use super::{
         source::{At, SourceLine},
     },
     JobLine, Step, TASK_COMMANDS,
+    needs::{Command, Held, Place, assigned_to, grips_of, places_of},
     walk::{Visit, Visits, Walk},
 };
 
@@ -67,7 +68,7 @@ pub(super) struct Field {
 }
 
 impl Field {
-    fn given(&self) -> bool {
+    pub(super) fn given(&self) -> bool {
         !self.name.is_empty()
     }
 }
@@ -80,13 +81,22 @@ pub(super) struct Reader<'s, 'p> {
     loaded: u32,
     pub(super) problems: &'p mut Problems,
     pub(super) walk: Walk,
+    /// What the robot holds.
+    held: Held,
     /// The last line with `after` that no command has followed yet.
     pub(super) after: Option<At>,
 }
 
 impl<'s, 'p> Reader<'s, 'p> {
     pub(super) fn new(data: TaskData<'s>, reloads: Vec<TaskData<'s>>, problems: &'p mut Problems) -> Self {
-        Self { data, reloads: reloads.into_iter(), loaded: 0, problems, walk: Walk::default(), after: None }
+        let (walk, held) = (Walk::default(), Held::default());
+        Self { data, reloads: reloads.into_iter(), loaded: 0, problems, walk, held, after: None }
+    }
+
+    /// Something beside the commands moves the robot: where it is and what it holds are not known.
+    pub(super) fn forget(&mut self) {
+        self.walk.forget();
+        self.held = Held::Unknown;
     }
 
     /// A line loads something: from here on names are looked up in what it loads. The number of the reload, from 1; `None` if it
@@ -222,11 +232,22 @@ impl Reader<'_, '_> {
         let end_at = self.field(fields, "end-at location")?;
         let end_at_sector = self.integer(fields, "end-at sector")?;
         let serial = self.serial(fields);
-        if !TASK_COMMANDS.contains(&verb.name.as_str()) {
+        let known_verb = TASK_COMMANDS.contains(&verb.name.as_str());
+        if !known_verb {
             self.unknown("command of Task", shown(&verb), verb.at, TASK_COMMANDS);
         }
         let known = !object.given() || self.object(object);
-        if known {
+        if known && known_verb {
+            let place = |name, sector, grip| Place { name, sector, grip };
+            let command = Command {
+                verb: verb.name.as_str(),
+                at: verb.at,
+                object,
+                source: place(source, source_sector, Some(source_grip)),
+                destination: place(destination, destination_sector, Some(destination_grip)),
+                end_at: place(end_at, end_at_sector, None),
+            };
+            self.held = command.check(&self.data, self.held, self.problems);
             let thing = object.given().then_some(object.name);
             let source = self.visit(source, source_sector, thing, source_grip);
             let destination = self.visit(destination, destination_sector, thing, destination_grip);
@@ -270,7 +291,10 @@ impl Reader<'_, '_> {
     fn visit(&mut self, field: Field, sector: Number, object: Option<Name16>, grip: Number) -> Option<Visit> {
         let location = self.place(field, sector, object, Some(grip))?;
         // A grip that is not known is noted already.
-        let known = |name: &Name16| grip.value != 0 && self.data.object(name, grip.value).is_some();
+        let known = |name: &Name16| {
+            let movetable = || self.data.grip_movetable(name, grip.value, &location.place);
+            grip.value != 0 && self.data.object(name, grip.value).is_some() && movetable().is_some()
+        };
         let object = object.filter(known).map(|name| (name, grip.value));
         Some(Visit { location, object, at: field.at })
     }
@@ -326,7 +350,10 @@ impl Reader<'_, '_> {
                     matches!(error, LookupError::SectorRange { .. } | LookupError::NoSectors { .. });
                 let at = if wrong_sector { sector.at } else { field.at };
                 let near = if unknown { self.near_location(&field.name) } else { None };
-                let help = near.map(|n| format!("the nearest known name is {n}"));
+                let help = match error {
+                    LookupError::NotAssigned { object, .. } => Some(assigned_to(&self.data, &object)),
+                    _ => near.map(|n| format!("the nearest known name is {n}")),
+                };
                 self.problems.push(Severity::Error, "job.location", at, error.to_string(), help);
                 return None;
             }
@@ -340,9 +367,10 @@ impl Reader<'_, '_> {
     fn grip(&mut self, grip: Number, object: &Name16, location: &Location) {
         if self.data.object(object, grip.value).is_none() {
             let message = format!("{object} has no grip {} in an object form", grip.value);
-            self.problems.error("grip.unknown", grip.at, message);
+            self.problems.error_help("grip.unknown", grip.at, message, grips_of(&self.data, object));
         } else if let Err(error) = self.data.grip_frame(object, grip.value, location) {
-            self.problems.error("grip.unknown", grip.at, error.to_string());
+            let help = places_of(&self.data, object, grip.value);
+            self.problems.error_help("grip.unknown", grip.at, error.to_string(), help);
         }
     }
 

@@ -5,9 +5,12 @@
 
 use rcs_core::name::Name16;
 
-use crate::files::{Location, TaskData};
+use crate::files::{Location, RefType, TaskData};
 
-use super::super::{report::Problems, source::At};
+use super::{
+    super::{report::Problems, source::At},
+    needs::approaches_of,
+};
 
 /// A location that a command leads to.
 pub(super) struct Visit {
@@ -27,7 +30,8 @@ pub(super) struct Visits {
 /// Where the robot is between two commands.
 #[derive(Default)]
 pub(super) struct Walk {
-    last: Option<Location>,
+    /// The location, and with which grip of which object the robot went there.
+    last: Option<(Location, Option<(Name16, i32)>)>,
 }
 
 impl Walk {
@@ -81,10 +85,24 @@ impl Walk {
                 "path.missing",
                 at,
                 format!("nothing says how grip {grip} of {object} is approached at {}", location.name),
-                "add an entry -appr obj for this location, or for $$$ (VII.7.7)",
+                format!(
+                    "add an entry -appr obj for this location, or for $$$ (VII.7.7); {}",
+                    approaches_of(data, RefType::Object, &object, grip)
+                ),
             );
         }
-        if let Some(last) = self.last.filter(|last| !same(last, &location))
+        if let Some((last, Some((object, grip)))) = self.last
+            && data.approach(&object, grip, &last.place).is_some()
+            && data.depart(&object, grip, &last.place).is_none()
+        {
+            problems.error_help(
+                "path.missing",
+                at,
+                format!("nothing says how grip {grip} of {object} is departed from at {}", last.name),
+                "add an entry -dept obj for that location, or for $$$, without points if the robot may go straight (VII.7.7)",
+            );
+        }
+        if let Some((last, _)) = self.last.filter(|(last, _)| !same(last, &location))
             && data.trajectory(&last.place, &location.place).is_none()
         {
             problems.error_help(
@@ -94,7 +112,7 @@ impl Walk {
                 "add a trajectory form (VII.6); each is flown from its start to its end only",
             );
         }
-        self.last = Some(location);
+        self.last = Some((location, object));
     }
 }
 
@@ -112,7 +130,10 @@ fn view(data: &TaskData<'_>, problems: &mut Problems, visit: &Visit, verb: &str)
             "path.missing",
             visit.at,
             format!("nothing says how the view of {object} is approached at {}", visit.location.name),
-            "add an entry -appr vu for this location, or for $$$ (VII.7.7)",
+            format!(
+                "add an entry -appr vu for this location, or for $$$ (VII.7.7); {}",
+                approaches_of(data, RefType::View, &object, vision.grip)
+            ),
         );
     }
 }

@@ -251,6 +251,7 @@ impl Reader<'_, '_> {
     }
 
     fn joystick(&mut self, fields: &mut Fields<'_, '_>) -> Option<Joystick> {
+        self.forget();
         Some(match self.choice(fields, "part of the joystick box", BOX_VERBS)? {
             BoxVerb::Frame => Joystick::Frame(self.choice(fields, "frame of the joystick box", FRAMES)?),
             BoxVerb::Stick => {
@@ -276,12 +277,12 @@ impl Reader<'_, '_> {
     }
 
     fn estop(&mut self, fields: &mut Fields<'_, '_>) -> Option<EStop> {
-        self.walk.forget();
+        self.forget();
         self.choice(fields, "emergency stop", ESTOPS)
     }
 
     fn panel(&mut self, fields: &mut Fields<'_, '_>) -> Option<Panel> {
-        self.walk.forget();
+        self.forget();
         Some(match self.choice(fields, "key of the robot controller", PANEL_VERBS)? {
             PanelVerb::Key(key) => key,
             PanelVerb::Power => Panel::Power(self.choice(fields, "position of the power switch", SWITCH)?),

@@ -8,7 +8,7 @@ mod known;
 mod objects;
 mod places;
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 use rcs_core::frame::Frame;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -26,6 +26,7 @@ use super::{
     index::{OwnedIndex, OwnedPlaceIndex, Pair},
     names::nearest,
     origins::Origins,
+    orphans::Orphans,
     parallel,
     report::Problems,
     source::At,
@@ -40,6 +41,7 @@ const NEAREST_FOR: usize = 200;
 /// What links the entries of a load.
 pub(super) struct Linker<'a> {
     broken: HashSet<String>,
+    orphans: &'a mut Orphans,
     problems: &'a mut Problems,
     files: Files,
     indexes: OwnedIndexes,
@@ -48,22 +50,28 @@ pub(super) struct Linker<'a> {
     paras: FxHashMap<[i32; 4], TrajParaId>,
     /// Names that were looked for in vain.
     unknown: usize,
+    /// Each of them, with what it should be: where it was first asked for, and how often.
+    asked: BTreeMap<(String, String), (At, usize)>,
 }
 
-/// Make files and indexes of entries; problems are noted. `broken` are names in entries that could not be read.
+/// Make files and indexes of entries; problems are noted. `broken` are names in entries that could not be read, `orphans` have
+/// those in blocks that are not loaded.
 pub(super) fn link(
     entries: &Collected,
     broken: HashSet<String>,
+    orphans: &mut Orphans,
     problems: &mut Problems,
 ) -> (Files, OwnedIndexes, Origins) {
     let mut linker = Linker {
         broken,
+        orphans,
         problems,
         files: Files::default(),
         indexes: OwnedIndexes::default(),
         origins: Origins::default(),
         paras: FxHashMap::default(),
         unknown: 0,
+        asked: BTreeMap::new(),
     };
     linker.declare(entries);
     linker.places(entries);
@@ -71,6 +79,7 @@ pub(super) fn link(
     linker.guarded_moves(entries);
     linker.index_pairs();
     linker.check_full(entries);
+    linker.count_unknown();
     (linker.files, linker.indexes, linker.origins)
 }
 
@@ -209,20 +218,46 @@ impl Linker<'_> {
         }
         let wanted = name.name.as_str();
         self.unknown += 1;
-        let near = (self.unknown <= NEAREST_FOR).then(|| nearest_of(wanted, index)).flatten();
         // Its definition may be in an entry that could not be read, which is noted there; a slip of the pen included.
-        let broken = || {
-            self.unknown <= NEAREST_FOR && nearest(wanted, self.broken.iter().map(String::as_str)).is_some()
-        };
-        if self.broken.contains(wanted) || (near.is_none() && broken()) {
+        if self.has_elsewhere(wanted) {
+            return None;
+        }
+        let asked = self.asked.entry((what.to_owned(), wanted.to_owned())).or_insert((name.at, 0));
+        asked.1 += 1;
+        if asked.1 > 1 {
+            return None;
+        }
+        let known: Vec<String> =
+            if self.unknown <= NEAREST_FOR { names_of(file(&self.indexes)) } else { Vec::new() };
+        let broken = self.broken.iter().map(String::as_str).filter(|_| self.unknown <= NEAREST_FOR);
+        let near = nearest(wanted, broken.chain(known.iter().map(String::as_str)));
+        if near.is_some_and(|near| self.broken.contains(near)) {
             return None;
         }
         self.problems.error("name.unknown", name.at, format!("no {what} is named {}", name.name));
         self.problems.expected(format!("the name of a {what}"));
         if let Some(near) = near {
-            self.problems.nearest("known name", &near);
+            self.problems.nearest("known name", near);
         }
         None
+    }
+
+    /// Say of each unknown name how many more entries ask for it.
+    fn count_unknown(&mut self) {
+        for (at, times) in std::mem::take(&mut self.asked).into_values().filter(|(_, times)| *times > 1) {
+            let entries =
+                if times == 2 { "1 more entry asks".to_owned() } else { format!("{} more ask", times - 1) };
+            self.problems.add_help("name.unknown", at, &format!("{entries} for it"));
+        }
+    }
+
+    /// True if a name stands in an entry that could not be read, or that is not loaded: that is told there.
+    fn has_elsewhere(&mut self, name: &str) -> bool {
+        let longer = |broken: &String| broken.len() > name.len() && broken.starts_with(name);
+        self.broken.contains(name)
+            || self.orphans.lack_blocks()
+            || self.orphans.have(name)
+            || self.broken.iter().any(longer)
     }
 
     fn movetable(&mut self, name: Named<10>) -> Option<MovtabId> {
@@ -316,11 +351,11 @@ impl Linker<'_> {
     }
 }
 
-/// The nearest name in an index.
-fn nearest_of(wanted: &str, index: &OwnedIndex) -> Option<String> {
+/// The names in an index, in their order.
+fn names_of(index: &OwnedIndex) -> Vec<String> {
     let mut known: Vec<String> = index.keys().map(key_text).collect();
     known.sort_unstable();
-    nearest(wanted, known.iter().map(String::as_str)).map(str::to_owned)
+    known
 }
 
 /// The name that a key was made of.

@@ -125,7 +125,7 @@ impl Linker<'_> {
 
     /// A grip must stand in the object form, which has its openings and its force (VII.7.1).
     fn known_grip(&mut self, object: ObjectId, grip: i32, name: Named<16>) {
-        if !self.known().has_grip(&name, grip) {
+        if !self.known().has_grip(&name, grip) && !self.has_elsewhere(name.name.as_str()) {
             let grips: Vec<String> = self
                 .files
                 .end_effs

@@ -11,6 +11,7 @@ use super::{
     super::{
         collected::Collected,
         entries::{Named, OwnerEntry, PointEntry, PoseEntry, Typed},
+        names::nearest,
         parallel,
     },
     Keyed, Linker, number,
@@ -87,8 +88,11 @@ impl Linker<'_> {
     fn arrays(&mut self, all: &Collected) {
         let names = all.arrays_at.iter().map(|e| &e.name);
         let [(located, _)] = self.indexed([Keyed::names("an array location of this name", names)]);
+        let mut unknown = Vec::new();
         for entry in &all.arrays_at {
-            self.find("array", entry.name, |i| &i.arrays);
+            if self.find("array", entry.name, |i| &i.arrays).is_none() {
+                unknown.push(entry.name.name.as_str());
+            }
         }
         for entry in &all.arrays {
             let place = located
@@ -103,7 +107,9 @@ impl Linker<'_> {
                     }
                     offset = self.movetable(place.movetable).unwrap_or_default();
                 }
-                None if self.broken.contains(entry.name.name.as_str()) => {}
+                // One that is misspelt is noted as such.
+                None if nearest(entry.name.name.as_str(), unknown.iter().copied()).is_some() => {}
+                None if self.has_elsewhere(entry.name.name.as_str()) => {}
                 None => self.problems.error_help(
                     "array.location",
                     entry.name.at,

@@ -1,7 +1,13 @@
 //! Whether task data, job and cell description mean the same cell.
 //!
 //! Each of the three is sound by itself when this is asked. What is looked for are names that only one side has: a run would
-//! come upon them late, or the robot would go where nothing stands.
+//! come upon them late, or the robot would go where nothing stands. And numbers of which both sides have their own: [`sizes`],
+//! [`places`], [`job`].
+
+mod both;
+mod job;
+mod places;
+mod sizes;
 
 use std::{collections::BTreeSet, path::Path};
 
@@ -18,12 +24,29 @@ use taskdata::{
 use crate::{check::at, run::workstation::orders};
 
 /// What the lines `**` of a job ask of a cell that does not have it.
-pub fn of_job(job: &Job, cell: &CellDescription, path: &Path) -> Diagnostics {
+pub fn of_job(job: &Job, cell: &CellDescription, store: &Store, path: &Path) -> Diagnostics {
     let mut problems = Problems::default();
+    let mut state = job::State::new(cell, store.view());
     for line in &job.steps {
-        let (Step::Workstation(action) | Step::After { action, .. }) = &line.step else { continue };
-        let refused = orders(action, cell).and_then(|orders| orders.iter().try_for_each(|o| cell.admits(o)));
-        let Err(error) = refused else { continue };
+        let (Step::Workstation(action) | Step::After { action, .. }) = &line.step else {
+            if let Step::Command(command) = &line.step
+                && let Some(job::Refused { word, message, help }) = state.command(command)
+            {
+                problems.error_help("job.cell", place(job.source(), line, Some(&word)), message, help);
+            }
+            continue;
+        };
+        let orders = orders(action, cell);
+        let occupied = orders.iter().flatten().find_map(|order| job::occupied(order, cell));
+        let admitted = orders.and_then(|orders| orders.iter().try_for_each(|o| cell.admits(o)));
+        let other = state.action(action, matches!(line.step, Step::After { .. }) || admitted.is_err());
+        let Err(error) = admitted else {
+            if let Some(message) = occupied.or(other) {
+                problems.error("job.cell", place(job.source(), line, None), message);
+                problems.help(format!("what the cell has stands in {}", path.display()));
+            }
+            continue;
+        };
         let blames = error.blames();
         let word = blames.as_ref().map(|(word, _)| word.as_str());
         problems.error("job.cell", place(job.source(), line, word), error.to_string());
@@ -56,7 +79,14 @@ pub fn of_cell(source: Source, cell: &CellDescription, store: &Store) -> Diagnos
     names.sectors(cell);
     names.objects(cell);
     let problems = names.problems;
-    Diagnostics::new(problems, Places::in_lines(&[source]), 0, Vec::new())
+    let report = Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new());
+    if report.has_errors() {
+        return report;
+    }
+    let mut both = both::Both::new(&source, cell, store);
+    places::check(&mut both);
+    sizes::check(&mut both);
+    report.with(both.report(&source))
 }
 
 /// Looks up the names of a cell description.
@@ -190,7 +220,12 @@ impl Names<'_> {
             let others: BTreeSet<i32> = asked.filter(|id| *id != i32::from(part.vision_id)).collect();
             for id in others {
                 let message = format!("the task data ask the camera for {id}, found {}", part.vision_id);
-                self.warn(&format!("part[{number}].vision_id"), message);
+                let entry = format!("part[{number}].vision_id");
+                let at = self.at(&entry);
+                self.problems.error("cell.data", at, format!("{entry}: {message}"));
+                self.problems.help(
+                    "the camera does not recognise the part: one of the two numbers is wrong".to_owned(),
+                );
             }
         }
     }

@@ -1,0 +1,226 @@
+//! Blocks that no directory loads, and directory lines that lead to no such block. What one wrong or forgotten number makes of
+//! them is told in one message: a name that only such a block defines is no mistake of the entry that asks for it.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use super::{
+    entries::LoadLine,
+    parse::Parsed,
+    print,
+    report::{Problems, Severity},
+    source::{At, BlockNumber, LAST_BLOCK},
+};
+
+/// Two numbers that differ by no more keys can be meant for each other.
+const SLIP: usize = 2;
+
+/// A block that is not loaded.
+#[derive(Debug)]
+struct Orphan {
+    number: BlockNumber,
+    header: At,
+    /// The header of the loaded block of this number.
+    first: Option<At>,
+    loads: Vec<LoadLine>,
+    /// What is asked for and stands in it, or in a block that only it leads to.
+    needed: Vec<String>,
+    /// Told with something else.
+    told: bool,
+}
+
+/// What became of the numbers of a load.
+#[derive(Debug, Default)]
+pub(super) struct Orphans {
+    list: Vec<Orphan>,
+    /// Words of the orphans' entries, with the position in `list` of the first that has each.
+    words: HashMap<String, usize>,
+    /// Lines that name a block which is not there.
+    pub(super) missing: Vec<LoadLine>,
+    /// Lines that name a block which is loaded already.
+    pub(super) again: Vec<LoadLine>,
+    /// Loaded directory blocks, and what they name.
+    pub(super) directories: BTreeMap<BlockNumber, Vec<BlockNumber>>,
+    /// A file could not be read: any name and any block may stand in it.
+    pub(super) incomplete: bool,
+}
+
+impl Orphans {
+    /// Note a block that is not loaded; `first` is the header of the block that has its number.
+    pub(super) fn add(&mut self, number: BlockNumber, header: At, parsed: Parsed, first: Option<At>) {
+        let position = self.list.len();
+        let printed = parsed.entries.iter().flat_map(print::form);
+        let words = printed.flat_map(|line| line.split(' ').map(str::to_owned).collect::<Vec<_>>());
+        for word in words.chain(parsed.broken).filter(|word| !word.is_empty()) {
+            self.words.entry(word).or_insert(position);
+        }
+        let readable = number.offset != BlockNumber::UNREADABLE && number.number <= LAST_BLOCK;
+        let orphan =
+            Orphan { number, header, first, loads: parsed.loads, needed: Vec::new(), told: !readable };
+        self.list.push(orphan);
+    }
+
+    /// True if a file or a block is missing: names that are not known may stand there, and are asked for once it is back.
+    pub(super) fn lack_blocks(&self) -> bool {
+        self.incomplete || !self.missing.is_empty()
+    }
+
+    /// True if a block that is not loaded has a name that is asked for.
+    pub(super) fn have(&mut self, name: &str) -> bool {
+        let orphan = self.words.get(name).and_then(|&position| self.list.get_mut(position));
+        if let Some(orphan) = orphan {
+            if !orphan.needed.iter().any(|needed| needed == name) {
+                orphan.needed.push(name.to_owned());
+            }
+            return true;
+        }
+        false
+    }
+
+    /// Say it all, once every name was looked for.
+    pub(super) fn report(mut self, problems: &mut Problems) {
+        let below = self.gather();
+        for line in std::mem::take(&mut self.missing) {
+            self.missing(line, problems);
+        }
+        for line in std::mem::take(&mut self.again) {
+            self.again(line, problems);
+        }
+        for orphan in self.list.iter().filter(|orphan| !orphan.told) {
+            if let Some(first) = orphan.first {
+                problems.duplicate(orphan.header, format!("{} is given twice", orphan.number), first);
+                continue;
+            }
+            let mut message = format!("{} is loaded by no directory block", orphan.number);
+            match below.get(&orphan.number) {
+                None => {}
+                Some(1) => message += ", nor is the one that it names",
+                Some(count) => message += &format!(", nor are the {count} that it names"),
+            }
+            match &orphan.needed[..] {
+                [] => {}
+                [name] => message += &format!("; {name} is asked for and stands there"),
+                [name, others @ ..] => {
+                    let others = others.len();
+                    message += &format!("; {name} and {others} more names that are asked for stand there");
+                }
+            }
+            let severity = if orphan.needed.is_empty() { Severity::Warning } else { Severity::Error };
+            let help = self.directory_of(orphan).map_or_else(
+                || format!("name it in a directory block: `{} load`", orphan.number.number),
+                |directory| format!("add `{} load` to {directory}", orphan.number.number),
+            );
+            problems.push(severity, "block.unloaded", orphan.header, message, Some(help));
+        }
+    }
+
+    /// Blocks that another orphan names are told with it. The numbers of those that stand for others, and for how many.
+    fn gather(&mut self) -> BTreeMap<BlockNumber, usize> {
+        let named: HashSet<BlockNumber> =
+            self.list.iter().flat_map(|orphan| &orphan.loads).map(|line| line.block).collect();
+        let mut below = BTreeMap::new();
+        for root in 0..self.list.len() {
+            let Some(top) = self.list.get(root).filter(|orphan| !named.contains(&orphan.number)) else {
+                continue;
+            };
+            let number = top.number;
+            let mut open: Vec<BlockNumber> = top.loads.iter().map(|line| line.block).collect();
+            let (mut needed, mut count) = (Vec::new(), 0);
+            while let Some(next) = open.pop() {
+                let Some(orphan) = self.list.iter_mut().find(|o| o.number == next && !o.told) else {
+                    continue;
+                };
+                orphan.told = true;
+                count += 1;
+                needed.append(&mut orphan.needed);
+                open.extend(orphan.loads.iter().map(|line| line.block));
+            }
+            if let Some(top) = self.list.get_mut(root) {
+                top.needed.append(&mut needed);
+            }
+            if count > 0 {
+                below.insert(number, count);
+            }
+        }
+        below
+    }
+
+    /// A line names a block that is not there.
+    fn missing(&mut self, line: LoadLine, problems: &mut Problems) {
+        if self.incomplete {
+            return;
+        }
+        // A block whose header cannot be read, or whose number is refused, may be the one: its header is told already.
+        let unreadable = |o: &Orphan| {
+            o.number.offset == BlockNumber::UNREADABLE
+                || o.number.offset == line.block.offset && o.number.number > LAST_BLOCK
+        };
+        if self.list.iter().any(unreadable) {
+            return;
+        }
+        let message = format!("there is no {}", line.block);
+        match self.meant(line.block) {
+            Some(orphan) => {
+                orphan.told = true;
+                let (found, header) = (orphan.number, orphan.header);
+                let state =
+                    if orphan.first.is_some() { "is given twice" } else { "is loaded by no directory block" };
+                problems.error("block.missing", line.at, message);
+                problems.elsewhere(
+                    format!("one of two numbers is wrong: {found} {state}; its header is in"),
+                    header,
+                );
+            }
+            None => problems.error_help(
+                "block.missing",
+                line.at,
+                message,
+                "give the number of a block that there is, or take the line out",
+            ),
+        }
+    }
+
+    /// A line names a block that is loaded already.
+    fn again(&mut self, line: LoadLine, problems: &mut Problems) {
+        let message = format!("{} is loaded already", line.block);
+        match self.meant(line.block).filter(|orphan| orphan.first.is_none()) {
+            Some(orphan) => {
+                orphan.told = true;
+                let (found, header) = (orphan.number, orphan.header);
+                let severity = if orphan.needed.is_empty() { Severity::Warning } else { Severity::Error };
+                problems.push(severity, "block.again", line.at, message, None);
+                problems.elsewhere(
+                    format!("is {found} meant? No directory block loads it; its header is in"),
+                    header,
+                );
+            }
+            None => problems.warning("block.again", line.at, message, Some("take the line out".to_owned())),
+        }
+    }
+
+    /// The orphan that a number may be meant for.
+    fn meant(&mut self, number: BlockNumber) -> Option<&mut Orphan> {
+        let wanted = number.number.to_string();
+        let slip = |orphan: &Orphan| strsim::osa_distance(&wanted, &orphan.number.number.to_string());
+        let near = self
+            .list
+            .iter_mut()
+            .filter(|orphan| !orphan.told && orphan.number.offset == number.offset && slip(orphan) <= SLIP);
+        near.min_by_key(|orphan| slip(orphan))
+    }
+
+    /// The loaded directory block in which an orphan would stand: one of those that name directories if it is one, the last
+    /// before it, else the one that names the nearest number.
+    fn directory_of(&self, orphan: &Orphan) -> Option<BlockNumber> {
+        let is_directory = |block: &BlockNumber| self.directories.contains_key(block);
+        let fits = |(directory, named): &(&BlockNumber, &Vec<BlockNumber>)| {
+            directory.offset == orphan.number.offset
+                && named.iter().any(|block| is_directory(block) != orphan.loads.is_empty())
+        };
+        let directories = || self.directories.iter().filter(fits);
+        let before = directories().map(|(directory, _)| *directory).filter(|d| *d <= orphan.number).max();
+        let distance = |named: &Vec<BlockNumber>| {
+            named.iter().map(|block| block.number.abs_diff(orphan.number.number)).min()
+        };
+        before.or_else(|| directories().min_by_key(|(_, named)| distance(named)).map(|(d, _)| *d))
+    }
+}
