@@ -100,7 +100,7 @@ endings! {
     no_air: "linkbar", "air-lost" => Failing(1, "Grip", "the gripper does not finish");
     a_stuck_potentiometer: "linkbar", "potentiometer-stuck" => Failing(1, "Grip", "the gripper does not finish");
     a_gage_that_is_off: "linkbar", "gage-off" => Failing(1, "Grip", "the gripper is not calibrated");
-    bad_id_pins: "linkbar", "id-pins-bad" => Failing(1, "E-move", "it is not known whether the gripper holds something");
+    bad_id_pins: "linkbar", "id-pins-bad" => Failing(1, "E-move", "the id pins of the quick change name no gripper");
     a_stuck_ring: "tool-change", "lock-ring-stuck" => Failing(1, "Quick Change", "the locking ring of the quick change is stuck");
     a_blind_holster: "tool-change", "holster-eye-off" => Failing(1, "E-move", "the sensor condition did not come");
     a_stuck_resolver: "linkbar", "resolver-stuck" => Failing(1, "Prim", "the robot did not come to rest at the goal");

@@ -178,6 +178,12 @@ impl<'f> Operator<'f> {
         self.send(tick, command);
     }
 
+    /// A command that is not one of the job is under way.
+    #[must_use]
+    pub const fn has_interjected(&self) -> bool {
+        matches!(self.doing, Doing::Own(_))
+    }
+
     /// What has ended since the last call.
     pub fn ended(&mut self) -> Vec<Ended> {
         std::mem::take(&mut self.ended)

@@ -111,6 +111,8 @@ struct Trial<'f, 'p> {
     goal: usize,
     ended: Vec<String>,
     mismatch: Option<(String, String)>,
+    /// The operator has moved the robot away with a part that the vise has, too.
+    tears: bool,
 }
 
 /// Interrupt a fork after its last tick, and see what becomes of it.
@@ -156,6 +158,7 @@ pub fn run(
         goal,
         ended: Vec::new(),
         mismatch: None,
+        tears: false,
     };
     Ok(trial.play(doing, observer))
 }
@@ -199,12 +202,21 @@ impl Trial<'_, '_> {
             } else {
                 self.branch.tick(&mut Silent);
             }
-            self.monitor.look(&self.branch, person && !script.is_over());
+            let at_box = person && !script.is_over();
+            self.tears |= self.takes_from_vise();
+            self.monitor.look(&self.branch, at_box || (self.tears && self.operator.has_interjected()));
             observer.tick(&self.branch);
             if let Some(verdict) = self.verdict(observer) {
                 return self.result(verdict, doing);
             }
         }
+    }
+
+    /// The operator moves the robot away while fingers and vise both have a part: no sensor of the controller shows
+    /// the vise.
+    fn takes_from_vise(&self) -> bool {
+        let moves = *self.kind == Kind::Replaced && self.operator.has_interjected();
+        moves && self.branch.workstation.cell.parts().iter().any(|part| part.held && part.clamped)
     }
 
     /// A command that interrupts.
