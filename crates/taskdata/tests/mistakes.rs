@@ -575,6 +575,7 @@ error: try.job: line 1, column 24: no location point, owner or array is named UN
 error: try.job: line 1, column 21: LINKBAR1_BH has no grip 1 in an object form
     == MOVE LINKBAR1_BH +1 UNIT_1 4 +2 PFIXTURE 0 -- 0
                         ^^
+    help: LINKBAR1_BH has grip +2
 "#,
         ),
         (
@@ -601,6 +602,7 @@ error: try.job: line 1, column 34: destination grip, a whole number, was expecte
 error: try.job: line 1, column 24: no object location form assigns LINKBAR1_BH to a member of UNIT
     == MOVE LINKBAR1_BH +2 UNIT 4 +2 PFIXTURE 0 -- 0
                            ^^^^
+    help: LINKBAR1_BH is assigned to SECTORS
 "#,
         ),
         (
@@ -618,6 +620,7 @@ error: try.job: line 1, column 9: no opening of a vise is named shut
 error: try.job: line 1, column 9: no object location form assigns LCLEVIS_IH to a member of UNIT_1
     ** tray UNIT_1 4 LCLEVIS_IH
             ^^^^^^
+    help: no object location form (-o-loc-, VII.7.3) has LCLEVIS_IH
 "#,
         ),
         (

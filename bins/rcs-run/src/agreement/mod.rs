@@ -30,6 +30,7 @@ pub fn of_job(job: &Job, cell: &CellDescription, store: &Store, path: &Path) -> 
     for line in &job.steps {
         let (Step::Workstation(action) | Step::After { action, .. }) = &line.step else {
             if let Step::Command(command) = &line.step
+                && !line.expects_error
                 && let Some(job::Refused { word, message, help }) = state.command(command)
             {
                 problems.error_help("job.cell", place(job.source(), line, Some(&word)), message, help);

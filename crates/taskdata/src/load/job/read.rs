@@ -247,7 +247,10 @@ impl Reader<'_, '_> {
                 destination: place(destination, destination_sector, Some(destination_grip)),
                 end_at: place(end_at, end_at_sector, None),
             };
-            self.held = command.check(&self.data, self.held, self.problems);
+            // A command that has to fail may lack what it needs, and leave anything behind.
+            let fails = fields.words.get(fields.next).is_some_and(|word| word.text == "expect");
+            self.held =
+                if fails { Held::Unknown } else { command.check(&self.data, self.held, self.problems) };
             let thing = object.given().then_some(object.name);
             let source = self.visit(source, source_sector, thing, source_grip);
             let destination = self.visit(destination, destination_sector, thing, destination_grip);
