@@ -16,7 +16,7 @@ use std::{
 
 use executive::{
     boards::conductor::LOST_AFTER,
-    memory::{Attached, RunName, runs},
+    memory::{self, Attached, RunName},
 };
 use rcs_core::{
     interface::{
@@ -93,10 +93,10 @@ impl Bench {
 
     /// Nothing of the run may be left, and the next one of the same name works at once.
     fn assert_clean(&self) {
-        assert_eq!(runs::traces(&self.name), Vec::<PathBuf>::new());
+        assert_eq!(memory::traces(&self.name), Vec::<PathBuf>::new());
         let next = self.run("linkbar", "split", &["--ticks", "20"]);
         assert_eq!(next.status, Some(0), "{}", next.said);
-        assert_eq!(runs::traces(&self.name), Vec::<PathBuf>::new());
+        assert_eq!(memory::traces(&self.name), Vec::<PathBuf>::new());
     }
 
     /// Common memory as the last tick in the log left it.
@@ -256,7 +256,7 @@ fn five_boards_give_the_bits_of_one() {
         assert!(one.result.get("boards").is_none());
         println!("{job}: {} on one board and on five", one.result["digest"]);
         bench.assert_log_replays();
-        assert_eq!(runs::traces(&bench.name), Vec::<PathBuf>::new());
+        assert_eq!(memory::traces(&bench.name), Vec::<PathBuf>::new());
     }
 }
 
@@ -347,7 +347,7 @@ fn boards_are_killed_many_times_in_a_row() {
         let at = 1 + kill * 617 % 1000;
         let board = [2, 4, 6, 8][usize::try_from(kill).unwrap() % 4];
         strike(&bench, (board, Signal::KILL), reached(at), |_| true);
-        assert_eq!(runs::traces(&bench.name), Vec::<PathBuf>::new(), "kill {kill}");
+        assert_eq!(memory::traces(&bench.name), Vec::<PathBuf>::new(), "kill {kill}");
     }
 }
 
@@ -464,7 +464,7 @@ fn boards_are_started_by_hand_and_strangers_are_refused() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
     let one = Bench::new("hand-one").run("linkbar", "one", &["--ticks", "500"]);
     assert_eq!(ended.result["digest"], one.result["digest"]);
-    assert_eq!(runs::traces(&bench.name), Vec::<PathBuf>::new());
+    assert_eq!(memory::traces(&bench.name), Vec::<PathBuf>::new());
 }
 
 #[test]
@@ -488,5 +488,5 @@ fn a_board_that_was_started_by_hand_can_be_replaced_by_hand() {
         let output = child.wait_with_output().expect("it can be waited for");
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     }
-    assert_eq!(runs::traces(&bench.name), Vec::<PathBuf>::new());
+    assert_eq!(memory::traces(&bench.name), Vec::<PathBuf>::new());
 }

@@ -8,7 +8,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use executive::memory::{Attached, RunName, runs};
+use executive::memory::{self, Attached, RunName};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
 use whole_system_tests::{rcs_run, root};
@@ -136,7 +136,7 @@ impl Ended {
 
 /// Files and objects in shared memory of a run.
 pub fn traces(run: &RunName) -> Vec<PathBuf> {
-    runs::traces(run)
+    memory::traces(run)
 }
 
 /// Nothing is left after `rcs-run clean`.

@@ -4,6 +4,7 @@
 //! user's rights say so and look at the rest if they do not have them.
 
 mod bench;
+mod damage;
 mod kills;
 mod neighbours;
 mod overruns;

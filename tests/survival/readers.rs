@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use executive::memory::{Attached, runs};
+use executive::memory::{self, Attached};
 use rustix::process::{Pid, Signal, kill_process};
 use whole_system_tests::Scratch;
 
@@ -166,7 +166,7 @@ fn what_is_shared_is_the_owners_alone() {
     let mut run = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(run.attach());
     let mode = |path: &Path| fs::metadata(path).expect("it is there").permissions().mode() & 0o777;
-    assert_eq!(mode(&runs::root()), 0o700, "nobody else comes to the files in it");
+    assert_eq!(mode(&memory::root()), 0o700, "nobody else comes to the files in it");
     let objects: Vec<_> = traces(&run.name).into_iter().filter(|path| path.starts_with("/dev/shm")).collect();
     assert!(objects.len() > 16, "{objects:?}");
     for object in objects {

@@ -1,8 +1,12 @@
 //! Memory and disks that are full, taken away, or hold what does not belong there.
 
-use std::{fs, path::Path, process::Command};
+use std::{
+    fs::{self, Permissions},
+    os::unix::fs::PermissionsExt as _,
+    path::Path,
+    process::Command,
+};
 
-use executive::memory::runs;
 use rustix::process::geteuid;
 use whole_system_tests::{Scratch, rcs_run};
 
@@ -75,7 +79,7 @@ fn memory_that_is_taken_while_a_run_begins_is_missed_in_words() {
 #[test]
 fn a_directory_that_is_not_ours_is_not_used() {
     let scratch = Scratch::new("not-ours");
-    let place = scratch.file(&format!("rcs-ii-{}", geteuid().as_raw()));
+    let place = scratch.file(&format!("rcs-runs-{}", geteuid().as_raw()));
     fs::write(&place, "in the way").expect("a file can be written");
     let arguments = job("linkbar");
     let more = ["--ticks", "500", "--log", "none"];
@@ -89,12 +93,16 @@ fn a_directory_that_is_not_ours_is_not_used() {
 fn stale_and_strange_files_do_not_disturb_and_are_removed() {
     let scratch = Scratch::new("stale");
     let (tmp, user) = (scratch.file(""), geteuid().as_raw());
-    let root = scratch.file(&format!("rcs-ii-{user}"));
-    // A killed run of an older version, with a layout that nobody knows any more, and its object.
+    let root = scratch.file(&format!("rcs-runs-{user}"));
+    // A killed run of an older version, with a layout that no program has any more.
     fs::create_dir_all(root.join("old-1@00c0ffee/nodes")).expect("a directory");
-    let old = runs::prefix(&"old-1".parse().expect("it is a name"), "00c0ffee");
-    let object = format!("/dev/shm/{old}x.blackboard");
-    fs::write(&object, "old").expect("an object");
+    // Objects of a killed run whose directory is gone.
+    let prefix = format!("/dev/shm/rcs-{:08x}_", std::process::id());
+    let objects = ["alive.rcs-run", "x.blackboard"].map(|name| format!("{prefix}{name}"));
+    objects.iter().for_each(|object| fs::write(object, "old").expect("an object"));
+    objects
+        .iter()
+        .for_each(|object| fs::set_permissions(object, Permissions::from_mode(0o600)).expect("it is ours"));
     // What looks like a run and is none, and what does not even look like one.
     fs::write(root.join("file-1@00c0ffee"), "a file").expect("a file");
     std::os::unix::fs::symlink("/nowhere", root.join("link-1@00c0ffee")).expect("a link");
@@ -107,11 +115,11 @@ fn stale_and_strange_files_do_not_disturb_and_are_removed() {
     let all: Vec<&str> = arguments.iter().map(String::as_str).chain(more).collect();
     run(&all).assert_shared();
     assert_eq!(run(&["clean"]).status, Some(0));
-    assert!(!Path::new(&object).exists());
+    assert!(objects.iter().all(|object| !Path::new(object).exists()));
     let left = fs::read_dir(&root).expect("the directory of runs").flatten().map(|entry| entry.file_name());
     let mut left: Vec<_> = left.map(|name| name.to_string_lossy().into_owned()).collect();
     left.sort();
-    assert_eq!(left, ["lock", "no run at all"], "what is no run is not ours to remove");
+    assert_eq!(left, ["lock", "no run at all", "salt"], "what is no run is not ours to remove");
 }
 
 #[test]

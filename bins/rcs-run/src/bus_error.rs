@@ -2,7 +2,7 @@
 //!
 //! Shared memory lies in files of a file system in memory. If that is full when a page is first touched, or if
 //! somebody cuts such a file short, the system can only end the program, by the signal SIGBUS, and nobody would know
-//! why. What can be asked beforehand is asked (`executive::memory::runs`), but others can fill `/dev/shm` between the
+//! why. What can be asked beforehand is asked (`executive::memory::place`), but others can fill `/dev/shm` between the
 //! question and the touch.
 
 use rustix::{io::write, stdio::stderr};

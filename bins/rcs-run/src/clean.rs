@@ -9,9 +9,13 @@ use crate::error::{Error, UNUSABLE};
 /// Remove, and say what was done.
 pub fn clean() -> Result<ExitCode, Error> {
     let cleaned = executive::memory::clean()?;
+    let objects = executive::memory::clean_objects()?;
     let removed = cleaned.removed.iter().map(|run| format!("removed {run}\n"));
     let alive = cleaned.alive.iter().map(|run| format!("{run} is alive and was left alone\n"));
     let mut text: String = removed.chain(alive).collect();
+    if objects > 0 {
+        text.push_str(&format!("removed the shared memory of {objects} killed runs without a directory\n"));
+    }
     if text.is_empty() && cleaned.failed.is_empty() {
         text.push_str("nothing was left behind\n");
     }

@@ -388,7 +388,7 @@ fn what_a_killed_run_left_is_removed_by_clean() {
     assert_eq!(cleaned.status.code(), Some(0));
     assert_eq!(executive_runs(child.id()), 0);
     let name: RunName = format!("linkbar-{}", child.id()).parse().expect("it is a name");
-    assert_eq!(executive::memory::runs::traces(&name).len(), 0);
+    assert_eq!(executive::memory::traces(&name).len(), 0);
 }
 
 /// Traces in shared memory of the linkbar run of a process.
@@ -398,7 +398,7 @@ fn executive_runs(process: u32) -> usize {
 
 fn executive_runs_named(name: &str) -> usize {
     let start = format!("{name}@");
-    let runs = fs::read_dir(executive::memory::runs::root()).into_iter().flatten().flatten();
+    let runs = fs::read_dir(executive::memory::root()).into_iter().flatten().flatten();
     runs.filter(|entry| entry.file_name().to_string_lossy().starts_with(&start)).count()
 }
 

@@ -23,7 +23,7 @@ use executive::{
         member::MemberEnd,
         pulse::RunCard,
     },
-    memory::{RunName, runs},
+    memory::{self, RunName},
     runner::{Levels, Runner},
 };
 use levels::ladder::Ladder;
@@ -147,7 +147,7 @@ fn four_boards_compute_the_bits_of_one_and_allocate_nothing() {
             assert!(matches!(board.join().expect("no panic"), Ok(MemberEnd::Over)));
         }
     });
-    assert_eq!(runs::traces(&name), Vec::<PathBuf>::new());
+    assert_eq!(memory::traces(&name), Vec::<PathBuf>::new());
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn a_board_that_leaves_stops_the_pulse_and_is_named() {
         let text = lost.explain(&external(lost.tick).hws, runner.memory());
         assert!(text.contains("board 8 (Quick Change, Grip,") && text.contains("left the run"), "{text}");
     });
-    assert_eq!(runs::traces(&name), Vec::<PathBuf>::new());
+    assert_eq!(memory::traces(&name), Vec::<PathBuf>::new());
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn a_board_with_other_data_or_in_a_taken_place_is_refused() {
         let late = Member::join(&name, Board::Two, FINGERPRINT);
         assert!(matches!(late, Err(MemberError::SharedMemory(_))), "the run is over");
     });
-    assert_eq!(runs::traces(&name), Vec::<PathBuf>::new());
+    assert_eq!(memory::traces(&name), Vec::<PathBuf>::new());
 }
 
 #[test]
@@ -269,5 +269,5 @@ fn a_board_that_is_replaced_goes_on_as_one_whose_processes_were_restarted() {
         assert_eq!(runner.memory(), one.memory());
         assert_eq!(runner.levels().epochs(), &[2, 1, 1, 1]);
     });
-    assert_eq!(runs::traces(&name), Vec::<PathBuf>::new());
+    assert_eq!(memory::traces(&name), Vec::<PathBuf>::new());
 }

@@ -11,7 +11,7 @@ use std::{
     },
 };
 
-use executive::memory::{Attached, Publisher, RunName, SharedMemoryError, buffers::Pulse, list, runs};
+use executive::memory::{self, Attached, Publisher, RunName, SharedMemoryError, buffers::Pulse, list};
 use rcs_core::{
     Plain,
     interface::{CommonMemory, Decided, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport},
@@ -135,9 +135,9 @@ fn readers_come_and_go_and_the_last_one_out_removes_everything() {
     drop(publisher);
     assert_eq!(reader.pulse(), Ok(Pulse { over: true, ..pulse }));
     assert_eq!(reader.memory(), Ok(memory));
-    assert!(!runs::traces(&name).is_empty());
+    assert!(!memory::traces(&name).is_empty());
     drop(reader);
-    assert_eq!(runs::traces(&name), Vec::<PathBuf>::new());
+    assert_eq!(memory::traces(&name), Vec::<PathBuf>::new());
     assert!(matches!(Attached::open(&name), Err(SharedMemoryError::NoSuchRun { .. })));
 }
 

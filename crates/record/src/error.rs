@@ -13,7 +13,13 @@ pub enum RecordError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// The file was removed while the run went on.
+    /// Another run writes the file.
+    #[error("the log {path} is being written by another run: name another file with --log")]
+    InUse {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file was removed or replaced while the run went on.
     #[error("the log {path} was removed during the run")]
     Removed {
         /// The file.

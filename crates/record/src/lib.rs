@@ -27,6 +27,7 @@
 pub mod channels;
 pub mod delta;
 pub mod error;
+pub mod file;
 pub mod golden;
 pub mod input;
 pub mod layout;
@@ -40,6 +41,7 @@ pub mod sink;
 pub mod writer;
 
 pub use error::{ReadError, RecordError, ReplayError};
+pub use file::LogFile;
 pub use input::{Attachment, CellFrame, CellModel, End, Epoch, Link, Setup};
 pub use proto::foxglove::{Level, Transform};
 pub use reader::Log;

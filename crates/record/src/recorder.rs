@@ -12,7 +12,6 @@
 //! priority of its maker.
 
 use std::{
-    fs::File,
     path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
     thread::{self, JoinHandle},
@@ -28,6 +27,7 @@ use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::{
     error::RecordError,
+    file::LogFile,
     input::{Attachment, CellFrame, End, Setup},
     proto::foxglove::Level,
     remarks::Remark,
@@ -127,20 +127,25 @@ pub struct Summary {
 }
 
 impl Recorder {
-    /// Create the file, with its directory if there is none, and start the writer.
+    /// Claim a file, with its directory if there is none, and start the writer.
     ///
     /// # Errors
-    /// [`RecordError`] if the file cannot be created, or its head cannot be written.
+    /// As [`LogFile::claim`] and [`Recorder::start_in`].
     pub fn start(path: &Path, pace: Pace, setup: Setup) -> Result<Self, RecordError> {
+        Self::start_in(LogFile::claim(path)?, pace, setup)
+    }
+
+    /// Empty the file and start the writer.
+    ///
+    /// # Errors
+    /// [`RecordError`] if the file cannot be emptied, or its head cannot be written.
+    pub fn start_in(file: LogFile, pace: Pace, setup: Setup) -> Result<Self, RecordError> {
         if let Some(cell) = &setup.cell {
             cell.check()?;
         }
-        let create = |source| RecordError::Create { path: path.to_owned(), source };
-        if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
-            std::fs::create_dir_all(directory).map_err(create)?;
-        }
-        let file = File::create(path).map_err(create)?;
-        let log = LogWriter::create(Sink::new(file, pace == Pace::Drop), setup)?;
+        let path = file.path().to_owned();
+        let emptied = file.emptied().map_err(|source| RecordError::Create { path: path.clone(), source })?;
+        let log = LogWriter::create(Sink::new(emptied, pace == Pace::Drop), setup)?;
         let tick = Tick::BEFORE_START;
         let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
         let (ticks, tick_consumer) = ring(RING, TickRecord { tick, gap: 0, external, memory, timing: None });
@@ -152,7 +157,7 @@ impl Recorder {
         let end = Arc::default();
         let drain = Drain {
             log,
-            path: path.to_owned(),
+            file,
             ticks: tick_consumer,
             states: state_consumer,
             cells: cell_consumer,
@@ -175,7 +180,7 @@ impl Recorder {
             timing: None,
             gap: 0,
             lost: Lost::default(),
-            path: path.to_owned(),
+            path,
             end,
             thread,
         })
@@ -291,7 +296,7 @@ fn has_room<T>(ring: &Producer<T>, pace: Pace) -> bool {
 /// The writer's end of the ring.
 struct Drain {
     log: LogWriter<Sink>,
-    path: PathBuf,
+    file: LogFile,
     ticks: Consumer<TickRecord>,
     states: Consumer<(Tick, LadderState)>,
     cells: Consumer<CellFrame>,
@@ -307,8 +312,8 @@ impl Drain {
             // still found.
             let ended = self.ticks.is_abandoned();
             while let Ok(record) = self.ticks.pop() {
-                if record.tick.0.is_multiple_of(FULL_SET) && !self.path.exists() {
-                    return Err(RecordError::Removed { path: self.path });
+                if record.tick.0.is_multiple_of(FULL_SET) {
+                    self.file.look()?;
                 }
                 self.write(&record)?;
             }
@@ -320,7 +325,8 @@ impl Drain {
         self.write_notes(Tick(u64::MAX))?;
         let (end, lost) = self.end.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let written = self.log.finish(&end, lost)?;
-        if self.path.exists() { Ok(written) } else { Err(RecordError::Removed { path: self.path }) }
+        self.file.look()?;
+        Ok(written)
     }
 
     fn write(&mut self, record: &TickRecord) -> Result<(), RecordError> {

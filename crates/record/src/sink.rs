@@ -15,15 +15,47 @@ const BUFFER: usize = 64 * 1024;
 
 /// A file with a buffer before it.
 pub struct Sink {
-    file: BufWriter<File>,
+    file: BufWriter<Whole>,
     durable: bool,
+}
+
+/// A file that must stay as long as what was written to it: behind a cut there would be zeros.
+struct Whole {
+    file: File,
+    /// Bytes that it has at least.
+    length: u64,
+}
+
+impl Write for Whole {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let found = self.file.metadata()?.len();
+        if found < self.length {
+            let length = self.length;
+            return Err(io::Error::other(format!(
+                "another program cut the file to {found} bytes, it had {length}"
+            )));
+        }
+        let written = self.file.write(bytes)?;
+        self.length = self.length.max(self.file.stream_position()?);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for Whole {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
 }
 
 impl Sink {
     /// A sink into `file`. If it is durable, what was flushed is on the disk.
     #[must_use]
     pub fn new(file: File, durable: bool) -> Self {
-        Self { file: BufWriter::with_capacity(BUFFER, file), durable }
+        Self { file: BufWriter::with_capacity(BUFFER, Whole { file, length: 0 }), durable }
     }
 }
 
@@ -34,7 +66,7 @@ impl Write for Sink {
 
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()?;
-        if self.durable { self.file.get_ref().sync_data() } else { Ok(()) }
+        if self.durable { self.file.get_ref().file.sync_data() } else { Ok(()) }
     }
 }
 

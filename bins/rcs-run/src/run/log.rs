@@ -12,8 +12,8 @@ use rcs_core::{
     tick::Tick,
 };
 use record::{
-    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Pace, RecordError, Recorder, Summary, Timing,
-    Transform,
+    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, LogFile, Pace, RecordError, Recorder, Summary,
+    Timing, Transform,
 };
 use taskdata::load::{
     Source,
@@ -41,7 +41,7 @@ impl Log {
     ///
     /// # Errors
     /// [`RecordError`] if the file cannot be written.
-    pub fn start(path: &Path, arguments: &RunArguments, setup: &Setup) -> Result<Self, RecordError> {
+    pub fn start(file: LogFile, arguments: &RunArguments, setup: &Setup) -> Result<Self, RecordError> {
         let coming: Vec<&str> = setup.job.steps.iter().filter_map(|line| delivered(&line.step)).collect();
         let later = (1..).take(coming.len()).map(|id| ("world", part_link(id)));
         let here = setup.cell.links().into_iter().map(|link| (link.parent, link.name));
@@ -65,7 +65,7 @@ impl Log {
         };
         let run = metadata(arguments, &setup.job, &attachments);
         let recorder =
-            Recorder::start(path, pace, record::Setup { epoch, run, attachments, cell: Some(model) })?;
+            Recorder::start_in(file, pace, record::Setup { epoch, run, attachments, cell: Some(model) })?;
         Ok(Self { recorder, links, faults: Counts::default(), kinds: Vec::new() })
     }
 

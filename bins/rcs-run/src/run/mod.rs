@@ -128,9 +128,11 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     setup.robot.gather(arguments.wait, &interrupted);
     let name = arguments.run.clone().unwrap_or_else(|| RunName::unique(&setup.job.name));
     let controller = Controller::start(arguments, &name, &setup.store, &setup.job, &interrupted)?;
-    let log = setup.log.as_deref().map(|path| Log::start(path, arguments, &setup)).transpose()?;
+    let file = setup.log.take();
+    let log_path = file.as_ref().map(|file| file.path().to_owned());
+    let log = file.map(|file| Log::start(file, arguments, &setup)).transpose()?;
     let publisher = publisher(arguments, &name);
-    let Setup { store, job, description, cell, robot, neighbours, log: log_path, .. } = setup;
+    let Setup { store, job, description, cell, robot, neighbours, .. } = setup;
     let workstation = SimulatedWorkstation::new(cell);
     let workstation = if robot.port().is_some() { workstation.with_robot_elsewhere() } else { workstation };
     let mut run = Run {

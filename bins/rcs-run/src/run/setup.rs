@@ -19,6 +19,7 @@ use plant::{
     camera::Analysis,
     fault::text::{self, FaultFile},
 };
+use record::LogFile;
 use taskdata::load::{Diagnostics, Job, Source, Store, source::read_text};
 
 use super::{
@@ -57,7 +58,7 @@ pub struct Setup {
     /// Who commands, and the Data System.
     pub neighbours: Neighbours,
     /// Where the log goes.
-    pub log: Option<PathBuf>,
+    pub log: Option<LogFile>,
 }
 
 impl Setup {
@@ -80,8 +81,8 @@ impl Setup {
         let cell = if sees_elsewhere { cell.with_vision_elsewhere() } else { cell };
         let log = match &arguments.log {
             Some(LogTarget::None) => None,
-            Some(LogTarget::File(path)) => Some(path.clone()),
-            None => Some(Path::new("runs").join(&job.name).with_added_extension("mcap")),
+            Some(LogTarget::File(path)) => Some(LogFile::claim(path)?),
+            None => Some(LogFile::claim_free(Path::new("runs"), &job.name)?),
         };
         let neighbours = neighbours(arguments, &job, &description, interrupted)?;
         // The last of all: a robot hears nothing of a run that cannot begin.

@@ -11,7 +11,6 @@ use std::{
     time::{Duration, Instant},
 };
 
-use iceoryx2::{node::Node, prelude::ipc};
 use levels::ladder::LadderState;
 use rcs_core::{
     Plain,
@@ -30,8 +29,9 @@ use crate::{
     failure,
     histogram::Histogram,
     memory::{
+        self, RunName, SharedMemoryError,
         publish::FIRST_EPOCH,
-        runs::{self, RunName, SharedMemoryError},
+        runs::{self, RunNode},
     },
     runner::Levels,
 };
@@ -256,7 +256,7 @@ pub struct BoardFigures<'a> {
 pub struct Conductor {
     name: RunName,
     // Taken out before the files are removed: iceoryx2 must have let go of them by then.
-    ports: Option<(PulseGiver, Node<ipc::Service>)>,
+    ports: Option<(PulseGiver, RunNode)>,
     seats: Vec<Seat>,
     pulse: SystemPulse,
     fingerprint: Fingerprint,
@@ -270,12 +270,12 @@ impl Conductor {
     /// [`SharedMemoryError`] if this machine does not give the memory or the name is taken.
     pub fn create(name: &RunName, card: &RunCard) -> Result<Self, SharedMemoryError> {
         runs::clean()?;
-        runs::have_room()?;
-        runs::have_sockets(name)?;
-        let node = runs::node(name, BOARD_0)?;
+        memory::have_room()?;
+        memory::have_sockets(name)?;
+        let node = runs::enter(name, BOARD_0)?;
         let pulse = SystemPulse { epochs: [FIRST_EPOCH; BOARDS], ..SystemPulse::ZERO };
         let giver = PulseGiver::create(&node, card, &pulse)?;
-        runs::reserve(name)?;
+        memory::reserve(name)?;
         Ok(Self {
             name: name.clone(),
             ports: Some((giver, node)),
@@ -533,6 +533,6 @@ impl Drop for Conductor {
         self.seats.clear();
         drop(self.ports.take());
         // Boards that were started by hand keep the files until they have left; the last one out removes them.
-        let _ = runs::remove_if_deserted(&self.name, &runs::layout());
+        let _ = runs::remove_if_deserted(&self.name, &memory::layout());
     }
 }

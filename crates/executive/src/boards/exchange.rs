@@ -29,10 +29,7 @@ use rcs_core::{
 use taskdata::files::TaskData;
 
 use super::{BOARDS, Board};
-use crate::memory::{
-    buffers::Epoch,
-    runs::{SharedMemoryError, service_name},
-};
+use crate::memory::{SharedMemoryError, buffers::Epoch, runs::service_name};
 
 /// Who may read a board's blackboards: the other boards, board 0, and a board that takes over.
 pub(super) const READERS: usize = BOARDS + 2;

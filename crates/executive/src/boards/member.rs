@@ -28,9 +28,10 @@ use super::{
 use crate::{
     alloc::{self, Section},
     memory::{
+        self, RunName, SharedMemoryError,
         buffers::Epoch,
         publish::FIRST_EPOCH,
-        runs::{self, RunName, SharedMemoryError},
+        runs::{self, RunNode},
     },
 };
 
@@ -125,7 +126,7 @@ struct Ports {
     reports: ReportWriter,
     // The neighbours with the epochs under which they were opened.
     neighbours: [Option<(Epoch, Readers)>; BOARDS],
-    node: Node<ipc::Service>,
+    node: RunNode,
 }
 
 /// A board in a run. Dropping it leaves the run.
@@ -152,7 +153,7 @@ impl Member {
     /// [`MemberError`] if there is no such run, if it runs with something else than `fingerprint`, or if the place is taken.
     pub fn join(name: &RunName, board: Board, fingerprint: Fingerprint) -> Result<Self, MemberError> {
         runs::find_living(name)?;
-        let node = runs::node(name, board.name())?;
+        let node = runs::enter(name, board.name())?;
         let taker = PulseTaker::open(&node)?;
         let card = taker.card()?;
         if let Some(difference) = fingerprint.difference(&card.fingerprint) {
@@ -175,7 +176,7 @@ impl Member {
                 Err(_) => std::thread::sleep(AGAIN),
             }
         };
-        runs::reserve(name)?;
+        memory::reserve(name)?;
         let report =
             BoardReport { fingerprint, pid: std::process::id(), punctual: true, ..BoardReport::ZERO };
         let mut halves = [CommonMemory::ZERO; 2];
@@ -348,6 +349,6 @@ impl Drop for Member {
     fn drop(&mut self) {
         drop(self.ports.take());
         // Board 0 or another board keeps the files; whoever leaves last removes them.
-        let _ = runs::remove_if_deserted(&self.name, &runs::layout());
+        let _ = runs::remove_if_deserted(&self.name, &memory::layout());
     }
 }

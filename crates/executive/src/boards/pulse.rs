@@ -22,8 +22,9 @@ use super::{
     exchange::{EntryReader, EntryWriter, READERS, entry_size, stamped},
 };
 use crate::memory::{
+    SharedMemoryError,
     buffers::{Epoch, layout_version},
-    runs::{SharedMemoryError, service_name},
+    runs::service_name,
 };
 
 /// Epoch of the services of board 0, which is never taken over: a run ends with it.

@@ -1,6 +1,5 @@
 //! The side of the others: look into a run without disturbing it.
 
-use iceoryx2::{node::Node, prelude::ipc};
 use rcs_core::{
     interface::{CommonMemory, ExternalInputs},
     plain::DecodeError,
@@ -8,8 +7,11 @@ use rcs_core::{
 
 use super::{
     buffers::{Pulse, Readers},
+    error::SharedMemoryError,
+    name::RunName,
+    place,
     publish::FIRST_EPOCH,
-    runs::{self, RunName, SharedMemoryError},
+    runs,
 };
 
 /// How often a reader looks again when it meets the writer at work. Writing takes microseconds of a tick.
@@ -35,7 +37,7 @@ pub struct Attached {
 
 struct Ports {
     readers: Readers,
-    _node: Node<ipc::Service>,
+    _member: runs::RunNode,
 }
 
 impl Attached {
@@ -46,8 +48,8 @@ impl Attached {
     /// it comes from other sources, else what iceoryx2 says.
     pub fn open(name: &RunName) -> Result<Self, SharedMemoryError> {
         runs::find_living(name)?;
-        let node = runs::node(name, "reader")?;
-        let ports = Ports { readers: Readers::open(&node, FIRST_EPOCH)?, _node: node };
+        let member = runs::enter(name, "reader")?;
+        let ports = Ports { readers: Readers::open(&member, FIRST_EPOCH)?, _member: member };
         Ok(Self { name: name.clone(), ports: Some(ports) })
     }
 
@@ -100,6 +102,6 @@ impl Drop for Attached {
     fn drop(&mut self) {
         drop(self.ports.take());
         // A living run or another reader keeps the files; a failure is left to `rcs-run clean`.
-        let _ = runs::remove_if_deserted(&self.name, &runs::layout());
+        let _ = runs::remove_if_deserted(&self.name, &place::layout());
     }
 }

@@ -20,7 +20,7 @@ use rcs_core::{
 };
 use std::marker::PhantomData;
 
-use super::runs::{self, SharedMemoryError};
+use super::{error::SharedMemoryError, runs};
 
 /// Epoch of a service: 1 for the first writer, the next number for a writer that takes over from a killed one, because a blackboard
 /// cannot be reopened for writing while a reader holds it. Part of the service's name.

@@ -29,15 +29,17 @@ use std::{
 };
 
 use iceoryx2::{
-    node::Node,
     port::publisher::Publisher,
     prelude::{AllocationStrategy, ipc},
     service::service_name::ServiceName,
 };
 
 use super::{
+    error::SharedMemoryError,
+    name::RunName,
+    place,
     publish::{self, Published, Window},
-    runs::{self, RunName, SharedMemoryError},
+    runs,
 };
 use crate::status::Status;
 
@@ -47,8 +49,8 @@ pub const SERVICE: &str = "rcs-ii/status";
 const PERIOD: Duration = Duration::from_millis(100);
 /// How often the thread looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(10);
-/// How long the end of a run waits for the thread.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// How long the start and the end of a run wait for the thread.
+const PATIENCE: Duration = Duration::from_secs(2);
 /// Bytes that a message may have: about five times what it has.
 const MESSAGE: usize = 16 * 1024;
 /// Monitors at a time.
@@ -65,7 +67,7 @@ struct Ports {
     window: Arc<Window>,
     publisher: Publisher<ipc::Service, [u8], ()>,
     // After the publisher: the service is closed before its node.
-    _node: Node<ipc::Service>,
+    _member: runs::RunNode,
 }
 
 impl Mirror {
@@ -90,9 +92,16 @@ impl Mirror {
                 let _ = say.send(Err(error));
             }
         };
-        let failed = |source| SharedMemoryError::Io { path: runs::directory(name), source };
+        let failed = |source| SharedMemoryError::Io { path: place::place(name, &place::layout()), source };
         let thread = thread::Builder::new().name("mirror".into()).spawn(work).map_err(failed)?;
-        opened.recv().unwrap_or(Ok(()))?;
+        let opened = opened.recv_timeout(PATIENCE).unwrap_or_else(|_| {
+            stop.store(true, Ordering::Relaxed);
+            Err(SharedMemoryError::Late {
+                what: "setting up the service of the status".to_owned(),
+                limit: PATIENCE,
+            })
+        });
+        opened?;
         Ok(Self { stop, thread: Some(thread) })
     }
 }
@@ -100,9 +109,9 @@ impl Mirror {
 impl Ports {
     fn open(run: RunName, window: Arc<Window>) -> Result<Self, SharedMemoryError> {
         let failed = |error: &dyn std::fmt::Debug| SharedMemoryError::service("status", error);
-        let node = runs::node(&run, "status")?;
+        let member = runs::enter(&run, "status")?;
         let service_name = ServiceName::new(SERVICE).map_err(|error| failed(&error))?;
-        let service = node
+        let service = member
             .service_builder(&service_name)
             .publish_subscribe::<[u8]>()
             .max_subscribers(MAX_SUBSCRIBERS)
@@ -116,8 +125,8 @@ impl Ports {
             .allocation_strategy(AllocationStrategy::Static)
             .create()
             .map_err(|error| failed(&error))?;
-        runs::reserve(&run)?;
-        Ok(Self { run, window, publisher, _node: node })
+        place::reserve(&run)?;
+        Ok(Self { run, window, publisher, _member: member })
     }
 
     fn mirror(self, stop: &AtomicBool) {
@@ -137,7 +146,7 @@ impl Ports {
         let Some(Published { external, memory, pulse }) = self.window.with(|published| *published) else {
             return false;
         };
-        if runs::have_room().is_ok() {
+        if place::have_room().is_ok() {
             self.send(&Status::of(self.run.as_str(), &external, &memory, &pulse));
         }
         true
@@ -170,13 +179,13 @@ impl Drop for Mirror {
 /// Where `iox2` finds the run: in this directory it looks for `config/iceoryx2.toml`.
 #[must_use]
 pub fn directory(name: &RunName) -> PathBuf {
-    runs::directory(name)
+    place::place(name, &place::layout())
 }
 
 fn write_configuration(name: &RunName) -> Result<(), SharedMemoryError> {
-    let config = runs::config(name, &runs::layout())?;
+    let config = runs::config(name)?;
     let text = toml::to_string(&config).map_err(|error| SharedMemoryError::service("status", &error))?;
-    let path = runs::directory(name).join("config");
+    let path = place::place(name, &place::layout()).join("config");
     let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
     fs::create_dir_all(&path).map_err(failed)?;
     fs::write(path.join("iceoryx2.toml"), text).map_err(failed)

@@ -14,15 +14,25 @@
 //! * [`publish`]: the side of the run;
 //! * [`attach`]: the side of the others;
 //! * [`mirror`]: the status for programs that know nothing of the buffers;
-//! * [`runs`]: names, places, versions, and the removal of what killed runs left.
+//! * [`name`], [`place`]: names, directories, prefixes, and that they are this user's alone;
+//! * [`presence`]: which programs of a run live;
+//! * [`runs`]: entering, finding and removing runs.
 
 pub mod attach;
 pub mod buffers;
+mod error;
 pub mod mirror;
+mod name;
+mod place;
+mod presence;
 pub mod publish;
 pub mod runs;
 
 pub use attach::{Attached, ReadError};
+pub use error::SharedMemoryError;
 pub use mirror::Mirror;
+pub use name::RunName;
+pub(crate) use place::{have_room, have_sockets, reserve};
+pub use place::{layout, prefix, root};
 pub use publish::Publisher;
-pub use runs::{RunName, SharedMemoryError, clean, list};
+pub use runs::{clean, clean_objects, list, traces};

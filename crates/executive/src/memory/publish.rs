@@ -3,12 +3,13 @@
 
 use std::sync::{Arc, Mutex, TryLockError};
 
-use iceoryx2::{node::Node, prelude::ipc};
 use rcs_core::interface::{CommonMemory, ExternalInputs};
 
 use super::{
     buffers::{Epoch, Pulse, Writers},
-    runs::{self, RunName, SharedMemoryError},
+    error::SharedMemoryError,
+    name::RunName,
+    place, runs,
 };
 
 /// Epoch of a run whose writers were never restarted.
@@ -52,7 +53,7 @@ pub struct Publisher {
 struct Ports {
     writers: Writers,
     // Last: the services are closed before their node.
-    _node: Node<ipc::Service>,
+    _member: runs::RunNode,
 }
 
 impl Publisher {
@@ -64,17 +65,16 @@ impl Publisher {
     pub fn create(name: &RunName) -> Result<Self, SharedMemoryError> {
         // Half a run is none: what was set up before something failed goes again.
         Self::set_up(name).inspect_err(|_| {
-            let _ = runs::remove_if_deserted(name, &runs::layout());
+            let _ = runs::remove_if_deserted(name, &place::layout());
         })
     }
 
     fn set_up(name: &RunName) -> Result<Self, SharedMemoryError> {
-        runs::own_root()?;
         runs::clean()?;
-        runs::have_room()?;
-        let node = runs::node(name, "rcs-run")?;
-        let ports = Ports { writers: Writers::create(&node, FIRST_EPOCH)?, _node: node };
-        runs::reserve(name)?;
+        place::have_room()?;
+        let member = runs::enter(name, "rcs-run")?;
+        let ports = Ports { writers: Writers::create(&member, FIRST_EPOCH)?, _member: member };
+        place::reserve(name)?;
         Ok(Self { name: name.clone(), ports: Some(ports), pulse: Pulse::default(), window: Arc::default() })
     }
 
@@ -106,6 +106,6 @@ impl Drop for Publisher {
             drop(ports);
         }
         // Nothing can be done about a failure here; `rcs-run clean` tries again and reports.
-        let _ = runs::remove_if_deserted(&self.name, &runs::layout());
+        let _ = runs::remove_if_deserted(&self.name, &place::layout());
     }
 }

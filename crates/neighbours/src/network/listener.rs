@@ -8,10 +8,10 @@ use std::{
     fs, io,
     net::TcpListener,
     os::unix::{
-        fs::{FileTypeExt as _, PermissionsExt as _},
+        fs::{FileTypeExt as _, MetadataExt as _, PermissionsExt as _},
         net::UnixListener,
     },
-    path::Path,
+    path::{Path, PathBuf},
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -20,7 +20,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use rustix::{net::sockopt, process::geteuid};
+use rustix::{
+    net::{Shutdown, shutdown, sockopt},
+    process::geteuid,
+};
 
 #[cfg(feature = "zenoh")]
 use super::over_zenoh;
@@ -95,9 +98,32 @@ enum Line {
 
 /// Waits at a socket.
 struct Sockets {
-    address: Address,
+    socket: Arc<Socket>,
+    file: Option<SocketFile>,
     over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
+}
+
+/// The file of a Unix socket. Another program may have put its own at the same path since.
+struct SocketFile {
+    path: PathBuf,
+    /// Device and inode.
+    identity: (u64, u64),
+}
+
+impl SocketFile {
+    fn at(path: &Path) -> io::Result<Self> {
+        let found = fs::symlink_metadata(path)?;
+        Ok(Self { path: path.to_owned(), identity: (found.dev(), found.ino()) })
+    }
+
+    /// Remove the file, if it is still this one.
+    fn remove(&self) {
+        if Self::at(&self.path).is_ok_and(|found| found.identity == self.identity) {
+            // It may have been removed just now.
+            let _ = fs::remove_file(&self.path);
+        }
+    }
 }
 
 /// What the threads work with.
@@ -146,7 +172,7 @@ impl Listener {
                 }
             };
         let reception = Arc::new(Reception { counters, secret, clock, door: Door::default() });
-        let _sockets = Sockets::listen(socket, bound.clone(), reception);
+        let _sockets = Sockets::listen(socket, &bound, reception).map_err(failed)?;
         Ok(Self { address: bound, _line: Line::Sockets { _sockets } })
     }
 
@@ -158,30 +184,32 @@ impl Listener {
 }
 
 impl Sockets {
-    fn listen(socket: Socket, address: Address, reception: Arc<Reception>) -> Self {
-        let over = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&over);
-        let thread = Some(thread::spawn(move || listen(&socket, &flag, &reception)));
-        Self { address, over, thread }
+    fn listen(socket: Socket, address: &Address, reception: Arc<Reception>) -> io::Result<Self> {
+        let file = match address {
+            Address::Unix(path) => Some(SocketFile::at(path)?),
+            Address::Tcp(_) | Address::Zenoh(_) => None,
+        };
+        let (socket, over) = (Arc::new(socket), Arc::new(AtomicBool::new(false)));
+        let (waiting, flag) = (Arc::clone(&socket), Arc::clone(&over));
+        let thread = Some(thread::spawn(move || listen(&waiting, &flag, &reception)));
+        Ok(Self { socket, file, over, thread })
     }
 }
 
 impl Drop for Sockets {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Release);
-        // Wakes the thread that waits for a connection.
-        let woken = match &self.address {
-            Address::Unix(path) => std::os::unix::net::UnixStream::connect(path).is_ok(),
-            Address::Tcp(place) => std::net::TcpStream::connect(place).is_ok(),
-            Address::Zenoh(_) => false,
+        // Wakes the thread that waits for a connection, whatever stands at the address by now.
+        let woken = match &*self.socket {
+            Socket::Unix(listener) => shutdown(listener, Shutdown::Both),
+            Socket::Tcp(listener) => shutdown(listener, Shutdown::Both),
         };
-        if let Some(thread) = self.thread.take().filter(|_| woken) {
+        if let Some(thread) = self.thread.take().filter(|_| woken.is_ok()) {
             // It has nothing to return, and a panic in it was reported.
             let _ = thread.join();
         }
-        if let Address::Unix(path) = &self.address {
-            // Somebody may have removed it.
-            let _ = fs::remove_file(path);
+        if let Some(file) = &self.file {
+            file.remove();
         }
     }
 }
@@ -222,6 +250,9 @@ fn listen(socket: &Socket, over: &AtomicBool, reception: &Arc<Reception>) {
             Socket::Tcp(listener) => listener.accept().map(|(stream, _)| Stream::Tcp(stream)),
         };
         let Ok(stream) = accepted else {
+            if over.load(Ordering::Acquire) {
+                return;
+            }
             // Out of file descriptors, perhaps: it must not become a busy loop.
             thread::sleep(Duration::from_millis(100));
             continue;
@@ -376,6 +407,18 @@ mod tests {
         let refused = Listener::start(&Address::Unix(file.clone()), None, [&desk]);
         assert!(matches!(refused, Err(ListenError::Address { .. })));
         assert_eq!(fs::read_to_string(file).unwrap(), "not to be lost");
+    }
+
+    #[test]
+    fn a_listener_whose_path_was_taken_by_another_ends_and_leaves_the_other_alone() {
+        let place = tempfile::tempdir().unwrap();
+        let socket = place.path().join("rcs.sock");
+        let desk = Desk::new(Role::Workstation, ClockKind::Real);
+        let first = Listener::start(&Address::Unix(socket.clone()), None, [&desk]).unwrap();
+        fs::remove_file(&socket).unwrap();
+        let _second = UnixListener::bind(&socket).unwrap();
+        drop(first);
+        assert!(socket.exists());
     }
 
     #[test]

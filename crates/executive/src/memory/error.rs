@@ -1,0 +1,103 @@
+//! Why common memory is not shared, in words for a person.
+
+use std::{fmt::Debug, io, path::PathBuf, time::Duration};
+
+use super::name::{RUN_NAME_MAX, RunName};
+
+/// Why common memory is not shared.
+#[derive(Debug, thiserror::Error)]
+pub enum SharedMemoryError {
+    /// A name that no run can have.
+    #[error(
+        "a run's name has 1 to {RUN_NAME_MAX} letters, digits, dots, hyphens or underscores, {0:?} is not one"
+    )]
+    BadName(String),
+    /// A path that iceoryx2 does not take.
+    #[error("{0:?} cannot be used for shared memory: the path is too long or has unusual characters")]
+    BadPath(PathBuf),
+    /// No living run of that name, or none at all.
+    #[error("there is no run{}: {}", .run.as_ref().map_or_else(String::new, |run| format!(" named {run}")), alive_in_words(.alive))]
+    NoSuchRun {
+        /// As asked for; `None` if any would do.
+        run: Option<String>,
+        /// The runs that live.
+        alive: Vec<RunName>,
+    },
+    /// A run whose program has another layout of buffers.
+    #[error(
+        "run {run:?} has layout {theirs}, this program has {ours}: they were built from different sources"
+    )]
+    OtherLayout {
+        /// Name of the run.
+        run: String,
+        /// Its layout version.
+        theirs: String,
+        /// The layout version of this program.
+        ours: String,
+    },
+    /// The node could not be created.
+    #[error("iceoryx2 could not be started in {place:?}: {what}")]
+    Node {
+        /// Directory of the run.
+        place: PathBuf,
+        /// What iceoryx2 says.
+        what: String,
+    },
+    /// A service could not be created or opened.
+    #[error("the buffers of {service} could not be set up in shared memory: {what}")]
+    Service {
+        /// Name of the service.
+        service: &'static str,
+        /// What iceoryx2 says.
+        what: String,
+    },
+    /// A directory, file or object of runs belongs to another user, or other users may write to it.
+    #[error("{path:?} is not this user's alone ({what}): remove it, or set TMPDIR to another directory")]
+    NotOurs {
+        /// Which.
+        path: PathBuf,
+        /// What it is instead.
+        what: String,
+    },
+    /// There is too little shared memory.
+    #[error("/dev/shm has {free} bytes left, a run needs {needed}")]
+    Full {
+        /// Bytes that are free.
+        free: u64,
+        /// Bytes that a run needs.
+        needed: u64,
+    },
+    /// Another program kept something for longer than it ever takes.
+    #[error("{what} took longer than {}: another program may be stopped in the middle of it", seconds(*.limit))]
+    Late {
+        /// What was waited for.
+        what: String,
+        /// How long.
+        limit: Duration,
+    },
+    /// A file could not be removed or a directory not be read.
+    #[error("{path:?}: {source}")]
+    Io {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+impl SharedMemoryError {
+    pub(crate) fn service(service: &'static str, what: &dyn Debug) -> Self {
+        Self::Service { service, what: format!("{what:?}") }
+    }
+}
+
+fn seconds(limit: Duration) -> String {
+    format!("{} s", limit.as_secs())
+}
+
+fn alive_in_words(alive: &[RunName]) -> String {
+    match alive {
+        [] => "no run shows its buffers at the moment".to_owned(),
+        some => format!("there is {}", some.iter().map(RunName::as_str).collect::<Vec<_>>().join(", ")),
+    }
+}

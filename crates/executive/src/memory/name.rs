@@ -1,0 +1,66 @@
+//! Names of runs.
+
+use std::{fmt, str::FromStr};
+
+use super::error::SharedMemoryError;
+
+/// Most characters of a run's name. The path of an event's socket holds it, and Linux gives such a path 107 bytes.
+pub const RUN_NAME_MAX: usize = 28;
+/// Name of a run: letters, digits, dots, hyphens and underscores.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct RunName(String);
+
+impl RunName {
+    /// A name that no other living run of this machine has: the job and the number of this operating system
+    /// process. Characters of the job that a name cannot have become hyphens.
+    #[must_use]
+    pub fn unique(job: &str) -> Self {
+        let suffix = format!("-{}", std::process::id());
+        let room = RUN_NAME_MAX - suffix.len();
+        let job: String =
+            job.chars().take(room).map(|c| if is_name_character(c) { c } else { '-' }).collect();
+        Self(job + &suffix)
+    }
+
+    /// The name as text.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+fn is_name_character(c: char) -> bool {
+    c.is_ascii_alphanumeric() || "-_.".contains(c)
+}
+
+impl FromStr for RunName {
+    type Err = SharedMemoryError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let good = (1..=RUN_NAME_MAX).contains(&text.len())
+            && text.chars().all(is_name_character)
+            && text.starts_with(|c: char| c.is_ascii_alphanumeric());
+        if good { Ok(Self(text.to_owned())) } else { Err(SharedMemoryError::BadName(text.to_owned())) }
+    }
+}
+
+impl fmt::Display for RunName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_checked() {
+        assert!("linkbar-17".parse::<RunName>().is_ok());
+        for bad in ["", "a/b", "..", "-x", "ab cd", &"x".repeat(RUN_NAME_MAX + 1)] {
+            assert!(matches!(bad.parse::<RunName>(), Err(SharedMemoryError::BadName(_))), "{bad:?}");
+        }
+        let long = RunName::unique(&"job with blanks ".repeat(5));
+        assert!(long.as_str().len() <= RUN_NAME_MAX && long.as_str().parse::<RunName>().is_ok(), "{long}");
+    }
+}

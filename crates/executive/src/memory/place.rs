@@ -1,0 +1,230 @@
+//! Where runs live: a directory for the files of iceoryx2, a prefix for the names of objects in shared memory, and
+//! the checks that both belong to this user alone.
+//!
+//! The prefix is a hash over a random number in the directory of runs. So runs under another `TMPDIR` never meet, also not
+//! in containers that share `/dev/shm`, and another user cannot take a name before the run does.
+
+use std::{
+    fs::{self, DirBuilder, File, Metadata, OpenOptions, Permissions, TryLockError},
+    io::{self, Write as _},
+    os::unix::fs::{DirBuilderExt as _, MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _},
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, Instant},
+};
+
+use rcs_core::digest::Digest;
+use rustix::{
+    fs::{FallocateFlags, fallocate, statvfs},
+    process::geteuid,
+};
+
+use super::{buffers::layout_version, error::SharedMemoryError, name::RunName};
+
+/// Where Linux keeps shared memory objects.
+pub(super) const SHARED_MEMORY: &str = "/dev/shm";
+/// Bytes of shared memory that must be free before a run makes its objects: more than twice what they take.
+const NEEDED: u64 = 2 * 1024 * 1024;
+/// Bytes of a path that a socket can have.
+const SOCKET_PATH: usize = 107;
+/// Most bytes that iceoryx2 puts between a prefix and the end of a socket's path: a number of 31 digits and `.event`.
+const SOCKET_NAME: usize = 37;
+/// Longest wait for a lock that is held for milliseconds.
+pub(super) const LOCK_LIMIT: Duration = Duration::from_secs(5);
+/// Time between two attempts at a lock.
+const AGAIN: Duration = Duration::from_millis(1);
+/// Permission bits of other users.
+const OTHERS: u32 = 0o077;
+
+/// Directory of all runs of this user.
+#[must_use]
+pub fn root() -> PathBuf {
+    std::env::temp_dir().join(format!("rcs-runs-{}", geteuid().as_raw()))
+}
+
+/// The layout version of this program as it stands in names.
+#[must_use]
+pub fn layout() -> String {
+    format!("{:08x}", layout_version())
+}
+
+/// Directory of a run.
+pub(super) fn place(name: &RunName, layout: &str) -> PathBuf {
+    root().join(format!("{name}@{layout}"))
+}
+
+/// What the names of a run's objects in shared memory start with: short, since it stands in paths of sockets too.
+#[must_use]
+pub fn prefix(name: &RunName, layout: &str) -> String {
+    let mut digest = Digest::new();
+    // Without a directory of runs there are no objects.
+    digest.add(&fs::read(root().join("salt")).unwrap_or_default());
+    digest.add(layout.as_bytes());
+    digest.add(name.as_str().as_bytes());
+    let value = digest.value();
+    format!("rcs-{:08x}_", (value ^ (value >> 32)) & u64::from(u32::MAX))
+}
+
+/// The objects in shared memory whose names start with a run's prefix.
+pub(super) fn objects(prefix: &str) -> impl Iterator<Item = PathBuf> {
+    let entries = fs::read_dir(SHARED_MEMORY).into_iter().flatten().flatten();
+    entries
+        .filter(move |entry| entry.file_name().to_str().is_some_and(|name| name.starts_with(prefix)))
+        .map(|entry| entry.path())
+}
+
+/// Held while runs are listed, and while a run's directory is made or removed. The system releases it when its holder
+/// ends, however that happens.
+pub(super) fn lock() -> Result<File, SharedMemoryError> {
+    own_root()?;
+    let path = root().join("lock");
+    let file = own_file(&path)?;
+    let deadline = Instant::now() + LOCK_LIMIT;
+    loop {
+        match file.try_lock() {
+            Ok(()) => return Ok(file),
+            Err(TryLockError::WouldBlock) if Instant::now() < deadline => thread::sleep(AGAIN),
+            Err(TryLockError::WouldBlock) => {
+                return Err(SharedMemoryError::Late {
+                    what: format!("the lock {path:?}"),
+                    limit: LOCK_LIMIT,
+                });
+            }
+            Err(TryLockError::Error(source)) => return Err(SharedMemoryError::Io { path, source }),
+        }
+    }
+}
+
+/// Opens a file of this user's alone for a lock, and makes it if it is not there.
+pub(super) fn own_file(path: &Path) -> Result<File, SharedMemoryError> {
+    let failed = |source| SharedMemoryError::Io { path: path.to_owned(), source };
+    let mut options = OpenOptions::new();
+    options
+        .create(true)
+        .append(true)
+        .mode(0o600)
+        .custom_flags(rustix::fs::OFlags::NOFOLLOW.bits().cast_signed());
+    let file = options.open(path).map_err(failed)?;
+    ours(path, &file.metadata().map_err(failed)?)?;
+    Ok(file)
+}
+
+/// The random number of this directory of runs is there. Only while the lock is held.
+pub(super) fn have_salt() -> Result<(), SharedMemoryError> {
+    let path = root().join("salt");
+    let mut file = own_file(&path)?;
+    let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
+    if file.metadata().map_err(failed)?.len() == 0 {
+        let number = getrandom::u64().map_err(|error| failed(io::Error::other(error.to_string())))?;
+        file.write_all(format!("{number:016x}").as_bytes()).map_err(failed)?;
+    }
+    Ok(())
+}
+
+/// The directory of runs is there, and this user's alone.
+pub(super) fn own_root() -> Result<(), SharedMemoryError> {
+    let path = root();
+    let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
+    match DirBuilder::new().mode(0o700).create(&path) {
+        Ok(()) => return Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+        Err(source) => return Err(failed(source)),
+    }
+    // The place can be guessed and lies where every user may write: another user may have made it.
+    let found = fs::symlink_metadata(&path).map_err(failed)?;
+    let owned = found.uid() == geteuid().as_raw();
+    if found.is_dir() && owned && found.mode() & 0o022 == 0 && found.mode() & OTHERS != 0 {
+        // Made by hand.
+        return fs::set_permissions(&path, Permissions::from_mode(0o700)).map_err(failed);
+    }
+    match found.is_dir() {
+        true => alone(&path, &found),
+        false => Err(SharedMemoryError::NotOurs { path, what: "it is no directory".to_owned() }),
+    }
+}
+
+/// A regular file of this user's alone.
+fn ours(path: &Path, found: &Metadata) -> Result<(), SharedMemoryError> {
+    match found.is_file() {
+        true => alone(path, found),
+        false => Err(SharedMemoryError::NotOurs {
+            path: path.to_owned(),
+            what: "it is no regular file".to_owned(),
+        }),
+    }
+}
+
+fn alone(path: &Path, found: &Metadata) -> Result<(), SharedMemoryError> {
+    let what = if found.uid() != geteuid().as_raw() {
+        format!("it belongs to user {}", found.uid())
+    } else if found.mode() & OTHERS != 0 {
+        format!("other users may use it, mode {:o}", found.mode() & 0o777)
+    } else {
+        return Ok(());
+    };
+    Err(SharedMemoryError::NotOurs { path: path.to_owned(), what })
+}
+
+/// All objects of a run are regular files of this user's alone.
+pub(super) fn own_objects(prefix: &str) -> Result<(), SharedMemoryError> {
+    for path in objects(prefix) {
+        match fs::symlink_metadata(&path) {
+            Ok(found) => ours(&path, &found)?,
+            // A reader that has just left takes its object with it.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+            Err(source) => return Err(SharedMemoryError::Io { path, source }),
+        }
+    }
+    Ok(())
+}
+
+/// Name behind the prefix, and first bytes, of the object that iceoryx2 0.10.0 keeps for all nodes of a run: its version and
+/// a counter.
+const NODES: (&str, [u8; 16]) = (
+    "9204dd183d1c4d8e1ff592a30766ffa6765aa8b5_node.0_10_0.global_mgmt",
+    [0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
+);
+
+/// Makes the object for all nodes of a run, if it is not there. iceoryx2 would make it for all users to write.
+pub(super) fn have_nodes(prefix: &str) -> Result<(), SharedMemoryError> {
+    let path = Path::new(SHARED_MEMORY).join(format!("{prefix}{}", NODES.0));
+    let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
+    match OpenOptions::new().write(true).create_new(true).mode(0o600).open(&path) {
+        Ok(mut file) => file.write_all(&NODES.1).map_err(failed),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Ok(()),
+        Err(source) => Err(failed(source)),
+    }
+}
+
+/// See that events of a run can have their sockets.
+pub(crate) fn have_sockets(name: &RunName) -> Result<(), SharedMemoryError> {
+    let (place, prefix) = (place(name, &layout()), prefix(name, &layout()));
+    let longest = place.as_os_str().len() + 1 + prefix.len() + SOCKET_NAME;
+    if longest > SOCKET_PATH { Err(SharedMemoryError::BadPath(place)) } else { Ok(()) }
+}
+
+/// See that there is shared memory for a run. A page that the system cannot lay under an object when it is
+/// first touched ends the program with a bus error, so one has to ask beforehand.
+pub(crate) fn have_room() -> Result<(), SharedMemoryError> {
+    let Ok(found) = statvfs(SHARED_MEMORY) else { return Ok(()) };
+    let free = found.f_bavail.saturating_mul(found.f_frsize);
+    if free < NEEDED { Err(SharedMemoryError::Full { free, needed: NEEDED }) } else { Ok(()) }
+}
+
+/// Have the system lay pages under all objects of a run, so that none is missing when it is first touched.
+pub(crate) fn reserve(name: &RunName) -> Result<(), SharedMemoryError> {
+    let prefix = prefix(name, &layout());
+    for path in objects(&prefix) {
+        let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
+        let file = match File::options().read(true).write(true).open(&path) {
+            // Of a board that has left meanwhile.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+            other => other.map_err(failed)?,
+        };
+        let length = file.metadata().map_err(failed)?.len();
+        if length > 0 {
+            fallocate(&file, FallocateFlags::empty(), 0, length).map_err(|error| failed(error.into()))?;
+        }
+    }
+    Ok(())
+}

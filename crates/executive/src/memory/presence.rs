@@ -1,0 +1,97 @@
+//! Who is in a run: a lock for each role, which the system releases when its holder ends, however that happens.
+//!
+//! The lock is on a file beside the run's objects in shared memory. So whether a run lives is known without opening
+//! anything that a killed or damaged run left.
+
+use std::{
+    fs::{self, File, TryLockError},
+    io,
+    os::unix::fs::MetadataExt as _,
+    path::{Path, PathBuf},
+    thread,
+    time::{Duration, Instant},
+};
+
+use super::{
+    error::SharedMemoryError,
+    place::{LOCK_LIMIT, SHARED_MEMORY, objects, own_file},
+};
+
+/// What follows the prefix in the name of a lock file; the role comes last.
+const MARK: &str = "alive.";
+/// Another program that asks whether the role is held keeps the lock for less than this.
+const ASKING: Duration = Duration::from_millis(2);
+/// How often a held lock is looked at again, to tell a holder from a program that asks.
+const LOOKS: usize = 3;
+
+/// Holds a role in a run as long as it lives. Several readers share one.
+pub(super) struct Presence {
+    _lock: File,
+}
+
+impl Presence {
+    /// Take a role in the run with this prefix.
+    pub(super) fn enter(prefix: &str, role: &str) -> Result<Self, SharedMemoryError> {
+        let path = path(prefix, role);
+        let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
+        let deadline = Instant::now() + LOCK_LIMIT;
+        while Instant::now() < deadline {
+            let file = own_file(&path)?;
+            match file.try_lock_shared() {
+                // A program that removed the dead run may have taken the file away in between.
+                Ok(()) if is_at(&file, &path).map_err(failed)? => return Ok(Self { _lock: file }),
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => thread::sleep(ASKING),
+                Err(TryLockError::Error(source)) => return Err(failed(source)),
+            }
+        }
+        Err(SharedMemoryError::Late { what: format!("the lock {path:?}"), limit: LOCK_LIMIT })
+    }
+}
+
+fn path(prefix: &str, role: &str) -> PathBuf {
+    Path::new(SHARED_MEMORY).join(format!("{prefix}{MARK}{role}"))
+}
+
+fn is_at(file: &File, path: &Path) -> io::Result<bool> {
+    match fs::symlink_metadata(path) {
+        Ok(found) => Ok(found.ino() == file.metadata()?.ino()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// True if a living program has the role in the run with this prefix.
+pub(super) fn is_held(prefix: &str, role: &str) -> bool {
+    locked(&path(prefix, role))
+}
+
+/// True if a living program has any role in the run with this prefix.
+pub(super) fn is_alive(prefix: &str) -> bool {
+    objects(&format!("{prefix}{MARK}")).any(|path| locked(&path))
+}
+
+/// Prefixes of all runs whose lock files lie in shared memory, of whatever directory of runs.
+pub(super) fn prefixes() -> Vec<String> {
+    let name = |path: PathBuf| path.file_name()?.to_str().map(str::to_owned);
+    let mut found: Vec<String> = objects("rcs-")
+        .filter_map(name)
+        .filter_map(|name| name.split_once(MARK).map(|(prefix, _)| prefix.to_owned()))
+        .collect();
+    found.sort();
+    found.dedup();
+    found
+}
+
+fn locked(path: &Path) -> bool {
+    let Ok(metadata) = fs::symlink_metadata(path) else { return false };
+    // What is no file is no lock, and opening it could wait for ever.
+    let Some(file) = metadata.is_file().then(|| File::open(path).ok()).flatten() else { return false };
+    for _ in 0..LOOKS {
+        match file.try_lock() {
+            Ok(()) => return false,
+            Err(_) => thread::sleep(ASKING),
+        }
+    }
+    true
+}

@@ -1,0 +1,97 @@
+//! The file of a log: one run writes it, and sees what other programs do to it.
+
+use std::{
+    fs::{self, File, TryLockError},
+    io,
+    os::unix::fs::MetadataExt as _,
+    path::{Path, PathBuf},
+};
+
+use crate::error::RecordError;
+
+/// A file that this run alone writes, until it is dropped.
+pub struct LogFile {
+    path: PathBuf,
+    file: File,
+    /// Device and inode.
+    identity: (u64, u64),
+}
+
+impl LogFile {
+    /// Claim a file, and make it, with its directory, if it is not there. What is in it stays until the log begins.
+    ///
+    /// # Errors
+    /// [`RecordError::InUse`] if another run writes it, [`RecordError::Create`] if it cannot be opened.
+    pub fn claim(path: &Path) -> Result<Self, RecordError> {
+        let failed = |source| RecordError::Create { path: path.to_owned(), source };
+        if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
+            fs::create_dir_all(directory).map_err(failed)?;
+        }
+        let file = File::options().write(true).create(true).truncate(false).open(path).map_err(failed)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(RecordError::InUse { path: path.to_owned() }),
+            Err(TryLockError::Error(source)) => return Err(failed(source)),
+        }
+        let found = file.metadata().map_err(failed)?;
+        Ok(Self { path: path.to_owned(), file, identity: (found.dev(), found.ino()) })
+    }
+
+    /// Claim `<name>.mcap` in a directory, or `<name>-2.mcap` and so on while other runs write those before it.
+    ///
+    /// # Errors
+    /// [`RecordError::Create`].
+    pub fn claim_free(directory: &Path, name: &str) -> Result<Self, RecordError> {
+        let mut number = 1_u32;
+        loop {
+            let name = if number == 1 { name.to_owned() } else { format!("{name}-{number}") };
+            match Self::claim(&directory.join(name).with_added_extension("mcap")) {
+                Err(RecordError::InUse { .. }) => number += 1,
+                claimed => return claimed,
+            }
+        }
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The file, empty.
+    pub(crate) fn emptied(&self) -> io::Result<File> {
+        self.file.set_len(0)?;
+        self.file.try_clone()
+    }
+
+    /// The file is still at its path.
+    ///
+    /// # Errors
+    /// [`RecordError::Removed`].
+    pub(crate) fn look(&self) -> Result<(), RecordError> {
+        match fs::metadata(&self.path) {
+            Ok(found) if (found.dev(), found.ino()) == self.identity => Ok(()),
+            _ => Err(RecordError::Removed { path: self.path.clone() }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_second_run_gets_a_name_of_its_own_and_an_explicit_name_is_refused() {
+        let directory = tempfile::tempdir().unwrap();
+        let first = LogFile::claim_free(directory.path(), "linkbar").unwrap();
+        assert_eq!(first.path(), directory.path().join("linkbar.mcap"));
+        assert!(matches!(LogFile::claim(first.path()), Err(RecordError::InUse { .. })));
+        let second = LogFile::claim_free(directory.path(), "linkbar").unwrap();
+        assert_eq!(second.path(), directory.path().join("linkbar-2.mcap"));
+        drop(first);
+        assert_eq!(
+            LogFile::claim_free(directory.path(), "linkbar").unwrap().path(),
+            directory.path().join("linkbar.mcap")
+        );
+    }
+}
