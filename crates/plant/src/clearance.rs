@@ -131,6 +131,12 @@ impl Clearance {
         &self.contacts
     }
 
+    /// The same, owned.
+    #[must_use]
+    pub fn into_contacts(self) -> Vec<Contact> {
+        self.contacts
+    }
+
     /// Look at all pairs. Returns those that touch deeper than they may whatever the robot does, and have just begun to.
     pub fn check<'a>(
         &mut self,

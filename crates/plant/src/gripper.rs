@@ -387,8 +387,8 @@ fn wrench(point: Vector, force: Vector, moment: Vector) -> Wrench {
     Wrench::at(&to_inches(point), pounds(force), pounds(moment) / metres(1.0))
 }
 
-/// Where a finger's middle stands in the tool frame, metres.
-fn finger_rest(description: &Description, side: Real, opening: f64) -> Pose {
+/// Where a finger's middle stands in the tool frame, metres; `side` is 1 for the left finger, -1 for the right one.
+pub(crate) fn finger_rest(description: &Description, side: Real, opening: f64) -> Pose {
     let [length, thickness, _] = description.fingers;
     Pose::from_translation(Vector::new(
         -metres(length / 2.0),

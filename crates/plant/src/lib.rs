@@ -43,6 +43,7 @@
 #![warn(missing_docs)]
 
 pub mod arm;
+pub mod bodies;
 pub mod camera;
 pub mod cell;
 pub mod clearance;
@@ -64,6 +65,7 @@ pub mod noise;
 pub mod part;
 pub mod pedestal;
 pub mod quick_change;
+pub mod room;
 pub mod scene;
 pub mod sensor;
 pub mod solid;

@@ -133,8 +133,7 @@ impl Table {
     /// Table angle, degrees.
     #[must_use]
     pub fn angle(&self) -> f64 {
-        let RotaryTable { square, flip: [motor, table], .. } = self.description;
-        square + (self.motor_angle() - square) * table / motor
+        self.description.angle(self.motor_angle())
     }
 
     fn counter(&self) -> i32 {
@@ -145,6 +144,15 @@ impl Table {
         let table = &self.description;
         let (offset, scale) = (table.potentiometer_offset, table.potentiometer_scale);
         Analog { offset, scale, noise: table.noise }.counts(self.angle(), noise)
+    }
+}
+
+impl RotaryTable {
+    /// Table angle at a motor angle, both in degrees.
+    #[must_use]
+    pub fn angle(&self, motor: f64) -> f64 {
+        let [turn, table] = self.flip;
+        self.square + (motor - self.square) * table / turn
     }
 }
 
@@ -208,8 +216,9 @@ impl Pedestal {
     }
 }
 
-/// The hand at a table angle in degrees: at `square` its Y lies across the radial line.
-fn hand_frame(description: &Description, angle: f64) -> Frame {
+/// The hand at a table angle in degrees: at `square` its Y lies across the radial line. World, in.
+#[must_use]
+pub fn hand_frame(description: &Description, angle: f64) -> Frame {
     let across = description.azimuth + 90.0 + angle - description.table.square;
     let (sine, cosine) = (libm::sin(across.to_radians()), libm::cos(across.to_radians()));
     let position = Inches::from(description.position);

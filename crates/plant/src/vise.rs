@@ -31,6 +31,28 @@ pub enum Jaws {
     Closed,
 }
 
+impl Jaws {
+    /// Distance of the inner faces of the jaws by a program, in.
+    #[must_use]
+    pub fn gap(self, program: &ViseProgram) -> f64 {
+        match self {
+            Self::Open => program.opening_open - 2.0 * program.depth,
+            Self::Partial => program.opening_partial - 2.0 * program.depth,
+            // The inner faces of the jaws meet.
+            Self::Closed => 0.0,
+        }
+    }
+}
+
+impl ViseProgram {
+    /// Where the middle of a part of the given size (in, along the axes of the vise: X in, Y left, Z up) is when it is
+    /// seated in the step: on the ledge, at the back, against the fixed face. Vise frame, in.
+    #[must_use]
+    pub fn seat(&self, size: &Inches) -> Inches {
+        Inches::new(self.back - size.x / 2.0, -self.depth + size.y / 2.0, self.ledge + size.z / 2.0)
+    }
+}
+
 /// The vise.
 #[derive(Debug, Deserialize, Serialize)]
 pub struct Vise {
@@ -155,13 +177,7 @@ impl Vise {
 
     /// Command an opening of the program that is on. Who commands one that is wider must first let go of what is clamped.
     pub fn command(&mut self, jaws: Jaws) {
-        let program = self.step(self.program);
-        self.target = match jaws {
-            Jaws::Open => program.opening_open - 2.0 * program.depth,
-            Jaws::Partial => program.opening_partial - 2.0 * program.depth,
-            // The inner faces of the jaws meet.
-            Jaws::Closed => 0.0,
-        };
+        self.target = jaws.gap(self.step(self.program));
         self.stopped &= self.target < self.gap;
     }
 
@@ -223,12 +239,10 @@ impl Vise {
         2.0 * newtons(self.description.force) * self.description.friction
     }
 
-    /// Where the middle of a part of the given size (in, along the axes of the vise: X in, Y left, Z up) is when it is
-    /// seated in a step: on the ledge, at the back, against the fixed face. Vise frame, in.
+    /// Where the middle of a part is when it is seated in a step: see [`ViseProgram::seat`].
     #[must_use]
     pub fn seat(&self, step: usize, size: &Inches) -> Inches {
-        let step = self.step(step);
-        Inches::new(step.back - size.x / 2.0, -step.depth + size.y / 2.0, step.ledge + size.z / 2.0)
+        self.step(step).seat(size)
     }
 
     /// The step that a part stands in if nothing clamps it: that of the program that is on.

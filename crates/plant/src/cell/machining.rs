@@ -5,7 +5,7 @@ use rcs_core::frame::{Frame, Vector as Inches, rotation_vector};
 use super::{Cell, WorkstationError, order::Machine};
 use crate::{
     description::{PartType, Shape, Tolerance},
-    part::Part,
+    part::{Part, nearest_square, sizes_along},
 };
 
 /// How far a part may be from its seat in the vise (ASSUMED).
@@ -139,48 +139,11 @@ fn front(here: &Frame) -> [i8; 3] {
     [sign(out.x), sign(out.y), sign(out.z)]
 }
 
-/// Sizes of a part along the axes of the frame that `here` is given in.
-fn sizes_along(here: &Frame, kind: &PartType) -> Inches {
-    let square = nearest_square(here);
-    let sizes = square.rotation * Inches::from(kind.size);
-    sizes.map(f64::abs)
-}
-
-/// The frame with its axes turned onto the nearest axes of the frame it is given in.
-fn nearest_square(here: &Frame) -> Frame {
-    let snapped = |v: Inches| {
-        let longest = (0..3).max_by(|a, b| v[*a].abs().total_cmp(&v[*b].abs())).unwrap_or(0);
-        let mut axis = Inches::zeros();
-        axis[longest] = v[longest].signum();
-        axis
-    };
-    rcs_core::frame::rotation_from_x_y(&snapped(here.x()), &snapped(here.y()))
-        .map_or(*here, |rotation| Frame { position: here.position, rotation })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_part_has_its_sizes_along_the_vise() {
-        let kind = PartType {
-            name: "P".into(),
-            size: [1.0, 2.0, 3.0],
-            weight: 1.0,
-            shape: Shape::Box,
-            vision_id: 0,
-            reflectance: 0.5,
-            tool: false,
-            other_side: false,
-        };
-        // Part X down, Y along vise X, a little askew.
-        let upright =
-            rcs_core::frame::rotation_from_x_y(&Inches::new(0.02, 0.01, -1.0), &Inches::x()).unwrap();
-        let here = Frame { position: Inches::zeros(), rotation: upright };
-        assert!((sizes_along(&here, &kind) - Inches::new(2.0, 3.0, 1.0)).norm() < 1e-12);
-    }
-
     #[test]
     fn a_part_that_is_turned_round_shows_its_other_side() {
         let at = |along_x: f64| {

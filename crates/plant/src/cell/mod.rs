@@ -34,6 +34,7 @@ pub use saving::{RestoreError, SaveError};
 pub use workstation::{Placement, WorkstationAction, WorkstationError};
 
 use crate::{
+    bodies,
     camera::{Analysis, Optics},
     clearance::{Body, Clearance},
     convert::{GRAVITY, to_frame, to_pose},
@@ -139,7 +140,7 @@ impl Cell {
             optics: Optics::new(&description.camera),
             analysis: Analysis::new(&description.camera, seed),
             vision_elsewhere: false,
-            obstacles: clearing::standing(description, &furniture),
+            obstacles: bodies::standing(description, &furniture),
             joystick: Joystick::default(),
             description: description.clone(),
             world,

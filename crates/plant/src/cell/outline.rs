@@ -12,14 +12,11 @@ use super::{
     picture::{DARK, Link, Motion, Outline, STEEL, Urdf, link},
 };
 use crate::{
+    bodies::{CAMERA, a_plate, body_boxes, palm},
     convert::{metres, newtons, to_pose},
     description::Gripper,
     gripper::{EXPANSION_SPEED, body_opening},
-    holster::ears,
 };
-
-/// Size of the camera, in.
-pub(super) const CAMERA: [f64; 3] = [2.0, 2.0, 1.5];
 
 /// Names of the links and the joints of a gripper's left and right finger.
 const fn finger_names(hand: Hand) -> [[&'static str; 2]; 2] {
@@ -37,21 +34,6 @@ const fn finger_names(hand: Hand) -> [[&'static str; 2]; 2] {
 }
 
 impl Cell {
-    /// The A plate, in the tool frame.
-    pub(super) fn a_plate(&self) -> Frame {
-        let behind = T3.plate_to_tool - self.description.quick_change.length / 4.0;
-        Frame { position: Inches::new(-behind, 0.0, 0.0), rotation: Rotation::identity() }
-    }
-
-    /// Body and ears of a gripper, in its tool frame.
-    pub(super) fn body_boxes(&self, gripper: &Gripper) -> Vec<(Frame, Inches)> {
-        let middle = Inches::new(-gripper.fingers[0] - gripper.body[0] / 2.0, 0.0, 0.0);
-        let body = Frame { position: middle, rotation: Rotation::identity() };
-        let ear = Inches::from(self.description.holsters.ears);
-        let [left, right] = ears(&self.description.holsters, gripper);
-        vec![(body, Inches::from(gripper.body)), (left, ear), (right, ear)]
-    }
-
     /// Names and poses of quick change and grippers.
     pub(super) fn gripper_links(&self) -> Vec<Link> {
         let mut links = vec![link("quick_change", "end_plate", &to_pose(&tool_on_end_plate()))];
@@ -79,7 +61,7 @@ impl Cell {
     pub(super) fn urdf_grippers(&self, urdf: &mut Urdf) {
         let change = &self.description.quick_change;
         urdf.begin_link("quick_change");
-        urdf.shape(&self.a_plate(), &Outline::Cylinder(change.radius, change.length / 2.0), DARK);
+        urdf.shape(&a_plate(&self.description), &Outline::Cylinder(change.radius, change.length / 2.0), DARK);
         let camera = Frame {
             position: Inches::from(self.description.camera.position),
             rotation: Rotation::identity(),
@@ -135,7 +117,7 @@ impl Cell {
         urdf.begin_link(name);
         let plate = at(-gripper.plate() - change.length / 4.0, 0.0);
         urdf.shape(&plate, &Outline::Cylinder(change.radius, change.length / 2.0), DARK);
-        for (place, size) in self.body_boxes(gripper) {
+        for (place, size) in body_boxes(&self.description, gripper) {
             urdf.shape(&place, &Outline::Box(size), DARK);
         }
         urdf.end_link();
@@ -158,12 +140,6 @@ fn urdf_fingers(urdf: &mut Urdf, gripper: &Gripper, hand: Hand) {
         let motion = Motion { axis: [0.0, side, 0.0], range, speed: metres(EXPANSION_SPEED), effort };
         urdf.joint(slide, "prismatic", hand.link(), finger, &start, Some(motion));
     }
-}
-
-/// The body of a hand under its fingers, in its tool frame, and its size.
-pub(super) fn palm(gripper: &Gripper) -> (Frame, Inches) {
-    let middle = Inches::new(-gripper.fingers[0] - gripper.body[0] / 2.0, 0.0, 0.0);
-    (Frame { position: middle, rotation: Rotation::identity() }, Inches::from(gripper.body))
 }
 
 /// The tool frame on the end plate's link.

@@ -11,8 +11,9 @@ use rcs_core::{
     kinematics::{JOINT_NAMES, T3},
 };
 
-use super::{Cell, clearing::turret};
+use super::Cell;
 use crate::{
+    bodies::turret,
     convert::{metres, newtons, to_metres, to_pose},
     linkage::{AXES, STARTS},
     scene::{Block, along_x, jaw_blocks},

@@ -6,7 +6,7 @@ use rcs_core::frame::{Frame, Vector as Inches, rotation_by};
 use super::{Cell, Hand, Placement, WorkstationError, order::Spot};
 use crate::{
     convert::{inches, to_pose},
-    description::{Nest, PartType},
+    description::{CellDescription, PartType},
     part::{Part, PartState},
     solid::Solid,
 };
@@ -22,6 +22,28 @@ const IN_NEST: f64 = 1.0;
 /// A part is put down this far above what it comes to rest on, in.
 const DROP: f64 = 0.002;
 
+impl CellDescription {
+    /// Where a part lies that is delivered into a sector of a unit: `x` and `y` in from its place there, turned by `angle` degrees.
+    /// A part that has nests goes only there. World, in.
+    ///
+    /// # Errors
+    /// [`WorkstationError`] if the unit has no such place.
+    pub fn delivered(
+        &self,
+        kind: &PartType,
+        unit: &str,
+        sector: u16,
+        [x, y, angle]: [f64; 3],
+    ) -> Result<Frame, WorkstationError> {
+        let (place, up) = match self.spot(kind, unit, sector)? {
+            Spot::Nest(nest) => (nest.frame(), DROP),
+            Spot::Sector(place) => (place, kind.size[0] / 2.0 + DROP),
+        };
+        let turned = place.turned(&rotation_by(&Inches::new(angle.to_radians(), 0.0, 0.0)));
+        Ok(Frame { position: turned.position + Inches::new(x, y, up), ..turned })
+    }
+}
+
 impl Cell {
     pub(super) fn place_frame(
         &mut self,
@@ -30,21 +52,17 @@ impl Cell {
         sector: u16,
         placement: &Placement,
     ) -> Result<Frame, WorkstationError> {
-        let place = match self.description.spot(kind, unit, sector)? {
-            Spot::Nest(nest) => return Ok(nest_frame(nest, placement)),
-            Spot::Sector(place) => place,
-        };
-        let (x, y, angle) = match *placement {
-            Placement::At { x, y, angle } => (x, y, angle),
-            Placement::Random => {
+        let aside = match (*placement, self.description.spot(kind, unit, sector)?) {
+            (Placement::At { x, y, angle }, _) => [x, y, angle],
+            // In a nest a part lies where the nest has it.
+            (Placement::Random, Spot::Nest(_)) => [0.0; 3],
+            (Placement::Random, Spot::Sector(_)) => {
                 let greatest = self.description.tray_shape.random_offset;
                 let noise = &mut self.placement_noise;
-                (noise.within(greatest), noise.within(greatest), noise.within(180.0))
+                [noise.within(greatest), noise.within(greatest), noise.within(180.0)]
             }
         };
-        let turned = place.turned(&rotation_by(&Inches::new(angle.to_radians(), 0.0, 0.0)));
-        let up = kind.size[0] / 2.0 + DROP;
-        Ok(Frame { position: turned.position + Inches::new(x, y, up), ..turned })
+        self.description.delivered(kind, unit, sector, aside)
     }
 
     /// Put a part into a sector, unless a fault of the plan has it otherwise.
@@ -160,15 +178,4 @@ impl Cell {
         let on_floor = at.z < lowest + inches(part.radius()) + 0.1;
         (if on_floor { "floor" } else { "elsewhere" }.into(), 0, None)
     }
-}
-
-/// In a nest a part lies where the nest has it, unless it is said how far from there.
-fn nest_frame(nest: &Nest, placement: &Placement) -> Frame {
-    let (x, y, angle) = match *placement {
-        Placement::At { x, y, angle } => (x, y, angle),
-        Placement::Random => (0.0, 0.0, 0.0),
-    };
-    let seat = nest.frame();
-    let turned = seat.turned(&rotation_by(&Inches::new(angle.to_radians(), 0.0, 0.0)));
-    Frame { position: seat.position + Inches::new(x, y, DROP), ..turned }
 }

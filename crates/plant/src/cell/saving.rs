@@ -92,7 +92,7 @@ impl Cell {
             return Err(RestoreError::OtherDescription);
         }
         cell.furniture = furniture(&description);
-        cell.obstacles = super::clearing::standing(&cell.description, &cell.furniture);
+        cell.obstacles = crate::bodies::standing(&cell.description, &cell.furniture);
         Ok(cell)
     }
 

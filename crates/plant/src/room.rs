@@ -1,0 +1,254 @@
+//! The cell as the check of paths sees it: what stands where, and what the robot carries, without physics and without time.
+//!
+//! A [`Layout`] says where everything is that a job moves. [`Room::look`] puts the robot to joint angles and says what it touches
+//! and what it is near, with the bodies ([`crate::bodies`]) and the clearance check of a run.
+
+use rcs_core::{
+    frame::{Frame, Vector as Inches},
+    kinematics::{Joints, T3},
+};
+
+use crate::{
+    bodies,
+    clearance::{Body, Clearance, Contact},
+    convert::to_pose,
+    description::{CellDescription, Gripper, Mounted, PartType},
+    holster::{Holster, holsters},
+    part::{nearest_square, sizes_along},
+    pedestal::hand_frame,
+    scene::{furniture, vise_frame},
+    vise::Jaws,
+};
+
+/// Names of the grippers by end effector id from 1.
+const GRIPPERS: [&str; 3] = ["parts_gripper", "v_gripper", "tool_gripper"];
+/// A part whose middle is nearer than this to that of the seat of a nest is in the nest, in.
+const IN_NEST: f64 = 1.0;
+
+/// A part, and where it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placed {
+    /// What it is.
+    pub kind: PartType,
+    /// Where: in the world, or in the tool frame if the robot has it; in.
+    pub frame: Frame,
+}
+
+/// What a job moves. Openings in inches, the table angle in degrees.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layout {
+    /// End effector id of the gripper that the robot wears; 0 for none.
+    pub gripper: u8,
+    /// End effector id of a gripper in its holster that the robot is engaged with, which is no obstacle then; 0 for none.
+    pub engaged: u8,
+    /// Of its fingers.
+    pub opening: f64,
+    /// What it carries.
+    pub held: Option<Placed>,
+    /// The other parts.
+    pub parts: Vec<Placed>,
+    /// The program of the vise that is on, from 0.
+    pub program: usize,
+    /// Distance of the inner faces of its jaws.
+    pub jaws: f64,
+    /// Of the pedestal.
+    pub table: f64,
+    /// Of the pedestal's hand.
+    pub hand: f64,
+}
+
+/// The cell.
+#[derive(Debug)]
+pub struct Room {
+    cell: CellDescription,
+    standing: Vec<Body>,
+    holsters: [Holster; 3],
+}
+
+impl Room {
+    /// The cell of a description that has been validated.
+    #[must_use]
+    pub fn new(cell: &CellDescription) -> Self {
+        Self {
+            standing: bodies::standing(cell, &furniture(cell)),
+            holsters: holsters(cell),
+            cell: cell.clone(),
+        }
+    }
+
+    /// Its description.
+    #[must_use]
+    pub const fn cell(&self) -> &CellDescription {
+        &self.cell
+    }
+
+    /// The layout at the start of a run.
+    #[must_use]
+    pub fn at_start(&self) -> Layout {
+        let gripper = match self.cell.quick_change.mounted {
+            Mounted::None => 0,
+            Mounted::Parts => 1,
+            Mounted::V => 2,
+            Mounted::Tool => 3,
+        };
+        let table = &self.cell.pedestal.table;
+        Layout {
+            gripper,
+            engaged: 0,
+            opening: self.gripper(gripper).map_or(0.0, |gripper| gripper.initial_opening),
+            held: None,
+            parts: Vec::new(),
+            program: 0,
+            jaws: self.jaws(0, Jaws::Open),
+            table: table.angle(table.start),
+            hand: self.cell.pedestal.hand.initial_opening,
+        }
+    }
+
+    /// The gripper of an end effector id.
+    #[must_use]
+    pub fn gripper(&self, id: u8) -> Option<&Gripper> {
+        let grippers = &self.cell.gripper;
+        [&grippers.parts, &grippers.v, &grippers.tool].get(usize::from(id).checked_sub(1)?).copied()
+    }
+
+    /// Distance of the inner faces of the jaws of the vise by a program, in.
+    #[must_use]
+    pub fn jaws(&self, program: usize, jaws: Jaws) -> f64 {
+        self.cell.vise.program.get(program).map_or(0.0, |program| jaws.gap(program))
+    }
+
+    /// The seat in the vise, by a program, of a part that is near to it: its frame, and the distance of the inner faces of the jaws
+    /// that are closed on it, in.
+    #[must_use]
+    pub fn vise_seat(&self, program: usize, part: &Placed) -> Option<(Frame, f64)> {
+        let program = self.cell.vise.program.get(program)?;
+        let vise = vise_frame(&self.cell.vise);
+        let here = vise.inverse().compose(&part.frame);
+        let size = sizes_along(&here, &part.kind);
+        let seat = Frame { position: program.seat(&size), ..nearest_square(&here) };
+        Some((vise.compose(&seat), size.y - 2.0 * program.depth))
+    }
+
+    /// The part that stands in the vise: its middle is within the jaws.
+    #[must_use]
+    pub fn in_vise(&self, layout: &Layout) -> Option<usize> {
+        let vise = vise_frame(&self.cell.vise).inverse();
+        let [into, thick, height] = self.cell.vise.jaw;
+        layout.parts.iter().position(|part| {
+            let at = vise.compose(&part.frame).position;
+            (-1.0..into).contains(&at.x)
+                && (-thick..layout.jaws + thick).contains(&at.y)
+                && (-height..height).contains(&at.z)
+        })
+    }
+
+    /// The seat of the nest in which a part is.
+    #[must_use]
+    pub fn nest_seat(&self, part: &Placed) -> Option<Frame> {
+        let nests = self.cell.nest.iter().filter(|nest| nest.takes(&part.kind)).map(|nest| nest.frame());
+        nests.into_iter().find(|seat| (seat.position - part.frame.position).norm() < IN_NEST)
+    }
+
+    /// A part in the pedestal's hand after the table has turned from the angle of the layout to another, degrees.
+    #[must_use]
+    pub fn turned(&self, layout: &Layout, to: f64, frame: &Frame) -> Frame {
+        let [before, after] = [layout.table, to].map(|angle| hand_frame(&self.cell.pedestal, angle));
+        after.compose(&before.inverse().compose(frame))
+    }
+
+    /// What the robot can run into beside itself and what never moves.
+    #[must_use]
+    pub fn devices(&self, layout: &Layout) -> Vec<Body> {
+        let jaw = vise_frame(&self.cell.vise).shifted(Inches::new(0.0, layout.jaws, 0.0));
+        let mut devices = bodies::movable_jaw(&self.cell, &jaw);
+        for (id, (name, holster)) in (1..).zip(GRIPPERS.into_iter().zip(&self.holsters)) {
+            let stored = self.gripper(id).filter(|_| id != layout.gripper && id != layout.engaged);
+            let at = to_pose(&holster.gripper(&holster.seated()));
+            devices.extend(stored.into_iter().flat_map(|one| bodies::stored(&self.cell, one, name, &at)));
+        }
+        let hand = hand_frame(&self.cell.pedestal, layout.table);
+        devices.extend(bodies::pedestal(&self.cell, &hand, layout.hand));
+        devices.extend(layout.parts.iter().map(|part| bodies::part(&part.kind, &to_pose(&part.frame))));
+        devices
+    }
+
+    /// The robot at joint angles in radians, what it wears, and what it carries.
+    #[must_use]
+    pub fn movers(&self, layout: &Layout, joints: &Joints) -> Vec<Body> {
+        let tool = T3.forward(joints);
+        let mut movers = Vec::from(bodies::arm(&self.cell, joints));
+        movers.extend(bodies::quick_change(&self.cell, &tool));
+        if let Some(gripper) = self.gripper(layout.gripper) {
+            movers.extend(bodies::worn(&self.cell, gripper, &tool, layout.opening));
+        }
+        if let Some(held) = &layout.held {
+            movers.push(bodies::held(&held.kind, &to_pose(&tool.compose(&held.frame))));
+        }
+        movers
+    }
+
+    /// What the robot touches at joint angles in radians, and what is nearer to it than `margin` inches: as
+    /// [`crate::Cell::contacts`]. `devices` are those of the layout.
+    #[must_use]
+    pub fn look(&self, layout: &Layout, devices: &[Body], joints: &Joints, margin: f64) -> Vec<Contact> {
+        let movers = self.movers(layout, joints);
+        let arm = movers.iter().filter(|body| body.kind.is_obstacle());
+        let all = self.standing.iter().chain(devices).chain(arm);
+        let mut clearance = Clearance::default();
+        clearance.watch(margin);
+        clearance.check(&self.cell.contact, &movers, all);
+        clearance.into_contacts()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Cell, WorkstationAction};
+    use rcs_core::kinematics::HOME_JOINTS;
+
+    fn cell() -> CellDescription {
+        CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap()
+    }
+
+    /// What a cell that runs says of where it stands, and what the room says.
+    #[test]
+    fn the_room_sees_what_the_cell_sees() {
+        let description = cell();
+        let room = Room::new(&description);
+        for joints in [
+            HOME_JOINTS,
+            [-30.0, 20.0, -40.0, 10.0, 5.0, 20.0].map(f64::to_radians),
+            [-170.0, 60.0, -120.0, -30.0, -8.0, 40.0].map(f64::to_radians),
+        ] {
+            let mut cell = Cell::new(&description, 1).unwrap();
+            let part = WorkstationAction::Place {
+                part: "LINKBAR1_BH".into(),
+                unit: "UNIT_1".into(),
+                sector: 4,
+                placement: crate::Placement::At { x: 0.0, y: 0.0, angle: 30.0 },
+            };
+            cell.workstation(&part).unwrap();
+            cell.watch_clearance(20.0);
+            cell.drive(&T3.forward_plate(&joints)).unwrap();
+            for _ in 0..400 {
+                cell.step(&Default::default());
+            }
+            let mut layout = room.at_start();
+            let kind = description.part("LINKBAR1_BH").unwrap().clone();
+            let frame = cell.part_frame(1).unwrap();
+            layout.parts.push(Placed { kind, frame });
+            layout.opening = cell.fingers().0;
+            let devices = room.devices(&layout);
+            let found = room.look(&layout, &devices, &cell.joints(), 20.0);
+            let expected = cell.contacts();
+            assert!(!expected.is_empty());
+            assert_eq!(found.len(), expected.len());
+            for (one, other) in found.iter().zip(expected) {
+                assert_eq!(one.pair(), other.pair());
+                assert!((one.depth - other.depth).abs() < 1e-6, "{one:?} {other:?}");
+            }
+        }
+    }
+}
