@@ -92,7 +92,8 @@ pub fn quick_change(cell: &CellDescription, tool: &Frame) -> [Body; 2] {
     let plate = SharedShape::cylinder(metres(change.length / 4.0), metres(change.radius));
     let camera = to_pose(tool) * Pose::from_translation(to_metres(&Inches::from(cell.camera.position)));
     [
-        Body::new("quick_change", Kind::Gripper, along_x(&tool.compose(&a_plate(cell))), plate).at(chain::HAND),
+        Body::new("quick_change", Kind::Gripper, along_x(&tool.compose(&a_plate(cell))), plate)
+            .at(chain::HAND),
         Body::new("camera", Kind::Gripper, camera, cuboid(&Inches::from(CAMERA))).at(chain::HAND),
     ]
 }
@@ -118,9 +119,9 @@ pub fn palm(gripper: &Gripper) -> (Frame, Inches) {
 #[must_use]
 pub fn worn(cell: &CellDescription, gripper: &Gripper, tool: &Frame, opening: f64) -> Vec<Body> {
     let tool = to_pose(tool);
-    let boxes = body_boxes(cell, gripper).into_iter().map(|(place, size)| {
-        Body::new("gripper_body", Kind::Gripper, tool * to_pose(&place), cuboid(&size))
-    });
+    let boxes = body_boxes(cell, gripper)
+        .into_iter()
+        .map(|(place, size)| Body::new("gripper_body", Kind::Gripper, tool * to_pose(&place), cuboid(&size)));
     let fingers = [("left_finger", 1.0), ("right_finger", -1.0)].into_iter().map(|(name, side)| {
         let rest = finger_rest(gripper, side, opening);
         Body::new(name, Kind::Finger, tool * rest, cuboid(&Inches::from(gripper.fingers)))

@@ -1,15 +1,17 @@
 //! `rcs-run check --explain COMMAND`: the whole way of a command, as the levels would find it in the task data.
 //!
-//! Places, grips, approaches and trajectories are looked up by [`levels::emove::route`] itself, so that what is printed is what
+//! Places, grips, approaches and trajectories are looked up by E-move's own route ([`paths::walk`]), so that what is printed is what
 //! would be flown; times come from Prim's own motion with the knob at full speed. What the fingers, the camera and the pedestal
 //! take is not counted, nor is the lag of line and arm.
-
-mod steps;
-mod walk;
 
 use std::{fmt, process::ExitCode};
 
 use os_io::console;
+use paths::{
+    plan::{Leg, Phase},
+    steps,
+    walk::{self, Walk},
+};
 use rcs_core::{interface::HwsCommand, name::Name16};
 use serde::Serialize;
 use taskdata::load::{Diagnostics, Job, Source, Step, Store};
@@ -19,59 +21,6 @@ use crate::{
     error::{Error, UNUSABLE},
     long_json,
 };
-
-/// Where something was entered.
-#[derive(Clone, Debug, Serialize)]
-struct Entry {
-    /// What it is.
-    what: &'static str,
-    /// File, block and line.
-    at: String,
-}
-
-/// One point on the way.
-#[derive(Clone, Debug, Serialize)]
-struct Leg {
-    /// depart, trajectory, approach or goal.
-    part: &'static str,
-    /// Name of the point.
-    point: String,
-    /// Tool point in the world, inches.
-    position_in: [f64; 3],
-    /// Direction of the gripper axis in the world.
-    axis: [f64; 3],
-    acc_fac: i32,
-    vel_max: i32,
-    smooth: i32,
-    brk_dst: i32,
-    /// Ticks from the point before to this one.
-    ticks: u32,
-    /// The joint that is nearest to a limit there; `None` if the arm cannot take the pose.
-    joint: Option<&'static str>,
-    /// How near, degrees; negative beyond the limit.
-    margin_deg: Option<f64>,
-    /// Where it was entered.
-    entry: Option<String>,
-}
-
-/// One command of E-move, or of a neighbour.
-#[derive(Clone, Debug, Default, Serialize)]
-struct Phase {
-    what: String,
-    /// Opening that is commanded on the way, inches.
-    opening_in: Option<f64>,
-    /// The entries that it was made of.
-    entries: Vec<Entry>,
-    legs: Vec<Leg>,
-    /// Why it cannot be done.
-    missing: Option<String>,
-}
-
-impl Phase {
-    fn ticks(&self) -> u32 {
-        self.legs.iter().map(|leg| leg.ticks).sum()
-    }
-}
 
 /// A command, explained.
 #[derive(Clone, Debug, Serialize)]
@@ -122,8 +71,8 @@ fn explained(store: &Store, command: &HwsCommand, text: &str, from: &str) -> Res
     let start = data
         .resolve_location::<16, 16>(&Name16::clipped(from), 0, None)
         .map_err(|error| Error::Explain(format!("--from {from}: {error}")))?;
-    let steps = steps::steps(command, &data).map_err(|error| Error::Explain(error.to_string()))?;
-    let mut walk = walk::Walk::new(store, &start);
+    let steps = steps::steps(command, None, &data).map_err(|error| Error::Explain(error.to_string()))?;
+    let mut walk = Walk::new(store, &start);
     let phases: Vec<Phase> = steps.iter().map(|step| walk.step(step)).collect();
     let ticks = phases.iter().map(Phase::ticks).sum();
     Ok(Explanation {
@@ -144,7 +93,7 @@ impl fmt::Display for Explanation {
         }
         for (i, phase) in self.phases.iter().enumerate() {
             writeln!(f, "\n{}. {}", i + 1, phase.what)?;
-            phase.lines(f)?;
+            phase_lines(phase, f)?;
         }
         let counted =
             "motion alone, full speed; without fingers, camera, pedestal and the lag of line and arm";
@@ -152,49 +101,45 @@ impl fmt::Display for Explanation {
     }
 }
 
-impl Phase {
-    fn lines(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for entry in &self.entries {
-            writeln!(f, "     {:<11}{}", entry.what, entry.at)?;
-        }
-        if let Some(opening) = self.opening_in {
-            writeln!(f, "     fingers    {opening:.2} in open after the last depart point")?;
-        }
-        for leg in &self.legs {
-            leg.line(f)?;
-        }
-        if let Some(missing) = &self.missing {
-            writeln!(f, "     MISSING    {missing}")?;
-        }
-        if !self.legs.is_empty() {
-            writeln!(f, "     {:.2} s", walk::seconds(self.ticks()))?;
-        }
-        Ok(())
+fn phase_lines(phase: &Phase, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    for entry in &phase.entries {
+        writeln!(f, "     {:<11}{}", entry.what, entry.at)?;
     }
+    if let Some(opening) = phase.opening_in {
+        writeln!(f, "     fingers    {opening:.2} in open after the last depart point")?;
+    }
+    for leg in &phase.legs {
+        leg_line(leg, f)?;
+    }
+    if let Some(missing) = &phase.missing {
+        writeln!(f, "     MISSING    {missing}")?;
+    }
+    if !phase.legs.is_empty() {
+        writeln!(f, "     {:.2} s", walk::seconds(phase.ticks()))?;
+    }
+    Ok(())
 }
 
-impl Leg {
-    fn line(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = self.position_in;
-        write!(
-            f,
-            "     {:<11}{:<10} ({x:7.2},{y:7.2},{z:7.2})  acc {:<3} vel {:<3} smooth {:<3} brk {}  {:5.2} s",
-            self.part,
-            self.point,
-            self.acc_fac,
-            self.vel_max,
-            self.smooth,
-            walk::inches(self.brk_dst),
-            walk::seconds(self.ticks),
-        )?;
-        match (self.joint, self.margin_deg) {
-            (Some(joint), Some(margin)) => write!(f, "  {joint} {margin:.1} deg from its limit")?,
-            _ => write!(f, "  out of reach")?,
-        }
-        match &self.entry {
-            Some(entry) => writeln!(f, "  {entry}"),
-            None => writeln!(f),
-        }
+fn leg_line(leg: &Leg, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let [x, y, z] = leg.position_in;
+    write!(
+        f,
+        "     {:<11}{:<10} ({x:7.2},{y:7.2},{z:7.2})  acc {:<3} vel {:<3} smooth {:<3} brk {}  {:5.2} s",
+        leg.part,
+        leg.point,
+        leg.acc_fac,
+        leg.vel_max,
+        leg.smooth,
+        walk::inches(leg.brk_dst),
+        walk::seconds(leg.ticks),
+    )?;
+    match (leg.joint, leg.margin_deg) {
+        (Some(joint), Some(margin)) => write!(f, "  {joint} {margin:.1} deg from its limit")?,
+        _ => write!(f, "  out of reach")?,
+    }
+    match &leg.entry {
+        Some(entry) => writeln!(f, "  {entry}"),
+        None => writeln!(f),
     }
 }
 

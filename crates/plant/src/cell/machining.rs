@@ -144,7 +144,6 @@ mod tests {
     use super::*;
 
     #[test]
-    #[test]
     fn a_part_that_is_turned_round_shows_its_other_side() {
         let at = |along_x: f64| {
             let rotation = rcs_core::frame::rotation_from_x_y(&Inches::new(along_x, 0.03, 0.0), &Inches::z());

@@ -7,7 +7,7 @@ use rcs_core::{
     interface::{HwsCommand, emove::EmoveVerb},
     name::Name16,
 };
-use taskdata::files::{Location, LookupError, RefType, TaskData};
+use taskdata::files::{Location, LocptId, LookupError, RefType, TaskData};
 
 /// Where the Active Pedestal holds an object (V.3.1 FIX-GRIP).
 const PEDESTAL: &str = "PEDESTAL";
@@ -46,16 +46,60 @@ pub enum Step {
         /// Its grip.
         grip: i32,
     },
-    /// Somebody else acts.
+    /// The camera looks for the object.
+    Locate,
+    /// The Active Pedestal acts.
+    Pedestal(PedestalVerb),
+    /// The quick change and the gripper of this end effector id in its holster come together.
+    Engage(u8),
+    /// The gripper of this end effector id is left in its holster.
+    Leave(u8),
+    /// The gripper of this end effector id is taken from its holster.
+    Take(u8),
+    /// The tool gripper opens around a tool in the drum.
+    LetGoTool,
+    /// The tool gripper closes on a tool in the drum.
+    GraspTool,
+    /// Something else happens while the robot stands.
     Other(&'static str),
 }
 
-/// The steps of a command.
+/// What Subtask has the pedestal do (V.3.1 FIX-GRIP).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PedestalVerb {
+    /// It opens its hand and turns its table to receive the object.
+    PreGrip,
+    /// It closes its hand on the object.
+    Grip,
+    /// It turns the object.
+    Flip,
+    /// It opens its hand.
+    Release,
+}
+
+impl PedestalVerb {
+    /// In words.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::PreGrip => "pedestal PRE-GRIP",
+            Self::Grip => "pedestal GRIP",
+            Self::Flip => "pedestal FLIP",
+            Self::Release => "pedestal RELEASE",
+        }
+    }
+}
+
+/// The steps of a command; `held` is the object that the robot has, with its grip, if that is known.
 ///
 /// # Errors
 /// The location that is not known, with what is known instead.
-pub fn steps(command: &HwsCommand, data: &TaskData<'_>) -> Result<Vec<Step>, LookupError> {
-    let maker = Maker { command, data };
+pub fn steps(
+    command: &HwsCommand,
+    held: Option<(Name16, i32)>,
+    data: &TaskData<'_>,
+) -> Result<Vec<Step>, LookupError> {
+    let maker = Maker { command, held, data };
     let object = !command.object.is_empty();
     let mut steps = Vec::new();
     match command.command.as_str() {
@@ -79,19 +123,22 @@ pub fn steps(command: &HwsCommand, data: &TaskData<'_>) -> Result<Vec<Step>, Loo
         "MOVE" => steps.push(maker.to_location(&command.destination, command.destination_sector)?),
         "ACQUIRE" => maker.get(&mut steps)?,
         "POSITION" => {
-            steps.push(Step::Other("RELEASE, if an object is held"));
+            steps.push(match maker.held {
+                Some((object, grip)) => Step::Fingers { verb: EmoveVerb::Release, object, grip },
+                None => Step::Other("RELEASE, if an object is held"),
+            });
             maker.position(&mut steps)?;
         }
         "INSERT-TOOL" => maker.relative(&mut steps, &["INS-NEAR", "INS-IN"])?,
         "RELEASE-TOOL" => {
-            steps.push(Step::Other("tool gripper OPEN"));
+            steps.push(Step::LetGoTool);
             maker.relative(&mut steps, &["REL-SLIDE", "REL-BACK"])?;
             maker.end_at(&mut steps)?;
         }
         "ACQUIRE-TOOL" => {
             steps.push(maker.to_location(&command.destination, command.destination_sector)?);
             maker.relative(&mut steps, &["ACQ-NEAR", "ACQ-STRIKE", "ACQ-SLIDE"])?;
-            steps.push(Step::Other("tool gripper GRASP"));
+            steps.push(Step::GraspTool);
         }
         "REMOVE-TOOL" => {
             maker.relative(&mut steps, &["REM-OUT"])?;
@@ -104,6 +151,7 @@ pub fn steps(command: &HwsCommand, data: &TaskData<'_>) -> Result<Vec<Step>, Loo
 
 struct Maker<'a> {
     command: &'a HwsCommand,
+    held: Option<(Name16, i32)>,
     data: &'a TaskData<'a>,
 }
 
@@ -129,11 +177,14 @@ impl Maker<'_> {
     /// GET-OBJECT: look for it if vision is used there, go to it, grasp it.
     fn get(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
         let (command, grip) = (self.command, self.command.source_grip);
+        if self.held.is_some_and(|(object, _)| object == command.object) {
+            return Ok(());
+        }
         let location = self.location(&command.source, command.source_sector)?;
         let view = self.data.view(&command.object, &location.place).filter(|(_, view)| view.enabled);
         if let Some((_, view)) = view.filter(|(_, view)| view.offset_from != RefType::Object) {
             steps.push(self.go(EmoveVerb::MovToVu, view.grip, location));
-            steps.push(Step::Other("LOCATE-OBJ: taken to be found in the middle of its place"));
+            steps.push(Step::Locate);
         }
         steps.push(self.go(EmoveVerb::MovToObj, grip, location));
         steps.push(self.fingers(EmoveVerb::GraspObj, grip));
@@ -142,20 +193,22 @@ impl Maker<'_> {
 
     /// FIX-GRIP, if the grips differ.
     fn regrip(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
-        let (from, to) = (self.command.source_grip, self.command.destination_grip);
+        let held = self.held.filter(|(object, _)| *object == self.command.object);
+        let from = held.map_or(self.command.source_grip, |(_, grip)| grip);
+        let to = self.command.destination_grip;
         if from == to {
             return Ok(());
         }
         let pedestal = self.location(&Name16::clipped(PEDESTAL), 0)?;
-        steps.push(Step::Other("pedestal PRE-GRIP"));
+        steps.push(Step::Pedestal(PedestalVerb::PreGrip));
         steps.push(self.go(EmoveVerb::MovObjTo, from, pedestal));
-        steps.push(Step::Other("pedestal GRIP"));
+        steps.push(Step::Pedestal(PedestalVerb::Grip));
         steps.push(self.fingers(EmoveVerb::Release, from));
         steps.push(self.to_location(&Name16::clipped(PEDESTAL_SAFE), 0)?);
-        steps.push(Step::Other("pedestal FLIP"));
+        steps.push(Step::Pedestal(PedestalVerb::Flip));
         steps.push(self.go(EmoveVerb::MovToObj, to, pedestal));
         steps.push(self.fingers(EmoveVerb::GraspObj, to));
-        steps.push(Step::Other("pedestal RELEASE"));
+        steps.push(Step::Pedestal(PedestalVerb::Release));
         Ok(())
     }
 
@@ -195,4 +248,35 @@ impl Maker<'_> {
         steps.extend(names.iter().map(|&name| Step::Relative { name, location }));
         Ok(())
     }
+}
+
+/// GET-ENDEFF (V.3.1): the gripper that is on is left in its holster, and the wanted one is taken from its own. End effector ids;
+/// 0 for a bare robot.
+///
+/// # Errors
+/// A holster that the task data do not have.
+pub fn exchange(own: u8, wanted: u8, data: &TaskData<'_>) -> Result<Vec<Step>, LookupError> {
+    let mut steps = Vec::new();
+    if own != 0 {
+        let (go, location) = to_holster(own, 1, data)?;
+        let [down, seat, up] =
+            ["QCD-DOWN", "QCD-SEAT", "QCD-UP"].map(|name| Step::Relative { name, location });
+        steps.extend([go, down, seat, Step::Leave(own), up]);
+    }
+    let (go, location) = to_holster(wanted, 2, data)?;
+    let [fast, slow, back, lift, up] = ["QCA-FAST", "QCA-SLOW", "QCA-BACK", "QCA-LIFT", "QCA-UP"]
+        .map(|name| Step::Relative { name, location });
+    steps.extend([go, fast, Step::Engage(wanted), slow, Step::Take(wanted), back, lift, up]);
+    Ok(steps)
+}
+
+/// The way to the holster of a gripper, with grip 1 for one that is on and 2 for a bare robot, and where that is (VII.7.3).
+fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location), LookupError> {
+    let object = Name16::clipped(&format!("GRIPPER-{id}"));
+    let unknown = LookupError::UnknownObject { name: object };
+    let record = data.object_named(&object).ok_or(unknown)?;
+    let mut assigned = data.object_locations(record).filter(|one| one.kind == RefType::LocationPoint);
+    let point = assigned.next().and_then(|one| data.locpt(LocptId::new(one.number))).ok_or(unknown)?;
+    let location = data.resolve_location::<10, 16>(&point.name, 0, None)?;
+    Ok((Step::Go { verb: EmoveVerb::MovToHol, object, grip, location }, location))
 }

@@ -7,13 +7,11 @@ use levels::{
         tables::{Action, Request, accept::accept},
     },
     execution::Asked,
-    prim::motion::{Motion, limits::Limits},
 };
 use rcs_core::{
     frame::Frame,
     interface::{
         Reason,
-        device::KNOB_FULL,
         emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace},
     },
     kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
@@ -31,30 +29,65 @@ use taskdata::{
     },
 };
 
-use super::{Entry, Leg, Phase, steps::Step};
+use crate::{
+    flight::time,
+    plan::{Entry, Leg, Phase},
+    steps::Step,
+};
 
+/// LOCATE-OBJ where nothing says where the object lies.
+const LOCATE: &str = "LOCATE-OBJ: taken to be found in the middle of its place";
 /// Stand for the changing records of E-move in a route: where it departs from, and its goal.
 const DEPARTURE: u32 = u32::MAX - 1;
 const GOAL: u32 = u32::MAX;
-/// From the tick in which a through point is passed to the one in which Prim has the next goal
-/// (docs/design/motion.md "Flying on").
-const FLIES_ON: u32 = 2;
-/// Ticks for which Prim wants to see the robot at rest (docs/design/motion.md "Rest").
-const SETTLES: u32 = 3;
-/// A motion that takes longer is given up, ticks: ten minutes.
-const LONGEST: u32 = 15_000;
 
 /// The robot on its way.
+#[derive(Clone, Debug)]
 pub struct Walk<'a> {
     store: &'a Store,
     data: TaskData<'a>,
     place: RobotPlace,
+    /// Where the camera has found the object that is gone to next.
+    found: Option<Frame>,
 }
 
 impl<'a> Walk<'a> {
     /// Begin at a location as such.
+    #[must_use]
     pub fn new(store: &'a Store, start: &Location) -> Self {
-        Self { store, data: store.view(), place: robot_at(GoneTo::Location, start, &start.frame) }
+        let place = robot_at(GoneTo::Location, start, &start.frame);
+        Self { store, data: store.view(), place, found: None }
+    }
+
+    /// Where the robot is.
+    #[must_use]
+    pub const fn place(&self) -> &RobotPlace {
+        &self.place
+    }
+
+    /// The task data.
+    #[must_use]
+    pub const fn data(&self) -> &TaskData<'a> {
+        &self.data
+    }
+
+    /// The camera looks for an object that lies at `object` (V.2.1 LOCATE-OBJ): it goes straight over it, and the next
+    /// MOV-TO-OBJ goes there.
+    pub fn find(&mut self, object: &Frame, looked_at: &Frame) -> Phase {
+        let mut phase =
+            Phase { start: self.place.location.to_string(), ..Phase::standing(LOCATE.to_owned()) };
+        self.found = Some(*object);
+        let Ok(here) = self.place.pose.to_frame() else { return phase };
+        // The camera keeps its attitude: it is moved as far as the object lies beside the middle of the picture.
+        let over = Frame { position: here.position + object.position - looked_at.position, ..here };
+        let view = self.view_stop();
+        if let Some(parameters) = view.filter(|_| over.distance(&here).inches > 0.0) {
+            phase.from = here;
+            let leg = self.leg("goal", "over the object".to_owned(), None, &over, parameters);
+            phase.legs = timed(&here, vec![leg]);
+            self.place.pose = Pose::from_frame(&over);
+        }
+        phase
     }
 
     /// Make a step; what it consists of, or why it cannot be made. A step that cannot be made ends at its location all the
@@ -64,12 +97,19 @@ impl<'a> Walk<'a> {
             Step::Go { verb, object, grip, location } => self.go(verb, object, grip, &location),
             Step::Relative { name, location } => self.relative(name, &location),
             Step::Fingers { verb, object, grip } => self.fingers(verb, object, grip),
-            Step::Other(what) => Phase { what: what.to_owned(), ..Phase::default() },
+            Step::Locate => Phase::standing(LOCATE.to_owned()),
+            Step::Pedestal(verb) => Phase::standing(verb.text().to_owned()),
+            Step::Engage(id) => Phase::standing(format!("the quick change meets gripper {id}")),
+            Step::Leave(id) => Phase::standing(format!("gripper {id} stays in its holster")),
+            Step::Take(id) => Phase::standing(format!("gripper {id} is locked on")),
+            Step::LetGoTool => Phase::standing("tool gripper OPEN".to_owned()),
+            Step::GraspTool => Phase::standing("tool gripper GRASP".to_owned()),
+            Step::Other(what) => Phase::standing(what.to_owned()),
         }
     }
 
     fn fingers(&self, verb: EmoveVerb, object: Name16, grip: i32) -> Phase {
-        let mut phase = Phase { what: verb.text().to_owned(), ..Phase::default() };
+        let mut phase = Phase::standing(verb.text().to_owned());
         if let Some((id, para)) = self.data.object(&object, grip) {
             phase.what = match verb {
                 EmoveVerb::GraspObj => format!(
@@ -86,7 +126,7 @@ impl<'a> Walk<'a> {
 
     fn go(&mut self, verb: EmoveVerb, object: Name16, grip: i32, location: &Location) -> Phase {
         let command = self.command(verb, object, grip, location);
-        let mut phase = Phase { what: described(&command, location), ..Phase::default() };
+        let mut phase = self.moving(described(&command, location));
         self.location_entries(&mut phase, location);
         let (gone_to, frame) = match self.goal_and_route(&command, location) {
             Ok((goal, route)) => {
@@ -106,7 +146,23 @@ impl<'a> Walk<'a> {
             }
         };
         self.place = robot_at(gone_to, location, &frame);
+        if verb != EmoveVerb::MovToVu {
+            self.found = None;
+        }
         phase
+    }
+
+    /// Parameters of the last motion to a view.
+    fn view_stop(&self) -> Option<TrajParaId> {
+        let GoneTo::View(ObjectGrip { object, grip }) = self.place.gone_to else { return None };
+        let place = levels::places::place_of(self.place.kind, self.place.record, self.place.array);
+        Some(self.data.path(self.data.view_approach(&object, grip, &place)?).last()?.para)
+    }
+
+    /// A phase that starts where the robot is.
+    fn moving(&self, what: String) -> Phase {
+        let from = self.place.pose.to_frame().unwrap_or_else(|_| Frame::identity());
+        Phase { start: self.place.location.to_string(), from, ..Phase::standing(what) }
     }
 
     fn command(&self, verb: EmoveVerb, object: Name16, grip: i32, at: &Location) -> EmoveCommand {
@@ -125,7 +181,8 @@ impl<'a> Walk<'a> {
     }
 
     fn goal_and_route(&self, command: &EmoveCommand, at: &Location) -> Result<(Goal, Route), Planning> {
-        let goal = Goal::new(command, &at.frame, &self.data)?;
+        let found = self.found.filter(|_| command.command == EmoveVerb::MovToObj);
+        let goal = Goal::new(command, &found.unwrap_or(at.frame), &self.data)?;
         let mut route = Route::plan(command, &goal, &self.place, &self.data)?;
         (route.departure, route.goal) = (DEPARTURE, GOAL);
         Ok((goal, route))
@@ -152,7 +209,7 @@ impl<'a> Walk<'a> {
             };
             let (part, point, at) = names.next().unwrap_or(("goal", "goal".to_owned(), None));
             let Some(frame) = frame else { break };
-            legs.push((frame, self.leg(part, point, at, &frame, leg.parameters)));
+            legs.push(self.leg(part, point, at, &frame, leg.parameters));
             route.advance(&self.data);
         }
         phase.legs = timed(&departure, legs);
@@ -213,11 +270,12 @@ impl<'a> Walk<'a> {
             joint: joints.ok().and_then(|m| JOINT_NAMES.get(m.joint).copied()),
             margin_deg: joints.ok().map(|m| m.radians.to_degrees()),
             entry: at.map(|at| self.store.place(at)),
+            frame: *frame,
         }
     }
 
     fn relative(&mut self, name: &'static str, location: &Location) -> Phase {
-        let mut phase = Phase { what: format!("{name} at {}", location.name), ..Phase::default() };
+        let mut phase = self.moving(format!("{name} at {}", location.name));
         let Some(record) = self.data.relative_move(&Name16::clipped(name), &location.place) else {
             phase.missing = Some(format!("no relative move {name} at {}", location.name));
             return phase;
@@ -233,9 +291,10 @@ impl<'a> Walk<'a> {
         let what = if record.sensor.is_empty() { "move" } else { "until" };
         let point =
             record.movetable.of(self.data.movetables).map_or("...".to_owned(), |m| m.name.to_string());
-        phase.legs = timed(&here, vec![(frame, self.leg(what, point, at, &frame, record.para))]);
+        phase.legs = timed(&here, vec![self.leg(what, point, at, &frame, record.para)]);
         if !record.sensor.is_empty() {
             phase.what = format!("{} guarded by {}", phase.what, record.sensor);
+            phase.guarded = true;
         }
         self.place = robot_at(GoneTo::Location, location, &frame);
         phase
@@ -321,32 +380,22 @@ fn described(command: &EmoveCommand, location: &Location) -> String {
 }
 
 /// Hundredths of an inch as inches.
+#[must_use]
 pub fn inches(hundredths: i32) -> String {
     format!("{:.2}", f64::from(hundredths) / 100.0)
 }
 
-/// Fly the legs with Prim's motion at full speed and note the ticks that each takes.
-fn timed(start: &Frame, legs: Vec<(Frame, Leg)>) -> Vec<Leg> {
-    let mut motion = Motion::at_rest(start);
-    let count = legs.len();
-    let mut out = Vec::new();
-    for (i, (goal, mut leg)) in legs.into_iter().enumerate() {
-        let through = (i + 1 < count).then(|| f64::from(leg.brk_dst) / 100.0);
-        let Some(limits) = Limits::from_counts(leg.acc_fac, leg.vel_max, leg.smooth) else { break };
-        motion.go(&goal, &limits, through);
-        let mut passed = 0;
-        while leg.ticks < LONGEST && passed < if through.is_some() { FLIES_ON } else { SETTLES } {
-            motion.step(KNOB_FULL);
-            leg.ticks += 1;
-            let there = if through.is_some() { motion.is_passing() } else { motion.is_at_rest() };
-            passed += u32::from(there);
-        }
-        out.push(leg);
-    }
-    out
+/// The legs with the ticks that each takes.
+fn timed(start: &Frame, mut legs: Vec<Leg>) -> Vec<Leg> {
+    let points: Vec<_> = legs.iter().map(|leg| (leg.frame, leg.parameters())).collect();
+    let ticks = time(start, &points);
+    legs.truncate(ticks.len());
+    legs.iter_mut().zip(ticks).for_each(|(leg, ticks)| leg.ticks = ticks);
+    legs
 }
 
 /// Seconds of so many ticks.
+#[must_use]
 pub fn seconds(ticks: u32) -> f64 {
     f64::from(ticks) * TICK_S
 }

@@ -1,0 +1,193 @@
+//! Points as the robot flies them: Prim's motion at full speed, the limits of the link (A 2.3), the T3's joints with the roll
+//! that it has accumulated, and its servos with their lag.
+
+use depc::{
+    Limits as LinkLimits, Plate,
+    controller::{JointProblem, joints_for},
+    step::{Position, step},
+};
+use levels::prim::motion::{Motion, limits::Limits};
+use plant::{arm::Arm, description::Actuators};
+use rcs_core::{
+    frame::Frame,
+    interface::device::KNOB_FULL,
+    kinematics::{Joints, Margin, T3},
+    tick::TICK_S,
+};
+use taskdata::files::TrajPara;
+
+/// From the tick in which a through point is passed to the one in which Prim has the next goal
+/// (docs/design/motion.md "Flying on").
+const FLIES_ON: u32 = 2;
+/// Ticks for which Prim wants to see the robot at rest (docs/design/motion.md "Rest").
+const SETTLES: u32 = 3;
+/// A motion that takes longer is given up, ticks: ten minutes.
+const LONGEST: u32 = 15_000;
+/// The servos have come to rest after so many ticks, or never.
+const LAG: u32 = 100;
+
+/// Why a flight ends before its goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trouble {
+    /// The joints cannot take the position.
+    Joints {
+        /// As the robot controller names it.
+        problem: JointProblem,
+        /// The joint from 0 and how far it would be beyond its limit, degrees; `None` if the position is out of reach.
+        joint: Option<(usize, f64)>,
+        /// The tool point, world, inches.
+        at: [f64; 3],
+    },
+    /// The position has no words on the link.
+    Words,
+    /// A count of the parameters is not positive: the motion would never end.
+    Parameters,
+    /// The motion takes longer than ten minutes.
+    Endless,
+}
+
+/// What the robot does on the way to a point.
+#[derive(Clone, Debug)]
+pub struct Flown {
+    /// Ticks from the point before.
+    pub ticks: u32,
+    /// Of these, ticks in which the link has held the robot back.
+    pub held_back: u32,
+    /// The joint that comes nearest to a limit.
+    pub margin: Margin,
+}
+
+/// The robot: what its controller was sent last, and where its arm has come to.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    position: Position,
+    joints: Joints,
+    arm: Arm,
+}
+
+impl Robot {
+    /// A robot at rest at joint angles in radians. `None` if the link has no words for where it stands.
+    #[must_use]
+    pub fn standing(actuators: &Actuators, joints: &Joints) -> Option<Self> {
+        let plate = Plate::from_frame(&T3.forward_plate(joints), &Plate::default()).ok()?;
+        let position = Position::reported(plate, &T3);
+        Some(Self { position, joints: *joints, arm: Arm::new(actuators, *joints) })
+    }
+
+    /// Where the arm is, joint angles in radians.
+    #[must_use]
+    pub fn joints(&self) -> &Joints {
+        self.arm.joints()
+    }
+
+    /// The tool frame that was commanded last, world, inches.
+    #[must_use]
+    pub fn tool(&self) -> Frame {
+        self.position.tool()
+    }
+
+    /// Let a tick pass.
+    fn tick(&mut self, look: &mut impl FnMut(&Joints)) {
+        self.arm.advance(TICK_S, false, &[]);
+        look(self.arm.joints());
+    }
+
+    /// Go to a point of Prim as T3 Interface does: as fast as the link allows. Returns the ticks that it takes.
+    fn command(&mut self, point: &Frame, look: &mut impl FnMut(&Joints)) -> Result<u32, Trouble> {
+        for ticks in 1..LONGEST {
+            let next = step(&self.position, point, &T3, &LinkLimits::NBS).map_err(|_| Trouble::Words)?;
+            let plate = next.position.plate;
+            self.joints = joints_for(&T3, &plate, &self.joints).map_err(|problem| Trouble::Joints {
+                problem,
+                joint: beyond(&plate, &self.joints),
+                at: point.position.into(),
+            })?;
+            self.position = next.position;
+            self.arm.reach(self.joints, TICK_S);
+            self.tick(look);
+            if next.reached {
+                return Ok(ticks);
+            }
+        }
+        Err(Trouble::Endless)
+    }
+
+    /// Fly through points to the last one and come to rest. `look` is called each tick with the number of the point and the
+    /// joint angles of the arm.
+    pub fn fly(
+        &mut self,
+        points: &[(Frame, TrajPara)],
+        mut look: impl FnMut(usize, &Joints),
+    ) -> (Vec<Flown>, Option<Trouble>) {
+        let mut flown = Vec::new();
+        let mut motion = Motion::at_rest(&self.tool());
+        for (number, (goal, parameters)) in points.iter().enumerate() {
+            let margin = T3.margin(&self.joints);
+            let mut one = Flown { ticks: 0, held_back: 0, margin };
+            let trouble = (|| {
+                let through = number + 1 < points.len();
+                let brake = through.then(|| f64::from(parameters.brk_dst) / 100.0);
+                let limits = Limits::from_counts(parameters.acc_fac, parameters.vel_max, parameters.smooth)
+                    .ok_or(Trouble::Parameters)?;
+                motion.go(goal, &limits, brake);
+                let mut passed = 0;
+                while passed < if through { FLIES_ON } else { SETTLES } {
+                    motion.step(KNOB_FULL);
+                    let took = self.command(&motion.frame(), &mut |joints| look(number, joints))?;
+                    one.ticks += took;
+                    one.held_back += took - 1;
+                    let margin = T3.margin(&self.joints);
+                    if margin.radians < one.margin.radians {
+                        one.margin = margin;
+                    }
+                    passed += u32::from(if through { motion.is_passing() } else { motion.is_at_rest() });
+                    if one.ticks > LONGEST {
+                        return Err(Trouble::Endless);
+                    }
+                }
+                Ok(())
+            })();
+            flown.push(one);
+            if let Err(trouble) = trouble {
+                return (flown, Some(trouble));
+            }
+        }
+        let last = points.len().saturating_sub(1);
+        for _ in 0..LAG {
+            if self.arm.settled() {
+                break;
+            }
+            self.tick(&mut |joints| look(last, joints));
+        }
+        (flown, None)
+    }
+}
+
+/// The joint that is farthest beyond a limit at a position that cannot be taken, and by how much, degrees.
+fn beyond(plate: &Plate, near: &Joints) -> Option<(usize, f64)> {
+    let joints = T3.inverse(&plate.to_tool(&T3), near).ok()?;
+    let margin = T3.margin(&joints);
+    (margin.radians < 0.0).then(|| (margin.joint, -margin.radians.to_degrees()))
+}
+
+/// Ticks that Prim's motion takes from rest at a frame to each of some points, without link and arm.
+#[must_use]
+pub fn time(start: &Frame, points: &[(Frame, TrajPara)]) -> Vec<u32> {
+    let mut motion = Motion::at_rest(start);
+    let mut times = Vec::new();
+    for (number, (goal, parameters)) in points.iter().enumerate() {
+        let through = (number + 1 < points.len()).then(|| f64::from(parameters.brk_dst) / 100.0);
+        let limits = Limits::from_counts(parameters.acc_fac, parameters.vel_max, parameters.smooth);
+        let Some(limits) = limits else { break };
+        motion.go(goal, &limits, through);
+        let (mut ticks, mut passed) = (0, 0);
+        while ticks < LONGEST && passed < if through.is_some() { FLIES_ON } else { SETTLES } {
+            motion.step(KNOB_FULL);
+            ticks += 1;
+            let there = if through.is_some() { motion.is_passing() } else { motion.is_at_rest() };
+            passed += u32::from(there);
+        }
+        times.push(ticks);
+    }
+    times
+}

@@ -1,0 +1,282 @@
+//! The lines of a job in their order: every way is flown, with what stands where and what the robot holds carried along.
+
+use std::collections::BTreeMap;
+
+use plant::{
+    description::Actuators,
+    room::{Placed, Room},
+};
+use rcs_core::{interface::HwsCommand, kinematics::T3, name::Name16};
+use serde::Serialize;
+use taskdata::{
+    files::{Location, LocptId},
+    load::{
+        Job, Step as Line, Store,
+        job::{Drum, Workstation},
+    },
+};
+
+use crate::{
+    flight::Robot,
+    plan::Phase,
+    state::{Finding, State, Walked},
+    steps::{exchange, steps},
+    survey::Passing,
+    walk::Walk,
+};
+
+/// What no walk can know.
+pub const NOT_CHECKED: [&str; 7] = [
+    "where a guarded move ends: its joints are checked over its whole length, its clearance is not",
+    "slip of a part in the fingers, and how a part comes to lie that is dropped or pushed",
+    "how far the fingers are open while they move",
+    "commands of another workstation controller",
+    "a start after the joystick, an emergency stop, a retry or PAUSE away from the points of a route",
+    "faults of sensors, valves and the link",
+    "the lag of the resolvers; that of the servos is walked with",
+];
+/// A robot this near to a location point at the start stands there, in.
+const STANDS: f64 = 0.5;
+/// Where in its sector a part is tried that is delivered at random: x and y in shares of the greatest offset, and the angle in
+/// degrees. Half a turn changes nothing for two fingers.
+const TRIED: [[f64; 3]; 17] = [
+    [0.0, 0.0, 0.0],
+    [0.0, 0.0, 22.5],
+    [0.0, 0.0, 45.0],
+    [0.0, 0.0, 67.5],
+    [0.0, 0.0, 85.0],
+    [0.0, 0.0, 95.0],
+    [0.0, 0.0, 112.5],
+    [0.0, 0.0, 135.0],
+    [0.0, 0.0, 157.5],
+    [-1.0, -1.0, 85.0],
+    [-1.0, 1.0, 85.0],
+    [1.0, -1.0, 85.0],
+    [1.0, 1.0, 85.0],
+    [-1.0, -1.0, 95.0],
+    [-1.0, 1.0, 95.0],
+    [1.0, -1.0, 95.0],
+    [1.0, 1.0, 95.0],
+];
+
+/// A line of a job, walked.
+#[derive(Clone, Debug, Serialize)]
+pub struct JobLine {
+    /// Line of the file from 1.
+    pub line: u32,
+    /// The line as written.
+    pub text: String,
+    /// Its phases.
+    pub phases: Vec<Walked>,
+    /// What the robot holds after it.
+    pub holds: Option<String>,
+    /// In how many places and attitudes of a part it was tried.
+    pub tried: usize,
+}
+
+impl JobLine {
+    /// Motion alone, ticks.
+    #[must_use]
+    pub fn ticks(&self) -> u32 {
+        self.phases.iter().map(|phase| phase.plan.ticks()).sum()
+    }
+}
+
+/// A job, walked.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct WalkedJob {
+    /// Name of the job.
+    pub job: String,
+    /// Its lines with commands.
+    pub lines: Vec<JobLine>,
+    /// What is wrong.
+    pub findings: Vec<Finding>,
+    /// What was not walked, and why.
+    pub not_checked: Vec<String>,
+}
+
+impl WalkedJob {
+    /// The least clearance on the way.
+    #[must_use]
+    pub fn nearest(&self) -> Option<&Passing> {
+        let segments = self.lines.iter().flat_map(|line| &line.phases).flat_map(|phase| &phase.segments);
+        segments
+            .filter_map(|segment| segment.nearest.as_ref())
+            .min_by(|a, b| a.clearance_in.total_cmp(&b.clearance_in))
+    }
+}
+
+/// Walk a job. The task data must be sound, and the job checked against them.
+#[must_use]
+pub fn walk_job(job: &Job, store: &Store, room: &Room) -> WalkedJob {
+    let mut walked = WalkedJob { job: job.name.clone(), ..WalkedJob::default() };
+    let Some(mut state) = start(store, room) else {
+        walked.not_checked.push("the job: the robot does not start at a location point".to_owned());
+        return walked;
+    };
+    let mut interrupted = false;
+    for line in &job.steps {
+        match &line.step {
+            Line::Command(command) => {
+                let (done, findings) = command_line(&mut state, command, line.line, &line.text);
+                walked.lines.push(done);
+                walked.findings.extend(findings);
+            }
+            Line::Workstation(action) => {
+                interrupted |= !act(&mut state, action);
+            }
+            Line::After { action, .. } => interrupted |= !matches!(action, Workstation::Wait { .. }),
+        }
+        if interrupted && !matches!(line.step, Line::After { .. }) {
+            walked.not_checked.push(format!(
+                "what comes after line {}: where the robot is then depends on what happens there",
+                line.line
+            ));
+            break;
+        }
+    }
+    walked
+}
+
+/// The robot as a run begins, at the location point where it stands.
+fn start<'a>(store: &'a Store, room: &'a Room) -> Option<State<'a>> {
+    let joints = room.cell().robot.start_joints();
+    let tool = T3.forward(&joints);
+    let data = store.view();
+    let away = |at: usize| data.locpt(LocptId::at(at)).map(|point| point.frame.distance(&tool).inches);
+    let (_, nearest) = (0..data.locpts.len())
+        .filter_map(|at| Some((away(at)?, data.locpts.get(at)?)))
+        .filter(|(inches, _)| *inches < STANDS)
+        .min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let location = data.resolve_location::<10, 16>(&nearest.name, 0, None).ok()?;
+    let robot = Robot::standing(&Actuators::from(&room.cell().robot), &joints)?;
+    Some(State::new(room, Walk::new(store, &location), robot))
+}
+
+/// Walk a command; where a part lies at random in its sector, over the range of places and attitudes.
+fn command_line(
+    state: &mut State<'_>,
+    command: &HwsCommand,
+    line: u32,
+    text: &str,
+) -> (JobLine, Vec<Finding>) {
+    let random = state.random.iter().position(|part| part.object == command.object);
+    let random = random.map(|at| state.random.remove(at));
+    let before = state.clone();
+    let (phases, mut findings) = run(state, command);
+    let mut done = JobLine {
+        line,
+        text: text.to_owned(),
+        phases,
+        holds: state.held.map(|(object, grip)| format!("{object} with grip {grip:+}")),
+        tried: 1,
+    };
+    if let Some(part) = random {
+        let greatest = before.room.cell().tray_shape.random_offset;
+        for [x, y, angle] in TRIED {
+            let mut other = before.clone();
+            let placement = [x * greatest, y * greatest, angle];
+            if !other.deliver(&part.object, &part.location, placement, true) {
+                continue;
+            }
+            let (phases, more) = run(&mut other, command);
+            let lies = format!(
+                "with the part {:.2}, {:.2} in from the middle of its sector, turned by {angle:.1} degrees: ",
+                placement[0], placement[1]
+            );
+            findings
+                .extend(more.into_iter().map(|one| Finding { message: lies.clone() + &one.message, ..one }));
+            done.merge(&phases);
+            done.tried += 1;
+        }
+    }
+    let mut worst: BTreeMap<String, Finding> = BTreeMap::new();
+    for finding in findings {
+        let known = worst.entry(finding.key.clone()).or_insert_with(|| finding.clone());
+        if finding.depth > known.depth {
+            *known = finding;
+        }
+    }
+    let findings = worst.into_values().map(|one| Finding { line, ..one }).collect();
+    (done, findings)
+}
+
+impl JobLine {
+    /// Take over what is nearer on another walk of the same command.
+    fn merge(&mut self, others: &[Walked]) {
+        for (phase, other) in self.phases.iter_mut().zip(others) {
+            for (segment, other) in phase.segments.iter_mut().zip(&other.segments) {
+                segment.merge(other);
+            }
+        }
+    }
+}
+
+/// Carry a command out: its phases, and what is wrong with them.
+fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding>) {
+    let data = *state.walk.data();
+    let wanted = data.obj_grips(&command.object).map_or(0, |grips| grips.endeff_id);
+    let wanted = u8::try_from(wanted).unwrap_or(0);
+    let worn = state.layout.gripper;
+    let change = wanted != 0 && wanted != worn;
+    let before = if change { exchange(worn, wanted, &data) } else { Ok(Vec::new()) };
+    let all = before.and_then(|before| Ok((before, steps(command, state.held, &data)?)));
+    let (change, own) = match all {
+        Ok(all) => all,
+        Err(error) => {
+            let missing =
+                Phase { missing: Some(error.to_string()), ..Phase::standing(command.command.to_string()) };
+            return (vec![Walked::of(missing)], Vec::new());
+        }
+    };
+    let task = command.command.as_str();
+    let mut phases = Vec::new();
+    let mut findings = Vec::new();
+    for step in change.iter().chain(&own) {
+        let (walked, more) = state.step(step, task);
+        phases.push(walked);
+        findings.extend(more);
+    }
+    (phases, findings)
+}
+
+/// What the workstation does. False if nobody can know where the robot is afterwards.
+fn act(state: &mut State<'_>, action: &Workstation) -> bool {
+    match action {
+        Workstation::Tray { location, object, offset } => {
+            let hundredths = |number: i32| f64::from(number) / 100.0;
+            let placement = offset.as_ref().map(|at| [at.x, at.y, at.angle].map(hundredths));
+            state.deliver(object, location, placement.unwrap_or_default(), false);
+            let nested = state.room.cell().nest.iter().any(|nest| nest.parts.contains(&object.to_string()));
+            if placement.is_none() && !nested {
+                state.random.push(Random { object: *object, location: *location });
+            }
+        }
+        Workstation::Vise { opening, program, .. } => state.move_vise(*opening, program.as_ref()),
+        Workstation::Machine { blank, part, .. } => state.machine(blank, part),
+        Workstation::Drum(Drum::Tool(tool)) => state.put_into_drum(tool),
+        Workstation::Drum(Drum::Grip | Drum::Release) | Workstation::Wait { .. } => {}
+        Workstation::Joystick(_)
+        | Workstation::Press(_)
+        | Workstation::Release(_)
+        | Workstation::Panel(_)
+        | Workstation::Load { .. } => return false,
+    }
+    true
+}
+
+/// A part that was delivered anywhere in its sector.
+#[derive(Clone, Debug)]
+pub struct Random {
+    /// Its name.
+    pub object: Name16,
+    /// The sector.
+    pub location: Location,
+}
+
+/// A part by its name and place.
+#[must_use]
+pub fn placed(room: &Room, object: &Name16, frame: rcs_core::frame::Frame) -> Option<Placed> {
+    let kind = room.cell().part(object.as_str())?.clone();
+    Some(Placed { kind, frame })
+}

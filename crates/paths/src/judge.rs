@@ -1,0 +1,262 @@
+//! A phase flown as it is planned, and back as an interruption would have it (docs/design/recovery.md "On the way"): what is wrong
+//! with it, in words.
+
+use depc::controller::{JointProblem, Warning};
+use rcs_core::{
+    frame::Frame,
+    kinematics::{JOINT_NAMES, Joints, T3},
+    name::Name10,
+};
+use taskdata::files::{Target, TaskData, TrajPara};
+
+use crate::{
+    flight::{Flown, Robot, Trouble},
+    plan::{Leg, Phase},
+    state::{Finding, Segment, State, Walked},
+    survey::{Seen, Survey},
+};
+
+/// A joint that comes nearer to a limit than this is warned of, degrees.
+pub const LEAST_MARGIN: f64 = 0.5;
+
+/// A flight and what was seen on it.
+struct Outcome {
+    robot: Robot,
+    flown: Vec<Flown>,
+    seen: Vec<Seen>,
+    trouble: Option<Trouble>,
+}
+
+impl Outcome {
+    fn is_clear(&self) -> bool {
+        self.trouble.is_none() && self.seen.iter().all(|seen| seen.touched.is_none())
+    }
+}
+
+/// Points, and from which of them on the fingers are as open as at the goal.
+struct Points {
+    list: Vec<(Frame, TrajPara)>,
+    opens: usize,
+}
+
+impl State<'_> {
+    /// Fly a phase under these commands of E-move and Subtask; `clear` says whether what it touches can be known.
+    pub fn fly(&mut self, phase: Phase, commands: [&'static str; 2], clear: bool) -> (Walked, Vec<Finding>) {
+        if phase.legs.is_empty() || phase.missing.is_some() {
+            return (Walked::of(phase), Vec::new());
+        }
+        let opens = phase.legs.iter().take_while(|leg| leg.part == "depart").count();
+        let list = phase.legs.iter().map(|leg| (leg.frame, leg.parameters())).collect();
+        let forth = Points { list, opens };
+        let opening = self.opening(&phase);
+        let there = self.try_points(&forth, opening, commands, clear);
+        let mut findings = self.findings(&phase, &there, &names(&phase), "", clear);
+        let segments = segments(&phase, &there);
+        let is_route = phase.legs.len() > 1 && !commands.contains(&">POSITION");
+        self.robot = there.robot;
+        self.layout.opening = opening;
+        self.before = vec![commands];
+        if is_route && findings.iter().all(|finding| !finding.error) {
+            let (back, names) = backwards(&phase, opens);
+            let returned = self.try_points(&back, opening, commands, clear);
+            findings.extend(self.findings(
+                &phase,
+                &returned,
+                &names,
+                "flown back after an interruption, ",
+                clear,
+            ));
+        }
+        (Walked { plan: phase, segments }, findings)
+    }
+
+    /// Opening of the fingers at the end of a phase, in.
+    fn opening(&self, phase: &Phase) -> f64 {
+        let gripper = self.room.gripper(self.layout.gripper);
+        match (phase.opening_in, gripper) {
+            (Some(opening), Some(gripper)) => opening.clamp(gripper.opening[0], gripper.opening[1]),
+            _ => self.layout.opening,
+        }
+    }
+
+    fn try_points(&self, points: &Points, opening: f64, commands: [&'static str; 2], clear: bool) -> Outcome {
+        let mut robot = self.robot.clone();
+        let start = *robot.joints();
+        let mut survey = Survey::new(self.room, &self.layout, commands, &start, &self.before);
+        let mut seen: Vec<Seen> = Vec::new();
+        let (flown, trouble) = robot.fly(&points.list, |leg, joints: &Joints| {
+            if !clear {
+                return;
+            }
+            while seen.len() < leg {
+                seen.push(survey.take());
+            }
+            if leg >= points.opens {
+                survey.open(opening);
+            }
+            survey.look(leg, joints);
+        });
+        seen.push(survey.take());
+        seen.resize_with(flown.len(), Seen::default);
+        Outcome { robot, flown, seen, trouble }
+    }
+
+    fn findings(
+        &self,
+        phase: &Phase,
+        outcome: &Outcome,
+        names: &[(String, String, Option<String>)],
+        prefix: &str,
+        clear: bool,
+    ) -> Vec<Finding> {
+        let mut findings = Vec::new();
+        let last = outcome.flown.len().saturating_sub(1);
+        for (leg, (flown, seen)) in outcome.flown.iter().zip(&outcome.seen).enumerate() {
+            let Some((from, to, entry)) = names.get(leg) else { continue };
+            let place =
+                entry.as_ref().map_or(String::new(), |entry| format!(" ({to} is entered in {entry})"));
+            let way = format!("{prefix}{}, from {from} to {to}", phase.what);
+            let mut add = |code, error, what: String, key: String, depth| {
+                findings.push(Finding {
+                    code,
+                    error,
+                    line: 0,
+                    message: format!("{way}: {what}{place}"),
+                    help: None,
+                    key: format!("{code} {prefix}{} {from} {to} {key}", phase.what),
+                    depth,
+                });
+            };
+            if let Some(touched) = &seen.touched {
+                let key = format!("{} {}", touched.mover, touched.obstacle);
+                add("path.contact", true, touched.to_string(), key, -touched.clearance_in);
+            }
+            if let Some(trouble) = outcome.trouble.filter(|_| leg == last) {
+                let (what, key, depth) = in_words(trouble);
+                add("path.joint", true, what, key, depth);
+            } else if flown.margin.radians.to_degrees() < LEAST_MARGIN && leg > 0 {
+                let degrees = flown.margin.radians.to_degrees();
+                let joint = JOINT_NAMES.get(flown.margin.joint).copied().unwrap_or("joint");
+                let what = format!("{joint} comes to {degrees:.2} degrees from its limit");
+                add("path.margin", false, what, joint.to_owned(), -degrees);
+            }
+        }
+        if prefix.is_empty() && findings.iter().any(|finding| finding.error) {
+            let help = self.help(phase, outcome, clear);
+            findings.iter_mut().filter(|finding| finding.error).for_each(|one| one.help = Some(help.clone()));
+        }
+        findings
+    }
+
+    /// The via point of the stored trajectories that would help, if there is one.
+    fn help(&self, phase: &Phase, failed: &Outcome, clear: bool) -> String {
+        let worst = failed.seen.iter().position(|seen| seen.touched.is_some());
+        let at = worst.unwrap_or(failed.flown.len().saturating_sub(1));
+        let Some(leg) = phase.legs.get(at) else { return String::new() };
+        let before = at.checked_sub(1).and_then(|at| phase.legs.get(at)).map_or(phase.from, |leg| leg.frame);
+        let opens = phase.legs.iter().take_while(|leg| leg.part == "depart").count();
+        let mut best: Option<(f64, Name10)> = None;
+        if at >= opens {
+            for (name, via) in vias(self.walk.data()) {
+                let detour = before.distance(&via).path() + via.distance(&leg.frame).path();
+                if via == before || via == leg.frame || best.is_some_and(|(least, _)| detour >= least) {
+                    continue;
+                }
+                let mut list: Vec<_> = phase.legs.iter().map(|leg| (leg.frame, leg.parameters())).collect();
+                list.insert(at, (via, leg.parameters()));
+                let tried = self.try_points(&Points { list, opens }, self.opening(phase), ["", ""], clear);
+                if tried.is_clear() {
+                    best = Some((detour, name));
+                }
+            }
+        }
+        match best {
+            Some((_, name)) => format!("a via point at {name} between the two would help"),
+            None if at < opens => "change the depart points, or the place itself".to_owned(),
+            None => "no via point of the stored trajectories helps alone: give this way its own, or change its ends"
+                .to_owned(),
+        }
+    }
+}
+
+/// The poses that trajectories lead through.
+fn vias<'a>(data: &TaskData<'a>) -> impl Iterator<Item = (Name10, Frame)> + use<'a> {
+    let data = *data;
+    let points = data.trajectories.iter().flat_map(move |record| data.path(record.path));
+    let mut poses: Vec<_> = points
+        .filter_map(|point| match point.target {
+            Target::Pose(id) => data.pose(id).map(|pose| (pose.name, pose.frame)),
+            _ => None,
+        })
+        .collect();
+    poses.sort_by_key(|pose| pose.0.as_str().to_owned());
+    poses.dedup_by_key(|pose| pose.0);
+    poses.into_iter()
+}
+
+/// Start, end and entry of each segment.
+fn names(phase: &Phase) -> Vec<(String, String, Option<String>)> {
+    let starts = [&phase.start].into_iter().chain(phase.legs.iter().map(|leg| &leg.point));
+    starts.zip(&phase.legs).map(|(from, leg)| (from.clone(), end(leg), leg.entry.clone())).collect()
+}
+
+fn end(leg: &Leg) -> String {
+    if leg.part == "goal" { "the goal".to_owned() } else { leg.point.clone() }
+}
+
+fn segments(phase: &Phase, outcome: &Outcome) -> Vec<Segment> {
+    let all = names(phase).into_iter().zip(&phase.legs).zip(outcome.flown.iter().zip(&outcome.seen));
+    all.map(|(((from, to, _), leg), (flown, seen))| Segment {
+        from,
+        to,
+        part: leg.part,
+        joint: JOINT_NAMES.get(flown.margin.joint).copied().unwrap_or("joint"),
+        margin_deg: flown.margin.radians.to_degrees(),
+        nearest: seen.nearest.clone(),
+    })
+    .collect()
+}
+
+/// The way back from the goal to the end of the depart leg: a segment has the slower parameters of its two ends.
+fn backwards(phase: &Phase, departs: usize) -> (Points, Vec<(String, String, Option<String>)>) {
+    let legs = &phase.legs;
+    let mut list = Vec::new();
+    let mut names = Vec::new();
+    for at in (departs.max(1)..legs.len()).rev() {
+        let (Some(from), Some(to)) = (legs.get(at), legs.get(at - 1)) else { continue };
+        let slower = if to.vel_max < from.vel_max { to } else { from };
+        list.push((to.frame, slower.parameters()));
+        names.push((end(from), to.point.clone(), to.entry.clone()));
+    }
+    (Points { list, opens: 0 }, names)
+}
+
+/// Why a flight cannot go on: in words, what makes it the same, and how bad it is.
+pub(crate) fn in_words(trouble: Trouble) -> (String, String, f64) {
+    match trouble {
+        Trouble::Joints { problem, joint, at: [x, y, z] } => {
+            let code = Warning::from(problem).text();
+            let what = match joint {
+                Some((joint, by)) => {
+                    let name = JOINT_NAMES.get(joint).copied().unwrap_or("joint");
+                    let (low, high) = T3.limits.get(joint).copied().unwrap_or_default();
+                    let (low, high) = (low.to_degrees(), high.to_degrees());
+                    format!("{name} leaves its limits of {low:.0} and {high:.0} degrees by {by:.2}")
+                }
+                None if problem == JointProblem::WristSingularity => {
+                    "the gripper axis comes to lie along the pitch axis".to_owned()
+                }
+                None => "the arm is too short, or too long".to_owned(),
+            };
+            let text = format!(
+                "{what} at ({x:.2}, {y:.2}, {z:.2}): the robot controller stops with warning {code}, and the link is lost"
+            );
+            (text, code.to_owned(), joint.map_or(0.0, |(_, by)| by))
+        }
+        Trouble::Words => ("the link has no words for a position on it".to_owned(), "words".to_owned(), 0.0),
+        Trouble::Parameters => {
+            ("acc-fac, vel-max and smooth-acc must be positive".to_owned(), "parameters".to_owned(), 0.0)
+        }
+        Trouble::Endless => ("it takes longer than ten minutes".to_owned(), "time".to_owned(), 0.0),
+    }
+}

@@ -1,0 +1,27 @@
+//! The way of the robot before it moves: what a command, a job or a stored route makes it fly, and whether it can.
+//!
+//! ```text
+//!   steps     what Task and Subtask make of a command (V.3, V.4)
+//!   walk      where each step leads: E-move's own route, point by point
+//!   flight    the points as Prim drives them: its motion, the limits of the link, the joints of the T3, its servos
+//!   survey    what arm, gripper and held part touch or pass on the way: the bodies and permits of a run
+//!   state     where everything is, and what a step changes
+//!   judge     a phase flown forth and back: what is wrong with it, and the via point that would help
+//!   job       the lines of a job one after the other, with what stands where and what is held
+//!   stored    each segment of the stored trajectories
+//! ```
+//!
+//! Nothing here starts a program, reads a clock or simulates forces. What no walk can know stands in
+//! [`job::NOT_CHECKED`].
+
+#![forbid(unsafe_code)]
+
+pub mod flight;
+pub mod job;
+pub mod judge;
+pub mod plan;
+pub mod state;
+pub mod steps;
+pub mod stored;
+pub mod survey;
+pub mod walk;

@@ -1,0 +1,101 @@
+//! What a command is made of: phases, and the points that each is flown through.
+
+use rcs_core::frame::Frame;
+use serde::Serialize;
+use taskdata::files::TrajPara;
+
+/// Where something was entered.
+#[derive(Clone, Debug, Serialize)]
+pub struct Entry {
+    /// What it is.
+    pub what: &'static str,
+    /// File, block and line.
+    pub at: String,
+}
+
+/// One point on the way.
+#[derive(Clone, Debug, Serialize)]
+pub struct Leg {
+    /// depart, trajectory, approach or goal.
+    pub part: &'static str,
+    /// Name of the point.
+    pub point: String,
+    /// Tool point in the world, inches.
+    pub position_in: [f64; 3],
+    /// Direction of the gripper axis in the world.
+    pub axis: [f64; 3],
+    /// `acc-fac`.
+    pub acc_fac: i32,
+    /// `vel-max`.
+    pub vel_max: i32,
+    /// `smooth-acc`.
+    pub smooth: i32,
+    /// `brk-dst`.
+    pub brk_dst: i32,
+    /// Ticks from the point before to this one.
+    pub ticks: u32,
+    /// The joint that is nearest to a limit there; `None` if the arm cannot take the pose.
+    pub joint: Option<&'static str>,
+    /// How near, degrees; negative beyond the limit.
+    pub margin_deg: Option<f64>,
+    /// Where it was entered.
+    pub entry: Option<String>,
+    /// Where it is: tool frame, world, inches.
+    #[serde(skip)]
+    pub frame: Frame,
+}
+
+impl Leg {
+    /// The parameters of the segment that leads to the point.
+    #[must_use]
+    pub const fn parameters(&self) -> TrajPara {
+        TrajPara { acc_fac: self.acc_fac, vel_max: self.vel_max, smooth: self.smooth, brk_dst: self.brk_dst }
+    }
+}
+
+/// One command of E-move, or of a neighbour.
+#[derive(Clone, Debug, Serialize)]
+pub struct Phase {
+    /// The command in words.
+    pub what: String,
+    /// Opening that is commanded on the way, inches.
+    pub opening_in: Option<f64>,
+    /// The entries that it was made of.
+    pub entries: Vec<Entry>,
+    /// The points of its way; empty if the robot stands.
+    pub legs: Vec<Leg>,
+    /// Why it cannot be done.
+    pub missing: Option<String>,
+    /// The point from which it starts.
+    #[serde(skip)]
+    pub start: String,
+    /// Where that is: tool frame, world, inches.
+    #[serde(skip)]
+    pub from: Frame,
+    /// A sensor ends it, nobody knows where.
+    #[serde(skip)]
+    pub guarded: bool,
+}
+
+impl Phase {
+    /// A phase without motion.
+    #[must_use]
+    pub fn standing(what: String) -> Self {
+        Self {
+            what,
+            opening_in: None,
+            entries: Vec::new(),
+            legs: Vec::new(),
+            missing: None,
+            start: String::new(),
+            from: Frame::identity(),
+            guarded: false,
+        }
+    }
+
+    /// How long it takes.
+    #[must_use]
+    pub fn ticks(&self) -> u32 {
+        self.legs.iter().map(|leg| leg.ticks).sum()
+    }
+}

@@ -1,0 +1,402 @@
+//! Where everything is in the course of a job, and what a step changes.
+
+use plant::{
+    part::sizes_along,
+    pedestal::hand_frame,
+    room::{Layout, Placed, Room},
+    vise::Jaws,
+};
+use rcs_core::{
+    frame::{Frame, Vector, rotation_by},
+    interface::emove::EmoveVerb,
+    name::Name16,
+};
+use serde::Serialize;
+use taskdata::{files::Location, load::job::ViseOpening};
+
+use crate::{
+    flight::Robot,
+    job::{Random, placed},
+    plan::Phase,
+    steps::{PedestalVerb, Step},
+    survey::Passing,
+    walk::Walk,
+};
+
+/// A part that is farther than this from where the robot expects it is not there, in.
+const THERE: f64 = 8.0;
+
+/// Something that is wrong with a way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// `path.joint`, `path.contact`, `path.link` or `path.margin`.
+    pub code: &'static str,
+    /// It fails, or runs into something; else it is only near to that.
+    pub error: bool,
+    /// Line of the job, from 1.
+    pub line: u32,
+    /// What, where, and by how much.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
+    /// What makes it the same finding in another walk.
+    #[serde(skip)]
+    pub key: String,
+    /// Of two that are the same the deeper one counts.
+    #[serde(skip)]
+    pub depth: f64,
+}
+
+/// The way to a point, flown.
+#[derive(Clone, Debug, Serialize)]
+pub struct Segment {
+    /// The point before.
+    pub from: String,
+    /// The point.
+    pub to: String,
+    /// depart, trajectory, approach or goal.
+    pub part: &'static str,
+    /// The joint that comes nearest to a limit, and how near, degrees.
+    pub joint: &'static str,
+    /// How near, degrees.
+    pub margin_deg: f64,
+    /// What is passed most closely.
+    pub nearest: Option<Passing>,
+}
+
+impl Segment {
+    /// Take over what is nearer on another flight.
+    pub fn merge(&mut self, other: &Self) {
+        if other.margin_deg < self.margin_deg {
+            (self.joint, self.margin_deg) = (other.joint, other.margin_deg);
+        }
+        let clearance = |one: &Self| one.nearest.as_ref().map_or(f64::INFINITY, |near| near.clearance_in);
+        if clearance(other) < clearance(self) {
+            self.nearest.clone_from(&other.nearest);
+        }
+    }
+}
+
+/// A phase, flown.
+#[derive(Clone, Debug, Serialize)]
+pub struct Walked {
+    /// The phase.
+    pub plan: Phase,
+    /// Its segments, as far as they were flown.
+    pub segments: Vec<Segment>,
+}
+
+impl Walked {
+    /// A phase that is not flown.
+    #[must_use]
+    pub const fn of(plan: Phase) -> Self {
+        Self { plan, segments: Vec::new() }
+    }
+}
+
+/// What a job has come to.
+#[derive(Clone, Debug)]
+pub struct State<'a> {
+    /// The cell.
+    pub room: &'a Room,
+    /// Where the robot is by the task data.
+    pub walk: Walk<'a>,
+    /// Where it is.
+    pub robot: Robot,
+    /// Where everything else is.
+    pub layout: Layout,
+    /// What it holds, with which grip.
+    pub held: Option<(Name16, i32)>,
+    /// Parts that lie anywhere in their sectors.
+    pub random: Vec<Random>,
+    /// Commands under which the robot has come to stand as it does.
+    pub before: Vec<[&'static str; 2]>,
+    /// The object that the pedestal has, or is about to have.
+    regrip: Option<Name16>,
+    /// The object and the place of the last motion.
+    last: Option<(Name16, Location)>,
+}
+
+impl<'a> State<'a> {
+    /// A robot that has started up: its fingers are open.
+    #[must_use]
+    pub fn new(room: &'a Room, walk: Walk<'a>, robot: Robot) -> Self {
+        let mut layout = room.at_start();
+        layout.opening = room.gripper(layout.gripper).map_or(0.0, |gripper| gripper.opening[1]);
+        Self {
+            room,
+            walk,
+            robot,
+            layout,
+            held: None,
+            random: Vec::new(),
+            before: Vec::new(),
+            regrip: None,
+            last: None,
+        }
+    }
+
+    /// Put a part into a sector, or another place of it there if it is there already. False if the cell has no such place.
+    pub fn deliver(&mut self, object: &Name16, at: &Location, aside: [f64; 3], again: bool) -> bool {
+        let cell = self.room.cell();
+        let Some(kind) = cell.part(object.as_str()) else { return false };
+        let sector = u16::try_from(at.sector).unwrap_or(u16::MAX);
+        let Ok(frame) = cell.delivered(kind, at.name.as_str(), sector, aside) else { return false };
+        if again && let Some(there) = self.nearest(object, &at.frame) {
+            self.layout.parts.remove(there);
+        }
+        self.layout.parts.push(Placed { kind: kind.clone(), frame });
+        true
+    }
+
+    /// The nearest part of a name to a frame.
+    fn nearest(&self, object: &Name16, frame: &Frame) -> Option<usize> {
+        let away = |part: &Placed| (part.frame.position - frame.position).norm();
+        let named =
+            self.layout.parts.iter().enumerate().filter(|(_, part)| part.kind.name == object.as_str());
+        named
+            .map(|(index, part)| (index, away(part)))
+            .filter(|(_, away)| *away < THERE)
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(index, _)| index)
+    }
+
+    /// The jaws of the vise move.
+    pub fn move_vise(&mut self, opening: ViseOpening, program: Option<&Name16>) {
+        let programs = &self.room.cell().vise.program;
+        let named = program.and_then(|name| programs.iter().position(|one| one.name == name.as_str()));
+        self.layout.program = named.unwrap_or(self.layout.program);
+        let jaws = match opening {
+            ViseOpening::Partial => Jaws::Partial,
+            ViseOpening::Open => Jaws::Open,
+            ViseOpening::Close => Jaws::Closed,
+        };
+        self.layout.jaws = self.room.jaws(self.layout.program, jaws);
+        if jaws == Jaws::Closed {
+            self.clamp();
+        }
+    }
+
+    /// The jaws close on what is between them; what nothing else has comes to lie at its seat.
+    fn clamp(&mut self) {
+        let opened = Layout { jaws: self.room.jaws(self.layout.program, Jaws::Open), ..self.layout.clone() };
+        if let Some(index) = self.room.in_vise(&opened)
+            && let Some(part) = self.layout.parts.get_mut(index)
+            && let Some((seat, gap)) = self.room.vise_seat(self.layout.program, part)
+        {
+            part.frame = seat;
+            self.layout.jaws = gap;
+        } else if let Some(held) = &self.layout.held {
+            let there = Placed { frame: self.robot.tool().compose(&held.frame), ..held.clone() };
+            let held = Layout { parts: vec![there.clone()], ..opened };
+            if self.room.in_vise(&held).is_some()
+                && let Some((_, gap)) = self.room.vise_seat(self.layout.program, &there)
+            {
+                self.layout.jaws = gap;
+            }
+        }
+    }
+
+    /// A part becomes another.
+    pub fn machine(&mut self, blank: &Name16, part: &Name16) {
+        let next = self.room.cell().part(part.as_str());
+        let is = |one: &&mut Placed| one.kind.name == blank.as_str();
+        if let (Some(next), Some(one)) = (next, self.layout.parts.iter_mut().find(is)) {
+            one.kind.clone_from(next);
+        }
+        if self.room.in_vise(&self.layout).is_some() {
+            self.clamp();
+        }
+    }
+
+    /// A tool is put into the drum.
+    pub fn put_into_drum(&mut self, tool: &Name16) {
+        let drum = &self.room.cell().drum;
+        if let Some(pose) = drum.pose.frame() {
+            let frame = pose.shifted(Vector::new(drum.middle, 0.0, 0.0));
+            self.layout.parts.extend(placed(self.room, tool, frame));
+        }
+    }
+
+    /// Make a step; `task` is the command of Task that it belongs to.
+    pub fn step(&mut self, step: &Step, task: &str) -> (Walked, Vec<Finding>) {
+        match *step {
+            Step::Go { verb, object, location, .. } => {
+                self.layout.engaged = 0;
+                self.last = Some((object, location));
+                let phase = self.walk.step(step);
+                let subtask = match task {
+                    "POSITION" => ">POSITION",
+                    _ if self.regrip.is_some() => "FIX-GRIP",
+                    _ => "",
+                };
+                self.fly(phase, [verb.text(), subtask], true)
+            }
+            Step::Relative { name, .. } => {
+                let phase = self.walk.step(step);
+                let verb = match name.get(..3) {
+                    Some("QCA") => "QC-ATTACH",
+                    Some("QCD") => "QC-DETACH",
+                    _ => match task {
+                        "ACQUIRE-TOOL" => "ACQUIRE-TOOL",
+                        "RELEASE-TOOL" => "RELEASE-TOOL",
+                        "REMOVE-TOOL" => "REMOVE-TOOL",
+                        _ => "INSERT-TOOL",
+                    },
+                };
+                // Where the moves end that begin where a guarded one has ended is not known either.
+                let known = !phase.guarded && !matches!(name, "QCD-UP" | "REL-BACK");
+                self.fly(phase, [verb, verb], known)
+            }
+            Step::Locate => {
+                let phase = self.locate();
+                self.fly(phase, ["LOCATE-OBJ", ""], true)
+            }
+            _ => {
+                let phase = self.walk.step(step);
+                self.stand(step);
+                (Walked::of(phase), Vec::new())
+            }
+        }
+    }
+
+    /// What changes while the robot stands.
+    fn stand(&mut self, step: &Step) {
+        match *step {
+            Step::Fingers { verb: EmoveVerb::GraspObj, object, grip } => {
+                self.grasp(&object, grip);
+                self.before = vec![["GRASP-OBJ", ""]];
+            }
+            Step::Fingers { object, grip, .. } => {
+                let depart = self.walk.data().object(&object, grip).map(|(_, sizes)| sizes.depart_size);
+                self.release(depart.map(|size| f64::from(size) / 100.0));
+                self.before = vec![["RELEASE", ""]];
+            }
+            Step::GraspTool => {
+                if let Some((object, grip)) = self.tool_in_drum() {
+                    self.grasp(&object, grip);
+                }
+                self.before = vec![["ACQUIRE-TOOL"; 2]];
+            }
+            Step::LetGoTool => {
+                self.release(None);
+                self.before = vec![["RELEASE-TOOL"; 2]];
+            }
+            Step::Pedestal(verb) => self.pedestal(verb),
+            Step::Engage(id) => self.layout.engaged = id,
+            Step::Leave(id) => (self.layout.gripper, self.layout.engaged) = (0, id),
+            Step::Take(id) => {
+                (self.layout.gripper, self.layout.engaged) = (id, 0);
+                self.layout.opening = self.room.gripper(id).map_or(0.0, |gripper| gripper.opening[0]);
+                self.before = vec![["QC-ATTACH", "QC-ATTACH"]];
+            }
+            Step::Go { .. } | Step::Relative { .. } | Step::Locate | Step::Other(_) => {}
+        }
+    }
+
+    fn tool_in_drum(&self) -> Option<(Name16, i32)> {
+        let tool = self.robot.tool();
+        let away = |part: &Placed| (part.frame.position - tool.position).norm();
+        let part = self.layout.parts.iter().filter(|part| part.kind.tool && away(part) < THERE);
+        let part = part.min_by(|a, b| away(a).total_cmp(&away(b)))?;
+        Some((Name16::clipped(&part.kind.name), 1))
+    }
+
+    fn grasp(&mut self, object: &Name16, grip: i32) {
+        self.held = Some((*object, grip));
+        let tool = self.robot.tool();
+        let Some(index) = self.nearest(object, &tool) else { return };
+        let part = self.layout.parts.remove(index);
+        let mut frame = tool.inverse().compose(&part.frame);
+        // The fingers draw it to their middle.
+        frame.position.y = 0.0;
+        let groove = self.room.gripper(self.layout.gripper).and_then(|gripper| gripper.groove);
+        if groove.is_none() {
+            self.layout.opening = sizes_along(&frame, &part.kind).y;
+        }
+        self.layout.held = Some(Placed { frame, ..part });
+    }
+
+    /// Let go of what is held, and open to so many inches; all the way if that is not said.
+    fn release(&mut self, opening: Option<f64>) {
+        self.held = None;
+        if let Some(held) = self.layout.held.take() {
+            let frame = self.robot.tool().compose(&held.frame);
+            let there = Placed { frame, ..held };
+            let frame = self.room.nest_seat(&there).unwrap_or(there.frame);
+            self.layout.parts.push(Placed { frame, ..there });
+        }
+        self.open(opening.unwrap_or(f64::INFINITY));
+    }
+
+    /// The fingers open as far as they can.
+    fn open(&mut self, opening: f64) {
+        if let Some(gripper) = self.room.gripper(self.layout.gripper) {
+            self.layout.opening = opening.clamp(gripper.opening[0], gripper.opening[1]);
+        }
+    }
+
+    fn pedestal(&mut self, verb: PedestalVerb) {
+        let held = self.held.map(|(object, _)| object);
+        let Some(object) = self.regrip.or(held) else { return };
+        let Some((_, sizes)) = self.walk.data().ped_para(&object) else { return };
+        let pedestal = &self.room.cell().pedestal;
+        let [low, high] = pedestal.hand.opening;
+        let inches = |size: i32| (f64::from(size) / 100.0).clamp(low, high);
+        let angle = |tenths: i32| pedestal.table.angle(f64::from(tenths) / 10.0);
+        match verb {
+            PedestalVerb::PreGrip => {
+                self.regrip = Some(object);
+                (self.layout.hand, self.layout.table) = (inches(sizes.appr), angle(sizes.table_pos));
+            }
+            PedestalVerb::Grip => {
+                self.layout.hand = inches(sizes.grasp_size);
+                self.before = vec![["MOV-OBJ-TO", "FIX-GRIP"]];
+            }
+            PedestalVerb::Flip => {
+                let to = angle(sizes.table_pos.saturating_add(sizes.flip_angle));
+                let part = self.nearest(&object, &hand_frame(pedestal, self.layout.table));
+                let turned = part.and_then(|index| {
+                    Some((index, self.room.turned(&self.layout, to, &self.layout.parts.get(index)?.frame)))
+                });
+                if let Some((index, frame)) = turned
+                    && let Some(part) = self.layout.parts.get_mut(index)
+                {
+                    part.frame = frame;
+                }
+                self.layout.table = to;
+            }
+            PedestalVerb::Release => {
+                self.layout.hand = inches(sizes.release_size);
+                self.before = vec![["GRASP-OBJ", "FIX-GRIP"]];
+                self.regrip = None;
+            }
+        }
+    }
+
+    /// The camera finds the object that lies where the robot looks.
+    fn locate(&mut self) -> Phase {
+        let seen = self.last.and_then(|(object, location)| {
+            let part = self.layout.parts.get(self.nearest(&object, &location.frame)?)?;
+            let (_, view) = self.walk.data().view(&object, &location.place)?;
+            Some((found(&location.frame, part, view.grip), location.frame))
+        });
+        match seen {
+            Some((object, looked_at)) => self.walk.find(&object, &looked_at),
+            None => self.walk.step(&Step::Locate),
+        }
+    }
+}
+
+/// The part frame that vision answers with (V.2.1 LOCATE-OBJ): in the plane of the place, at the middle of the part, turned by no
+/// more than a quarter turn so that tool Y lies across its wider side for grip 1, else across the narrower (VII.7.6).
+fn found(place: &Frame, part: &Placed, grip: i32) -> Frame {
+    let aside = part.frame.position - place.position;
+    let at = Vector::new(0.0, aside.dot(&place.y()), aside.dot(&place.z()));
+    let [_, wide, long] = part.kind.size;
+    let across = if (wide > long) == (grip.abs() == 1) { part.frame.y() } else { part.frame.z() };
+    let angle = across.dot(&place.z()).atan2(across.dot(&place.y()));
+    let quarter = core::f64::consts::FRAC_PI_2;
+    let angle = (angle + quarter).rem_euclid(2.0 * quarter) - quarter;
+    place.shifted(at).turned(&rotation_by(&Vector::new(angle, 0.0, 0.0)))
+}

@@ -1,0 +1,124 @@
+//! Each segment of the stored trajectories once, forth and back, with the fingers wide open and nothing between them.
+//!
+//! A segment leads from one pose or location point to the next, whatever the objects at its ends; those are walked with the jobs.
+
+use std::collections::HashSet;
+
+use plant::{
+    description::Actuators,
+    room::{Layout, Room},
+};
+use rcs_core::{
+    frame::Frame,
+    kinematics::{HOME_JOINTS, T3},
+};
+use taskdata::{
+    files::{LocptId, PathPoint, RefType, Reference, Target, TaskData, TrajPara},
+    load::{Store, source::At},
+};
+
+use crate::{
+    flight::{Robot, Trouble},
+    judge::in_words,
+    survey::{Seen, Survey},
+};
+
+/// What is wrong with a segment.
+#[derive(Clone, Debug)]
+pub struct StoredFinding {
+    /// Where its end is entered.
+    pub at: At,
+    /// What, where, and by how much.
+    pub message: String,
+}
+
+/// What came of the stored routes.
+#[derive(Clone, Debug, Default)]
+pub struct Stored {
+    /// Segments that were walked, each forth and back.
+    pub segments: usize,
+    /// What is wrong with them.
+    pub findings: Vec<StoredFinding>,
+}
+
+/// A point that does not depend on what is gone to.
+struct Fixed {
+    name: String,
+    frame: Frame,
+    parameters: TrajPara,
+    at: At,
+}
+
+/// Walk the segments of all trajectories. The task data must be sound.
+#[must_use]
+pub fn walk_stored(store: &Store, room: &Room) -> Stored {
+    let data = store.view();
+    let mut stored = Stored::default();
+    let mut known = HashSet::new();
+    for (number, record) in data.trajectories.iter().enumerate() {
+        let Some(&at) = store.origins().trajectories.get(number) else { continue };
+        let mut points = vec![end_of(&data, record.start, at)];
+        let first = record.path.of(data.paths).and_then(|path| usize::try_from(path.first).ok()).unwrap_or(0);
+        for (offset, point) in data.path(record.path).iter().enumerate() {
+            let at = store.origins().path_points.get(first + offset).copied().unwrap_or(at);
+            points.push(fixed(&data, point, at));
+        }
+        points.push(end_of(&data, record.end, at).map(|end| {
+            let last = data.path(record.path).last().and_then(|point| data.traj_para(point.para)).copied();
+            Fixed { parameters: last.unwrap_or(end.parameters), ..end }
+        }));
+        for pair in points.windows(2) {
+            let [Some(from), Some(to)] = pair else { continue };
+            for (from, to, at) in [(from, to, to.at), (to, from, to.at)] {
+                if !known.insert((from.name.clone(), to.name.clone())) {
+                    continue;
+                }
+                stored.segments += 1;
+                let parameters = if from.parameters.vel_max < to.parameters.vel_max {
+                    from.parameters
+                } else {
+                    to.parameters
+                };
+                if let Some(what) = segment(room, &from.frame, &to.frame, parameters) {
+                    let message =
+                        format!("trajectory {}, from {} to {}: {what}", record.name, from.name, to.name);
+                    stored.findings.push(StoredFinding { at, message });
+                }
+            }
+        }
+    }
+    stored
+}
+
+/// The fastest parameters, which those of a point replace.
+const FREE: TrajPara = TrajPara { acc_fac: 4, vel_max: 100, smooth: 8, brk_dst: 0 };
+
+/// The end of a trajectory, if it is a location point.
+fn end_of(data: &TaskData<'_>, end: Reference, at: At) -> Option<Fixed> {
+    let point = (end.kind == RefType::LocationPoint).then(|| data.locpt(LocptId::new(end.number)))??;
+    Some(Fixed { name: point.name.to_string(), frame: point.frame, parameters: FREE, at })
+}
+
+fn fixed(data: &TaskData<'_>, point: &PathPoint, at: At) -> Option<Fixed> {
+    let (name, frame) = match point.target {
+        Target::Pose(id) => data.pose(id).map(|pose| (pose.name, pose.frame)),
+        Target::LocationPoint(id) => data.locpt(id).map(|point| (point.name, point.frame)),
+        Target::Movetable(_) | Target::Stop => None,
+    }?;
+    let parameters = data.traj_para(point.para).copied()?;
+    Some(Fixed { name: name.to_string(), frame, parameters, at })
+}
+
+/// What is wrong with a straight segment, if anything.
+fn segment(room: &Room, from: &Frame, to: &Frame, parameters: TrajPara) -> Option<String> {
+    let joints = T3.within_limits(&T3.inverse(from, &HOME_JOINTS).ok()?);
+    let mut robot = Robot::standing(&Actuators::from(&room.cell().robot), &joints)?;
+    let start = room.at_start();
+    let opening = room.gripper(start.gripper).map_or(start.opening, |gripper| gripper.opening[1]);
+    let layout = Layout { opening, ..start };
+    // What touches at its ends does so by the approaches there.
+    let mut survey = Survey::new(room, &layout, ["", ""], &joints, &[]);
+    let (_, trouble) = robot.fly(&[(*to, parameters)], |leg, joints| survey.look(leg, joints));
+    let Seen { touched, .. } = survey.take();
+    trouble.map(|trouble: Trouble| in_words(trouble).0).or_else(|| touched.map(|touched| touched.to_string()))
+}

@@ -1,0 +1,185 @@
+//! What arm, gripper and held part touch or pass on a flight, judged by the permits of the cell description as in a run.
+
+use std::{collections::BTreeMap, fmt};
+
+use plant::{
+    clearance::{Body, Contact},
+    room::{Layout, Room},
+};
+use rcs_core::kinematics::Joints;
+use serde::Serialize;
+
+/// Distances greater than this are not told, in.
+pub const MARGIN: f64 = 2.0;
+/// How far is looked, in: the farther, the more ticks can be skipped, and the longer each look takes.
+const SIGHT: f64 = 4.0;
+/// What was permitted to touch and is this far apart has come free, in.
+const FREE: f64 = 0.05;
+/// How deep a part may be in what it is put into or taken out of, in (ASSUMED): where exactly it lies depends on vision, on the
+/// fingers and on how it has dropped.
+pub const FIT: f64 = 0.10;
+/// How far a point of the robot moves at the most when a joint turns by a radian, in: base to roll.
+const LEVERS: Joints = [105.0, 105.0, 65.0, 30.0, 27.0, 12.0];
+
+/// Two things that touch or pass each other.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Passing {
+    /// What of the robot, or the part that it carries.
+    pub mover: String,
+    /// What it passes.
+    pub obstacle: String,
+    /// How far apart, inches; negative if they touch.
+    pub clearance_in: f64,
+    /// Where, world, inches.
+    pub position_in: [f64; 3],
+}
+
+impl From<&Contact> for Passing {
+    fn from(contact: &Contact) -> Self {
+        Self {
+            mover: contact.mover.clone(),
+            obstacle: contact.obstacle.clone(),
+            clearance_in: -contact.depth,
+            position_in: contact.at,
+        }
+    }
+}
+
+impl fmt::Display for Passing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { mover, obstacle, clearance_in, position_in: [x, y, z] } = self;
+        if *clearance_in < 0.0 {
+            write!(
+                f,
+                "{mover} runs into {obstacle}, {:.2} in deep at ({x:.2}, {y:.2}, {z:.2})",
+                -clearance_in
+            )
+        } else {
+            write!(f, "{mover} passes {obstacle} by {clearance_in:.2} in at ({x:.2}, {y:.2}, {z:.2})")
+        }
+    }
+}
+
+/// The least clearance of a leg, and what it runs into.
+#[derive(Clone, Debug, Default)]
+pub struct Seen {
+    /// The nearest of what is nearer than [`MARGIN`].
+    pub nearest: Option<Passing>,
+    /// The deepest contact that is not permitted.
+    pub touched: Option<Passing>,
+}
+
+/// Watches flights while the layout stays as it is.
+#[derive(Debug)]
+pub struct Survey<'a> {
+    room: &'a Room,
+    layout: Layout,
+    devices: Vec<Body>,
+    /// Commands of E-move and Subtask.
+    commands: [&'static str; 2],
+    /// How deep pairs were while that was permitted.
+    allowed: BTreeMap<(String, String), f64>,
+    /// Where the robot was looked at last.
+    at: Joints,
+    /// How far the robot may move from there before it has to be looked at again, in.
+    free: f64,
+    leg: Option<usize>,
+    seen: Seen,
+}
+
+impl<'a> Survey<'a> {
+    /// A survey that begins at joint angles (radians) at which what touches may do so under other commands, those under which the
+    /// robot has come there.
+    #[must_use]
+    pub fn new(
+        room: &'a Room,
+        layout: &Layout,
+        commands: [&'static str; 2],
+        start: &Joints,
+        before: &[[&'static str; 2]],
+    ) -> Self {
+        let mut survey = Self {
+            room,
+            layout: layout.clone(),
+            devices: room.devices(layout),
+            commands,
+            allowed: BTreeMap::new(),
+            at: *start,
+            free: 0.0,
+            leg: None,
+            seen: Seen::default(),
+        };
+        let permits = &room.cell().contact;
+        for contact in room.look(layout, &survey.devices, start, 0.0) {
+            let most = before.iter().map(|one| permits.during(contact.mover(), contact.obstacle(), *one));
+            let most = most.fold(0.0, f64::max);
+            if most > 0.0 {
+                survey.allowed.insert(contact.pair(), contact.depth.max(most) + FIT);
+            }
+        }
+        survey
+    }
+
+    /// What was seen on the way to a point, which is then forgotten.
+    pub fn take(&mut self) -> Seen {
+        (self.leg, self.free) = (None, 0.0);
+        std::mem::take(&mut self.seen)
+    }
+
+    /// The fingers open or close to so many inches.
+    pub fn open(&mut self, opening: f64) {
+        if self.layout.opening != opening {
+            (self.layout.opening, self.free) = (opening, 0.0);
+        }
+    }
+
+    /// Look at the robot on its way to a point, unless it cannot have come nearer to anything than before.
+    pub fn look(&mut self, leg: usize, joints: &Joints) {
+        let begins = self.leg != Some(leg);
+        let moved: f64 = joints
+            .iter()
+            .zip(self.at)
+            .zip(LEVERS)
+            .map(|((now, then), lever)| (now - then).abs() * lever)
+            .sum();
+        if !begins && moved < self.free {
+            return;
+        }
+        self.leg = Some(leg);
+        let contacts = self.room.look(&self.layout, &self.devices, joints, SIGHT);
+        self.allowed.retain(|pair, _| contacts.iter().any(|one| one.depth > -FREE && one.pair() == *pair));
+        let mut least = SIGHT;
+        for contact in &contacts {
+            if !self.permitted(contact) {
+                least = least.min(-contact.depth);
+                self.note(contact);
+            }
+        }
+        let known = self.seen.nearest.as_ref().map_or(MARGIN, |nearest| nearest.clearance_in);
+        (self.at, self.free) = (*joints, least - known.max(0.0));
+    }
+
+    /// It may touch, or has touched where it might and has not come free.
+    fn permitted(&mut self, contact: &Contact) -> bool {
+        let permits = &self.room.cell().contact;
+        let most = permits.during(contact.mover(), contact.obstacle(), self.commands);
+        if most > 0.0 && contact.depth <= most + FIT {
+            if contact.touches() {
+                self.allowed.insert(contact.pair(), most + FIT);
+            }
+            return true;
+        }
+        self.allowed.get(&contact.pair()).is_some_and(|depth| contact.depth <= *depth)
+    }
+
+    fn note(&mut self, contact: &Contact) {
+        let nearer =
+            |known: &Option<Passing>| known.as_ref().is_none_or(|known| -contact.depth < known.clearance_in);
+        if -contact.depth < MARGIN && nearer(&self.seen.nearest) {
+            self.seen.nearest = Some(Passing::from(contact));
+        }
+        if contact.touches() && nearer(&self.seen.touched) {
+            self.seen.touched = Some(Passing::from(contact));
+        }
+    }
+}
