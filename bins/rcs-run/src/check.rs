@@ -25,6 +25,7 @@ use crate::{
     error::{Error, UNUSABLE},
     explain, long_json,
     run::setup::{CELL, EXTENSION, JOBS},
+    ways,
 };
 
 /// One finding, for editors and scripts.
@@ -74,6 +75,9 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     if let Some(command) = &arguments.explain {
         return explain::explain(arguments, command);
     }
+    if let Some(job) = &arguments.explain_job {
+        return ways::explain(arguments, job);
+    }
     let (store, data) = match Store::load(&arguments.data) {
         Ok((store, report)) => (Some(store), report),
         Err(report) => (None, *report),
@@ -91,19 +95,35 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     let mut reports = vec![("task data".to_owned(), data)];
     let path = arguments.data.join(CELL);
     let (cell, cell_report) = cell(&path, store.as_ref());
+    let (mut sound, mut rows) = (Vec::new(), Vec::new());
     for job in jobs(&arguments.data) {
         // Without task data a job cannot be checked: the names of its commands mean nothing yet.
         let Some(store) = &store else { break };
         let name = job.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let report = match Job::load(&job, store) {
             Ok((job, report)) => match &cell {
-                Some(cell) => report.with(agreement::of_job(&job, cell.description(), store, &path)),
+                Some(cell) => {
+                    let report = report.with(agreement::of_job(&job, cell.description(), store, &path));
+                    if !report.has_errors() {
+                        sound.push(job);
+                        rows.push(reports.len());
+                    }
+                    report
+                }
                 None => report,
             },
             Err(report) => *report,
         };
         reports.push((format!("job {name}"), report));
         outcome.jobs.push(name);
+    }
+    if let Some((store, cell)) = store.as_ref().zip(cell.as_ref()) {
+        let (of_jobs, of_stored) = ways::of_all(&sound, store, cell.description());
+        for (row, found) in rows.into_iter().zip(of_jobs).chain([(0, of_stored)]) {
+            if let Some((_, report)) = reports.get_mut(row) {
+                *report = std::mem::take(report).with(found);
+            }
+        }
     }
     reports.push(("cell description".to_owned(), cell_report));
     if let Some((path, cell)) = arguments.urdf.as_ref().zip(cell) {

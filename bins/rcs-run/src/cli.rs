@@ -251,6 +251,9 @@ pub struct CheckArguments {
     /// Print the whole way of a command: the fields after == in a job
     #[arg(long, value_name = "COMMAND")]
     pub explain: Option<String>,
+    /// Print the ways of all lines of a job: times, joints, closest clearances
+    #[arg(long, value_name = "JOB", conflicts_with = "explain")]
+    pub explain_job: Option<String>,
     /// Location at which the robot is taken to stand before the command
     #[arg(long, value_name = "NAME", default_value = "HOME", requires = "explain")]
     pub from: String,

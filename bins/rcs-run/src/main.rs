@@ -21,6 +21,7 @@ mod link_test;
 mod run;
 mod status;
 mod tables;
+mod ways;
 
 use std::process::ExitCode;
 

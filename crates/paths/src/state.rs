@@ -264,7 +264,7 @@ impl<'a> State<'a> {
     fn stand(&mut self, step: &Step) {
         match *step {
             Step::Fingers { verb: EmoveVerb::GraspObj, object, grip } => {
-                self.grasp(&object, grip);
+                self.grasp(&object, grip, &self.robot.tool());
                 self.before = vec![["GRASP-OBJ", ""]];
             }
             Step::Fingers { object, grip, .. } => {
@@ -273,8 +273,10 @@ impl<'a> State<'a> {
                 self.before = vec![["RELEASE", ""]];
             }
             Step::GraspTool => {
-                if let Some((object, grip)) = self.tool_in_drum() {
-                    self.grasp(&object, grip);
+                // Where the guarded moves have ended is not known: the fingers are taken to be where the drum has its tools.
+                let drum = self.room.cell().drum.pose.frame();
+                if let Some((object, drum)) = self.tool_in_drum().zip(drum) {
+                    self.grasp(&object, 1, &drum);
                 }
                 self.before = vec![["ACQUIRE-TOOL"; 2]];
             }
@@ -294,18 +296,18 @@ impl<'a> State<'a> {
         }
     }
 
-    fn tool_in_drum(&self) -> Option<(Name16, i32)> {
+    fn tool_in_drum(&self) -> Option<Name16> {
         let tool = self.robot.tool();
         let away = |part: &Placed| (part.frame.position - tool.position).norm();
         let part = self.layout.parts.iter().filter(|part| part.kind.tool && away(part) < THERE);
         let part = part.min_by(|a, b| away(a).total_cmp(&away(b)))?;
-        Some((Name16::clipped(&part.kind.name), 1))
+        Some(Name16::clipped(&part.kind.name))
     }
 
-    fn grasp(&mut self, object: &Name16, grip: i32) {
+    /// Take hold of the nearest part of a name with the tool frame at `tool`.
+    fn grasp(&mut self, object: &Name16, grip: i32, tool: &Frame) {
         self.held = Some((*object, grip));
-        let tool = self.robot.tool();
-        let Some(index) = self.nearest(object, &tool) else { return };
+        let Some(index) = self.nearest(object, tool) else { return };
         let part = self.layout.parts.remove(index);
         let mut frame = tool.inverse().compose(&part.frame);
         // The fingers draw it to their middle.

@@ -13,7 +13,7 @@ use rcs_core::{
     kinematics::{HOME_JOINTS, T3},
 };
 use taskdata::{
-    files::{LocptId, PathPoint, RefType, Reference, Target, TaskData, TrajPara},
+    files::{Direction, LocptId, PathPoint, RefType, Reference, Target, TaskData, TrajPara},
     load::{Store, source::At},
 };
 
@@ -57,13 +57,13 @@ pub fn walk_stored(store: &Store, room: &Room) -> Stored {
     let mut known = HashSet::new();
     for (number, record) in data.trajectories.iter().enumerate() {
         let Some(&at) = store.origins().trajectories.get(number) else { continue };
-        let mut points = vec![end_of(&data, record.start, at)];
+        let mut points = vec![end_of(&data, record.start, Direction::Depart, at)];
         let first = record.path.of(data.paths).and_then(|path| usize::try_from(path.first).ok()).unwrap_or(0);
         for (offset, point) in data.path(record.path).iter().enumerate() {
             let at = store.origins().path_points.get(first + offset).copied().unwrap_or(at);
             points.push(fixed(&data, point, at));
         }
-        points.push(end_of(&data, record.end, at).map(|end| {
+        points.push(end_of(&data, record.end, Direction::Approach, at).map(|end| {
             let last = data.path(record.path).last().and_then(|point| data.traj_para(point.para)).copied();
             Fixed { parameters: last.unwrap_or(end.parameters), ..end }
         }));
@@ -93,10 +93,16 @@ pub fn walk_stored(store: &Store, room: &Room) -> Stored {
 /// The fastest parameters, which those of a point replace.
 const FREE: TrajPara = TrajPara { acc_fac: 4, vel_max: 100, smooth: 8, brk_dst: 0 };
 
-/// The end of a trajectory, if it is a location point.
-fn end_of(data: &TaskData<'_>, end: Reference, at: At) -> Option<Fixed> {
-    let point = (end.kind == RefType::LocationPoint).then(|| data.locpt(LocptId::new(end.number)))??;
-    Some(Fixed { name: point.name.to_string(), frame: point.frame, parameters: FREE, at })
+/// The end of a trajectory, if it is a location point: the last point of its depart, or the first of its approach.
+fn end_of(data: &TaskData<'_>, end: Reference, direction: Direction, at: At) -> Option<Fixed> {
+    let id = (end.kind == RefType::LocationPoint).then(|| LocptId::new(end.number))?;
+    let (point, place) = (data.locpt(id)?, data.place_of(id));
+    let path = match direction {
+        Direction::Depart => data.depart_location(&place).and_then(|path| data.path(path).last()),
+        Direction::Approach => data.approach_location(&place).and_then(|path| data.path(path).first()),
+    };
+    let frame = path.and_then(|path| data.point_frame(path, &point.frame)).unwrap_or(point.frame);
+    Some(Fixed { name: point.name.to_string(), frame, parameters: FREE, at })
 }
 
 fn fixed(data: &TaskData<'_>, point: &PathPoint, at: At) -> Option<Fixed> {

@@ -243,7 +243,7 @@ fn warning(report: &Diagnostics, what: &str) -> Option<String> {
 }
 
 /// The file of a job: a path if it looks like one or is one, else a name in the data directory.
-fn job_path(job: &str, data: &Path) -> Result<PathBuf, Error> {
+pub fn job_path(job: &str, data: &Path) -> Result<PathBuf, Error> {
     let path = PathBuf::from(job);
     let named = data.join(JOBS).join(job).with_added_extension(EXTENSION);
     if named.is_file() {
