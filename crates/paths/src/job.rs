@@ -1,7 +1,5 @@
 //! The lines of a job in their order: every way is flown, with what stands where and what the robot holds carried along.
 
-use std::collections::BTreeMap;
-
 use plant::{
     description::Actuators,
     room::{Placed, Room},
@@ -26,10 +24,9 @@ use crate::{
 };
 
 /// What no walk can know.
-pub const NOT_CHECKED: [&str; 7] = [
+pub const NOT_CHECKED: [&str; 6] = [
     "where a guarded move ends: its joints are checked over its whole length, its clearance is not",
     "slip of a part in the fingers, and how a part comes to lie that is dropped or pushed",
-    "how far the fingers are open while they move",
     "commands of another workstation controller",
     "a start after the joystick, an emergency stop, a retry or PAUSE away from the points of a route",
     "faults of sensors, valves and the link",
@@ -39,8 +36,7 @@ pub const NOT_CHECKED: [&str; 7] = [
 const STANDS: f64 = 0.5;
 /// Where in its sector a part is tried that is delivered at random: x and y in shares of the greatest offset, and the angle in
 /// degrees. Half a turn changes nothing for two fingers.
-const TRIED: [[f64; 3]; 17] = [
-    [0.0, 0.0, 0.0],
+const TRIED: [[f64; 3]; 12] = [
     [0.0, 0.0, 22.5],
     [0.0, 0.0, 45.0],
     [0.0, 0.0, 67.5],
@@ -51,10 +47,6 @@ const TRIED: [[f64; 3]; 17] = [
     [0.0, 0.0, 157.5],
     [-1.0, -1.0, 85.0],
     [-1.0, 1.0, 85.0],
-    [1.0, -1.0, 85.0],
-    [1.0, 1.0, 85.0],
-    [-1.0, -1.0, 95.0],
-    [-1.0, 1.0, 95.0],
     [1.0, -1.0, 95.0],
     [1.0, 1.0, 95.0],
 ];
@@ -121,6 +113,11 @@ pub fn walk_job(job: &Job, store: &Store, room: &Room) -> WalkedJob {
                 let (done, findings) = command_line(&mut state, command, line.line, &line.text);
                 walked.lines.push(done);
                 walked.findings.extend(findings);
+                if state.stranded {
+                    let what = format!("what comes after line {}: the robot does not get so far", line.line);
+                    walked.not_checked.push(what);
+                    break;
+                }
             }
             Line::Workstation(action) => {
                 interrupted |= !act(&mut state, action);
@@ -190,15 +187,15 @@ fn command_line(
             done.tried += 1;
         }
     }
-    let mut worst: BTreeMap<String, Finding> = BTreeMap::new();
+    let mut worst: Vec<Finding> = Vec::new();
     for finding in findings {
-        let known = worst.entry(finding.key.clone()).or_insert_with(|| finding.clone());
-        if finding.depth > known.depth {
-            *known = finding;
+        match worst.iter_mut().find(|known| known.key == finding.key) {
+            Some(known) if finding.depth > known.depth => *known = Finding { line, ..finding },
+            Some(_) => {}
+            None => worst.push(Finding { line, ..finding }),
         }
     }
-    let findings = worst.into_values().map(|one| Finding { line, ..one }).collect();
-    (done, findings)
+    (done, worst)
 }
 
 impl JobLine {
@@ -236,6 +233,9 @@ fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding
         let (walked, more) = state.step(step, task);
         phases.push(walked);
         findings.extend(more);
+        if state.stranded {
+            break;
+        }
     }
     (phases, findings)
 }

@@ -53,6 +53,7 @@ impl State<'_> {
         let mut findings = self.findings(&phase, &there, &names(&phase), "", clear);
         let segments = segments(&phase, &there);
         let is_route = phase.legs.len() > 1 && !commands.contains(&">POSITION");
+        self.stranded = there.trouble.is_some();
         self.robot = there.robot;
         self.layout.opening = opening;
         self.before = vec![commands];
@@ -91,7 +92,8 @@ impl State<'_> {
             while seen.len() < leg {
                 seen.push(survey.take());
             }
-            if leg >= points.opens {
+            // Fingers need time: they are taken to be as wide as before on the leg on which they close.
+            if leg > points.opens || (leg == points.opens && opening > self.layout.opening) {
                 survey.open(opening);
             }
             survey.look(leg, joints);

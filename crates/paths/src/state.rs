@@ -109,6 +109,8 @@ pub struct State<'a> {
     pub held: Option<(Name16, i32)>,
     /// Parts that lie anywhere in their sectors.
     pub random: Vec<Random>,
+    /// It cannot go on: its controller has stopped.
+    pub stranded: bool,
     /// Commands under which the robot has come to stand as it does.
     pub before: Vec<[&'static str; 2]>,
     /// The object that the pedestal has, or is about to have.
@@ -130,6 +132,7 @@ impl<'a> State<'a> {
             layout,
             held: None,
             random: Vec::new(),
+            stranded: false,
             before: Vec::new(),
             regrip: None,
             last: None,

@@ -4,6 +4,7 @@ use std::{collections::BTreeMap, fmt};
 
 use plant::{
     clearance::{Body, Contact},
+    description::Kind,
     room::{Layout, Room},
 };
 use rcs_core::kinematics::Joints;
@@ -178,7 +179,9 @@ impl<'a> Survey<'a> {
         if -contact.depth < MARGIN && nearer(&self.seen.nearest) {
             self.seen.nearest = Some(Passing::from(contact));
         }
-        if contact.touches() && nearer(&self.seen.touched) {
+        // How a part lies in the fingers is not known any better.
+        let sure = contact.mover_kind != Kind::HeldPart || contact.depth > FIT;
+        if contact.touches() && sure && nearer(&self.seen.touched) {
             self.seen.touched = Some(Passing::from(contact));
         }
     }
