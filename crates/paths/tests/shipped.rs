@@ -88,12 +88,13 @@ fn each_sector_is_fit_or_not() {
             let text = text.replace("UNIT_1 4", &format!("{unit} {sector}"));
             let source = Source { name: "linkbar.job".into(), text: text.into() };
             let (job, _) = Job::from_source(source, &store).unwrap_or_else(|report| panic!("{report}"));
-            for finding in walk_job(&job, &store, &room).findings {
-                assert_eq!(finding.code, "path.contact", "{unit} {sector}: {}", finding.message);
+            let findings = walk_job(&job, &store, &room).findings;
+            assert!(findings.iter().all(|one| one.code == "path.contact"), "{unit} {sector}: {findings:?}");
+            assert_eq!(findings.is_empty(), unit == "UNIT_1", "the fingers meet a pot in a corner of UNIT_2");
+            if findings.iter().any(|one| one.error) {
                 unfit.push((unit, sector));
             }
         }
     }
-    unfit.dedup();
-    assert_eq!(unfit, [1, 2, 3, 4].map(|sector| ("UNIT_2", sector)));
+    assert_eq!(unfit, [("UNIT_2", 3), ("UNIT_2", 4)]);
 }
