@@ -275,9 +275,11 @@ fn the_figures_are_right_and_the_sections_are_those_of_the_interfaces() {
 fn every_reason_is_on_its_page() {
     let mut rows = String::new();
     for reason in Reason::ALL.iter().filter(|reason| **reason != Reason::None) {
-        writeln!(rows, "| {} | {} |", reason.code(), reason.text()).expect("a string has room");
+        let remedy = reason.remedy().unwrap_or("");
+        let row = format!("| {} | {} | {remedy} |", reason.code(), reason.text());
+        writeln!(rows, "{}", row.replace("  ", " ")).expect("a string has room");
     }
     let page = fs::read_to_string(root().join("docs/reasons.md")).expect("the page is there");
-    let found = page.split_once("|---|---|\n").expect("it has a table").1;
+    let found = page.split_once("|---|---|---|\n").expect("it has a table").1;
     assert!(found == rows, "docs/reasons.md must have these rows:\n{rows}");
 }

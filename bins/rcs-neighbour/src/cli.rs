@@ -82,6 +82,9 @@ pub struct WorkstationArguments {
     /// Task data, against which the job is checked, and jobs
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
+    /// After a command that ends with an error send PAUSE and the same command again, at most so many times a line
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub retry: u32,
 }
 
 /// Arguments of `data-system`.

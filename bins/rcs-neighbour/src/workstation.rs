@@ -25,16 +25,20 @@ const NETWORK_TICKS: u64 = 50;
 pub fn play(arguments: &WorkstationArguments) -> Result<(), Error> {
     let job = job(arguments)?;
     let mut peer = connect(&arguments.controller, Role::Workstation)?;
-    let hwsc = Hwsc::new(job.steps, TIME_LIMIT);
+    let hwsc = Hwsc::new(job.steps, TIME_LIMIT).with_retries(arguments.retry);
     let mut hwsc = if peer.clock() == ClockKind::Fast { hwsc } else { hwsc.with_answer_ticks(NETWORK_TICKS) };
     let mut command_box = Mailbox::initialized(HWSC_COMMAND);
-    let (mut cell, mut told) = (Cell::default(), 0);
+    let (mut cell, mut told, mut retried) = (Cell::default(), 0, 0);
     loop {
         let Received::Pulse(tick) = peer.receive()? else { continue };
         if peer.mailbox(HWSC_STATUS).mailgram() != 0 && peer.mailbox(CELL_STATUS).mailgram() != 0 {
             cell.read(peer.mailbox(CELL_STATUS)).map_err(unreadable)?;
             let status = status::decode(peer.mailbox(HWSC_STATUS).data()).map_err(unreadable)?;
             let progress = hwsc.step(Tick(tick), &status, &mut cell).clone();
+            for retry in hwsc.retried().iter().skip(retried) {
+                os_io::stdout_line!("tick {tick}: {retry}");
+                retried += 1;
+            }
             tell(&hwsc, &mut told, progress != Progress::Running);
             match progress {
                 Progress::Running => {}
@@ -42,7 +46,9 @@ pub fn play(arguments: &WorkstationArguments) -> Result<(), Error> {
                 Progress::Failed(failure) => {
                     let last = hwsc.begun_steps().last().map_or("", |step| step.text.as_str());
                     let line = if let JobFailure::Unfinished { line, .. } = &failure { line } else { last };
-                    return Err(Error::Job(format!("`{line}` failed: {failure}")));
+                    let remedy =
+                        failure.remedy().map_or_else(String::new, |remedy| format!("; to do: {remedy}"));
+                    return Err(Error::Job(format!("`{line}` failed: {failure}{remedy}")));
                 }
             }
             if let Some(command) = hwsc.mailgram() {

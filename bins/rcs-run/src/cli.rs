@@ -126,6 +126,10 @@ pub struct RunArguments {
     /// Neighbours that are other processes, with commas between them: workstation, data-system, pedestal, vision
     #[arg(long, value_name = "NEIGHBOURS", value_delimiter = ',', requires = "network")]
     pub outside: Vec<Role>,
+    /// Begin under stand-alone command: play the job; its lines `** workstation` hand over to the workstation controller until it
+    /// disconnects (IV.4.1)
+    #[arg(long, requires = "outside")]
+    pub stand_alone: bool,
     /// File in which updates wait for a Data System in another process
     #[arg(long, value_name = "FILE", default_value = "runs/data-system.outbox")]
     pub outbox: PathBuf,
@@ -138,6 +142,11 @@ pub struct RunArguments {
     /// Stop after so many ticks if the job is not over before
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub ticks: Option<u64>,
+    /// After a command that ends with an error send PAUSE and the same command again, at most so many times a line
+    ///
+    /// Errors that need a person are not retried (docs/reasons.md). Actions `** after` of the line are not begun again.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub retry: u32,
     /// Show the buffers to other programs
     #[arg(long, value_enum, default_value_t = Switch::On)]
     pub shared_memory: Switch,
@@ -176,7 +185,7 @@ impl RunArguments {
     /// The job that is played; `None` if another process commands.
     #[must_use]
     pub fn played(&self) -> Option<&str> {
-        (!self.outside.contains(&Role::Workstation)).then_some(self.job.as_str())
+        (self.stand_alone || !self.outside.contains(&Role::Workstation)).then_some(self.job.as_str())
     }
 }
 

@@ -67,6 +67,7 @@ fn drum_and_wait() {
     assert_eq!(action("** drum release"), Workstation::Drum(Drum::Release));
     assert_eq!(action("** drum tool LINKBAR1"), Workstation::Drum(Drum::Tool(name("LINKBAR1"))));
     assert_eq!(action("** wait 50"), Workstation::Wait { ticks: 50 });
+    assert_eq!(action("** workstation"), Workstation::HandOver);
 }
 
 #[test]

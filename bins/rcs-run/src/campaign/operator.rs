@@ -9,10 +9,12 @@
 //!                                                      └─────────────┘ tries left; else stranded
 //! ```
 
-use neighbours::workstation::{Status, TaskState, player::Workstation as _};
+use neighbours::workstation::{
+    Status, TaskState,
+    player::{Workstation as _, pause},
+};
 use rcs_core::{
     interface::{HwsCommand, hws::HwsReport},
-    name::Name16,
     tick::Tick,
 };
 use taskdata::load::job::{JobLine, Step, Workstation as Action};
@@ -377,10 +379,4 @@ impl Operator<'_> {
             Err(reason) => self.failed(tick, reason),
         }
     }
-}
-
-/// PAUSE (V.4.1).
-#[must_use]
-pub fn pause() -> HwsCommand {
-    HwsCommand { command: Name16::clipped("PAUSE"), ..HwsCommand::default() }
 }

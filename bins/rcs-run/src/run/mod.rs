@@ -17,6 +17,7 @@ mod progress;
 mod result;
 mod robot;
 pub mod setup;
+mod switched;
 mod verdict;
 pub mod workstation;
 
@@ -48,6 +49,7 @@ use levels::ladder::LadderState;
 use os_io::console;
 use plant::CellEvent;
 use rcs_core::{
+    digest::Digest,
     interface::{CommonMemory, DeviceInputs, DeviceOutputs, ExternalInputs, device::LinkBytes},
     tick::{TICK_S, Tick},
 };
@@ -109,12 +111,16 @@ struct Run {
     first_patience: Option<u16>,
     /// What the line was said to suffer last.
     trouble: Option<&'static str>,
+    /// What a person has to do before the job that has failed can go on.
+    remedy: Option<&'static str>,
 }
 
 /// The robot comes to rest: the velocity knob is at zero, and nobody commands any more.
 struct Ramp {
     ending: Ending,
     ticks: u32,
+    /// Fingerprint of the ticks before.
+    before: Digest,
 }
 
 /// Run a job and print its result.
@@ -135,6 +141,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let Setup { store, job, description, cell, robot, neighbours, .. } = setup;
     let workstation = SimulatedWorkstation::new(cell);
     let workstation = if robot.port().is_some() { workstation.with_robot_elsewhere() } else { workstation };
+    let workstation = if neighbours.can_switch() { workstation.with_hand_over() } else { workstation };
     let mut run = Run {
         runner: Runner::new(controller, publisher),
         neighbours,
@@ -153,6 +160,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         patience: arguments.robot.patience(),
         first_patience: first_patience(arguments),
         trouble: None,
+        remedy: None,
     };
     // Ends before the run does: it looks on as any reader.
     let mirror = run.runner.publisher().and_then(mirror);
@@ -169,12 +177,13 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
     let log_text = run.finish_log(&ending, &mut result, log_path);
     let page = Page {
         result: &result,
-        steps: run.neighbours.begun_steps(),
+        steps: &run.neighbours.all_steps(),
         log: &log_text,
         slowest: &pace::slowest(run.runner.stage_times()),
         stopped: matches!(ending, Ending::Stopped),
     };
     print(&page, arguments.json)?;
+    let to_do = run.remedy.map_or_else(String::new, |remedy| format!("; to do: {remedy}"));
     // What is shared goes before the last word: whoever reads it may start the next run at once.
     drop(mirror);
     drop(run);
@@ -182,7 +191,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         (Ending::Failed(failure), Some(FailureResult { line, .. })) => {
             let line = line.as_ref().map_or_else(String::new, |line| format!(" in `{line}`"));
             os_io::stderr_line!(
-                "rcs-run: {} failed at tick {}{line}: {}",
+                "rcs-run: {} failed at tick {}{line}: {}{to_do}",
                 job.name,
                 failure.tick,
                 failure.text
@@ -355,6 +364,7 @@ impl Run {
                 // Whatever the arm runs into belongs to the run.
                 player::Progress::Failed(_) if self.workstation.is_settling(tick) => {}
                 player::Progress::Failed(failure) => {
+                    self.remedy = self.remedy.or(failure.remedy());
                     let ending = Ending::Failed(self.explain(&failure, &external));
                     self.end_at_rest(ending);
                 }
@@ -410,7 +420,8 @@ impl Run {
     fn end_at_rest(&mut self, ending: Ending) {
         if self.ramp.is_none() {
             self.neighbours.stop_commanding();
-            self.ramp = Some(Ramp { ending, ticks: 0 });
+            let before = self.runner.digest();
+            self.ramp = Some(Ramp { ending, ticks: 0, before });
         }
     }
 
@@ -493,15 +504,16 @@ impl Run {
         let ticks = self.runner.tick().0;
         let simulated_s = ticks as f64 * TICK_S;
         let ramp_ticks = self.ramp.as_ref().map_or(0, |ramp| ramp.ticks);
-        let commands =
-            self.neighbours.begun_steps().iter().filter(|step| step.is_command).map(|step| CommandResult {
-                text: step.text.trim_start_matches("==").trim_start().to_owned(),
-                status: step.outcome.text(),
-                ticks: step.ticks,
-            });
+        let steps = self.neighbours.all_steps();
+        let commands = steps.iter().filter(|step| step.is_command).map(|step| CommandResult {
+            text: result::bare(&step.text),
+            status: step.outcome.text(),
+            ticks: step.ticks,
+        });
         RunResult {
             job: job.name.clone(),
             commands: commands.collect(),
+            retries: self.neighbours.retried().iter().map(Into::into).collect(),
             ticks: ticks - u64::from(ramp_ticks),
             ramp_ticks,
             simulated_s,
@@ -522,6 +534,11 @@ impl Run {
             emergency_stop: self.workstation.last_emergency().map(EmergencyResult::from),
             digest: self.runner.digest().to_string(),
             simulated: self.robot.port().map(|_| SIMULATED),
+            digest_before_ramp: self
+                .ramp
+                .as_ref()
+                .map_or_else(|| self.runner.digest(), |ramp| ramp.before)
+                .to_string(),
             parts: self.workstation.cell.parts().into_iter().map(Into::into).collect(),
             data_base: self.items(),
             contacts: self.check.collisions().to_vec(),
@@ -530,7 +547,7 @@ impl Run {
             log: None,
             failure: match ending {
                 Ending::Failed(failure) => {
-                    Some(FailureResult::new(failure, self.neighbours.line_at(failure.tick)))
+                    Some(FailureResult::new(failure, self.neighbours.line_at(failure.tick), self.remedy))
                 }
                 Ending::Finished | Ending::Stopped => None,
             },

@@ -18,7 +18,7 @@ use neighbours::{
     vision::{self, picture::Part},
     workstation::{
         Gate, TaskState,
-        player::{BegunStep, Hwsc, JobFailure, Outcome, Progress},
+        player::{BegunStep, Hwsc, JobFailure, Outcome, Progress, Retry},
         status,
     },
 };
@@ -31,7 +31,11 @@ use rcs_core::{
 use record::Level;
 use taskdata::load::Store;
 
-use super::{outside::OutsideWorkstation, workstation::SimulatedWorkstation};
+use super::{
+    outside::OutsideWorkstation,
+    switched::{Around, Switched},
+    workstation::SimulatedWorkstation,
+};
 use crate::{
     cli::{ClockKind, RunArguments},
     error::Error,
@@ -49,23 +53,21 @@ pub fn network_note(news: &News) -> Note {
 /// The workstation controller of a run: what commands Task.
 pub enum WorkstationSource {
     /// The emulator, with a job.
-    Emulator {
-        /// The emulator.
-        hwsc: Box<Hwsc>,
-        /// The mailbox that it writes.
-        command_box: Box<Mailbox>,
-    },
+    Emulator(Box<Emulator>),
     /// Another process.
     Outside(Box<OutsideWorkstation>),
+    /// The emulator, whose job hands over to another process.
+    Switched(Box<Switched>),
+}
+
+/// The emulator of the workstation controller, with the mailbox that it writes.
+pub struct Emulator {
+    /// The emulator.
+    pub hwsc: Hwsc,
+    command_box: Mailbox,
 }
 
 impl WorkstationSource {
-    /// The emulator plays a job.
-    #[must_use]
-    pub fn emulator(hwsc: Hwsc) -> Self {
-        Self::Emulator { hwsc: Box::new(hwsc), command_box: Box::new(Mailbox::initialized(HWSC_COMMAND)) }
-    }
-
     /// Another process commands.
     #[must_use]
     pub fn outside(desk: Desk) -> Self {
@@ -130,6 +132,7 @@ impl Neighbours {
         let (limit, started) = (Duration::from_secs(arguments.wait.into()), Instant::now());
         let fast = arguments.clock == ClockKind::Fast;
         let is_missing = |counter: &&Counter| match counter.role() {
+            Role::Workstation if self.can_switch() => false,
             Role::Workstation if fast => !counter.has_come(),
             Role::Workstation => !counter.is_connected(),
             Role::DataSystem | Role::Pedestal | Role::Vision => fast && !counter.is_connected(),
@@ -162,8 +165,18 @@ impl Neighbours {
 
     /// Another process commands.
     #[must_use]
-    pub const fn are_commanding(&self) -> bool {
-        matches!(self.workstation, WorkstationSource::Outside(_))
+    pub fn are_commanding(&self) -> bool {
+        match &self.workstation {
+            WorkstationSource::Emulator(_) => false,
+            WorkstationSource::Outside(_) => true,
+            WorkstationSource::Switched(switched) => switched.is_handed_over(),
+        }
+    }
+
+    /// Another process may command for a time.
+    #[must_use]
+    pub const fn can_switch(&self) -> bool {
+        matches!(self.workstation, WorkstationSource::Switched(_))
     }
 
     /// What stands in Task's command buffer.
@@ -215,8 +228,28 @@ impl Neighbours {
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         match &self.workstation {
-            WorkstationSource::Emulator { hwsc, .. } => hwsc.begun_steps(),
+            WorkstationSource::Emulator(emulator) => emulator.hwsc.begun_steps(),
             WorkstationSource::Outside(outside) => outside.begun_steps(),
+            WorkstationSource::Switched(switched) => switched.begun_steps(),
+        }
+    }
+
+    /// The same, and those of a workstation controller that the job has handed over to.
+    #[must_use]
+    pub fn all_steps(&self) -> Vec<BegunStep> {
+        match &self.workstation {
+            WorkstationSource::Switched(switched) => switched.all_steps(),
+            _ => self.begun_steps().to_vec(),
+        }
+    }
+
+    /// The commands of the job that were sent again after they had failed.
+    #[must_use]
+    pub fn retried(&self) -> &[Retry] {
+        match &self.workstation {
+            WorkstationSource::Emulator(emulator) => emulator.hwsc.retried(),
+            WorkstationSource::Outside(_) => &[],
+            WorkstationSource::Switched(switched) => switched.retried(),
         }
     }
 
@@ -254,14 +287,18 @@ impl Neighbours {
         self.gate.write(&memory.task, task_state(&memory.task.header, tick));
         let progress = match &mut self.workstation {
             _ if self.is_ending => Progress::Running,
-            WorkstationSource::Emulator { hwsc, command_box } => {
-                let progress = emulate(hwsc, command_box, &mut self.gate, tick, workstation);
-                // What the gate refuses comes back to the emulator by its status.
-                self.gate.read(command_box);
-                progress
+            WorkstationSource::Emulator(emulator) => {
+                emulator.step(tick, &mut self.gate, workstation, &mut self.notes)
             }
             WorkstationSource::Outside(outside) => {
                 outside.step(tick, &mut self.gate, &memory.task, workstation, store, &mut self.notes)
+            }
+            WorkstationSource::Switched(switched) => {
+                let data_system = self.network.iter().flat_map(|network| &network.counters);
+                let mut data_system = data_system.filter(|counter| counter.role() == Role::DataSystem);
+                let around =
+                    Around { tick, memory, store, has_data_system: data_system.all(Counter::is_connected) };
+                switched.step(&around, &mut self.gate, workstation, &mut self.notes)
             }
         };
         self.step_pedestal(tick, memory, inputs);
@@ -282,24 +319,52 @@ impl Neighbours {
     }
 }
 
-/// The emulator reads its status mailbox and writes its command mailbox.
-fn emulate(
-    hwsc: &mut Hwsc,
-    command_box: &mut Mailbox,
-    gate: &mut Gate,
-    tick: Tick,
-    workstation: &mut SimulatedWorkstation,
-) -> Progress {
-    let unreadable = |why: String| Progress::Failed(JobFailure::Refused(why));
-    let progress = match status::decode(gate.status_box().data()) {
-        Ok(status) => hwsc.step(tick, &status, workstation).clone(),
-        Err(error) => return unreadable(error.to_string()),
-    };
-    let Some(command) = hwsc.mailgram() else { return progress };
-    let written = neighbours::workstation::command::encode(command)
-        .map_err(|error| error.to_string())
-        .and_then(|bytes| command_box.write(&bytes).map_err(|error| error.to_string()));
-    written.map_or_else(unreadable, |()| progress)
+impl Emulator {
+    /// The emulator plays a job.
+    #[must_use]
+    pub fn new(hwsc: Hwsc) -> Self {
+        Self { hwsc, command_box: Mailbox::initialized(HWSC_COMMAND) }
+    }
+
+    /// Once a tick: the emulator reads its status mailbox and writes its command mailbox.
+    pub fn step(
+        &mut self,
+        tick: Tick,
+        gate: &mut Gate,
+        workstation: &mut SimulatedWorkstation,
+        notes: &mut Vec<Note>,
+    ) -> Progress {
+        let before = self.hwsc.retried().len();
+        let progress = match status::decode(gate.status_box().data()) {
+            Ok(status) => self.hwsc.step(tick, &status, workstation).clone(),
+            Err(error) => return Progress::Failed(JobFailure::Refused(error.to_string())),
+        };
+        let retries = self.hwsc.retried().iter().skip(before);
+        notes.extend(retries.map(|retry| (Level::Warning, "HWSC", retry.to_string())));
+        self.post(gate).unwrap_or(progress)
+    }
+
+    /// The command that is to be sent goes through the mailbox. Returns the failure if it does not fit.
+    fn post(&mut self, gate: &mut Gate) -> Option<Progress> {
+        let mut failure = None;
+        if let Some(command) = self.hwsc.mailgram() {
+            let written = neighbours::workstation::command::encode(command)
+                .map_err(|error| error.to_string())
+                .and_then(|bytes| self.command_box.write(&bytes).map_err(|error| error.to_string()));
+            failure = written.err().map(|why| Progress::Failed(JobFailure::Refused(why)));
+        }
+        // What the gate refuses comes back to the emulator by its status.
+        gate.read(&self.command_box);
+        failure
+    }
+
+    /// The job commands again: its mailbox is initialized as all mailboxes are when one connects (IX.1).
+    pub fn take_back(&mut self, tick: Tick, gate: &mut Gate, commands: Vec<BegunStep>) -> Progress {
+        self.command_box.initialize();
+        gate.initialize();
+        self.hwsc.take_back(tick, gate.command().number, commands);
+        self.post(gate).unwrap_or(Progress::Running)
+    }
 }
 
 /// What the camera sees of a part, as its mailbox has it.

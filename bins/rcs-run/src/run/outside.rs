@@ -42,6 +42,8 @@ pub struct OutsideWorkstation {
     began: Tick,
     /// It has been there in a tick.
     came: bool,
+    /// It is there.
+    here: bool,
     /// Why the last one that was there is there no longer.
     parting: Option<Parting>,
 }
@@ -58,6 +60,7 @@ impl OutsideWorkstation {
             begun_steps: Vec::new(),
             began: Tick::BEFORE_START,
             came: false,
+            here: false,
             parting: None,
         }
     }
@@ -66,6 +69,47 @@ impl OutsideWorkstation {
     #[must_use]
     pub fn begun_steps(&self) -> &[BegunStep] {
         &self.begun_steps
+    }
+
+    /// It is there.
+    #[must_use]
+    pub const fn is_here(&self) -> bool {
+        self.here
+    }
+
+    /// It can connect.
+    #[must_use]
+    pub const fn desk(&self) -> &Desk {
+        &self.desk
+    }
+
+    /// The commands that were taken since the last call.
+    pub fn take_steps(&mut self) -> Vec<BegunStep> {
+        std::mem::take(&mut self.begun_steps)
+    }
+
+    /// Once a tick while another one commands: it may come and go, reads no status, and what it writes is not read.
+    pub fn attend(&mut self, tick: Tick, notes: &mut Vec<Note>) {
+        for place in [HWSC_STATUS, CELL_STATUS] {
+            self.desk.outgoing(place).initialize();
+        }
+        self.exchange(tick, notes);
+    }
+
+    /// The mailboxes of a tick go out and come in.
+    fn exchange(&mut self, tick: Tick, notes: &mut Vec<Note>) -> Presence {
+        let presence = self.desk.exchange(tick.0);
+        while let Some(news) = self.desk.news() {
+            notes.push(network_note(&news));
+            if let News::Gone(_, parting) = news {
+                self.parting = Some(parting);
+            }
+        }
+        if presence.new {
+            (self.line_read, self.line, self.refused) = (0, 0, None);
+        }
+        self.here = presence.here;
+        presence
     }
 
     /// Once a tick, after controller and cell.
@@ -81,17 +125,10 @@ impl OutsideWorkstation {
         self.follow(tick, gate.command(), task);
         self.desk.outgoing(HWSC_STATUS).clone_from(gate.status_box());
         self.write_cell(workstation, notes);
-        let presence = self.desk.exchange(tick.0);
-        while let Some(news) = self.desk.news() {
-            notes.push(network_note(&news));
-            if let News::Gone(_, parting) = news {
-                self.parting = Some(parting);
-            }
-        }
+        let presence = self.exchange(tick, notes);
         let gone = self.has_gone(presence);
         if presence.new {
             gate.initialize();
-            (self.line_read, self.line, self.refused) = (0, 0, None);
         }
         let before = gate.command().number;
         if let Some(refusal) = gate.read(self.desk.incoming(HWSC_COMMAND)) {

@@ -46,6 +46,9 @@ impl fmt::Display for Page<'_> {
         if let Some(simulated) = result.simulated {
             writeln!(f, "simulated  {simulated}")?;
         }
+        if let Some(last) = result.retries.last() {
+            writeln!(f, "retries    {}, the last one at tick {}", result.retries.len(), last.tick)?;
+        }
         for part in &result.parts {
             writeln!(f, "part       {part}")?;
         }

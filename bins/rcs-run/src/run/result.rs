@@ -4,7 +4,7 @@ use std::{collections::BTreeMap, fmt, path::PathBuf};
 
 use depc::fault::{Counts, FaultKind};
 use executive::{boards::conductor::BoardFigures, failure::Failure, histogram, serial::SerialCounts};
-use neighbours::data_system::Item;
+use neighbours::{data_system::Item, workstation::player::Retry};
 use plant::{PartState, fault::Struck};
 use rcs_core::{interface::t3i::LinkCounters, tick::Tick};
 use serde::Serialize;
@@ -24,6 +24,30 @@ pub struct CommandResult {
     pub status: &'static str,
     /// From the tick that sent it to the tick that saw its end.
     pub ticks: u64,
+}
+
+/// A command that had failed and was sent again.
+#[derive(Clone, Debug, Serialize)]
+pub struct RetryResult {
+    /// The tick in which its failure was seen.
+    pub tick: u64,
+    /// As written in the job.
+    pub text: String,
+    /// Why it had failed.
+    pub reason: &'static str,
+    /// Which retry of the line this was, from 1.
+    pub number: u32,
+}
+
+impl From<&Retry> for RetryResult {
+    fn from(Retry { tick, line, reason, number, .. }: &Retry) -> Self {
+        Self { tick: tick.0, text: bare(line), reason: reason.text(), number: *number }
+    }
+}
+
+/// A line without the sign of a command.
+pub fn bare(line: &str) -> String {
+    line.trim_start_matches("==").trim_start().to_owned()
 }
 
 /// Times of the controller, without the cell, in microseconds.
@@ -315,12 +339,15 @@ pub struct FailureResult {
     pub row: Option<u8>,
     /// The whole in one sentence.
     pub text: String,
+    /// What a person has to do before the job can go on; none if PAUSE and the same command may be enough.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub remedy: Option<&'static str>,
 }
 
 impl FailureResult {
-    /// A failure in a line.
+    /// A failure in a line, and what a person has to do.
     #[must_use]
-    pub fn new(failure: &Failure, line: Option<&str>) -> Self {
+    pub fn new(failure: &Failure, line: Option<&str>, remedy: Option<&'static str>) -> Self {
         Self {
             tick: failure.tick.0,
             line: line.map(str::to_owned),
@@ -328,6 +355,7 @@ impl FailureResult {
             table: failure.table.clone(),
             row: failure.row,
             text: failure.text.clone(),
+            remedy,
         }
     }
 }
@@ -380,6 +408,8 @@ pub struct RunResult {
     pub job: String,
     /// Commands that were sent to Task.
     pub commands: Vec<CommandResult>,
+    /// Commands that had failed and were sent again, after a PAUSE (`--retry`).
+    pub retries: Vec<RetryResult>,
     /// Ticks that were run, without those in which the robot was brought to rest.
     pub ticks: u64,
     /// Ticks in which the robot was brought to rest at the end.
@@ -426,6 +456,8 @@ pub struct RunResult {
     pub emergency_stop: Option<EmergencyResult>,
     /// Fingerprint of all output buffers of all ticks.
     pub digest: String,
+    /// The same without the ticks in which the robot was brought to rest: the clock does not change it.
+    pub digest_before_ramp: String,
     /// Which of the statements are about the simulated cell, if the robot is not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulated: Option<&'static str>,

@@ -23,8 +23,9 @@ use record::LogFile;
 use taskdata::load::{Diagnostics, Job, Source, Store, source::read_text};
 
 use super::{
-    neighbours::{Neighbours, Network, WorkstationSource},
+    neighbours::{Emulator, Neighbours, Network, WorkstationSource},
     robot::{Port, Robot},
+    switched::Switched,
 };
 use crate::{
     agreement, check,
@@ -201,9 +202,13 @@ fn neighbours(
             DataSystem::new(items, ANSWER_TICKS, pace)
         }
     };
+    let hwsc = Hwsc::new(job.steps.clone(), TIME_LIMIT).with_retries(arguments.retry);
     let workstation = match commands {
+        Some(desk) if arguments.stand_alone => {
+            WorkstationSource::Switched(Box::new(Switched::new(hwsc, desk, arguments.wait)))
+        }
         Some(desk) => WorkstationSource::outside(desk),
-        None => WorkstationSource::emulator(Hwsc::new(job.steps.clone(), TIME_LIMIT)),
+        None => WorkstationSource::Emulator(Box::new(Emulator::new(hwsc))),
     };
     let pedestal = regrips.map(|desk| Box::new(pedestal::Agent::new(desk)));
     let vision = sees.map(|desk| vision::Port::new(desk, arguments.seed, Analysis::fingerprint(description)));

@@ -18,6 +18,10 @@ use taskdata::load::job::{
 /// 40 s; one that slides off what it has fallen on, twice as long.
 const SETTLING_LIMIT: u64 = 120_000 / TICK_MS;
 
+/// A job that hands over needs a run in which a workstation controller can connect.
+const NO_HAND_OVER: &str = "no workstation controller can connect to this run; \
+                            --network ADDRESS --outside workstation --stand-alone lets one";
+
 /// An emergency that has stopped the robot.
 #[derive(Clone, Debug)]
 pub struct Emergency {
@@ -40,6 +44,8 @@ pub struct WorkstationState {
     fault: Option<String>,
     /// The robot is not the simulated one: its panel is out of reach.
     robot_elsewhere: bool,
+    /// A workstation controller can connect, and the job hand over to it.
+    hands_over: bool,
     emergency: Option<Emergency>,
     /// The arm had no pressure after the last tick.
     stopped: bool,
@@ -67,6 +73,13 @@ impl SimulatedWorkstation {
     #[must_use]
     pub fn with_robot_elsewhere(mut self) -> Self {
         self.state.robot_elsewhere = true;
+        self
+    }
+
+    /// The job can hand over to a workstation controller in another process.
+    #[must_use]
+    pub fn with_hand_over(mut self) -> Self {
+        self.state.hands_over = true;
         self
     }
 
@@ -153,8 +166,8 @@ pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<Workstation
         Action::Press(site) => WorkstationAction::T3(Key::Press(estop(*site))),
         Action::Release(site) => WorkstationAction::T3(Key::Release(estop(*site))),
         Action::Panel(key) => WorkstationAction::T3(at_the_panel(*key)),
-        // The emulator of the workstation controller counts the ticks itself.
-        Action::Wait { .. } | Action::Load { .. } => return Ok(Vec::new()),
+        // These are not the cell's.
+        Action::Wait { .. } | Action::Load { .. } | Action::HandOver => return Ok(Vec::new()),
     }])
 }
 
@@ -232,9 +245,10 @@ fn placement(offset: &Offset) -> Placement {
 
 impl Workstation for SimulatedWorkstation {
     fn begin(&mut self, action: &Action, _: &str) -> Result<(), String> {
-        if let Action::Load { number } = action {
-            self.state.loads.push(*number);
-            return Ok(());
+        match action {
+            Action::Load { number } => self.state.loads.push(*number),
+            Action::HandOver if !self.state.hands_over => return Err(NO_HAND_OVER.to_owned()),
+            _ => {}
         }
         for action in self.translate(action)? {
             self.cell.workstation(&action).map_err(|error| error.to_string())?;

@@ -4,7 +4,8 @@
 //! between them. The emulator first sends PAUSE, as the startup sequence does (V.4.1), and then one step
 //! after the other: a command is over when Task answers its number with `finished`, an action when the
 //! workstation is no longer busy. A command that is not answered is sent once more, as it was. An error, a lost Task, a fault of
-//! the workstation or a step that takes too long end the job with a [`JobFailure`]. While the workstation does something, the operator may have the
+//! the workstation or a step that takes too long end the job with a [`JobFailure`]. With [`Hwsc::with_retries`] the emulator does what
+//! an operator does after an error: it sends PAUSE and the same command again. While the workstation does something, the operator may have the
 //! robot: a joystick box that is on ends only a command.
 //!
 //! ```text
@@ -12,6 +13,8 @@
 //!  Waiting -------> Sent ----------------------------------------> next step ... -> Over
 //!                     |
 //!                     +---- error, lost, fault, time limit -------------------------> Failed
+//!                     |                                            no retry left
+//!                     +---- error, a retry is left ----> PAUSE ----> Sent
 //! ```
 //!
 //! An emergency ([`Workstation::emergency`]) ends the job at once, unless the job itself resets it further down, by a line with
@@ -27,6 +30,8 @@
 //! The emulator knows Task by its mailboxes only: it reads a [`Status`], and writes a command ([`Hwsc::mailgram`]). So it can run in
 //! the controller's process or in one of its own, and whoever speaks the same mailboxes can take its place.
 
+mod outcome;
+
 use rcs_core::{
     handshake::{Commander, ECHO_LIMIT, Lower},
     interface::{Header, HwsCommand, Reason, hws::HwsReport},
@@ -35,6 +40,7 @@ use rcs_core::{
 };
 use taskdata::load::job::{JobLine, Panel, Step, Workstation as Action};
 
+pub use self::outcome::{BegunStep, JobFailure, Outcome, Progress, Retry};
 use super::status::{Status, TaskState};
 use crate::fields::command_number;
 
@@ -58,102 +64,12 @@ pub trait Workstation {
     }
 }
 
-/// How a step ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
-    /// It is going on.
-    Executing,
-    /// As it should.
-    Finished,
-    /// It failed.
-    Failed,
-    /// It failed, as its line says.
-    FailedAsExpected,
-}
-
-impl Outcome {
-    /// The word in reports.
-    #[must_use]
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Executing => HwsReport::Executing.text(),
-            Self::Finished => HwsReport::Finished.text(),
-            Self::Failed => HwsReport::Error.text(),
-            Self::FailedAsExpected => "error as expected",
-        }
-    }
-}
-
-/// A step that was begun.
-#[derive(Clone, Debug, PartialEq)]
-pub struct BegunStep {
-    /// The line as it stands in the job; `PAUSE` for the first one.
-    pub text: String,
-    /// It was a command for Task, not an action of the workstation.
-    pub is_command: bool,
-    /// The tick after which it was begun.
-    pub began: Tick,
-    /// How it ended.
-    pub outcome: Outcome,
-    /// Ticks from the one in which it was begun to the one in which its end was seen.
-    pub ticks: u64,
-}
-
-/// Why a job ended before its last step.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum JobFailure {
-    /// Task reports an error.
-    #[error("{}", .0.text())]
-    Command(Reason),
-    /// Task does not answer.
-    #[error("Task does not answer")]
-    Lost,
-    /// The mailbox of the command is refused.
-    #[error("the controller refuses the command: {0}")]
-    Refused(String),
-    /// The operator has the robot.
-    #[error("the joystick box is on")]
-    Joystick,
-    /// A command has finished that should have failed.
-    #[error("finished, but its line expects an error")]
-    Unexpected,
-    /// A command has failed, and was not sent again with success.
-    #[error("{why}; the command has not finished since (`expect error` marks a line that has to fail)")]
-    Unfinished {
-        /// Its line.
-        line: String,
-        /// When it ended.
-        tick: Tick,
-        /// Why it failed.
-        why: &'static str,
-    },
-    /// A step took too long.
-    #[error("not finished within {} s", .0 * TICK_MS / 1000)]
-    TimeLimit(u64),
-    /// The workstation cannot do an action, or has a fault.
-    #[error("{0}")]
-    Workstation(String),
-    /// An emergency has stopped the robot.
-    #[error("{0}")]
-    Emergency(String),
-    /// Whoever commands from another process is lost.
-    #[error("{0}")]
-    Commander(String),
-}
-
-/// Where the job stands.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Progress {
-    /// Going on.
-    Running,
-    /// All steps are finished.
-    Over,
-    /// It ended in failure.
-    Failed(JobFailure),
-}
-
 /// Ticks that a step may take: five minutes, three times the longest step of the linkbar.
 pub const TIME_LIMIT: u64 = 5 * 60 * 1000 / TICK_MS;
+
+/// Ticks from the PAUSE after an error to the command that is sent again: what has disturbed it may pass meanwhile. An operator
+/// is not faster. CHOSEN: 1 s.
+pub const RETRY_TICKS: u64 = 1000 / TICK_MS;
 
 /// The emulator of the workstation controller.
 #[derive(Debug)]
@@ -176,6 +92,13 @@ pub struct Hwsc {
     progress: Progress,
     time_limit: u64,
     later: Vec<Later>,
+    /// Retries that a line has.
+    retries: u32,
+    /// Retries that the current line has had.
+    tried: u32,
+    /// A PAUSE goes on before the current step begins, or begins again.
+    pausing: bool,
+    retried: Vec<Retry>,
 }
 
 /// A command that has failed while the job went on.
@@ -224,7 +147,25 @@ impl Hwsc {
             progress: Progress::Running,
             time_limit,
             later: Vec::new(),
+            retries: 0,
+            tried: 0,
+            pausing: false,
+            retried: Vec::new(),
         }
+    }
+
+    /// After a command that has failed send PAUSE and the same command again, so many times a line, unless a person has to do
+    /// something first ([`Reason::remedy`]).
+    #[must_use]
+    pub const fn with_retries(mut self, retries: u32) -> Self {
+        self.retries = retries;
+        self
+    }
+
+    /// The commands that were sent again, the oldest first.
+    #[must_use]
+    pub fn retried(&self) -> &[Retry] {
+        &self.retried
     }
 
     /// Wait so many ticks for the echo of a command before it is sent again, instead of the three of a neighbour in the same
@@ -294,8 +235,11 @@ impl Hwsc {
             None => Some(Ok(())),
             Some(began) => self.end_of_step(tick, began, task, workstation),
         };
+        let waits = self.pausing && self.tried > 0;
+        let early = waits && self.began.is_some_and(|began| tick.since(began) < RETRY_TICKS);
         match ended {
             None => {}
+            Some(Ok(()) | Err(JobFailure::Command(_))) if early => {}
             Some(Err(JobFailure::Command(_) | JobFailure::Joystick)) if self.expects_error() => {
                 self.finish(Outcome::FailedAsExpected);
                 self.next(tick, workstation);
@@ -305,14 +249,15 @@ impl Hwsc {
                 self.failed.push(FailedCommand { step: self.begun_steps.len() - 1, tick, reason });
                 self.next(tick, workstation);
             }
-            Some(Err(failure)) => self.fail(failure),
+            Some(Err(failure)) => self.failed(tick, failure, workstation),
             Some(Ok(())) if self.expects_error() => self.fail(JobFailure::Unexpected),
+            Some(Ok(())) if self.began.is_none() => self.begin(tick, workstation),
             Some(Ok(())) => {
-                if self.began.is_some() {
-                    self.finish(Outcome::Finished);
-                    self.next(tick, workstation);
-                } else {
+                self.finish(Outcome::Finished);
+                if self.pausing {
                     self.begin(tick, workstation);
+                } else {
+                    self.next(tick, workstation);
                 }
             }
         }
@@ -325,14 +270,33 @@ impl Hwsc {
         self.steps.iter().skip(self.current.saturating_sub(1)).any(|line| line.step == reset)
     }
 
+    /// The current step, or a PAUSE before it, has failed.
+    fn failed(&mut self, tick: Tick, failure: JobFailure, workstation: &mut impl Workstation) {
+        let JobFailure::Command(reason) = failure else { return self.fail(failure) };
+        if self.pausing && self.tried > 0 {
+            // The command that follows tells whether that matters.
+            self.finish(Outcome::Failed);
+            return self.begin(tick, workstation);
+        }
+        if self.tried >= self.retries || reason.remedy().is_some() {
+            return self.fail(failure);
+        }
+        self.finish(Outcome::Failed);
+        self.tried += 1;
+        let line = self.begun_steps.last().map_or_else(String::new, |step| step.text.clone());
+        self.retried.push(Retry { tick, line, reason, number: self.tried, of: self.retries });
+        self.pause(tick);
+    }
+
     fn next(&mut self, tick: Tick, workstation: &mut impl Workstation) {
         self.current += 1;
+        self.tried = 0;
         self.begin(tick, workstation);
     }
 
     /// The command that is going on has to fail.
     fn expects_error(&self) -> bool {
-        self.step_at(self.current).is_some_and(|line| line.expects_error)
+        !self.pausing && self.step_at(self.current).is_some_and(|line| line.expects_error)
     }
 
     /// How the step that is going on ended; `None` while it goes on.
@@ -351,7 +315,7 @@ impl Hwsc {
             return Some(Err(JobFailure::Workstation(fault)));
         }
         let lower = self.read(tick, task);
-        let step = self.step_at(self.current).map(|line| line.step);
+        let step = self.step_at(self.current).filter(|_| !self.pausing).map(|line| line.step);
         let commanding = matches!(step, None | Some(Step::Command(_)));
         if commanding && lower == Lower::Pending && task.verdict != 0 {
             return Some(Err(JobFailure::Refused(task.reason.to_owned())));
@@ -367,6 +331,7 @@ impl Hwsc {
             (Some(Step::Workstation(Action::Wait { ticks: wanted })), _) => {
                 return (ticks >= u64::from(wanted)).then_some(Ok(()));
             }
+            (Some(Step::Workstation(Action::HandOver)), _) => return None,
             (Some(Step::Workstation(_) | Step::After { .. }), _) => !workstation.busy(),
             (_, Lower::Error) => return Some(Err(JobFailure::Command(task.code))),
             (_, Lower::Joystick) => return Some(Err(JobFailure::Joystick)),
@@ -431,48 +396,75 @@ impl Hwsc {
         self.steps.get(position.checked_sub(1)?)
     }
 
+    /// The workstation controller commands in place of the job, whose line `** workstation` has begun. The emulator is not to be
+    /// stepped until [`Self::take_back`] or [`Self::refuse`].
+    #[must_use]
+    pub fn is_handed_over(&self) -> bool {
+        let hands_over = |line: &JobLine| line.step == Step::Workstation(Action::HandOver);
+        let is_begun = self.progress == Progress::Running && !self.pausing && self.began.is_some();
+        is_begun && self.step_at(self.current).is_some_and(hands_over)
+    }
+
+    /// The workstation controller has gone: the job sends PAUSE, and goes on with its next line. `commands` are those that were sent
+    /// meanwhile, `last` is the number of the last one.
+    pub fn take_back(&mut self, tick: Tick, last: u32, commands: Vec<BegunStep>) {
+        self.finish(Outcome::Finished);
+        self.begun_steps.extend(commands);
+        self.current += 1;
+        self.commander.number = last;
+        self.pause(tick);
+    }
+
+    /// The workstation controller cannot take over, and the job ends.
+    pub fn refuse(&mut self, why: String) {
+        self.fail(JobFailure::Workstation(why));
+    }
+
+    /// Send a PAUSE before the current step.
+    fn pause(&mut self, tick: Tick) {
+        self.pausing = true;
+        self.send(tick, PAUSE.to_owned(), pause());
+    }
+
     /// Begin the current step; after the last one the job is over.
     fn begin(&mut self, tick: Tick, workstation: &mut impl Workstation) {
         self.began = Some(tick);
-        let (text, command, refused) = match self.step_at(self.current) {
-            None if self.current == 0 => {
-                let pause = HwsCommand { command: Name16::clipped("PAUSE"), ..HwsCommand::default() };
-                ("PAUSE".to_owned(), Some(pause), None)
-            }
-            None => {
+        self.pausing = false;
+        let Some(JobLine { step, text, .. }) = self.step_at(self.current).cloned() else {
+            if self.current == 0 {
+                self.send(tick, PAUSE.to_owned(), pause());
+            } else {
                 self.end(workstation);
-                return;
             }
-            Some(JobLine { step: Step::Command(command), text, .. }) => (text.clone(), Some(*command), None),
-            Some(JobLine { step: Step::Workstation(Action::Wait { .. }), text, .. }) => {
-                (text.clone(), None, None)
-            }
-            Some(JobLine { step: Step::Workstation(action), text, .. }) => {
-                (text.clone(), None, workstation.begin(action, spoken(text)).err())
-            }
-            Some(JobLine { step: Step::After { ticks, action }, text, .. }) => {
-                let line = after(spoken(text)).to_owned();
-                let later = Later { ticks: u64::from(*ticks), action: *action, line, since: None };
-                let text = text.clone();
-                self.later.push(later);
-                (text, None, None)
+            return;
+        };
+        let refused = match step {
+            Step::Command(command) => return self.send(tick, text, command),
+            Step::Workstation(Action::Wait { .. }) => None,
+            Step::Workstation(action) => workstation.begin(&action, spoken(&text)).err(),
+            Step::After { ticks, action } => {
+                let line = after(spoken(&text)).to_owned();
+                self.later.push(Later { ticks: u64::from(ticks), action, line, since: None });
+                None
             }
         };
-        self.begun_steps.push(BegunStep {
-            text,
-            is_command: command.is_some(),
-            began: tick,
-            outcome: Outcome::Executing,
-            ticks: 0,
-        });
-        if let Some(command) = command {
-            self.later.iter_mut().for_each(|later| later.since = later.since.or(Some(tick)));
-            self.command = HwsCommand { number: self.commander.send(tick.next()), ..command };
-            (self.to_send, self.repeated) = (true, false);
-        }
+        self.begun(tick, text, false);
         if let Some(refused) = refused {
             self.fail(JobFailure::Workstation(refused));
         }
+    }
+
+    /// Send a command.
+    fn send(&mut self, tick: Tick, text: String, command: HwsCommand) {
+        self.began = Some(tick);
+        self.begun(tick, text, true);
+        self.later.iter_mut().for_each(|later| later.since = later.since.or(Some(tick)));
+        self.command = HwsCommand { number: self.commander.send(tick.next()), ..command };
+        (self.to_send, self.repeated) = (true, false);
+    }
+
+    fn begun(&mut self, tick: Tick, text: String, is_command: bool) {
+        self.begun_steps.push(BegunStep { text, is_command, began: tick, outcome: Outcome::Executing, ticks: 0 });
     }
 
     fn fail(&mut self, failure: JobFailure) {
@@ -485,6 +477,15 @@ impl Hwsc {
             step.outcome = outcome;
         }
     }
+}
+
+/// The command that comes first, and before a command is sent again.
+const PAUSE: &str = "PAUSE";
+
+/// PAUSE (V.4.1).
+#[must_use]
+pub fn pause() -> HwsCommand {
+    HwsCommand { command: Name16::clipped(PAUSE), ..HwsCommand::default() }
 }
 
 /// A line for the workstation without the asterisks in front of it.

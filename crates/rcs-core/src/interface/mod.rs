@@ -16,6 +16,7 @@ pub mod pedestal;
 pub mod prim;
 pub mod processes;
 pub mod quick_change;
+mod remedy;
 pub mod subtask;
 pub mod t3i;
 mod words;

@@ -4,7 +4,7 @@ use super::*;
 use rcs_core::{
     frame::Frame,
     handshake::{Arrival, Receiver},
-    interface::hws::HwsStatus,
+    interface::{Reason, hws::HwsStatus},
     name::Name10,
 };
 use taskdata::{
@@ -19,6 +19,10 @@ struct Task {
     left: u64,
     received: Vec<String>,
     fails_at: Option<usize>,
+    /// The commands from `fails_at` on that fail; one if it is 0.
+    failing: usize,
+    /// Why they fail; GraspMissed if none is named.
+    reason: Option<Reason>,
     silent: bool,
     joystick: bool,
     /// Mailgrams that do not arrive.
@@ -29,6 +33,11 @@ struct Task {
 }
 
 impl Task {
+    fn fails(&self) -> bool {
+        let last = |from: usize| from + self.failing.max(1);
+        self.fails_at.is_some_and(|from| (from..last(from)).contains(&self.received.len()))
+    }
+
     /// What the emulator has sent reaches Task in the next tick, unless it is lost.
     fn step(&mut self, hwsc: &mut Hwsc) -> Status<'static> {
         let mut status = HwsStatus::default();
@@ -52,7 +61,7 @@ impl Task {
         status.echo = self.receiver.echo;
         status.report = match self.left {
             0 if self.receiver.echo == 0 => HwsReport::Idle,
-            0 if self.fails_at == Some(self.received.len()) => HwsReport::Error,
+            0 if self.fails() => HwsReport::Error,
             0 => HwsReport::Finished,
             _ => HwsReport::Executing,
         };
@@ -60,7 +69,7 @@ impl Task {
             status.report = HwsReport::JoystickOn;
         }
         if status.report == HwsReport::Error {
-            status.reason = Reason::GraspMissed;
+            status.reason = self.reason.unwrap_or(Reason::GraspMissed);
         }
         answer(&status)
     }
@@ -222,6 +231,71 @@ fn an_error_of_task_ends_the_job_with_its_reason_and_nothing_more_is_sent() {
     let outputs = task.step(&mut hwsc);
     hwsc.step(Tick(last + 1), &outputs, &mut Vise::default());
     assert_eq!(hwsc.command().number, number);
+}
+
+#[test]
+fn a_command_that_fails_is_paused_and_sent_again() {
+    // What is to happen later, and has, does not happen again.
+    let steps = vec![later(1, ViseOpening::Open), command("MOVE"), command("ACQUIRE")];
+    let mut task = Task { fails_at: Some(2), ..Task::default() };
+    let (mut hwsc, mut jaws) = (Hwsc::new(steps, 100).with_retries(1), Vise::default());
+    play(&mut hwsc, &mut task, &mut jaws);
+    assert_eq!(*hwsc.progress(), Progress::Over);
+    assert_eq!(task.received, ["PAUSE", "MOVE", "PAUSE", "MOVE", "ACQUIRE"]);
+    assert_eq!(jaws.told, [ViseOpening::Open]);
+    let [retry] = hwsc.retried() else { panic!("{:?}", hwsc.retried()) };
+    assert_eq!(
+        retry.to_string(),
+        "`== MOVE` failed: the fingers closed on nothing; PAUSE and the same command again, retry 1 of 1"
+    );
+    let outcomes: Vec<_> =
+        hwsc.begun_steps().iter().filter(|step| step.is_command).map(|step| step.outcome).collect();
+    let (finished, failed) = (Outcome::Finished, Outcome::Failed);
+    assert_eq!(outcomes, [finished, failed, finished, finished, finished]);
+}
+
+/// A PAUSE that fails is no reason not to try: the command says whether it can be executed.
+#[test]
+fn a_line_has_so_many_retries_and_the_next_line_has_as_many() {
+    let received = |failing: usize| {
+        let mut task = Task { fails_at: Some(2), failing, ..Task::default() };
+        let mut hwsc = Hwsc::new(vec![command("MOVE"), command("ACQUIRE")], 100).with_retries(2);
+        play(&mut hwsc, &mut task, &mut Vise::default());
+        (task.received.join(" "), hwsc.progress().clone(), hwsc.retried().len())
+    };
+    assert_eq!(received(4), ("PAUSE MOVE PAUSE MOVE PAUSE MOVE ACQUIRE".into(), Progress::Over, 2));
+    let failed = Progress::Failed(JobFailure::Command(Reason::GraspMissed));
+    assert_eq!(received(5), ("PAUSE MOVE PAUSE MOVE PAUSE MOVE".into(), failed, 2));
+    let mut task = Task { fails_at: Some(2), failing: 1, ..Task::default() };
+    let mut hwsc = Hwsc::new(vec![command("MOVE"), command("ACQUIRE")], 100).with_retries(1);
+    for tick in 1..200 {
+        // The first command of either line fails.
+        if task.received.len() == 5 {
+            task.fails_at = Some(5);
+        }
+        let outputs = task.step(&mut hwsc);
+        hwsc.step(Tick(tick), &outputs, &mut Vise::default());
+    }
+    assert_eq!(task.received, ["PAUSE", "MOVE", "PAUSE", "MOVE", "ACQUIRE", "PAUSE", "ACQUIRE"]);
+    assert_eq!(*hwsc.progress(), Progress::Over);
+}
+
+#[test]
+fn what_needs_a_person_is_not_tried_again() {
+    for reason in Reason::ALL.iter().filter(|reason| reason.remedy().is_some()) {
+        let mut task = Task { fails_at: Some(2), reason: Some(*reason), ..Task::default() };
+        let mut hwsc = Hwsc::new(vec![command("MOVE")], 100).with_retries(3);
+        play(&mut hwsc, &mut task, &mut Vise::default());
+        let failure = JobFailure::Command(*reason);
+        assert_eq!(failure.remedy(), reason.remedy());
+        assert_eq!(*hwsc.progress(), Progress::Failed(failure));
+        assert_eq!(task.received, ["PAUSE", "MOVE"], "{reason:?}");
+    }
+    let mut task = Task { joystick: true, ..Task::default() };
+    let mut hwsc = Hwsc::new(vec![command("MOVE")], 100).with_retries(3);
+    play(&mut hwsc, &mut task, &mut Vise::default());
+    assert_eq!(*hwsc.progress(), Progress::Failed(JobFailure::Joystick));
+    assert_eq!(JobFailure::Joystick.remedy(), Some("switch the frame at the joystick box off"));
 }
 
 #[test]

@@ -214,4 +214,6 @@ pub enum Workstation {
         /// How long.
         ticks: u32,
     },
+    /// The workstation controller commands until it disconnects (IV.4.1).
+    HandOver,
 }

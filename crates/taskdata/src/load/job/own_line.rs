@@ -28,6 +28,8 @@ pub enum OwnLineError {
     Wait,
     /// So are those behind a command.
     After,
+    /// The workstation controller commands already.
+    HandOver,
     /// It is no line, or speaks of what the task data do not have.
     Unreadable(String),
 }
@@ -43,6 +45,7 @@ impl fmt::Display for OwnLineError {
             Self::After => {
                 "after stands in jobs only: the workstation controller counts the ticks, and sends the line then"
             }
+            Self::HandOver => "workstation stands in the controller's own jobs only: they hand over",
             Self::Unreadable(why) => why,
         })
     }
@@ -62,6 +65,7 @@ pub fn own_line(text: &str, store: &Store) -> Result<Workstation, OwnLineError> 
         Some("load") => return Err(OwnLineError::Load),
         Some("wait") => return Err(OwnLineError::Wait),
         Some("after") => return Err(OwnLineError::After),
+        Some("workstation") => return Err(OwnLineError::HandOver),
         Some(_) => {}
     }
     let mut problems = Problems::default();
@@ -97,6 +101,7 @@ mod tests {
             assert_eq!(why(&format!("( aside ) load {file}")), OwnLineError::Load);
         }
         assert_eq!(why("wait 30"), OwnLineError::Wait);
+        assert_eq!(why("workstation"), OwnLineError::HandOver);
         assert_eq!(why("after 5 load /etc/passwd"), OwnLineError::After);
         assert_eq!(
             own_line("vise partial PFIXTURE", &store)

@@ -23,6 +23,7 @@ enum Verb {
     Wait,
     Load,
     After,
+    HandOver,
 }
 
 const VERBS: &[(&str, Verb)] = &[
@@ -37,6 +38,7 @@ const VERBS: &[(&str, Verb)] = &[
     ("wait", Verb::Wait),
     ("load", Verb::Load),
     ("after", Verb::After),
+    ("workstation", Verb::HandOver),
 ];
 
 #[derive(Clone, Copy)]
@@ -153,7 +155,7 @@ impl Reader<'_, '_> {
                 let ticks = self.ticks(fields, AFTER_FORM)?;
                 let verb_at = fields.at();
                 let verb = self.choice(fields, "step of the workstation", VERBS)?;
-                if matches!(verb, Verb::After | Verb::Wait) {
+                if matches!(verb, Verb::After | Verb::Wait | Verb::HandOver) {
                     let message = "this takes time by itself and cannot come behind after";
                     self.problems.error_help("job.after", verb_at, message, AFTER_FORM);
                     return None;
@@ -168,7 +170,8 @@ impl Reader<'_, '_> {
 
     /// A line that stands in no job. Some have to do with the job in which they stand: its ticks, its files, its next command.
     pub(super) fn own_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<Workstation> {
-        let is_own = |(_, verb): &(&str, Verb)| !matches!(verb, Verb::Wait | Verb::Load | Verb::After);
+        let of_job = |verb: &Verb| matches!(verb, Verb::Wait | Verb::Load | Verb::After | Verb::HandOver);
+        let is_own = |(_, verb): &(&str, Verb)| !of_job(verb);
         let known: Vec<_> = VERBS.iter().copied().filter(is_own).collect();
         let verb = self.choice(fields, "line for the cell", &known)?;
         let action = self.action(verb, fields)?;
@@ -186,6 +189,7 @@ impl Reader<'_, '_> {
             Verb::EStop => self.estop(fields).map(Workstation::Press),
             Verb::Release => self.estop(fields).map(Workstation::Release),
             Verb::Panel => self.panel(fields).map(Workstation::Panel),
+            Verb::HandOver => Some(Workstation::HandOver),
             Verb::Load => {
                 let at = fields.at();
                 if fields.take().is_none() {
