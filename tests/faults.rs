@@ -8,7 +8,7 @@ use std::{env, fmt::Write as _};
 
 use record::replay;
 use serde_json::Value;
-use whole_system_tests::{Outcome, run};
+use whole_system_tests::{Outcome, Scratch, run, run_with};
 
 /// How a run ends.
 enum Ends {
@@ -144,7 +144,7 @@ fn a_linkbar_survives_an_answer_that_is_lost_damaged_or_late_and_a_silence() {
         "kind = \"stall\"\nticks = 75\n",
     ];
     for (number, fault) in faults.iter().enumerate() {
-        for at in [200, 3900] {
+        for at in [200, 1100, 2300, 3900] {
             let at = at + 37 * u32::try_from(number).expect("four kinds");
             let outcome = linkbar_with(fault, at);
             assert_eq!(outcome.status, Some(0), "{fault} at {at}: {}", outcome.last_words);
@@ -156,6 +156,50 @@ fn a_linkbar_survives_an_answer_that_is_lost_damaged_or_late_and_a_silence() {
             assert_eq!(end(&outcome), end(&undisturbed), "{fault} at {at}");
         }
     }
+}
+
+/// The id pins fail for 20 ticks while the fingers open, or close on the blank.
+#[test]
+fn a_command_that_failed_is_sent_again_if_that_was_asked_for() {
+    for at in [800, 1305] {
+        let text =
+            format!("[[fault]]\nkind = \"off\"\nsensor = \"quick-change.id\"\nat = {at}\nticks = 20\n");
+        let with = |retry: &str| {
+            let arguments = ["--retry", retry];
+            run_with("linkbar", 1, &format!("retry-{retry}-{at}"), &arguments, |scratch| {
+                scratch.faults(&text)
+            })
+        };
+        let failed = with("0");
+        assert_eq!(failed.status, Some(1), "{at}: {}", failed.last_words);
+        assert_eq!(failed.result["retries"].as_array().map(Vec::len), Some(0));
+        let retried = with("1");
+        assert_sound("the id pins fail for 20 ticks", &retried);
+        assert_eq!(retried.status, Some(0), "{at}: {}", retried.last_words);
+        assert!(in_place("linkbar", &retried.result), "{at}: {}", retried.result["parts"]);
+        assert_eq!(retried.result["retries"].as_array().map(Vec::len), Some(1), "{at}");
+        let commands = retried.result["commands"].as_array().cloned().unwrap_or_default();
+        let statuses: Vec<_> = commands.iter().filter_map(|command| command["status"].as_str()).collect();
+        assert_eq!(statuses[..4], ["finished", "error", "finished", "finished"], "{at}");
+        let events = retried.result["events"]["first"].to_string();
+        assert!(events.contains("PAUSE and the same command again, retry 1 of 1"), "{at}: {events}");
+    }
+}
+
+/// The id pins fail for good. What a person has to do is said, and not tried.
+#[test]
+fn what_needs_a_person_is_said_and_not_tried_again() {
+    let faults = |scratch: &Scratch| scratch.faults_of("id-pins-bad");
+    let outcome = run_with("linkbar", 1, "retry-person", &["--retry", "3"], faults);
+    assert_eq!(outcome.status, Some(1), "{}", outcome.last_words);
+    let remedy = outcome.result["failure"]["remedy"].as_str().unwrap_or_default();
+    assert!(
+        !remedy.is_empty() && outcome.last_words.ends_with(&format!("; to do: {remedy}")),
+        "{}",
+        outcome.last_words
+    );
+    let retries = outcome.result["retries"].as_array().map_or(0, Vec::len);
+    assert!(retries < 3, "{retries} retries");
 }
 
 /// A linkbar job whose blank throws back so much light.

@@ -11,6 +11,7 @@ mod hung;
 mod pedestal;
 mod silent;
 mod strangers;
+mod switching;
 mod together;
 mod vision;
 mod workstation;

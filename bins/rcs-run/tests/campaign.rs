@@ -56,29 +56,49 @@ fn the_table_is_written_as_markdown() {
     let directory = tempfile::tempdir().expect("there is room");
     let file = directory.path().join("table.md");
     let name = file.to_str().expect("the path is text");
-    rcs_run(&["campaign", "linkbar", "--at", "20,40", "--interrupt", "pause,held:task", "--markdown", name]);
+    let campaign = ["--at", "20,40", "--interrupt", "pause,held:task", "--markdown", name];
+    rcs_run(&[&["campaign", "linkbar", "clevis"], &campaign[..]].concat());
+    rcs_run(&[&["campaign", "linkbar"], &campaign[..]].concat());
     let table = std::fs::read_to_string(&file).expect("the table is written");
-    let rows: Vec<&str> = table.lines().collect();
+    let rows: Vec<&str> = table.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
     assert_eq!(rows.len(), 4, "{table}");
+    assert!(rows[0].starts_with("| clevis | pause | 2 |") && rows[1].contains("held:task"), "{table}");
     assert!(rows[2].starts_with("| linkbar | pause | 2 |") && rows[3].contains("held:task"), "{table}");
 }
 
-/// Nothing is found where nothing was interrupted, and every branch is judged: a sample of all jobs.
+/// Interruptions that a job must survive in 97 of 100 branches, without harm.
+const REQUIRED: &str =
+    "pause,pause-twice,refused,replaced,answer-lost,answer-late,answer-damaged,hold,nudge,held,restart";
+
+/// A sample of the campaign: all jobs, all required kinds and the E-stop, at ticks that follow from the number of the job.
 #[test]
-fn a_sample_of_a_campaign_judges_every_branch() {
-    for job in ["linkbar", "clevis", "turned-part", "tool-change"] {
-        let sample = json(&["campaign", job, "--ticks", "2100", "--interrupt", "none,pause,estop", "--json"]);
-        let rows = sample["rows"].as_array().expect("there are rows");
-        let count = |row: &Value, name: &str| row[name].as_u64().expect("counts are numbers");
-        let [none, pause, estop] = &rows[..] else { panic!("{rows:?}") };
-        assert_eq!(count(none, "done"), count(none, "branches"), "{job}: {}", sample["branches"]);
-        for row in [pause, estop] {
-            let judged = ["done", "stranded", "apart", "hurt"].map(|name| count(row, name));
-            assert_eq!(judged.iter().sum::<u64>(), count(none, "branches"), "{job}: {row}");
-        }
+fn a_sample_of_the_campaign_goes_on_and_hurts_nothing() {
+    let count = |row: &Value, name: &str| row[name].as_u64().expect("counts are numbers");
+    let (mut branches, mut done) = (0, 0);
+    for (number, job) in ["linkbar", "clevis", "turned-part", "tool-change"].into_iter().enumerate() {
+        let ticks = (1_300 + 170 * number).to_string();
+        let kinds = format!("none,{REQUIRED},estop");
+        let sample = json(&["campaign", job, "--ticks", &ticks, "--interrupt", &kinds, "--json"]);
         for branch in sample["branches"].as_array().expect("branches are listed") {
+            assert_ne!(branch["verdict"], "hurt", "{job}: {branch}");
             let explained = branch["verdict"] == "done" || branch["detail"] != "";
             assert!(explained, "{job}: {branch}");
         }
+        for row in sample["rows"].as_array().expect("there are rows") {
+            let judged = ["done", "stranded", "apart", "hurt"].map(|name| count(row, name));
+            assert_eq!(judged.iter().sum::<u64>(), count(row, "branches"), "{job}: {row}");
+            match row["interruption"].as_str() {
+                // Nothing is found where nothing was interrupted.
+                Some("none") => assert_eq!(count(row, "done"), count(row, "branches"), "{job}: {row}"),
+                Some("estop") => {}
+                _ => {
+                    branches += count(row, "branches");
+                    done += count(row, "done");
+                }
+            }
+        }
     }
+    println!("{done} of {branches} branches are done");
+    assert!(branches > 200, "{branches} branches are too few");
+    assert!(100 * done >= 97 * branches, "{done} of {branches} branches are done");
 }

@@ -6,7 +6,7 @@ use std::{
     os::unix::fs::symlink,
     panic::{self, AssertUnwindSafe},
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::{Child, Command, Output, Stdio},
     sync::{
         Arc, Mutex,
         atomic::{AtomicBool, Ordering},
@@ -25,6 +25,7 @@ use rcs_core::{
 };
 use rustix::{
     fs::OFlags,
+    process::{Pid, Signal, kill_process},
     pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt},
     termios::{OptionalActions, tcgetattr, tcsetattr},
 };
@@ -53,6 +54,9 @@ impl Place {
 struct Exact {
     joints: Joints,
     at: Plate,
+    /// Steps of the last commands and the longest one: the word that has changed most, 0.01 in or 0.01 degree.
+    last: [u16; 3],
+    longest: u16,
 }
 
 impl Robot for Exact {
@@ -62,6 +66,9 @@ impl Robot for Exact {
 
     fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
         self.joints = joints_for(&T3, goal, &self.joints)?;
+        let changes = goal.words.iter().zip(self.at.words).map(|(to, from)| to.abs_diff(from));
+        let step = changes.max().unwrap_or(0);
+        (self.last, self.longest) = ([self.last[1], self.last[2], step], self.longest.max(step));
         self.at = *goal;
         Ok(())
     }
@@ -70,17 +77,27 @@ impl Robot for Exact {
 /// A controller behind a pseudo-terminal. Dropped, it hangs up: the cable is pulled.
 struct Peer {
     stop: Arc<AtomicBool>,
-    thread: Option<JoinHandle<ControllerState>>,
+    thread: Option<JoinHandle<(ControllerState, Exact)>>,
+}
+
+/// How a controller behaves.
+#[derive(Clone, Copy, Default)]
+struct Manner {
+    /// It answers after this time, or never.
+    delay: Option<Duration>,
+    /// The arm stands so many hundredths of an inch above HOME.
+    raised: i16,
+    /// It is powered up so much later.
+    late: Duration,
 }
 
 impl Peer {
     /// A controller that answers after `delay`, or never; its port is linked at `link`.
     fn plug(link: &Path, delay: Option<Duration>) -> Self {
-        Self::plug_raised(link, delay, 0)
+        Self::plug_with(link, Manner { delay, ..Manner::default() })
     }
 
-    /// The same, with the arm so many hundredths of an inch above HOME.
-    fn plug_raised(link: &Path, delay: Option<Duration>, raised: i16) -> Self {
+    fn plug_with(link: &Path, manner: Manner) -> Self {
         // A program that another test starts meanwhile must not inherit it, or it would not hang up.
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
         grantpt(&master).unwrap();
@@ -94,12 +111,17 @@ impl Peer {
         symlink(ptsname(&master, Vec::new()).unwrap().into_string().unwrap(), link).unwrap();
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = Arc::clone(&stop);
-        let thread = thread::spawn(move || control(File::from(master), delay, raised, &stopped));
+        let thread = thread::spawn(move || control(File::from(master), manner, &stopped));
         Self { stop, thread: Some(thread) }
     }
 
     /// Pull the cable; the state in which the controller was.
-    fn pull(mut self) -> ControllerState {
+    fn pull(self) -> ControllerState {
+        self.pull_robot().0
+    }
+
+    /// The same, and the robot.
+    fn pull_robot(mut self) -> (ControllerState, Exact) {
         self.stop.store(true, Ordering::Relaxed);
         self.thread.take().map(|thread| thread.join().unwrap()).unwrap()
     }
@@ -114,11 +136,18 @@ impl Drop for Peer {
     }
 }
 
-fn control(mut master: File, delay: Option<Duration>, raised: i16, stop: &AtomicBool) -> ControllerState {
+fn control(mut master: File, manner: Manner, stop: &AtomicBool) -> (ControllerState, Exact) {
+    let Manner { delay, raised, late } = manner;
     let mut at = Plate::from_frame(&T3.forward_plate(&HOME_JOINTS), &Plate::default()).unwrap();
     at.words[2] += raised;
-    let mut robot = Exact { joints: HOME_JOINTS, at };
+    let mut robot = Exact { joints: HOME_JOINTS, at, last: [0; 3], longest: 0 };
     robot.move_to(&at).unwrap();
+    let plugged = Instant::now();
+    while plugged.elapsed() < late {
+        // Nobody hears it.
+        let _ = master.read(&mut [0; 64]);
+        thread::sleep(Duration::from_millis(5));
+    }
     let mut controller = Controller::new(Limits::NBS);
     let mut inputs = ControllerInputs { cts: true, board: true, start: true, ..Default::default() };
     let mut stepped = Instant::now();
@@ -142,7 +171,7 @@ fn control(mut master: File, delay: Option<Duration>, raised: i16, stop: &Atomic
             let _ = master.write(answer.as_slice());
         }
     }
-    controller.state()
+    (controller.state(), robot)
 }
 
 /// Run the program to its end.
@@ -276,7 +305,7 @@ fn a_port_that_is_unplugged_comes_back() {
             first.pull();
             thread::sleep(Duration::from_millis(300));
             // Meanwhile the arm was led elsewhere: the old position would be a leap of 2 in, and a warning.
-            Peer::plug_raised(&link, PROMPT, 200)
+            Peer::plug_with(&link, Manner { delay: PROMPT, raised: 200, ..Manner::default() })
         });
         let (output, tally) = link_test(&place, "6");
         assert_eq!(output.status.code(), Some(0), "{tally} {}", last_words(&output));
@@ -301,6 +330,111 @@ fn the_linkbar_begins_over_a_port_in_real_time() {
         assert!(result["port"]["sent"].as_u64().unwrap() > 200 * 16, "{result}");
         assert_eq!(peer.pull(), ControllerState::Running, "no velocity or joint limit was touched");
     });
+}
+
+/// A run over a port whose robot moves, in the middle of the first command of the linkbar.
+fn moving(place: &Place) -> Child {
+    let robot = place.robot();
+    let run = [
+        "linkbar",
+        "--robot",
+        &robot,
+        "--clock",
+        "real",
+        "--json",
+        "--log",
+        "none",
+        "--shared-memory",
+        "off",
+    ];
+    let child = Command::new(env!("CARGO_BIN_EXE_rcs-run"))
+        .args(run)
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    thread::sleep(Duration::from_secs(6));
+    child
+}
+
+fn send(child: &Child, signal: Signal) {
+    kill_process(Pid::from_child(child), signal).unwrap();
+}
+
+/// Whatever ends a run, the stream of points ends at rest.
+#[test]
+fn a_signal_brings_the_robot_to_rest_before_the_run_ends() {
+    for (signal, word) in [(Signal::TERM, "SIGTERM"), (Signal::INT, "SIGINT"), (Signal::HUP, "SIGHUP")] {
+        on_the_grid(|| {
+            let place = Place::new();
+            let peer = Peer::plug(&place.port(), PROMPT);
+            let child = moving(&place);
+            send(&child, signal);
+            let output = child.wait_with_output().unwrap();
+            let result = json(&output);
+            assert_eq!(output.status.code(), Some(1), "{word}: {}", last_words(&output));
+            assert!(last_words(&output).contains("interrupted"), "{word}: {}", last_words(&output));
+            assert!(result["ramp_ticks"].as_u64() > Some(0), "{word}: {result}");
+            let (state, robot) = peer.pull_robot();
+            assert_eq!((state, robot.last), (ControllerState::Running, [0; 3]), "{word}");
+            assert!(robot.longest > 10, "{word}: it moved by more than 2.5 in/s, {}", robot.longest);
+        });
+    }
+}
+
+#[test]
+fn the_last_tick_of_a_run_over_a_port_is_followed_by_a_ramp() {
+    on_the_grid(|| {
+        let place = Place::new();
+        let peer = Peer::plug(&place.port(), PROMPT);
+        let (output, result) = linkbar(&place, "200");
+        assert_eq!(output.status.code(), Some(0), "{}", last_words(&output));
+        assert_eq!(result["ticks"], 200);
+        assert!(result["ramp_ticks"].as_u64() > Some(0), "{result}");
+        let (state, robot) = peer.pull_robot();
+        assert_eq!((state, robot.last), (ControllerState::Running, [0; 3]));
+        assert!(robot.longest > 10, "it moved by more than 2.5 in/s, {}", robot.longest);
+    });
+}
+
+/// Signals of two kinds are sent: two of one kind may count as one.
+#[test]
+fn a_second_signal_ends_the_run_at_once() {
+    on_the_grid(|| {
+        let place = Place::new();
+        let _peer = Peer::plug(&place.port(), PROMPT);
+        let child = moving(&place);
+        send(&child, Signal::TERM);
+        send(&child, Signal::INT);
+        let output = child.wait_with_output().unwrap();
+        let codes = [Signal::INT, Signal::TERM].map(|signal| Some(128 + signal.as_raw()));
+        assert!(codes.contains(&output.status.code()), "{:?}", output.status);
+        assert_eq!(output.stdout, b"", "there is no result");
+    });
+}
+
+/// The host first, the robot controller 3 s later.
+#[test]
+fn a_robot_controller_that_is_powered_up_later_is_waited_for() {
+    let late = Manner { delay: PROMPT, late: Duration::from_secs(3), ..Manner::default() };
+    let linkbar = |place: &Place, wait: &str| {
+        let robot = format!("{},silence=1", place.robot());
+        let real = ["--clock", "real", "--ticks", "250", "--log", "none", "--shared-memory", "off", "--json"];
+        rcs_run(&[&["linkbar", "--robot", &robot, "--wait", wait], &real[..]].concat())
+    };
+    on_the_grid(|| {
+        let place = Place::new();
+        let peer = Peer::plug_with(&place.port(), late);
+        let output = linkbar(&place, "30");
+        assert_eq!(output.status.code(), Some(0), "{}", last_words(&output));
+        assert_eq!(json(&output)["commands"][0]["status"], "finished");
+        assert_eq!(peer.pull(), ControllerState::Running);
+    });
+    let place = Place::new();
+    let _peer = Peer::plug_with(&place.port(), late);
+    let output = linkbar(&place, "1");
+    assert_eq!(output.status.code(), Some(3), "{}", last_words(&output));
 }
 
 #[test]

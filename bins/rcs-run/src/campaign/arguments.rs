@@ -9,9 +9,9 @@ use super::{operator::Recovery, trial::Until};
 /// Arguments of `rcs-run campaign`.
 #[derive(Clone, Debug, Args)]
 pub struct CampaignArguments {
-    /// Name of a job in the data directory, or a path
+    /// Names of jobs in the data directory, or paths
     #[arg(default_value = "linkbar")]
-    pub job: String,
+    pub jobs: Vec<String>,
     /// Task data, jobs and cell description
     #[arg(long, value_name = "DIR", default_value = "data")]
     pub data: PathBuf,
@@ -43,10 +43,10 @@ pub struct CampaignArguments {
     /// Branches that are run at the same time
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=64))]
     pub threads: u8,
-    /// Print one JSON object on standard output, and nothing else there
+    /// Print one JSON object a job on standard output, a line each, and nothing else there
     #[arg(long)]
     pub json: bool,
-    /// Write the table as Markdown
+    /// Write the table as Markdown: between the two marks of a page that has them (docs/campaign.md), whose rows of other jobs stay
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
     /// Ticks before the interruption and after it of which a single branch prints every row that fires

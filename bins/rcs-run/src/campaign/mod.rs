@@ -14,6 +14,7 @@ mod arguments;
 mod branch;
 mod harm;
 mod interruption;
+mod markdown;
 mod operator;
 mod parent;
 mod pool;
@@ -53,7 +54,25 @@ const EVERY: u64 = 23;
 /// # Errors
 /// [`Error`] if data or arguments cannot be used, or if the job does not finish undisturbed.
 pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
-    let facility = facility(arguments)?;
+    let mut tables = Vec::new();
+    for job in &arguments.jobs {
+        tables.extend(of_job(arguments, job)?);
+    }
+    if let Some(path) = &arguments.markdown {
+        let page = match fs::read_to_string(path) {
+            Ok(page) => Some(page),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+            Err(source) => return Err(Error::Read { path: path.clone(), source }),
+        };
+        let text = markdown::page(page.as_deref(), &tables).map_err(Error::Campaign)?;
+        fs::write(path, text).map_err(|source| Error::Write { path: path.clone(), source })?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The campaign of a job; its rows of the table, none if a single branch was printed.
+fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::Rows>, Error> {
+    let facility = facility(arguments, job)?;
     let kinds = kinds(arguments, &facility)?;
     let procedure =
         Procedure { recovery: arguments.recovery, tries: arguments.tries, until: arguments.judge };
@@ -68,7 +87,7 @@ pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
         let mut story = story::Story::new(*tick, arguments.around);
         let result = trial::run(&facility, &parent, &fork, kind, procedure, &mut story)?;
         console::answer(&story.told(&result))?;
-        return Ok(ExitCode::SUCCESS);
+        return Ok(None);
     }
     let bar = bar(forks.len() * kinds.len());
     let done = |result: &BranchResult| {
@@ -84,18 +103,15 @@ pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
     if let Some(bar) = &bar {
         bar.finish_and_clear();
     }
-    let report = CampaignReport::new(&facility.job.name, &parent, arguments, &results);
-    if let Some(path) = &arguments.markdown {
-        let text = report.markdown();
-        fs::write(path, text).map_err(|source| Error::Write { path: path.clone(), source })?;
-    }
+    let called = format!("rcs-run campaign {job} --seed {}", arguments.seed);
+    let report = CampaignReport::new(&facility.job.name, called, &parent, &results);
     console::answer(&if arguments.json { report.json()? } else { report.text() })?;
-    Ok(ExitCode::SUCCESS)
+    Ok(Some(report.markdown()))
 }
 
-fn facility(arguments: &CampaignArguments) -> Result<Facility, Error> {
+fn facility(arguments: &CampaignArguments, job: &str) -> Result<Facility, Error> {
     let data = &arguments.data;
-    let TaskFiles { store, job, job_path, .. } = TaskFiles::load(data, Some(&arguments.job))?;
+    let TaskFiles { store, job, job_path, .. } = TaskFiles::load(data, Some(job))?;
     let CellFile { description, .. } = CellFile::load(data, &store, &job, &job_path)?;
     Ok(Facility { store, job, description, seed: arguments.seed })
 }

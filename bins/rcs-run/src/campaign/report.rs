@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fmt::Write as _, io};
 use serde::Serialize;
 
 use super::{
-    arguments::CampaignArguments,
+    markdown::Rows,
     parent::Parent,
     trial::{BranchResult, Verdict},
 };
@@ -73,14 +73,9 @@ struct Json<'a> {
 }
 
 impl<'a> CampaignReport<'a> {
-    /// The report on these branches, which stand in the order of their interruptions.
+    /// The report on these branches, which stand in the order of their interruptions; `command` runs the campaign again.
     #[must_use]
-    pub fn new(
-        job: &'a str,
-        parent: &'a Parent,
-        arguments: &CampaignArguments,
-        results: &'a [BranchResult],
-    ) -> Self {
+    pub fn new(job: &'a str, command: String, parent: &'a Parent, results: &'a [BranchResult]) -> Self {
         let mut rows: Vec<Row> = Vec::new();
         for result in results {
             if rows.last().is_none_or(|row| row.interruption != result.interruption) {
@@ -90,7 +85,6 @@ impl<'a> CampaignReport<'a> {
                 row.add(result);
             }
         }
-        let command = format!("rcs-run campaign {} --seed {}", arguments.job, arguments.seed);
         Self { job, parent, results, rows, command }
     }
 
@@ -105,13 +99,10 @@ impl<'a> CampaignReport<'a> {
         Ok(serde_json::to_string(&json).map_err(io::Error::from)? + "\n")
     }
 
-    /// The table, as Markdown.
+    /// The rows of the table, as Markdown.
     #[must_use]
-    pub fn markdown(&self) -> String {
-        let mut text = String::from(
-            "| job | interruption | branches | done | stranded | hurt | apart | done of those not apart |\n\
-             |---|---|---:|---:|---:|---:|---:|---:|\n",
-        );
+    pub fn markdown(&self) -> Rows {
+        let mut text = String::new();
         for row in &self.rows {
             let Row { interruption, branches, done, stranded, apart, hurt, .. } = row;
             let share = row.share();
@@ -122,7 +113,7 @@ impl<'a> CampaignReport<'a> {
                 self.job
             );
         }
-        text
+        Rows { job: self.job.to_owned(), text }
     }
 
     /// For people.

@@ -227,7 +227,7 @@ impl Hwsc {
             self.fail(JobFailure::Workstation(refused));
             return &self.progress;
         }
-        if self.current > self.steps.len() {
+        if self.current > self.steps.len() && !self.pausing {
             self.end(workstation);
             return &self.progress;
         }
@@ -408,7 +408,9 @@ impl Hwsc {
     /// The workstation controller has gone: the job sends PAUSE, and goes on with its next line. `commands` are those that were sent
     /// meanwhile, `last` is the number of the last one.
     pub fn take_back(&mut self, tick: Tick, last: u32, commands: Vec<BegunStep>) {
-        self.finish(Outcome::Finished);
+        if let (Some(step), Some(began)) = (self.begun_steps.last_mut(), self.began) {
+            (step.outcome, step.ticks) = (Outcome::Finished, tick.since(began));
+        }
         self.begun_steps.extend(commands);
         self.current += 1;
         self.commander.number = last;
