@@ -466,7 +466,13 @@ impl Hwsc {
     }
 
     fn begun(&mut self, tick: Tick, text: String, is_command: bool) {
-        self.begun_steps.push(BegunStep { text, is_command, began: tick, outcome: Outcome::Executing, ticks: 0 });
+        self.begun_steps.push(BegunStep {
+            text,
+            is_command,
+            began: tick,
+            outcome: Outcome::Executing,
+            ticks: 0,
+        });
     }
 
     fn fail(&mut self, failure: JobFailure) {
