@@ -454,7 +454,8 @@ fn a_command_that_has_to_fail_fails() {
         let mut hwsc = Hwsc::new(vec![expecting, command("ACQUIRE")], 100);
         let mut jaws = Vise::default();
         for tick in 1..100 {
-            task.joystick = joystick && task.received.last().is_some_and(|last| last == "MOVE");
+            let is_move = task.received.last().is_some_and(|last| last == "MOVE");
+            task.joystick = joystick && is_move && hwsc.command().command.as_str() == "MOVE";
             let status = task.step(&mut hwsc);
             if *hwsc.step(Tick(tick), &status, &mut jaws) != Progress::Running {
                 break;
