@@ -22,6 +22,21 @@ COMMAND = struct.Struct("<4sHH12s16s16s16sh16shh16sh16sh")
 STATUS = struct.Struct("<4s16sH12s16s16sHHHHH160s")
 
 
+def plain(data):
+    """Text that came over a line, without what a terminal would obey."""
+    return "".join(c if c.isprintable() else "?" for c in data.decode(errors="replace")).rstrip()
+
+
+def run(main):
+    """Whatever goes wrong with files or the line ends in a sentence."""
+    try:
+        main()
+    except (OSError, ValueError, struct.error) as error:
+        sys.exit(f"{sys.argv[0]}: {error}")
+    except KeyboardInterrupt:
+        sys.exit(f"{sys.argv[0]}: interrupted")
+
+
 class Controller:
     """The mailboxes of a controller, seen by a neighbour: its number, and the mailboxes that it writes."""
 
@@ -35,8 +50,9 @@ class Controller:
         else:
             host, _, port = place.rpartition(":")
             self.line = socket.create_connection((host.strip("[]"), int(port)))
-        self.seals = None
+        self.seals, self.verified = None, False if secret else None
         self.greet(secret)
+        self.verified = True
         self.mailgrams = dict.fromkeys(self.writes, 0)
         self.status = self.cell = self.pulse = None
 
@@ -71,7 +87,8 @@ class Controller:
         if not hmac.compare_digest(self.receive(len(seal)), seal):
             sys.exit("a frame does not come from the controller")
         if address == LAST_WORDS:
-            sys.exit("the controller says: " + rest[6:].decode())
+            unverified = " (unverified)" if self.verified is False else ""
+            sys.exit(f"the controller says: {plain(rest[6:])}{unverified}")
         return address, rest[6:]
 
     def receive(self, count):
@@ -122,12 +139,12 @@ class Controller:
         while True:
             self.tick()
             _, _, _, _, echo, status, echoed, read, verdict, code, task, reason = self.status
-            status, reason = status.decode().rstrip(), reason.decode().rstrip()
+            status, reason = plain(status), plain(reason)
             if read == mailgram and verdict:
                 sys.exit(f"{verb} is refused: {reason}")
             if echoed == number and status != said:
                 said = status
-                print(f"{echo.decode().rstrip()} {number}: {status} {reason}".rstrip(), flush=True)
+                print(f"{plain(echo)} {number}: {status} {reason}".rstrip(), flush=True)
                 if status == "finished":
                     return
                 if status != "executing":
@@ -143,7 +160,7 @@ class Controller:
             self.tick()
             echo, busy, trouble, text = self.cell
             if trouble:
-                sys.exit(f"{line}: {text.decode().rstrip()}")
+                sys.exit(f"{line}: {plain(text)}")
             if echo == number and not busy:
                 return
 
@@ -160,4 +177,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

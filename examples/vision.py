@@ -14,7 +14,7 @@ import math
 import struct
 import sys
 
-from hwsc import Controller
+from hwsc import Controller, run
 
 REQUEST, RESPONSE, PICTURE = 0xF8000, 0xF8200, 0xF8400
 VISION = 4
@@ -90,4 +90,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run(main)

@@ -79,6 +79,9 @@ fn neighbour(controller: &Controller, arguments: &[&str], secret: &str) -> Comma
     command
 }
 
+/// Behind a reason that comes before the secret was proved.
+const UNVERIFIED: &str = " (unverified: it has not proved that it knows the secret)";
+
 #[test]
 fn a_job_from_another_machine_has_the_same_bits() {
     let own = run_alone(&["linkbar"]);
@@ -147,7 +150,10 @@ fn who_does_not_know_the_secret_is_not_let_in_and_is_logged() {
     let scratch = controller.scratch.as_ref().expect("it has one");
     let (guessed, _) = secret(scratch, "guessed", "the key under the second flower pot");
     let told = controller.try_connect(Role::Workstation, Some(&guessed)).err().expect("he is not let in");
-    assert_eq!(told.to_string(), "the controller says: the proof of the secret is wrong");
+    assert_eq!(
+        told.to_string(),
+        format!("the controller says: the proof of the secret is wrong{UNVERIFIED}")
+    );
     let told = controller.try_connect(Role::Workstation, None).err().expect("he does not even try");
     assert!(told.to_string().ends_with("name a file with --secret"), "{told}");
     let session = stranger(4);
@@ -207,7 +213,10 @@ fn there_is_one_workstation_controller_and_one_controller() {
     let (controller, ours, file) = controller(5, "workstation", &["--json"]);
     let mut first = Workstation::connect_with(&controller, Some(&ours));
     let told = controller.try_connect(Role::Workstation, Some(&ours)).err().expect("he is not let in");
-    assert_eq!(told.to_string(), "the controller says: workstation is connected already");
+    assert_eq!(
+        told.to_string(),
+        format!("the controller says: workstation is connected already{UNVERIFIED}")
+    );
     assert_eq!(first.carry_out(&bare(1, "PAUSE")).0, "finished");
     // Another run of the same name, which can see this one.
     let config = controller.file("config.json5");

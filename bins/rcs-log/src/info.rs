@@ -38,6 +38,8 @@ struct Info {
     times: Option<Times>,
     /// The log has its end; a killed run's has not.
     complete: bool,
+    /// What of the file cannot be read.
+    damage: Option<String>,
     result: Option<String>,
     digest: Option<String>,
     commands: Vec<CommandStory>,
@@ -134,6 +136,7 @@ fn look(log: &Log, arguments: &Arguments) -> Result<Info, Error> {
         missing_ticks: missing,
         times: Times::new(times, overruns),
         complete: log.complete,
+        damage: log.damage(),
         result: end("result"),
         digest: end("digest"),
         commands: chronicle.commands,
@@ -188,6 +191,9 @@ impl fmt::Display for Info {
             self.warnings,
             self.errors
         )?;
+        if let Some(damage) = &self.damage {
+            writeln!(f, "damage     {damage}")?;
+        }
         if let Some(Times { overruns, p50_us, p99_us, max_us }) = &self.times {
             writeln!(
                 f,

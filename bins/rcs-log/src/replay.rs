@@ -55,6 +55,8 @@ struct OneLog {
     skipped: u64,
     /// The log has its end.
     complete: bool,
+    /// What of the log cannot be read.
+    damage: Option<String>,
     times_real_time: f64,
     digest: Option<String>,
     /// Where the replay first went another way.
@@ -72,6 +74,7 @@ impl OneLog {
                 ticks: report.ticks,
                 skipped: report.skipped,
                 complete: report.complete,
+                damage: report.damage.clone(),
                 times_real_time: report.speed(),
                 digest: Some(report.digest.to_string()),
                 difference: report.first_difference.as_ref().map(ToString::to_string),
@@ -83,6 +86,7 @@ impl OneLog {
                 ticks: 0,
                 skipped: 0,
                 complete: false,
+                damage: None,
                 times_real_time: 0.0,
                 digest: None,
                 difference: None,
@@ -157,6 +161,9 @@ impl fmt::Display for Outcome {
                 "{}: {verdict}, {} ticks, {:.0} x real time{gaps}{end}",
                 log.file, log.ticks, log.times_real_time
             )?;
+            if let Some(damage) = &log.damage {
+                writeln!(f, "  {damage}")?;
+            }
             match &log.difference {
                 Some(difference) => writeln!(f, "  {difference}")?,
                 None if !log.same => writeln!(f, "  every tick is the same, but not the digest at the end")?,

@@ -37,6 +37,9 @@ pub fn open(path: &Path) -> Result<Log, Error> {
     let failed = |source| Error::Read { path: path.to_owned(), source };
     let log = Log::open(path).map_err(failed)?;
     log.check_layout().map_err(failed)?;
+    if let Some(damage) = log.damage() {
+        os_io::stderr_line!("rcs-log: {}: {damage}", path.display());
+    }
     Ok(log)
 }
 

@@ -6,12 +6,13 @@ use neighbours::{
     network::{Peer, PeerError, Received, Role},
 };
 
-use crate::{Error, cli::DataSystemArguments, connect, connect_again};
+use crate::{Error, Reconnect, cli::DataSystemArguments, connect, connect_again};
 
 /// Serve until no run has come for a while.
 pub fn serve(arguments: &DataSystemArguments) -> Result<(), Error> {
     let mut server = Server::new(Store::open(&arguments.data_base)?);
     let mut peer = connect(&arguments.controller, Role::DataSystem)?;
+    let mut reconnect = Reconnect::new();
     loop {
         match attend(&mut peer, &mut server) {
             Err(Error::Peer(error)) if error.is_passing() => os_io::stdout_line!("{error}"),
@@ -19,7 +20,9 @@ pub fn serve(arguments: &DataSystemArguments) -> Result<(), Error> {
         }
         // The line is cut before the next one is made: there is one neighbour of a kind.
         drop(peer);
-        let Some(next) = connect_again(&arguments.controller, Role::DataSystem)? else { return Ok(()) };
+        let Some(next) = connect_again(&arguments.controller, Role::DataSystem, &mut reconnect)? else {
+            return Ok(());
+        };
         peer = next;
     }
 }

@@ -9,7 +9,11 @@ mod pedestal;
 mod vision;
 mod workstation;
 
-use std::{process::ExitCode, thread, time::Duration};
+use std::{
+    process::ExitCode,
+    thread,
+    time::{Duration, Instant},
+};
 
 use clap::Parser as _;
 use neighbours::{
@@ -104,17 +108,51 @@ fn main() -> ExitCode {
     }
 }
 
-/// Between two attempts while the controller has not yet noticed that the line was cut.
-const PAUSE: Duration = Duration::from_millis(50);
-/// Such attempts: 5 s, more than it needs.
-const ATTEMPTS: u32 = 100;
+/// Shortest pause before another attempt to connect.
+const SHORTEST: Duration = Duration::from_millis(50);
+/// Longest one.
+const LONGEST: Duration = Duration::from_secs(2);
+/// A connection that has lasted so long was a good one: the next attempt comes at once.
+const GOOD: Duration = Duration::from_secs(1);
+/// The controller has noticed by now that the line was cut.
+const NOTICED: Duration = Duration::from_secs(5);
+
+/// When the next attempt to connect may come: pauses grow while connections do not last.
+struct Reconnect {
+    since: Instant,
+    pause: Duration,
+}
+
+impl Reconnect {
+    fn new() -> Self {
+        Self { since: Instant::now(), pause: Duration::ZERO }
+    }
+
+    /// Sleep before the next attempt.
+    fn wait(&mut self) {
+        self.pause = pause(self.pause, self.since.elapsed());
+        thread::sleep(self.pause);
+        self.since = Instant::now();
+    }
+}
+
+/// The pause after a connection, or an attempt, that has lasted so long; `before` is the pause before that.
+fn pause(before: Duration, lasted: Duration) -> Duration {
+    if lasted >= GOOD + before { Duration::ZERO } else { (before * 2).clamp(SHORTEST, LONGEST) }
+}
 
 /// Connect for another run, or since the line was cut; `None` if no run has come for a while.
-fn connect_again(arguments: &ControllerArguments, role: Role) -> Result<Option<Peer>, Error> {
+fn connect_again(
+    arguments: &ControllerArguments,
+    role: Role,
+    reconnect: &mut Reconnect,
+) -> Result<Option<Peer>, Error> {
     let occupied = AttachError::Occupied(role).to_string();
-    for _ in 0..ATTEMPTS {
+    let started = Instant::now();
+    while started.elapsed() < NOTICED {
+        reconnect.wait();
         match connect(arguments, role) {
-            Err(Error::Peer(PeerError::LastWords(why))) if why == occupied => thread::sleep(PAUSE),
+            Err(Error::Peer(PeerError::LastWords(why) | PeerError::Unverified(why))) if why == occupied => {}
             Err(Error::Peer(error)) if error.is_passing() => return Ok(None),
             other => return other.map(Some),
         }
@@ -128,4 +166,20 @@ fn connect(arguments: &ControllerArguments, role: Role) -> Result<Peer, Error> {
     let wait = Duration::from_secs(arguments.wait);
     let address = arguments.network.clone().configured(arguments.zenoh_config.clone())?;
     Ok(Peer::connect_within(wait, &address, role, secret.as_ref())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pauses_grow_until_a_connection_lasts() {
+        let mut pauses = vec![Duration::ZERO];
+        for _ in 0..8 {
+            pauses.push(pause(*pauses.last().unwrap(), Duration::ZERO));
+        }
+        let milliseconds: Vec<u128> = pauses.iter().map(Duration::as_millis).collect();
+        assert_eq!(milliseconds, [0, 50, 100, 200, 400, 800, 1600, 2000, 2000]);
+        assert_eq!(pause(SHORTEST, Duration::from_secs(5)), Duration::ZERO);
+    }
 }

@@ -10,12 +10,13 @@ use neighbours::{
 };
 use rcs_core::interface::pedestal::PedestalReport;
 
-use crate::{Error, cli::PedestalArguments, connect, connect_again};
+use crate::{Error, Reconnect, cli::PedestalArguments, connect, connect_again};
 
 /// Serve until no run has come for a while.
 pub fn serve(arguments: &PedestalArguments) -> Result<(), Error> {
     let mut served = Served::default();
     let mut peer = connect(&arguments.controller, Role::Pedestal)?;
+    let mut reconnect = Reconnect::new();
     loop {
         match served.attend(&mut peer) {
             Err(Error::Peer(error)) if error.is_passing() => {
@@ -28,7 +29,9 @@ pub fn serve(arguments: &PedestalArguments) -> Result<(), Error> {
         }
         // The line is cut before the next one is made: there is one neighbour of a kind.
         drop(peer);
-        let Some(next) = connect_again(&arguments.controller, Role::Pedestal)? else { return Ok(()) };
+        let Some(next) = connect_again(&arguments.controller, Role::Pedestal, &mut reconnect)? else {
+            return Ok(());
+        };
         peer = next;
     }
 }

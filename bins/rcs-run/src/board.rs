@@ -13,7 +13,7 @@ use executive::{
     realtime::{self, Verdict},
 };
 use os_io::stderr_line;
-use signal_hook::consts::SIGINT;
+use signal_hook::consts::{SIGHUP, SIGINT};
 
 use crate::{
     cli::BoardArguments,
@@ -29,9 +29,10 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
     let stop = match arguments.parent {
         None => interruption()?,
         Some(parent) => {
-            // The interrupt of a terminal reaches all processes of a run; board 0 ends it in good order.
-            let ignored = Arc::new(AtomicBool::new(false));
-            signal_hook::flag::register(SIGINT, ignored).map_err(Error::Signals)?;
+            // The interrupt and the hang-up of a terminal reach all processes of a run; board 0 ends it in good order.
+            for signal in [SIGINT, SIGHUP] {
+                signal_hook::flag::register(signal, Arc::default()).map_err(Error::Signals)?;
+            }
             if !end_with_parent(parent)? {
                 return Ok(ExitCode::from(STOPPED));
             }

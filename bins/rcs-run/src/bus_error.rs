@@ -5,9 +5,12 @@
 //! why. What can be asked beforehand is asked (`executive::memory::place`), but others can fill `/dev/shm` between the
 //! question and the touch.
 
+use std::sync::Arc;
+
 use rustix::{io::write, stdio::stderr};
 use signal_hook::{
-    consts::SIGBUS,
+    consts::{SIGBUS, SIGXFSZ},
+    flag,
     low_level::{exit, register},
 };
 
@@ -16,6 +19,14 @@ use crate::error::{Error, STOPPED};
 const WORDS: &[u8] =
     b"\nrcs-run: shared memory went away under the program: /dev/shm is full, or somebody cut an object short; \
       the robot gets no further point\n";
+
+/// A file that reaches the limit of `ulimit -f` ends with an error of the write, such as a full disk gives, and not the program.
+///
+/// # Errors
+/// [`Error::Signals`] if the system does not take a handler.
+pub fn survive_file_limit() -> Result<(), Error> {
+    flag::register(SIGXFSZ, Arc::default()).map(drop).map_err(Error::Signals)
+}
 
 /// Have this program say why when the system ends it for want of memory. The exit status is that of a robot that was stopped.
 ///

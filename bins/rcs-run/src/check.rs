@@ -6,17 +6,14 @@ use std::{
     process::ExitCode,
 };
 
-use os_io::console;
+use os_io::{console, files};
 use plant::{
     Cell, CellDescription,
     description::{DescriptionError, TextSpan},
 };
 use serde::Serialize;
 use taskdata::load::{
-    Diagnostic, Diagnostics, Job, Severity, Source, Store,
-    places::Places,
-    report::Problems,
-    source::{At, read_text},
+    Diagnostic, Diagnostics, Job, Severity, Source, Store, places::Places, report::Problems, source::At,
 };
 
 use crate::{
@@ -149,7 +146,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
 /// The cell of a description, and what is wrong with that, by itself and beside the task data.
 fn cell(path: &Path, store: Option<&Store>) -> (Option<Cell>, Diagnostics) {
     let mut problems = Problems::default();
-    let text = match read_text(path) {
+    let text = match files::read_text(path) {
         Ok(text) => text,
         Err(error) => {
             problems.unreadable(&path.display().to_string(), &error);

@@ -394,7 +394,7 @@ impl FromStr for LogTarget {
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         match text {
             "" => Err("a file name or none was expected".into()),
-            "none" => Ok(Self::None),
+            "none" | "/dev/null" => Ok(Self::None),
             path => Ok(Self::File(path.into())),
         }
     }

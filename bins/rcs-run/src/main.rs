@@ -39,7 +39,8 @@ static ALLOCATOR: executive::alloc::Counting = executive::alloc::Counting;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let outcome = bus_error::explain().and_then(|()| execute(cli));
+    let outcome =
+        bus_error::explain().and_then(|()| bus_error::survive_file_limit()).and_then(|()| execute(cli));
     match outcome {
         Ok(code) => code,
         Err(error) => {

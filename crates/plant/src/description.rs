@@ -518,7 +518,7 @@ impl CellDescription {
     /// # Errors
     /// [`DescriptionError`].
     pub fn load(path: &Path) -> Result<Self, DescriptionError> {
-        let text = std::fs::read_to_string(path)
+        let text = os_io::files::read_text(path)
             .map_err(|source| DescriptionError::Unreadable { path: path.display().to_string(), source })?;
         Self::from_toml(&text)
     }

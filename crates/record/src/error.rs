@@ -79,6 +79,12 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
     },
+    /// The metadata of the run cannot be read.
+    #[error("{path} is damaged at its head: without the metadata of the run nothing in it can be read")]
+    HeadDamaged {
+        /// The file.
+        path: PathBuf,
+    },
     /// A log of a program whose buffers were laid out differently.
     #[error(
         "the log was written with layout {found}, this program has layout {expected}: \

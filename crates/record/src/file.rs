@@ -7,6 +7,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use os_io::files;
+
 use crate::error::RecordError;
 
 /// A file that this run alone writes, until it is dropped.
@@ -27,7 +29,7 @@ impl LogFile {
         if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
             fs::create_dir_all(directory).map_err(failed)?;
         }
-        let file = File::options().write(true).create(true).truncate(false).open(path).map_err(failed)?;
+        let file = files::create(path).map_err(failed)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => return Err(RecordError::InUse { path: path.to_owned() }),

@@ -31,6 +31,7 @@ pub mod file;
 pub mod golden;
 pub mod input;
 pub mod layout;
+mod pieces;
 pub mod proto;
 pub mod reader;
 pub mod recorder;

@@ -1,18 +1,18 @@
-//! Reads a log back.
+//! Reads a log back, whole or not.
 //!
-//! A program that was killed leaves a file without an end, perhaps with half a record in it. Everything
-//! before the damage is read; that the file is not whole is told, and is no error.
+//! A program that was killed leaves a file without an end, perhaps with half a record in it; a disk or a hand can damage a file
+//! anywhere. Everything that can be read is read ([`crate::pieces`]). Images are differences, so after a damaged chunk the ticks go
+//! on with the next whole images, which the recorder writes once a second. What is missing is told, and is no error.
 
 use std::{
     collections::BTreeMap,
+    io::Read,
+    ops::Range,
     path::{Path, PathBuf},
 };
 
-use mcap::{
-    McapError,
-    read::{ChunkFlattener, LinearReader, Options},
-    records::Record,
-};
+use mcap::{McapError, records::Record};
+use os_io::files;
 use rcs_core::tick::Tick;
 
 use crate::{
@@ -20,6 +20,7 @@ use crate::{
     error::ReadError,
     input::{Attachment, Link},
     layout,
+    pieces::{Piece, Pieces, decode},
     proto::{
         foxglove::{self, Level, Transform},
         wire::{Fields, Value},
@@ -28,10 +29,16 @@ use crate::{
     writer::{Codecs, END, LAYOUT, LOG_TOPIC, REPLAY, RUN, Timing, replay_field},
 };
 
+/// Bytes that tell an MCAP file.
+const HEAD: u64 = 8;
+
 /// A log that was read.
 pub struct Log {
     path: PathBuf,
     bytes: Vec<u8>,
+    segments: Vec<Segment>,
+    /// Numbers of the channels by topic.
+    channels: BTreeMap<String, u16>,
     /// Metadata of the start: what run it was.
     pub run: BTreeMap<String, String>,
     /// Metadata of the end: how the run ended; none if the program was killed.
@@ -40,6 +47,12 @@ pub struct Log {
     pub attachments: Vec<Attachment>,
     /// The file has its end. If not, up to a second before the end of the run is missing.
     pub complete: bool,
+}
+
+/// A part of the file, as far as messages are concerned.
+enum Segment {
+    Chunk(Range<usize>),
+    Damaged(Range<usize>),
 }
 
 /// A tick as it was recorded.
@@ -81,44 +94,96 @@ impl Log {
     /// [`ReadError`] if the file is not a log. The layout is not looked at: see [`Log::check_layout`].
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let unreadable = |source| ReadError::Unreadable { path: path.to_owned(), source };
-        let bytes = std::fs::read(path).map_err(unreadable)?;
+        let mut file = files::open(path).map_err(unreadable)?;
+        // The first bytes tell whether the rest, which may be long, is worth its memory.
+        let mut bytes = Vec::new();
+        file.by_ref().take(HEAD).read_to_end(&mut bytes).map_err(unreadable)?;
+        if bytes == mcap::MAGIC {
+            file.read_to_end(&mut bytes).map_err(unreadable)?;
+        }
+        Self::from_bytes(path, bytes)
+    }
+
+    /// A log from the bytes of a file; `path` names it in errors.
+    ///
+    /// # Errors
+    /// As [`Log::open`].
+    pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, ReadError> {
         let mut log = Self {
             path: path.to_owned(),
             bytes: Vec::new(),
+            segments: Vec::new(),
+            channels: BTreeMap::new(),
             run: BTreeMap::new(),
             end: None,
             attachments: Vec::new(),
             complete: false,
         };
-        let (mut is_log, mut first) = (false, true);
-        // Chunks are passed over here: what is asked for stands between them.
-        let outside = LinearReader::new_with_options(&bytes, Options::IgnoreEndMagic.into());
-        for record in outside.map_err(|source| log.not_mcap(source))? {
-            match record {
-                Ok(Record::Metadata(metadata)) if metadata.name == RUN => {
+        let mut is_log = false;
+        let pieces = Pieces::new(&bytes).map_err(|source| log.not_mcap(source))?;
+        for piece in pieces {
+            match piece {
+                Piece::Chunk(range) => {
+                    // It has been decoded once: there is no error any more.
+                    let _ = decode(bytes.get(range.clone()).unwrap_or_default(), |record| log.note(&record));
+                    log.segments.push(Segment::Chunk(range));
+                }
+                Piece::Damaged(range) => log.segments.push(Segment::Damaged(range)),
+                Piece::Record(Record::Metadata(metadata)) if metadata.name == RUN => {
                     (log.run, is_log) = (metadata.metadata, true);
                 }
-                Ok(Record::Metadata(metadata)) if metadata.name == END => log.end = Some(metadata.metadata),
-                Ok(Record::Attachment { header, data, .. }) => {
+                Piece::Record(Record::Metadata(metadata)) if metadata.name == END => {
+                    log.end = Some(metadata.metadata);
+                }
+                Piece::Record(Record::Attachment { header, data, .. }) => {
                     let (name, media_type) = (header.name, header.media_type);
                     log.attachments.push(Attachment { name, media_type, data: data.into_owned() });
                 }
-                Ok(Record::Footer(_)) => log.complete = true,
-                Ok(_) => {}
-                Err(source) if first => return Err(log.not_mcap(source)),
-                Err(_) => break,
+                Piece::Record(Record::Footer(_)) => log.complete = true,
+                // Behind the data the channels stand once more.
+                Piece::Record(record) => log.note(&record),
             }
-            first = false;
+        }
+        // What a program that was killed has half written is no damage.
+        let half =
+            |segment: &mut Segment| matches!(segment, Segment::Damaged(range) if range.end == bytes.len());
+        if !log.complete {
+            log.segments.pop_if(half);
         }
         if !is_log {
-            return Err(ReadError::NotALog { path: log.path });
+            return Err(match log.damage() {
+                Some(_) => ReadError::HeadDamaged { path: log.path },
+                None if bytes.len() == mcap::MAGIC.len() => log.not_mcap(McapError::UnexpectedEof),
+                None => ReadError::NotALog { path: log.path },
+            });
         }
         log.bytes = bytes;
         Ok(log)
     }
 
+    fn note(&mut self, record: &Record<'_>) {
+        if let Record::Channel(channel) = record {
+            self.channels.entry(channel.topic.clone()).or_insert(channel.id);
+        }
+    }
+
     fn not_mcap(&self, source: McapError) -> ReadError {
         ReadError::NotMcap { path: self.path.clone(), source }
+    }
+
+    /// What of the file cannot be read, in words; none if all can.
+    #[must_use]
+    pub fn damage(&self) -> Option<String> {
+        let damaged = |segment: &Segment| match segment {
+            Segment::Damaged(range) => Some(format!("{} bytes from byte {} on", range.len(), range.start)),
+            Segment::Chunk(_) => None,
+        };
+        let places: Vec<String> = self.segments.iter().filter_map(damaged).collect();
+        let (first, more) = (places.first()?, places.len().saturating_sub(1));
+        Some(match more {
+            0 => format!("{first} are damaged; what they held is missing"),
+            _ => format!("{first} are damaged, and {more} more places; what they held is missing"),
+        })
     }
 
     /// Bytes of the file.
@@ -159,12 +224,23 @@ impl Log {
             world: None,
             timing: None,
         };
-        self.messages(REPLAY).map(move |(_, data)| {
-            if advance(&codecs, &mut last, &data) {
-                Ok(last.clone())
-            } else {
-                Err(ReadError::Damaged { tick: last.tick.0 })
+        let mut has_base = true;
+        self.items(REPLAY).filter_map(move |item| {
+            let Some((_, data)) = item else {
+                has_base = false;
+                return None;
+            };
+            has_base |= is_full(&data);
+            let before = last.tick;
+            if !has_base {
+                return None;
             }
+            let sound = advance(&codecs, &mut last, &data);
+            if !sound || last.tick <= before || last.tick.0 > u64::from(u32::MAX) {
+                return Some(Err(ReadError::Damaged { tick: last.tick.0 }));
+            }
+            last.gap = last.tick.since(before).saturating_sub(1);
+            Some(Ok(last.clone()))
         })
     }
 
@@ -199,25 +275,32 @@ impl Log {
 
     /// The messages of a topic with their ticks.
     pub fn messages(&self, topic: &str) -> impl Iterator<Item = (Tick, Vec<u8>)> {
-        let topic = topic.to_owned();
-        let mut channel = None;
-        // `open` has been through the file: what stops here is its end, or its damage.
-        let readable = records(&self.bytes).into_iter().flatten().map_while(Result::ok);
-        readable.filter_map(move |record| match record {
-            Record::Channel(found) if found.topic == topic => {
-                channel = Some(found.id);
-                None
-            }
-            Record::Message { header, data } if Some(header.channel_id) == channel => {
-                Some((Tick(u64::from(header.sequence)), data.into_owned()))
-            }
-            _ => None,
+        self.items(topic).flatten()
+    }
+
+    /// The messages of a topic with their ticks, and `None` where the file is damaged.
+    fn items(&self, topic: &str) -> impl Iterator<Item = Option<(Tick, Vec<u8>)>> {
+        let id = self.channels.get(topic).copied();
+        self.segments.iter().flat_map(move |segment| {
+            let Segment::Chunk(range) = segment else { return vec![None] };
+            let mut found = Vec::new();
+            // `from_bytes` has decoded it: there is no error.
+            let _ = decode(self.bytes.get(range.clone()).unwrap_or_default(), |record| match record {
+                Record::Message { header, data } if Some(header.channel_id) == id => {
+                    found.push(Some((Tick(u64::from(header.sequence)), data.into_owned())));
+                }
+                _ => {}
+            });
+            found
         })
     }
 }
 
-fn records(bytes: &[u8]) -> Result<ChunkFlattener<'_>, McapError> {
-    ChunkFlattener::new_with_options(bytes, Options::IgnoreEndMagic | Options::ValidateChunkCrcs)
+/// A message on [`REPLAY`] has whole images.
+fn is_full(data: &[u8]) -> bool {
+    Fields(data).any(|(field, value)| {
+        matches!(value, Value::Number(full) if field == u64::from(replay_field::FULL) && full != 0)
+    })
 }
 
 /// Go on from one recorded tick to the next; false if the message does not fit.
@@ -228,7 +311,6 @@ fn advance(codecs: &Codecs, last: &mut LoggedTick, data: &[u8]) -> bool {
     for (field, value) in Fields(data) {
         match value {
             Value::Number(value) if field == number(replay_field::TICK) => last.tick = Tick(value),
-            Value::Number(value) if field == number(replay_field::GAP) => last.gap = value,
             Value::Number(value) if field == number(replay_field::FULL) => full = value != 0,
             Value::Bytes(delta) if field == number(replay_field::EXTERNAL) => {
                 sound &= change(&codecs.external, &mut last.external, delta, full);

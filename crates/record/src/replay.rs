@@ -90,6 +90,8 @@ pub struct ReplayReport {
     pub recorded_digest: Option<u64>,
     /// The log has its end.
     pub complete: bool,
+    /// What of the log cannot be read, in words.
+    pub damage: Option<String>,
     /// Time that the processes took, without reading and comparing.
     pub computing: Duration,
     /// Time of the whole replay.
@@ -146,6 +148,7 @@ pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, Repla
         digest: replayer.digest,
         recorded_digest: digest.and_then(|digest| u64::from_str_radix(digest, 16).ok()),
         complete: log.complete,
+        damage: log.damage(),
         computing: replayer.computing,
         elapsed: started.elapsed(),
     })

@@ -20,6 +20,7 @@ use rcs_core::{
 use record::{
     Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Log, Lost, Options, Pace, ReadError,
     RecordError, Recorder, ReplayError, Setup, Timing, Transform, golden, replay, replay_with,
+    sink::Sink,
     writer::{LogWriter, TickRecord},
 };
 use taskdata::{files::TaskData, load::Source};
@@ -372,9 +373,16 @@ fn a_directory_that_vanishes_ends_the_log_and_not_the_run() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_told_before_the_run() {
-    let error = Recorder::start(Path::new("/dev/full"), Pace::Drop, setup()).err().unwrap();
-    assert!(matches!(error, RecordError::Write(_)), "{error}");
+    let full = fs::File::options().write(true).open("/dev/full").unwrap();
+    let error: RecordError = LogWriter::create(Sink::new(full, true), setup()).err().unwrap().into();
     assert!(error.to_string().contains("No space left on device"), "{error}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_device_is_no_log() {
+    let error = Recorder::start(Path::new("/dev/full"), Pace::Drop, setup()).err().unwrap();
+    assert!(error.to_string().ends_with("a regular file was expected, found a device"), "{error}");
 }
 
 #[cfg(target_os = "linux")]

@@ -19,7 +19,7 @@ use rcs_core::{
 };
 
 pub use self::fault::{Fault, Kind};
-use crate::{Error, cli::VisionArguments, connect, connect_again};
+use crate::{Error, Reconnect, cli::VisionArguments, connect, connect_again};
 
 /// The cell description in the data directory.
 const CELL: &str = "cell.toml";
@@ -28,6 +28,7 @@ const CELL: &str = "cell.toml";
 pub fn serve(arguments: &VisionArguments) -> Result<(), Error> {
     let mut vision = Vision::new(&arguments.data.join(CELL), arguments.fault.clone())?;
     let mut peer = connect(&arguments.controller, Role::Vision)?;
+    let mut reconnect = Reconnect::new();
     loop {
         match attend(&mut peer, &mut vision) {
             Ok(()) => {}
@@ -36,7 +37,9 @@ pub fn serve(arguments: &VisionArguments) -> Result<(), Error> {
         }
         // The line is cut before the next one is made: there is one neighbour of a kind.
         drop(peer);
-        let Some(next) = connect_again(&arguments.controller, Role::Vision)? else { return Ok(()) };
+        let Some(next) = connect_again(&arguments.controller, Role::Vision, &mut reconnect)? else {
+            return Ok(());
+        };
         peer = next;
         vision.forget();
     }

@@ -251,7 +251,7 @@ fn faults(data: &Path, cell: &CellDescription) -> Result<Vec<Kind>, Error> {
 /// The faults of a file; none if it has none that can be switched on for a time.
 fn fault(path: &Path, cell: &CellDescription) -> Result<Option<Kind>, Error> {
     let text =
-        std::fs::read_to_string(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
+        os_io::files::read_text(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
     let file = text::parse(&path.display().to_string(), &text, cell)?;
     let lasting = |what: &What| !what.is_delivery() && !matches!(what, What::PedestalMoved { .. });
     let switchable = file.line.is_some() || file.cell.faults.iter().any(|fault| lasting(&fault.what));

@@ -14,13 +14,14 @@ use neighbours::{
     pedestal, vision,
     workstation::player::{Hwsc, TIME_LIMIT},
 };
+use os_io::files;
 use plant::{
     Cell, CellDescription,
     camera::Analysis,
     fault::text::{self, FaultFile},
 };
 use record::LogFile;
-use taskdata::load::{Diagnostics, Job, Source, Store, source::read_text};
+use taskdata::load::{Diagnostics, Job, Source, Store};
 
 use super::{
     neighbours::{Emulator, Neighbours, Network, WorkstationSource},
@@ -150,7 +151,7 @@ impl CellFile {
     /// [`Error`], with all errors of the data.
     pub fn load(data: &Path, store: &Store, job: &Job, job_path: &Path) -> Result<Self, Error> {
         let path = data.join(CELL);
-        let text = read_text(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
+        let text = files::read_text(&path).map_err(|source| Error::Read { path: path.clone(), source })?;
         let description = CellDescription::from_toml(&text).map_err(|error| Error::Data {
             what: format!("the cell description {}", path.display()),
             report: Box::new(check::cell_report(text.clone(), &error)),
@@ -230,7 +231,7 @@ fn outbox(arguments: &RunArguments) -> Result<Outbox, Error> {
 /// The faults of `--faults`, none without it, with their text.
 fn faults(arguments: &RunArguments, cell: &CellDescription) -> Result<(FaultFile, String), Error> {
     let Some(path) = &arguments.faults else { return Ok(Default::default()) };
-    let text = read_text(path).map_err(|source| Error::Read { path: path.clone(), source })?;
+    let text = files::read_text(path).map_err(|source| Error::Read { path: path.clone(), source })?;
     let faults = text::parse(&path.display().to_string(), &text, cell)?;
     if arguments.robot.kind != RobotKind::Sim && faults.line.is_some() {
         return Err(Error::FaultsAtPort);

@@ -29,12 +29,13 @@
 //! leaves the others to [`Sheet::plan`]. A file for the line alone is read by [`load`].
 
 use std::{
-    fs, io,
+    io,
     path::Path,
     string::{String, ToString},
     vec::Vec,
 };
 
+use os_io::files;
 use serde::{Deserialize, de::DeserializeOwned};
 use toml::{
     Spanned,
@@ -313,7 +314,7 @@ fn entry(number: usize, found: Spanned<DeValue<'_>>) -> Result<Entry<'_>, (Probl
 /// [`PlanFileError`] with the file, the line, what was expected and what was found.
 pub fn load(path: &Path) -> Result<Plan, PlanFileError> {
     let file = path.display().to_string();
-    match fs::read_to_string(path) {
+    match files::read_text(path) {
         Ok(text) => parse(&file, &text),
         Err(source) => Err(PlanFileError::Read { file, source }),
     }

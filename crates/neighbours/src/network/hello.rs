@@ -28,6 +28,7 @@ use std::{
 };
 
 use hmac::{Hmac, KeyInit as _, Mac as _};
+use os_io::files;
 use sha2::Sha256;
 
 use super::{Role, seal::Seal};
@@ -46,6 +47,8 @@ const MARK: &[u8; 4] = b"RCS2";
 pub const VERSION: u16 = 2;
 /// Bytes that a secret must have.
 const MIN_SECRET: usize = 16;
+/// Bytes that its file may have.
+const LARGEST_SECRET: u64 = 4096;
 
 /// What controller and neighbours know and nobody else.
 #[derive(Clone)]
@@ -85,7 +88,7 @@ impl Secret {
     /// [`SecretError`].
     pub fn load(file: &Path) -> Result<Self, SecretError> {
         let failed = |source| SecretError::Read { file: file.to_owned(), source };
-        let bytes = fs::read(file).map_err(failed)?;
+        let bytes = files::read(file, LARGEST_SECRET).map_err(failed)?;
         if fs::metadata(file).map_err(failed)?.mode() & 0o077 != 0 {
             return Err(SecretError::Public { file: file.to_owned() });
         }

@@ -61,6 +61,9 @@ pub enum PeerError {
     /// The controller has closed the connection, and said why.
     #[error("the controller says: {0}")]
     LastWords(String),
+    /// The other side has closed the connection, and said why, before it has proved that it knows the secret.
+    #[error("the controller says: {0} (unverified: it has not proved that it knows the secret)")]
+    Unverified(String),
     /// Anybody on the network could pose as the controller.
     #[error("{0}: a network needs the secret that the controller knows; name a file with --secret")]
     NoSecret(Address),
@@ -77,7 +80,7 @@ impl PeerError {
         match self {
             Self::Line { .. } | Self::Silent | Self::Closed => true,
             Self::Frame(FrameError::Stream(_) | FrameError::Number(_)) => true,
-            Self::LastWords(text) => [OVER, CROWDED].contains(&text.as_str()),
+            Self::LastWords(text) | Self::Unverified(text) => [OVER, CROWDED].contains(&text.as_str()),
             _ => false,
         }
     }
@@ -253,7 +256,8 @@ fn over_socket(address: &Address, role: Role, secret: Option<&Secret>) -> Result
     let mut receiver = Receiver::new(stream.try_clone().map_err(failed)?);
     // Who is not let in may be told why before he has answered.
     let welcome = match (receive(&mut receiver), answered) {
-        (Err(PeerError::LastWords(why)), _) => return Err(PeerError::LastWords(why)),
+        (Err(error @ PeerError::LastWords(_)), _) if secret.is_some() => return Err(unverified(error)),
+        (Err(error @ PeerError::LastWords(_)), _) => return Err(error),
         (_, Err(error)) => return Err(failed(error)),
         (welcome, Ok(())) => welcome?,
     };
@@ -284,6 +288,11 @@ fn receive(receiver: &mut dyn Inlet) -> Result<Frame, PeerError> {
 fn is_end(error: &io::Error) -> bool {
     use io::ErrorKind::{BrokenPipe, ConnectionReset, UnexpectedEof};
     matches!(error.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)
+}
+
+/// The same reason, from a side that has not proved that it knows the secret.
+pub(super) fn unverified(error: PeerError) -> PeerError {
+    if let PeerError::LastWords(why) = error { PeerError::Unverified(why) } else { error }
 }
 
 /// Why the controller ends the connection.

@@ -31,12 +31,13 @@
 //! Others: `stuck` with `device = "lock-ring"` or `"vise-jaw"`, `air-lost`, `hydraulics-lost`, `camera-blind`, `pedestal-moved`. A fault that
 //! does not say when is there all the time.
 
-use std::{fs, path::Path};
+use std::path::Path;
 
 use depc::fault::{
     Plan,
     text::{Entry, Sheet},
 };
+use os_io::files;
 use rcs_core::tick::TICK_S;
 use serde::Deserialize;
 use toml::{Spanned, Value};
@@ -118,7 +119,7 @@ type Wrong = (Problem, Option<usize>);
 /// [`FaultFileError`] with the file, the line, what was expected and what was found.
 pub fn load(path: &Path, cell: &CellDescription) -> Result<FaultFile, FaultFileError> {
     let file = path.display().to_string();
-    match fs::read_to_string(path) {
+    match files::read_text(path) {
         Ok(text) => parse(&file, &text, cell),
         Err(source) => Err(FaultFileError::Read { file, source }),
     }

@@ -22,6 +22,7 @@ use std::{
 };
 
 use levels::ladder::Ladder;
+use os_io::files;
 use prost::Message as _;
 use rcs_core::{
     Plain as _,
@@ -49,6 +50,8 @@ const MAGIC: [u8; 8] = *b"RCSGOLD\x01";
 const COMPRESSION: i32 = 19;
 /// Most bytes that a golden may become when it is unpacked: a day of running is less.
 const LARGEST: usize = 1 << 30;
+/// Largest file of a golden, bytes.
+const FILE: u64 = 1 << 28;
 /// Ticks from one digest to the next: a second.
 pub const SECOND: u64 = 25;
 /// Extension of golden files.
@@ -165,7 +168,8 @@ impl Played {
 /// # Errors
 /// [`GoldenError`] if the file cannot be read, is no golden, or is of another layout.
 pub fn read(path: &Path) -> Result<Golden, GoldenError> {
-    let bytes = fs::read(path).map_err(|source| GoldenError::File { path: path.to_owned(), source })?;
+    let bytes =
+        files::read(path, FILE).map_err(|source| GoldenError::File { path: path.to_owned(), source })?;
     let wrong = |what: String| GoldenError::NotAGolden { path: path.to_owned(), what };
     let packed = bytes.strip_prefix(&MAGIC).ok_or_else(|| wrong("it does not begin like one".into()))?;
     let content = zstd::bulk::decompress(packed, LARGEST).map_err(|error| wrong(error.to_string()))?;
@@ -197,6 +201,9 @@ pub fn from_log(log: &Log) -> Result<Golden, GoldenError> {
     log.check_layout()?;
     if !log.complete {
         return Err(GoldenError::NotWhole("it has no end"));
+    }
+    if log.damage().is_some() {
+        return Err(GoldenError::NotWhole("it is damaged"));
     }
     let mut columns = Columns::new(ExternalInputs::STRUCT);
     let (mut digest, mut digests, mut ticks) = (Digest::new(), Vec::new(), 0_u64);

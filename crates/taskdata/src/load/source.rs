@@ -5,7 +5,9 @@
 //! no line of a block and may be as long as it likes, so that a datum can be explained where it stands without disturbing
 //! its block. And a block that was copied from a listing, with the line numbers 0 to 15 in front, is read without them.
 
-use std::{fs, io, path::Path, sync::Arc};
+use std::{collections::BTreeSet, fs, io, os::unix::fs::MetadataExt as _, path::Path, sync::Arc};
+
+use os_io::files;
 
 /// Lines of a block.
 pub const BLOCK_LINES: usize = 16;
@@ -107,33 +109,12 @@ pub enum BlockFault {
     Tab(usize),
 }
 
-/// Read one file. Only a regular one: opening a pipe would wait for a writer.
+/// Read one file, which must be a regular one.
 ///
 /// # Errors
-/// See [`read_text`].
+/// See [`files::read_text`].
 pub fn read(path: &Path, shown: &str) -> io::Result<Source> {
-    Ok(Source { name: shown.to_owned(), text: read_text(path)?.into() })
-}
-
-/// The text of a regular file, in UTF-8, with or without a byte order mark; lines end with LF, CR LF or CR.
-///
-/// # Errors
-/// What the operating system says, that it is no regular file, or the first line that is not UTF-8.
-pub fn read_text(path: &Path) -> io::Result<String> {
-    let kind = fs::metadata(path)?.file_type();
-    if !kind.is_file() {
-        let found = if kind.is_dir() { "a directory" } else { "a pipe, a socket or a device" };
-        let why = format!("a regular file was expected, found {found}");
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
-    }
-    let text = String::from_utf8(fs::read(path)?).map_err(|error| {
-        let good = error.as_bytes().get(..error.utf8_error().valid_up_to()).unwrap_or_default();
-        let line = good.iter().filter(|byte| **byte == b'\n').count() + 1;
-        let why = format!("line {line} is not UTF-8: save the file as UTF-8 or as plain ASCII");
-        io::Error::new(io::ErrorKind::InvalidData, why)
-    })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    Ok(if text.contains('\n') { text.to_owned() } else { text.replace('\r', "\n") })
+    Ok(Source { name: shown.to_owned(), text: files::read_text(path)?.into() })
 }
 
 /// What cannot be read: a path, and why.
@@ -145,9 +126,15 @@ pub type Unreadable = (String, io::Error);
 pub fn read_blocks_under(directory: &Path) -> (Vec<Source>, Vec<Unreadable>) {
     let (mut paths, mut unreadable) = (Vec::new(), Vec::new());
     let mut open = vec![directory.to_path_buf()];
+    // A symbolic link can lead back: each directory is read once.
+    let mut seen = BTreeSet::new();
     while let Some(folder) = open.pop() {
-        let entries = match fs::read_dir(&folder) {
-            Ok(entries) => entries,
+        let listed = fs::metadata(&folder).and_then(|found| {
+            let is_new = seen.insert((found.dev(), found.ino()));
+            is_new.then(|| fs::read_dir(&folder)).transpose()
+        });
+        let entries = match listed {
+            Ok(entries) => entries.into_iter().flatten(),
             Err(error) => {
                 unreadable.push((folder.display().to_string(), error));
                 continue;

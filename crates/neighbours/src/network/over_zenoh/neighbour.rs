@@ -25,7 +25,7 @@ use crate::network::{
     frame::{Frame, FrameError, LAST_WORDS, PULSE, WELCOME},
     hello::{Agreement, Challenge, ClockKind, HELLO, HelloError, check_welcome},
     office::Outlet,
-    peer::{Connection, Inlet, LIMIT, PAUSE, last_words},
+    peer::{Connection, Inlet, LIMIT, PAUSE, last_words, unverified},
     seal::Seal,
     station::Station,
 };
@@ -174,7 +174,7 @@ impl Greeting<'_> {
 /// Why one is refused, if these are last words.
 fn read_refusal(reply: &[u8]) -> Option<PeerError> {
     let frame = Frame::from_bytes(reply).ok()?;
-    (frame.address() == LAST_WORDS).then(|| last_words(&frame))
+    (frame.address() == LAST_WORDS).then(|| unverified(last_words(&frame)))
 }
 
 /// Frames to the controller.

@@ -1,0 +1,150 @@
+//! Files that are none, limits of files, and signals: a run refuses in words, or ends in order.
+
+use std::{
+    fs,
+    os::unix::fs::symlink,
+    path::{Path, PathBuf},
+    process::{Child, Command, Output, Stdio},
+    time::{Duration, Instant},
+};
+
+use rustix::{
+    fs::{CWD, Mode, mkfifoat},
+    process::{Pid, Signal, kill_process},
+};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-run"));
+    command.args(arguments).current_dir(root()).stdin(Stdio::null());
+    command
+}
+
+/// What the program says on standard error, on one line.
+fn said(output: &Output) -> String {
+    let said = String::from_utf8_lossy(&output.stderr);
+    said.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The end of a program that must end by itself: one that waits for a FIFO never would.
+fn ended(mut child: Child) -> Output {
+    let started = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if started.elapsed() > Duration::from_secs(60) {
+            child.kill().unwrap();
+            panic!("it waits: {}", said(&child.wait_with_output().unwrap()));
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    child.wait_with_output().unwrap()
+}
+
+fn run(arguments: &[&str]) -> Output {
+    ended(command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap())
+}
+
+fn fifo(path: &Path) -> &str {
+    mkfifoat(CWD, path, Mode::RUSR | Mode::WUSR).unwrap();
+    path.to_str().unwrap()
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap().flatten() {
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            copy(&entry.path(), &target)
+        } else {
+            drop(fs::copy(entry.path(), target))
+        }
+    }
+}
+
+#[test]
+fn fifos_and_devices_are_refused_in_words() {
+    let place = tempfile::tempdir().unwrap();
+    let pipe = fifo(&place.path().join("pipe")).to_owned();
+    for (option, file, found) in [
+        ("--faults", pipe.as_str(), "a FIFO"),
+        ("--faults", "/dev/zero", "a device"),
+        ("--log", &pipe, "a FIFO"),
+        ("--log", "/dev/zero", "a device"),
+        ("--log", "/dev", "a directory"),
+    ] {
+        let output = run(&[option, file, "--ticks", "10"]);
+        assert_eq!(output.status.code(), Some(2), "{option} {file}");
+        assert!(
+            said(&output).contains(&format!("a regular file was expected, found {found}")),
+            "{}",
+            said(&output)
+        );
+    }
+    let job = run(&[&pipe, "--log", "none"]);
+    assert_eq!(job.status.code(), Some(2), "{}", said(&job));
+    for name in ["cell.toml", "pipe.blk", "jobs/pipe.job"] {
+        let data = place.path().join("data").join(name.replace(['/', '.'], "-"));
+        copy(&root().join("data"), &data);
+        drop(fs::remove_file(data.join(name)));
+        fifo(&data.join(name));
+        let output = run(&["check", data.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(2), "{name}");
+        let said = said(&output) + &String::from_utf8_lossy(&output.stdout);
+        assert!(said.contains("found a FIFO"), "{name}: {said}");
+    }
+}
+
+#[test]
+fn a_log_to_the_null_device_is_none() {
+    let output = run(&["--log", "/dev/null", "--ticks", "10", "--json"]);
+    let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((output.status.code(), &result["log"]), (Some(0), &serde_json::Value::Null));
+}
+
+#[test]
+fn a_link_that_leads_back_is_followed_once() {
+    let place = tempfile::tempdir().unwrap();
+    let data = place.path().join("data");
+    copy(&root().join("data"), &data);
+    symlink("..", data.join("back")).unwrap();
+    symlink(".", data.join("here")).unwrap();
+    let output = run(&["check", data.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stdout));
+}
+
+#[test]
+fn a_limit_of_files_ends_the_log_and_not_the_run() {
+    let place = tempfile::tempdir().unwrap();
+    let log = place.path().join("run.mcap");
+    // Blocks of 512 bytes or of 1024: more than the head of the log, less than all of it.
+    let output = Command::new("sh")
+        .args(["-c", "ulimit -f 3000 && exec \"$@\"", "sh", env!("CARGO_BIN_EXE_rcs-run")])
+        .args(["linkbar", "--shared-memory", "off", "--log", log.to_str().unwrap()])
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert!(said(&output).contains("the log ended before the run did"), "{}", said(&output));
+}
+
+#[test]
+fn a_hang_up_ends_a_run_in_order() {
+    let place = tempfile::tempdir().unwrap();
+    for boards in ["one", "split"] {
+        let log = place.path().join(boards).with_extension("mcap");
+        let arguments = ["--clock", "real", "--boards", boards, "--log", log.to_str().unwrap()];
+        let child = command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let started = Instant::now();
+        while fs::metadata(&log).map_or(0, |log| log.len()) == 0 {
+            assert!(started.elapsed() < Duration::from_secs(60), "the run does not begin");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        kill_process(Pid::from_child(&child), Signal::HUP).unwrap();
+        let output = ended(child);
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        assert!(said(&output).ends_with("interrupted"), "{}", said(&output));
+        assert!(record::Log::open(&log).unwrap().complete);
+    }
+}

@@ -1,0 +1,155 @@
+//! Reading files that a person or another program names.
+//!
+//! A FIFO keeps a reader waiting until another program writes into it, a terminal until a key is pressed, and
+//! `/dev/zero` has no end. So only regular files are read, and no more of them than the reader can use.
+
+use std::{
+    fs::{self, File, FileType, OpenOptions},
+    io::{self, ErrorKind, Read},
+    os::unix::fs::{FileTypeExt, OpenOptionsExt},
+    path::Path,
+};
+
+use rustix::fs::OFlags;
+
+/// Largest text that a program reads, bytes: task data, jobs, cell descriptions and fault plans have some kilobytes.
+pub const TEXT: u64 = 16 << 20;
+
+/// Read a regular file of at most `limit` bytes. Returns at once whatever `path` is.
+///
+/// # Errors
+/// [`ErrorKind::InvalidInput`] with the kind that was found if it is no regular file, [`ErrorKind::FileTooLarge`] if it is larger,
+/// [`ErrorKind::OutOfMemory`] if there is no memory for it; else what the system says.
+pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
+    let file = open(path)?;
+    let length = file.metadata()?.len();
+    let mut bytes = Vec::new();
+    if length <= limit {
+        // One byte more: a file can grow while it is read.
+        file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
+    }
+    let found = length.max(u64::try_from(bytes.len()).unwrap_or(u64::MAX));
+    if found > limit {
+        let why = format!("a file of at most {limit} bytes was expected, found {found} bytes");
+        return Err(io::Error::new(ErrorKind::FileTooLarge, why));
+    }
+    Ok(bytes)
+}
+
+/// Read a regular file of at most [`TEXT`] bytes of UTF-8, with or without a byte order mark; lines end with LF, CR LF or CR.
+///
+/// # Errors
+/// As [`read`], and [`ErrorKind::InvalidData`] with the first line that is not UTF-8.
+pub fn read_text(path: &Path) -> io::Result<String> {
+    let text = String::from_utf8(read(path, TEXT)?).map_err(|error| {
+        let good = error.as_bytes().get(..error.utf8_error().valid_up_to()).unwrap_or_default();
+        let line = good.iter().filter(|byte| **byte == b'\n').count() + 1;
+        let why = format!("line {line} is not UTF-8: save the file as UTF-8 or as plain ASCII");
+        io::Error::new(ErrorKind::InvalidData, why)
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    Ok(if text.contains('\n') { text.to_owned() } else { text.replace('\r', "\n") })
+}
+
+/// Open a regular file for reading.
+///
+/// # Errors
+/// As [`read`].
+pub fn open(path: &Path) -> io::Result<File> {
+    // To open some devices has an effect, so the kind is asked for first; then again, because it may have changed.
+    expect_regular(fs::metadata(path)?.file_type())?;
+    let flags = OFlags::NONBLOCK | OFlags::NOCTTY;
+    let file = OpenOptions::new().read(true).custom_flags(flags.bits().cast_signed()).open(path)?;
+    expect_regular(file.metadata()?.file_type())?;
+    Ok(file)
+}
+
+/// Open a regular file for writing, and make it if it is not there. What is in it stays.
+///
+/// # Errors
+/// As [`read`].
+pub fn create(path: &Path) -> io::Result<File> {
+    match fs::metadata(path) {
+        Ok(found) => expect_regular(found.file_type())?,
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        Err(error) => return Err(error),
+    }
+    let flags = OFlags::NONBLOCK | OFlags::NOCTTY;
+    let mut options = OpenOptions::new();
+    options.write(true).create(true).truncate(false).custom_flags(flags.bits().cast_signed());
+    let file = options.open(path)?;
+    expect_regular(file.metadata()?.file_type())?;
+    Ok(file)
+}
+
+/// Refuse what is no regular file.
+///
+/// # Errors
+/// [`ErrorKind::InvalidInput`] with the kind that was found.
+pub fn expect_regular(kind: FileType) -> io::Result<()> {
+    let found = match kind {
+        kind if kind.is_file() => return Ok(()),
+        kind if kind.is_dir() => "a directory",
+        kind if kind.is_fifo() => "a FIFO",
+        kind if kind.is_socket() => "a socket",
+        kind if kind.is_char_device() || kind.is_block_device() => "a device",
+        _ => "another kind of file",
+    };
+    Err(io::Error::new(ErrorKind::InvalidInput, format!("a regular file was expected, found {found}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::net::UnixListener;
+
+    use rustix::fs::{CWD, Mode};
+
+    use super::*;
+
+    fn why(path: &Path) -> String {
+        read(path, 100).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn only_regular_files_are_read() {
+        let place = tempfile::tempdir().unwrap();
+        let (fifo, socket, file) = (place.path().join("f"), place.path().join("s"), place.path().join("r"));
+        rustix::fs::mkfifoat(CWD, &fifo, Mode::RUSR | Mode::WUSR).unwrap();
+        let _listener = UnixListener::bind(&socket).unwrap();
+        fs::write(&file, "text").unwrap();
+        for (path, found) in [
+            (fifo.as_path(), "a FIFO"),
+            (&socket, "a socket"),
+            (place.path(), "a directory"),
+            (Path::new("/dev/zero"), "a device"),
+            (Path::new("/dev/null"), "a device"),
+        ] {
+            assert_eq!(why(path), format!("a regular file was expected, found {found}"));
+        }
+        assert_eq!(read(&file, 4).unwrap(), b"text");
+        let link = place.path().join("l");
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        assert_eq!(read_text(&link).unwrap(), "text");
+    }
+
+    #[test]
+    fn a_file_is_not_read_beyond_the_limit() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("large");
+        fs::write(&path, [0; 101]).unwrap();
+        assert_eq!(why(&path), "a file of at most 100 bytes was expected, found 101 bytes");
+        // A file with a hole takes no room on the disk, and must take none in memory.
+        File::create(&path).unwrap().set_len(1 << 36).unwrap();
+        assert_eq!(read(&path, TEXT).unwrap_err().kind(), ErrorKind::FileTooLarge);
+        // The kernel says of its files that they are empty.
+        assert_eq!(read(Path::new("/proc/self/maps"), 10).unwrap_err().kind(), ErrorKind::FileTooLarge);
+    }
+
+    #[test]
+    fn text_is_utf_8() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("text");
+        fs::write(&path, b"\xFF").unwrap();
+        assert_eq!(read_text(&path).unwrap_err().kind(), ErrorKind::InvalidData);
+    }
+}

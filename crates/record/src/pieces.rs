@@ -1,0 +1,198 @@
+//! The file of a log in pieces, whatever has happened to it.
+//!
+//! No length in the file is believed before it is checked against what is there. A piece that cannot be read ends at the next
+//! record that can: a chunk or an attachment with the right checksum, or metadata of this program. What is decompressed, in all, is
+//! bounded by the size of the file, so that reading takes memory and time in proportion to it.
+
+use std::ops::Range;
+
+use mcap::{
+    MAGIC, McapError, McapResult, parse_record,
+    records::{Record, op},
+    sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions},
+};
+
+use crate::writer::{END, RUN};
+
+/// Bytes of a record before its body: operation code and length.
+const HEAD: usize = 9;
+/// Largest chunk, decompressed, bytes: the recorder closes a chunk at a quarter of a megabyte.
+const CHUNK: u64 = 16 << 20;
+/// Bytes that a byte of the file may stand for: the recorder's chunks stand for six to ten times their size.
+const EXPANSION: u64 = 64;
+/// Bytes that the smallest file may stand for.
+const LEAST: u64 = 64 << 20;
+
+/// A piece of the file.
+pub enum Piece<'a> {
+    /// A record outside the chunks.
+    Record(Record<'a>),
+    /// A chunk that can be read, with the head of its record.
+    Chunk(Range<usize>),
+    /// Bytes that cannot be read.
+    Damaged(Range<usize>),
+}
+
+/// The pieces of a file, in their order.
+pub struct Pieces<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    /// Bytes that may still be decompressed or summed.
+    left: u64,
+}
+
+impl<'a> Pieces<'a> {
+    /// The pieces of a file that begins as an MCAP file does.
+    ///
+    /// # Errors
+    /// [`McapError::BadMagic`] if it does not.
+    pub fn new(bytes: &'a [u8]) -> McapResult<Self> {
+        if !bytes.starts_with(MAGIC) {
+            return Err(McapError::BadMagic);
+        }
+        let size = u64::try_from(bytes.len()).unwrap_or(u64::MAX);
+        Ok(Self { bytes, at: MAGIC.len(), left: size.saturating_mul(EXPANSION).saturating_add(LEAST) })
+    }
+
+    /// The record that begins at a place, and where it ends; `None` if it cannot be read.
+    fn piece(&mut self, at: usize) -> Option<(Piece<'a>, usize)> {
+        let (opcode, end) = frame(self.bytes, at)?;
+        let body = self.bytes.get(at.checked_add(HEAD)?..end)?;
+        let piece = match opcode {
+            op::CHUNK => {
+                let size = body.get(16..24)?.try_into().map(u64::from_le_bytes).ok()?;
+                self.spend(size)?;
+                decode(self.bytes.get(at..end)?, |_| ()).ok()?;
+                Piece::Chunk(at..end)
+            }
+            op::ATTACHMENT => {
+                self.spend(u64::try_from(body.len()).ok()?)?;
+                Piece::Record(parse(opcode, body)?)
+            }
+            // The last record: behind it the file ends as it began.
+            op::FOOTER if self.bytes.get(end..) != Some(MAGIC) => return None,
+            op::HEADER..=op::DATA_END => Piece::Record(parse(opcode, body)?),
+            _ => return None,
+        };
+        Some((piece, end))
+    }
+
+    fn spend(&mut self, bytes: u64) -> Option<()> {
+        self.left = self.left.checked_sub(bytes)?;
+        Some(())
+    }
+
+    /// The next place from `from` on where a record begins that is surely one; the end of the file if there is none.
+    fn next_good(&mut self, from: usize) -> usize {
+        let surely = |piece: &Piece<'_>| match piece {
+            Piece::Chunk(_) => true,
+            Piece::Record(Record::Attachment { crc, .. }) => *crc != 0,
+            Piece::Record(Record::Metadata(metadata)) => metadata.name == RUN || metadata.name == END,
+            Piece::Record(_) | Piece::Damaged(_) => false,
+        };
+        let end = self.bytes.len();
+        let begins =
+            |bytes: &[u8], at| matches!(bytes.get(at), Some(&(op::CHUNK | op::ATTACHMENT | op::METADATA)));
+        (from..end)
+            .find(|at| begins(self.bytes, *at) && self.piece(*at).is_some_and(|(piece, _)| surely(&piece)))
+            .unwrap_or(end)
+    }
+}
+
+impl<'a> Iterator for Pieces<'a> {
+    type Item = Piece<'a>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let begin = self.at;
+        if begin >= self.bytes.len() {
+            return None;
+        }
+        let piece = if let Some((piece, end)) = self.piece(begin) {
+            self.at = if matches!(piece, Piece::Record(Record::Footer(_))) { self.bytes.len() } else { end };
+            piece
+        } else {
+            self.at = self.next_good(begin.saturating_add(1));
+            Piece::Damaged(begin..self.at)
+        };
+        Some(piece)
+    }
+}
+
+/// Operation code and end of the record that would begin at a place; `None` if it would be longer than the file.
+fn frame(bytes: &[u8], at: usize) -> Option<(u8, usize)> {
+    let head = bytes.get(at..at.checked_add(HEAD)?)?;
+    let (opcode, length) = head.split_first()?;
+    let length = usize::try_from(u64::from_le_bytes(length.try_into().ok()?)).ok()?;
+    let end = at.checked_add(HEAD)?.checked_add(length)?;
+    (end <= bytes.len()).then_some((*opcode, end))
+}
+
+/// A record that is looked at; of another one its bytes. The library takes memory for a text before it looks whether the text is
+/// there, so the lengths are checked here.
+fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
+    match opcode {
+        op::METADATA => texts(body, text(body, 0)?)?,
+        // Two numbers, topic, encoding, metadata.
+        op::CHANNEL => texts(body, text(body, text(body, 4)?)?)?,
+        // Two times, name, media type, length of the data; behind the data the checksum.
+        op::ATTACHMENT => body.get(text(body, text(body, 16)?)?..)?.len().checked_sub(12)?,
+        op::MESSAGE | op::FOOTER => 0,
+        opcode => return Some(Record::Unknown { opcode, data: body.into() }),
+    };
+    parse_record(opcode, body).ok()
+}
+
+/// Where a text ends that begins with its length.
+fn text(body: &[u8], from: usize) -> Option<usize> {
+    let begin = from.checked_add(4)?;
+    let length = body.get(from..begin)?.try_into().map(u32::from_le_bytes).ok()?;
+    let end = begin.checked_add(usize::try_from(length).ok()?)?;
+    (end <= body.len()).then_some(end)
+}
+
+/// Where pairs of texts end that begin with their length.
+fn texts(body: &[u8], from: usize) -> Option<usize> {
+    let (mut at, end) = (from.checked_add(4)?, text(body, from)?);
+    while at < end {
+        at = text(body, text(body, at)?)?;
+    }
+    (at == end).then_some(end)
+}
+
+/// The channels and messages of a chunk, which is given with the head of its record.
+///
+/// # Errors
+/// [`McapError`] if the chunk is too large, has no checksum or the wrong one, or if a record in it cannot be read.
+pub fn decode<'a>(chunk: &'a [u8], mut each: impl FnMut(Record<'_>)) -> McapResult<()> {
+    let number = |range: Range<usize>| chunk.get(range).map(<[u8]>::to_vec).unwrap_or_default();
+    let size = number(HEAD + 16..HEAD + 24).try_into().map_or(u64::MAX, u64::from_le_bytes);
+    if size > CHUNK {
+        return Err(McapError::ChunkTooLarge(size));
+    }
+    if number(HEAD + 24..HEAD + 28) == [0; 4] {
+        return Err(McapError::BadChunkCrc { saved: 0, calculated: 0 });
+    }
+    let limit = usize::try_from(CHUNK).unwrap_or(usize::MAX).max(chunk.len());
+    let options = LinearReaderOptions::default()
+        .with_skip_start_magic(true)
+        .with_skip_end_magic(true)
+        .with_validate_chunk_crcs(true)
+        .with_prevalidate_chunk_crcs(true)
+        .with_record_length_limit(limit);
+    let mut reader = LinearReader::new_with_options(options);
+    let mut rest: &'a [u8] = chunk;
+    while let Some(event) = reader.next_event() {
+        match event? {
+            LinearReadEvent::ReadRequest(wanted) => {
+                let (now, later) = rest.split_at(wanted.min(rest.len()));
+                reader.insert(now.len()).copy_from_slice(now);
+                reader.notify_read(now.len());
+                rest = later;
+            }
+            LinearReadEvent::Record { data, opcode } => {
+                each(parse(opcode, data).ok_or(McapError::UnexpectedEoc)?)
+            }
+        }
+    }
+    Ok(())
+}
