@@ -12,7 +12,7 @@ use rcs_core::{
         emove::Holding,
         hws::{HwsCommand, HwsReport},
         prim::{PrimReport, PrimVerb},
-        t3i::T3iStatus,
+        t3i::{T3iStatus, T3iVerb},
     },
     table::{Row, Table},
 };
@@ -106,13 +106,24 @@ fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemo
     }
 }
 
+/// Prim has ordered T3I to begin the link anew, and T3I has not read it before: what the link suffers then is no fault.
+#[must_use]
+pub fn is_restart_ordered(before: &CommonMemory) -> bool {
+    let command = &before.prim.t3i;
+    command.command == T3iVerb::Restart && command.number != before.t3i.status.echo
+}
+
 /// What the link to the robot suffers.
 fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, said: &mut Vec<Remark>) {
     let mut say = |level, text: String| {
         said.push(Remark { level, source: name_of(headers, "t3i"), text, ..Remark::default() });
     };
     let (was, is) = (&before.t3i.status, &after.t3i.status);
+    let ordered = is_restart_ordered(before);
     match (was.link_running, is.link_running) {
+        (_, false) if ordered => {
+            say(Level::Info, "the link to the robot begins anew, as Prim has ordered".to_owned())
+        }
         (false, true) => say(Level::Info, "the link to the robot runs".to_owned()),
         (true, false) => say(Level::Warning, "the link to the robot is lost".to_owned()),
         _ => {}
@@ -130,7 +141,7 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
         ]
     };
     for ((_, _, was), (level, what, is)) in counts(was).into_iter().zip(counts(is)) {
-        if is > was {
+        if is > was && !(ordered && what == "re-start") {
             say(level, format!("{what}, {is} so far"));
         }
     }
@@ -379,6 +390,22 @@ mod tests {
                 (Level::Info, "re-start, 1 so far")
             ]
         );
+    }
+
+    #[test]
+    fn a_restart_that_prim_has_ordered_is_no_fault() {
+        let mut before = CommonMemory::default();
+        before.t3i.status.link_running = true;
+        before.prim.t3i.command = T3iVerb::Restart;
+        before.prim.t3i.number = 1;
+        let mut after = before;
+        (after.t3i.status.link_running, after.t3i.status.counters.restarts) = (false, 1);
+        let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
+        let told: Vec<_> = said.iter().map(|remark| (remark.level, remark.text.as_str())).collect();
+        assert_eq!(told, [(Level::Info, "the link to the robot begins anew, as Prim has ordered")]);
+        before.t3i.status.echo = 1;
+        let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
+        assert_eq!(said[0].level, Level::Warning, "it was read before");
     }
 
     #[test]

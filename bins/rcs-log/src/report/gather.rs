@@ -13,7 +13,7 @@ use rcs_core::{
     pose::WireFrame,
     tick::{TICK_S, Tick},
 };
-use record::{Attachment, Log, proto::foxglove::Level};
+use record::{Attachment, Log, proto::foxglove::Level, remarks::is_restart_ordered};
 
 use super::scene::Scene;
 use crate::{
@@ -142,12 +142,14 @@ impl Run {
         let force =
             [sensor.x, sensor.y, sensor.z].map(axis).into_iter().fold(0.0, |sum: f64, lb| sum.hypot(lb));
         self.tool_force.push(if sensor.valid { force } else { 0.0 });
+        // A re-start that Prim has ordered is no fault.
+        let restarts = u32::from(!is_restart_ordered(&moment.before));
         let counters = |memory: &CommonMemory| {
             let link = &memory.t3i.status.counters;
             link.naks
                 .saturating_add(link.timeouts)
                 .saturating_add(link.checksum_errors)
-                .saturating_add(link.restarts)
+                .saturating_add(link.restarts.saturating_mul(restarts))
         };
         self.link_faults.push(counters(&moment.after).saturating_sub(counters(&moment.before)));
         if let Some(timing) = moment.timing {

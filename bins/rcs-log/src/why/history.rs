@@ -3,7 +3,7 @@
 use executive::failure;
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
-    interface::{Decided, Header},
+    interface::{self, Decided, Header},
     name::Name16,
     table::{Condition, Row, Table},
 };
@@ -87,6 +87,24 @@ impl History {
     /// The row that fired in a process in a tick, and since when it did.
     pub fn row(&self, process: ProcessId, tick: u64) -> Option<&Fired> {
         latest(&self.rows[process.position()], tick, |fired| fired.tick)
+    }
+
+    /// The tick in which a row fired last in a process that has had nothing to decide since; `None` if one fired in this tick. A header
+    /// repeats the last row while its process rests.
+    pub fn rests_since(&self, process: ProcessId, moment: &Moment) -> Option<u64> {
+        let tick = moment.tick.0;
+        let executes = |report: &Report| report.report == interface::Report::Executing.text();
+        let arrives = |command: &Command| command.tick + u64::from(process != ProcessId::Task) == tick;
+        let is_held = moment.after.header(process).republished;
+        // T3I decides in every tick what goes out.
+        let fires = process == ProcessId::T3i
+            || self.command(process, tick).is_some_and(arrives)
+            || self.report(process, tick.saturating_sub(1)).is_some_and(executes);
+        if fires && !is_held {
+            return None;
+        }
+        let since = if is_held { self.row(process, tick).map(|fired| fired.tick) } else { None };
+        since.or(self.report(process, tick).map(|report| report.tick)).filter(|since| *since < tick)
     }
 
     /// What a process reported in a tick, and since when.

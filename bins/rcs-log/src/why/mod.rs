@@ -1,12 +1,14 @@
 //! `rcs-log why`: why something failed, or what each level did in any tick, and by which row.
 //!
-//! A failure is told as a chain of causes across ticks ([`chain`]): the commands that led to the process that failed, each with
+//! What went wrong first in the world comes first ([`world`]): a contact, a lost part, a warning of the robot controller, a line of the
+//! workstation that could not be carried out. A failure is told as a chain of causes across ticks ([`chain`]): the commands that led to the process that failed, each with
 //! the row that gave it; what the devices said while it tried ([`evidence`]); what happened in the cell meanwhile; the first
 //! cause; and how the failure went up to Task. The sources are buffers and rows of the log ([`history`]), nothing is guessed.
 
 mod chain;
 mod evidence;
 mod history;
+mod world;
 
 use std::{fmt, path::PathBuf, process::ExitCode};
 
@@ -20,6 +22,7 @@ pub use self::{chain::Link, history::History};
 use self::{
     chain::Root,
     history::{because, conditions, deed, info},
+    world::World,
 };
 use crate::{
     Answer, Error, print,
@@ -53,6 +56,8 @@ pub struct Arguments {
 struct Explanation {
     tick: u64,
     seconds: f64,
+    /// What went wrong first in the world, if no tick was asked for.
+    world: Option<World>,
     /// The failure that began here, if one was asked for.
     failure: Option<Story>,
     /// How the run ended, where that is not the failure of a process.
@@ -104,6 +109,8 @@ struct Rung {
     command: String,
     /// The process was not stepped: dormant, or held.
     held: bool,
+    /// The row is an old one, which fired last in this tick: the process has had nothing to decide since.
+    old: Option<u64>,
     table: Option<String>,
     row: Option<u8>,
     /// What the row asks for: its steps and state variables.
@@ -130,9 +137,12 @@ pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
     })?;
     let failure = chronicle.failure.filter(|_| arguments.tick.is_none());
     let told = failure.and_then(|failure| tell(&log, &history, &failure));
-    let tick = arguments.tick.or(told.as_ref().map(|told| told.story.tick));
+    let failed_at = told.as_ref().map(|told| told.story.tick);
+    let world = world::first(&log, &history)
+        .filter(|world| arguments.tick.is_none() && failed_at.is_none_or(|tick| world.tick <= tick));
+    let tick = arguments.tick.or(failed_at).or(world.as_ref().map(|world| world.tick));
     let moment = find(&log, arguments, tick)?;
-    print(&explain(&log, &moment, told), arguments.answer.json)?;
+    print(&explain(&log, &history, &moment, world, told), arguments.answer.json)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -189,7 +199,13 @@ fn find(log: &Log, arguments: &Arguments, tick: Option<u64>) -> Result<Moment, E
     found.ok_or_else(|| Error::NoTick { path: path(), tick: tick.unwrap_or_default(), first, last: last.0 })
 }
 
-fn explain(log: &Log, moment: &Moment, told: Option<Told>) -> Explanation {
+fn explain(
+    log: &Log,
+    history: &History,
+    moment: &Moment,
+    world: Option<World>,
+    told: Option<Told>,
+) -> Explanation {
     let levels = Ladder::processes().iter().zip(ProcessId::ALL).map(|(process, id)| {
         let header = moment.after.header(*id);
         let command = failure::command(*id, &moment.external.hws, &moment.before);
@@ -199,6 +215,7 @@ fn explain(log: &Log, moment: &Moment, told: Option<Told>) -> Explanation {
             process: process.name.to_owned(),
             command,
             held: header.republished,
+            old: history.rests_since(*id, moment),
             table: row.map(|(table, _)| table.name.to_owned()),
             row: row.map(|(_, row)| row.number),
             conditions: row.map_or_else(Vec::new, |(_, row)| conditions(row)),
@@ -228,6 +245,7 @@ fn explain(log: &Log, moment: &Moment, told: Option<Told>) -> Explanation {
     Explanation {
         tick: moment.tick.0,
         seconds: moment.tick.0 as f64 * TICK_S,
+        world,
         failure,
         ended,
         before,
@@ -237,13 +255,25 @@ fn explain(log: &Log, moment: &Moment, told: Option<Told>) -> Explanation {
 
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(world) = &self.world {
+            writeln!(
+                f,
+                "First, at tick {} ({:.2} s): {}.",
+                world.tick,
+                world.tick as f64 * TICK_S,
+                world.text
+            )?;
+            links("The commands that led there:", &world.commands, f)?;
+            list("The data that the last of them used:", &world.data, f)?;
+            writeln!(f)?;
+        }
         match &self.failure {
             Some(story) => self.tell(story, f)?,
             None => {
                 if let Some(ended) = &self.ended {
                     writeln!(f, "The run ended: {ended}")?;
                 }
-                writeln!(f, "No failure of a control process is explained here.\n\nBefore it:")?;
+                writeln!(f, "No control process has reported a failure.\n\nBefore it:")?;
                 self.lines(f)?;
             }
         }
@@ -254,23 +284,11 @@ impl fmt::Display for Explanation {
 
 impl Explanation {
     fn tell(&self, story: &Story, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let links = |title: &str, links: &[Link], f: &mut fmt::Formatter<'_>| {
-            if links.is_empty() {
-                return Ok(());
-            }
-            writeln!(f, "\n{title}")?;
-            links.iter().try_for_each(|Link { tick, process, text }| {
-                writeln!(f, "  tick {tick:>6}  {process} {text}")
-            })
-        };
         writeln!(f, "Failure at tick {} ({:.2} s). {}.", self.tick, self.seconds, story.text)?;
         writeln!(f, "First cause: {}.", story.first_cause)?;
         links("The commands that led there:", &story.commands, f)?;
         links("From the failure to its cause, each because of the next:", &story.causes, f)?;
-        if !story.evidence.is_empty() {
-            writeln!(f, "\nWhat was sensed while it tried:")?;
-            story.evidence.iter().try_for_each(|line| writeln!(f, "  {line}"))?;
-        }
+        list("What was sensed while it tried:", &story.evidence, f)?;
         if !self.before.is_empty() {
             writeln!(f, "\nMeanwhile, in the cell and on the link:")?;
             self.lines(f)?;
@@ -285,12 +303,28 @@ impl Explanation {
     }
 }
 
+/// Links under a title; nothing without one.
+fn links(title: &str, links: &[Link], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let line = |Link { tick, process, text }: &Link| format!("tick {tick:>6}  {process} {text}");
+    list(title, &links.iter().map(line).collect::<Vec<_>>(), f)
+}
+
+/// Lines under a title; nothing without one.
+fn list(title: &str, lines: &[String], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    if lines.is_empty() {
+        return Ok(());
+    }
+    writeln!(f, "\n{title}")?;
+    lines.iter().try_for_each(|line| writeln!(f, "  {line}"))
+}
+
 impl fmt::Display for Rung {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let command = if self.command.is_empty() { "nothing" } else { &self.command };
         let held = if self.held { " (not stepped: dormant or held)" } else { "" };
         writeln!(f, "  {:<14} executes {command}{held}", self.process)?;
         let (Some(table), Some(row)) = (&self.table, self.row) else { return Ok(()) };
-        writeln!(f, "  {:<14} {table} row {row}: {}, {}", "", self.deed, because(&self.conditions))
+        let old = self.old.map_or_else(String::new, |tick| format!("no row since tick {tick}, when it was "));
+        writeln!(f, "  {:<14} {old}{table} row {row}: {}, {}", "", self.deed, because(&self.conditions))
     }
 }

@@ -1,6 +1,6 @@
 //! What has become of the world: compared with the undisturbed run, and watched for what must not happen.
 
-use plant::{CellEvent, t3::Stage};
+use plant::t3::Stage;
 use rcs_core::tick::Tick;
 
 use super::branch::Branch;
@@ -144,7 +144,7 @@ impl HarmMonitor {
             }
         }
         let commands = Commands::from(branch.memory());
-        for event in branch.events.iter().filter(|event| is_harm(event)) {
+        for event in branch.events.iter().filter(|event| event.is_harm()) {
             let kind = format!("{event} during {commands}");
             let commanded = commanded && !self.is_displaced();
             self.harms.push(Harm { tick, what: kind.clone(), kind, commanded, contact: None });
@@ -155,16 +155,4 @@ impl HarmMonitor {
     fn is_displaced(&self) -> bool {
         self.harms.iter().any(|harm| !harm.commanded)
     }
-}
-
-const fn is_harm(event: &CellEvent) -> bool {
-    matches!(
-        event,
-        CellEvent::Dropped { .. }
-            | CellEvent::ForcedOut { .. }
-            | CellEvent::GripperFell { .. }
-            | CellEvent::GripperTorn { .. }
-            | CellEvent::Fell { .. }
-            | CellEvent::Quarantined
-    )
 }

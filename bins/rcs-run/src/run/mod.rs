@@ -98,6 +98,8 @@ struct Run {
     check: ContactCheck,
     /// Where the parts are to be.
     placement: PlacementCheck,
+    /// The warning that the T3 controller showed last, and when.
+    warning: Option<(Tick, String)>,
     /// Events of the cell since the last tick, for the log of the next one.
     fresh: Vec<(Level, &'static str, String)>,
     /// What has happened, for the result.
@@ -152,6 +154,7 @@ pub fn run(arguments: &RunArguments) -> Result<ExitCode, Error> {
         progress: Progress::new(job.steps.len() + 1),
         pace: Pace::fast(arguments.overrun),
         placement: PlacementCheck::new(&description),
+        warning: None,
         check: ContactCheck::new(description.contact),
         fresh: Vec::new(),
         events: Events::default(),
@@ -464,7 +467,12 @@ impl Run {
         // The check decides which contacts are worth a line.
         let events = self.workstation.events(tick).into_iter();
         let events = events.filter(|event| !matches!(event, CellEvent::Contact(_)));
-        self.fresh = events.map(|event| (Level::Warning, source(&event), event.to_string())).collect();
+        let events: Vec<_> = events.collect();
+        let shown = |event: &CellEvent| matches!(event, CellEvent::Warning(_)).then(|| event.to_string());
+        if let Some(warning) = events.iter().find_map(shown) {
+            self.warning = Some((tick, warning));
+        }
+        self.fresh = events.iter().map(|event| (gravity(event), source(event), event.to_string())).collect();
         let lines = self.check.look(tick, self.workstation.cell.contacts(), commands);
         self.fresh.extend(lines.into_iter().map(|line| (Level::Error, "cell", line)));
         self.workstation.cell.watch_clearance(self.check.margin());
@@ -600,6 +608,15 @@ impl Run {
 fn acknowledged(state: &LadderState) -> Option<Plate> {
     let host = state.t3i.host;
     host.is_running().then(|| host.position())
+}
+
+/// How much a line of the log about an event matters: what went wrong in the world is an error.
+const fn gravity(event: &CellEvent) -> Level {
+    match event {
+        CellEvent::Warning(_) | CellEvent::ViseStuck => Level::Error,
+        event if event.is_harm() => Level::Error,
+        _ => Level::Warning,
+    }
 }
 
 /// Who a line of the log about an event comes from: what was planned is told apart from what came of it.

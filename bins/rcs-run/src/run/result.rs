@@ -498,6 +498,10 @@ impl RunResult {
         if !self.cell_faults.is_empty() {
             facts.push(("cell_faults", list(self.cell_faults.iter().map(ToString::to_string).collect())));
         }
+        if let Some(failure) = &self.failure {
+            facts.push(("failed_at", failure.tick.to_string()));
+            facts.extend(failure.line.iter().map(|line| ("line", line.clone())));
+        }
         if let Some(verdict) = &self.realtime {
             facts.push(("real_time", verdict.clone()));
         }

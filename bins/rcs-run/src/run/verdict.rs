@@ -72,6 +72,16 @@ impl Run {
         })
     }
 
+    /// A lost link with the warning of the T3 controller that it follows from.
+    fn warned(&self, failure: Failure) -> Failure {
+        match &self.warning {
+            Some((tick, warning)) if failure.stopped && *tick <= failure.tick => {
+                Failure { text: format!("{warning} at tick {tick}; {}", failure.text), ..failure }
+            }
+            _ => failure,
+        }
+    }
+
     /// The emergency that has stopped the robot, and what has become of the arm.
     fn stopped(&self, what: &str) -> Option<Failure> {
         let emergency = self.workstation.last_emergency()?;
@@ -102,7 +112,7 @@ impl Run {
         let trouble = self.robot.port().and_then(Port::trouble);
         let known = known.map(|known| match trouble {
             Some(trouble) if known.stopped => Failure { text: format!("{trouble}; {}", known.text), ..known },
-            _ => known,
+            _ => self.warned(known),
         });
         known.unwrap_or_else(|| {
             let tick = match failure {

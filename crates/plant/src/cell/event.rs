@@ -64,7 +64,7 @@ pub enum CellEvent {
         /// The part.
         part: String,
     },
-    /// The T3 controller shows a warning.
+    /// The T3 controller shows a warning: its code, and what it means.
     Warning(String),
     /// An arm without pressure has come to rest.
     Sagged(Droop),
@@ -90,6 +90,22 @@ pub enum CellEvent {
         /// In words.
         text: String,
     },
+}
+
+impl CellEvent {
+    /// Something was let go, lost or damaged.
+    #[must_use]
+    pub const fn is_harm(&self) -> bool {
+        matches!(
+            self,
+            Self::Dropped { .. }
+                | Self::ForcedOut { .. }
+                | Self::GripperFell { .. }
+                | Self::GripperTorn { .. }
+                | Self::Fell { .. }
+                | Self::Quarantined
+        )
+    }
 }
 
 impl fmt::Display for CellEvent {

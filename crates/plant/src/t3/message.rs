@@ -81,6 +81,26 @@ pub fn off_home(frame: &WireFrame) -> i32 {
     values(frame).iter().zip(values(&HOME)).map(|(a, b)| (a - b).abs()).max().unwrap_or_default()
 }
 
+/// What a warning means for who does not know the codes: `WD6 (joint 6 is at its limit)`.
+#[must_use]
+pub fn explained(warning: Warning) -> String {
+    let meaning = match warning {
+        Warning::None => "none",
+        Warning::BoardMissing => "its RS232 board is missing",
+        Warning::CtsLow => "the host's line CTS is off",
+        Warning::Interrupt => "the Interrupt button was pressed",
+        Warning::Translation => "a step in X, Y, Z is too long",
+        Warning::Orientation => "a step in D, E, R is too large",
+        Warning::Transmitter => "its transmitter has failed",
+        Warning::JointLimit => "joint 6 is at its limit",
+        Warning::ShoulderUp => "joint 2, the shoulder, is at its upper limit",
+        Warning::OtherJoint => "a joint is at its limit",
+        Warning::Wrist => "the wrist is in a singular position",
+        Warning::Terminated => "the DEPC function has ended and must be started again",
+    };
+    format!("{} ({meaning})", screen(warning).0)
+}
+
 /// Code and problem as the table of appendix A has them.
 fn screen(warning: Warning) -> (&'static str, &'static str) {
     match warning {
@@ -102,6 +122,14 @@ fn screen(warning: Warning) -> (&'static str, &'static str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_warning_is_explained_with_its_code() {
+        assert_eq!(explained(Warning::JointLimit), "WD6 (joint 6 is at its limit)");
+        assert_eq!(explained(Warning::ShoulderUp), "P05 (joint 2, the shoulder, is at its upper limit)");
+        let ended = "P-IG (the DEPC function has ended and must be started again)";
+        assert_eq!(explained(Warning::Terminated), ended);
+    }
 
     #[test]
     fn the_screen_reads_as_the_manual_has_it() {

@@ -37,7 +37,7 @@ use serde::{Deserialize, Serialize};
 
 pub use self::{
     key::{Cut, EStop, Key},
-    message::{HOME, HOME_TOLERANCE, Message, off_home as off_printed_home},
+    message::{HOME, HOME_TOLERANCE, Message, explained, off_home as off_printed_home},
     refusal::Refusal,
     stage::Stage,
 };

@@ -1,0 +1,100 @@
+//! What went wrong in the world: the first contact, lost part, or warning of the robot controller, or what ended the run where no
+//! process failed. From there the commands lead up to the workstation controller, each with the row that gave it, and the row that gave
+//! the last one used data: each is told with its file, block and line.
+
+use levels::ladder::ProcessId;
+use rcs_core::interface::{CommonMemory, pose_range};
+use record::{Log, proto::foxglove::Level, replay::generations};
+use serde::Serialize;
+use taskdata::{
+    files::{EndEffId, LocptId, MovtabId, PoseId},
+    load::{Store, source::At},
+};
+
+use super::{
+    chain::{self, Link, Root},
+    history::History,
+};
+use crate::story::moments;
+
+/// End effector id of the gripper whose hand is the process Grip.
+const PARTS_GRIPPER: u8 = 1;
+
+/// The first thing that went wrong in the world.
+#[derive(Debug, Serialize)]
+pub struct World {
+    /// The tick in which it happened.
+    pub tick: u64,
+    /// What.
+    pub text: String,
+    /// The commands that led there, from the workstation controller down.
+    pub commands: Vec<Link>,
+    /// The data that the last row used, with their places.
+    pub data: Vec<String>,
+}
+
+/// What went wrong first; `None` if nothing did.
+pub fn first(log: &Log, history: &History) -> Option<World> {
+    // The cell tells with the next tick what happened in one.
+    let grave = log.lines().find(|line| line.source == "cell" && line.level == Level::Error);
+    let (tick, text) = match grave {
+        Some(line) => (line.tick.0.saturating_sub(1), line.text),
+        None => {
+            let end = log.end.as_ref()?;
+            (end.get("failed_at")?.parse().ok()?, end.get("result")?.clone())
+        }
+    };
+    let (memory, generation) = moments(log)
+        .map(|(moment, _)| moment)
+        .take_while(|moment| moment.tick.0 <= tick)
+        .last()
+        .map(|moment| (moment.before, moment.external.generation))?;
+    let process = mover(&text, &memory);
+    let commands = chain::commands(history, Root { process, tick });
+    let store = generations(log).ok().and_then(|all| all.into_iter().nth(usize::try_from(generation).ok()?));
+    let data = store.map_or_else(Vec::new, |store| data(&store, process, &memory));
+    Some(World { tick, text, commands, data })
+}
+
+/// The lowest process whose command did it: the gripper for a part that is lost, T3I for a warning of the robot controller, Prim for
+/// all that moves.
+fn mover(text: &str, memory: &CommonMemory) -> ProcessId {
+    if text.starts_with("the T3 controller shows") {
+        return ProcessId::T3i;
+    }
+    let grips = text.contains("is lost from") && memory.emove.prim.end_effector_id == PARTS_GRIPPER;
+    if grips { ProcessId::Grip } else { ProcessId::Prim }
+}
+
+/// What the commands in the buffers name, with its file, block and line.
+fn data(store: &Store, process: ProcessId, memory: &CommonMemory) -> Vec<String> {
+    let (view, origins) = (store.view(), store.origins());
+    let mut told = Vec::new();
+    let mut tell = |what: String, origins: &[At], position: Option<usize>| {
+        if let Some(at) = position.and_then(|position| origins.get(position)) {
+            told.push(format!("{what}: {}", store.place(*at)));
+        }
+    };
+    let (order, motion) = (&memory.subtask.emove, &memory.emove.prim);
+    if process == ProcessId::Grip {
+        let sizes = EndEffId::from_option(order.object_parameters);
+        if let Some(grip) = sizes.of(view.end_effs) {
+            let what = format!("grip {} of {}, {} lb", grip.grip, order.object, grip.grasp_force);
+            tell(what, &origins.end_effs, sizes.index());
+        }
+        return told;
+    }
+    if motion.pose < pose_range::CHANGING {
+        let pose = PoseId::new(motion.pose);
+        let name = pose.of(view.poses).map_or_else(String::new, |pose| pose.name.to_string());
+        tell(format!("pose {name}"), &origins.poses, pose.index());
+    }
+    let movetable = MovtabId::from_option(motion.movetable);
+    let name = movetable.of(view.movetables).map_or_else(String::new, |table| table.name.to_string());
+    tell(format!("movetable {name}"), &origins.movetables, movetable.index());
+    let point = view.path_points.iter().position(|point| point.para.number() == motion.trajectory_parameters);
+    tell("point of the path".to_owned(), &origins.path_points, point);
+    let location = LocptId::from_option(order.location_record);
+    tell(format!("location {}", order.location), &origins.locpts, location.index());
+    told
+}
