@@ -131,5 +131,88 @@ fn a_run_that_no_process_failed() {
     });
     let (answer, text) = why(&outcome);
     assert!(answer["failure"].is_null(), "{text}");
-    assert!(text.starts_with("The run ended: HWSC: LINKBAR1_BH is to be machined"), "{text}");
+    assert!(text.starts_with("First, at tick "), "{text}");
+    let world = answer["world"]["text"].as_str().expect("something went wrong");
+    assert!(text.contains("The commands that led there:"), "{text}");
+    assert_eq!(answer["world"]["tick"].as_u64(), outcome.result["failure"]["tick"].as_u64(), "{world}");
+    assert!(text.contains("The run ended: HWSC: LINKBAR1_BH is to be machined"), "{text}");
+}
+
+#[test]
+fn a_contact_leads_to_the_line_of_the_data_that_the_robot_followed() {
+    let outcome = run("linkbar", 1, "why-contact", |scratch| {
+        scratch.data_with(
+            "poses.blk",
+            "   -4040    -1471     3398
+   -5450    -1984      800
+   -4424    -4803      800   -pose-   ...         UNIT-V1",
+            "   -4040    -1471     1098
+   -5450    -1984    -1500
+   -4424    -4803    -1500   -pose-   ...         UNIT-V1",
+        );
+    });
+    let (answer, text) = why(&outcome);
+    let world = &answer["world"];
+    assert!(world["text"].as_str().is_some_and(|said| said.contains(" runs into pot_")), "{text}");
+    assert_eq!(world["tick"], outcome.result["contacts"][0]["tick"], "{text}");
+    assert_eq!(processes(&world["commands"]), ["HWSC", "Task", "Subtask", "E-move"], "{text}");
+    assert!(text.starts_with("First, at tick "), "{text}");
+    assert!(text.contains("pose UNIT-V1: ") && text.contains("poses.blk: block "), "{text}");
+    assert!(outcome.last_words.contains("in `== MOVE LINKBAR1_BH +2 UNIT_1 4"), "{}", outcome.last_words);
+}
+
+#[test]
+fn a_process_that_rests_has_no_row_in_a_tick() {
+    let outcome = run("rests.job", 1, "why-rests", |scratch| {
+        let job = "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n** wait 50\n";
+        std::fs::write(scratch.file("rests.job"), job).expect("the job can be written");
+    });
+    let ended = outcome.result["ticks"].as_u64().expect("a run has ticks");
+    let at = |tick: u64| {
+        let mut ask = Command::new(rcs_log());
+        ask.args(["why", "--json", "--tick"]).arg(tick.to_string()).arg(&outcome.log);
+        let answer: Value = serde_json::from_slice(&ask.output().expect("rcs-log can be started").stdout)
+            .expect("one JSON object");
+        let old = |level: usize| answer["levels"][level]["old"].as_u64();
+        (old(0), old(1), old(2))
+    };
+    let (task, subtask, emove) = at(ended - 10);
+    assert!([task, subtask, emove].iter().all(|old| old.is_some_and(|tick| tick < ended - 50)), "{task:?}");
+    assert_eq!(at(ended - 100), (None, None, None), "the robot moves");
+}
+
+/// A pose before all others, which gives each of them another number.
+const ADDED_POSE: &str = "       0    -5022      736
+       0    -7145    -1383
+    3000    -7145    -1383   -pose-   ...         NEW-POS
+
+       0    -5022      636
+";
+
+#[test]
+fn what_is_added_to_the_data_changes_no_run_that_does_not_use_it() {
+    let outcome = run("linkbar", 1, "why-added", |_| {});
+    let scratch = Scratch::new("added");
+    scratch.data_with("poses.blk", "       0    -5022      636\n", ADDED_POSE);
+    let path = scratch.file("data/objects/linkbar.blk");
+    let objects = std::fs::read_to_string(&path).expect("the objects can be read");
+    let own = "-obj-  LINKBAR1_BH      2     0300   0060   30     0350\n";
+    assert!(objects.contains(own));
+    let added = format!("-obj-  LINKBAR2_BH      2     0300   0060   30     0350\n{own}");
+    std::fs::write(&path, objects.replacen(own, &added, 1)).expect("the objects can be written");
+    let replay = |data: &std::path::Path| {
+        let output = Command::new(rcs_log()).args(["replay", "--data"]).arg(data).arg(&outcome.log).output();
+        let output = output.expect("rcs-log can be started");
+        (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let (status, said) = replay(&scratch.file("data"));
+    assert_eq!(status, Some(0), "{said}");
+    let other = Scratch::new("moved");
+    other.data_with(
+        "movetables.blk",
+        "    1    t      255     -525   -525",
+        "    1    t      255     -525   -500",
+    );
+    let (status, said) = replay(&other.file("data"));
+    assert_eq!(status, Some(1), "{said}");
 }

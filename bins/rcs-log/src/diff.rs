@@ -1,7 +1,10 @@
-//! `rcs-log diff`: where two runs differ: the first tick, and then by buffer and field.
+//! `rcs-log diff`: where two runs differ: first which rows, motions and times changed ([`changes`]), then the first tick, and then by
+//! buffer and field. Runs with different task data are compared without record numbers.
 //!
 //! Ticks are aligned by their number, or by command: then the ticks of a command are counted from the one in which Task
 //! took it, so that a command which took longer in one run does not make all that follows it different.
+
+mod changes;
 
 use std::{
     collections::{BTreeMap, HashMap},
@@ -16,12 +19,16 @@ use rcs_core::{
     interface::{CommonMemory, ExternalInputs},
     plain::Writer,
 };
-use record::layout::{self, Leaf};
+use record::{
+    Attachment, Log,
+    layout::{self, Leaf},
+};
 use serde::Serialize;
 
+use self::changes::{Changes, Tally};
 use crate::{
     Answer, DIFFERENT, Error, print,
-    story::{Moment, open, walk},
+    story::{Chronicle, Moment, open, walk},
 };
 
 /// Fields that are listed.
@@ -64,6 +71,8 @@ struct Differences {
     only_b: u64,
     /// Compared ticks in which something differs.
     different: u64,
+    /// Which rows, motions and times changed.
+    changes: Changes,
     first: Option<First>,
     /// Fields that differ, in the order in which they begin to.
     fields: Vec<FieldStory>,
@@ -98,6 +107,8 @@ pub fn diff(arguments: &Arguments) -> Result<ExitCode, Error> {
 /// What there is of a tick: inputs, output buffers, and the digest of the simulated cell.
 struct Images {
     tick: u64,
+    /// What the changes are found in.
+    tally: Tally,
     cell: Option<u64>,
     external: Box<[u8]>,
     memory: Box<[u8]>,
@@ -109,7 +120,7 @@ impl Images {
         moment.external.encode(&mut Writer::new(&mut external));
         let mut memory = vec![0; CommonMemory::SIZE].into_boxed_slice();
         moment.after.encode(&mut Writer::new(&mut memory));
-        Self { tick: moment.tick.0, cell: moment.world, external, memory }
+        Self { tick: moment.tick.0, tally: Tally::of(moment), cell: moment.world, external, memory }
     }
 }
 
@@ -142,24 +153,36 @@ fn compare(a: &Path, b: &Path, align: Align) -> Result<Differences, Error> {
     let (log_a, log_b) = (open(a)?, open(b)?);
     let mut of_b = HashMap::new();
     let mut keys = Keys::new(align);
+    let mut commands = [Chronicle::default(), Chronicle::default()];
+    let [of_log_a, of_log_b] = &mut commands;
     walk(&log_b, b, |moment| {
+        of_log_b.note(moment);
         of_b.insert(keys.of(moment), Images::of(moment));
         true
     })?;
-    let mut found = Comparison::new();
+    let mut found = Comparison::new(task_data(&log_a) != task_data(&log_b));
     let mut keys = Keys::new(align);
     walk(&log_a, a, |moment| {
+        of_log_a.note(moment);
         let other = of_b.remove(&keys.of(moment));
         found.note(&Images::of(moment), other.as_ref());
         true
     })?;
+    found.changes.compare_times(&commands);
     Ok(found.differences(of_b.len()))
+}
+
+/// The task data of a log: names and texts.
+fn task_data(log: &Log) -> Vec<(&str, &[u8])> {
+    let is_meant = |attachment: &&Attachment| attachment.name.starts_with(Attachment::TASK_DATA);
+    log.attachments.iter().filter(is_meant).map(|one| (one.name.as_str(), &one.data[..])).collect()
 }
 
 struct Comparison {
     external: Vec<Leaf>,
     memory: Vec<Leaf>,
     fields: BTreeMap<String, FieldStory>,
+    changes: Changes,
     first: Option<First>,
     compared: u64,
     only_a: u64,
@@ -167,11 +190,15 @@ struct Comparison {
 }
 
 impl Comparison {
-    fn new() -> Self {
+    /// Without record numbers if the task data differ.
+    fn new(by_name: bool) -> Self {
+        let mut memory = layout::leaves(CommonMemory::STRUCT);
+        memory.retain(|leaf| !by_name || !leaf.is_record_number());
         Self {
             external: layout::leaves(ExternalInputs::STRUCT),
-            memory: layout::leaves(CommonMemory::STRUCT),
+            memory,
             fields: BTreeMap::new(),
+            changes: Changes::default(),
             first: None,
             compared: 0,
             only_a: 0,
@@ -185,6 +212,7 @@ impl Comparison {
             return;
         };
         self.compared += 1;
+        self.changes.note([a.tick, b.tick], &a.tally, &b.tally);
         // Stamps differ wherever ticks are aligned by command.
         let matters = |leaf: &&Leaf| a.tick == b.tick || !leaf.path.ends_with("stamp");
         let pairs = [
@@ -232,6 +260,7 @@ impl Comparison {
             only_a: self.only_a,
             only_b: only_b as u64,
             different: self.different,
+            changes: self.changes,
             first: self.first,
             fields,
             more_fields,
@@ -246,6 +275,7 @@ impl fmt::Display for Differences {
             f,
             "{compared} ticks compared, {different} different; {only_a} only in the first log, {only_b} only in the second"
         )?;
+        write!(f, "{}", self.changes)?;
         let Some(First { tick_a, tick_b, field, a, b }) = &self.first else { return Ok(()) };
         let ticks = if tick_a == tick_b { tick_a.to_string() } else { format!("{tick_a} and {tick_b}") };
         writeln!(f, "first      tick {ticks}, {field}: {a} and {b}")?;

@@ -31,11 +31,26 @@ impl Scratch {
 
     /// A run without task data, in which TRANSFER fails; `speed` is the velocity knob.
     fn log(&self, name: &str, speed: u16) -> PathBuf {
-        self.log_of_cell(name, speed, |_| 0)
+        self.written(name, speed, COMMANDED, |_| 0)
+    }
+
+    /// The same with the command in another tick.
+    fn log_commanded_at(&self, name: &str, commanded: u64) -> PathBuf {
+        self.written(name, 1000, commanded, |_| 0)
     }
 
     /// The same with a cell that has the given digests.
     fn log_of_cell(&self, name: &str, speed: u16, digest_of_cell: impl Fn(Tick) -> u64) -> PathBuf {
+        self.written(name, speed, COMMANDED, digest_of_cell)
+    }
+
+    fn written(
+        &self,
+        name: &str,
+        speed: u16,
+        commanded: u64,
+        digest_of_cell: impl Fn(Tick) -> u64,
+    ) -> PathBuf {
         let path = self.0.path().join(name);
         let text = |key: &str, value: &str| (key.to_owned(), value.to_owned());
         let run = [text("program", "test"), text("job", "nothing"), text("seed", "7")].into();
@@ -47,7 +62,7 @@ impl Scratch {
         for tick in (1..=TICKS).map(Tick) {
             let mut external = ExternalInputs::default();
             external.devices.joystick.velocity = speed;
-            external.hws.number = u32::from(tick.0 >= COMMANDED);
+            external.hws.number = u32::from(tick.0 >= commanded);
             external.hws.command = Name16::new("TRANSFER").expect("a word");
             external.hws.object = Name16::new("NOBODY").expect("a word");
             let before = memory;
@@ -153,6 +168,17 @@ fn diff_names_the_first_field_and_counts_the_others() {
             "{text}"
         );
     }
+}
+
+#[test]
+fn diff_begins_with_the_rows_motions_and_times_that_changed() {
+    let scratch = Scratch::new();
+    let (one, two) = (scratch.log("one.mcap", 1000), scratch.log_commanded_at("two.mcap", 70));
+    let text = stdout(&rcs_log(&["diff"], &[&one, &two]));
+    let row = "row        Task, 20 ticks, first in tick 50:\n";
+    let time = "time       TRANSFER NOBODY: error after 0 ticks (0.00 s); error after 0 ticks";
+    assert!(text.contains(row) && !text.contains(time), "{text}");
+    assert!(text.find(row) < text.find("first      tick 50"), "{text}");
 }
 
 #[test]

@@ -61,12 +61,45 @@ impl Leaf {
         if self.is_in(image) { value_text(self.schema, self.bytes(image)) } else { NONE.to_owned() }
     }
 
+    /// The field holds a record number of the task data. A record has another number when something is added before it, and means the
+    /// same: runs with different task data are compared without these fields, by what is named and by what comes of it.
+    #[must_use]
+    pub fn is_record_number(&self) -> bool {
+        let number = match self.schema {
+            Schema::Option(of) => **of == Schema::U32,
+            schema => *schema == Schema::U32,
+        };
+        let name = self.path.rsplit('.').next().unwrap_or_default();
+        number && RECORD_NUMBERS.contains(&name)
+    }
+
     /// True if the field has not the same value in two images.
     #[must_use]
     pub fn differs(&self, was: &[u8], is: &[u8]) -> bool {
         self.bytes(was) != self.bytes(is) && (self.is_in(was) || self.is_in(is))
     }
 }
+
+/// Names of the fields that hold record numbers.
+const RECORD_NUMBERS: [&str; 17] = [
+    "approach",
+    "array",
+    "between",
+    "depart",
+    "location_array",
+    "location_record",
+    "locpt",
+    "movetable",
+    "object_grips",
+    "object_parameters",
+    "object_vision",
+    "parameters",
+    "pose",
+    "record",
+    "reference_pose",
+    "stop",
+    "trajectory_parameters",
+];
 
 /// What people read where a value is absent.
 const NONE: &str = "none";
@@ -433,6 +466,17 @@ mod tests {
             from: Some(place(-2, "HOME")),
             to: Goal::At(place(3, "UNIT")),
         }
+    }
+
+    #[test]
+    fn each_name_of_a_record_number_is_that_of_a_field() {
+        let all: Vec<Leaf> =
+            [CommonMemory::STRUCT, LadderState::STRUCT].into_iter().flat_map(leaves).collect();
+        for name in RECORD_NUMBERS {
+            let is_meant = |leaf: &&Leaf| leaf.is_record_number() && leaf.path.ends_with(name);
+            assert!(all.iter().any(|leaf| is_meant(&leaf)), "{name}");
+        }
+        assert!(all.iter().any(|leaf| leaf.path == "emove.prim.number" && !leaf.is_record_number()));
     }
 
     #[test]

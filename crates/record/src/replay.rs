@@ -6,7 +6,7 @@
 //!
 //! Where ticks are missing, nothing can be computed; the replay goes on from the states recorded with the
 //! first tick after the gap. In the same way a replay can begin in the middle: states are recorded once a
-//! second. Other task data than those of the log answer the question what they would have changed.
+//! second. Other task data than those of the log answer the question what they would have changed: then record numbers are not compared.
 
 use std::{
     collections::BTreeMap,
@@ -69,9 +69,9 @@ pub struct Options {
 }
 
 impl Options {
-    /// The digest at the end of the run is that of the replay only if the replay has all ticks in it.
-    const fn is_whole(&self) -> bool {
-        self.from.is_none() && self.until.is_none()
+    /// The digest at the end of the run is that of the replay only if the replay has all ticks in it, and the records their numbers.
+    const fn has_digest(&self) -> bool {
+        self.from.is_none() && self.until.is_none() && self.data.is_none()
     }
 }
 
@@ -135,12 +135,12 @@ pub fn replay_with(path: &Path, options: &Options) -> Result<ReplayReport, Repla
         Some(data) => grown(data.clone(), &log.attachments)?,
         None => generations(&log)?,
     };
-    let mut replayer = Replayer::new();
+    let mut replayer = Replayer::new(options.data.is_some());
     let first_difference = replayer.run(&log, options, &generations)?;
     if replayer.ticks == 0 {
         return Err(ReplayError::Empty);
     }
-    let digest = log.end.as_ref().filter(|_| options.is_whole()).and_then(|end| end.get("digest"));
+    let digest = log.end.as_ref().filter(|_| options.has_digest()).and_then(|end| end.get("digest"));
     Ok(ReplayReport {
         ticks: replayer.ticks,
         skipped: replayer.skipped,
@@ -223,15 +223,21 @@ struct Replayer {
 }
 
 impl Replayer {
-    fn new() -> Self {
+    /// With other task data than those of the log records are compared by what is named, not by their numbers.
+    fn new(by_name: bool) -> Self {
+        let leaves = |record| {
+            let mut leaves = layout::leaves(record);
+            leaves.retain(|leaf| !by_name || !leaf.is_record_number());
+            leaves
+        };
         Self {
             ladder: Ladder::default(),
             before: Some(CommonMemory::default()),
             last: Tick::BEFORE_START,
             image: vec![0; CommonMemory::SIZE],
             state: vec![0; LadderState::SIZE],
-            memory_leaves: layout::leaves(CommonMemory::STRUCT),
-            state_leaves: layout::leaves(LadderState::STRUCT),
+            memory_leaves: leaves(CommonMemory::STRUCT),
+            state_leaves: leaves(LadderState::STRUCT),
             headers: headers(),
             digest: Digest::new(),
             ticks: 0,

@@ -3,7 +3,7 @@
 use executive::failure;
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
-    interface::{self, Decided, Header},
+    interface::{Decided, Header, Report},
     name::Name16,
     table::{Condition, Row, Table},
 };
@@ -93,8 +93,8 @@ impl History {
     /// repeats the last row while its process rests.
     pub fn rests_since(&self, process: ProcessId, moment: &Moment) -> Option<u64> {
         let tick = moment.tick.0;
-        let executes = |report: &Report| report.report == interface::Report::Executing.text();
-        let arrives = |command: &Command| command.tick + u64::from(process != ProcessId::Task) == tick;
+        let executes = |report: &Reported| report.report == Report::Executing.text();
+        let arrives = |command: &Commanded| command.tick + u64::from(process != ProcessId::Task) == tick;
         let is_held = moment.after.header(process).republished;
         // T3I decides in every tick what goes out.
         let fires = process == ProcessId::T3i
