@@ -232,7 +232,7 @@ fn data() -> &'static Path {
 }
 
 /// The first error of a report.
-fn first(report: Box<Diagnostics>) -> String {
+fn first(report: &Diagnostics) -> String {
     report.errors().next().map_or(String::new(), |error| format!("{}: {}", error.place(), error.message()))
 }
 
@@ -243,9 +243,9 @@ fn walked(variant: &Variant, sources: &[Source], room: &Room) -> Result<WalkedJo
     let source = sources.iter_mut().find(|source| source.name == file).unwrap();
     assert_eq!(source.text.matches(from).count(), 1, "{name}: what is to be replaced");
     source.text = source.text.replace(from, to).into();
-    let (store, _) = Store::from_sources(sources).map_err(first)?;
+    let (store, _) = Store::from_sources(sources).map_err(|report| first(&report))?;
     let path = data().join("jobs").join(format!("{job}.job"));
-    let (job, _) = Job::load(&path, &store).map_err(first)?;
+    let (job, _) = Job::load(&path, &store).map_err(|report| first(&report))?;
     Ok(walk_job(&job, &store, room))
 }
 
