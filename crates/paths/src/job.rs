@@ -267,7 +267,8 @@ fn act(state: &mut State<'_>, action: &Workstation) -> bool {
         | Workstation::Press(_)
         | Workstation::Release(_)
         | Workstation::Panel(_)
-        | Workstation::Load { .. } => return false,
+        | Workstation::Load { .. }
+        | Workstation::HandOver => return false,
     }
     true
 }
