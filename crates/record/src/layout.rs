@@ -81,14 +81,13 @@ impl Leaf {
 }
 
 /// Names of the fields that hold record numbers.
-const RECORD_NUMBERS: [&str; 17] = [
+const RECORD_NUMBERS: [&str; 16] = [
     "approach",
     "array",
     "between",
     "depart",
     "location_array",
     "location_record",
-    "locpt",
     "movetable",
     "object_grips",
     "object_parameters",
