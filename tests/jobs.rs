@@ -99,7 +99,7 @@ fn a_part_that_slips_out_of_the_fingers_is_lost() {
         scratch.data_with(
             "cell.toml",
             "friction = 0.30                  # pads on steel",
-            "friction = 0.026",
+            "friction = 0.025",
         );
     });
 }
