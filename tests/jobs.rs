@@ -108,9 +108,11 @@ fn a_part_that_slips_out_of_the_fingers_is_lost() {
 fn a_pedestal_that_cannot_turn_so_far_is_reported() {
     assert_fails_for("clevis.job", "pedestal", Reason::TableLimit, |scratch| {
         let pedestal = "BLOCK# 1 OFFSET 22000\n\
-            :S \"p-object\" <= LCLEVIS_IH ped-appr <= 500 ped-grasp-size <= 250\n\
-            ped-force <= 50 ped-release-size <= 450 ped-table-pos <= 100\n\
-            ped-flip-angle <= 1835 :R >FILE PED-PARA\n";
+            :S \"p-object\" <= LCLEVIS_IH\n\
+            ped-appr <= 500 ped-grasp-size <= 250\n\
+            ped-force <= 50 ped-release-size <= 450\n\
+            ped-table-pos <= 100 ped-flip-angle <= 1835 :R\n\
+            >FILE PED-PARA\n";
         fs::write(scratch.file("pedestal.blk"), pedestal).expect("blocks can be written");
         scratch.job_with("clevis.job", "** tray UNIT_1", "** load pedestal.blk\n** tray UNIT_1");
     });

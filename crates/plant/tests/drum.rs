@@ -171,12 +171,11 @@ fn a_tool_that_only_the_detents_keep_stays_too() {
 }
 
 #[test]
-fn closed_drum_fingers_stand_in_the_way() {
+fn an_empty_drum_has_nothing_to_grip() {
     let mut rig = removed();
-    rig.cell.workstation(&WorkstationAction::DrumGrip).unwrap();
-    let (place, forces) = until(&mut rig, (-2.0, 0.0), (0.0, 0.0), 0.2, |[x, ..]| x < -60.0);
-    assert!(forces[0] < -60.0 && (-1.40..-1.1).contains(&place.0), "{place:?} {forces:?}");
-    assert!(rig.part().held, "{:?}", rig.log);
+    let error = rig.cell.workstation(&WorkstationAction::DrumGrip).unwrap_err();
+    assert!(matches!(error, WorkstationError::NothingToGrip), "{error}");
+    assert!(!rig.cell.drum_closed());
 }
 
 #[test]
