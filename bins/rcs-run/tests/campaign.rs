@@ -76,7 +76,7 @@ fn a_sample_of_the_campaign_goes_on_and_hurts_nothing() {
     let count = |row: &Value, name: &str| row[name].as_u64().expect("counts are numbers");
     let (mut branches, mut done) = (0, 0);
     for (number, job) in ["linkbar", "clevis", "turned-part", "tool-change"].into_iter().enumerate() {
-        let ticks = (1_300 + 170 * number).to_string();
+        let ticks = (2_600 + 170 * number).to_string();
         let kinds = format!("none,{REQUIRED},estop");
         let sample = json(&["campaign", job, "--ticks", &ticks, "--interrupt", &kinds, "--json"]);
         for branch in sample["branches"].as_array().expect("branches are listed") {

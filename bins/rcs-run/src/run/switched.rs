@@ -119,7 +119,7 @@ impl Switched {
     /// The line `** workstation` has come.
     fn hand_over(&mut self, around: &Around<'_>, gate: &mut Gate, notes: &mut Vec<Note>) -> Progress {
         if let Some(obstacle) = obstacle(around, gate.command()) {
-            return self.refuse(obstacle);
+            return self.refuse(around.tick, obstacle);
         }
         notes.push((Level::Info, "HWSC", "the workstation controller commands from here on".to_owned()));
         gate.initialize();
@@ -160,9 +160,9 @@ impl Switched {
                 Progress::Running
             } else {
                 let wait = self.wait;
-                self.refuse(format!(
-                    "no workstation controller has connected within {wait} s; --wait gives it more"
-                ))
+                let why =
+                    format!("no workstation controller has connected within {wait} s; --wait gives it more");
+                self.refuse(around.tick, why)
             };
         }
         if self.outside.is_here() {
@@ -177,8 +177,8 @@ impl Switched {
         self.job.take_back(around.tick, gate, self.outside.take_steps())
     }
 
-    fn refuse(&mut self, why: String) -> Progress {
-        self.job.hwsc.refuse(why);
+    fn refuse(&mut self, tick: Tick, why: String) -> Progress {
+        self.job.hwsc.refuse(tick, why);
         self.job.hwsc.progress().clone()
     }
 }

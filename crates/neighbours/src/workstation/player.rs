@@ -308,9 +308,7 @@ impl Hwsc {
         workstation: &impl Workstation,
     ) -> Option<Result<(), JobFailure>> {
         let ticks = tick.since(began);
-        if let Some(step) = self.begun_steps.last_mut() {
-            step.ticks = ticks;
-        }
+        self.took(tick);
         if let Some(fault) = workstation.fault() {
             return Some(Err(JobFailure::Workstation(fault)));
         }
@@ -408,9 +406,8 @@ impl Hwsc {
     /// The workstation controller has gone: the job sends PAUSE, and goes on with its next line. `commands` are those that were sent
     /// meanwhile, `last` is the number of the last one.
     pub fn take_back(&mut self, tick: Tick, last: u32, commands: Vec<BegunStep>) {
-        if let (Some(step), Some(began)) = (self.begun_steps.last_mut(), self.began) {
-            (step.outcome, step.ticks) = (Outcome::Finished, tick.since(began));
-        }
+        self.took(tick);
+        self.finish(Outcome::Finished);
         self.begun_steps.extend(commands);
         self.current += 1;
         self.commander.number = last;
@@ -418,8 +415,16 @@ impl Hwsc {
     }
 
     /// The workstation controller cannot take over, and the job ends.
-    pub fn refuse(&mut self, why: String) {
+    pub fn refuse(&mut self, tick: Tick, why: String) {
+        self.took(tick);
         self.fail(JobFailure::Workstation(why));
+    }
+
+    /// The step that is going on has taken its time.
+    fn took(&mut self, tick: Tick) {
+        if let (Some(step), Some(began)) = (self.begun_steps.last_mut(), self.began) {
+            step.ticks = tick.since(began);
+        }
     }
 
     /// Send a PAUSE before the current step.
