@@ -25,13 +25,15 @@ fn job(name: &str, text: &str) -> Outcome {
 
 #[test]
 fn a_part_in_another_sector_than_the_command_said_has_not_arrived() {
-    // The sectors of the tray are taught 5.2 in beside their places.
-    let outcome = run("linkbar", 1, "finished-sector", |scratch| {
-        scratch.data_with(
-            "movetables.blk",
-            "    1    t      255     -525   -525",
-            "    1    t      255     -525   -1045",
-        );
+    // While the robot runs, the sectors of the tray are taught anew, 5.2 in beside their places.
+    let taught = fs::read_to_string(whole_system_tests::root().join("data/movetables.blk"))
+        .expect("the movetables can be read");
+    let block =
+        taught.split("BLOCK# ").find(|block| block.starts_with("431 ")).expect("the block of the sectors");
+    let beside = format!("BLOCK# {}", block.replace("   -525   -525", "   -525  -1045"));
+    let outcome = run("linkbar.job", 1, "finished-sector", |scratch| {
+        fs::write(scratch.file("sectors.blk"), beside).expect("blocks can be written");
+        scratch.job_with("linkbar.job", PUT_BACK, &format!("** load sectors.blk\n{PUT_BACK}"));
     });
     assert_fails(
         &outcome,
@@ -48,8 +50,9 @@ fn a_part_in_another_sector_than_the_command_said_has_not_arrived() {
 
 #[test]
 fn a_part_that_slid_in_the_fingers_lies_beside_its_place() {
+    // Two pounds hold the part, and give way where it rubs.
     let outcome = run("linkbar", 1, "finished-force", |scratch| {
-        let weak = "-obj-  LINKBAR1         2     0300   0060   0 ";
+        let weak = "-obj-  LINKBAR1         2     0300   0060   2 ";
         scratch.data_with("objects/linkbar.blk", "-obj-  LINKBAR1         2     0300   0060   30", weak);
     });
     assert_fails(&outcome, &[PUT_BACK, "LINKBAR1 at UNIT_1 sector 1, 0.8", "within 0.25 in"]);
@@ -66,9 +69,9 @@ fn what_is_near_enough_is_said_in_the_cell_description() {
 
 #[test]
 fn a_part_that_lies_on_the_floor_is_named_with_the_tick_and_line_in_which_it_fell() {
-    // The jaws push it out of fingers that close without force.
+    // The jaws push it out of fingers that close with little force.
     let outcome = run("lost.job", 1, "finished-floor", |scratch| {
-        let weak = "-obj-  LINKBAR1_BH      2     0300   0060   0 ";
+        let weak = "-obj-  LINKBAR1_BH      2     0300   0060   2 ";
         scratch.data_with("objects/linkbar.blk", "-obj-  LINKBAR1_BH      2     0300   0060   30", weak);
         let job = "** tray UNIT_1 4 LINKBAR1_BH\n\
                    ** vise partial PFIXTURE\n\

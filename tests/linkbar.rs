@@ -97,7 +97,7 @@ fn a_killed_run_leaves_a_log_that_replays() {
     let mut program = start(&scratch, "linkbar", SEED);
     let log = scratch.file("run.mcap");
     // Some seconds of the run are in the file, and it is not over.
-    while fs::metadata(&log).map_or(0, |file| file.len()) < 300_000 {
+    while fs::metadata(&log).map_or(0, |file| file.len()) < 1_000_000 {
         assert!(program.try_wait().unwrap().is_none(), "the run ended before it was killed");
         thread::sleep(Duration::from_millis(5));
     }

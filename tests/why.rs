@@ -157,7 +157,7 @@ fn a_contact_leads_to_the_line_of_the_data_that_the_robot_followed() {
     assert_eq!(world["tick"], outcome.result["contacts"][0]["tick"], "{text}");
     assert_eq!(processes(&world["commands"]), ["HWSC", "Task", "Subtask", "E-move"], "{text}");
     assert!(text.starts_with("First, at tick "), "{text}");
-    assert!(text.contains("pose UNIT-V1: ") && text.contains("poses.blk: block "), "{text}");
+    assert!(text.contains("pose UNIT-V1: poses.blk, block "), "{text}");
     assert!(outcome.last_words.contains("in `== MOVE LINKBAR1_BH +2 UNIT_1 4"), "{}", outcome.last_words);
 }
 
@@ -177,7 +177,7 @@ fn a_process_that_rests_has_no_row_in_a_tick() {
         (old(0), old(1), old(2))
     };
     let (task, subtask, emove) = at(ended - 10);
-    assert!([task, subtask, emove].iter().all(|old| old.is_some_and(|tick| tick < ended - 50)), "{task:?}");
+    assert!([task, subtask, emove].iter().all(|old| old.is_some_and(|tick| tick < ended - 40)), "{task:?}");
     assert_eq!(at(ended - 100), (None, None, None), "the robot moves");
 }
 

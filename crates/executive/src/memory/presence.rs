@@ -12,6 +12,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use rustix::process::geteuid;
+
 use super::{
     error::SharedMemoryError,
     place::{LOCK_LIMIT, SHARED_MEMORY, objects, own_file},
@@ -71,10 +73,13 @@ pub(super) fn is_alive(prefix: &str) -> bool {
     objects(&format!("{prefix}{MARK}")).any(|path| locked(&path))
 }
 
-/// Prefixes of all runs whose lock files lie in shared memory, of whatever directory of runs.
+/// Prefixes of all runs of this user whose lock files lie in shared memory, of whatever directory of runs.
 pub(super) fn prefixes() -> Vec<String> {
+    let own =
+        |path: &PathBuf| fs::symlink_metadata(path).is_ok_and(|found| found.uid() == geteuid().as_raw());
     let name = |path: PathBuf| path.file_name()?.to_str().map(str::to_owned);
     let mut found: Vec<String> = objects("rcs-")
+        .filter(own)
         .filter_map(name)
         .filter_map(|name| name.split_once(MARK).map(|(prefix, _)| prefix.to_owned()))
         .collect();
