@@ -254,10 +254,18 @@ impl<'n, 'a> Reader<'n, 'a> {
             Some(DeValue::Float(number)) => number.as_str().parse().ok(),
             _ => None,
         };
-        number.filter(|number: &f64| number.is_finite()).unwrap_or_else(|| {
+        let Some(number) = number.filter(|number: &f64| number.is_finite()) else {
             self.unfit("a number", &[]);
-            1.0
-        })
+            return 1.0;
+        };
+        if number == 0.0 || (SMALLEST..=LARGEST).contains(&number.abs()) {
+            return number;
+        }
+        self.unfit(
+            format_args!("0, or a number from {SMALLEST} to {LARGEST} or from -{LARGEST} to -{SMALLEST}"),
+            &[],
+        );
+        1.0
     }
 
     fn text(&self) -> &'a str {
@@ -320,6 +328,10 @@ impl<'n, 'a> Reader<'n, 'a> {
     }
 }
 
+/// Largest magnitude of a number: ten times the largest that a cell has. Beyond it geometry and solver overflow.
+const LARGEST: f64 = 1e5;
+/// Smallest magnitude of a number that is not 0.
+const SMALLEST: f64 = 1e-6;
 /// The text of a stand-in.
 const STAND_IN: &str = "?";
 

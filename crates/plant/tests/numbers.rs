@@ -1,0 +1,73 @@
+//! Every number of a cell description: whatever it is set to, the cell is refused in words or runs.
+
+use std::{
+    fs,
+    ops::Range,
+    panic::{AssertUnwindSafe, catch_unwind},
+};
+
+use plant::{Cell, CellDescription};
+use rcs_core::interface::device::DeviceOutputs;
+
+/// Where the numbers stand in a description: behind an equals sign, or in an array.
+fn numbers(text: &str) -> Vec<Range<usize>> {
+    let (mut found, mut begin, mut quoted, mut remark) = (Vec::new(), None, false, false);
+    for (at, character) in text.char_indices() {
+        match character {
+            '\n' => remark = false,
+            '"' if !remark => quoted = !quoted,
+            '#' if !quoted => remark = true,
+            _ => {}
+        }
+        let part = !quoted && !remark && (character.is_ascii_digit() || "+-.".contains(character));
+        match (part, begin) {
+            // A digit in a name is none.
+            (true, None) if text[..at].ends_with([' ', '[', '=', ',', '\n']) => begin = Some(at),
+            (false, Some(start)) => {
+                let is_value = [' ', ',', ']', '\n', '}'].contains(&character);
+                found.extend(is_value.then_some(start..at));
+                begin = None;
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Ten ticks in a cell, if it can be built.
+fn runs(text: &str) -> Result<(), String> {
+    let description = CellDescription::from_toml(text).map_err(|error| error.to_string())?;
+    let mut cell = Cell::new(&description, 1).map_err(|error| error.to_string())?;
+    for _ in 0..10 {
+        cell.step(&DeviceOutputs::default());
+    }
+    Ok(())
+}
+
+#[test]
+fn every_number_is_refused_in_words_or_runs() {
+    let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/cell.toml")).unwrap();
+    let numbers = numbers(&text);
+    assert!(numbers.len() > 200, "{} numbers", numbers.len());
+    assert_eq!(runs(&text), Ok(()));
+    let mut panicked = Vec::new();
+    for place in &numbers {
+        for value in ["1e308", "-1e308", "nan", "inf", "-inf", "0", "0.0", "1e-300", "1e5", "-1e5"] {
+            let changed = format!("{}{value}{}", &text[..place.start], &text[place.end..]);
+            match catch_unwind(AssertUnwindSafe(|| runs(&changed))) {
+                Ok(Ok(())) => {
+                    assert!(
+                        !["1e308", "-1e308", "nan", "inf", "-inf"].contains(&value),
+                        "{value} at {place:?}"
+                    );
+                }
+                Ok(Err(why)) => assert!(!why.is_empty()),
+                Err(_) => {
+                    let line = text[..place.start].lines().count();
+                    panicked.push(format!("line {line}: {} = {value}", &text[place.clone()]));
+                }
+            }
+        }
+    }
+    assert!(panicked.is_empty(), "{panicked:#?}");
+}
