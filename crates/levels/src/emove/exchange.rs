@@ -23,11 +23,12 @@ use taskdata::files::{PoseId, TaskData};
 use super::{
     fingers::gripper_on,
     gripper::Gripper,
+    plan::coupling,
     relative::Relative,
     robot_place::{gone_to, present_frame, robot_at},
     route::beside,
     state::State,
-    tables::{Along, Shut},
+    tables::{Along, Coupling, Shut},
 };
 
 /// The robot is at the seat within this, in: much less than a relative move is long.
@@ -38,7 +39,10 @@ const AT_LOW: f64 = 0.3;
 const CLEAR: f64 = 0.3;
 /// It is on a segment within this, in …
 const BESIDE: f64 = 0.35;
-/// … and radians (2 degrees).
+/// … and on the way to the seat within this: QCD-SEAT begins where the large sensors see the ears, up to half an inch
+/// above the low point (V.2.1).
+const ABOVE_LOW: f64 = 0.6;
+/// It is not turned by more than this, radians (2 degrees).
 const TURNED: f64 = 2.0 * core::f64::consts::PI / 180.0;
 
 /// The points of the exchange in a holster.
@@ -72,13 +76,14 @@ impl Points {
     fn along(&self, present: &Frame) -> Along {
         let at = |point: &Frame| norm(&(present.position - point.position));
         let segments = [
-            (beside(present, &self.above, &self.fast), Along::Out),
-            (beside(present, &self.fast, &self.slow), Along::Coming),
-            (beside(present, &self.slow, &self.back), Along::Sliding),
-            (beside(present, &self.back, &self.lift), Along::Lifting),
-            (beside(present, &self.lift, &self.up), Along::Raising),
+            (beside(present, &self.above, &self.fast), BESIDE, Along::Out),
+            (beside(present, &self.fast, &self.slow), BESIDE, Along::Coming),
+            (beside(present, &self.slow, &self.back), ABOVE_LOW, Along::Sliding),
+            (beside(present, &self.back, &self.lift), BESIDE, Along::Lifting),
+            (beside(present, &self.lift, &self.up), BESIDE, Along::Raising),
         ];
-        let nearest = segments.into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b));
+        let within = segments.into_iter().filter(|(distance, limit, _)| distance <= limit);
+        let nearest = within.min_by(|(a, ..), (b, ..)| a.total_cmp(b));
         let turned = self.slow.distance(present).radians > TURNED;
         if at(&self.slow) <= AT_POINT && !turned {
             Along::Seat
@@ -90,7 +95,7 @@ impl Points {
             Along::Clear
         } else {
             match nearest {
-                Some((distance, segment)) if distance <= BESIDE && !turned => segment,
+                Some((.., segment)) if !turned => segment,
                 _ => Along::Off,
             }
         }
@@ -147,7 +152,8 @@ impl State {
         }
     }
 
-    /// A robot that has been taken away from the holster, as by the joystick box, changes no gripper any more.
+    /// A robot that has been taken away from the holster, as by the joystick box, changes no gripper any more, unless it
+    /// has one that hangs on a ring that is not locked: that one is still to be changed.
     pub(super) fn sense_exchange(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let (Some(exchange), Some(present)) = (self.beliefs.exchange, present_frame(inputs.memory)) else {
             return;
@@ -161,7 +167,7 @@ impl State {
         let base = exchange.place.pose.to_frame().ok();
         let points = base.and_then(|base| Points::of(&command, &base, inputs.data));
         let along = points.map_or(Along::Off, |points| points.along(&present));
-        if along == Along::Off {
+        if along == Along::Off && coupling(inputs.memory) != Coupling::Loose {
             self.beliefs.exchange = None;
         }
     }

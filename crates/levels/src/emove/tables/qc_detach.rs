@@ -48,30 +48,31 @@ decision_table! {
             20: mate: None, along: Off | Above | Clear                       => Fail(NotDetached);
             21: mate: None, along: Sliding | Low | Lifting | Raising         => Fail(NotDetached);
             22: mate: Right, along: Off                                      => Fail(NotPrepared);
-            23: mate: Right, along: Above | Out | Coming                     => Fail(NotDetached);
+            23: mate: Right, along: Above | Out                              => Fail(NotDetached);
+            24: mate: Right, along: Coming, lock: Locked | Between           => Fail(NotDetached);
         }
         /// The quick change is unlocking; the gripper drops.
         Unlocking {
-            24: lock: Locked | Between                                       => FailRing;
-            25: mate: Right, lock: Unlocked                                  => GoUntil(QcdSeat) -> Seating;
+            25: lock: Locked | Between                                       => FailRing;
+            26: mate: Right, lock: Unlocked                                  => GoUntil(QcdSeat) -> Seating;
         }
         any {
-            26: mate: None, along: Out | Coming | Seat, lock: Locked | Between => Unlock -> Unlocking;
-            27: mate: None, along: Out | Coming | Seat, lock: Unlocked       => DeltaMove(QcdOut) -> Rising;
+            27: mate: None, along: Out | Coming | Seat, lock: Locked | Between => Unlock -> Unlocking;
+            28: mate: None, along: Out | Coming | Seat, lock: Unlocked       => DeltaMove(QcdOut) -> Rising;
         }
         any {
-            28: along: Raising | Clear, lock: Unlocked | Between             => Fail(RingNotLocked);
-            29: along: Lifting, holster: Empty, lock: Unlocked | Between     => Fail(RingNotLocked);
-            30: along: Lifting | Raising | Clear, lock: Locked, held: Right | Other => Fail(AlreadyHolding);
-            31: along: Lifting | Raising | Clear, lock: Locked, held: Something => Fail(AlreadyHolding);
-            32: along: Lifting | Raising | Clear, lock: Locked, held: NotKnown => Fail(HeldNotKnown);
-            33: along: Raising | Clear, holster: Partial | Full              => Fail(HolsterOccupied);
-            34: along: Lifting | Raising | Clear, lock: Locked               => GoUntil(QcdDown) -> Lowering;
-            35: along: Low, holster: Empty, lock: Locked                     => GoUntil(QcdDown) -> Lowering;
-            36: along: Lifting | Low | Sliding | Seat, lock: Locked | Between => Unlock -> Unlocking;
-            37: along: Lifting | Low | Sliding, lock: Unlocked               => GoUntil(QcdSeat) -> Seating;
-            38: along: Seat, holster: Empty | Partial, lock: Unlocked        => GoUntil(QcdSeat) -> Seating;
-            39: along: Seat, holster: Full, lock: Unlocked                   => DeltaMove(QcdUp) -> Rising;
+            29: along: Raising | Clear, lock: Unlocked | Between             => Fail(RingNotLocked);
+            30: along: Lifting, holster: Empty, lock: Unlocked | Between     => Fail(RingNotLocked);
+            31: along: Lifting | Raising | Clear, lock: Locked, held: Right | Other => Fail(AlreadyHolding);
+            32: along: Lifting | Raising | Clear, lock: Locked, held: Something => Fail(AlreadyHolding);
+            33: along: Lifting | Raising | Clear, lock: Locked, held: NotKnown => Fail(HeldNotKnown);
+            34: along: Raising | Clear, holster: Partial | Full              => Fail(HolsterOccupied);
+            35: along: Lifting | Raising | Clear, lock: Locked               => GoUntil(QcdDown) -> Lowering;
+            36: along: Low, holster: Empty, lock: Locked                     => GoUntil(QcdDown) -> Lowering;
+            37: along: Lifting | Low | Sliding | Seat, lock: Locked | Between => Unlock -> Unlocking;
+            38: along: Lifting | Low | Sliding, lock: Unlocked               => GoUntil(QcdSeat) -> Seating;
+            39: along: Coming | Seat, holster: Empty | Partial, lock: Unlocked => GoUntil(QcdSeat) -> Seating;
+            40: along: Coming | Seat, holster: Full, lock: Unlocked          => DeltaMove(QcdUp) -> Rising;
         }
     }
 }

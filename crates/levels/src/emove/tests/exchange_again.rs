@@ -29,6 +29,7 @@ pub const SCENARIOS: &[fn()] = &[
     an_order_without_effect_ends_the_command,
     what_cannot_be_detached_is_named,
     in_a_holster_only_the_exchange_goes_on,
+    a_loose_gripper_that_is_led_away_is_still_to_be_changed,
     a_grasp_is_made_again_from_every_tick,
     what_is_not_known_is_held,
     a_bare_robot_leaves_a_holster_without_a_gripper,
@@ -122,6 +123,10 @@ const BARE: &[&str] = &["HOL-BARE"];
 const FAST: &[&str] = &["QCA-FAST"];
 const SEAT: &[&str] = &["QCA-SLOW"];
 const LOW: &[&str] = &["QCA-BACK"];
+/// Between low and seat, and as much above as the large sensors see the ears.
+const HIGH: &[&str] = &["HOL-HIGH"];
+/// As much above the seat.
+const OVER: &[&str] = &["HOL-OVER"];
 const LIFTING: &[&str] = &["WITHDRAW"];
 const LIFTED: &[&str] = &["QCA-LIFT"];
 const RAISED: &[&str] = &["HOL-ABOVE"];
@@ -169,6 +174,9 @@ fn an_exchange_goes_on_from_where_it_is() {
     from(LOW, 1, true, BLIND, DETACH, "GO-UNTIL QCD-DOWN HOL-NEAR");
     from(LOW, 1, true, 0b0011, DETACH, "QC-UNLOCK");
     from(LOW, 1, false, 0b0011, DETACH, "GO-UNTIL QCD-SEAT HOL-SEAT");
+    from(HIGH, 1, false, SLIPPED, ATTACH, "DELTA-MOVE QCA-SLOW");
+    from(HIGH, 1, false, SLIPPED, DETACH, "GO-UNTIL QCD-SEAT HOL-SEAT");
+    from(OVER, 1, false, SLIPPED, DETACH, "GO-UNTIL QCD-SEAT HOL-SEAT");
     from(SEAT, 1, true, 0b1111, DETACH, "QC-UNLOCK");
     from(SEAT, 1, false, 0b1111, DETACH, "DELTA-MOVE QCD-UP");
     from(FAST, 0, false, 0b1111, DETACH, "DELTA-MOVE QCD-UP");
@@ -177,6 +185,10 @@ fn an_exchange_goes_on_from_where_it_is() {
     from(ABOVE, 0, false, 0b1111, DETACH, "");
     // At the seat, and the small sensors do not see it yet.
     from(SEAT, 1, false, SLIPPED, DETACH, "GO-UNTIL QCD-SEAT HOL-SEAT");
+    // The gripper lies at its seat, and the robot stands over it, where QCD-SEAT has ended.
+    let mut bench = halfway(OVER, 1, false, 0b1111);
+    assert_eq!(send(&mut bench, DETACH), DONE, "{:?}", bench.world.log);
+    assert_eq!(bench.log(), ["DELTA-MOVE QCD-UP"]);
     // The gripper needs calibrating, and the command had ended before.
     let mut bench = halfway(CLEAR, 1, true, 0);
     bench.grip.initialized = false;
@@ -249,6 +261,7 @@ fn what_cannot_be_detached_is_named() {
         assert!(bench.off(&there) < 0.01, "it stands");
     };
     fails(FAST, 1, true, 0b0001, Reason::NotDetached);
+    fails(ABOVE, 1, true, 0, Reason::NotDetached);
     fails(LOW, 0, false, 0b1111, Reason::NotDetached);
     fails(RAISED, 1, false, 0, Reason::RingNotLocked);
     fails(LIFTING, 1, false, 0, Reason::RingNotLocked);
@@ -335,6 +348,24 @@ fn in_a_holster_only_the_exchange_goes_on() {
     bench.world.joystick = false;
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE);
+}
+
+#[test]
+fn a_loose_gripper_that_is_led_away_is_still_to_be_changed() {
+    let mut bench = halfway(LOW, 1, true, 0b0011);
+    bench.command(DETACH.0, DETACH.1, DETACH.2, DETACH.3, DETACH.4);
+    while bench.world.locked {
+        bench.step();
+    }
+    assert_eq!(bench.pause(), DONE);
+    let low = bench.world.frame;
+    bench.world.frame = moved(frame_of("HOLSTER-R"), AWAY);
+    bench.steps(3);
+    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::InHolster));
+    assert_eq!(send(&mut bench, DETACH), error(Reason::NotPrepared));
+    bench.world.frame = low;
+    assert_eq!(send(&mut bench, DETACH), DONE, "{:?}", bench.world.log);
+    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
 }
 
 #[test]
