@@ -22,13 +22,12 @@ use taskdata::files::{PoseId, TaskData};
 
 use super::{
     fingers::gripper_on,
-    gripper::Gripper,
-    plan::coupling,
+    gripper::{Gripper, is_open},
     relative::Relative,
     robot_place::{gone_to, present_frame, robot_at},
     route::beside,
     state::State,
-    tables::{Along, Coupling, Shut},
+    tables::{Along, Shut},
 };
 
 /// The robot is at the seat within this, in: much less than a relative move is long.
@@ -39,9 +38,9 @@ const AT_LOW: f64 = 0.3;
 const CLEAR: f64 = 0.3;
 /// It is on a segment within this, in …
 const BESIDE: f64 = 0.35;
-/// … and on the way to the seat within this: QCD-SEAT begins where the large sensors see the ears, up to half an inch
-/// above the low point (V.2.1).
-const ABOVE_LOW: f64 = 0.6;
+/// … and this much above it on the way to the seat: QCD-SEAT begins where the large sensors see the ears, up to half an
+/// inch above the low point (V.2.1). QCD-UP ends as much above its point, in.
+const ABOVE: f64 = 0.6;
 /// It is not turned by more than this, radians (2 degrees).
 const TURNED: f64 = 2.0 * core::f64::consts::PI / 180.0;
 
@@ -78,7 +77,7 @@ impl Points {
         let segments = [
             (beside(present, &self.above, &self.fast), BESIDE, Along::Out),
             (beside(present, &self.fast, &self.slow), BESIDE, Along::Coming),
-            (beside(present, &self.slow, &self.back), ABOVE_LOW, Along::Sliding),
+            (beside(present, &self.slow, &self.back), ABOVE, Along::Sliding),
             (beside(present, &self.back, &self.lift), BESIDE, Along::Lifting),
             (beside(present, &self.lift, &self.up), BESIDE, Along::Raising),
         ];
@@ -89,7 +88,7 @@ impl Points {
             Along::Seat
         } else if at(&self.back) <= AT_LOW && !turned {
             Along::Low
-        } else if at(&self.above) <= CLEAR {
+        } else if at(&self.above) <= ABOVE {
             Along::Above
         } else if at(&self.up) <= CLEAR {
             Along::Clear
@@ -152,8 +151,7 @@ impl State {
         }
     }
 
-    /// A robot that has been taken away from the holster, as by the joystick box, changes no gripper any more, unless it
-    /// has one that hangs on a ring that is not locked: that one is still to be changed.
+    /// A robot that has been taken away from the holster, as by the joystick box, changes no gripper any more.
     pub(super) fn sense_exchange(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let (Some(exchange), Some(present)) = (self.beliefs.exchange, present_frame(inputs.memory)) else {
             return;
@@ -167,9 +165,17 @@ impl State {
         let base = exchange.place.pose.to_frame().ok();
         let points = base.and_then(|base| Points::of(&command, &base, inputs.data));
         let along = points.map_or(Along::Off, |points| points.along(&present));
-        if along == Along::Off && coupling(inputs.memory) != Coupling::Loose {
+        if along == Along::Off {
             self.beliefs.exchange = None;
         }
+    }
+
+    /// The gripper whose change is half done: the robot is in its holster, or it hangs on a ring that is not locked,
+    /// wherever the robot has been led.
+    pub(super) fn changing(&self, memory: &CommonMemory) -> Option<u8> {
+        let id = memory.quick_change.status.end_effector_id;
+        let loose = (is_open(memory) && id != 0).then_some(id);
+        self.beliefs.exchange.map(|exchange| exchange.gripper).or(loose)
     }
 
     /// Where a gripper is left in the holster of a command.

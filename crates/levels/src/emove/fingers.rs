@@ -17,7 +17,7 @@ use rcs_core::{
 use taskdata::files::{EndEffId, EndEffPara, TaskData};
 
 use super::{
-    gripper::Gripper,
+    gripper::{Gripper, is_open},
     order::{FingerOrder, FingerVerb},
     robot_place::present_frame,
     route::{Ahead, FULL_OPENING, near},
@@ -72,7 +72,8 @@ impl State {
         }
         self.sense_loss(inputs);
         if attached.code() != mem::replace(&mut self.attached, attached.code()) {
-            (self.beliefs.empty, self.beliefs.grasping) = (false, None);
+            // A ring that is open takes a gripper only in its holster, where none is left that may hold something.
+            (self.beliefs.empty, self.beliefs.grasping) = (is_open(memory), None);
         }
         // Before the fingers have closed they feel nothing: that says nothing of what they will hold.
         let closing =

@@ -24,6 +24,7 @@ use rcs_core::{
         emove::Dormancy,
         grip::{Felt, GripCommand, GripVerb},
         jaws::{JawsCommand, JawsReport, JawsVerb},
+        quick_change::RingPosition,
     },
     tick::Tick,
     units::hundredths,
@@ -64,6 +65,11 @@ pub enum Gripper {
     /// Tool gripper.
     #[text = "tool gripper"]
     Tool,
+}
+
+/// Do the sensors of the ring say that it is not locked?
+pub(super) const fn is_open(memory: &CommonMemory) -> bool {
+    matches!(memory.quick_change.status.ring, RingPosition::Unlocked | RingPosition::Between)
 }
 
 impl Gripper {

@@ -50,7 +50,7 @@ fn holster(command: &EmoveCommand, data: &TaskData<'_>) -> HolsterData {
 }
 
 /// How the gripper hangs on the robot.
-pub(super) const fn coupling(memory: &CommonMemory) -> Coupling {
+const fn coupling(memory: &CommonMemory) -> Coupling {
     let status = &memory.quick_change.status;
     match (status.end_effector_id, status.ring) {
         (0, _) => Coupling::Bare,

@@ -340,7 +340,7 @@ impl State {
             }),
             end_effector_id: inputs.memory.quick_change.status.end_effector_id,
             at: self.place().as_ref().map(standing),
-            exchange: self.beliefs.exchange.map(|exchange| exchange.gripper),
+            exchange: self.changing(inputs.memory),
             drum: self.is_around_tool(inputs.memory, inputs.data),
         };
     }

@@ -187,7 +187,7 @@ pub struct EmoveStatus {
     /// Where the robot stands, if that is known (extension).
     pub at: Option<Standing>,
     /// Number of the gripper in whose holster the robot stands in the middle of an exchange: between the first and
-    /// the last point of QC-ATTACH or QC-DETACH (extension).
+    /// the last point of QC-ATTACH or QC-DETACH; or of the one that hangs on a ring that is not locked (extension).
     pub exchange: Option<u8>,
     /// The fingers are around a tool in the tool drum (extension).
     pub drum: bool,

@@ -79,7 +79,8 @@ decision_table! {
             35: mate: Right, along: Seat | Sliding, lock: Locked          => Fail(NoEffect);
         }
         any {
-            36: mate: Right, along: Seat, lock: Unlocked | Between        => Lock -> Locking;
+            // Near the seat is not at it, and the ring would catch nothing.
+            36: mate: Right, along: Seat, lock: Unlocked | Between        => DeltaMove(QcaSlow) -> Mating;
             37: mate: Right, along: Seat | Sliding, lock: Locked, shut: Open => CloseForHolster -> Closing;
             38: mate: Right, along: Seat | Sliding, lock: Locked           => DeltaMove(QcaBack) -> Backing;
         }

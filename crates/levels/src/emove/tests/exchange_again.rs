@@ -29,6 +29,7 @@ pub const SCENARIOS: &[fn()] = &[
     an_order_without_effect_ends_the_command,
     what_cannot_be_detached_is_named,
     in_a_holster_only_the_exchange_goes_on,
+    a_gripper_that_mates_in_its_holster_holds_nothing,
     a_loose_gripper_that_is_led_away_is_still_to_be_changed,
     a_grasp_is_made_again_from_every_tick,
     what_is_not_known_is_held,
@@ -163,7 +164,7 @@ fn an_exchange_goes_on_from_where_it_is() {
     };
     from(BARE, 0, false, 0b1111, ATTACH, "DELTA-MOVE QCA-FAST");
     from(FAST, 0, false, 0b1111, ATTACH, "DELTA-MOVE QCA-SLOW");
-    from(SEAT, 1, false, 0b1111, ATTACH, "QC-LOCK");
+    from(SEAT, 1, false, 0b1111, ATTACH, "DELTA-MOVE QCA-SLOW");
     from(LOW, 1, false, 0b0011, ATTACH, "DELTA-MOVE QCA-SLOW");
     from(SEAT, 1, true, 0b1111, ATTACH, "DELTA-MOVE QCA-BACK");
     from(LOW, 1, true, 0b0011, ATTACH, "DELTA-MOVE QCA-LIFT");
@@ -351,6 +352,21 @@ fn in_a_holster_only_the_exchange_goes_on() {
 }
 
 #[test]
+fn a_gripper_that_mates_in_its_holster_holds_nothing() {
+    for gripper in 1..=3 {
+        let (object, holster) = holster(gripper);
+        let mut bench = bare(gripper);
+        bench.command(QcAttach, object, 2, holster, gripper);
+        while bench.world.mated == 0 {
+            bench.step();
+        }
+        assert_eq!(bench.pause(), DONE);
+        assert_eq!(bench.memory.emove.status.end_effector_id, gripper);
+        assert_eq!(bench.memory.emove.status.held, Holding::Nothing);
+    }
+}
+
+#[test]
 fn a_loose_gripper_that_is_led_away_is_still_to_be_changed() {
     let mut bench = halfway(LOW, 1, true, 0b0011);
     bench.command(DETACH.0, DETACH.1, DETACH.2, DETACH.3, DETACH.4);
@@ -361,7 +377,8 @@ fn a_loose_gripper_that_is_led_away_is_still_to_be_changed() {
     let low = bench.world.frame;
     bench.world.frame = moved(frame_of("HOLSTER-R"), AWAY);
     bench.steps(3);
-    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::InHolster));
+    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::RingNotLocked));
+    assert_eq!(bench.memory.emove.status.exchange, Some(1));
     assert_eq!(send(&mut bench, DETACH), error(Reason::NotPrepared));
     bench.world.frame = low;
     assert_eq!(send(&mut bench, DETACH), DONE, "{:?}", bench.world.log);
