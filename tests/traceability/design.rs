@@ -1,4 +1,4 @@
-//! Every file and every test that a rule of docs/design names is there.
+//! Every file and every test that a rule of docs/design, or a promise of another page, names is there.
 //!
 //! Under the text of a rule stand `- code:` and `- test:`, which may go on over indented lines. What is in
 //! backquotes is a reference; the words between are for people.
@@ -124,8 +124,12 @@ fn missing_tests(text: &str, sources: &Sources) -> Vec<String> {
 fn every_file_and_test_that_a_rule_names_is_there() {
     let sources = Sources::read();
     let (mut wrong, mut count) = (Vec::new(), 0);
-    for entry in fs::read_dir(root().join("docs/design")).expect("the pages are there") {
+    let directories = ["docs", "docs/design"].map(|directory| fs::read_dir(root().join(directory)));
+    for entry in directories.into_iter().flat_map(|entries| entries.expect("the pages are there")) {
         let path = entry.expect("an entry").path();
+        if path.extension().is_none_or(|extension| extension != "md") {
+            continue;
+        }
         let page = fs::read_to_string(&path).expect("a page");
         let name = path.strip_prefix(root()).expect("a file of the repository").display();
         for item in items(&page) {
