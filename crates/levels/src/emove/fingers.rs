@@ -115,23 +115,26 @@ impl State {
         !looks && !moving && !self.beliefs.empty
     }
 
-    /// Is what was held still there?
+    /// Is what was held still there? Fingers that open on it hold it until they have let go: what stops them half-way
+    /// leaves it between them, and the command that lets go can be sent again.
     fn sense_loss(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
-        let letting_go = self.grippers.order == FingerVerb::Release;
         let Some(held) = self.beliefs.held else { return };
+        let letting_go = self.releasing && self.place().is_some();
         let gripper = Gripper::of(held.gripper);
         // A part that was held with little force leaves the fingers where they are when it falls: only the
         // force tells.
         let felt = letting_go || !gripper.feels_nothing(memory);
         self.unfelt = if felt { 0 } else { self.unfelt.saturating_add(1) };
         // A gripper that was restarted knows no opening: what was held is not lost for that.
-        let slipped = gripper
-            .opening(memory)
-            .is_some_and(|opening| !gripper.still_grips(opening, held.grasp_size, held.opening));
+        let slipped = !letting_go
+            && gripper
+                .opening(memory)
+                .is_some_and(|opening| !gripper.still_grips(opening, held.grasp_size, held.opening));
         let gone = Gripper::attached(memory) != gripper;
         let unfelt = self.unfelt > UNFELT_TICKS;
-        if slipped || unfelt || gone || self.grippers.has_let_go(inputs.tick, memory) {
+        let has_let_go = self.grippers.has_let_go(inputs.tick, memory);
+        if slipped || unfelt || gone || has_let_go {
             self.beliefs.held = None;
             self.gripper_gone = gone;
             self.beliefs.grasping = None;
@@ -142,7 +145,7 @@ impl State {
                 record: at.record,
                 array: at.array,
             };
-            self.beliefs.placed = self.place().filter(|_| self.releasing && !gone).map(let_go);
+            self.beliefs.placed = self.place().filter(|_| has_let_go && !gone).map(let_go);
         }
     }
 

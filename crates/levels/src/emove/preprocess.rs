@@ -113,6 +113,7 @@ impl State {
             let (before, now) = (outputs.status.end_effector_id, Gripper::attached(memory).code());
             self.attached = if now == 0 || now == before { before } else { 0 };
             self.grippers.adopt(memory);
+            self.releasing = self.grippers.order == FingerVerb::Release;
         }
     }
 

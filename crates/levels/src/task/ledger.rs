@@ -9,6 +9,7 @@
 use rcs_core::{
     Plain,
     interface::{
+        emove::Standing,
         hws::{HwsCommand, Ledger},
         subtask::{SubtaskStatus, SubtaskVerb},
     },
@@ -21,8 +22,10 @@ use super::plan::{Plan, Resumed};
 pub enum Placed {
     /// No, or it was not sent before.
     Not,
-    /// It is what the gripper has let go last, at the destination.
+    /// It is what the gripper has let go last, at the destination, where the robot stands.
     AtDestination,
+    /// The same, and the robot has been sent away from there.
+    Left,
 }
 
 /// Is the part in the pedestal's hand?
@@ -65,7 +68,13 @@ pub fn placed(plan: &Plan, below: &SubtaskStatus) -> Placed {
             && plan.destination.grip == placed.grip
             && destination == Some((placed.record, placed.array))
     });
-    if at_destination && plan.resumed != Resumed::Not { Placed::AtDestination } else { Placed::Not }
+    let stands =
+        |at: Standing| destination == Some((at.record, at.array)) && at.grip == Some(plan.destination.grip);
+    match (at_destination && plan.resumed != Resumed::Not, below.at.is_some_and(stands)) {
+        (false, _) => Placed::Not,
+        (true, true) => Placed::AtDestination,
+        (true, false) => Placed::Left,
+    }
 }
 
 /// The ledger when a command has been accepted. A command that is about no object says nothing of one that is.

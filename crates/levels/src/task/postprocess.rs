@@ -82,6 +82,11 @@ impl State {
             Action::Position(goal) => {
                 self.send(SubtaskVerb::Position, site(&plan, goal), inputs, outputs);
             }
+            Action::Return => {
+                self.send(SubtaskVerb::Position, &plan.destination, inputs, outputs);
+                // >POSITION asks for the grip of the source first (SPECNOTES.md, contradiction 24).
+                outputs.subtask.source_grip = plan.destination.grip;
+            }
             Action::Release => self.send(SubtaskVerb::Release, &plan.source, inputs, outputs),
             Action::InsertTool => self.send_tool(SubtaskVerb::InsertTool, inputs, outputs),
             Action::ReleaseTool => self.send_tool(SubtaskVerb::ReleaseTool, inputs, outputs),

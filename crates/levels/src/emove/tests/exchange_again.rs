@@ -10,6 +10,7 @@ use rcs_core::interface::{
         },
         Holding,
     },
+    jaws::JawsReport,
     quick_change::QuickChangeReport,
 };
 
@@ -32,6 +33,7 @@ pub const SCENARIOS: &[fn()] = &[
     a_gripper_that_mates_in_its_holster_holds_nothing,
     a_loose_gripper_that_is_led_away_is_still_to_be_changed,
     a_grasp_is_made_again_from_every_tick,
+    fingers_that_are_stopped_while_they_let_go_have_not_let_go,
     what_is_not_known_is_held,
     a_bare_robot_leaves_a_holster_without_a_gripper,
     id_pins_that_fail_change_nothing,
@@ -407,6 +409,37 @@ fn a_grasp_is_made_again_from_every_tick() {
             }
         }
     }
+}
+
+#[test]
+fn fingers_that_are_stopped_while_they_let_go_have_not_let_go() {
+    let mut bench = Bench::ready("HOME", 2);
+    assert_eq!(bench.run(MovToObj, "SHAFT", 1, "BENCH", 2), DONE);
+    bench.hold("SHAFT", 204, 2);
+    let mut stuck = bench.clone();
+    stuck.spoil("RELEASE", Mishap::Jaws(JawsReport::Stuck));
+    stuck.command(Release, "SHAFT", 1, "BENCH", 2);
+    stuck.steps(2);
+    stuck.v_grip.opening = 250;
+    assert_eq!(stuck.finish(), error(Reason::JawsStuck));
+    stuck.world.mishaps.clear();
+    assert_eq!(stuck.pause(), DONE);
+    assert_eq!(stuck.memory.emove.beliefs.placed, None);
+    assert!(matches!(stuck.memory.emove.status.held, Holding::Object(_)));
+    // Elsewhere the part is lost.
+    let mut away = stuck.clone();
+    assert_eq!(away.run(MovObjTo, "SHAFT", 1, "VISE", 2), error(Reason::ObjectLost));
+    assert_eq!(send(&mut stuck, (Release, "SHAFT", 1, "BENCH", 2)), DONE);
+    assert_eq!(stuck.memory.emove.status.held, Holding::Nothing);
+    assert!(stuck.memory.emove.beliefs.placed.is_some());
+    // A restarted E-move still knows that it lets go.
+    bench.command(Release, "SHAFT", 1, "BENCH", 2);
+    bench.steps(3);
+    bench.process = Emove::default();
+    assert_eq!(bench.finish(), error(Reason::Restarted));
+    bench.steps(10);
+    assert_eq!(bench.pause(), DONE);
+    assert!(bench.memory.emove.beliefs.placed.is_some());
 }
 
 #[test]

@@ -184,6 +184,8 @@ pub enum Action {
     GotoEndpt,
     /// >POSITION to Subtask.
     Position(Goal),
+    /// >POSITION to Subtask: back to the object at the destination.
+    Return,
     /// RELEASE to Subtask.
     Release,
     /// INSERT-TOOL to Subtask.
@@ -245,6 +247,7 @@ impl Commander for Action {
                 | Self::GotoDest
                 | Self::GotoEndpt
                 | Self::Position(_)
+                | Self::Return
                 | Self::Release
                 | Self::InsertTool
                 | Self::ReleaseTool

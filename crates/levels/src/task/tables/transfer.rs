@@ -6,7 +6,7 @@ decision_table! {
     /// TRANSFER (V.4.1): move an object from one location to another, then go to the end-at location. The
     /// data base is told as soon as the object is there, so that it is right also if the robot cannot leave.
     /// Sent again after an interruption it goes on: with the part in the pedestal's hand, or with an object
-    /// that is placed already.
+    /// that is placed already. If it is to stay there, and has been sent away since, it goes back to the object.
     pub TRANSFER: fn transfer(enum TransferStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                    => Wait;
@@ -21,37 +21,39 @@ decision_table! {
         }
         Start | Settling {
             4:  placed: AtDestination                         => Wait                -> Placing;
-            5:  part: InPedestal, grips: Different            => FixGrip             -> Regripping;
-            6:  work: Over                                    => GetEndeff           -> Gripper;
+            5:  placed: Left, ends: There | Elsewhere         => Wait                -> Placing;
+            6:  placed: Left, ends: Here                      => Return              -> Placing;
+            7:  part: InPedestal, grips: Different            => FixGrip             -> Regripping;
+            8:  work: Over                                    => GetEndeff           -> Gripper;
         }
         /// The gripper is being fetched.
         Gripper {
-            7:  work: Over                                    => GetObject           -> Object;
+            9:  work: Over                                    => GetObject           -> Object;
         }
         /// The object is being fetched.
         Object {
-            8:  grips: Same                                   => PlaceObj            -> Placing;
-            9:  grips: Different                              => FixGrip             -> Regripping;
+            10: grips: Same                                   => PlaceObj            -> Placing;
+            11: grips: Different                              => FixGrip             -> Regripping;
         }
         /// The object is being regripped on the pedestal.
         Regripping {
-            10: work: Over                                    => PlaceObj            -> Placing;
+            12: work: Over                                    => PlaceObj            -> Placing;
         }
         /// The object is being placed.
         Placing {
-            11: ends: Here, update: Due                       => Update              -> Telling;
-            12: ends: Here, update: None | Owed               => Finish;
-            13: ends: There | Elsewhere, update: Due          => UpdateAndGotoEndpt  -> Leaving;
-            14: ends: There | Elsewhere, update: None | Owed  => GotoEndpt           -> Leaving;
+            13: ends: Here, update: Due                       => Update              -> Telling;
+            14: ends: Here, update: None | Owed               => Finish;
+            15: ends: There | Elsewhere, update: Due          => UpdateAndGotoEndpt  -> Leaving;
+            16: ends: There | Elsewhere, update: None | Owed  => GotoEndpt           -> Leaving;
         }
         /// The robot is on its way to the end-at location.
         Leaving {
-            15: update: Owed                                  => AwaitUpdate         -> Telling;
-            16: update: None | Due                            => Finish;
+            17: update: Owed                                  => AwaitUpdate         -> Telling;
+            18: update: None | Due                            => Finish;
         }
         /// The data base is being told where the object is.
         Telling {
-            17: work: Over                                    => Finish;
+            19: work: Over                                    => Finish;
         }
     }
 }

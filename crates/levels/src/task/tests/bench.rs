@@ -116,21 +116,21 @@ impl SubtaskDouble {
                     record: command.location_record,
                     array: command.location_array,
                 });
-                self.stand_at(command);
+                self.stand_at(command, Some(command.destination_grip));
             }
-            SubtaskVerb::GotoDest
-            | SubtaskVerb::GotoEndpt
-            | SubtaskVerb::MoveObjToDest
-            | SubtaskVerb::Position => self.stand_at(command),
+            SubtaskVerb::GotoDest | SubtaskVerb::GotoEndpt | SubtaskVerb::MoveObjToDest => {
+                self.stand_at(command, None);
+            }
+            SubtaskVerb::Position => self.stand_at(command, Some(command.source_grip)),
             SubtaskVerb::FixGrip => status.pedestal_part = false,
             _ => {}
         }
     }
 
-    fn stand_at(&mut self, command: &SubtaskCommand) {
+    fn stand_at(&mut self, command: &SubtaskCommand, grip: Option<i32>) {
         self.stand(command.location.as_str());
         if let Some(at) = &mut self.outputs.status.at {
-            (at.record, at.array) = (command.location_record, command.location_array);
+            (at.record, at.array, at.grip) = (command.location_record, command.location_array, grip);
         }
     }
 

@@ -174,7 +174,11 @@ fn an_interrupted_transfer_goes_on() {
                 let told = told.count();
                 assert_eq!(bench.run(line), FINISHED, "{line}, tick {ticks}, {by:?}");
                 if placed {
-                    let rest: &[&str] = if line == TRANSFER_AND_STAY { &[] } else { &["GOTO-ENDPT"] };
+                    let rest: &[&str] = match (line, by) {
+                        (TRANSFER_AND_STAY, Interruption::Command(HOME)) => &[">POSITION"],
+                        (TRANSFER_AND_STAY, _) => &[],
+                        _ => &["GOTO-ENDPT"],
+                    };
                     assert_eq!(bench.sent(), rest, "{line}, tick {ticks}, {by:?}");
                     assert_eq!(told + bench.asked().len(), 1, "{line}, tick {ticks}, {by:?}: told once");
                 } else {
@@ -187,6 +191,35 @@ fn an_interrupted_transfer_goes_on() {
             }
         }
     }
+}
+
+#[test]
+fn a_transfer_that_stays_goes_back_to_its_object() {
+    let other_grip = "TRANSFER PART +1 PFIXTURE 0 -1 UNIT_1 2 -- 0";
+    for line in [TRANSFER_AND_STAY, other_grip] {
+        let mut bench = moving_bench();
+        bench.command(line);
+        while bench.memory.subtask.status.placed.is_none() {
+            bench.step();
+        }
+        assert_eq!(bench.run(HOME), FINISHED);
+        assert_eq!(bench.run(line), FINISHED);
+        assert_eq!(bench.sent(), [">POSITION"]);
+        let at = bench.memory.subtask.status.at.unwrap();
+        assert_eq!(
+            (at.location.as_str(), at.grip),
+            ("UNIT_1", Some(bench.memory.task.subtask.destination_grip))
+        );
+    }
+    // One that goes on to its end-at location does so from wherever the robot is.
+    let mut bench = moving_bench();
+    bench.command(TRANSFER);
+    while bench.memory.subtask.status.placed.is_none() {
+        bench.step();
+    }
+    assert_eq!(bench.run(HOME), FINISHED);
+    assert_eq!(bench.run(TRANSFER), FINISHED);
+    assert_eq!(bench.sent(), ["GOTO-ENDPT"]);
 }
 
 #[test]
@@ -427,6 +460,14 @@ pub(super) fn all_rows(rows: &mut Coverage) {
             play(&mut bench);
         }
     }
+    let mut bench = moving_bench();
+    bench.command(TRANSFER_AND_STAY);
+    while bench.memory.subtask.status.placed.is_none() {
+        bench.step();
+    }
+    bench.run(HOME);
+    bench.run(TRANSFER_AND_STAY);
+    play(&mut bench);
     // Interrupted when the tool command is done and not seen to be.
     for (line, held, at) in [
         (RELEASE, "", "HOME"),
