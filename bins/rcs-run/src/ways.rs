@@ -4,8 +4,8 @@ use std::{panic::resume_unwind, path::Path, process::ExitCode, thread};
 
 use os_io::console;
 use paths::{
+    finding::Segment,
     job::{JobLine, NOT_CHECKED, WalkedJob, walk_job},
-    state::Segment,
     stored::walk_stored,
     walk::seconds,
 };

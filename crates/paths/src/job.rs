@@ -15,9 +15,10 @@ use taskdata::{
 };
 
 use crate::{
+    finding::{Finding, Walked},
     flight::Robot,
     plan::Phase,
-    state::{Finding, State, Walked},
+    state::State,
     steps::{exchange, steps},
     survey::Passing,
     walk::Walk,

@@ -4,20 +4,27 @@
 use depc::controller::{JointProblem, Warning};
 use rcs_core::{
     frame::Frame,
+    interface::emove::EmoveVerb,
     kinematics::{JOINT_NAMES, Joints, T3},
     name::Name10,
 };
 use taskdata::files::{Target, TaskData, TrajPara};
 
 use crate::{
+    finding::{Finding, Segment, Walked},
     flight::{Flown, Robot, Trouble},
     plan::{Leg, Phase},
-    state::{Finding, Segment, State, Walked},
+    state::State,
+    steps::Step,
     survey::{Seen, Survey},
 };
 
 /// A joint that comes nearer to a limit than this is warned of, degrees.
 pub const LEAST_MARGIN: f64 = 0.5;
+
+/// The middle of the fingers may be so far beside that of a part that the closed jaws of the vise hold, in (ASSUMED): the part cannot
+/// be drawn to it, and slips when the jaws open.
+const BESIDE: f64 = 0.015;
 
 /// A flight and what was seen on it.
 struct Outcome {
@@ -69,6 +76,30 @@ impl State<'_> {
             ));
         }
         (Walked { plan: phase, segments }, findings)
+    }
+
+    /// What is wrong with a grasp of a part that the vise holds.
+    pub(crate) fn beside(&self, step: &Step, phase: &Phase) -> Option<Finding> {
+        let Step::Fingers { verb: EmoveVerb::GraspObj, object, .. } = step else { return None };
+        let tool = self.robot.tool();
+        let index = self.nearest(object, &tool)?;
+        let part = self.layout.parts.get(index).filter(|_| self.room.in_vise(&self.layout) == Some(index))?;
+        let (_, closed) = self.room.vise_seat(self.layout.program, part)?;
+        let beside = tool.inverse().compose(&part.frame).position.y;
+        (self.layout.jaws <= closed && beside.abs() > BESIDE).then(|| Finding {
+            code: "path.grip",
+            error: true,
+            line: 0,
+            message: format!(
+                "{}: the fingers close {:.2} in beside the middle of {object}, which the jaws of the vise hold; {BESIDE} in at \
+                 most expected",
+                phase.what,
+                beside.abs()
+            ),
+            help: Some(format!("move the movetable of this grip by {beside:.2} in along tool Y")),
+            key: format!("path.grip {}", phase.what),
+            depth: beside.abs(),
+        })
     }
 
     /// Opening of the fingers at the end of a phase, in.

@@ -16,6 +16,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod finding;
 pub mod flight;
 pub mod job;
 pub mod judge;

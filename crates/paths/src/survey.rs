@@ -16,9 +16,10 @@ pub const MARGIN: f64 = 2.0;
 const SIGHT: f64 = 4.0;
 /// What was permitted to touch and is this far apart has come free, in.
 const FREE: f64 = 0.05;
-/// How deep a part may be in what it is put into or taken out of, in (ASSUMED): where exactly it lies depends on vision, on the
-/// fingers and on how it has dropped.
-pub const FIT: f64 = 0.10;
+/// How deep a held part may be in what it is put into or taken out of, in (ASSUMED): how it lies in the fingers depends on vision.
+pub const FIT: f64 = 0.02;
+/// How deep the fingers may be in a part that they push, beside what is permitted, in (ASSUMED): it lies as it was dropped.
+const PUSH_FIT: f64 = 0.05;
 /// How far a point of the robot moves at the most when a joint turns by a radian, in: base to roll.
 const LEVERS: Joints = [105.0, 105.0, 65.0, 30.0, 27.0, 12.0];
 
@@ -164,9 +165,10 @@ impl<'a> Survey<'a> {
     fn permitted(&mut self, contact: &Contact) -> bool {
         let permits = &self.room.cell().contact;
         let most = permits.during(contact.mover(), contact.obstacle(), self.commands);
-        if most > 0.0 && contact.depth <= most + FIT {
+        let fit = if contact.mover_kind == Kind::Finger { PUSH_FIT } else { FIT };
+        if most > 0.0 && contact.depth <= most + fit {
             if contact.touches() {
-                self.allowed.insert(contact.pair(), most + FIT);
+                self.allowed.insert(contact.pair(), most + fit);
             }
             return true;
         }

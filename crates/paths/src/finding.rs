@@ -1,0 +1,73 @@
+//! What a flight has come to: its segments, and what is wrong with it.
+
+use serde::Serialize;
+
+use crate::{plan::Phase, survey::Passing};
+
+/// Something that is wrong with a way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    /// `path.joint`, `path.contact`, `path.link`, `path.grip` or `path.margin`.
+    pub code: &'static str,
+    /// It fails, or runs into something; else it is only near to that.
+    pub error: bool,
+    /// Line of the job, from 1.
+    pub line: u32,
+    /// What, where, and by how much.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
+    /// What makes it the same finding in another walk.
+    #[serde(skip)]
+    pub key: String,
+    /// Of two that are the same the deeper one counts.
+    #[serde(skip)]
+    pub depth: f64,
+}
+
+/// The way to a point, flown.
+#[derive(Clone, Debug, Serialize)]
+pub struct Segment {
+    /// The point before.
+    pub from: String,
+    /// The point.
+    pub to: String,
+    /// depart, trajectory, approach or goal.
+    pub part: &'static str,
+    /// The joint that comes nearest to a limit, and how near, degrees.
+    pub joint: &'static str,
+    /// How near, degrees.
+    pub margin_deg: f64,
+    /// What is passed most closely.
+    pub nearest: Option<Passing>,
+}
+
+impl Segment {
+    /// Take over what is nearer on another flight.
+    pub fn merge(&mut self, other: &Self) {
+        if other.margin_deg < self.margin_deg {
+            (self.joint, self.margin_deg) = (other.joint, other.margin_deg);
+        }
+        let clearance = |one: &Self| one.nearest.as_ref().map_or(f64::INFINITY, |near| near.clearance_in);
+        if clearance(other) < clearance(self) {
+            self.nearest.clone_from(&other.nearest);
+        }
+    }
+}
+
+/// A phase, flown.
+#[derive(Clone, Debug, Serialize)]
+pub struct Walked {
+    /// The phase.
+    pub plan: Phase,
+    /// Its segments, as far as they were flown.
+    pub segments: Vec<Segment>,
+}
+
+impl Walked {
+    /// A phase that is not flown.
+    #[must_use]
+    pub const fn of(plan: Phase) -> Self {
+        Self { plan, segments: Vec::new() }
+    }
+}
