@@ -214,6 +214,7 @@ impl State {
             sensed: self.sensed,
             distance: self.motion.as_ref().map_or(0, |motion| hundredths(motion.distance())),
         };
+        outputs.bias = self.calibration.bias;
         outputs.joystick_leds = if engaged { devices.joystick.frame } else { 0 };
     }
 

@@ -45,6 +45,9 @@ impl State {
         let (t3i, devices) = (&inputs.memory.t3i.status, &inputs.external.devices);
         self.t3i.start_from(inputs.tick, inputs.memory.prim.t3i.number, t3i.echo);
         self.resume_from_rest(inputs);
+        if !self.execution.receiver.started {
+            self.calibration.bias = outputs.bias;
+        }
         let command = &inputs.memory.emove.prim;
         let arrival = self.execution.receiver.observe(command.number);
         let request =

@@ -12,9 +12,12 @@
 
 use rcs_core::{
     Plain,
-    interface::device::{
-        ADC_FULL_SCALE, DeviceInputs, FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, HolsterSensors,
-        MOMENT_COUNTS_PER_IN_LB,
+    interface::{
+        device::{
+            ADC_FULL_SCALE, DeviceInputs, FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, HolsterSensors,
+            MOMENT_COUNTS_PER_IN_LB,
+        },
+        prim::FORCE_AXES,
     },
 };
 use taskdata::files::{SensorPara, SensorSource};
@@ -23,8 +26,6 @@ use super::tables::{Guard, Samples};
 
 /// Readings that make a bias: 0.4 s of them. ASSUMED.
 pub const SAMPLES: u32 = 10;
-/// Connected axes: forces along tool X, Y, Z, and the moment about tool Y.
-const AXES: usize = 4;
 /// `endeff-id#` of the gripper with the beams.
 const BEAM_GRIPPER: u8 = 1;
 /// Both large sensors of a holster: the ears are near.
@@ -36,9 +37,9 @@ const SEATED: u8 = 0x0C;
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Calibration {
     /// What is read without a force of interest, if that was taken and the sensor has had power ever since.
-    pub bias: Option<[f64; AXES]>,
+    pub bias: Option<[f64; FORCE_AXES]>,
     /// Sum of the readings taken so far.
-    pub sum: [f64; AXES],
+    pub sum: [f64; FORCE_AXES],
     /// How many.
     pub samples: u32,
 }
@@ -70,7 +71,7 @@ impl Reading {
 /// Counts off the middle of the converters as tool Fx, Fy, Fz, My: tool X, Y, Z are sensor Z, -Y, X
 /// (III.3.8). `None` if the sensor has no power, or an axis is overloaded: its neighbours cannot be trusted
 /// then either.
-fn tool_axes(force: &ForceSensor) -> Option<[f64; AXES]> {
+fn tool_axes(force: &ForceSensor) -> Option<[f64; FORCE_AXES]> {
     let sound = |counts: u16| (1..ADC_FULL_SCALE).contains(&counts);
     if !force.valid || ![force.x, force.y, force.z, force.moment].into_iter().all(sound) {
         return None;
@@ -89,7 +90,7 @@ impl Calibration {
 
     /// Forget the readings of a bias that is being taken.
     pub fn begin(&mut self) {
-        (self.sum, self.samples) = ([0.0; AXES], 0);
+        (self.sum, self.samples) = ([0.0; FORCE_AXES], 0);
     }
 
     /// Can a reading be taken, or is there nothing left to take?

@@ -171,6 +171,22 @@ fn a_force_sensor_that_cannot_be_trusted_stops_the_robot() {
 }
 
 #[test]
+fn a_restarted_prim_knows_what_the_force_sensor_reads_without_a_force() {
+    let restarted = |power: bool| {
+        let mut rig = Rig::calibrated();
+        rig.prim = Prim::default();
+        rig.external.devices.force = if power { LOADED } else { ForceSensor { valid: false, ..LOADED } };
+        rig.steps(5);
+        rig.external.devices.force = pushed(24);
+        assert_eq!(rig.run(PrimVerb::RobotInit, 0), PrimReport::Done);
+        rig.guard(PrimVerb::GoWhile, 1, "PUSH-X");
+        (rig.until_over(), rig.memory.prim.status.sensed)
+    };
+    assert_eq!(restarted(true), (PrimReport::Done, 24));
+    assert_eq!(restarted(false).0, PrimReport::SensorError, "the power was off");
+}
+
+#[test]
 fn cal_sensor_stops_the_robot_first_and_takes_the_mean() {
     let mut rig = Rig::initialized();
     rig.external.devices.force = pushed(90);
