@@ -1,6 +1,6 @@
 //! What has become of the world: compared with the undisturbed run, and watched for what must not happen.
 
-use plant::t3::Stage;
+use plant::{CellEvent, t3::Stage};
 use rcs_core::tick::Tick;
 
 use super::branch::Branch;
@@ -109,19 +109,33 @@ pub struct Harm {
 pub struct HarmMonitor {
     seen: usize,
     harms: Vec<Harm>,
+    /// What has slid in the fingers while no point was commanded, as when the arm jumps at the start-up.
+    slide: Option<(String, Harm)>,
 }
 
 impl HarmMonitor {
     /// Watch what happens from now on.
     #[must_use]
     pub fn from_now(branch: &Branch<'_>) -> Self {
-        Self { seen: branch.check().collisions().len(), harms: Vec::new() }
+        Self { seen: branch.check().collisions().len(), harms: Vec::new(), slide: None }
     }
 
     /// What has happened: the first that a commanded point has caused, or else the first.
     #[must_use]
     pub fn worst(&self) -> Option<&Harm> {
         self.harms.iter().find(|harm| harm.commanded).or_else(|| self.harms.first())
+    }
+
+    /// Is what `unlike` says of a part the consequence of a slide? It is a harm then: no sensor shows where in the
+    /// fingers the part is. One that has no consequence is none.
+    pub fn blame_slide(&mut self, unlike: &str) -> bool {
+        match self.slide.take_if(|(part, _)| unlike.is_empty() || unlike.starts_with(part.as_str())) {
+            Some((_, harm)) => {
+                self.harms.push(harm);
+                true
+            }
+            None => false,
+        }
     }
 
     /// Look at a tick; `person` moves the robot at the joystick box.
@@ -144,6 +158,13 @@ impl HarmMonitor {
             }
         }
         let commands = Commands::from(branch.memory());
+        for event in branch.events.iter().filter(|_| !commanded) {
+            if let CellEvent::Slipped { part, .. } = event {
+                let kind = format!("{part} slides in the fingers while no point is commanded");
+                let harm = Harm { tick, what: event.to_string(), kind, commanded, contact: None };
+                self.slide.get_or_insert((part.clone(), harm));
+            }
+        }
         for event in branch.events.iter().filter(|event| event.is_harm()) {
             let kind = format!("{event} during {commands}");
             let commanded = commanded && !self.is_displaced();
@@ -151,8 +172,9 @@ impl HarmMonitor {
         }
     }
 
-    /// An arm without pressure or a person has touched something: the controller cannot know where parts are then.
+    /// An arm without pressure or a person has touched something, or let a part slide in the fingers: the controller cannot
+    /// know where parts are then.
     fn is_displaced(&self) -> bool {
-        self.harms.iter().any(|harm| !harm.commanded)
+        self.slide.is_some() || self.harms.iter().any(|harm| !harm.commanded)
     }
 }

@@ -167,6 +167,18 @@ fn the_monitor_finds_a_world_that_is_unlike_what_a_command_says() {
     assert_eq!(result.reason, "MOVE is finished, but 1 parts in the cell, not 0");
 }
 
+/// The arm jumps when the pressure comes back, and the clevis slides in the fingers: no sensor shows where it is then.
+#[test]
+fn a_part_that_slides_while_no_point_is_commanded_is_counted_apart() {
+    let facility = facility("clevis");
+    let parent = Parent::run(&facility).expect("the job finishes");
+    let fork = pool::fork_at(&facility, 1639).expect("the run can be forked");
+    let result = judged(&facility, &parent, &fork, "estop");
+    assert_eq!(result.verdict, Verdict::Apart, "{result:?}");
+    assert_eq!(result.reason, "LCLEVIS_BH slides in the fingers while no point is commanded");
+    assert!(result.ended.iter().any(|ended| ended.contains("MOVE") && ended.ends_with("finished")));
+}
+
 #[test]
 fn all_threads_give_the_same_judgements_in_the_same_order() {
     let (facility, parent, _) = empty_move();

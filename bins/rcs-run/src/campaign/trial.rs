@@ -49,7 +49,8 @@ pub enum Verdict {
     Done,
     /// It did not, for the reason that is given.
     Stranded,
-    /// An arm without pressure, its alignment, its own travel to HOME or a person has touched something.
+    /// An arm without pressure, its alignment, its own travel to HOME or a person has touched something, or let a part
+    /// slide in the fingers.
     Apart,
     /// A commanded point has done damage, or a command that finished has not done what it says.
     Hurt,
@@ -256,11 +257,15 @@ impl Trial<'_, '_> {
             // How deep it gets is worth knowing.
             return (self.branch.at().since(tick) >= AFTERMATH).then_some(Verdict::Hurt);
         }
-        let apart = worst.map(|_| Verdict::Apart);
-        if self.operator.stranded().is_some() || self.branch.check().is_stuck() {
-            return Some(apart.unwrap_or(Verdict::Stranded));
+        let stranded = self.operator.stranded().is_some() || self.branch.check().is_stuck();
+        let apart = worst.is_some() || (stranded && self.monitor.blame_slide(""));
+        match (stranded, apart) {
+            (true, false) => Some(Verdict::Stranded),
+            (true, true) => Some(Verdict::Apart),
+            (false, _) if !reached && !self.operator.is_over() => None,
+            (false, false) => Some(Verdict::Done),
+            (false, true) => Some(Verdict::Apart),
         }
-        (reached || self.operator.is_over()).then(|| apart.unwrap_or(Verdict::Done))
     }
 
     /// A command says that it is finished: is the world as the undisturbed run has it then?
@@ -271,6 +276,9 @@ impl Trial<'_, '_> {
             return;
         }
         if let Some(unlike) = World::of(&self.branch).unlike(world) {
+            if self.monitor.blame_slide(&unlike) {
+                return;
+            }
             let verb = command.split_whitespace().next().unwrap_or_default();
             self.mismatch = Some((
                 format!("{verb} is finished, but {}", general(&unlike)),
