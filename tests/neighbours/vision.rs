@@ -297,7 +297,7 @@ fn answer(request: &VisionRequest, picture: &Picture) -> VisionResponse {
         y: hundredths(y),
         z: hundredths(z),
         angle: (angle + 9_000).rem_euclid(18_000) - 9_000,
-        recognised: request.object_id,
+        recognised: Some(request.object_id),
     }
 }
 

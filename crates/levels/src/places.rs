@@ -1,7 +1,11 @@
 //! Places of task data in the words of the interfaces, and back.
 
-use rcs_core::{Plain, interface::subtask::LocationKind};
-use taskdata::files::{ArrayId, LocptId, LookupError, Place};
+use rcs_core::{
+    Plain,
+    frame::Frame,
+    interface::{CommonMemory, pose_range, subtask::LocationKind},
+};
+use taskdata::files::{ArrayId, LocptId, LookupError, Place, PoseId, TaskData};
 
 /// Locations that the processes name themselves, because no command of the workstation controller does.
 pub mod named {
@@ -25,6 +29,16 @@ pub const fn place_of(
     location_array: Option<u32>,
 ) -> Place {
     Place { kind, locpt: LocptId::from_option(location_record), array: ArrayId::from_option(location_array) }
+}
+
+/// The frame of a record of POSE, or of a changing record. World, inches.
+#[must_use]
+pub fn pose_of(number: u32, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
+    if number >= pose_range::CHANGING {
+        memory.changing_pose(number)?.to_frame().ok()
+    } else {
+        data.pose(PoseId::new(number)).map(|record| record.frame)
+    }
 }
 
 /// What a look-up of task data did not find: a state variable of the tables ACCEPT.

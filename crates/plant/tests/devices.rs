@@ -166,7 +166,7 @@ fn the_camera_finds_a_blank_and_its_angle() {
     assert!((flood.y - 110).abs() <= 7 && (flood.z + 140).abs() <= 7, "{flood:?}");
     let found = [f64::from(flood.y) / 100.0, f64::from(flood.z) / 100.0];
     let precise = look(&mut rig, 2, Picture::Precise, 17, found, 0.0);
-    assert_eq!((precise.status, precise.recognised), (VisionStatus::Done, 17));
+    assert_eq!((precise.status, precise.recognised), (VisionStatus::Done, Some(17)));
     let [y, z] = found;
     assert!((y + f64::from(precise.y) / 100.0 - 1.1).abs() < 0.02, "{precise:?}");
     assert!((z + f64::from(precise.z) / 100.0 + 1.4).abs() < 0.02, "{precise:?}");

@@ -135,7 +135,7 @@ fn a_dark_part_and_a_shiny_one_need_their_own_exposure() {
 fn a_part_that_another_hides_is_not_recognised() {
     let mut rig = at_unit(0.5);
     rig.place("LINKBAR1_BH", 4, 0.0, 0.0, 0.0);
-    assert_eq!(look(&mut rig, 1, 0, [0.0; 2]).recognised, 17);
+    assert_eq!(look(&mut rig, 1, 0, [0.0; 2]).recognised, Some(17));
     // A clevis blank is put beside it, so near that it is one blob with the bar.
     rig.place("LCLEVIS_BH", 4, 0.0, -1.61, 0.0);
     assert_eq!(look(&mut rig, 2, 0, [0.0; 2]).status, VisionStatus::NotRecognised);
@@ -148,6 +148,6 @@ fn of_several_parts_the_nearest_to_the_middle_is_meant() {
     rig.place("LCLEVIS_BH", 4, 0.0, -3.0, 0.0);
     let seen = look(&mut rig, 1, 0, [0.0; 2]);
     // Tool Y is world -Y.
-    assert_eq!(seen.recognised, 17);
+    assert_eq!(seen.recognised, Some(17));
     assert!((seen.y + 150).abs() <= 3, "{seen:?}");
 }

@@ -59,10 +59,10 @@ impl Kind {
         match self {
             Self::Off => None,
             Self::NotRecognised if done => {
-                with(VisionResponse { status: VisionStatus::NotRecognised, recognised: 0, ..response })
+                with(VisionResponse { status: VisionStatus::NotRecognised, recognised: None, ..response })
             }
             Self::AnotherObject if done => {
-                with(VisionResponse { recognised: response.recognised + 1, ..response })
+                with(VisionResponse { recognised: response.recognised.map(|id| id + 1), ..response })
             }
             Self::AnotherEcho => with(VisionResponse { echo: response.echo + 1, ..response }),
             Self::InputNotReady => Some(Areas { input: Ready::NotReady, ..areas }),
@@ -145,8 +145,14 @@ mod tests {
 
     #[test]
     fn each_kind_spoils_what_it_says_and_nothing_else() {
-        let response =
-            VisionResponse { echo: 4, status: VisionStatus::Done, y: 10, z: -5, angle: 300, recognised: 17 };
+        let response = VisionResponse {
+            echo: 4,
+            status: VisionStatus::Done,
+            y: 10,
+            z: -5,
+            angle: 300,
+            recognised: Some(17),
+        };
         let areas = Areas { input: Ready::Ready, output: Ready::Ready, response };
         for (word, kind) in Kind::ALL {
             let spoiled = kind.spoil(areas);

@@ -18,7 +18,7 @@ use rcs_core::{
     pose::Pose,
     process::Inputs,
 };
-use taskdata::files::{PoseId, TaskData};
+use taskdata::files::TaskData;
 
 use super::{
     fingers::gripper_on,
@@ -29,6 +29,7 @@ use super::{
     state::State,
     tables::{Along, Shut},
 };
+use crate::places::pose_of;
 
 /// The robot is at the seat within this, in: much less than a relative move is long.
 const AT_POINT: f64 = 0.12;
@@ -103,10 +104,7 @@ impl Points {
 
 /// The pose of a command's location.
 pub(super) fn base(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
-    match data.pose(PoseId::new(command.pose)) {
-        Some(record) => Some(record.frame),
-        None => memory.changing_pose(command.pose)?.to_frame().ok(),
-    }
+    pose_of(command.pose?, memory, data)
 }
 
 const fn is_exchange(verb: EmoveVerb) -> bool {

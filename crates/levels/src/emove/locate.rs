@@ -59,7 +59,7 @@ pub fn is_plausible(request: &VisionRequest, answer: &VisionResponse) -> bool {
 /// second picture).
 #[must_use]
 pub fn is_another(request: &VisionRequest, answer: &VisionResponse) -> bool {
-    request.picture == Picture::Precise && answer.recognised != request.object_id
+    request.picture == Picture::Precise && answer.recognised != Some(request.object_id)
 }
 
 /// A request for a picture.

@@ -135,13 +135,14 @@ impl State {
                 && located.record == command.location_record
                 && located.array == command.location_array
         });
-        let pose = match located {
-            Some(located) => located.pose,
-            None if command.pose < pose_range::CHANGING => {
-                let record = inputs.data.pose(PoseId::new(command.pose)).ok_or(Planning::NoPose)?;
+        let pose = match (located, command.pose) {
+            (Some(located), _) => located.pose,
+            (None, None) => return Err(Planning::NoPose),
+            (None, Some(pose @ 0..pose_range::CHANGING)) => {
+                let record = inputs.data.pose(PoseId::new(pose)).ok_or(Planning::NoPose)?;
                 return Ok(record.frame);
             }
-            None => *inputs.memory.changing_pose(command.pose).ok_or(Planning::NoPose)?,
+            (None, Some(pose)) => *inputs.memory.changing_pose(pose).ok_or(Planning::NoPose)?,
         };
         pose.to_frame().map_err(|_| Planning::BadPose)
     }

@@ -220,7 +220,7 @@ impl State {
         outputs: &mut EmoveOutputs,
     ) {
         let pose = match relative.reference() {
-            Reference::Location => Some(command.pose),
+            Reference::Location => command.pose,
             Reference::Seat => self
                 .seat_pose(command, inputs.memory, inputs.data)
                 .map(|pose| self.publish(Slot::Departure, pose, outputs)),
@@ -285,7 +285,7 @@ impl State {
             Slot::Between => between,
             Slot::Located => located,
         };
-        *record = ChangingPose { number: self.last_pose, pose };
+        *record = ChangingPose { number: Some(self.last_pose), pose };
         self.last_pose
     }
 

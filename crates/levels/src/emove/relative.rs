@@ -182,11 +182,10 @@ pub const fn moves_of(verb: EmoveVerb) -> &'static [Relative] {
 /// Look up all that the relative moves of a command need.
 #[must_use]
 pub fn look_up(command: &EmoveCommand, memory: &CommonMemory, data: &TaskData<'_>) -> RelativeMoves {
-    let located = if command.pose < pose_range::CHANGING {
-        data.pose(PoseId::new(command.pose)).is_some()
-    } else {
-        memory.changing_pose(command.pose).is_some()
-    };
+    let located = command.pose.is_some_and(|pose| match pose {
+        0..pose_range::CHANGING => data.pose(PoseId::new(pose)).is_some(),
+        pose_range::CHANGING.. => memory.changing_pose(pose).is_some(),
+    });
     let of_move = |relative: &Relative| match relative.record(command, data) {
         None => RelativeMoves::Missing,
         Some(found) if relative.is_guarded() && data.sensor(&found.sensor).is_none() => {

@@ -202,14 +202,14 @@ impl State {
                 && self.motion.is_none()
                 && outputs.t3i.command == T3iVerb::Restart,
             link_running: self.motion.is_some() && inputs.memory.t3i.status.link_running,
-            present_pose: present.record(),
-            sensor_pose: sensor.record(),
-            detected_pose: detected.record(),
+            present_pose: present.number,
+            sensor_pose: sensor.number,
+            detected_pose: detected.number,
             holster_right: devices.holsters.right,
             holster_left: devices.holsters.left,
             holster_centre: devices.holsters.centre,
             joystick_grip: if engaged { gripper_buttons(&devices.joystick) } else { JoystickGrip::None },
-            recorded_pose: recorded.record(),
+            recorded_pose: recorded.number,
             recording: recording == Recording::Record,
             sensed: self.sensed,
             distance: self.motion.as_ref().map_or(0, |motion| hundredths(motion.distance())),
@@ -222,10 +222,10 @@ impl State {
     fn publish(&mut self, record: &mut ChangingPose, pose: Option<Pose>) {
         match pose {
             None => *record = ChangingPose::default(),
-            Some(pose) if record.number != 0 && record.pose == pose => {}
+            Some(pose) if record.number.is_some() && record.pose == pose => {}
             Some(pose) => {
                 self.newest_pose = pose_range::next(pose_range::PRIM, self.newest_pose);
-                *record = ChangingPose { number: self.newest_pose, pose };
+                *record = ChangingPose { number: Some(self.newest_pose), pose };
             }
         }
     }

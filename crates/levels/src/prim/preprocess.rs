@@ -9,14 +9,13 @@ use rcs_core::{
     interface::{
         PrimOutputs,
         device::{JoystickBox, single_step},
-        pose_range,
         prim::{PrimCommand, PrimVerb},
         t3i::{LinkFault, ReportCheck, T3iCommand, T3iReport, T3iStatus, T3iVerb},
     },
     process::Inputs,
     units::{inches, rounded},
 };
-use taskdata::files::{MovtabId, PoseId, SensorPara, TaskData, TrajParaId};
+use taskdata::files::{MovtabId, SensorPara, TaskData, TrajParaId};
 
 use super::{
     manual::{Coordinates, Manual, is_moved},
@@ -28,7 +27,7 @@ use super::{
         Rest, Samples, Seen, Situation, Switches, Way,
     },
 };
-use crate::execution::Asked;
+use crate::{execution::Asked, places::pose_of};
 
 /// Ticks in a row that the robot must rest at the goal (docs/design/motion.md "Rest").
 const SETTLED: u32 = 3;
@@ -249,7 +248,7 @@ fn target(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Ta
 
 /// Goal and limits of a motion.
 fn goal(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Goal, Missing> {
-    let pose = pose(command, inputs).ok_or(Missing::Pose)?;
+    let pose = pose_of(command.pose, inputs.memory, inputs.data).ok_or(Missing::Pose)?;
     let by = MovtabId::from_option(command.movetable);
     if !by.is_null() && inputs.data.movetable(by).is_none() {
         return Err(Missing::Movetable);
@@ -262,15 +261,6 @@ fn goal(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Goal
         limits,
         through: (command.command == PrimVerb::GoThru).then(|| inches(para.brk_dst)),
     })
-}
-
-/// The pose of a command, static or changing.
-fn pose(command: &PrimCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Frame> {
-    if command.pose >= pose_range::CHANGING {
-        inputs.memory.changing_pose(command.pose)?.to_frame().ok()
-    } else {
-        inputs.data.pose(PoseId::new(command.pose)).map(|record| record.frame)
-    }
 }
 
 /// How many frame switches of the joystick box are on.

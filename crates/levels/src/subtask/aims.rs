@@ -43,8 +43,8 @@ pub struct Aim {
     pub record: Option<u32>,
     /// Record of ARRAY-TABLE, if it is a sector.
     pub array: Option<u32>,
-    /// Record number of its pose.
-    pub pose: u32,
+    /// Record number of its pose, once it is given.
+    pub pose: Option<u32>,
 }
 
 /// The aims that a command of Task does not name, and the two poses that they share.
@@ -95,7 +95,7 @@ impl Aim {
             kind: location.place.kind,
             record: location.place.locpt.to_option(),
             array: location.place.array.to_option(),
-            pose: 0,
+            pose: None,
         }
     }
 

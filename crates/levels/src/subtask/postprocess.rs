@@ -141,8 +141,8 @@ impl State {
         {
             if !aim.location.is_empty() {
                 self.last_pose = pose_range::next(pose_range::SUBTASK, self.last_pose);
-                *slot = ChangingPose { number: self.last_pose, pose: *pose };
-                aim.pose = self.last_pose;
+                aim.pose = Some(self.last_pose);
+                *slot = ChangingPose { number: aim.pose, pose: *pose };
             }
         }
         aims.third.pose = aims.first.pose;

@@ -62,7 +62,7 @@ impl State {
         self.pedestal.start_from(tick, written.pedestal.number, memory.pedestal.status.echo);
         if !self.execution.receiver.started {
             self.regrip = written.regrip;
-            self.last_pose = written.poses.iter().map(|pose| pose.number).max().unwrap_or_default();
+            self.last_pose = written.poses.iter().filter_map(|pose| pose.number).max().unwrap_or_default();
         }
     }
 

@@ -351,7 +351,7 @@ impl Location {
             record: found.place.locpt.to_option(),
             array: found.place.array.to_option(),
             sector: found.sector,
-            pose: ChangingPose { number: 0, pose: Pose::from_frame(&found.frame) },
+            pose: ChangingPose { number: None, pose: Pose::from_frame(&found.frame) },
         }))
     }
 

@@ -35,7 +35,7 @@ impl State {
         let sites = [&mut self.plan.source, &mut self.plan.destination, &mut self.plan.end_at];
         for (slot, site) in outputs.poses.iter_mut().zip(sites) {
             self.last_pose = pose_range::next(pose_range::TASK, self.last_pose);
-            *slot = ChangingPose { number: self.last_pose, ..ChangingPose::default() };
+            *slot = ChangingPose { number: Some(self.last_pose), ..ChangingPose::default() };
             if let Some(location) = &mut site.location {
                 slot.pose = location.pose.pose;
                 location.pose = *slot;

@@ -70,7 +70,7 @@ impl State {
         let (memory, written) = (inputs.memory, &inputs.memory.task);
         self.subtask.start_from(inputs.tick, written.subtask.number, memory.subtask.status.echo);
         if !self.execution.receiver.started {
-            self.last_pose = written.poses.iter().map(|pose| pose.number).max().unwrap_or_default();
+            self.last_pose = written.poses.iter().filter_map(|pose| pose.number).max().unwrap_or_default();
             self.data_system.adopt(written, inputs.tick);
         }
     }

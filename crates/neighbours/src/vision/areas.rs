@@ -59,7 +59,14 @@ impl Areas {
     pub const INITIALIZED: Self = Self {
         input: Ready::Ready,
         output: Ready::NotReady,
-        response: VisionResponse { echo: 0, status: VisionStatus::Idle, y: 0, z: 0, angle: 0, recognised: 0 },
+        response: VisionResponse {
+            echo: 0,
+            status: VisionStatus::Idle,
+            y: 0,
+            z: 0,
+            angle: 0,
+            recognised: None,
+        },
     };
 
     /// The bytes.
@@ -77,7 +84,7 @@ impl Areas {
         fields.integer("y", response.y)?;
         fields.integer("z", response.z)?;
         fields.integer("angle", response.angle)?;
-        fields.word(response.recognised);
+        fields.word(response.recognised.unwrap_or_default());
         Ok(fields.finish())
     }
 
@@ -110,7 +117,7 @@ impl Areas {
             y: fields.integer("y")?,
             z: fields.integer("z")?,
             angle: fields.integer("angle")?,
-            recognised: fields.word("recognised")?,
+            recognised: Some(fields.word("recognised")?).filter(|id| *id != 0),
         };
         Ok(Self { input, output, response })
     }
@@ -129,7 +136,7 @@ mod tests {
             y: 150,
             z: -75,
             angle: 3438,
-            recognised: 17,
+            recognised: Some(17),
         };
         Areas { input: Ready::Ready, output: Ready::NotReady, response }
     }

@@ -323,7 +323,7 @@ mod tests {
 
     fn answer(echo: u32) -> Areas {
         let status = VisionStatus::Done;
-        let response = VisionResponse { echo, status, y: 10, z: -5, angle: 300, recognised: 17 };
+        let response = VisionResponse { echo, status, y: 10, z: -5, angle: 300, recognised: Some(17) };
         Areas { input: Ready::Ready, output: Ready::Ready, response }
     }
 

@@ -157,7 +157,7 @@ impl Analysis {
         let missed = self.fails();
         let known = expected.filter(|part| looks_like(part, measured, self.description.shape_tolerance));
         match known {
-            Some(part) if blob.len() == 1 && !missed => answer.recognised = part.vision_id,
+            Some(part) if blob.len() == 1 && !missed => answer.recognised = Some(part.vision_id),
             _ => answer.status = VisionStatus::NotRecognised,
         }
     }
@@ -282,10 +282,10 @@ mod tests {
     #[test]
     fn the_flood_is_coarse_and_the_second_picture_exact() {
         let flood = ask(Picture::FastFlood, 2, &[bar(1.5, -0.75, 0.6)]);
-        assert_eq!((flood.status, flood.recognised), (VisionStatus::Done, 0));
+        assert_eq!((flood.status, flood.recognised), (VisionStatus::Done, None));
         assert!((flood.y - 150).abs() <= 6 && (flood.z + 75).abs() <= 6, "{flood:?}");
         let precise = ask(Picture::Precise, 2, &[bar(0.03, -0.02, 0.6)]);
-        assert_eq!((precise.status, precise.recognised), (VisionStatus::Done, 17));
+        assert_eq!((precise.status, precise.recognised), (VisionStatus::Done, Some(17)));
         assert!((precise.y - 3).abs() <= 1 && (precise.z + 2).abs() <= 1, "{precise:?}");
         assert!((precise.angle - 3438).abs() <= 12, "across the width: {precise:?}");
         let along = ask(Picture::Precise, 1, &[bar(0.0, 0.0, 0.6)]);
@@ -331,7 +331,7 @@ mod tests {
         let together = ask(Picture::Precise, 2, &pair(0.02));
         assert_eq!(together.status, VisionStatus::NotRecognised);
         assert!(together.y.abs() <= 1, "in the middle of both: {together:?}");
-        assert_eq!(ask(Picture::Precise, 2, &pair(0.5)).recognised, 17);
+        assert_eq!(ask(Picture::Precise, 2, &pair(0.5)).recognised, Some(17));
     }
 
     #[test]

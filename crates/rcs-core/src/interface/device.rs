@@ -336,8 +336,8 @@ pub struct VisionResponse {
     pub z: i32,
     /// Right-hand roll about X, 0.01 degree, -9000 < angle <= 9000, that brings the tool's Y onto the dimension to grip across.
     pub angle: i32,
-    /// Vision id of what was recognised, 0 for none.
-    pub recognised: u16,
+    /// Vision id of what was recognised, if anything was.
+    pub recognised: Option<u16>,
 }
 
 /// Everything that the controller reads from its devices in a tick.

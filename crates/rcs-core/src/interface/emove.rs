@@ -81,8 +81,8 @@ pub struct EmoveCommand {
     pub location_record: Option<u32>,
     /// Record of ARRAY-TABLE if the location is a sector (extension).
     pub location_array: Option<u32>,
-    /// `pose-^-in`: the goal pose.
-    pub pose: u32,
+    /// `pose-^-in`: the goal pose, if a location is named.
+    pub pose: Option<u32>,
     /// `endeff-id#-in`.
     pub end_effector_id: u8,
 }

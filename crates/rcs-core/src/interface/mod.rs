@@ -287,18 +287,10 @@ pub mod pose_range {
 /// A pose record that changes while running (T-POSE-1 …, VII.1): it has a new number whenever it changes.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct ChangingPose {
-    /// Record number; 0 while empty.
-    pub number: u32,
+    /// Record number; `None` while empty.
+    pub number: Option<u32>,
     /// The pose.
     pub pose: Pose,
-}
-
-impl ChangingPose {
-    /// The record number; `None` while empty.
-    #[must_use]
-    pub const fn record(&self) -> Option<u32> {
-        if self.number == 0 { None } else { Some(self.number) }
-    }
 }
 
 impl CommonMemory {
@@ -312,7 +304,7 @@ impl CommonMemory {
             pose_range::PRIM => &self.prim.poses,
             _ => return None,
         };
-        records.iter().find(|record| record.number == number).map(|record| &record.pose)
+        records.iter().find(|record| record.number == Some(number)).map(|record| &record.pose)
     }
 
     /// What the controller writes to its devices, gathered from the processes that own them.

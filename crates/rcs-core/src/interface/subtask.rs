@@ -96,8 +96,8 @@ pub struct SubtaskCommand {
     pub location_record: Option<u32>,
     /// Record of ARRAY-TABLE if the location is a sector (extension).
     pub location_array: Option<u32>,
-    /// `pose-^-in`: the goal, a T-POSE of Task.
-    pub pose: u32,
+    /// `pose-^-in`: the goal, a T-POSE of Task, if a location is named.
+    pub pose: Option<u32>,
 }
 
 /// Status from Subtask to Task.

@@ -223,7 +223,7 @@ impl Bench {
             ..EmoveCommand::default()
         };
         if let Some((id, locpt)) = found {
-            pose.number = pose_range::next(pose_range::SUBTASK, pose.number);
+            pose.number = Some(pose_range::next(pose_range::SUBTASK, pose.number.unwrap_or_default()));
             pose.pose = Pose::from_frame(&locpt.frame);
             command.location = locpt.name;
             command.location_kind = LocationKind::Point;

@@ -17,7 +17,9 @@ use rcs_core::{
     pose::Pose,
     tick::Tick,
 };
-use taskdata::files::{MovtabId, PoseId, TaskData};
+use taskdata::files::{MovtabId, TaskData};
+
+use crate::places::pose_of;
 
 /// Ticks that a double takes for a command.
 const TICKS: u32 = 4;
@@ -198,11 +200,7 @@ impl Prim {
 
     fn goal(memory: &CommonMemory, data: &TaskData<'_>) -> Option<Frame> {
         let command = &memory.emove.prim;
-        let base = if command.pose < pose_range::CHANGING {
-            data.pose(PoseId::new(command.pose))?.frame
-        } else {
-            memory.changing_pose(command.pose)?.to_frame().ok()?
-        };
+        let base = pose_of(command.pose, memory, data)?;
         Some(data.moved(&base, MovtabId::from_option(command.movetable)))
     }
 
@@ -287,14 +285,13 @@ impl Prim {
             PrimOutputs { header: Header { stamp: tick, ..Header::default() }, ..PrimOutputs::default() };
         for record in &mut outputs.poses[..2] {
             self.poses = pose_range::next(pose_range::PRIM, self.poses);
-            (record.number, record.pose) = (self.poses, Pose::from_frame(&world.frame));
+            (record.number, record.pose) = (Some(self.poses), Pose::from_frame(&world.frame));
         }
         let status = &mut outputs.status;
         status.echo = self.receiving.receiver.echo;
         (status.report, status.reason) = (self.report, self.reason);
         status.link_running = self.link;
-        (status.present_pose, status.sensor_pose) =
-            (Some(outputs.poses[0].number), Some(outputs.poses[1].number));
+        (status.present_pose, status.sensor_pose) = (outputs.poses[0].number, outputs.poses[1].number);
         [status.holster_right, status.holster_left, status.holster_centre] = world.holsters;
         status.joystick_grip = world.button;
         outputs
@@ -503,7 +500,8 @@ impl Vision {
                 let truth = (20, -10, 1000, request.object_id);
                 let claim = if world.claims.is_empty() { truth } else { world.claims.remove(0) };
                 answer.status = next;
-                (answer.y, answer.z, answer.angle, answer.recognised) = claim;
+                (answer.y, answer.z, answer.angle) = (claim.0, claim.1, claim.2);
+                answer.recognised = Some(claim.3);
             }
         }
     }

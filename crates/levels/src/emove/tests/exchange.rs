@@ -342,6 +342,6 @@ fn data_for_the_holsters_must_be_there() {
     assert_eq!(bench.run(QcDetach, "GRIPPER-9", 1, "HOLSTER-R", 1), error(Reason::UnknownGrip));
     assert_eq!(bench.run(QcDetach, "GRIPPER-1", 1, "BENCH", 1), error(Reason::NoRelativeMove));
     bench.command(QcDetach, "GRIPPER-1", 1, "HOLSTER-R", 1);
-    bench.memory.subtask.emove.pose = 0;
+    bench.memory.subtask.emove.pose = None;
     assert_eq!(bench.finish(), error(Reason::NoDestination));
 }

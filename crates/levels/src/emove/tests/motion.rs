@@ -70,7 +70,7 @@ fn a_move_to_where_the_robot_is_is_done_at_once() {
 fn a_pose_may_be_a_static_record() {
     let mut bench = Bench::ready("HOME", 0);
     bench.command(MovToLoc, "", 0, "VISE", 0);
-    bench.memory.subtask.emove.pose = data().pose_named(&Name16::clipped("VISE-P")).unwrap().number();
+    bench.memory.subtask.emove.pose = data().pose_named(&Name16::clipped("VISE-P")).map(|id| id.number());
     assert_eq!(bench.finish(), DONE);
     assert!(bench.off(&frame_of("VISE")) < 0.02);
 }
@@ -420,10 +420,10 @@ fn missing_data_are_named() {
     assert_eq!(bench.run(MovToHol, "GRIPPER-1", 1, "BENCH", 1), error(Reason::NoGripMovetable));
     assert_eq!(bench.run(LocateObj, "PIN", 1, "VISE", 1), error(Reason::BadRecord));
     bench.command(MovToLoc, "", 0, "BENCH", 0);
-    bench.memory.subtask.emove.pose = 4_000_000;
+    bench.memory.subtask.emove.pose = Some(4_000_000);
     assert_eq!(bench.finish(), error(Reason::NoDestination), "no such POSE record");
     bench.command(MovToLoc, "", 0, "BENCH", 0);
-    bench.memory.subtask.emove.pose = pose_range::next(pose_range::SUBTASK, bench.memory.subtask.emove.pose);
+    bench.memory.subtask.emove.pose = Some(pose_range::next(pose_range::SUBTASK, 4_000_000));
     assert_eq!(bench.finish(), error(Reason::NoDestination), "no such changing record");
     assert_eq!(
         bench.run(rcs_core::interface::emove::EmoveVerb::None, "", 0, "", 0),

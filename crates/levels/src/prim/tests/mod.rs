@@ -476,7 +476,8 @@ fn movetables_and_changing_poses_make_the_goal() {
     goal.position.z += 3.0;
     assert_eq!(rig.t3i.output, WireFrame::from_frame(&goal));
     let number = pose_range::EMOVE | 5;
-    rig.memory.emove.poses[1] = ChangingPose { number, pose: Pose::from_frame(&shifted(4.0, 4.0)) };
+    rig.memory.emove.poses[1] =
+        ChangingPose { number: Some(number), pose: Pose::from_frame(&shifted(4.0, 4.0)) };
     assert_eq!(rig.run(PrimVerb::GotoPt, number), PrimReport::Done);
     assert_eq!(rig.t3i.output.tool, WireFrame::from_frame(&shifted(4.0, 4.0)).tool);
 }

@@ -271,7 +271,7 @@ impl<'d> Bench<'d> {
             ..SubtaskCommand::default()
         };
         if let Some(place) = place {
-            poses[0].number = 0x8100_0000 + number;
+            poses[0].number = Some(0x8100_0000 + number);
             poses[0].pose = Pose::from_frame(&place.frame);
             command.location = place.name;
             command.location_kind = place.place.kind;

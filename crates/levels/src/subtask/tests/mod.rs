@@ -67,10 +67,10 @@ fn a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched() {
     let (own, wanted) = (("GRIPPER-1", 1, "HOLSTER-R", 1), ("GRIPPER-2", 2, "HOLSTER-L", 2));
     assert_eq!(aims, [own, own, wanted, wanted]);
     for command in &bench.emove.received {
-        assert_eq!(command.pose & pose_range::WRITER, pose_range::SUBTASK);
+        assert_eq!(command.pose.unwrap() & pose_range::WRITER, pose_range::SUBTASK);
         let locpt = bench.data.locpt(bench.data.locpt_named(&command.location).unwrap()).unwrap();
         let expected = rcs_core::pose::Pose::from_frame(&locpt.frame);
-        assert_eq!(pose_of(&bench, command.pose), Some(expected), "{}", command.location);
+        assert_eq!(pose_of(&bench, command.pose.unwrap()), Some(expected), "{}", command.location);
         let (id, _) = bench.data.object(&command.object, command.grip).unwrap();
         assert_eq!(command.object_parameters, Some(id.number()));
     }
@@ -315,7 +315,7 @@ fn the_tool_commands_go_down_with_the_transfer_location() {
         let command = bench.emove.received[0];
         assert_eq!((command.object.as_str(), command.location.as_str()), ("TOOL-1", "TOOL-TRNS"));
         assert_eq!((command.grip, command.end_effector_id), (1, 3));
-        assert_eq!(command.pose & pose_range::WRITER, pose_range::SUBTASK);
+        assert_eq!(command.pose.unwrap() & pose_range::WRITER, pose_range::SUBTASK);
         let tool = Name16::new("TOOL-1").unwrap();
         assert_eq!(command.object_parameters, bench.data.object(&tool, 1).map(|(id, _)| id.number()));
         assert_eq!(bench.memory.emove.status.held.is_held(), verb != SubtaskVerb::ReleaseTool);
