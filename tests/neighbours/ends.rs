@@ -25,7 +25,7 @@ fn start(name: &str) -> (Controller, Workstation) {
 }
 
 fn to_safe(number: u32) -> HwsCommand {
-    HwsCommand { destination: Name16::clipped("SAFE"), ..bare(number, "MOVE") }
+    HwsCommand { destination: Some(Name16::clipped("SAFE")), ..bare(number, "MOVE") }
 }
 
 /// The robot is on its way, by command 2.

@@ -55,18 +55,19 @@ fn command(number: u32, line: &str) -> HwsCommand {
     else {
         panic!("{line}")
     };
-    let name = |word: &str| if word == "--" { Name16::EMPTY } else { Name16::new(word).expect("a name") };
+    let name = |word: &str| (word != "--").then(|| Name16::new(word).expect("a name"));
     let integer = |word: &str| word.parse().expect("an integer");
+    let sector_of = |word: &str| Some(integer(word)).filter(|sector| *sector != 0);
     HwsCommand {
         object: name(object),
         source_grip: integer(source_grip),
         source: name(source),
-        source_sector: integer(source_sector),
+        source_sector: sector_of(source_sector),
         destination_grip: integer(grip),
         destination: name(destination),
-        destination_sector: integer(sector),
+        destination_sector: sector_of(sector),
         end_at: name(end_at),
-        end_at_sector: integer(end_sector),
+        end_at_sector: sector_of(end_sector),
         ..bare(number, verb)
     }
 }

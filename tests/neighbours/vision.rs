@@ -305,12 +305,12 @@ fn answer(request: &VisionRequest, picture: &Picture) -> VisionResponse {
 fn fetch(number: u32) -> HwsCommand {
     let name = |text| Name16::new(text).expect("a name");
     HwsCommand {
-        object: name("LINKBAR1_BH"),
+        object: Some(name("LINKBAR1_BH")),
         source_grip: 2,
-        source: name("UNIT_1"),
-        source_sector: 4,
+        source: Some(name("UNIT_1")),
+        source_sector: Some(4),
         destination_grip: 2,
-        destination: name("PFIXTURE"),
+        destination: Some(name("PFIXTURE")),
         ..bare(number, "MOVE")
     }
 }

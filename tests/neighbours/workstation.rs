@@ -100,7 +100,7 @@ fn refused_commands_say_why_and_nothing_moves() {
         let good = command::encode(&bare(2, "MOVE")).expect("it fits");
         let mut garbled = good;
         garbled[21] = 0x9C;
-        let other = HwsCommand { source_sector: 3, ..bare(1, "PAUSE") };
+        let other = HwsCommand { source_sector: Some(3), ..bare(1, "PAUSE") };
         let cases: [(&[u8], &str); 6] = [
             (&garbled, "for command-16, found 9C at byte 21"),
             (&good[..60], "a command of 126 bytes was expected, found 60"),
@@ -213,7 +213,7 @@ fn a_workstation_controller_that_comes_again_goes_on_from_the_echo() {
     assert!(second.tick > last, "the ticks went on");
     assert_eq!((second.status().echo, second.status().verdict), (1, 0));
     // One that forgot everything, and would begin to count again.
-    second.send(&HwsCommand { source_sector: 1, ..bare(1, "PAUSE") });
+    second.send(&HwsCommand { source_sector: Some(1), ..bare(1, "PAUSE") });
     while second.status().verdict == 0 {
         second.tick();
     }

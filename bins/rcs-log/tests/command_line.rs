@@ -64,7 +64,7 @@ impl Scratch {
             external.devices.joystick.velocity = speed;
             external.hws.number = u32::from(tick.0 >= commanded);
             external.hws.command = Name16::new("TRANSFER").expect("a word");
-            external.hws.object = Name16::new("NOBODY").expect("a word");
+            external.hws.object = Some(Name16::new("NOBODY").expect("a word"));
             let before = memory;
             ladder.step(tick, &before, &external, &TaskData::default(), &mut memory);
             digest.add_record(&memory, &mut [0; CommonMemory::SIZE]);

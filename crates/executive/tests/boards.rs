@@ -62,7 +62,7 @@ fn external(tick: Tick) -> ExternalInputs {
     external.hws = HwsCommand {
         number,
         command: name(verbs[number as usize % verbs.len()]),
-        destination: name("SAFE"),
+        destination: Some(name("SAFE")),
         ..HwsCommand::default()
     };
     let devices = &mut external.devices;

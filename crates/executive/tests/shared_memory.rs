@@ -37,7 +37,7 @@ fn with_stamp(tick: u64) -> (ExternalInputs, CommonMemory, Pulse) {
     memory.grip.status.position = -i32::try_from(tick.0).unwrap();
     let mut external = ExternalInputs::default();
     external.hws.number = u32::try_from(tick.0).unwrap();
-    external.hws.object = Name16::new("LINKBAR1_BH").unwrap();
+    external.hws.object = Some(Name16::new("LINKBAR1_BH").unwrap());
     external.devices.joystick.velocity = 1000;
     (
         external,

@@ -137,7 +137,7 @@ impl Rig {
         *hws = HwsCommand {
             number: hws.number + 1,
             command: Name16::new(verb).unwrap(),
-            destination: Name16::new(destination).unwrap(),
+            destination: Name16::new(destination).ok().filter(|name| !name.is_empty()),
             ..HwsCommand::default()
         };
     }

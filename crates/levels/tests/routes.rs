@@ -36,7 +36,7 @@ fn command(verb: EmoveVerb, object: &str, grip: i32, at: &Location) -> EmoveComm
     EmoveCommand {
         number: 1,
         command: verb,
-        object,
+        object: Some(object).filter(|object| !object.is_empty()),
         grip,
         object_parameters: data().object(&object, grip).map(|(id, _)| id.number()),
         object_vision: data().view(&object, &at.place).map(|(id, _)| id.number()),

@@ -24,7 +24,7 @@ pub enum Step {
         /// The command.
         verb: EmoveVerb,
         /// The object that decides grip, approach and depart; empty for a location as such.
-        object: Name16,
+        object: Option<Name16>,
         /// Its grip.
         grip: i32,
         /// Where.
@@ -42,7 +42,7 @@ pub enum Step {
         /// GRASP-OBJ or RELEASE.
         verb: EmoveVerb,
         /// The object.
-        object: Name16,
+        object: Option<Name16>,
         /// Its grip.
         grip: i32,
     },
@@ -100,7 +100,7 @@ pub fn steps(
     data: &TaskData<'_>,
 ) -> Result<Vec<Step>, LookupError> {
     let maker = Maker { command, held, data };
-    let object = !command.object.is_empty();
+    let object = command.object.is_some();
     let mut steps = Vec::new();
     match command.command.as_str() {
         "TRANSFER" => {
@@ -120,11 +120,11 @@ pub fn steps(
             maker.regrip(&mut steps)?;
             maker.place(&mut steps)?;
         }
-        "MOVE" => steps.push(maker.to_location(&command.destination, command.destination_sector)?),
+        "MOVE" => steps.push(maker.to_location(command.destination, command.destination_sector)?),
         "ACQUIRE" => maker.get(&mut steps)?,
         "POSITION" => {
             steps.push(match maker.held {
-                Some((object, grip)) => Step::Fingers { verb: EmoveVerb::Release, object, grip },
+                Some((object, grip)) => Step::Fingers { verb: EmoveVerb::Release, object: Some(object), grip },
                 None => Step::Other("RELEASE, if an object is held"),
             });
             maker.position(&mut steps)?;
@@ -136,7 +136,7 @@ pub fn steps(
             maker.end_at(&mut steps)?;
         }
         "ACQUIRE-TOOL" => {
-            steps.push(maker.to_location(&command.destination, command.destination_sector)?);
+            steps.push(maker.to_location(command.destination, command.destination_sector)?);
             maker.relative(&mut steps, &["ACQ-NEAR", "ACQ-STRIKE", "ACQ-SLIDE"])?;
             steps.push(Step::GraspTool);
         }
@@ -156,9 +156,14 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    fn location(&self, name: &Name16, sector: i32) -> Result<Location, LookupError> {
-        let object = (!self.command.object.is_empty()).then_some(&self.command.object);
-        self.data.resolve_location(name, sector, object)
+    fn location(&self, name: Option<Name16>, sector: Option<i32>) -> Result<Location, LookupError> {
+        let name = name.unwrap_or_default();
+        self.data.resolve_location(&name, sector.unwrap_or(0), self.command.object.as_ref())
+    }
+
+    /// What the robot holds, if it is the object of the command.
+    fn held_object(&self) -> Option<(Name16, i32)> {
+        self.held.filter(|(object, _)| Some(*object) == self.command.object)
     }
 
     const fn go(&self, verb: EmoveVerb, grip: i32, location: Location) -> Step {
@@ -169,19 +174,22 @@ impl Maker<'_> {
         Step::Fingers { verb, object: self.command.object, grip }
     }
 
-    fn to_location(&self, name: &Name16, sector: i32) -> Result<Step, LookupError> {
+    fn to_location(&self, name: Option<Name16>, sector: Option<i32>) -> Result<Step, LookupError> {
         let location = self.location(name, sector)?;
-        Ok(Step::Go { verb: EmoveVerb::MovToLoc, object: Name16::EMPTY, grip: 0, location })
+        Ok(Step::Go { verb: EmoveVerb::MovToLoc, object: None, grip: 0, location })
     }
 
     /// GET-OBJECT: look for it if vision is used there, go to it, grasp it.
     fn get(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
         let (command, grip) = (self.command, self.command.source_grip);
-        if self.held.is_some_and(|(object, _)| object == command.object) {
+        if self.held_object().is_some() {
             return Ok(());
         }
-        let location = self.location(&command.source, command.source_sector)?;
-        let view = self.data.view(&command.object, &location.place).filter(|(_, view)| view.enabled);
+        let location = self.location(command.source, command.source_sector)?;
+        let view = command
+            .object
+            .and_then(|object| self.data.view(&object, &location.place))
+            .filter(|(_, view)| view.enabled);
         if let Some((_, view)) = view.filter(|(_, view)| view.offset_from != RefType::Object) {
             steps.push(self.go(EmoveVerb::MovToVu, view.grip, location));
             steps.push(Step::Locate);
@@ -193,18 +201,17 @@ impl Maker<'_> {
 
     /// FIX-GRIP, if the grips differ.
     fn regrip(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
-        let held = self.held.filter(|(object, _)| *object == self.command.object);
-        let from = held.map_or(self.command.source_grip, |(_, grip)| grip);
+        let from = self.held_object().map_or(self.command.source_grip, |(_, grip)| grip);
         let to = self.command.destination_grip;
         if from == to {
             return Ok(());
         }
-        let pedestal = self.location(&Name16::clipped(PEDESTAL), 0)?;
+        let pedestal = self.location(Some(Name16::clipped(PEDESTAL)), None)?;
         steps.push(Step::Pedestal(PedestalVerb::PreGrip));
         steps.push(self.go(EmoveVerb::MovObjTo, from, pedestal));
         steps.push(Step::Pedestal(PedestalVerb::Grip));
         steps.push(self.fingers(EmoveVerb::Release, from));
-        steps.push(self.to_location(&Name16::clipped(PEDESTAL_SAFE), 0)?);
+        steps.push(self.to_location(Some(Name16::clipped(PEDESTAL_SAFE)), None)?);
         steps.push(Step::Pedestal(PedestalVerb::Flip));
         steps.push(self.go(EmoveVerb::MovToObj, to, pedestal));
         steps.push(self.fingers(EmoveVerb::GraspObj, to));
@@ -214,14 +221,14 @@ impl Maker<'_> {
 
     fn place(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
         let command = self.command;
-        let location = self.location(&command.destination, command.destination_sector)?;
+        let location = self.location(command.destination, command.destination_sector)?;
         steps.push(self.go(EmoveVerb::MovObjTo, command.destination_grip, location));
         Ok(())
     }
 
     fn end_at(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
-        if !self.command.end_at.is_empty() {
-            steps.push(self.to_location(&self.command.end_at, self.command.end_at_sector)?);
+        if self.command.end_at.is_some() {
+            steps.push(self.to_location(self.command.end_at, self.command.end_at_sector)?);
         }
         Ok(())
     }
@@ -230,12 +237,12 @@ impl Maker<'_> {
     /// (SPECNOTES.md, contradiction 24).
     fn position(&self, steps: &mut Vec<Step>) -> Result<(), LookupError> {
         let c = self.command;
-        let (name, sector, grip) = if c.source.is_empty() {
-            (&c.destination, c.destination_sector, c.destination_grip)
+        let (name, sector, grip) = if c.source.is_none() {
+            (c.destination, c.destination_sector, c.destination_grip)
         } else {
-            (&c.source, c.source_sector, c.source_grip)
+            (c.source, c.source_sector, c.source_grip)
         };
-        if c.object.is_empty() {
+        if c.object.is_none() {
             steps.push(self.to_location(name, sector)?);
         } else {
             steps.push(self.go(EmoveVerb::MovToObj, grip, self.location(name, sector)?));

@@ -108,9 +108,11 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn fingers(&self, verb: EmoveVerb, object: Name16, grip: i32) -> Phase {
+    fn fingers(&self, verb: EmoveVerb, object: Option<Name16>, grip: i32) -> Phase {
         let mut phase = Phase::standing(verb.text().to_owned());
-        if let Some((id, para)) = self.data.object(&object, grip) {
+        if let Some(object) = object
+            && let Some((id, para)) = self.data.object(&object, grip)
+        {
             phase.what = match verb {
                 EmoveVerb::GraspObj => format!(
                     "GRASP-OBJ {object} with grip {grip:+}: to {} in with {} lb",
@@ -124,7 +126,7 @@ impl<'a> Walk<'a> {
         phase
     }
 
-    fn go(&mut self, verb: EmoveVerb, object: Name16, grip: i32, location: &Location) -> Phase {
+    fn go(&mut self, verb: EmoveVerb, object: Option<Name16>, grip: i32, location: &Location) -> Phase {
         let command = self.command(verb, object, grip, location);
         let mut phase = self.moving(described(&command, location));
         self.location_entries(&mut phase, location);
@@ -136,12 +138,10 @@ impl<'a> Walk<'a> {
             Err(planning) => {
                 let from = if self.place.location.is_empty() { "?" } else { self.place.location.as_str() };
                 phase.missing = Some(format!("from {from}: {}", refusal(verb, planning).text()));
-                let gone_to = if object.is_empty() {
-                    GoneTo::Location
-                } else {
-                    GoneTo::Object(ObjectGrip { object, grip })
-                };
-                let grips = self.data.grip_movetable(&object, grip, &location.place);
+                let gone_to =
+                    object.map_or(GoneTo::Location, |object| GoneTo::Object(ObjectGrip { object, grip }));
+                let grips =
+                    object.and_then(|object| self.data.grip_movetable(&object, grip, &location.place));
                 (gone_to, grips.map_or(location.frame, |by| self.data.moved(&location.frame, by)))
             }
         };
@@ -165,13 +165,17 @@ impl<'a> Walk<'a> {
         Phase { start: self.place.location.to_string(), from, ..Phase::standing(what) }
     }
 
-    fn command(&self, verb: EmoveVerb, object: Name16, grip: i32, at: &Location) -> EmoveCommand {
+    fn command(&self, verb: EmoveVerb, object: Option<Name16>, grip: i32, at: &Location) -> EmoveCommand {
         EmoveCommand {
             command: verb,
             object,
             grip,
-            object_parameters: self.data.object(&object, grip).map(|(id, _)| id.number()),
-            object_vision: self.data.view(&object, &at.place).map(|(id, _)| id.number()),
+            object_parameters: object
+                .and_then(|object| self.data.object(&object, grip))
+                .map(|(id, _)| id.number()),
+            object_vision: object
+                .and_then(|object| self.data.view(&object, &at.place))
+                .map(|(id, _)| id.number()),
             location: at.name,
             location_kind: at.place.kind,
             location_record: at.place.locpt.to_option(),
@@ -329,14 +333,20 @@ impl<'a> Walk<'a> {
             levels::places::place_of(command.location_kind, command.location_record, command.location_array);
         match command.command {
             EmoveVerb::MovToVu => {
-                let view = data.view(&command.object, &place).and_then(|(id, _)| id.index());
+                let view = command
+                    .object
+                    .and_then(|object| data.view(&object, &place))
+                    .and_then(|(id, _)| id.index());
                 self.entry(phase, "view", &origins.visions, view);
             }
             EmoveVerb::MovToLoc => {}
             _ => {
-                let grip = data.grip_loc(&command.object, command.grip, &place);
+                let object = command.object.as_ref();
+                let grip = object.and_then(|object| data.grip_loc(object, command.grip, &place));
                 self.entry(phase, "grip", &origins.grip_locs, grip.and_then(|id| id.index()));
-                let sizes = data.object(&command.object, command.grip).and_then(|(id, _)| id.index());
+                let sizes = object
+                    .and_then(|object| data.object(object, command.grip))
+                    .and_then(|(id, _)| id.index());
                 self.entry(phase, "sizes", &origins.end_effs, sizes);
             }
         }
@@ -372,10 +382,9 @@ fn refusal(verb: EmoveVerb, route: Planning) -> Reason {
 fn described(command: &EmoveCommand, location: &Location) -> String {
     let sector = if location.sector == 0 { String::new() } else { format!(" sector {}", location.sector) };
     let verb = command.command.text();
-    if command.object.is_empty() {
-        format!("{verb} {}{sector}", location.name)
-    } else {
-        format!("{verb} {} with grip {:+} at {}{sector}", command.object, command.grip, location.name)
+    match command.object {
+        None => format!("{verb} {}{sector}", location.name),
+        Some(object) => format!("{verb} {object} with grip {:+} at {}{sector}", command.grip, location.name),
     }
 }
 

@@ -172,7 +172,7 @@ fn the_camera_finds_a_blank_and_its_angle() {
     assert!((z + f64::from(precise.z) / 100.0 + 1.4).abs() < 0.02, "{precise:?}");
     assert!((precise.angle - 2500).abs() < 20, "{precise:?}");
     let stranger = look(&mut rig, 3, Picture::Precise, 14, found, 0.0);
-    assert_eq!((stranger.status, stranger.recognised), (VisionStatus::NotRecognised, 0));
+    assert_eq!((stranger.status, stranger.recognised), (VisionStatus::NotRecognised, None));
 }
 
 #[test]

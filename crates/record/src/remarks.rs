@@ -14,6 +14,7 @@ use rcs_core::{
         prim::{PrimReport, PrimVerb},
         t3i::{T3iStatus, T3iVerb},
     },
+    name::Name16,
     table::{Row, Table},
 };
 
@@ -228,22 +229,16 @@ fn name_of(headers: &[HeaderPlace], field: &str) -> String {
 #[must_use]
 pub fn hws_text(command: &HwsCommand) -> String {
     let mut words = vec![command.command.to_string()];
-    let place = |name: &str, sector: i32| match sector {
-        0 => name.to_owned(),
-        _ => format!("{name}:{sector}"),
+    words.extend(command.object.map(|object| object.to_string()));
+    let mut place = |word: &str, name: Option<Name16>, sector: Option<i32>| {
+        words.extend(name.map(|name| match sector {
+            None => format!("{word} {name}"),
+            Some(sector) => format!("{word} {name}:{sector}"),
+        }));
     };
-    if !command.object.is_empty() {
-        words.push(command.object.to_string());
-    }
-    if !command.source.is_empty() {
-        words.push(format!("from {}", place(command.source.as_str(), command.source_sector)));
-    }
-    if !command.destination.is_empty() {
-        words.push(format!("to {}", place(command.destination.as_str(), command.destination_sector)));
-    }
-    if !command.end_at.is_empty() {
-        words.push(format!("end at {}", place(command.end_at.as_str(), command.end_at_sector)));
-    }
+    place("from", command.source, command.source_sector);
+    place("to", command.destination, command.destination_sector);
+    place("end at", command.end_at, command.end_at_sector);
     words.join(" ")
 }
 
@@ -259,16 +254,16 @@ mod tests {
             jaws::{JawsReport, JawsVerb},
             pedestal::{PedestalReport, PedestalVerb, TableVerb},
         },
-        name::{Name10, Name16},
+        name::Name10,
     };
 
     #[test]
     fn a_command_is_told_once() {
-        let mut hws = HwsCommand { number: 1, source_sector: 1, ..HwsCommand::default() };
+        let mut hws = HwsCommand { number: 1, source_sector: Some(1), ..HwsCommand::default() };
         hws.command = Name16::new("TRANSFER").unwrap();
-        hws.object = Name16::new("LINKBAR1").unwrap();
-        hws.source = Name16::new("UNIT_2").unwrap();
-        hws.destination = Name16::new("PFIXTURE").unwrap();
+        hws.object = Name16::new("LINKBAR1").ok();
+        hws.source = Name16::new("UNIT_2").ok();
+        hws.destination = Name16::new("PFIXTURE").ok();
         let before = CommonMemory::default();
         let mut after = before;
         after.task.status.echo = 1;

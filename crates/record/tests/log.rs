@@ -67,7 +67,7 @@ fn inputs(tick: Tick) -> ExternalInputs {
     external.devices.joystick.velocity = 1000;
     external.hws.number = u32::try_from(tick.0 / 100).unwrap();
     external.hws.command = Name16::new(if tick.0 % 200 < 100 { "TRANSFER" } else { "PAUSE" }).unwrap();
-    external.hws.object = Name16::new("LINKBAR1").unwrap();
+    external.hws.object = Some(Name16::new("LINKBAR1").unwrap());
     external
 }
 

@@ -33,7 +33,7 @@ fn inputs(tick: u64) -> ExternalInputs {
     let mut external = ExternalInputs::default();
     external.hws.number = if tick < 10 { 0 } else { 1 + u32::from(tick > RELOADED + 10) };
     external.hws.command = Name16::new("MOVE").unwrap();
-    external.hws.destination = Name16::new("HOME").unwrap();
+    external.hws.destination = Some(Name16::new("HOME").unwrap());
     external.generation = u32::from(tick >= RELOADED);
     external
 }

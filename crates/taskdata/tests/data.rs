@@ -229,9 +229,9 @@ fn the_job_has_the_six_commands_of_figure_viii_4() {
     let Step::Command(last) = job.steps.last().unwrap().step else { panic!("the job ends with a command") };
     assert_eq!(
         (last.command, last.object, last.source, last.end_at),
-        (name("TRANSFER"), name("LINKBAR1"), name("PFIXTURE"), name("SAFE"))
+        (name("TRANSFER"), Some(name("LINKBAR1")), Some(name("PFIXTURE")), Some(name("SAFE")))
     );
-    assert_eq!((last.source_grip, last.destination_grip, last.destination_sector), (2, 2, 1));
+    assert_eq!((last.source_grip, last.destination_grip, last.destination_sector), (2, 2, Some(1)));
     let Step::Workstation(Workstation::Tray { location, .. }) = job.steps[0].step else {
         panic!("a part comes first")
     };

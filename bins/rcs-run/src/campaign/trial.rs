@@ -223,11 +223,11 @@ impl Trial<'_, '_> {
     /// A command that interrupts.
     fn first(&mut self, observer: &mut impl Observer) {
         let at = self.branch.at();
-        let under_way = self.operator.command_at(self.line).filter(|command| !command.destination.is_empty());
+        let under_way = self.operator.command_at(self.line).filter(|command| command.destination.is_some());
         let (command, then) = match self.kind {
             Kind::Refused => {
                 let known = under_way.unwrap_or_else(|| go("HOME"));
-                (HwsCommand { destination: Name16::clipped(MISSPELT), ..known }, Then::Recovery)
+                (HwsCommand { destination: Some(Name16::clipped(MISSPELT)), ..known }, Then::Recovery)
             }
             Kind::Replaced => (go("HOME"), Then::SameCommand),
             _ => return,
@@ -354,7 +354,7 @@ fn general(text: &str) -> String {
 fn go(location: &str) -> HwsCommand {
     HwsCommand {
         command: Name16::clipped("MOVE"),
-        destination: Name16::clipped(location),
+        destination: Some(Name16::clipped(location)),
         ..HwsCommand::default()
     }
 }

@@ -78,7 +78,7 @@ fn explained(store: &Store, command: &HwsCommand, text: &str, from: &str) -> Res
     Ok(Explanation {
         command: text.to_owned(),
         from: from.to_owned(),
-        gripper: data.obj_grips(&command.object).map_or(0, |grips| grips.endeff_id),
+        gripper: command.object.and_then(|object| data.obj_grips(&object)).map_or(0, |grips| grips.endeff_id),
         phases,
         motion_s: walk::seconds(ticks),
     })

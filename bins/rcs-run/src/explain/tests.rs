@@ -123,10 +123,10 @@ fn a_regrip_leads_over_the_pedestal() {
     let name = Name16::clipped;
     let command = HwsCommand {
         command: name("TRANSFER"),
-        object: name("LCLEVIS_IH"),
-        source: name("PFIXTURE"),
+        object: Some(name("LCLEVIS_IH")),
+        source: Some(name("PFIXTURE")),
         source_grip: -1,
-        destination: name("PFIXTURE"),
+        destination: Some(name("PFIXTURE")),
         destination_grip: 1,
         ..HwsCommand::default()
     };

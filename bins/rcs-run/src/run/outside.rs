@@ -242,19 +242,19 @@ impl OutsideWorkstation {
 
 /// A command as a job has it.
 fn spelled(command: &HwsCommand) -> String {
-    let name = |name: &Name16| if name.is_empty() { "--".to_owned() } else { name.to_string() };
+    let name = |name: Option<Name16>| name.map_or("--".to_owned(), |name| name.to_string());
     let mut text = format!(
         "== {} {} {:+} {} {} {:+} {} {} {} {}",
         command.command,
-        name(&command.object),
+        name(command.object),
         command.source_grip,
-        name(&command.source),
-        command.source_sector,
+        name(command.source),
+        command.source_sector.unwrap_or(0),
         command.destination_grip,
-        name(&command.destination),
-        command.destination_sector,
-        name(&command.end_at),
-        command.end_at_sector,
+        name(command.destination),
+        command.destination_sector.unwrap_or(0),
+        name(command.end_at),
+        command.end_at_sector.unwrap_or(0),
     );
     if !command.serial.is_empty() {
         text += &format!(" #{}", command.serial);

@@ -35,7 +35,7 @@ impl State {
     /// From where the camera is moved next, and how; `None` if the resolvers or the task data do not say.
     pub(super) fn aim(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Aim> {
         let data = inputs.data;
-        let approach = data.view_approach(&command.object, command.grip, &place_named(command))?;
+        let approach = data.view_approach(&command.object?, command.grip, &place_named(command))?;
         Some(Aim {
             tool: present_frame(inputs.memory)?,
             view: view_of(command, data)?.movetable,
@@ -72,7 +72,11 @@ impl State {
         inputs: &Inputs<'_, TaskData<'_>>,
         outputs: &mut EmoveOutputs,
     ) {
-        let Some(Aim { tool, view, parameters }) = self.aim(command, inputs) else { return };
+        let (Some(object), Some(Aim { tool, view, parameters })) =
+            (command.object, self.aim(command, inputs))
+        else {
+            return;
+        };
         let seen = &inputs.external.devices.vision;
         let middle = looked_at(&tool, view, inputs.data);
         let target = if action == Action::Align {
@@ -80,7 +84,7 @@ impl State {
             let pose = Pose::from_frame(&part);
             self.publish(Slot::Located, pose, outputs);
             self.beliefs.located = Some(Located {
-                object: command.object,
+                object,
                 record: command.location_record,
                 array: command.location_array,
                 pose,

@@ -49,7 +49,7 @@ impl State {
     pub(super) fn grasp_of(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Grasped {
         let gripper = Gripper::attached(inputs.memory);
         Grasped {
-            object: ObjectGrip { object: command.object, grip: command.grip },
+            object: ObjectGrip { object: command.object.unwrap_or_default(), grip: command.grip },
             parameters: command.object_parameters,
             gripper: gripper.code(),
             grasp_size: sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size),

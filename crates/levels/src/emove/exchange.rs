@@ -127,7 +127,7 @@ impl State {
 
     /// Are the fingers at the opening with which the gripper goes through its holster?
     pub(super) fn shut(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Shut {
-        let opening = gripper_on(&command.object, inputs.data).map(|on| on.appr_size);
+        let opening = gripper_on(command, inputs.data).map(|on| on.appr_size);
         let attached = Gripper::attached(inputs.memory);
         match opening {
             _ if attached.is_uncalibrated(inputs.memory) => Shut::Raw,

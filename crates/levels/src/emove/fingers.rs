@@ -11,7 +11,6 @@ use rcs_core::{
         grip::Felt,
         quick_change::RingPosition,
     },
-    name::Name16,
     process::Inputs,
 };
 use taskdata::files::{EndEffId, EndEffPara, TaskData};
@@ -37,9 +36,9 @@ const UNFELT_TICKS: u8 = 5;
 /// ASSUMED).
 const HAND_FORCE: i32 = 30;
 
-/// Parameters of a holster object with the gripper on.
-pub(super) fn gripper_on<'d>(object: &Name16, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
-    data.object(object, GRIPPER_ON).map(|(_, parameters)| parameters)
+/// Parameters of the holster object of a command with the gripper on.
+pub(super) fn gripper_on<'d>(command: &EmoveCommand, data: &TaskData<'d>) -> Option<&'d EndEffPara> {
+    data.object(&command.object?, GRIPPER_ON).map(|(_, parameters)| parameters)
 }
 
 /// Parameters of the object of a command.
@@ -187,7 +186,7 @@ impl State {
             }
             Action::OpenToApproach => FingerOrder::to(FingerVerb::Stand, sizes.appr_size),
             Action::CloseForHolster => {
-                let opening = gripper_on(&command.object, inputs.data).map_or(0, |on| on.appr_size);
+                let opening = gripper_on(command, inputs.data).map_or(0, |on| on.appr_size);
                 FingerOrder::to(FingerVerb::Stand, opening)
             }
             Action::OpenToDepart => {

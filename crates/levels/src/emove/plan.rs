@@ -42,7 +42,7 @@ fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
 fn holster(command: &EmoveCommand, data: &TaskData<'_>) -> HolsterData {
     if Gripper::of(command.end_effector_id) == Gripper::None {
         HolsterData::NoGripper
-    } else if gripper_on(&command.object, data).is_none() {
+    } else if gripper_on(command, data).is_none() {
         HolsterData::NoOpening
     } else {
         HolsterData::Found
@@ -131,7 +131,7 @@ impl State {
     ) -> Result<Frame, Planning> {
         let located = self.beliefs.located.filter(|located| {
             command.command == EmoveVerb::MovToObj
-                && located.object == command.object
+                && Some(located.object) == command.object
                 && located.record == command.location_record
                 && located.array == command.location_array
         });

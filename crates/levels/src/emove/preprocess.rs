@@ -227,7 +227,7 @@ impl State {
             opening,
             held: match self.holding(memory) {
                 Holding::Nothing => Held::Nothing,
-                Holding::Object(held) if held.object == command.object => Held::Right,
+                Holding::Object(held) if Some(held.object) == command.object => Held::Right,
                 Holding::Object(_) => Held::Other,
                 Holding::Something => Held::Something,
                 Holding::NotKnown => Held::NotKnown,

@@ -16,7 +16,8 @@ use crate::places::place_of;
 /// What a command goes to.
 #[must_use]
 pub const fn gone_to(command: &EmoveCommand) -> GoneTo {
-    let object = ObjectGrip { object: command.object, grip: command.grip };
+    let Some(object) = command.object else { return GoneTo::Location };
+    let object = ObjectGrip { object, grip: command.grip };
     match command.command {
         EmoveVerb::MovToObj | EmoveVerb::MovObjTo | EmoveVerb::MovToHol => GoneTo::Object(object),
         EmoveVerb::MovToVu | EmoveVerb::LocateObj => GoneTo::View(object),

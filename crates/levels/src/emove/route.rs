@@ -137,25 +137,24 @@ impl Goal {
     /// What is missing.
     pub fn new(command: &EmoveCommand, base: &Frame, data: &TaskData<'_>) -> Result<Self, Planning> {
         let (place, gone_to) = (place_named(command), gone_to(command));
+        let object = command.object.as_ref();
         let grip_frame = || {
-            let movetable = data.grip_movetable(&command.object, command.grip, &place);
+            let movetable = object.and_then(|object| data.grip_movetable(object, command.grip, &place));
             Ok(data.moved(base, movetable.ok_or(Planning::NoGrip)?))
         };
+        let grip_approach = || object.and_then(|object| data.approach(object, command.grip, &place));
         let (frame, opening, approach) = match command.command {
             EmoveVerb::MovToObj | EmoveVerb::MovToHol => {
                 let sizes = data
                     .end_eff(EndEffId::from_option(command.object_parameters))
                     .ok_or(Planning::NoSizes)?;
-                let approach = data.approach(&command.object, command.grip, &place);
-                (grip_frame()?, Some(sizes.appr_size), approach)
+                (grip_frame()?, Some(sizes.appr_size), grip_approach())
             }
-            EmoveVerb::MovObjTo => {
-                (grip_frame()?, None, data.approach(&command.object, command.grip, &place))
-            }
+            EmoveVerb::MovObjTo => (grip_frame()?, None, grip_approach()),
             EmoveVerb::MovToVu => {
                 let view =
                     data.vision_para(VisionId::from_option(command.object_vision)).ok_or(Planning::NoView)?;
-                let approach = data.view_approach(&command.object, command.grip, &place);
+                let approach = object.and_then(|object| data.view_approach(object, command.grip, &place));
                 (data.moved(base, view.movetable), Some(FULL_OPENING), approach)
             }
             _ => return Ok(Self { frame: *base, opening: None, gone_to }),

@@ -27,8 +27,8 @@ const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
 /// What a command to E-move is aimed at: an object, a location, or an object at a location.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Aim {
-    /// The object; empty for none.
-    pub object: Name16,
+    /// The object, if there is one.
+    pub object: Option<Name16>,
     /// Its grip.
     pub grip: i32,
     /// Its record of END-EFF-PARA, if it has that grip.
@@ -87,7 +87,7 @@ impl Aim {
     /// A location as such; its pose record is not given yet.
     const fn at(location: &Location, end_effector_id: u8) -> Self {
         Self {
-            object: Name16::EMPTY,
+            object: None,
             grip: 0,
             parameters: None,
             end_effector_id,
@@ -100,23 +100,23 @@ impl Aim {
     }
 
     /// The same location with an object in a grip.
-    fn with_object(self, object: Name16, grip: i32, data: &TaskData<'_>) -> Result<Self, Missing> {
-        let (id, _) = data.object(&object, grip).ok_or(Missing::Grip)?;
+    fn with_object(self, object: Option<Name16>, grip: i32, data: &TaskData<'_>) -> Result<Self, Missing> {
+        let (id, _) = object.and_then(|object| data.object(&object, grip)).ok_or(Missing::Grip)?;
         Ok(Self { object, grip, parameters: id.to_option(), ..self })
     }
 
     /// A command to E-move with this aim, its number still 0.
     #[must_use]
     pub fn command(&self, verb: EmoveVerb, data: &TaskData<'_>) -> EmoveCommand {
-        let place = place_of(self.kind, self.record, self.array);
+        let (object, place) = (self.object.as_ref(), place_of(self.kind, self.record, self.array));
         EmoveCommand {
             number: 0,
             command: verb,
             object: self.object,
             grip: self.grip,
             object_parameters: self.parameters,
-            object_grips: data.obj_grips_id(&self.object).map(|id| id.number()),
-            object_vision: data.view(&self.object, &place).map(|(id, _)| id.number()),
+            object_grips: object.and_then(|object| data.obj_grips_id(object)).map(|id| id.number()),
+            object_vision: object.and_then(|object| data.view(object, &place)).map(|(id, _)| id.number()),
             location: self.location,
             location_kind: self.kind,
             location_record: self.record,
@@ -220,7 +220,7 @@ fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<Ai
     *pose = Pose::from_frame(&locpt.frame);
     let place = data.place_of(LocptId::new(assigned.number));
     let location = Location { name: locpt.name, place, sector: 0, frame: locpt.frame };
-    Aim::at(&location, id).with_object(object, grip, data)
+    Aim::at(&location, id).with_object(Some(object), grip, data)
 }
 
 /// A location point by name.

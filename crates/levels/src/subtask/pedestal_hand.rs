@@ -27,12 +27,15 @@ impl State {
 
     /// The pedestal is told to close its hand on the object of the command.
     pub(super) const fn give(&mut self, command: &SubtaskCommand) {
-        self.regrip = Some(Regrip { object: command.object });
+        self.regrip = match command.object {
+            Some(object) => Some(Regrip { object }),
+            None => None,
+        };
     }
 
     /// Who has the object of the command.
     pub(super) fn part(&self, held: Held, status: &PedestalStatus, command: &SubtaskCommand) -> Part {
-        let right = self.regrip.is_some_and(|regrip| regrip.object == command.object);
+        let right = self.regrip.is_some_and(|regrip| Some(regrip.object) == command.object);
         match (held, pedestal_hand(status)) {
             (Held::NotKnown, _) => Part::NotKnown,
             (_, PedestalHand::Unsure) => Part::Unsure,

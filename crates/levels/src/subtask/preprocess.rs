@@ -73,7 +73,9 @@ impl State {
         let emove = &inputs.memory.emove.status;
         let aims = Aims::new(command, emove.end_effector_id, emove.exchange, inputs.data);
         let ped_para = match command.command {
-            SubtaskVerb::FixGrip => inputs.data.ped_para(&command.object).map(|(_, para)| *para),
+            SubtaskVerb::FixGrip => {
+                command.object.and_then(|object| inputs.data.ped_para(&object)).map(|(_, para)| *para)
+            }
             _ => None,
         };
         if let Ok(aims) = aims {
@@ -168,7 +170,7 @@ fn replaced(
 fn held(emove: &EmoveStatus, command: &SubtaskCommand) -> Held {
     match emove.held {
         Holding::Nothing => Held::Nothing,
-        Holding::Object(held) if held.object == command.object => Held::Right,
+        Holding::Object(held) if Some(held.object) == command.object => Held::Right,
         Holding::Object(_) => Held::Other,
         Holding::Something => Held::Something,
         Holding::NotKnown => Held::NotKnown,
@@ -178,7 +180,7 @@ fn held(emove: &EmoveStatus, command: &SubtaskCommand) -> Held {
 /// With which grip?
 fn grip_held(emove: &EmoveStatus, command: &SubtaskCommand) -> GripHeld {
     match emove.held {
-        Holding::Object(held) if held.object != command.object => GripHeld::Neither,
+        Holding::Object(held) if Some(held.object) != command.object => GripHeld::Neither,
         Holding::Object(held) if held.grip == command.destination_grip => GripHeld::Destination,
         Holding::Object(held) if held.grip == command.source_grip => GripHeld::Source,
         Holding::Object(_) | Holding::Nothing | Holding::Something | Holding::NotKnown => GripHeld::Neither,
@@ -190,9 +192,10 @@ fn vision(emove: &EmoveStatus, command: &SubtaskCommand, data: &TaskData<'_>) ->
     let place = place_of(command.location_kind, command.location_record, command.location_array);
     let located = emove.located.is_some_and(|located| {
         let there = (command.object, command.location_record, command.location_array);
-        (located.object, located.record, located.array) == there
+        (Some(located.object), located.record, located.array) == there
     });
-    if !data.view(&command.object, &place).is_some_and(|(_, view)| view.enabled) {
+    let view = command.object.and_then(|object| data.view(&object, &place));
+    if !view.is_some_and(|(_, view)| view.enabled) {
         Vision::NotNeeded
     } else if located {
         Vision::Done
@@ -214,7 +217,7 @@ fn station(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
 fn placed(emove: &EmoveStatus, command: &SubtaskCommand) -> Where {
     let there = (command.object, command.destination_grip, command.location_record, command.location_array);
     match emove.placed {
-        Some(it) if (it.object, it.grip, it.record, it.array) == there => Where::There,
+        Some(it) if (Some(it.object), it.grip, it.record, it.array) == there => Where::There,
         _ => Where::Elsewhere,
     }
 }
@@ -235,5 +238,5 @@ fn robot(emove: &EmoveStatus, aims: &Aims) -> Robot {
 }
 
 fn named(command: &SubtaskCommand) -> Named {
-    if command.object.is_empty() { Named::Location } else { Named::Object }
+    if command.object.is_some() { Named::Object } else { Named::Location }
 }

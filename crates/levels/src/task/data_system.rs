@@ -149,7 +149,7 @@ impl DataSystem {
     pub fn tell(&mut self, plan: &Plan, in_hand: bool, tick: Tick, outputs: &mut TaskOutputs) {
         let (position, sector) = match &plan.destination.location {
             Some(location) if !in_hand => (location.name, location.sector),
-            _ => (Name10::clipped(IN_HAND), 0),
+            _ => (Name10::clipped(IN_HAND), None),
         };
         if in_hand {
             self.carry(plan, true);
@@ -165,12 +165,12 @@ impl DataSystem {
     pub fn tell_released(&mut self, at: Option<Standing>, tick: Tick, outputs: &mut TaskOutputs) {
         let Some(Carried { item, serial, location, sector, .. }) = self.books.carried.take() else { return };
         let position = at.map_or(location, |at| at.location);
-        self.owe(item, serial, position, if position == location { sector } else { 0 });
+        self.owe(item, serial, position, if position == location { sector } else { None });
         self.tell_owed(tick, outputs);
     }
 
     /// Keep an update. A full queue keeps the oldest and the newest.
-    fn owe(&mut self, item: Name16, serial: Name16, position: Name10, sector: i32) {
+    fn owe(&mut self, item: Name16, serial: Name16, position: Name10, sector: Option<i32>) {
         let command = DataBaseVerb::Update;
         let update = Some(DataBaseCommand { number: 0, command, item, serial, position, sector });
         self.books.owed = match self.books.owed {

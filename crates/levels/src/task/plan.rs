@@ -145,8 +145,8 @@ pub struct Location {
     pub record: Option<u32>,
     /// Record of ARRAY-TABLE, if it is a sector.
     pub array: Option<u32>,
-    /// Sector from 1, or 0.
-    pub sector: i32,
+    /// Sector from 1, if it is one.
+    pub sector: Option<i32>,
     /// Its T-POSE.
     pub pose: ChangingPose,
 }
@@ -227,12 +227,12 @@ impl Plan {
         if verb.is_bare() {
             return Found { plan: bare, ..Found::default() };
         }
-        let object = Some(command.object).filter(|object| !object.is_empty());
+        let object = command.object;
         let (end_effector_id, gripper) = gripper(verb, object.as_ref(), data);
         let locations = [
-            (&command.source, command.source_sector),
-            (&command.destination, command.destination_sector),
-            (&command.end_at, command.end_at_sector),
+            (command.source, command.source_sector),
+            (command.destination, command.destination_sector),
+            (command.end_at, command.end_at_sector),
         ]
         .map(|(name, sector)| Location::look_up(name, sector, object.as_ref(), data));
         let missing = match object {
@@ -334,23 +334,21 @@ impl Site {
 }
 
 impl Location {
-    /// Look a location up; an empty name gives none.
+    /// Look a location up, if one is named.
     fn look_up(
-        name: &Name16,
-        sector: i32,
+        name: Option<Name16>,
+        sector: Option<i32>,
         object: Option<&Name16>,
         data: &TaskData<'_>,
     ) -> Result<Option<Self>, Missing> {
-        if name.is_empty() {
-            return Ok(None);
-        }
-        let found = data.resolve_location(name, sector, object)?;
+        let Some(name) = name else { return Ok(None) };
+        let found = data.resolve_location(&name, sector.unwrap_or(0), object)?;
         Ok(Some(Self {
             name: found.name,
             kind: found.place.kind,
             record: found.place.locpt.to_option(),
             array: found.place.array.to_option(),
-            sector: found.sector,
+            sector: Some(found.sector).filter(|sector| *sector != 0),
             pose: ChangingPose { number: None, pose: Pose::from_frame(&found.frame) },
         }))
     }

@@ -178,7 +178,7 @@ impl State {
         outputs.subtask = SubtaskCommand {
             number: self.subtask.send(inputs.tick),
             command: verb,
-            object: plan.object.unwrap_or_default(),
+            object: plan.object,
             end_effector_id: plan.end_effector_id,
             source_grip: plan.source.grip,
             destination_grip: plan.destination.grip,
@@ -198,7 +198,7 @@ impl State {
         self.send(verb, &Site { location: None, grip, parameters }, inputs, outputs);
         (outputs.subtask.source_grip, outputs.subtask.destination_grip) = (grip, grip);
         if self.plan.object.is_none() {
-            outputs.subtask.object = inputs.memory.subtask.status.held.object().unwrap_or_default();
+            outputs.subtask.object = inputs.memory.subtask.status.held.object();
         }
     }
 

@@ -226,10 +226,11 @@ fn put_length(bytes: &mut [u8; DML], at: usize, command: usize) {
 }
 
 fn put_string(bytes: &mut [u8], command: &DataBaseCommand) -> Result<(), EncodeError> {
-    let sector = u32::try_from(command.sector)
+    let number = command.sector.unwrap_or_default();
+    let sector = u32::try_from(number)
         .ok()
         .and_then(|sector| char::from_digit(sector, 36))
-        .ok_or(EncodeError::Sector(command.sector))?
+        .ok_or(EncodeError::Sector(number))?
         .to_ascii_uppercase();
     let position = command.position.as_str();
     let device = if position == IN_HAND { IN_HAND } else { WORKSTATION };
@@ -369,7 +370,7 @@ mod tests {
             item: Name16::new(item).unwrap(),
             serial: Name16::new(serial).unwrap(),
             position: Name10::new(position).unwrap(),
-            sector,
+            sector: Some(sector),
         }
     }
 

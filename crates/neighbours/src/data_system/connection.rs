@@ -436,7 +436,7 @@ mod tests {
             client.command.item = Name16::new("LINKBAR1").unwrap();
             client.command.serial = Name16::new("17").unwrap();
             client.command.position = Name10::new("UNIT_1").unwrap();
-            client.command.sector = 4;
+            client.command.sector = Some(4);
             assert_eq!(client.ask(DataBaseVerb::Update), DataBaseReport::Done);
             assert_eq!(client.system.command_box().mailgram(), 4);
             assert_eq!(client.system.command_box().data().len(), command::DML);

@@ -173,7 +173,7 @@ mod tests {
                 item: Name16::new(item).unwrap(),
                 serial: Name16::new(serial).unwrap(),
                 position: Name10::new(position).unwrap(),
-                sector,
+                sector: Some(sector),
                 ..DataBaseCommand::default()
             })
         }

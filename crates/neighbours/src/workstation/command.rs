@@ -59,18 +59,23 @@ pub fn encode(command: &HwsCommand) -> Result<[u8; COMMAND], RangeError> {
     fields.word(u16::try_from(COMMAND).unwrap_or_default());
     fields.word(command_number(command.number));
     fields.text(12, &"");
-    for name in [command.command, command.object, command.serial] {
+    for name in [command.command, command.object.unwrap_or_default(), command.serial] {
         fields.text(16, &name);
     }
     fields.integer("source-grip-#", command.source_grip)?;
-    fields.text(16, &command.source);
-    fields.integer("src-sector#", command.source_sector)?;
+    fields.text(16, &command.source.unwrap_or_default());
+    fields.integer("src-sector#", command.source_sector.unwrap_or_default())?;
     fields.integer("dest-grip-#", command.destination_grip)?;
-    fields.text(16, &command.destination);
-    fields.integer("dest-sector#", command.destination_sector)?;
-    fields.text(16, &command.end_at);
-    fields.integer("endatsector#", command.end_at_sector)?;
+    fields.text(16, &command.destination.unwrap_or_default());
+    fields.integer("dest-sector#", command.destination_sector.unwrap_or_default())?;
+    fields.text(16, &command.end_at.unwrap_or_default());
+    fields.integer("endatsector#", command.end_at_sector.unwrap_or_default())?;
     Ok(fields.finish())
+}
+
+/// A field; `None` if it is blank or 0.
+fn given<T: Default + PartialEq>(field: T) -> Option<T> {
+    Some(field).filter(|field| *field != T::default())
 }
 
 /// Read the bytes of a command. What its words mean is for Task to say.
@@ -92,16 +97,16 @@ pub fn decode(bytes: &[u8]) -> Result<HwsCommand, CommandError> {
     let command = HwsCommand {
         number: u32::from(number),
         command: fields.name("command-16")?,
-        object: fields.name("obj")?,
+        object: given(fields.name("obj")?),
         serial: fields.name("obj-serial-#")?,
         source_grip: fields.integer("source-grip-#")?,
-        source: fields.name("src-loc-16")?,
-        source_sector: fields.integer("src-sector#")?,
+        source: given(fields.name("src-loc-16")?),
+        source_sector: given(fields.integer("src-sector#")?),
         destination_grip: fields.integer("dest-grip-#")?,
-        destination: fields.name("dest-loc-16")?,
-        destination_sector: fields.integer("dest-sector#")?,
-        end_at: fields.name("end-at-16")?,
-        end_at_sector: fields.integer("endatsector#")?,
+        destination: given(fields.name("dest-loc-16")?),
+        destination_sector: given(fields.integer("dest-sector#")?),
+        end_at: given(fields.name("end-at-16")?),
+        end_at_sector: given(fields.integer("endatsector#")?),
     };
     if number == 0 {
         return Err(CommandError::NoNumber);
@@ -124,16 +129,16 @@ pub(super) mod tests {
         HwsCommand {
             number,
             command: name("TRANSFER"),
-            object: name("LINKBAR1"),
+            object: Some(name("LINKBAR1")),
             serial: name("17"),
             source_grip: 2,
-            source: name("PFIXTURE"),
-            source_sector: 0,
+            source: Some(name("PFIXTURE")),
+            source_sector: None,
             destination_grip: -3,
-            destination: name("UNIT_1"),
-            destination_sector: 4,
-            end_at: name("SAFE"),
-            end_at_sector: 0,
+            destination: Some(name("UNIT_1")),
+            destination_sector: Some(4),
+            end_at: Some(name("SAFE")),
+            end_at_sector: None,
         }
     }
 
@@ -156,7 +161,7 @@ pub(super) mod tests {
     fn a_number_beyond_two_bytes_runs_round_and_a_sector_does_not() {
         let bytes = encode(&transfer(65_536)).unwrap();
         assert_eq!(decode(&bytes).map(|command| command.number), Ok(1));
-        let far = HwsCommand { source_sector: 40_000, ..transfer(1) };
+        let far = HwsCommand { source_sector: Some(40_000), ..transfer(1) };
         assert_eq!(encode(&far), Err(RangeError { field: "src-sector#", found: 40_000 }));
     }
 

@@ -211,7 +211,7 @@ mod tests {
     fn what_is_refused_does_not_reach_task_and_the_status_says_why() {
         let mut bench = Bench::new();
         bench.command(&transfer(7));
-        let other = HwsCommand { source_sector: 1, ..transfer(7) };
+        let other = HwsCommand { source_sector: Some(1), ..transfer(7) };
         let good = command::encode(&transfer(8)).unwrap();
         let refused = [
             (bench.send(b"hello"), 1, "a command of 126 bytes was expected, found 5"),

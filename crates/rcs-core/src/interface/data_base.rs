@@ -36,8 +36,8 @@ pub struct DataBaseCommand {
     pub serial: Name16,
     /// `STORAGE-POS`: the location where the item now is; `H_ROBOT` while the robot has it.
     pub position: Name10,
-    /// `SECTOR#`: sector there; 0 for none.
-    pub sector: i32,
+    /// `SECTOR#`: sector there, if it has one.
+    pub sector: Option<i32>,
 }
 
 /// What the Data System makes of the last command: server status and summary status (IX.2), read together.
@@ -78,8 +78,8 @@ pub struct Carried {
     pub serial: Name16,
     /// Where it was taken, or to where it was brought.
     pub location: Name10,
-    /// Sector there.
-    pub sector: i32,
+    /// Sector there, if it has one.
+    pub sector: Option<i32>,
     /// The data base knows it as the robot's.
     pub told: bool,
 }

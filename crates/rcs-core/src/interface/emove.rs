@@ -12,7 +12,7 @@ use crate::{
     pose::Pose,
 };
 
-use super::words::{LocationWords, words};
+use super::words::{location, name};
 
 /// Commands of E-move (V.2.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -63,8 +63,8 @@ pub struct EmoveCommand {
     pub number: u32,
     /// `"command-in"`.
     pub command: EmoveVerb,
-    /// `"obj"`.
-    pub object: Name16,
+    /// `"obj"`, if one is named.
+    pub object: Option<Name16>,
     /// Grip number of the object (extension: the manual has it only in the records that `obj-para-^` names).
     pub grip: i32,
     /// `obj-para-^`: record of END-EFF-PARA, if the object has that grip.
@@ -387,6 +387,8 @@ pub struct EmoveOutputs {
 /// `MOV-TO-OBJ LINKBAR1 at TRAY`.
 impl fmt::Display for EmoveCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        words(f, self.command.text(), &[&self.object, &LocationWords("at", &self.location, 0)])
+        f.write_str(self.command.text())?;
+        name(f, self.object.as_ref())?;
+        location(f, "at", Some(&self.location).filter(|name| !name.is_empty()), None)
     }
 }

@@ -13,35 +13,35 @@ use crate::{
     name::Name16,
 };
 
-use super::words::{LocationWords, words};
+use super::words::{location, name};
 
 /// Command from the HWSC to Task. Words are text, since they come from outside; Task checks them.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct HwsCommand {
-    /// `command-#-in`; 0 for none.
+    /// `command-#-in`; 0 before the first command.
     pub number: u32,
     /// `"command-16"`.
     pub command: Name16,
-    /// `"obj"`; empty for none.
-    pub object: Name16,
+    /// `"obj"`, if one is named.
+    pub object: Option<Name16>,
     /// `"obj-serial-#"`.
     pub serial: Name16,
     /// `source-grip-#`.
     pub source_grip: i32,
-    /// `"src-loc-16"`; empty for none.
-    pub source: Name16,
-    /// `src-sector#`; 0 for none.
-    pub source_sector: i32,
+    /// `"src-loc-16"`, if one is named.
+    pub source: Option<Name16>,
+    /// `src-sector#`, from 1, if one is named.
+    pub source_sector: Option<i32>,
     /// `dest-grip-#`.
     pub destination_grip: i32,
-    /// `"dest-loc-16"`; empty for none.
-    pub destination: Name16,
-    /// `dest-sector#`; 0 for none.
-    pub destination_sector: i32,
-    /// `"end-at-16"`; empty for none.
-    pub end_at: Name16,
-    /// `endatsector#`; 0 for none.
-    pub end_at_sector: i32,
+    /// `"dest-loc-16"`, if one is named.
+    pub destination: Option<Name16>,
+    /// `dest-sector#`, from 1, if one is named.
+    pub destination_sector: Option<i32>,
+    /// `"end-at-16"`, if one is named.
+    pub end_at: Option<Name16>,
+    /// `endatsector#`, from 1, if one is named.
+    pub end_at_sector: Option<i32>,
 }
 
 /// `"status"` to the HWSC. The manual has `executing` and `finished`; the others are extensions
@@ -112,9 +112,10 @@ pub struct TaskOutputs {
 /// `TRANSFER LINKBAR1 at TRAY sector 3 to PFIXTURE`.
 impl fmt::Display for HwsCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let source = LocationWords("at", &self.source, self.source_sector);
-        let destination = LocationWords("to", &self.destination, self.destination_sector);
-        words(f, self.command.as_str(), &[&self.object, &source, &destination])
+        f.write_str(self.command.as_str())?;
+        name(f, self.object.as_ref())?;
+        location(f, "at", self.source.as_ref(), self.source_sector)?;
+        location(f, "to", self.destination.as_ref(), self.destination_sector)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::{
     name::Name10,
 };
 
-use super::words::words;
+use super::words::name;
 
 /// Commands of Prim (V.1.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -181,6 +181,7 @@ pub struct PrimOutputs {
 /// `GO-UNTIL SEAT-F`.
 impl fmt::Display for PrimCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        words(f, self.command.text(), &[&self.sensor.unwrap_or_default()])
+        f.write_str(self.command.text())?;
+        name(f, self.sensor.as_ref())
     }
 }

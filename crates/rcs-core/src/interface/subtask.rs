@@ -12,7 +12,7 @@ use crate::{
     name::{Name10, Name16},
 };
 
-use super::words::{LocationWords, words};
+use super::words::{location, name};
 
 /// Commands of Subtask (V.3.1).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -78,8 +78,8 @@ pub struct SubtaskCommand {
     pub number: u32,
     /// `"command-in"`.
     pub command: SubtaskVerb,
-    /// `"obj"`.
-    pub object: Name16,
+    /// `"obj"`, if one is named.
+    pub object: Option<Name16>,
     /// `obj-endeff-id#`.
     pub end_effector_id: u8,
     /// `src-grip-#-in`.
@@ -156,6 +156,8 @@ pub struct SubtaskOutputs {
 /// `GET-OBJECT LINKBAR1 at TRAY`.
 impl fmt::Display for SubtaskCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        words(f, self.command.text(), &[&self.object, &LocationWords("at", &self.location, 0)])
+        f.write_str(self.command.text())?;
+        name(f, self.object.as_ref())?;
+        location(f, "at", Some(&self.location).filter(|name| !name.is_empty()), None)
     }
 }

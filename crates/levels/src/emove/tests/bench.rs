@@ -216,7 +216,7 @@ impl Bench {
         let mut command = EmoveCommand {
             number: successor(self.memory.subtask.emove.number),
             command: verb,
-            object,
+            object: Some(object).filter(|object| !object.is_empty()),
             grip,
             object_parameters: data.object(&object, grip).map(|(id, _)| id.number()),
             end_effector_id: gripper,

@@ -101,7 +101,9 @@ impl EmoveDouble {
 
     fn effect(&mut self, command: &EmoveCommand) {
         match command.command {
-            EmoveVerb::GraspObj | EmoveVerb::AcquireTool => self.hold(command.object.as_str(), command.grip),
+            EmoveVerb::GraspObj | EmoveVerb::AcquireTool => {
+                self.hold(command.object.unwrap_or_default().as_str(), command.grip)
+            }
             EmoveVerb::Release => {
                 if let Some(held) = self.outputs.status.held.object() {
                     self.outputs.status.placed = Some(PlacedObject {
@@ -263,7 +265,7 @@ impl<'d> Bench<'d> {
         let mut command = SubtaskCommand {
             number,
             command: verb,
-            object,
+            object: Some(object).filter(|object| !object.is_empty()),
             end_effector_id: self.data.obj_grips(&object).map_or(0, |grips| grips.endeff_id as u8),
             source_grip: grips.0,
             destination_grip: grips.1,

@@ -62,7 +62,9 @@ fn a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched() {
         .emove
         .received
         .iter()
-        .map(|c| (c.object.as_str(), c.grip, c.location.as_str(), c.end_effector_id))
+        .map(|c| {
+            (c.object.as_ref().map_or("", Name16::as_str), c.grip, c.location.as_str(), c.end_effector_id)
+        })
         .collect();
     let (own, wanted) = (("GRIPPER-1", 1, "HOLSTER-R", 1), ("GRIPPER-2", 2, "HOLSTER-L", 2));
     assert_eq!(aims, [own, own, wanted, wanted]);
@@ -71,7 +73,7 @@ fn a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched() {
         let locpt = bench.data.locpt(bench.data.locpt_named(&command.location).unwrap()).unwrap();
         let expected = rcs_core::pose::Pose::from_frame(&locpt.frame);
         assert_eq!(pose_of(&bench, command.pose.unwrap()), Some(expected), "{}", command.location);
-        let (id, _) = bench.data.object(&command.object, command.grip).unwrap();
+        let (id, _) = bench.data.object(&command.object.unwrap(), command.grip).unwrap();
         assert_eq!(command.object_parameters, Some(id.number()));
     }
 }
@@ -83,7 +85,13 @@ fn a_bare_robot_goes_to_the_wanted_holster_at_once() {
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), "PFIXTURE"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-HOL", "QC-ATTACH"]);
-    assert!(bench.emove.received.iter().all(|c| (c.object.as_str(), c.grip) == ("GRIPPER-1", 2)));
+    assert!(
+        bench
+            .emove
+            .received
+            .iter()
+            .all(|c| (c.object.as_ref().map_or("", Name16::as_str), c.grip) == ("GRIPPER-1", 2))
+    );
 }
 
 #[test]
@@ -141,12 +149,16 @@ fn an_object_is_regripped_on_the_pedestal() {
     let mut bench = Bench::grasped("PART", 1);
     assert_eq!(bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), ""), DONE);
     assert_eq!(bench.sent(), ["MOV-OBJ-TO", "RELEASE", "MOV-TO-LOC", "MOV-TO-OBJ", "GRASP-OBJ"]);
-    let aims: Vec<_> =
-        bench.emove.received.iter().map(|c| (c.object.as_str(), c.grip, c.location.as_str())).collect();
+    let aims: Vec<_> = bench
+        .emove
+        .received
+        .iter()
+        .map(|c| (c.object.as_ref().map_or("", Name16::as_str), c.grip, c.location.as_str()))
+        .collect();
     let (bring, take) = (("PART", 1, "PEDESTAL"), ("PART", -1, "PEDESTAL"));
     assert_eq!(aims, [bring, bring, ("", 0, "PED-SAFE"), take, take]);
-    for command in bench.emove.received.iter().filter(|c| !c.object.is_empty()) {
-        let (id, _) = bench.data.object(&command.object, command.grip).unwrap();
+    for command in bench.emove.received.iter().filter(|c| c.object.is_some()) {
+        let (id, _) = bench.data.object(&command.object.unwrap(), command.grip).unwrap();
         assert_eq!(command.object_parameters, Some(id.number()));
     }
     let told: Vec<_> = bench
@@ -313,7 +325,10 @@ fn the_tool_commands_go_down_with_the_transfer_location() {
         assert_eq!(bench.run(verb, "TOOL-1", (1, 1), ""), DONE);
         assert_eq!(bench.sent(), [word]);
         let command = bench.emove.received[0];
-        assert_eq!((command.object.as_str(), command.location.as_str()), ("TOOL-1", "TOOL-TRNS"));
+        assert_eq!(
+            (command.object.unwrap_or_default().as_str(), command.location.as_str()),
+            ("TOOL-1", "TOOL-TRNS")
+        );
         assert_eq!((command.grip, command.end_effector_id), (1, 3));
         assert_eq!(command.pose.unwrap() & pose_range::WRITER, pose_range::SUBTASK);
         let tool = Name16::new("TOOL-1").unwrap();

@@ -95,9 +95,9 @@ impl SubtaskDouble {
             SubtaskVerb::GetEndeff if command.end_effector_id != 0 => {
                 status.end_effector_id = command.end_effector_id;
             }
-            SubtaskVerb::GetObject => self.hold(command.object.as_str()),
+            SubtaskVerb::GetObject => self.hold(command.object.unwrap_or_default().as_str()),
             SubtaskVerb::AcquireTool => {
-                self.hold(command.object.as_str());
+                self.hold(command.object.unwrap_or_default().as_str());
                 self.stand("TOOL-TRNS");
             }
             SubtaskVerb::InsertTool => self.stand("TOOL-TRNS"),
@@ -110,7 +110,7 @@ impl SubtaskDouble {
             SubtaskVerb::PlaceObj => {
                 self.hold("");
                 self.outputs.status.placed = Some(PlacedObject {
-                    object: command.object,
+                    object: command.object.unwrap_or_default(),
                     grip: command.destination_grip,
                     location: command.location,
                     record: command.location_record,
@@ -250,23 +250,24 @@ impl<'d> Bench<'d> {
     pub fn command(&mut self, line: &str) {
         let words: Vec<&str> = line.split_whitespace().collect();
         let name = |at: usize| match words[at] {
-            "--" => Name16::EMPTY,
-            word => Name16::new(word).unwrap(),
+            "--" => None,
+            word => Some(Name16::new(word).unwrap()),
         };
         let number = |at: usize| words[at].parse().unwrap();
+        let sector = |at: usize| Some(number(at)).filter(|sector| *sector != 0);
         self.external.hws = HwsCommand {
             number: self.external.hws.number + 1,
-            command: name(0),
+            command: name(0).unwrap(),
             object: name(1),
             serial: Name16::new("S-17").unwrap(),
             source_grip: number(2),
             source: name(3),
-            source_sector: number(4),
+            source_sector: sector(4),
             destination_grip: number(5),
             destination: name(6),
-            destination_sector: number(7),
+            destination_sector: sector(7),
             end_at: name(8),
-            end_at_sector: number(9),
+            end_at_sector: sector(9),
         };
     }
 

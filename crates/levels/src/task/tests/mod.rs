@@ -132,7 +132,7 @@ fn a_tool_is_acquired_and_removed() {
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GOTO-DEST", "ACQUIRE-TOOL"]);
     let [gripper, near, acquire] = bench.subtask.received[..] else { panic!() };
     assert_eq!((gripper.end_effector_id, near.location.as_str()), (3, "TOOL-SAFE"));
-    assert_eq!((acquire.object.as_str(), acquire.source_grip), ("TOOL-1", 1));
+    assert_eq!((acquire.object.unwrap_or_default().as_str(), acquire.source_grip), ("TOOL-1", 1));
     assert_eq!((bench.run(ACQUIRE), bench.sent()), (FINISHED, vec![]), "it is held already");
     assert_eq!(bench.run(REMOVE), FINISHED);
     assert_eq!(bench.sent(), ["REMOVE-TOOL", "GOTO-ENDPT"]);
@@ -149,7 +149,7 @@ fn a_tool_command_without_an_end_stays_where_it_is_and_without_a_name_means_the_
     ] {
         assert_eq!(bench.run(line), FINISHED);
         assert_eq!(bench.sent(), [word]);
-        assert_eq!(bench.subtask.received[0].object.as_str(), "TOOL-1");
+        assert_eq!(bench.subtask.received[0].object.unwrap_or_default().as_str(), "TOOL-1");
         assert_eq!(bench.subtask.received[0].end_effector_id, 3);
     }
     // The location that the command names as its source does not count: only TOOL-SAFE is near the drum.

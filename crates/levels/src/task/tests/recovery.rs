@@ -301,7 +301,7 @@ fn what_is_unknown_is_let_go_by_position_alone() {
 /// What the updates say that the Data System has taken: item and position.
 fn updates(bench: &Bench<'_>) -> Vec<(String, i32)> {
     let told = bench.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
-    told.map(|told| (told.position.to_string(), told.sector)).collect()
+    told.map(|told| (told.position.to_string(), told.sector.unwrap_or(0))).collect()
 }
 
 #[test]

@@ -72,7 +72,7 @@ fn command(number: u32, command: DataBaseVerb, position: &str) -> DataBaseComman
         item: Name16::new("LINKBAR1").unwrap(),
         serial: Name16::new("17").unwrap(),
         position: Name10::new(position).unwrap(),
-        sector: 4,
+        sector: Some(4),
     }
 }
 

@@ -71,6 +71,18 @@ impl Field {
     pub(super) fn given(&self) -> bool {
         !self.name.is_empty()
     }
+
+    /// The name, if there is one.
+    fn named(&self) -> Option<Name16> {
+        self.given().then_some(self.name)
+    }
+}
+
+impl Number {
+    /// The number, if it is not 0.
+    pub(super) fn given(&self) -> Option<i32> {
+        Some(self.value).filter(|value| *value != 0)
+    }
 }
 
 /// Reads the lines of a job in their order.
@@ -251,7 +263,7 @@ impl Reader<'_, '_> {
             let fails = fields.words.get(fields.next).is_some_and(|word| word.text == "expect");
             self.held =
                 if fails { Held::Unknown } else { command.check(&self.data, self.held, self.problems) };
-            let thing = object.given().then_some(object.name);
+            let thing = object.named();
             let source = self.visit(source, source_sector, thing, source_grip);
             let destination = self.visit(destination, destination_sector, thing, destination_grip);
             let end_at = self.visit(end_at, end_at_sector, None, Number { value: 0, at: end_at.at });
@@ -261,16 +273,16 @@ impl Reader<'_, '_> {
         Some(HwsCommand {
             number: 0,
             command: verb.name,
-            object: object.name,
+            object: object.named(),
             serial,
             source_grip: source_grip.value,
-            source: source.name,
-            source_sector: source_sector.value,
+            source: source.named(),
+            source_sector: source_sector.given(),
             destination_grip: destination_grip.value,
-            destination: destination.name,
-            destination_sector: destination_sector.value,
-            end_at: end_at.name,
-            end_at_sector: end_at_sector.value,
+            destination: destination.named(),
+            destination_sector: destination_sector.given(),
+            end_at: end_at.named(),
+            end_at_sector: end_at_sector.given(),
         })
     }
 
