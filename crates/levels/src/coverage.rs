@@ -24,8 +24,8 @@ impl Coverage {
         self.0.append(&mut other.0);
     }
 
-    /// Rows that have not fired, as `GET-OBJECT 3`. Rows that no header ever names are left out: those that pass on to the table below, and
-    /// those of EXECUTE that do not refuse.
+    /// Rows that have not fired, as `GET-OBJECT 3`. Rows that no header ever names are left out: those that
+    /// pass on to the table below, and those of EXECUTE that do not refuse.
     pub fn missing(&self, tables: &[&Table]) -> Vec<String> {
         let rows = tables.iter().zip(1_u8..).flat_map(|(table, number)| {
             let named =

@@ -1,7 +1,7 @@
 //! What the processes have in common: the upper of the two state tables (II.2.2.2).
 //!
-//! The lower tables belong to commands; this one decides whether they are consulted at all. An outcome, once reached, stays until a new
-//! command number comes.
+//! The lower tables belong to commands; this one decides whether they are consulted at all. An outcome, once
+//! reached, stays until a new command number comes.
 //!
 //! ```text
 //!            new number           table says Finish
@@ -14,10 +14,10 @@
 //!     |______ new number ___|
 //! ```
 //!
-//! A process consults in turn, until a row decides: [`EXECUTE`], its table ACCEPT with what a new command needs, its table of what all
-//! commands have in common, if it has one, and the table of the command. A process with others below it consults
-//! [`HALT`](crate::halt::HALT) before ACCEPT and [`EFFECT`](crate::halt::EFFECT) after the table of the command.
-//! `docs/design/tables.md` tells more.
+//! A process consults in turn, until a row decides: [`EXECUTE`], its table ACCEPT with what a new command
+//! needs, its table of what all commands have in common, if it has one, and the table of the command. A
+//! process with others below it consults [`HALT`](crate::halt::HALT) before ACCEPT and
+//! [`EFFECT`](crate::halt::EFFECT) after the table of the command. `docs/design/tables.md` tells more.
 
 use rcs_core::{
     Actions, Plain, Variables, decision_table,
@@ -99,7 +99,8 @@ impl Asked {
     }
 }
 
-/// What a table ACCEPT decides in a process that does something beside its command in the same tick: it watches or calibrates.
+/// What a table ACCEPT decides in a process that does something beside its command in the same tick: it
+/// watches or calibrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Actions)]
 pub enum Refusal {
     /// Report an error.
@@ -199,8 +200,9 @@ impl Execution {
         decision.action
     }
 
-    /// Consult [`EXECUTE`], and the tables of the process if it says so: from the step `first` if the command is new, else from `step`.
-    /// Gives the action of the row that decided; none if no table of the process was consulted.
+    /// Consult [`EXECUTE`], and the tables of the process if it says so: from the step `first` if the command
+    /// is new, else from `step`. Gives the action of the row that decided; none if no table of the process
+    /// was consulted.
     pub fn decide<Action, Step: Copy>(
         &mut self,
         arrival: Arrival,
@@ -219,8 +221,8 @@ impl Execution {
         Some(choice.action)
     }
 
-    /// Consult [`HALT`](crate::halt::HALT) about what [`EXECUTE`] has said. What is to be done with the tables: `Begin` in the tick in
-    /// which a command is accepted or refused.
+    /// Consult [`HALT`](crate::halt::HALT) about what [`EXECUTE`] has said. What is to be done with the
+    /// tables: `Begin` in the tick in which a command is accepted or refused.
     ///
     /// # Errors
     /// What HALT asks for: no other table is to be consulted.
@@ -248,8 +250,8 @@ impl Execution {
         }
     }
 
-    /// As [`Self::decide`], for a process that commands others: HALT is consulted before the tables and EFFECT after them.
-    /// `variables` are those of the command's table, as one number.
+    /// As [`Self::decide`], for a process that commands others: HALT is consulted before the tables and
+    /// EFFECT after them. `variables` are those of the command's table, as one number.
     pub fn command<Action: Orders, Step: Copy>(
         &mut self,
         (arrival, replaced, variables): (Arrival, &Replaced, u64),
@@ -293,7 +295,8 @@ impl Execution {
         }
     }
 
-    /// Note what a table ACCEPT has decided whose process does more in the same tick. False if it refused the command.
+    /// Note what a table ACCEPT has decided whose process does more in the same tick. False if it refused the
+    /// command.
     pub fn accepts<Step>(&mut self, verdict: &Verdict<Refusal, Step, ()>) -> bool {
         match *verdict {
             Verdict::Passed(()) => true,
@@ -316,7 +319,8 @@ impl Execution {
         if self.waiting { Asked::Now } else { Asked::of(arrival) }
     }
 
-    /// True in the tick in which a command was accepted: `arrival` is that of the tick, and no row of ACCEPT has refused it.
+    /// True in the tick in which a command was accepted: `arrival` is that of the tick, and no row of ACCEPT
+    /// has refused it.
     #[must_use]
     pub fn begins(&self, arrival: Arrival) -> bool {
         self.accepted(Asked::of(arrival))

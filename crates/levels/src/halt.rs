@@ -8,8 +8,9 @@
 //!     '--------------------------------------------------------------'
 //! ```
 //!
-//! [`HALT`] is consulted after EXECUTE and before ACCEPT, so that a command that is refused stops what was under way too, and its
-//! end is reported only when nothing moves any more. If nothing is under way, a command is accepted in the tick in which it comes.
+//! [`HALT`] is consulted after EXECUTE and before ACCEPT, so that a command that is refused stops what was
+//! under way too, and its end is reported only when nothing moves any more. If nothing is under way, a
+//! command is accepted in the tick in which it comes.
 
 use rcs_core::{Actions, Plain, Variables, decision_table, handshake::Lower, interface::Reason};
 
@@ -98,8 +99,8 @@ pub enum Halting {
 }
 
 decision_table! {
-    /// HALT: a new command replaces what is under way. It is accepted or refused when the processes below have
-    /// come to rest. What a process had under way before it was restarted is stopped too.
+    /// HALT: a new command replaces what is under way. It is accepted or refused when the processes below
+    /// have come to rest. What a process had under way before it was restarted is stopped too.
     pub HALT: fn halt(enum Halt, Replaced) -> Halting or () {
         any {
             1:  joystick: On                                                    => consult;
@@ -147,7 +148,8 @@ pub enum Futile {
 }
 
 decision_table! {
-    /// EFFECT: an order that has changed no state variable is not given again by the same row. The command fails.
+    /// EFFECT: an order that has changed no state variable is not given again by the same row. The command
+    /// fails.
     pub EFFECT: fn effect(Fired) -> Futile or () {
         1: order: None | New    => consult;
         2: order: Repeated      => Fail(NoEffect);

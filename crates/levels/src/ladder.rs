@@ -1,9 +1,11 @@
 //! The ladder: all control processes, stepped once a tick.
 //!
-//! Every process reads common memory as the tick before left it and writes only its own part of the next one, so the order in
-//! which they are stepped cannot change a bit of the result ([`Ladder::step_in_order`] lets a test try).
+//! Every process reads common memory as the tick before left it and writes only its own part of the next one,
+//! so the order in which they are stepped cannot change a bit of the result ([`Ladder::step_in_order`] lets a
+//! test try).
 //!
-//! The processes of an Active Pedestal that is a system of its own are not stepped: what they sent is adopted in their place.
+//! The processes of an Active Pedestal that is a system of its own are not stepped: what they sent is adopted
+//! in their place.
 
 use rcs_core::{
     Plain, for_each_process,
@@ -113,8 +115,8 @@ macro_rules! ladder {
 }
 for_each_process!(ladder);
 
-/// A process that is not stepped in this tick: dormant (II.2.3), held by its switch on the joystick box, or suspended while a
-/// recorded pose is looked at (III.3.3).
+/// A process that is not stepped in this tick: dormant (II.2.3), held by its switch on the joystick box, or
+/// suspended while a recorded pose is looked at (III.3.3).
 const fn is_suspended(
     process: ProcessId,
     before: &CommonMemory,
@@ -140,16 +142,16 @@ const fn is_suspended(
     held || dormant
 }
 
-/// Publish the last outputs of a process that is not stepped again, so that its readers do not take it for lost
-/// (docs/design/handshake.md "Stamp").
+/// Publish the last outputs of a process that is not stepped again, so that its readers do not take it for
+/// lost (docs/design/handshake.md "Stamp").
 const fn republish(header: &mut Header, tick: Tick) {
     header.stamp = tick;
     header.republished = true;
 }
 
-/// A process of the pedestal that runs in another system: take over what it has sent, as if it had run here in this tick. Of one
-/// that does not answer everything stays, the old stamp too, so that its readers know it for lost
-/// (docs/design/handshake.md "Outside").
+/// A process of the pedestal that runs in another system: take over what it has sent, as if it had run here
+/// in this tick. Of one that does not answer everything stays, the old stamp too, so that its readers know it
+/// for lost (docs/design/handshake.md "Outside").
 const fn adopt(process: ProcessId, sent: &OutsidePedestal, tick: Tick, memory: &mut CommonMemory) {
     if !sent.answers {
         return;
@@ -181,8 +183,8 @@ impl Ladder {
         self.step_in_order(ProcessId::ALL, tick, before, external, data, after);
     }
 
-    /// One tick with the processes in another order, or of some of them: those of a board. What `after` holds of a process that
-    /// is not named is what `before` held.
+    /// One tick with the processes in another order, or of some of them: those of a board. What `after` holds
+    /// of a process that is not named is what `before` held.
     pub fn step_in_order(
         &mut self,
         order: &[ProcessId],
@@ -195,8 +197,8 @@ impl Ladder {
         self.step_observed(order, tick, before, external, data, after, &mut |_| {});
     }
 
-    /// The same; `observe` is called after each stage: with `None` once the buffers are carried over from the tick before, then with each
-    /// process. It can measure times, which the levels cannot.
+    /// The same; `observe` is called after each stage: with `None` once the buffers are carried over from the
+    /// tick before, then with each process. It can measure times, which the levels cannot.
     #[expect(clippy::too_many_arguments, reason = "a tick's inputs and outputs, and the observer")]
     pub fn step_observed(
         &mut self,

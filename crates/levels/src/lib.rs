@@ -1,8 +1,9 @@
 //! The control processes of RCS-II/T3 (chapters V and VI): a folder each.
 //!
-//! Every process is a pure state machine ([`rcs_core::process::Process`]) in the manual's three phases: *preprocess* reads input
-//! buffers and sets state variables, a *decision table* of the current command selects one row, *postprocess* fills the
-//! output buffers. Processes read what was written in the tick before, so their order within a tick does not matter.
+//! Every process is a pure state machine ([`rcs_core::process::Process`]) in the manual's three phases:
+//! *preprocess* reads input buffers and sets state variables, a *decision table* of the current command
+//! selects one row, *postprocess* fills the output buffers. Processes read what was written in the tick
+//! before, so their order within a tick does not matter.
 //!
 //! ```text
 //!        HWSC                    Data System
@@ -45,6 +46,7 @@ mod exact_robot;
 pub mod execution;
 pub mod grip;
 pub mod halt;
+pub mod held;
 pub mod jaws;
 pub mod ladder;
 pub mod pedestal;

@@ -1,5 +1,5 @@
-//! Variables of the interfaces (chapters V and VI) that are carried along: no scenario depends on them, people and programs
-//! that look on do.
+//! Variables of the interfaces (chapters V and VI) that are carried along: no scenario depends on them,
+//! people and programs that look on do.
 
 mod fingers;
 

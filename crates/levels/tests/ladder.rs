@@ -1,5 +1,5 @@
-//! The ladder against the controller side of the DEPC link and a plain arm: MOV-TO-LOC from the workstation's command to the
-//! joints and back, in any order of the processes, with processes that are late or restarted.
+//! The ladder against the controller side of the DEPC link and a plain arm: MOV-TO-LOC from the workstation's
+//! command to the joints and back, in any order of the processes, with processes that are late or restarted.
 //!
 //! The arm here takes every set point at once; masses, lag and contacts belong to the cell's tests.
 
@@ -315,8 +315,8 @@ fn mishap() -> impl Strategy<Value = Mishap> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
-    /// Whatever is late or restarted: the robot is never asked to jump, a command that is reported finished is finished, no
-    /// command is left without an end, and a PAUSE leads back to work.
+    /// Whatever is late or restarted: the robot is never asked to jump, a command that is reported finished
+    /// is finished, no command is left without an end, and a PAUSE leads back to work.
     #[test]
     fn mishaps_end_in_a_stop_and_a_report(
         mishaps in prop::collection::vec((0_u16..500, mishap()), 1..5),
@@ -477,8 +477,8 @@ fn interval() -> impl Strategy<Value = Interval> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
-    /// Dormancy, holding and single step are decided before any process is stepped: the order cannot change a bit, the robot is
-    /// never asked to jump, and once everything runs again a PAUSE leads back to work.
+    /// Dormancy, holding and single step are decided before any process is stepped: the order cannot change a
+    /// bit, the robot is never asked to jump, and once everything runs again a PAUSE leads back to work.
     #[test]
     fn suspensions_do_not_depend_on_the_order(
         intervals in prop::collection::vec(interval(), 1..12),
@@ -551,7 +551,8 @@ fn a_lost_process_below_is_an_error() {
     assert_eq!(rig.finish(&without_emove, 100), (HwsReport::Error, Reason::NeighbourLost));
 }
 
-/// Its processes are those of another ladder, in lock step: the outputs are the same to the bit as with the pedestal inside.
+/// Its processes are those of another ladder, in lock step: the outputs are the same to the bit as with the
+/// pedestal inside.
 #[test]
 fn a_pedestal_of_another_system_is_adopted_and_lost_when_it_does_not_answer() {
     let pedestal = [ProcessId::Pedestal, ProcessId::Hand, ProcessId::RotaryTable];

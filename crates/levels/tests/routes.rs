@@ -1,4 +1,5 @@
-//! Routes of E-move over the linkbar's data: the points of Figures VIII.22 to VIII.28 in their order, and what is refused.
+//! Routes of E-move over the linkbar's data: the points of Figures VIII.22 to VIII.28 in their order, and
+//! what is refused.
 
 use std::{path::Path, sync::OnceLock};
 
@@ -63,7 +64,8 @@ fn gripped(object: &str, grip: i32) -> ObjectGrip {
     ObjectGrip { object: Name16::new(object).unwrap(), grip }
 }
 
-/// The whole route as text: `departure A/D-8`, `UNIT-V1`, `goal A/D-10`, `goal`, each with the velocity of its segment.
+/// The whole route as text: `departure A/D-8`, `UNIT-V1`, `goal A/D-10`, `goal`, each with the velocity of
+/// its segment.
 fn legs(mut route: Route) -> Vec<(String, i32)> {
     let data = data();
     (route.departure, route.goal) = (1_000_001, 1_000_002);

@@ -1,8 +1,8 @@
 //! Frames inside the controller: a position in inches and a rotation, in `f64`.
 //!
-//! World frame (SPECNOTES): right-handed, +Z up, origin on the base axis at shoulder height; at HOME the arm points
-//! along -Y. Tool frame (VII.1): X along the gripper axis out of the fingertips, Y from the tool point to the finger
-//! point, Z = X x Y.
+//! World frame (SPECNOTES): right-handed, +Z up, origin on the base axis at shoulder height; at HOME the arm
+//! points along -Y. Tool frame (VII.1): X along the gripper axis out of the fingertips, Y from the tool point
+//! to the finger point, Z = X x Y.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
@@ -98,7 +98,8 @@ pub struct Distance {
     pub radians: f64,
 }
 
-/// Inches that count as much as a radian of rotation, so that the DEPC limits of 14 in/s and 1.0 rad/s (A 2.3) are one.
+/// Inches that count as much as a radian of rotation, so that the DEPC limits of 14 in/s and 1.0 rad/s (A
+/// 2.3) are one.
 pub const INCHES_PER_RADIAN: f64 = 14.0;
 
 impl Distance {

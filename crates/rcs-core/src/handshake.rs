@@ -1,8 +1,9 @@
 //! Command numbers and echoes between two processes (docs/design/handshake.md).
 //!
-//! A commander counts its commands; a receiver echoes the number with the status of *that* command. So a status is
-//! believed only if it answers the last command, a repeated text is a new command only if its number is new, and a
-//! process that starts in the middle of things neither executes an old command nor believes an old status.
+//! A commander counts its commands; a receiver echoes the number with the status of *that* command. So a
+//! status is believed only if it answers the last command, a repeated text is a new command only if its
+//! number is new, and a process that starts in the middle of things neither executes an old command nor
+//! believes an old status.
 //!
 //! | tick | commander                     | receiver                                  |
 //! |------|-------------------------------|-------------------------------------------|
@@ -15,8 +16,8 @@ use crate::{Plain, interface::Header, tick::Tick};
 /// Ticks after which a command that is not echoed counts as lost.
 pub const ECHO_LIMIT: u64 = 3;
 
-/// How far the first number of a starting commander is from the last that it finds: more than can be under way, since a
-/// number written in tick k is echoed in the buffer that tick k+2 reads.
+/// How far the first number of a starting commander is from the last that it finds: more than can be under
+/// way, since a number written in tick k is echoed in the buffer that tick k+2 reads.
 pub const FIRST_STEP: u32 = 4;
 
 /// The command number after `number`: they run on past the end without 0, which means none.
@@ -58,17 +59,17 @@ pub struct Commander {
 }
 
 impl Commander {
-    /// Before anything else in a tick: a commander that has sent nothing yet follows the echo of what is below. This is
-    /// for commanders of devices and of other systems.
+    /// Before anything else in a tick: a commander that has sent nothing yet follows the echo of what is
+    /// below. This is for commanders of devices and of other systems.
     pub fn start(&mut self, echo: u32) {
         if !self.started {
             self.number = echo;
         }
     }
 
-    /// As [`Self::start`], for a commander of a process. Its output buffer is still there after a restart, and with it
-    /// the number of a command that may be under way without being echoed yet: it goes on from that, `written`. An echo
-    /// alone is not settled before the second tick.
+    /// As [`Self::start`], for a commander of a process. Its output buffer is still there after a restart,
+    /// and with it the number of a command that may be under way without being echoed yet: it goes on from
+    /// that, `written`. An echo alone is not settled before the second tick.
     pub fn start_from(&mut self, tick: Tick, written: u32, echo: u32) {
         self.start(if written == 0 { echo } else { written });
         if !self.started {
@@ -78,8 +79,8 @@ impl Commander {
 
     /// Number of a new command written in this tick.
     ///
-    /// The first one after a start stands off from the echo: commands of the time before may still be under way, and a
-    /// number that has been used is not new.
+    /// The first one after a start stands off from the echo: commands of the time before may still be under
+    /// way, and a number that has been used is not new.
     pub fn send(&mut self, tick: Tick) -> u32 {
         let steps = if self.started { 1 } else { FIRST_STEP };
         for _ in 0..steps {
@@ -90,7 +91,8 @@ impl Commander {
         self.number
     }
 
-    /// What the status of the process below means now: `report` counts only if `echo` is the last number sent.
+    /// What the status of the process below means now: `report` counts only if `echo` is the last number
+    /// sent.
     #[must_use]
     pub fn read(&self, tick: Tick, below: &Header, echo: u32, report: Lower) -> Lower {
         if below.stamp != tick.previous() {
@@ -199,7 +201,8 @@ mod tests {
         let mut commander = Commander::default();
         commander.start_from(Tick(10), 0, 41);
         let under_way = commander.send(Tick(10));
-        // It forgets everything in the next tick, when the echo is still the old one. Its output buffer stays.
+        // It forgets everything in the next tick, when the echo is still the old one. Its output buffer
+        // stays.
         let mut restarted = Commander::default();
         restarted.start_from(Tick(11), under_way, 41);
         assert_eq!(restarted.read(Tick(11), &header(10), 41, Lower::Done), Lower::Pending, "that is another");
@@ -218,7 +221,8 @@ mod tests {
         assert_eq!(commander.read(Tick(101), &header(100), 45, Lower::Executing), Lower::Executing);
     }
 
-    /// A command as the buffer holds it: its number, and what distinguishes it from every other command ever sent.
+    /// A command as the buffer holds it: its number, and what distinguishes it from every other command ever
+    /// sent.
     #[derive(Clone, Copy, Debug, Default, PartialEq)]
     struct Content {
         number: u32,
@@ -226,14 +230,14 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever is restarted whenever, no command is executed twice, and no status is believed but that of the
-        /// command that was sent last: by its content, not by its number.
+        /// Whatever is restarted whenever, no command is executed twice, and no status is believed but that
+        /// of the command that was sent last: by its content, not by its number.
         #[test]
         fn each_command_is_executed_at_most_once(events in prop::collection::vec(0_u8..12, 1..300)) {
             let mut commander = Commander::default();
             let mut receiver = Receiver::default();
-            // Tick-parity buffers: what was written in the tick before stays until it is written again. They survive
-            // a restart.
+            // Tick-parity buffers: what was written in the tick before stays until it is written again. They
+            // survive a restart.
             let (mut written, mut echo) = (Content::default(), (0_u32, Lower::Done));
             // What the receiver has executed or adopted last: what its status is about.
             let mut current = Content::default();

@@ -1,9 +1,9 @@
 //! The T3 arm in closed form: joint angles to tool frame and back.
 //!
-//! Base, shoulder, elbow, pitch, yaw, roll. Shoulder, elbow and pitch axes are parallel and horizontal, yaw is
-//! perpendicular to pitch, roll runs along the gripper and meets the yaw axis. The wrist is not spherical (`pitch_to_yaw`),
-//! yet three parallel axes and a roll that meets yaw leave a closed form. HOME (IV.3.3) proves the upper arm and the sum of
-//! the rest; the split of the rest is ASSUMED (SPECNOTES).
+//! Base, shoulder, elbow, pitch, yaw, roll. Shoulder, elbow and pitch axes are parallel and horizontal, yaw
+//! is perpendicular to pitch, roll runs along the gripper and meets the yaw axis. The wrist is not spherical
+//! (`pitch_to_yaw`), yet three parallel axes and a roll that meets yaw leave a closed form. HOME (IV.3.3)
+//! proves the upper arm and the sum of the rest; the split of the rest is ASSUMED (SPECNOTES).
 
 use core::{f64::consts::PI, fmt};
 
@@ -136,8 +136,8 @@ impl Arm {
         Frame { position, rotation }
     }
 
-    /// Joint angles for a tool frame: arm in front, yaw within 90 degrees, elbow up. `near` gives the base angle where it is
-    /// free, and the turn of base and roll.
+    /// Joint angles for a tool frame: arm in front, yaw within 90 degrees, elbow up. `near` gives the base
+    /// angle where it is free, and the turn of base and roll.
     ///
     /// Limits are not checked; see [`Arm::margin`].
     ///

@@ -1,7 +1,8 @@
 //! The words that all parts of the RCS-II/T3 controller speak (NBSIR 88-3692).
 //!
-//! This crate holds no behaviour of a control process and no I/O. It defines what a tick, a name, a pose, a movetable and
-//! an interface buffer *are*, so that the levels, the cell, the link, the recorder and the tests agree to the bit:
+//! This crate holds no behaviour of a control process and no I/O. It defines what a tick, a name, a pose, a
+//! movetable and an interface buffer *are*, so that the levels, the cell, the link, the recorder and the
+//! tests agree to the bit:
 //!
 //! * [`tick`], [`name`], [`units`]: time, names and the manual's integers;
 //! * [`frame`], [`pose`], [`movetable`], [`kinematics`]: geometry, in inches and radians;

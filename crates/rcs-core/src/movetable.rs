@@ -1,4 +1,5 @@
-//! Movetables: up to eight translations and rotations, each in the frame that the lines before it made (VII.2).
+//! Movetables: up to eight translations and rotations, each in the frame that the lines before it made
+//! (VII.2).
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -125,8 +126,8 @@ impl Line {
     }
 }
 
-/// Straight down with tool Y along world -Y, as over a tray that the robot faces along -X; a frame for tests and
-/// examples.
+/// Straight down with tool Y along world -Y, as over a tray that the robot faces along -X; a frame for tests
+/// and examples.
 #[must_use]
 pub fn straight_down(position: Vector) -> Frame {
     let down = Rotation::from_axis_angle(&Vector::y_axis(), FRAC_PI_2);

@@ -7,7 +7,8 @@ use crate::{
     plain::{DecodeError, Reader, Schema, Writer},
 };
 
-/// A name of at most `N` printable ASCII characters without blanks, zero-filled so that equal names are equal bytes.
+/// A name of at most `N` printable ASCII characters without blanks, zero-filled so that equal names are equal
+/// bytes.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Name<const N: usize>([u8; N]);
@@ -62,7 +63,8 @@ impl<const N: usize> Name<N> {
     /// A name from text.
     ///
     /// # Errors
-    /// [`NameError`] if the text is longer than `N` or holds a blank or a character that is not printable ASCII.
+    /// [`NameError`] if the text is longer than `N` or holds a blank or a character that is not printable
+    /// ASCII.
     pub const fn new(text: &str) -> Result<Self, NameError> {
         let from = text.as_bytes();
         if from.len() > N {

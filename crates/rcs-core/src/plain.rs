@@ -1,8 +1,10 @@
-//! Plain data: the fixed-size values that processes exchange and remember, with one definition for everything that is done with them.
+//! Plain data: the fixed-size values that processes exchange and remember, with one definition for everything
+//! that is done with them.
 //!
-//! A type is written once, with `#[derive(Plain)]`, and the same definition gives the Rust type, its byte image (field by field,
-//! little-endian, without padding), the checked way back from bytes, and a [`Schema`] that recorders, viewers and the digest walk.
-//! Equal values are equal bytes, and a byte image from outside becomes a value only if every name, flag and enum in it is legal.
+//! A type is written once, with `#[derive(Plain)]`, and the same definition gives the Rust type, its byte
+//! image (field by field, little-endian, without padding), the checked way back from bytes, and a [`Schema`]
+//! that recorders, viewers and the digest walk. Equal values are equal bytes, and a byte image from outside
+//! becomes a value only if every name, flag and enum in it is legal.
 //!
 //! ```
 //! use rcs_core::{Plain, plain::to_bytes};

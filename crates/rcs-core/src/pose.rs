@@ -22,8 +22,8 @@ pub struct Pose {
     pub finger: [i32; 3],
 }
 
-/// A frame in RCS-II/T3 format (VI.1.2 frame-command-in): the tool point in hundredths of an inch, and two vectors
-/// of length 3000.
+/// A frame in RCS-II/T3 format (VI.1.2 frame-command-in): the tool point in hundredths of an inch, and two
+/// vectors of length 3000.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct WireFrame {
     /// Tool point, 0.01 in.

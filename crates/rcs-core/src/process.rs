@@ -1,5 +1,5 @@
-//! A control process (II.2.2): once a tick it reads common memory as the tick before left it, decides, and writes its own
-//! output buffers.
+//! A control process (II.2.2): once a tick it reads common memory as the tick before left it, decides, and
+//! writes its own output buffers.
 
 use crate::{
     Plain,
@@ -23,8 +23,9 @@ pub struct Inputs<'a, Data: ?Sized> {
 
 /// A control process: a pure state machine without clock, I/O or heap.
 ///
-/// [`Process::step`] is the generic process of II.2.2. *preprocess* reads the inputs and sets the state variables, *decide* looks them up in
-/// decision tables, *postprocess* fills the outputs. The same state and inputs give the same outputs, to the bit.
+/// [`Process::step`] is the generic process of II.2.2. *preprocess* reads the inputs and sets the state
+/// variables, *decide* looks them up in decision tables, *postprocess* fills the outputs. The same state and
+/// inputs give the same outputs, to the bit.
 pub trait Process<Data: ?Sized> {
     /// Everything the process remembers: plain data, logged, restorable.
     type State: Plain;

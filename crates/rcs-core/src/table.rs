@@ -1,12 +1,14 @@
-//! Decision tables (II.2.2.2): the step and the state variables select one row, the row names one action and the next step.
+//! Decision tables (II.2.2.2): the step and the state variables select one row, the row names one action and
+//! the next step.
 //!
-//! [`decision_table!`](crate::decision_table!) turns a table into one exhaustive `match`. The compiler proves that no case is missing and
-//! that no row is dead, and underlines what is wrong in the row itself. The same source gives the table as text, for logs, for
-//! `rcs-run tables` and for the documentation.
+//! [`decision_table!`](crate::decision_table!) turns a table into one exhaustive `match`. The compiler proves
+//! that no case is missing and that no row is dead, and underlines what is wrong in the row itself. The same
+//! source gives the table as text, for logs, for `rcs-run tables` and for the documentation.
 //!
-//! Rows are read from the top: the first one that fits decides. A row names only the variables that it asks for, and the next step
-//! only where it changes. A group of rows belongs to one step, to several, or to `any`. A group with a doc comment declares its step;
-//! the first step that is declared is the one in which a command begins.
+//! Rows are read from the top: the first one that fits decides. A row names only the variables that it asks
+//! for, and the next step only where it changes. A group of rows belongs to one step, to several, or to
+//! `any`. A group with a doc comment declares its step; the first step that is declared is the one in which a
+//! command begins.
 //!
 //! ```
 //! # mod cell {
@@ -78,14 +80,16 @@
 //!
 //! # Tables above
 //!
-//! What several tables have in common stands in a table of its own, which is consulted first. Its head says `-> Action or Type`. A row
-//! with `consult(Value)` does not decide: it passes a value of that type to the table below. The type is narrower than the variable that was
-//! asked for, so that the table below needs no rows for what was decided above. `-> Action or ()` and `consult` pass nothing.
+//! What several tables have in common stands in a table of its own, which is consulted first. Its head says
+//! `-> Action or Type`. A row with `consult(Value)` does not decide: it passes a value of that type to the
+//! table below. The type is narrower than the variable that was asked for, so that the table below needs no
+//! rows for what was decided above. `-> Action or ()` and `consult` pass nothing.
 //!
 //! # Commands
 //!
-//! [`commands!`](crate::commands!) lists the tables of a process once. It gives the enum of all steps, the list of all tables, the numbers
-//! of those that no command selects, and the function that consults the table of a command. `A then b::c` consults two in turn.
+//! [`commands!`](crate::commands!) lists the tables of a process once. It gives the enum of all steps, the
+//! list of all tables, the numbers of those that no command selects, and the function that consults the table
+//! of a command. `A then b::c` consults two in turn.
 
 use core::fmt;
 
@@ -207,7 +211,8 @@ impl<Action, Step> Decision<Action, Step> {
 }
 
 impl<Action, Step, Passed> Verdict<Action, Step, Passed> {
-    /// The decision as one of the table with this number, or what the table below makes of the value that was passed.
+    /// The decision as one of the table with this number, or what the table below makes of the value that was
+    /// passed.
     pub fn then<Next: From<Step>>(
         self,
         table: u8,

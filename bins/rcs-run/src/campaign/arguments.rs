@@ -18,8 +18,9 @@ pub struct CampaignArguments {
     /// Seed of the cell's noise and of where parts are delivered
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// What interrupts, with commas between them: pause, pause-twice, refused, replaced, answer-lost, answer-late,
-    /// answer-damaged, hold, nudge, away, estop, held[:PROCESS], restart[:PROCESS], fault[:FILE], none or all
+    /// What interrupts, with commas between them: pause, pause-twice, refused, replaced, answer-lost,
+    /// answer-late, answer-damaged, hold, nudge, away, estop, held[:PROCESS], restart[:PROCESS],
+    /// fault[:FILE], none or all
     #[arg(long, value_name = "KIND", value_delimiter = ',', default_value = "pause")]
     pub interrupt: Vec<String>,
     /// Fork at every so many ticks [default: 23 without --changes and --at]

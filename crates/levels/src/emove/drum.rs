@@ -31,6 +31,7 @@ use super::{
         AtDrum,
         drum::{AtTheDrum, Belief, Tool, drum},
     },
+    whereabouts::{ASIDE_INCHES, LOST_RADIANS},
 };
 
 /// A tool is in its place within this along the way in: the fingers of the drum close on it there, in.
@@ -40,10 +41,6 @@ const SEATED: f64 = 0.15;
 const AROUND: f64 = 0.25;
 /// A tool that is not in its place is on the way in within this to the left and right, in.
 const WIDE_IN: f64 = 0.75;
-/// The robot is on a segment within this, in …
-const ASIDE: f64 = 0.35;
-/// … and radians (2 degrees).
-const TURNED: f64 = 2.0 * core::f64::consts::PI / 180.0;
 /// A tool that is this much nearer than INS-NEAR meets nothing yet, in.
 const FREE: f64 = 0.15;
 /// The robot is before the drum up to this far from INS-NEAR …
@@ -85,7 +82,7 @@ impl Points {
         let way_out = self.slid.position - self.inside.position;
         let offset = present.position - self.inside.position;
         let (long, wide) = (norm(&way_in), norm(&way_out));
-        if long <= 0.0 || wide <= 0.0 || self.inside.distance(present).radians > TURNED {
+        if long <= 0.0 || wide <= 0.0 || self.inside.distance(present).radians > LOST_RADIANS {
             return AtDrum::Off;
         }
         // How far the robot is in from INS-NEAR, how far to the right, and how far from that plane.
@@ -95,13 +92,13 @@ impl Points {
         let to_the_right = |point: &Frame| (point.position - self.inside.position).dot(&way_out) / wide;
         let aside = to_the_right(&self.aside);
         let is_around = right <= AROUND && right >= to_the_right(&self.around).min(0.0) - AROUND;
-        let is_clear = right >= aside - ASIDE && right <= wide + ASIDE;
-        let is_deep = (depth - long).abs() <= ASIDE;
-        if depth < -FAR || depth > long + ASIDE || across > WIDE {
+        let is_clear = right >= aside - ASIDE_INCHES && right <= wide + ASIDE_INCHES;
+        let is_deep = (depth - long).abs() <= ASIDE_INCHES;
+        if depth < -FAR || depth > long + ASIDE_INCHES || across > WIDE {
             AtDrum::Off
         } else if depth <= FREE {
             if right.abs() <= WIDE { AtDrum::Before } else { AtDrum::Off }
-        } else if across > ASIDE {
+        } else if across > ASIDE_INCHES {
             AtDrum::Off
         } else if depth >= long - SEATED && is_around {
             AtDrum::Inside
@@ -176,7 +173,7 @@ impl State {
             return;
         };
         let grasped_here = self.beliefs.held.is_some_and(|held| {
-            held.pose.to_frame().is_ok_and(|pose| near(&pose, &present, UNMOVED, TURNED))
+            held.pose.to_frame().is_ok_and(|pose| near(&pose, &present, UNMOVED, LOST_RADIANS))
         });
         let situation = AtTheDrum {
             at: locate(&half_way, inputs.memory, inputs.data),

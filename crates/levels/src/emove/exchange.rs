@@ -28,6 +28,7 @@ use super::{
     route::beside,
     state::State,
     tables::{Along, Shut},
+    whereabouts::{ASIDE_INCHES, LOST_RADIANS},
 };
 use crate::places::pose_of;
 
@@ -37,13 +38,9 @@ const AT_POINT: f64 = 0.12;
 const AT_LOW: f64 = 0.3;
 /// It is clear of the holster within this of the upper points, or beyond them, in.
 const CLEAR: f64 = 0.3;
-/// It is on a segment within this, in …
-const BESIDE: f64 = 0.35;
-/// … and this much above it on the way to the seat: QCD-SEAT begins where the large sensors see the ears, up to half an
-/// inch above the low point (V.2.1). QCD-UP ends as much above its point, in.
+/// It is on a segment within [`ASIDE_INCHES`], and this much above it on the way to the seat: QCD-SEAT begins where the
+/// large sensors see the ears, up to half an inch above the low point (V.2.1). QCD-UP ends as much above its point, in.
 const ABOVE: f64 = 0.6;
-/// It is not turned by more than this, radians (2 degrees).
-const TURNED: f64 = 2.0 * core::f64::consts::PI / 180.0;
 
 /// The points of the exchange in a holster.
 struct Points {
@@ -76,15 +73,15 @@ impl Points {
     fn along(&self, present: &Frame) -> Along {
         let at = |point: &Frame| norm(&(present.position - point.position));
         let segments = [
-            (beside(present, &self.above, &self.fast), BESIDE, Along::Out),
-            (beside(present, &self.fast, &self.slow), BESIDE, Along::Coming),
+            (beside(present, &self.above, &self.fast), ASIDE_INCHES, Along::Out),
+            (beside(present, &self.fast, &self.slow), ASIDE_INCHES, Along::Coming),
             (beside(present, &self.slow, &self.back), ABOVE, Along::Sliding),
-            (beside(present, &self.back, &self.lift), BESIDE, Along::Lifting),
-            (beside(present, &self.lift, &self.up), BESIDE, Along::Raising),
+            (beside(present, &self.back, &self.lift), ASIDE_INCHES, Along::Lifting),
+            (beside(present, &self.lift, &self.up), ASIDE_INCHES, Along::Raising),
         ];
         let within = segments.into_iter().filter(|(distance, limit, _)| distance <= limit);
         let nearest = within.min_by(|(a, ..), (b, ..)| a.total_cmp(b));
-        let turned = self.slow.distance(present).radians > TURNED;
+        let turned = self.slow.distance(present).radians > LOST_RADIANS;
         if at(&self.slow) <= AT_POINT && !turned {
             Along::Seat
         } else if at(&self.back) <= AT_LOW && !turned {
@@ -149,7 +146,8 @@ impl State {
         }
     }
 
-    /// A robot that has been taken away from the holster, as by the joystick box, changes no gripper any more.
+    /// A robot that has been taken away from the holster, as by the joystick box, changes no gripper any
+    /// more.
     pub(super) fn sense_exchange(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let (Some(exchange), Some(present)) = (self.beliefs.exchange, present_frame(inputs.memory)) else {
             return;

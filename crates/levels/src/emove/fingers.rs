@@ -22,7 +22,7 @@ use super::{
     route::{Ahead, FULL_OPENING, near},
     state::State,
     tables::{Action, Fingers, Opening, Spread},
-    way::{AWAY_INCHES, AWAY_RADIANS},
+    whereabouts::{LOST_INCHES, LOST_RADIANS},
 };
 use crate::execution::Outcome;
 
@@ -85,7 +85,7 @@ impl State {
                     let (Ok(then), Some(now)) = (grasped.pose.to_frame(), present_frame(memory)) else {
                         return false;
                     };
-                    near(&then, &now, AWAY_INCHES, AWAY_RADIANS)
+                    near(&then, &now, LOST_INCHES, LOST_RADIANS)
                 };
                 if let Some(grasped) = self.beliefs.grasping.filter(at) {
                     let opening = attached.opening(memory).unwrap_or(grasped.opening);

@@ -7,7 +7,7 @@ use rcs_core::{
     interface::{
         CommonMemory, EmoveOutputs,
         device::VisionStatus,
-        emove::{EmoveCommand, EmoveVerb, GoneTo, Holding},
+        emove::{EmoveCommand, EmoveVerb, GoneTo},
         prim::{JoystickGrip, PrimReport, PrimVerb},
         quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
     },
@@ -25,8 +25,8 @@ use super::{
     route::{near, same_location},
     state::State,
     tables::{
-        At, Contact, Held, Holster, Knowledge, Link, Load, Lock, Mate, Motion, Orders, Pause, Readiness,
-        Request, Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch,
+        At, Contact, Holster, Knowledge, Link, Load, Lock, Mate, Motion, Orders, Pause, Readiness, Request,
+        Ring, Seen, Sight, Situation, Step, Tooling, Tries, Vision, Watch,
         e_pause::EPauseStep,
         search::{Look, search},
     },
@@ -35,6 +35,7 @@ use super::{
 use crate::{
     execution::{Asked, Work},
     halt::{Below, BoxState, Intake, Kind, Replaced},
+    held::Held,
     places::named,
 };
 
@@ -225,13 +226,7 @@ impl State {
             work: Work::Busy,
             ahead: self.ahead(inputs.data),
             opening,
-            held: match self.holding(memory) {
-                Holding::Nothing => Held::Nothing,
-                Holding::Object(held) if Some(held.object) == command.object => Held::Right,
-                Holding::Object(_) => Held::Other,
-                Holding::Something => Held::Something,
-                Holding::NotKnown => Held::NotKnown,
-            },
+            held: Held::of(self.holding(memory), command.object),
             fingers: fingers(command, inputs),
             spread: self.spread(gripper, command, inputs),
             readiness: self.readiness(gripper, memory),

@@ -30,12 +30,9 @@ use super::{
     },
     state::State,
     tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
+    whereabouts::{LOST_INCHES, LOST_RADIANS},
 };
 
-/// The robot is on its way if it is no more than this many inches from where it was commanded to be last …
-pub(super) const AWAY_INCHES: f64 = 0.5;
-/// … and this many radians (2 degrees).
-pub(super) const AWAY_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
 /// The farthest that a commanded pose moves in a tick, in: 14 in/s (A 2.3), and a little more.
 const STEP_INCHES: f64 = 0.6;
 /// The farthest that it turns in a tick, radians: 1 rad/s, and a little more.
@@ -105,8 +102,8 @@ fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<boo
     let turn = start.distance(&end).radians;
     let (before, after) = (present.distance(&start).radians, present.distance(&end).radians);
     // On the shorter turn from one to the other, with the same tolerance.
-    let turned = before + after <= turn + AWAY_RADIANS;
-    Some(beside(present, &start, &end) <= cut + AWAY_INCHES && turned)
+    let turned = before + after <= turn + LOST_RADIANS;
+    Some(beside(present, &start, &end) <= cut + LOST_INCHES && turned)
 }
 
 /// Does Prim still move the robot for its order, or for the one before? A GO-THRU is done before it is at rest.
@@ -146,7 +143,7 @@ impl State {
     pub(super) fn on_way(&self, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Way> {
         let (way, present) = (self.beliefs.way?, present_frame(inputs.memory)?);
         let rest = way.rest.to_frame().ok()?;
-        let at_rest = near(&rest, &present, AWAY_INCHES, AWAY_RADIANS);
+        let at_rest = near(&rest, &present, LOST_INCHES, LOST_RADIANS);
         let (inches, radians) = (CUT_OFF_TICKS * STEP_INCHES, CUT_OFF_TICKS * STEP_RADIANS);
         let may_be_beside = way.by_hand || (way.cut_off && near(&rest, &present, inches, radians));
         let beside = may_be_beside && is_in_corridor(&present, &way, inputs.data) == Some(true);

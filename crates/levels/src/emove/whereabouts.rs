@@ -22,6 +22,8 @@ use crate::places::{named, place_of};
 pub(super) const LOST_INCHES: f64 = 0.5;
 /// … or radians (2 degrees) off.
 pub(super) const LOST_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
+/// The robot is on a segment of the way into a holster or the drum within this many inches.
+pub(super) const ASIDE_INCHES: f64 = 0.35;
 /// Location points that are looked at in a tick to find out where the robot is.
 const SEARCH_PER_TICK: u32 = 64;
 /// Location points that are looked at in a tick for the nearest ones.

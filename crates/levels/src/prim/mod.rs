@@ -20,11 +20,11 @@
 //!     T3I: PAUSE         link off, link error, refused or silent T3I; a restart        T3I: POINT
 //! ```
 //!
-//! A motion leads from the left to the right too, if T3I says that the robot is where it was sent; the command
-//! goes on executing meanwhile, and then goes on from rest where the robot is. So the robot is never asked to
-//! jump to where Prim believes it to be. PAUSE ramps down and then repeats the last point under its number: T3I holds it, its
-//! queue is not cut short, and the commanded position stays exact. PAUSE goes to T3I only while Prim has no
-//! position.
+//! A motion leads from the left to the right too, if T3I says that the robot is where it was sent; the
+//! command goes on executing meanwhile, and then goes on from rest where the robot is. So the robot is never
+//! asked to jump to where Prim believes it to be. PAUSE ramps down and then repeats the last point under its
+//! number: T3I holds it, its queue is not cut short, and the commanded position stays exact. PAUSE goes to
+//! T3I only while Prim has no position.
 //!
 //! A stick or button of the joystick box that is moved while a frame switch is on stops every motion with
 //! `joystick-on`; only PAUSE lets the box move the robot. The sensors of guarded moves are in [`sensors`].

@@ -296,7 +296,8 @@ fn operator(joystick: &JoystickBox) -> Operator {
     if on && is_moved(joystick) { Operator::Moves } else { Operator::Idle }
 }
 
-/// What T3I makes of the report to the last RESTART: nothing before it has echoed that, or while it starts the link.
+/// What T3I makes of the report to the last RESTART: nothing before it has echoed that, or while it starts
+/// the link.
 const fn report(interface: Interface, status: &T3iStatus) -> ReportCheck {
     match interface {
         Interface::Busy | Interface::Silent => ReportCheck::NoReport,

@@ -1,7 +1,8 @@
-//! Subtask (V.3): takes a command of Task apart into commands to E-move, and coordinates the robot with the Active Pedestal.
+//! Subtask (V.3): takes a command of Task apart into commands to E-move, and coordinates the robot with the
+//! Active Pedestal.
 //!
-//! Task names one location with each command. Holsters, the pedestal and the tool drum are Subtask's own: they are looked up when the
-//! command arrives, before anything moves.
+//! Task names one location with each command. Holsters, the pedestal and the tool drum are Subtask's own:
+//! they are looked up when the command arrives, before anything moves.
 //!
 //! ```text
 //!                 ACCEPT                 ORDERED: E-move, pedestal

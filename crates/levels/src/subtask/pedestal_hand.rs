@@ -9,8 +9,9 @@ use taskdata::files::PedPara;
 
 use super::{
     state::State,
-    tables::{Hand, Held, Part, Pedestal, PedestalHand, Turn},
+    tables::{Hand, Part, Pedestal, PedestalHand, Turn},
 };
+use crate::held::Held;
 
 /// The hand is open if it stands within this of its opening to receive the object, 0.01 in (ASSUMED).
 const OPEN_WITHIN: i32 = 10;
@@ -18,7 +19,8 @@ const OPEN_WITHIN: i32 = 10;
 const AT_ANGLE: u32 = 10;
 
 impl State {
-    /// Once a tick: does the hand agree with what Subtask believes is in it? A hand that moves is believed until it rests.
+    /// Once a tick: does the hand agree with what Subtask believes is in it? A hand that moves is believed
+    /// until it rests.
     pub(super) fn sense_hand(&mut self, status: &PedestalStatus, pedestal: Pedestal) {
         if pedestal != Pedestal::Moving && pedestal_hand(status) == PedestalHand::Free {
             self.regrip = None;

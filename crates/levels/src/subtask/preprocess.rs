@@ -17,13 +17,14 @@ use super::{
     pedestal_hand::{hand, pedestal_hand, turn},
     state::State,
     tables::{
-        Drum, Exchange, GripHeld, Gripper, Held, Hindrance, Named, Ordered, Orders, Pedestal, PedestalData,
+        Drum, Exchange, GripHeld, Gripper, Hindrance, Named, Ordered, Orders, Pedestal, PedestalData,
         Request, Robot, Seen, Situation, Vision, Where,
     },
 };
 use crate::{
     execution::{Asked, Work},
     halt::{Below, BoxState, Intake, Kind, Replaced},
+    held::Held,
     places::{Missing, place_of},
 };
 
@@ -55,7 +56,8 @@ impl State {
         }
     }
 
-    /// Before the first command after a start: go on from the own output buffers, as they were written before it.
+    /// Before the first command after a start: go on from the own output buffers, as they were written before
+    /// it.
     fn adopt(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let (tick, memory, written) = (inputs.tick, inputs.memory, &inputs.memory.subtask);
         self.emove.start_from(tick, written.emove.number, memory.emove.status.echo);
@@ -66,8 +68,8 @@ impl State {
         }
     }
 
-    /// Look up what a new command needs beside the location that Task names: the locations that Subtask names itself, and for FIX-GRIP how
-    /// the pedestal takes the object. What is complete is kept.
+    /// Look up what a new command needs beside the location that Task names: the locations that Subtask names
+    /// itself, and for FIX-GRIP how the pedestal takes the object. What is complete is kept.
     fn look_up(&mut self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
         self.ordered = Ordered::Nothing;
         let emove = &inputs.memory.emove.status;
@@ -94,7 +96,7 @@ impl State {
     /// Set the state variables.
     fn situation(&self, command: &SubtaskCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Situation {
         let (emove, pedestal) = (&inputs.memory.emove.status, &inputs.memory.pedestal.status);
-        let held = held(emove, command);
+        let held = Held::of(emove.held, command.object);
         Situation {
             work: Work::Busy,
             held,
@@ -163,17 +165,6 @@ fn replaced(
         kind: if command.command == SubtaskVerb::Pause { Kind::Pause } else { Kind::Other },
         joystick: if on { BoxState::On } else { BoxState::Off },
         below: robot.and(part),
-    }
-}
-
-/// Is the object of a command held?
-fn held(emove: &EmoveStatus, command: &SubtaskCommand) -> Held {
-    match emove.held {
-        Holding::Nothing => Held::Nothing,
-        Holding::Object(held) if Some(held.object) == command.object => Held::Right,
-        Holding::Object(_) => Held::Other,
-        Holding::Something => Held::Something,
-        Holding::NotKnown => Held::NotKnown,
     }
 }
 

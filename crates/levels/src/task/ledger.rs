@@ -1,10 +1,10 @@
 //! The ledger: the last command about an object or a tool that was accepted and has not been finished
 //! (docs/design/recovery.md "Ledger").
 //!
-//! It is an output of Task, and read from there: so a Task that is restarted has it too. It tells a command that
-//! is sent *again* from one that is sent *anew*: a TRANSFER that was interrupted behind its RELEASE goes on with
-//! the update and the way to its end-at location, while the same TRANSFER after a finished one begins anew. What
-//! has been achieved is not in the ledger; the statuses from below say that.
+//! It is an output of Task, and read from there: so a Task that is restarted has it too. It tells a command
+//! that is sent *again* from one that is sent *anew*: a TRANSFER that was interrupted behind its RELEASE goes
+//! on with the update and the way to its end-at location, while the same TRANSFER after a finished one begins
+//! anew. What has been achieved is not in the ledger; the statuses from below say that.
 
 use rcs_core::{
     Plain,
@@ -77,7 +77,8 @@ pub fn placed(plan: &Plan, below: &SubtaskStatus) -> Placed {
     }
 }
 
-/// The ledger when a command has been accepted. A command that is about no object says nothing of one that is.
+/// The ledger when a command has been accepted. A command that is about no object says nothing of one that
+/// is.
 #[must_use]
 pub fn opened(ledger: Option<Ledger>, command: &HwsCommand, plan: &Plan) -> Option<Ledger> {
     if !plan.is_about_something() || plan.resumed != Resumed::Not {

@@ -2,7 +2,8 @@
 
 use rcs_core::interface::device::{GripSensors, valve};
 
-/// The fingers of a parts gripper without a part: opening, in, and the force with which they press on each other, lb.
+/// The fingers of a parts gripper without a part: opening, in, and the force with which they press on each
+/// other, lb.
 pub struct Fingers {
     /// Opening, in.
     pub opening: f64,

@@ -4,8 +4,8 @@
 
 use crate::Plain;
 
-/// Bytes that can travel on the DEPC line in one direction in a tick: 9600 baud gives 38, rounded up with room for what
-/// has queued in a receiver.
+/// Bytes that can travel on the DEPC line in one direction in a tick: 9600 baud gives 38, rounded up with
+/// room for what has queued in a receiver.
 pub const LINK_BYTES: usize = 64;
 
 /// Bytes of one tick on a serial line.
@@ -45,7 +45,8 @@ impl LinkBytes {
 /// Steps of a resolver turn: 17 bits (III.3.2).
 pub const RESOLVER_COUNTS: u32 = 1 << 17;
 
-/// The joint resolvers (III.3.2): 17-bit integers, joints 0 to 5 from the base; one turn a joint, count 0 at angle 0 (ASSUMED).
+/// The joint resolvers (III.3.2): 17-bit integers, joints 0 to 5 from the base; one turn a joint, count 0 at
+/// angle 0 (ASSUMED).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Resolvers {
     /// Counts, 0 to 131071.
@@ -54,10 +55,11 @@ pub struct Resolvers {
     pub valid: bool,
 }
 
-/// Air valves of the parts gripper: bits of [`GripValves::bits`] (III.3.6: eight valves; the assignment is ASSUMED).
+/// Air valves of the parts gripper: bits of [`GripValves::bits`] (III.3.6: eight valves; the assignment is
+/// ASSUMED).
 ///
-/// Opening speed with the supply on is the sum of the open flows less the sum of the close flows. With all flows off the
-/// trapped air holds fingers and force.
+/// Opening speed with the supply on is the sum of the open flows less the sum of the close flows. With all
+/// flows off the trapped air holds fingers and force.
 pub mod valve {
     /// Open, fine: 0.25 in/s.
     pub const OPEN_FINE: u8 = 0x01;
@@ -90,7 +92,8 @@ pub const ADC_FULL_SCALE: u16 = 4095;
 /// Sensors of the attached gripper (III.3.6 to III.3.8): 12-bit converters and beam breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct GripSensors {
-    /// Finger potentiometer, 0 to 4095 counts; grows with the opening; UP-INIT finds offset and scale of the parts gripper's.
+    /// Finger potentiometer, 0 to 4095 counts; grows with the opening; UP-INIT finds offset and scale of the
+    /// parts gripper's.
     pub potentiometer: u16,
     /// Strain gage of the left finger, counts; grows with the force that closes on a part.
     pub strain_left: u16,
@@ -122,8 +125,8 @@ pub struct QuickChangeValves {
     pub port: bool,
 }
 
-/// Holster proximity sensors (V.1.2): right, left, centre. Bits 0, 1: large rear sensors see the ears; bits 2, 3: small front
-/// sensors see the ears at the seat.
+/// Holster proximity sensors (V.1.2): right, left, centre. Bits 0, 1: large rear sensors see the ears; bits
+/// 2, 3: small front sensors see the ears at the seat.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct HolsterSensors {
     /// `hol-R-status`.
@@ -134,7 +137,8 @@ pub struct HolsterSensors {
     pub centre: u8,
 }
 
-/// Air to a gripper that only opens and closes: v-gripper and tool gripper (VI.4, VI.5). With neither bit the air is trapped.
+/// Air to a gripper that only opens and closes: v-gripper and tool gripper (VI.4, VI.5). With neither bit the
+/// air is trapped.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct JawValves {
     /// Air to the side that opens.
@@ -150,8 +154,9 @@ pub const FORCE_COUNTS_PER_LB: i32 = 16;
 /// Counts for an inch pound of moment (ASSUMED).
 pub const MOMENT_COUNTS_PER_IN_LB: i32 = 4;
 
-/// Force sensor of the tool gripper, the four axes that are connected (III.3.8), in the axes of the sensor: 12-bit converters,
-/// [`FORCE_ZERO`] without load. Tool X, Y, Z are sensor Z, -Y, X. 0 and [`ADC_FULL_SCALE`] mean overload.
+/// Force sensor of the tool gripper, the four axes that are connected (III.3.8), in the axes of the sensor:
+/// 12-bit converters, [`FORCE_ZERO`] without load. Tool X, Y, Z are sensor Z, -Y, X. 0 and [`ADC_FULL_SCALE`]
+/// mean overload.
 ///
 /// Positive is what pushes the fingers along the positive sensor axis.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
@@ -216,7 +221,8 @@ pub struct JoystickBox {
     pub open: bool,
     /// Push-button H: close it.
     pub close: bool,
-    /// Coordinate switches, bits of [`joystick_frame`]; one at most may be on. The box is active while one is.
+    /// Coordinate switches, bits of [`joystick_frame`]; one at most may be on. The box is active while one
+    /// is.
     pub frame: u8,
     /// Push-button X: record the pose.
     pub record: bool,
@@ -322,8 +328,8 @@ pub enum VisionStatus {
     NotRecognised,
 }
 
-/// Answer of the vision system, in the axes of the place that the camera looks at (as if the view movetable were undone):
-/// X along the optical axis away from the camera, Y the tool's Y, Z = X x Y.
+/// Answer of the vision system, in the axes of the place that the camera looks at (as if the view movetable
+/// were undone): X along the optical axis away from the camera, Y the tool's Y, Z = X x Y.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct VisionResponse {
     /// Number of the request that is answered.
@@ -334,7 +340,8 @@ pub struct VisionResponse {
     pub y: i32,
     /// Centroid from the optical axis along Z, 0.01 in.
     pub z: i32,
-    /// Right-hand roll about X, 0.01 degree, -9000 < angle <= 9000, that brings the tool's Y onto the dimension to grip across.
+    /// Right-hand roll about X, 0.01 degree, -9000 < angle <= 9000, that brings the tool's Y onto the
+    /// dimension to grip across.
     pub angle: i32,
     /// Vision id of what was recognised, if anything was.
     pub recognised: Option<u16>,
@@ -349,12 +356,13 @@ pub struct DeviceInputs {
     pub link_ready: bool,
     /// The port has not taken all bytes of the last tick: they are not on the line.
     pub link_unsent: bool,
-    /// Ticks that the host waits for an answer while the robot's DTR is on; the 60 s of `depc::host` if nothing is set (`--robot`).
+    /// Ticks that the host waits for an answer while the robot's DTR is on; the 60 s of `depc::host` if
+    /// nothing is set (`--robot`).
     pub link_patience: Option<u16>,
     /// Joint resolvers.
     pub resolvers: Resolvers,
-    /// The attached gripper. All three have their potentiometer on the same connections (III.3.7, III.3.8); strain gages and
-    /// beam breaks are the parts gripper's, zeros with another one.
+    /// The attached gripper. All three have their potentiometer on the same connections (III.3.7, III.3.8);
+    /// strain gages and beam breaks are the parts gripper's, zeros with another one.
     pub grip: GripSensors,
     /// Force sensor of the tool gripper; invalid with another one.
     pub force: ForceSensor,

@@ -1,7 +1,8 @@
 //! Subtask and the Active Pedestal (VI.7.2), and the pedestal's own hand and table processes.
 //!
-//! The Active Pedestal is a small RCS of its own. The manual gives the interface of its upper process; those of hand and
-//! table are ours. The hand is nearly identical to the parts gripper (III.9.2) and has the buffers of Grip.
+//! The Active Pedestal is a small RCS of its own. The manual gives the interface of its upper process; those
+//! of hand and table are ours. The hand is nearly identical to the parts gripper (III.9.2) and has the
+//! buffers of Grip.
 
 use core::fmt;
 
@@ -97,8 +98,8 @@ pub struct PedestalStatus {
     pub grip_size: i32,
     /// `grip-force`: lb.
     pub grip_force: i32,
-    /// `table-position`: absolute angle, 0.1 degree, if it is known: the counter was set at the + limit, and the
-    /// potentiometer agrees with it while the table stands.
+    /// `table-position`: absolute angle, 0.1 degree, if it is known: the counter was set at the + limit, and
+    /// the potentiometer agrees with it while the table stands.
     pub table_position: Option<i32>,
     /// What the hand has between its fingers, by its strain gages and its potentiometer (extension).
     pub felt: Felt,
@@ -168,21 +169,21 @@ pub struct TableOutputs {
     pub header: Header,
     /// To the pedestal process.
     pub status: TableStatus,
-    /// Potentiometer at the + limit, counts, while the table is calibrated: a process that is restarted adopts
-    /// it if counter and potentiometer agree.
+    /// Potentiometer at the + limit, counts, while the table is calibrated: a process that is restarted
+    /// adopts it if counter and potentiometer agree.
     pub at_limit: Option<u16>,
     /// To the rotary table controller.
     pub motor: MotorCommand,
 }
 
-/// What an Active Pedestal that is a system of its own has sent over the network (II.2, IX.3). Its three processes run there, and
-/// what they wrote is adopted into common memory here.
+/// What an Active Pedestal that is a system of its own has sent over the network (II.2, IX.3). Its three
+/// processes run there, and what they wrote is adopted into common memory here.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct OutsidePedestal {
     /// It is another system: the processes of the pedestal are not stepped here.
     pub elsewhere: bool,
-    /// It answers. While it does not, its buffers keep what it wrote last and the stamp of that tick, by which their readers know
-    /// it for lost.
+    /// It answers. While it does not, its buffers keep what it wrote last and the stamp of that tick, by
+    /// which their readers know it for lost.
     pub answers: bool,
     /// Output buffers of its pedestal process; the stamp does not count.
     pub pedestal: PedestalOutputs,

@@ -146,7 +146,8 @@ pub struct PrimStatus {
     /// `pres-pose-^-out` when the record button of the joystick box was pressed last, if it ever was
     /// (extension).
     pub recorded_pose: Option<u32>,
-    /// A pose has been recorded: Prim and E-move are suspended until the operator goes on (III.3.3; extension).
+    /// A pose has been recorded: Prim and E-move are suspended until the operator goes on (III.3.3;
+    /// extension).
     pub recording: bool,
     /// What the sensor of the guarded move reads: lb, in lb, or 1 while a switch is on (extension).
     pub sensed: i32,

@@ -1,7 +1,8 @@
 //! The control processes, each registered once.
 //!
-//! [`for_each_process!`](crate::for_each_process!) is the one list. From it follow [`ProcessId`], [`CommonMemory`] and the order of the digest, the
-//! ladder, the boards and what they exchange, shared memory, and the chains that explain a failure.
+//! [`for_each_process!`](crate::for_each_process!) is the one list. From it follow [`ProcessId`],
+//! [`CommonMemory`] and the order of the digest, the ladder, the boards and what they exchange, shared
+//! memory, and the chains that explain a failure.
 
 use crate::{
     Plain,
@@ -208,7 +209,8 @@ macro_rules! register {
                 match process { $( ProcessId::$id => [ $( self.$above.$command.number )? ].first().copied(), )+ }
             }
 
-            /// Give the command that a process has from the one above it, as one says it, to `show`; not for Task.
+            /// Give the command that a process has from the one above it, as one says it, to `show`; not for
+            /// Task.
             pub fn show_command<T>(
                 &self,
                 process: ProcessId,

@@ -80,15 +80,16 @@ pub enum ReportCheck {
     /// No report has come since the link was lost, or since the last RESTART.
     #[text = "no report"]
     NoReport,
-    /// The robot is where it was sent, within 2 counts a word, or on the way there from where it was sent before. Or nothing has
-    /// been sent yet.
+    /// The robot is where it was sent, within 2 counts a word, or on the way there from where it was sent
+    /// before. Or nothing has been sent yet.
     #[text = "as sent"]
     AsSent,
     /// It is elsewhere, or the controller's DTR was off meanwhile. Stays until the next point is sent.
     Elsewhere,
 }
 
-/// The positions that were sent last, in the words of the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree (extension).
+/// The positions that were sent last, in the words of the line: X, Y, Z in 0.01 in, D, E, R in 0.01 degree
+/// (extension).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub struct SentWords {
     /// The last one.
@@ -138,7 +139,8 @@ pub struct T3iStatus {
     pub frame_feedback: WireFrame,
     /// `scale-factor-out`: resolver scale, counts per turn.
     pub scale_factor: i32,
-    /// `joint-limit-dummy`: always 0. VI.1.2 has it for joint limits and does not use it; the line does not tell of them (A 2.3).
+    /// `joint-limit-dummy`: always 0. VI.1.2 has it for joint limits and does not use it; the line does not
+    /// tell of them (A 2.3).
     pub joint_limit: i32,
     /// Tool frame from the resolvers, if they can be believed (extension).
     pub resolver_frame: Option<WireFrame>,

@@ -33,15 +33,16 @@ use rcs_core::{
 };
 
 pub use self::variables::{
-    Along, At, AtDrum, Attached, Contact, Coupling, Exchange, Fingers, Held, Holster, HolsterData, Knowledge,
-    Link, Load, Lock, Mate, Motion, Opening, Ordered, Pause, Readiness, Record, Ring, Shut, Sight, Spread,
-    Target, ToolWork, Tooling, Tries, Vision, Whereabouts,
+    Along, At, AtDrum, Attached, Contact, Coupling, Exchange, Fingers, Holster, HolsterData, Knowledge, Link,
+    Load, Lock, Mate, Motion, Opening, Ordered, Pause, Readiness, Record, Ring, Shut, Sight, Spread, Target,
+    ToolWork, Tooling, Tries, Vision, Whereabouts,
 };
 use self::{accept::accept, carried::carried, ordered::ordered};
 use super::{
     relative::{Relative, RelativeMoves},
     route::{Ahead, Planning},
 };
+pub use crate::held::Held;
 use crate::{
     execution::{Asked, EXECUTE, Orders as Commander, Outcome, Work},
     halt::{EFFECT, HALT, Replaced},

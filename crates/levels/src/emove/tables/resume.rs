@@ -71,8 +71,8 @@ pub enum Beginning {
 }
 
 decision_table! {
-    /// RESUME: from where a motion command begins (docs/design/recovery.md "On the way"). Planning consults it
-    /// when a motion command comes; no header names its rows.
+    /// RESUME: from where a motion command begins (docs/design/recovery.md "On the way"). Planning consults
+    /// it when a motion command comes; no header names its rows.
     pub RESUME: fn resume(self::Start) -> self::Beginning {
         1: robot: AtPlace                                          => Depart;
         2: robot: Lost                                             => RefuseStart;

@@ -131,21 +131,6 @@ pub enum Opening {
     Failed,
 }
 
-/// Is the object of the command held?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Held {
-    /// The gripper holds nothing.
-    Nothing,
-    /// It holds the object of the command.
-    Right,
-    /// It holds another object.
-    Other,
-    /// It holds something that was not grasped by name.
-    Something,
-    /// The sensors cannot tell: counts as held.
-    NotKnown,
-}
-
 /// What was held when the command came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Load {

@@ -99,8 +99,8 @@ impl World {
         self.mishaps.iter().find(|(word, _)| text.contains(word)).map(|(_, mishap)| *mishap)
     }
 
-    /// What the holsters feel of the robot where it is, and what mates with it or drops off it there. `seats` are
-    /// the poses of the holsters right, left, centre.
+    /// What the holsters feel of the robot where it is, and what mates with it or drops off it there. `seats`
+    /// are the poses of the holsters right, left, centre.
     pub fn feel_holsters(&mut self, seats: [Frame; 3]) {
         for ((which, id), base) in (0..3).zip(1..).zip(seats) {
             let Frame { position: at, .. } = base.inverse().compose(&self.frame);

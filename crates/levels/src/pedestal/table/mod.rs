@@ -1,9 +1,9 @@
 //! Rotary table of the pedestal (III.9.1, III.10): a step motor behind a controller that counts its steps.
 //!
 //! The controller takes orders by number over a serial link: turn by so many steps, give the counter a value,
-//! stop. Its counter means an angle only after it has been set where the angle is known: to zero at the + limit
-//! (IV.1 step 3). So the table calibrates first, by itself when it is booted, and before the first turn it is
-//! asked for. In the end it is parked at -20.00, clear of the switch.
+//! stop. Its counter means an angle only after it has been set where the angle is known: to zero at the +
+//! limit (IV.1 step 3). So the table calibrates first, by itself when it is booted, and before the first turn
+//! it is asked for. In the end it is parked at -20.00, clear of the switch.
 //!
 //! ```text
 //!   Missing, Deferred, Failed                    a command TURN

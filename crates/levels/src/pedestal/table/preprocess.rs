@@ -20,8 +20,8 @@ use crate::execution::Asked;
 
 /// Angle at the + limit, 0.1 degree (IV.1 step 3: the counter is set to zero there).
 pub const AT_LIMIT: i32 = 0;
-/// Greatest angle that can be commanded, 0.1 degree: the table is parked there, clear of the switch (IV.1 step
-/// 3: -20.00).
+/// Greatest angle that can be commanded, 0.1 degree: the table is parked there, clear of the switch (IV.1
+/// step 3: -20.00).
 pub const LIMIT_PLUS: i32 = -200;
 /// Least angle that can be commanded, 0.1 degree: a little short of the - limit. ASSUMED.
 pub const LIMIT_MINUS: i32 = -3400;

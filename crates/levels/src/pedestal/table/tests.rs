@@ -445,8 +445,8 @@ fn a_calibration_goes_on_beside_a_command_that_is_refused() {
     assert_eq!((status.report, status.reason), (PedestalReport::CannotDo, Reason::TableLimit));
 }
 
-/// From every state, with a table that turns, one that is blocked, one that takes no orders and one that never
-/// stops, at the limits, between them, and with a counter and a potentiometer that deny each other.
+/// From every state, with a table that turns, one that is blocked, one that takes no orders and one that
+/// never stops, at the limits, between them, and with a counter and a potentiometer that deny each other.
 #[test]
 fn every_command_ends_from_every_state_whether_the_table_obeys_or_not() {
     let worlds: [fn(&mut Rotary); 5] =

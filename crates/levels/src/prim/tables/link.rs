@@ -11,10 +11,10 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// LINK (V.1.2 restart-status): Prim restarts a link that has failed, while the command goes on executing,
-    /// and then goes on from rest where the robot is. A restart without a report, or too many of them, is a
-    /// lost link; so is a controller that has switched DTR off. A robot that is not where it was sent waits
-    /// for a person.
+    /// LINK (V.1.2 restart-status): Prim restarts a link that has failed, while the command goes on
+    /// executing, and then goes on from rest where the robot is. A restart without a report, or too many of
+    /// them, is a lost link; so is a controller that has switched DTR off. A robot that is not where it was
+    /// sent waits for a person.
     pub LINK: fn link(enum LinkStep, super::Situation) -> super::Action or () {
         any {
             1:  position: NotNeeded                             => consult;

@@ -1,5 +1,5 @@
-//! Decision tables of Prim: what a new command needs, what a motion needs of the link, a file a command, and those of
-//! every tick: what becomes of finished commands, the path clock, the record button.
+//! Decision tables of Prim: what a new command needs, what a motion needs of the link, a file a command, and
+//! those of every tick: what becomes of finished commands, the path clock, the record button.
 
 pub mod accept;
 pub mod attend;
@@ -41,7 +41,8 @@ pub enum Interface {
     Silent,
     /// The robot controller's DTR is off.
     LinkOff,
-    /// DTR is on, and the DEPC link does not respond, or does not run any more although Prim commands the robot.
+    /// DTR is on, and the DEPC link does not respond, or does not run any more although Prim commands the
+    /// robot.
     LinkSilent,
     /// The DEPC link has another error.
     LinkError,
@@ -103,7 +104,8 @@ pub enum Way {
 pub enum Operator {
     /// Does not move the robot.
     Idle,
-    /// A frame switch is on, the velocity knob is not at zero, and a stick or button is moved beyond its play.
+    /// A frame switch is on, the velocity knob is not at zero, and a stick or button is moved beyond its
+    /// play.
     Moves,
 }
 

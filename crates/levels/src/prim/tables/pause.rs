@@ -4,8 +4,8 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// PAUSE (V.1.1): do nothing. A motion ramps down within its limits; then the last point is repeated.
-    /// From there on the joystick box moves the robot while one of its frame switches is on. A link that fails
-    /// meanwhile is reported; the next motion restarts it.
+    /// From there on the joystick box moves the robot while one of its frame switches is on. A link that
+    /// fails meanwhile is reported; the next motion restarts it.
     pub PAUSE: fn pause(enum PauseStep, super::Situation) -> super::Action {
         any {
             1:  t3i: Silent                                         => Fail(InterfaceSilent);

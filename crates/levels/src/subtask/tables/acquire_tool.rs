@@ -3,8 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACQUIRE-TOOL (V.3.1): move to a tool in the tool drum and grasp it; done at once if it is held. Something unknown that
-    /// is held in the drum is what an interrupted grasp has closed on: the grasp is made again.
+    /// ACQUIRE-TOOL (V.3.1): move to a tool in the tool drum and grasp it; done at once if it is held.
+    /// Something unknown that is held in the drum is what an interrupted grasp has closed on: the grasp is
+    /// made again.
     pub ACQUIRE_TOOL: fn acquire_tool(enum AcquireToolStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                               => Wait;

@@ -3,8 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// GET-ENDEFF (V.3.1): connect the proper gripper; done at once if it is on, locked and clear of its holster. An
-    /// exchange that was interrupted is finished first. A gripper that may hold something is not left.
+    /// GET-ENDEFF (V.3.1): connect the proper gripper; done at once if it is on, locked and clear of its
+    /// holster. An exchange that was interrupted is finished first. A gripper that may hold something is not
+    /// left.
     pub GET_ENDEFF: fn get_endeff(enum GetEndeffStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                              => Wait;

@@ -3,9 +3,9 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// GET-OBJECT (V.3.1): find the object if vision is needed, move to it and grasp it; done at once if it is held. What
-    /// vision has found already is not looked for again. Something unknown that is held where the object is gone to is
-    /// what an interrupted grasp has closed on: the grasp is made again.
+    /// GET-OBJECT (V.3.1): find the object if vision is needed, move to it and grasp it; done at once if it
+    /// is held. What vision has found already is not looked for again. Something unknown that is held where
+    /// the object is gone to is what an interrupted grasp has closed on: the grasp is made again.
     pub GET_OBJECT: fn get_object(enum GetObjectStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                              => Wait;

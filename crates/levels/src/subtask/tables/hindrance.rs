@@ -3,17 +3,16 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// HINDRANCE: while the part is in the pedestal's hand, alone or together with the robot, only what finishes or undoes
-    /// the regrip is done: a robot that leaves with it would tear it out, and the object is nowhere else.
+    /// HINDRANCE: while the part is in the pedestal's hand, alone or together with the robot, only what
+    /// finishes or undoes the regrip is done: a robot that leaves with it would tear it out, and the object
+    /// is nowhere else.
     pub HINDRANCE: fn hindrance(super::Hindrance) -> super::Action or () {
-        1: asked: Before                                                        => consult;
-        2: pedestal: Free                                                       => consult;
-        3: pedestal: HoldsPart | Unsure, verb: None | Pause | FixGrip | Release          => consult;
-        4: pedestal: HoldsPart | Unsure, verb: GetEndeff, gripper: Right                 => consult;
-        5: pedestal: HoldsPart | Unsure, verb: GetEndeff, gripper: None | Wrong          => Fail(PartInPedestal);
-        6: pedestal: HoldsPart | Unsure, verb: GetObject | PlaceObj | MoveObjToDest      => Fail(PartInPedestal);
-        7: pedestal: HoldsPart | Unsure, verb: GotoEndpt | GotoDest | Position           => Fail(PartInPedestal);
-        8: pedestal: HoldsPart | Unsure, verb: InsertTool | ReleaseTool                  => Fail(PartInPedestal);
-        9: pedestal: HoldsPart | Unsure, verb: AcquireTool | RemoveTool                  => Fail(PartInPedestal);
+        1: asked: Before                                                    => consult;
+        2: pedestal: Free                                                   => consult;
+        3: verb: None | Pause | FixGrip | Release                           => consult;
+        4: verb: GetEndeff, gripper: Right                                  => consult;
+        5: verb: GetEndeff | GetObject | PlaceObj | MoveObjToDest           => Fail(PartInPedestal);
+        6: verb: GotoEndpt | GotoDest | Position                            => Fail(PartInPedestal);
+        7: verb: InsertTool | ReleaseTool | AcquireTool | RemoveTool        => Fail(PartInPedestal);
     }
 }

@@ -1,4 +1,5 @@
-//! Decision tables of Subtask: what a new command needs, what has become of its last order, and a file a command.
+//! Decision tables of Subtask: what a new command needs, what has become of its last order, and a file a
+//! command.
 
 pub mod accept;
 pub mod acquire_tool;
@@ -26,13 +27,14 @@ use rcs_core::{
 };
 
 pub use self::variables::{
-    Drum, Exchange, Flip, GripHeld, Gripper, Hand, Held, Holster, Named, Ordered, Part, Pedestal,
-    PedestalData, PedestalHand, Robot, Turn, Vision, Where,
+    Drum, Exchange, Flip, GripHeld, Gripper, Hand, Holster, Named, Ordered, Part, Pedestal, PedestalData,
+    PedestalHand, Robot, Turn, Vision, Where,
 };
 use self::{accept::accept, hindrance::hindrance, ordered::ordered};
 use crate::{
     execution::{Asked, EXECUTE, Orders as Commander, Work},
     halt::{EFFECT, HALT, Replaced},
+    held::Held,
     places::Missing,
 };
 

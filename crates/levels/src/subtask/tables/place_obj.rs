@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// PLACE-OBJ (V.3.1): move an object to a location and release it; done at once if that is the last that was released.
-    /// E-move reports an object that is lost on the way.
+    /// PLACE-OBJ (V.3.1): move an object to a location and release it; done at once if that is the last that
+    /// was released. E-move reports an object that is lost on the way.
     pub PLACE_OBJ: fn place_obj(enum PlaceObjStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                => Wait;

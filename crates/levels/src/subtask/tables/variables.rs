@@ -2,21 +2,6 @@
 
 use rcs_core::Plain;
 
-/// Is the object held (V.3.1)?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Held {
-    /// The gripper holds nothing.
-    Nothing,
-    /// It holds the object of the command.
-    Right,
-    /// It holds another object.
-    Other,
-    /// It holds something, and nothing says what it is.
-    Something,
-    /// Its sensors do not tell: counts as held.
-    NotKnown,
-}
-
 /// With which grip the object of the command is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum GripHeld {

@@ -185,7 +185,8 @@ fn standing(bench: &Bench<'_>, at: Option<(&str, Option<i32>)>) -> Option<Standi
     })
 }
 
-/// FIX-GRIP from every combination of its state variables, in a world that obeys or ignores: it ends. How often it was done.
+/// FIX-GRIP from every combination of its state variables, in a world that obeys or ignores: it ends. How
+/// often it was done.
 fn regrips(ignores: (bool, bool), rows: &mut Coverage) -> (usize, usize) {
     let (mut done, mut worlds) = (0, 0);
     let places = [
@@ -259,7 +260,8 @@ fn a_regrip_ends_from_every_state_whether_the_world_obeys_or_ignores() {
     assert!(obeys > ignores && obeys < worlds, "{obeys} and {ignores} of {worlds}");
 }
 
-/// GET-ENDEFF from every gripper and exchange: it ends, and only with the gripper on and clear of its holster.
+/// GET-ENDEFF from every gripper and exchange: it ends, and only with the gripper on and clear of its
+/// holster.
 fn exchanges(ignores: bool, rows: &mut Coverage) {
     for held in ["", "source", "something", "not known"] {
         for attached in [0, 1, 2] {

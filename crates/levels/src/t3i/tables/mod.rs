@@ -1,5 +1,5 @@
-//! Decision tables of T3I: what comes from Prim, what a report of the robot controller is worth, what all commands have in
-//! common, and a file a command.
+//! Decision tables of T3I: what comes from Prim, what a report of the robot controller is worth, what all
+//! commands have in common, and a file a command.
 
 pub mod pause;
 pub mod point;

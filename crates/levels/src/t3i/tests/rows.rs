@@ -104,7 +104,8 @@ fn every_row_fires() {
     bench.ticks(2);
     fired.append(&mut bench.rows);
 
-    // DTR goes off before anything was sent, and after; a robot that is elsewhere is repeated where it is, and sent on.
+    // DTR goes off before anything was sent, and after; a robot that is elsewhere is repeated where it is,
+    // and sent on.
     let mut bench = Bench::new();
     (bench.on, bench.external.devices.link_ready) = (false, false);
     bench.ticks(2);

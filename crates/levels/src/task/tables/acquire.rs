@@ -3,8 +3,8 @@
 use rcs_core::decision_table;
 
 decision_table! {
-    /// ACQUIRE (V.4.1): get the proper end effector, move to the object and grasp it. The data base is told of
-    /// an object that is taken from the MBD (an extension: SPECNOTES.md).
+    /// ACQUIRE (V.4.1): get the proper end effector, move to the object and grasp it. The data base is told
+    /// of an object that is taken from the MBD (an extension: SPECNOTES.md).
     pub ACQUIRE: fn acquire(enum AcquireStep, super::Situation) -> super::Action {
         any {
             1: work: Busy           => Wait;

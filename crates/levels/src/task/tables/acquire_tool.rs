@@ -4,8 +4,8 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// ACQUIRE-TOOL (V.4.1): get the tool gripper, go to the destination, which is TOOL-SAFE, and grasp a
-    /// tool in the tool drum; done at once if it is held there. Sent again after an interruption at the drum it
-    /// goes on from there.
+    /// tool in the tool drum; done at once if it is held there. Sent again after an interruption at the drum
+    /// it goes on from there.
     pub ACQUIRE_TOOL: fn acquire_tool(enum AcquireToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                                  => Wait;

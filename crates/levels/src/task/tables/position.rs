@@ -9,36 +9,36 @@ decision_table! {
     /// data base is told where an object is let go that it knows as the robot's (an extension: SPECNOTES.md).
     pub POSITION: fn position(enum PositionStep, super::Situation) -> super::Action {
         any {
-            1:  work: Busy                                      => Wait;
+            1:  work: Busy                                  => Wait;
         }
         /// Nothing done yet.
         Start {
-            2:  holding: NotHeld, source: Named                 => Position(Source)                -> Moving;
-            3:  holding: NotHeld, source: Null                  => Position(Destination)           -> Moving;
-            4:  way: NoStart                                    => Fail(UnknownStart);
-            5:  way: NoTrajectory                               => Fail(NoTrajectory);
-            6:  way: Known                                      => Release                         -> Releasing;
+            2:  holding: NotHeld, source: Named             => Position(Source)                -> Moving;
+            3:  holding: NotHeld, source: Null              => Position(Destination)           -> Moving;
+            4:  way: NoStart                                => Fail(UnknownStart);
+            5:  way: NoTrajectory                           => Fail(NoTrajectory);
+            6:  way: Known                                  => Release                         -> Releasing;
         }
         /// The held object is being released.
         Releasing {
-            7:  update: None | Owed, source: Named              => Position(Source)                -> Moving;
-            8:  update: None | Owed, source: Null               => Position(Destination)           -> Moving;
-            9:  update: Due, source: Named                      => UpdateAndPosition(Source)       -> Leaving;
-            10: update: Due, source: Null                       => UpdateAndPosition(Destination)  -> Leaving;
+            7:  update: None | Owed, source: Named          => Position(Source)                -> Moving;
+            8:  update: None | Owed, source: Null           => Position(Destination)           -> Moving;
+            9:  update: Due, source: Named                  => UpdateAndPosition(Source)       -> Leaving;
+            10: update: Due, source: Null                   => UpdateAndPosition(Destination)  -> Leaving;
         }
         /// The robot is on its way.
         Moving {
-            11: work: Over                                      => Finish;
+            11: work: Over                                  => Finish;
         }
         /// The robot is on its way, and the data base is being told where the object is.
         Leaving {
-            12: update: Owed                                    => AwaitUpdate                     -> Telling;
-            13: update: None | Due                              => Finish;
+            12: update: Owed                                => AwaitUpdate                     -> Telling;
+            13: update: None | Due                          => Finish;
         }
         /// The data base is being told.
         Telling {
-            14: update: Owed                                    => TellOwed;
-            15: update: None | Due                              => Finish;
+            14: update: Owed                                => TellOwed;
+            15: update: None | Due                          => Finish;
         }
     }
 }

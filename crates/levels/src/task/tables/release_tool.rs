@@ -4,8 +4,8 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// RELEASE-TOOL (V.4.1): let go of a tool in the transfer location, then go to the end-at location; done
-    /// at once if the tool gripper is free and there. Sent again after an interruption it goes on: fingers that
-    /// have let go are led out of the drum.
+    /// at once if the tool gripper is free and there. Sent again after an interruption it goes on: fingers
+    /// that have let go are led out of the drum.
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                                => Wait;

@@ -144,7 +144,8 @@ impl SubtaskDouble {
         self.outputs.status.held = if object.is_empty() { Holding::Nothing } else { held };
     }
 
-    /// The robot stands at a location, in the drum if it is that of the drum; an empty name for none that is known.
+    /// The robot stands at a location, in the drum if it is that of the drum; an empty name for none that is
+    /// known.
     pub fn stand(&mut self, location: &str) {
         let location = Name10::new(location).unwrap();
         let at = Standing { location, ..Standing::default() };

@@ -6,8 +6,8 @@ decision_table! {
     /// CALIBRATE (IV.1 step 3, IV.5.1 step 10): turn to the + limit, set the counter to zero, park at -20.00.
     /// Runs by itself when the table is booted, and before the first command that turns it. Commands wait for
     /// it. A motor that does not take its order, does not come to rest in time or stands elsewhere ends it. A
-    /// process that is restarted in the middle of a job stops the table and adopts the calibration from before,
-    /// if counter and potentiometer agree.
+    /// process that is restarted in the middle of a job stops the table and adopts the calibration from
+    /// before, if counter and potentiometer agree.
     pub CALIBRATE: fn calibrate(super::Phase, super::Situation) -> super::Action or super::Duty {
         Missing {
             1:  command: Nothing                                    => SeekLimit            -> Seeking;

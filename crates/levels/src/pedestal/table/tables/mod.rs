@@ -29,11 +29,11 @@ pub enum Step {
 pub enum Phase {
     /// Never done: begins at once, since the table was booted just now (IV.5.1 step 10).
     Missing,
-    /// Not done since the process was started in the middle of a job: the table may stand beside the robot, so
-    /// it waits for a command that turns it.
+    /// Not done since the process was started in the middle of a job: the table may stand beside the robot,
+    /// so it waits for a command that turns it.
     Deferred,
-    /// The process was started in the middle of a job: the table comes to rest, and the calibration from before
-    /// counts if counter and potentiometer agree.
+    /// The process was started in the middle of a job: the table comes to rest, and the calibration from
+    /// before counts if counter and potentiometer agree.
     Adopting,
     /// The table turns towards its + limit.
     Seeking,
