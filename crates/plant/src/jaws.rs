@@ -26,9 +26,6 @@ pub struct Supply {
 }
 
 impl Supply {
-    /// A gripper that is off the robot: its ports are open.
-    pub const CUT: Self = Self { flow: 0.0, vent: true };
-
     /// Of eight valves.
     #[must_use]
     pub fn of_bits(bits: u8) -> Self {

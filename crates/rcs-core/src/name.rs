@@ -15,8 +15,6 @@ pub struct Name<const N: usize>([u8; N]);
 
 /// Names of task data: ten characters or less (VII).
 pub type Name10 = Name<10>;
-/// Status reports: twelve characters (V.1.2).
-pub type Name12 = Name<12>;
 /// Object names and the fields of a Task command: sixteen characters (VII, V.4.2).
 pub type Name16 = Name<16>;
 
@@ -112,14 +110,6 @@ impl<const N: usize> Name<N> {
     #[must_use]
     pub const fn bytes(&self) -> &[u8; N] {
         &self.0
-    }
-
-    /// The same name in a field of another width.
-    ///
-    /// # Errors
-    /// [`NameError::TooLong`] if it does not fit.
-    pub fn resized<const M: usize>(&self) -> Result<Name<M>, NameError> {
-        Name::new(self.as_str())
     }
 }
 

@@ -171,7 +171,7 @@ fn every_leg_of_the_linkbar_has_its_paths() {
         (home, safe, 3),
     ] {
         let path = data.trajectory(&from, &to).unwrap();
-        assert_eq!(data.path(path).len(), vias, "{} to {}", data.place_name(&from), data.place_name(&to));
+        assert_eq!(data.path(path).len(), vias, "{from:?} to {to:?}");
     }
     assert!(data.trajectory(&vise, &safe).is_none(), "no form has this leg");
 

@@ -182,12 +182,6 @@ impl<'a> TaskData<'a> {
         self.owner(id).and_then(|owner| run(self.members, owner.first, owner.count)).unwrap_or_default()
     }
 
-    /// A trajectory (VII.6).
-    #[must_use]
-    pub fn trajectory_record(&self, id: TrajId) -> Option<&'a Traj> {
-        id.of(self.trajectories)
-    }
-
     /// The trajectory of a name.
     #[must_use]
     pub fn trajectory_named<const N: usize>(&self, name: &Name<N>) -> Option<TrajId> {

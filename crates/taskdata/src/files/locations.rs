@@ -344,13 +344,4 @@ impl<'a> TaskData<'a> {
                 owners.map(|&n| Reference::owner(OwnerId::new(n)))
             })
     }
-
-    /// Name of the location point of a place, or of its static array.
-    #[must_use]
-    pub fn place_name(&self, place: &Place) -> Name10 {
-        self.locpt(place.locpt)
-            .map(|l| l.name)
-            .or_else(|| self.array(place.array).map(|a| a.name))
-            .unwrap_or(Name10::EMPTY)
-    }
 }

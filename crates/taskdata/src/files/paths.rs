@@ -173,12 +173,6 @@ impl<'a> TaskData<'a> {
         }
     }
 
-    /// True if an entry with this type can be looked up at a place.
-    #[must_use]
-    pub const fn is_place_type(kind: RefType) -> bool {
-        matches!(kind, RefType::LocationPoint | RefType::Array | RefType::Owner | RefType::Any)
-    }
-
     /// Name of an object for a message; empty if there is none.
     #[must_use]
     pub fn object_name(&self, id: ObjectId) -> Name16 {
