@@ -121,30 +121,31 @@ impl<'c> State<'c> {
 
     /// A command.
     pub fn command(&mut self, command: &HwsCommand) -> Option<Refused> {
-        let (verb, object) = (command.command.as_str(), command.object);
+        let (verb, object) = (command.command.as_str(), command.object?);
         let part = self.cell.part(object.as_str())?;
         let brings = ["TRANSFER", "MOVE", "REFIXTURE"].contains(&verb);
         let unseen = if brings || verb == "ACQUIRE" { self.unseen(command, part) } else { None };
-        if unseen.is_some() || !brings || command.destination.as_str() != self.cell.vise.location {
-            return unseen;
-        }
+        let vise = self.cell.vise.location.as_str();
+        let to_vise = command.destination.filter(|name| brings && name.as_str() == vise);
+        let (None, Some(destination)) = (&unseen, to_vise) else { return unseen };
         self.in_vise = Some(object);
         let message = self.jaws?.refuse(part)?;
         self.jaws = None;
         let help = "a line `** vise open|partial LOCATION PROGRAM` before it opens the vise for the part";
-        Some(Refused { word: command.destination.to_string(), message, help })
+        Some(Refused { word: destination.to_string(), message, help })
     }
 
     /// A part that was put down at random has to be looked for. Parts that have nests lie in them.
     fn unseen(&self, command: &HwsCommand, part: &PartType) -> Option<Refused> {
-        let (object, sector) = (command.object, command.source_sector);
-        let location = self.data.resolve_location(&command.source, sector, Some(&object)).ok()?;
+        let (object, source) = (command.object?, command.source?);
+        let sector = command.source_sector.unwrap_or(0);
+        let location = self.data.resolve_location(&source, sector, Some(&object)).ok()?;
         let random = self.random.contains(&(location.name, sector));
         let seen = self.data.view(&object, &location.place).is_some_and(|(_, view)| view.enabled);
         let nested = self.cell.nest.iter().any(|nest| nest.takes(part));
         let unit = location.name;
         (random && !seen && !nested).then(|| Refused {
-            word: command.source.to_string(),
+            word: source.to_string(),
             message: format!(
                 "{object} lies anywhere in sector {sector} of {unit}, and no view finds it there"
             ),

@@ -17,6 +17,7 @@ use rcs_core::{
         HwsCommand,
         hws::{HwsReport, HwsStatus},
     },
+    name::Name16,
     tick::Tick,
 };
 use record::remarks::hws_text;
@@ -154,11 +155,13 @@ impl PlacementCheck {
         if attempt.moved.is_empty() && takes_object(&attempt.command) && self.empty.is_none() {
             self.empty = Some((tick, command.clone()));
         }
-        let destination = place(attempt.command.destination.as_str(), attempt.command.destination_sector);
+        let destination = place(attempt.command.destination, attempt.command.destination_sector);
         for part in parts.iter().filter(|part| attempt.moved.contains(&part.id)) {
             let goal = match attempt.command.command.as_str() {
                 "TRANSFER" => Goal::At(destination.clone()),
-                "RELEASE-TOOL" => Goal::At(place(&cell.drum.location, 0)),
+                "RELEASE-TOOL" => Goal::At(
+                    Some((cell.drum.location.clone(), 0)).filter(|(location, _)| !location.is_empty()),
+                ),
                 "POSITION" if !part.held => Goal::At(self.stands_at.clone()),
                 _ => Goal::Gripper,
             };
@@ -167,7 +170,7 @@ impl PlacementCheck {
             let astray = (!is_there(&goal, at, self.tolerance, cell, part)).then_some(last);
             self.moved.insert(part.id, Moved { goal, command: command.clone(), let_go: at, astray });
         }
-        let source = place(attempt.command.source.as_str(), attempt.command.source_sector);
+        let source = place(attempt.command.source, attempt.command.source_sector);
         if attempt.command.command.as_str() == "POSITION" {
             // What lies there may be pushed, on purpose.
             for (id, moved) in
@@ -210,11 +213,12 @@ impl PlacementCheck {
 
 /// The command is about an object that the gripper has to have.
 fn takes_object(command: &HwsCommand) -> bool {
-    !command.object.is_empty() && !matches!(command.command.as_str(), "POSITION" | "RELEASE-TOOL")
+    command.object.is_some() && !matches!(command.command.as_str(), "POSITION" | "RELEASE-TOOL")
 }
 
-fn place(location: &str, sector: i32) -> Option<Place> {
-    (!location.is_empty()).then(|| (location.to_owned(), u16::try_from(sector).unwrap_or(0)))
+fn place(location: Option<Name16>, sector: Option<i32>) -> Option<Place> {
+    let sector = sector.and_then(|sector| u16::try_from(sector).ok()).unwrap_or(0);
+    Some((location?.to_string(), sector))
 }
 
 /// A part is where it has to be. At a place that the cell description has it must be there, and near the middle of it; elsewhere, and

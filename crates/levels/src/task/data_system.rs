@@ -11,7 +11,7 @@ use rcs_core::{
     handshake::Commander,
     interface::{
         DataBaseCommand, DataBaseStatus, TaskOutputs,
-        data_base::{Books, Carried, Connection, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
+        data_base::{Carried, Connection, DataBaseBeliefs, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
         emove::Standing,
     },
     name::{Name10, Name16},
@@ -40,13 +40,13 @@ pub struct DataSystem {
     /// How often it was written.
     pub tries: u8,
     /// What is believed of it: an output, adopted again after a restart.
-    pub books: Books,
+    pub beliefs: DataBaseBeliefs,
 }
 
 impl DataSystem {
     /// In its first tick Task takes over what it believed before a restart, and the command that it wrote last.
     pub const fn adopt(&mut self, written: &TaskOutputs, tick: Tick) {
-        (self.books, self.request) = (written.books, written.data_base);
+        (self.beliefs, self.request) = (written.beliefs, written.data_base);
         let number = written.data_base.number;
         self.commander = Commander { number, sent: tick, started: number != 0 };
     }
@@ -54,13 +54,13 @@ impl DataSystem {
     /// Once a tick, before anything else: an update that is taken is owed no longer.
     pub fn observe(&mut self, status: &DataBaseStatus, tick: Tick) {
         self.commander.start(status.echo);
-        let [first, second] = self.books.owed;
+        let [first, second] = self.beliefs.owed;
         let told = self.request.command == DataBaseVerb::Update
             && first.is_some_and(|first| {
                 DataBaseCommand { number: self.request.number, ..first } == self.request
             });
         if told && self.status(status, tick) == DataBase::Done {
-            self.books.owed = [second, None];
+            self.beliefs.owed = [second, None];
         }
     }
 
@@ -80,7 +80,7 @@ impl DataSystem {
     /// Is the Data System told of moves? `executing` is the command that is.
     #[must_use]
     pub const fn connection(&self, executing: Option<TaskVerb>) -> Connection {
-        match (self.books.connected, self.books.connecting, executing) {
+        match (self.beliefs.connected, self.beliefs.connecting, executing) {
             (true, _, _) => Connection::Open,
             (false, true, Some(TaskVerb::Startup)) => Connection::Opening,
             (false, true, _) => Connection::Interrupted,
@@ -92,13 +92,13 @@ impl DataSystem {
     #[must_use]
     pub fn update(&self, plan: &Plan) -> Update {
         let connecting = plan.verb == TaskVerb::Startup;
-        let [owed, _] = self.books.owed;
-        if plan.verb == TaskVerb::Position && self.books.connected && plan.update_due {
+        let [owed, _] = self.beliefs.owed;
+        if plan.verb == TaskVerb::Position && self.beliefs.connected && plan.update_due {
             // What is let go is let go whether or not an earlier update is taken.
             Update::Due
-        } else if owed.is_some() && (self.books.connected || connecting) {
+        } else if owed.is_some() && (self.beliefs.connected || connecting) {
             Update::Owed
-        } else if self.books.connected && plan.update_due {
+        } else if self.beliefs.connected && plan.update_due {
             Update::Due
         } else {
             Update::None
@@ -108,7 +108,7 @@ impl DataSystem {
     /// Is the data base to be told where an object is let go?
     #[must_use]
     pub fn is_to_be_told_of(&self, object: Option<Name16>, in_mbd: bool) -> bool {
-        self.books.carried.is_some_and(|carried| Some(carried.item) == object && (carried.told || in_mbd))
+        self.beliefs.carried.is_some_and(|carried| Some(carried.item) == object && (carried.told || in_mbd))
     }
 
     /// Write a command for the first time.
@@ -127,21 +127,21 @@ impl DataSystem {
 
     /// Write a reconfiguration command: one without an item.
     pub fn reconfigure(&mut self, command: DataBaseVerb, tick: Tick, outputs: &mut TaskOutputs) {
-        (self.books.connected, self.books.connecting) = (false, true);
+        (self.beliefs.connected, self.beliefs.connecting) = (false, true);
         self.ask(DataBaseCommand { command, ..DataBaseCommand::default() }, tick, outputs);
     }
 
     /// The Data System takes commands.
     pub const fn connect(&mut self) {
-        (self.books.connected, self.books.connecting) = (true, false);
+        (self.beliefs.connected, self.beliefs.connecting) = (true, false);
     }
 
     /// The robot holds the object of a MOVE or an ACQUIRE.
     pub fn carry(&mut self, plan: &Plan, told: bool) {
         let site = plan.destination.location.or(plan.source.location).unwrap_or_default();
         let item = plan.object.unwrap_or_default();
-        let told = told || self.books.carried.is_some_and(|carried| carried.item == item && carried.told);
-        self.books.carried =
+        let told = told || self.beliefs.carried.is_some_and(|carried| carried.item == item && carried.told);
+        self.beliefs.carried =
             Some(Carried { item, serial: plan.serial, location: site.name, sector: site.sector, told });
     }
 
@@ -154,7 +154,7 @@ impl DataSystem {
         if in_hand {
             self.carry(plan, true);
         } else {
-            self.books.carried = self.books.carried.filter(|carried| Some(carried.item) != plan.object);
+            self.beliefs.carried = self.beliefs.carried.filter(|carried| Some(carried.item) != plan.object);
         }
         let item = plan.object.unwrap_or_default();
         self.owe(item, plan.serial, position, sector);
@@ -163,7 +163,9 @@ impl DataSystem {
 
     /// REPORT-ITEM: write where the robot has let an object go, and keep it until it is taken.
     pub fn tell_released(&mut self, at: Option<Standing>, tick: Tick, outputs: &mut TaskOutputs) {
-        let Some(Carried { item, serial, location, sector, .. }) = self.books.carried.take() else { return };
+        let Some(Carried { item, serial, location, sector, .. }) = self.beliefs.carried.take() else {
+            return;
+        };
         let position = at.map_or(location, |at| at.location);
         self.owe(item, serial, position, if position == location { sector } else { None });
         self.tell_owed(tick, outputs);
@@ -173,7 +175,7 @@ impl DataSystem {
     fn owe(&mut self, item: Name16, serial: Name16, position: Name10, sector: Option<i32>) {
         let command = DataBaseVerb::Update;
         let update = Some(DataBaseCommand { number: 0, command, item, serial, position, sector });
-        self.books.owed = match self.books.owed {
+        self.beliefs.owed = match self.beliefs.owed {
             [None, _] => [update, None],
             [first, _] => [first, update],
         };
@@ -181,7 +183,7 @@ impl DataSystem {
 
     /// Write the oldest update that has not been taken.
     pub fn tell_owed(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
-        let [first, _] = self.books.owed;
+        let [first, _] = self.beliefs.owed;
         if let Some(update) = first {
             self.ask(update, tick, outputs);
         }
@@ -189,8 +191,8 @@ impl DataSystem {
 
     /// The Data System is disconnected, and what was owed to it is dropped.
     pub fn disconnect(&mut self, tick: Tick, outputs: &mut TaskOutputs) {
-        (self.books.owed, self.books.carried) = ([None; KEPT_UPDATES], None);
+        (self.beliefs.owed, self.beliefs.carried) = ([None; KEPT_UPDATES], None);
         self.reconfigure(DataBaseVerb::Abort, tick, outputs);
-        self.books.connecting = false;
+        self.beliefs.connecting = false;
     }
 }

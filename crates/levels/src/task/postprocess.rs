@@ -218,7 +218,7 @@ impl State {
         };
         let executing = Some(self.plan.verb).filter(|_| execution.outcome == Outcome::Executing);
         outputs.connection = self.data_system.connection(executing);
-        outputs.books = self.data_system.books;
+        outputs.beliefs = self.data_system.beliefs;
         outputs.header = execution.header(inputs.tick, self.step.text());
         outputs.status =
             HwsStatus { echo: execution.receiver.echo, command: inputs.external.hws.command, report, reason };

@@ -85,9 +85,9 @@ pub struct Carried {
 }
 
 /// What Task believes of the Data System. It is an output, so that a Task that is restarted has it
-/// (docs/design/recovery.md "Books"; extension).
+/// (docs/design/recovery.md "Data base"; extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Books {
+pub struct DataBaseBeliefs {
     /// A STARTUP has succeeded, and no SHUTDOWN came since.
     pub connected: bool,
     /// A STARTUP has begun, and neither succeeded nor was followed by a SHUTDOWN.

@@ -36,8 +36,8 @@ impl Detail {
             }
             // The POSITION of Task refuses by itself: V.4.1.
             (ProcessId::Task, Fault::Reason(Reason::NoTrajectory)) => {
-                let to = if hws.source.is_empty() { hws.destination } else { hws.source };
-                memory.subtask.status.at.map_or(Self::None, |at| Self::Pair(at.location, to))
+                let ends = memory.subtask.status.at.zip(hws.source.or(hws.destination));
+                ends.map_or(Self::None, |(at, to)| Self::Pair(at.location, to))
             }
             _ => Self::None,
         }
@@ -97,7 +97,7 @@ mod tests {
         let from = RobotPlace { location: Name10::clipped("BENCH"), ..RobotPlace::default() };
         memory.emove.beliefs.place = Some(from);
         memory.subtask.emove.location = Name10::clipped("VISE");
-        let mut hws = HwsCommand { destination: Name16::clipped("TRAY"), ..HwsCommand::default() };
+        let mut hws = HwsCommand { destination: Some(Name16::clipped("TRAY")), ..HwsCommand::default() };
         let text = said(ProcessId::Emove, Reason::NoTrajectory, &hws, &memory);
         assert!(text.starts_with(": none leads from BENCH to VISE ("), "{text}");
         assert!(text.contains("trajectory BENCH-VISE"), "{text}");
@@ -106,7 +106,7 @@ mod tests {
         memory.subtask.status.at = Some(at);
         let text = said(ProcessId::Task, Reason::NoTrajectory, &hws, &memory);
         assert!(text.starts_with(": none leads from SAFE to TRAY ("), "{text}");
-        hws.source = Name16::clipped("HOME");
+        hws.source = Some(Name16::clipped("HOME"));
         assert!(said(ProcessId::Task, Reason::NoTrajectory, &hws, &memory).contains("from SAFE to HOME"));
         assert_eq!(said(ProcessId::Emove, Reason::NoApproach, &hws, &memory), "");
     }

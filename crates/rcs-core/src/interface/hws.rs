@@ -7,7 +7,7 @@ use crate::{
     handshake::Lower,
     interface::{
         ChangingPose, Header, Reason,
-        data_base::{Books, Connection, DataBaseCommand},
+        data_base::{Connection, DataBaseBeliefs, DataBaseCommand},
         subtask::{SubtaskCommand, SubtaskVerb},
     },
     name::Name16,
@@ -102,7 +102,7 @@ pub struct TaskOutputs {
     /// Is the Data System told of moves (extension)?
     pub connection: Connection,
     /// What Task believes of the Data System (extension).
-    pub books: Books,
+    pub beliefs: DataBaseBeliefs,
     /// The last command about an object or a tool that is not finished (extension).
     pub ledger: Option<Ledger>,
     /// T-POSE-1 …: poses that the commands name.

@@ -372,7 +372,7 @@ fn what_is_told_survives_a_command_that_replaces_it() {
         assert_eq!(bench.run("ACQUIRE BAR +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
         // It was written once more: the Data System has not answered the first.
         assert!(updates(&bench).len() <= 1);
-        assert!(bench.memory.task.books.owed.iter().all(Option::is_none), "{by}");
+        assert!(bench.memory.task.beliefs.owed.iter().all(Option::is_none), "{by}");
     }
 }
 
@@ -417,7 +417,7 @@ fn a_restarted_task_believes_what_it_believed() {
     }
     bench.process = Task::default();
     bench.wait(12);
-    assert_eq!(bench.memory.task.books.owed, [None; 2]);
+    assert_eq!(bench.memory.task.beliefs.owed, [None; 2]);
     // A STARTUP that a restart has cut off is not forgotten.
     let mut bench = Bench::default();
     bench.command(STARTUP);

@@ -80,7 +80,7 @@ impl Field {
 
 impl Number {
     /// The number, if it is not 0.
-    pub(super) fn given(&self) -> Option<i32> {
+    fn given(&self) -> Option<i32> {
         Some(self.value).filter(|value| *value != 0)
     }
 }
