@@ -35,7 +35,7 @@ fn hand_over() -> String {
 /// Send a command with the number after the echo, and let it come to its end.
 fn next(workstation: &mut Workstation, verb: &str, destination: &str) -> String {
     let number = u32::from(workstation.status().echo) + 1;
-    let command = HwsCommand { destination: Name16::clipped(destination), ..bare(number, verb) };
+    let command = HwsCommand { destination: Some(Name16::clipped(destination)), ..bare(number, verb) };
     let (report, reason) = workstation.carry_out(&command);
     assert_eq!(u32::from(workstation.status().echo), number);
     format!("{verb} {destination}: {report}{reason}")
@@ -77,7 +77,7 @@ fn a_workstation_that_goes_amid_a_command_ends_the_run() {
     let controller = start("amid", &[hand_over(), go("SAFE")], "workstation", &[]);
     let mut workstation = Workstation::connect(&controller);
     let number = u32::from(workstation.status().echo) + 1;
-    workstation.send(&HwsCommand { destination: Name16::clipped("SAFE"), ..bare(number, "MOVE") });
+    workstation.send(&HwsCommand { destination: Some(Name16::clipped("SAFE")), ..bare(number, "MOVE") });
     for _ in 0..20 {
         workstation.tick();
     }

@@ -41,7 +41,7 @@ fn record(path: &Path) {
         external.devices.joystick.velocity = 1000;
         external.hws.number = u32::from(tick.0 >= 50);
         external.hws.command = Name16::new("TRANSFER").expect("a word");
-        external.hws.object = Name16::new("NOBODY").expect("a word");
+        external.hws.object = Some(Name16::new("NOBODY").expect("a word"));
         let before = memory;
         ladder.step(tick, &before, &external, &TaskData::default(), &mut memory);
         recorder.cell(&CellFrame::new(tick).with_digest(tick.0));

@@ -158,7 +158,7 @@ fn command_line(
     line: u32,
     text: &str,
 ) -> (JobLine, Vec<Finding>) {
-    let random = state.random.iter().position(|part| part.object == command.object);
+    let random = state.random.iter().position(|part| Some(part.object) == command.object);
     let random = random.map(|at| state.random.remove(at));
     let before = state.clone();
     let (phases, mut findings) = run(state, command);
@@ -220,7 +220,7 @@ impl JobLine {
 /// Carry a command out: its phases, and what is wrong with them.
 fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding>) {
     let data = *state.walk.data();
-    let wanted = data.obj_grips(&command.object).map_or(0, |grips| grips.endeff_id);
+    let wanted = command.object.and_then(|object| data.obj_grips(&object)).map_or(0, |grips| grips.endeff_id);
     let wanted = u8::try_from(wanted).unwrap_or(0);
     let worn = state.layout.gripper;
     let change = wanted != 0 && wanted != worn;

@@ -80,7 +80,7 @@ impl State<'_> {
 
     /// What is wrong with a grasp of a part that the vise holds.
     pub(crate) fn beside(&self, step: &Step, phase: &Phase) -> Option<Finding> {
-        let Step::Fingers { verb: EmoveVerb::GraspObj, object, .. } = step else { return None };
+        let Step::Fingers { verb: EmoveVerb::GraspObj, object: Some(object), .. } = step else { return None };
         let tool = self.robot.tool();
         let index = self.nearest(object, &tool)?;
         let part = self.layout.parts.get(index).filter(|_| self.room.in_vise(&self.layout) == Some(index))?;

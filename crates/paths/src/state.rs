@@ -157,7 +157,7 @@ impl<'a> State<'a> {
         match *step {
             Step::Go { verb, object, location, .. } => {
                 self.layout.engaged = 0;
-                self.last = Some((object, location));
+                self.last = object.map(|object| (object, location));
                 let phase = self.walk.step(step);
                 let subtask = match task {
                     "POSITION" => ">POSITION",
@@ -199,12 +199,14 @@ impl<'a> State<'a> {
     fn stand(&mut self, step: &Step) {
         match *step {
             Step::Fingers { verb: EmoveVerb::GraspObj, object, grip } => {
-                self.grasp(&object, grip, &self.robot.tool());
+                if let Some(object) = object {
+                    self.grasp(&object, grip, &self.robot.tool());
+                }
                 self.before = vec![["GRASP-OBJ", ""]];
             }
             Step::Fingers { object, grip, .. } => {
-                let depart = self.walk.data().object(&object, grip).map(|(_, sizes)| sizes.depart_size);
-                self.release(depart.map(|size| f64::from(size) / 100.0));
+                let sizes = object.and_then(|object| self.walk.data().object(&object, grip));
+                self.release(sizes.map(|(_, sizes)| f64::from(sizes.depart_size) / 100.0));
                 self.before = vec![["RELEASE", ""]];
             }
             Step::GraspTool => {

@@ -23,7 +23,7 @@ pub enum Step {
     Go {
         /// The command.
         verb: EmoveVerb,
-        /// The object that decides grip, approach and depart; empty for a location as such.
+        /// The object that decides grip, approach and depart; none for a location as such.
         object: Option<Name16>,
         /// Its grip.
         grip: i32,
@@ -124,7 +124,9 @@ pub fn steps(
         "ACQUIRE" => maker.get(&mut steps)?,
         "POSITION" => {
             steps.push(match maker.held {
-                Some((object, grip)) => Step::Fingers { verb: EmoveVerb::Release, object: Some(object), grip },
+                Some((object, grip)) => {
+                    Step::Fingers { verb: EmoveVerb::Release, object: Some(object), grip }
+                }
                 None => Step::Other("RELEASE, if an object is held"),
             });
             maker.position(&mut steps)?;
@@ -285,5 +287,5 @@ fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location)
     let mut assigned = data.object_locations(record).filter(|one| one.kind == RefType::LocationPoint);
     let point = assigned.next().and_then(|one| data.locpt(LocptId::new(one.number))).ok_or(unknown)?;
     let location = data.resolve_location::<10, 16>(&point.name, 0, None)?;
-    Ok((Step::Go { verb: EmoveVerb::MovToHol, object, grip, location }, location))
+    Ok((Step::Go { verb: EmoveVerb::MovToHol, object: Some(object), grip, location }, location))
 }

@@ -78,8 +78,8 @@ fn data(store: &Store, process: ProcessId, memory: &CommonMemory) -> Vec<String>
     let (order, motion) = (&memory.subtask.emove, &memory.emove.prim);
     if process == ProcessId::Grip {
         let sizes = EndEffId::from_option(order.object_parameters);
-        if let Some(grip) = sizes.of(view.end_effs) {
-            let what = format!("grip {} of {}, {} lb", grip.grip, order.object, grip.grasp_force);
+        if let (Some(object), Some(grip)) = (order.object, sizes.of(view.end_effs)) {
+            let what = format!("grip {} of {object}, {} lb", grip.grip, grip.grasp_force);
             tell(what, &origins.end_effs, sizes.index());
         }
         return told;
