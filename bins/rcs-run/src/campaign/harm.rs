@@ -11,6 +11,13 @@ const PART: f64 = 0.5;
 /// The hand may stand so far from where the undisturbed run has it, in.
 const HAND: f64 = 0.5;
 
+/// Does the DEPC function have the robot, so that it goes where it is commanded?
+#[must_use]
+pub fn is_commanded(branch: &Branch<'_>) -> bool {
+    let t3 = branch.workstation.cell.t3();
+    t3.stage() == Stage::Depc && t3.cut().is_none()
+}
+
 /// Where everything is at the end of a command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
@@ -141,8 +148,7 @@ impl HarmMonitor {
     /// Look at a tick; `person` moves the robot at the joystick box.
     pub fn look(&mut self, branch: &Branch<'_>, person: bool) {
         let tick = branch.at();
-        let t3 = branch.workstation.cell.t3();
-        let commanded = t3.stage() == Stage::Depc && t3.cut().is_none() && !person;
+        let commanded = is_commanded(branch) && !person;
         let contacts = branch.check().collisions();
         for (at, contact) in contacts.iter().enumerate().skip(self.seen) {
             let Collision { mover, obstacle, commands, .. } = contact;

@@ -31,7 +31,7 @@ const STOPPED: u64 = 100;
 /// How far a robot is led away, in.
 const RISE: f64 = 3.0;
 /// A robot that is led back goes on so far when the button is let go, in.
-const GOES_ON: f64 = 0.3;
+const GOES_ON: f64 = 0.8;
 /// Ticks for which a button of the joystick box is held down at most.
 const LED: u64 = 100;
 /// Ticks for which a key of the panel is tried.

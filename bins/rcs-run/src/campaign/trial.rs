@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::{
     branch::{Branch, Facility, Fork},
-    harm::{HarmMonitor, World},
+    harm::{HarmMonitor, World, is_commanded},
     interruption::Kind,
     operator::{Operator, Recovery, Then},
     parent::Parent,
@@ -271,8 +271,8 @@ impl Trial<'_, '_> {
     /// A command says that it is finished: is the world as the undisturbed run has it then?
     fn compare(&mut self, line: usize, command: &str) {
         let Some(world) = self.parent.world_after(line) else { return };
-        // What has touched something without command may have displaced it.
-        if self.monitor.worst().is_some() {
+        // What has touched something without command may have displaced it; and an arm without pressure sinks.
+        if self.monitor.worst().is_some() || !is_commanded(&self.branch) {
             return;
         }
         if let Some(unlike) = World::of(&self.branch).unlike(world) {

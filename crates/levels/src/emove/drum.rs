@@ -24,7 +24,7 @@ use taskdata::files::TaskData;
 use super::{
     exchange::base,
     relative::Relative,
-    robot_place::{commanded_pose, place, place_named, present_frame, robot_at},
+    robot_place::{commanded_pose, is_led, place, place_named, present_frame, robot_at},
     route::{near, same_location},
     state::State,
     tables::{
@@ -182,6 +182,7 @@ impl State {
         };
         match drum((), &situation).action {
             Belief::Keep => {}
+            Belief::Leave if is_led(inputs.memory) => {}
             Belief::Leave => self.beliefs.drum = None,
             Belief::Stand => {
                 let pose = commanded_pose(inputs.memory).unwrap_or_else(|| Pose::from_frame(&present));

@@ -24,7 +24,7 @@ use super::{
     fingers::gripper_on,
     gripper::{Gripper, is_open},
     relative::Relative,
-    robot_place::{gone_to, present_frame, robot_at},
+    robot_place::{gone_to, is_led, present_frame, robot_at},
     route::beside,
     state::State,
     tables::{Along, Shut},
@@ -146,8 +146,7 @@ impl State {
         }
     }
 
-    /// A robot that has been taken away from the holster, as by the joystick box, changes no gripper any
-    /// more.
+    /// A robot that is away from the holster when the operator gives it back changes no gripper any more.
     pub(super) fn sense_exchange(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let (Some(exchange), Some(present)) = (self.beliefs.exchange, present_frame(inputs.memory)) else {
             return;
@@ -161,7 +160,7 @@ impl State {
         let base = exchange.place.pose.to_frame().ok();
         let points = base.and_then(|base| Points::of(&command, &base, inputs.data));
         let along = points.map_or(Along::Off, |points| points.along(&present));
-        if along == Along::Off {
+        if along == Along::Off && !is_led(inputs.memory) {
             self.beliefs.exchange = None;
         }
     }

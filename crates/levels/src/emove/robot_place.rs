@@ -6,6 +6,7 @@ use rcs_core::{
     interface::{
         CommonMemory,
         emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace, Standing},
+        prim::PrimReport,
     },
     pose::Pose,
 };
@@ -47,6 +48,12 @@ pub const fn robot_at(command: &EmoveCommand, gone_to: GoneTo, pose: Pose) -> Ro
         array: command.location_array,
         pose,
     }
+}
+
+/// Does the operator have the robot? Where it is counts again when it is given back.
+#[must_use]
+pub fn is_led(memory: &CommonMemory) -> bool {
+    memory.prim.status.report == PrimReport::JoystickOn
 }
 
 /// The place as task data know it.

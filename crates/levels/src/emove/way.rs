@@ -146,8 +146,13 @@ impl State {
         let at_rest = near(&rest, &present, LOST_INCHES, LOST_RADIANS);
         let (inches, radians) = (CUT_OFF_TICKS * STEP_INCHES, CUT_OFF_TICKS * STEP_RADIANS);
         let may_be_beside = way.by_hand || (way.cut_off && near(&rest, &present, inches, radians));
-        let beside = may_be_beside && is_in_corridor(&present, &way, inputs.data) == Some(true);
-        (at_rest || beside).then_some(way)
+        let beside = |way: &Way| may_be_beside && is_in_corridor(&present, way, inputs.data) == Some(true);
+        if at_rest || beside(&way) {
+            return Some(way);
+        }
+        // What the link has cut off may have begun before the point that Prim had passed.
+        let before = way.next.checked_sub(1).filter(|_| way.cut_off && way.direction == Direction::Forward);
+        before.map(|next| Way { next, ..way }).filter(beside)
     }
 
     /// The state variables of RESUME for a goal.

@@ -422,6 +422,21 @@ fn a_robot_half_way_at_the_drum_goes_nowhere_else() {
 }
 
 #[test]
+fn a_robot_that_is_led_away_from_the_drum_and_back_goes_on() {
+    let mut bench = loaded();
+    interrupt(&mut bench, InsertTool, "INS-IN", at(-1.0, 0.0));
+    bench.world.joystick = true;
+    bench.steps(3);
+    bench.world.frame = at(-20.0, 0.0);
+    bench.steps(3);
+    bench.world.frame = at(-1.0, 0.0);
+    bench.steps(3);
+    bench.world.joystick = false;
+    assert_eq!(bench.pause(), DONE);
+    assert_eq!(run(&mut bench, InsertTool), DONE);
+}
+
+#[test]
 fn a_robot_that_is_taken_away_is_no_longer_half_way() {
     for away in [at(-1.0, 3.5), at(-20.0, 0.0), at(1.0, 0.0), at(-1.0, -1.0), at(-5.0, 5.0)] {
         let mut bench = loaded();

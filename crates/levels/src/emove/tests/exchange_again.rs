@@ -30,6 +30,7 @@ pub const SCENARIOS: &[fn()] = &[
     an_order_without_effect_ends_the_command,
     what_cannot_be_detached_is_named,
     in_a_holster_only_the_exchange_goes_on,
+    a_robot_that_is_led_out_of_a_holster_and_back_goes_on,
     a_gripper_that_mates_in_its_holster_holds_nothing,
     a_loose_gripper_that_is_led_away_is_still_to_be_changed,
     a_grasp_is_made_again_from_every_tick,
@@ -351,6 +352,26 @@ fn in_a_holster_only_the_exchange_goes_on() {
     bench.world.joystick = false;
     assert_eq!(bench.pause(), DONE);
     assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), DONE);
+}
+
+#[test]
+fn a_robot_that_is_led_out_of_a_holster_and_back_goes_on() {
+    let mut bench = bare(1);
+    bench.command(ATTACH.0, ATTACH.1, ATTACH.2, ATTACH.3, ATTACH.4);
+    bench.steps(4);
+    assert_eq!(bench.pause(), DONE);
+    let stopped = bench.world.frame;
+    bench.world.joystick = true;
+    bench.steps(3);
+    bench.world.frame.position.z += 30.0;
+    bench.steps(3);
+    assert!(bench.memory.emove.beliefs.exchange.is_some());
+    bench.world.frame = stopped;
+    bench.steps(3);
+    bench.world.joystick = false;
+    assert_eq!(bench.pause(), DONE);
+    assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), error(Reason::InHolster));
+    assert_eq!(send(&mut bench, ATTACH), DONE, "{:?}", bench.world.log);
 }
 
 #[test]

@@ -31,6 +31,7 @@ pub const SCENARIOS: &[fn()] = &[
     a_nudge_in_the_corridor_leaves_the_robot_on_its_way,
     a_gripper_on_an_open_ring_goes_nowhere,
     a_robot_that_a_lost_link_stopped_short_is_on_its_way,
+    a_link_that_is_lost_behind_a_point_may_stop_the_robot_before_it,
 ];
 
 type Command<'a> = (EmoveVerb, &'a str, i32, &'a str, u8);
@@ -386,6 +387,23 @@ fn a_robot_that_a_lost_link_stopped_short_is_on_its_way() {
         paused(&mut bench);
         assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), end, "{short} in short, {aside} in aside");
     }
+}
+
+#[test]
+fn a_link_that_is_lost_behind_a_point_may_stop_the_robot_before_it() {
+    let mut bench = Bench::ready("HOME", 1);
+    bench.prim.by_steps = true;
+    bench.write(MovToObj, "BLOCK", 1, "BENCH", 1);
+    let mut passed = Vec::new();
+    while !bench.motions().iter().any(|motion| motion.starts_with("GOTO-PT")) {
+        passed.push(bench.world.frame);
+        bench.step();
+    }
+    (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
+    assert_eq!(bench.finish(), error(Reason::LinkOff));
+    bench.world.frame = passed[passed.len() - 5];
+    paused(&mut bench);
+    assert_eq!(bench.run(MovToObj, "BLOCK", 1, "BENCH", 1), DONE, "{:?}", bench.motions());
 }
 
 #[test]
