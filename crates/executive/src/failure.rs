@@ -344,7 +344,7 @@ mod tests {
         let mut memory = CommonMemory::default();
         memory.emove.v_grip = JawsCommand { command: JawsVerb::Grasp, size: 200, ..JawsCommand::default() };
         memory.emove.tool_grip =
-            JawsCommand { command: JawsVerb::Pose, end_effector_id: TOOL_GRIPPER, ..JawsCommand::default() };
+            JawsCommand { command: JawsVerb::Pose, end_effector_id: Some(TOOL_GRIPPER), ..JawsCommand::default() };
         memory.subtask.pedestal.command = PedestalVerb::Flip;
         memory.subtask.pedestal.table_angle = 1835;
         memory.pedestal.hand.command = GripVerb::CloseGrip;

@@ -43,14 +43,14 @@ fn e_move_passes_the_feedback_pose_up_and_the_gripper_down() {
         (Emove::default(), CommonMemory::default(), EmoveOutputs::default());
     let (external, data) = (ExternalInputs::default(), TaskData::default());
     memory.prim.status.sensor_pose = Some(0x8300_0007);
-    memory.quick_change.status.end_effector_id = 2;
+    memory.quick_change.status.end_effector_id = Some(2);
     for (tick, number) in [(1, 0), (2, 1)] {
         memory.subtask.emove = EmoveCommand { number, command: EmoveVerb::Pause, ..EmoveCommand::default() };
         let inputs = Inputs { tick: Tick(tick), memory: &memory, external: &external, data: &data };
         process.step(&inputs, &mut outputs);
     }
     assert_eq!(outputs.status.reference_pose, Some(0x8300_0007));
-    assert_eq!((outputs.prim.command, outputs.prim.end_effector_id), (PrimVerb::RobotInit, 2));
+    assert_eq!((outputs.prim.command, outputs.prim.end_effector_id), (PrimVerb::RobotInit, Some(2)));
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn grip_reports_how_fast_the_fingers_move() {
                 command: GripVerb::Position,
                 position: 100,
                 velocity: 100,
-                end_effector_id: 1,
+                end_effector_id: Some(1),
                 ..GripCommand::default()
             };
         }

@@ -99,11 +99,10 @@ fn encounters(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemo
     if let Some(remark) = holding(&was.held, &is.held) {
         say("subtask", remark);
     }
-    if was.end_effector_id != is.end_effector_id {
-        match is.end_effector_id {
-            0 => say("subtask", format!("gripper {} is off", was.end_effector_id)),
-            id => say("subtask", format!("gripper {id} is on")),
-        }
+    match (was.end_effector_id, is.end_effector_id) {
+        (Some(id), None) => say("subtask", format!("gripper {id} is off")),
+        (was, Some(id)) if was != Some(id) => say("subtask", format!("gripper {id} is on")),
+        _ => {}
     }
 }
 
@@ -351,14 +350,14 @@ mod tests {
         let mut after = before;
         after.prim.status.report = PrimReport::Done;
         let held = ObjectGrip { object: Name16::new("LINKBAR1").unwrap(), grip: 1 };
-        (after.subtask.status.held, after.subtask.status.end_effector_id) = (Holding::Object(held), 1);
+        (after.subtask.status.held, after.subtask.status.end_effector_id) = (Holding::Object(held), Some(1));
         let texts = |before, after| {
             let said = remarks(&headers(), &HwsCommand::default(), before, after);
             said.into_iter().map(|remark| remark.text).collect::<Vec<_>>()
         };
         assert_eq!(texts(&before, &after), ["GO-UNTIL TOUCH: done", "holds LINKBAR1", "gripper 1 is on"]);
         let mut later = after;
-        (later.subtask.status.held, later.subtask.status.end_effector_id) = (Holding::Nothing, 0);
+        (later.subtask.status.held, later.subtask.status.end_effector_id) = (Holding::Nothing, None);
         later.prim.status.report = PrimReport::JoystickOn;
         assert_eq!(
             texts(&after, &later),

@@ -62,7 +62,7 @@ fn mover(text: &str, memory: &CommonMemory) -> ProcessId {
     if text.starts_with("the T3 controller shows") {
         return ProcessId::T3i;
     }
-    let grips = text.contains("is lost from") && memory.emove.prim.end_effector_id == PARTS_GRIPPER;
+    let grips = text.contains("is lost from") && memory.emove.prim.end_effector_id == Some(PARTS_GRIPPER);
     if grips { ProcessId::Grip } else { ProcessId::Prim }
 }
 

@@ -51,7 +51,7 @@ impl State {
         Grasped {
             object: ObjectGrip { object: command.object.unwrap_or_default(), grip: command.grip },
             parameters: command.object_parameters,
-            gripper: gripper.code(),
+            gripper: gripper.id(),
             grasp_size: sizes(command, inputs.data).map_or(0, |sizes| sizes.grasp_size),
             opening: gripper.opening(inputs.memory).unwrap_or_default(),
             pose: commanded_pose(inputs.memory).unwrap_or_default(),

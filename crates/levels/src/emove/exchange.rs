@@ -140,9 +140,10 @@ impl State {
         memory: &CommonMemory,
         data: &TaskData<'_>,
     ) {
-        if let (true, Some(base)) = (is_exchange(command.command), base(command, memory, data)) {
+        let gripper = command.end_effector_id.filter(|_| is_exchange(command.command));
+        if let (Some(gripper), Some(base)) = (gripper, base(command, memory, data)) {
             let place = robot_at(command, gone_to(command), Pose::from_frame(&base));
-            self.beliefs.exchange = Some(Exchange { gripper: command.end_effector_id, place });
+            self.beliefs.exchange = Some(Exchange { gripper, place });
         }
     }
 
@@ -168,8 +169,7 @@ impl State {
     /// The gripper whose change is half done: the robot is in its holster, or it hangs on a ring that is not locked,
     /// wherever the robot has been led.
     pub(super) fn changing(&self, memory: &CommonMemory) -> Option<u8> {
-        let id = memory.quick_change.status.end_effector_id;
-        let loose = (is_open(memory) && id != 0).then_some(id);
+        let loose = memory.quick_change.status.end_effector_id.filter(|_| is_open(memory));
         self.beliefs.exchange.map(|exchange| exchange.gripper).or(loose)
     }
 

@@ -70,7 +70,7 @@ impl State {
             return;
         }
         self.sense_loss(inputs);
-        if attached.code() != mem::replace(&mut self.attached, attached.code()) {
+        if attached != mem::replace(&mut self.attached, attached) {
             // A ring that is open takes a gripper only in its holster, where none is left that may hold something.
             (self.beliefs.empty, self.beliefs.grasping) = (is_open(memory), None);
         }
@@ -89,7 +89,7 @@ impl State {
                 };
                 if let Some(grasped) = self.beliefs.grasping.filter(at) {
                     let opening = attached.opening(memory).unwrap_or(grasped.opening);
-                    self.hold(Grasped { opening, gripper: attached.code(), ..grasped });
+                    self.hold(Grasped { opening, gripper: attached.id(), ..grasped });
                 }
             }
             Felt::Something | Felt::NotKnown => {}
@@ -99,9 +99,9 @@ impl State {
     /// Do the id pins say that the gripper has gone, while the ring has been locked ever since it was there? Then it is
     /// on, and its pins have a bad contact. What it holds is not known until they read as before.
     pub(super) fn is_misread(&self, memory: &CommonMemory) -> bool {
-        let read = Gripper::attached(memory).code();
+        let read = Gripper::attached(memory);
         let locked = memory.quick_change.status.ring == RingPosition::Locked;
-        locked && self.attached != 0 && read != self.attached
+        locked && self.attached != Gripper::None && read != self.attached
     }
 
     /// May something that is felt count as grasped? Not while the fingers move, nor before the command that

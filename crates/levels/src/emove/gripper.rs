@@ -75,8 +75,17 @@ pub(super) const fn is_open(memory: &CommonMemory) -> bool {
 impl Gripper {
     /// The gripper with an id; an id that none has counts as none (Quick Change passes no such id on).
     #[must_use]
-    pub fn of(id: u8) -> Self {
-        Self::from_code(id).unwrap_or_default()
+    pub fn of(id: Option<u8>) -> Self {
+        id.and_then(Self::from_code).unwrap_or_default()
+    }
+
+    /// Its `endeff-id#`.
+    #[must_use]
+    pub const fn id(self) -> Option<u8> {
+        match self {
+            Self::None => None,
+            Self::Parts | Self::V | Self::Tool => Some(self.code()),
+        }
     }
 
     /// The gripper that Quick Change reads: mated, locked or not.
@@ -332,7 +341,7 @@ impl Grippers {
                     force: request.force,
                     position: request.opening,
                     velocity: 0,
-                    end_effector_id: self.to.code(),
+                    end_effector_id: self.to.id(),
                 };
             }
             Gripper::V => outputs.v_grip = self.jaws_command(request, tick),
@@ -361,7 +370,7 @@ impl Grippers {
             force: request.force,
             size: self.size,
             velocity: 0,
-            end_effector_id: self.to.code(),
+            end_effector_id: self.to.id(),
         }
     }
 

@@ -32,8 +32,8 @@ use crate::execution::Asked;
 fn attached(command: &EmoveCommand, memory: &CommonMemory) -> Attached {
     match Gripper::attached(memory) {
         Gripper::None => Attached::None,
-        _ if command.end_effector_id == 0 => Attached::Right,
-        attached if command.end_effector_id == attached.code() => Attached::Right,
+        _ if command.end_effector_id.is_none() => Attached::Right,
+        attached if command.end_effector_id == attached.id() => Attached::Right,
         Gripper::Parts | Gripper::V | Gripper::Tool => Attached::Wrong,
     }
 }
@@ -53,7 +53,7 @@ fn holster(command: &EmoveCommand, data: &TaskData<'_>) -> HolsterData {
 const fn coupling(memory: &CommonMemory) -> Coupling {
     let status = &memory.quick_change.status;
     match (status.end_effector_id, status.ring) {
-        (0, _) => Coupling::Bare,
+        (None, _) => Coupling::Bare,
         (_, RingPosition::Locked) => Coupling::Locked,
         _ => Coupling::Loose,
     }

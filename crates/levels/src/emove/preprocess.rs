@@ -51,7 +51,7 @@ const HOLSTER_SENSORS: u8 = 0x0F;
 
 /// What the sensors of a gripper's own holster see: parts gripper right, v-gripper left, tool gripper centre
 /// (ASSUMED).
-fn holster(gripper: u8, memory: &CommonMemory) -> Holster {
+fn holster(gripper: Option<u8>, memory: &CommonMemory) -> Holster {
     let status = &memory.prim.status;
     let bits = match Gripper::of(gripper) {
         Gripper::None => return Holster::Empty,
@@ -111,8 +111,8 @@ impl State {
         if !mem::replace(&mut self.started, true) {
             self.beliefs = outputs.beliefs;
             // Another gripper may have come in the meantime; one whose pins read as none may still be on.
-            let (before, now) = (outputs.status.end_effector_id, Gripper::attached(memory).code());
-            self.attached = if now == 0 || now == before { before } else { 0 };
+            let (before, now) = (Gripper::of(outputs.status.end_effector_id), Gripper::attached(memory));
+            self.attached = if now == Gripper::None || now == before { before } else { Gripper::None };
             self.grippers.adopt(memory);
             self.releasing = self.grippers.order == FingerVerb::Release;
         }
@@ -231,7 +231,7 @@ impl State {
             spread: self.spread(gripper, command, inputs),
             readiness: self.readiness(gripper, memory),
             mate: match memory.quick_change.status.end_effector_id {
-                0 => Mate::None,
+                None => Mate::None,
                 id if id == command.end_effector_id => Mate::Right,
                 _ => Mate::Wrong,
             },

@@ -7,7 +7,7 @@ use rcs_core::{
 };
 
 use super::{
-    gripper::Grippers,
+    gripper::{Gripper, Grippers},
     route::Route,
     tables::{Ordered, Step},
     way::Back,
@@ -50,8 +50,8 @@ pub struct State {
     pub searched: u32,
     /// The known places around a robot that is at none.
     pub surroundings: Surroundings,
-    /// `endeff-id#` of the gripper on the robot in the tick before.
-    pub attached: u8,
+    /// The gripper on the robot in the tick before.
+    pub attached: Gripper,
     /// The fingers were told last to let go of what is held.
     pub releasing: bool,
     /// Ticks in which neither finger has felt what is held.

@@ -261,7 +261,7 @@ impl State {
 }
 
 fn addressee<S: Site>(command: &GripCommand) -> Addressee {
-    if command.end_effector_id == 0 || command.end_effector_id == S::END_EFFECTOR_ID {
+    if command.end_effector_id.is_none_or(|id| id == S::END_EFFECTOR_ID) {
         Addressee::This
     } else {
         Addressee::Other

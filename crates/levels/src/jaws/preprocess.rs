@@ -129,8 +129,8 @@ fn gripper(quick_change: &QuickChangeSensors, parameters: &Parameters) -> Grippe
     }
 }
 
-const fn addressee(command: &JawsCommand, parameters: &Parameters) -> Addressee {
-    if command.end_effector_id == 0 || command.end_effector_id == parameters.end_effector_id {
+fn addressee(command: &JawsCommand, parameters: &Parameters) -> Addressee {
+    if command.end_effector_id.is_none_or(|id| id == parameters.end_effector_id) {
         Addressee::This
     } else {
         Addressee::Other

@@ -298,7 +298,7 @@ fn without_the_gripper_commands_fail_and_there_is_no_air() {
     assert_eq!(bench.execute(JawsVerb::Grasp, 0.0), (JawsReport::Stuck, Reason::WrongGripper));
     bench.attach(true);
     bench.send(JawsVerb::Grasp, 0.0);
-    bench.command.end_effector_id = 3;
+    bench.command.end_effector_id = Some(3);
     assert_eq!(bench.finish(), (JawsReport::Stuck, Reason::WrongGripper), "meant for another gripper");
 }
 
@@ -360,7 +360,7 @@ fn every_row_fires() {
     bench.execute(JawsVerb::None, 2.0);
     bench.execute(JawsVerb::Grasp, 2.0);
     bench.send(JawsVerb::Grasp, 2.0);
-    bench.command.end_effector_id = 3;
+    bench.command.end_effector_id = Some(3);
     bench.step();
     bench.process = Jaws::default();
     bench.step();
@@ -410,7 +410,7 @@ proptest! {
             for bench in [&mut bench, &mut twin] {
                 if let Some(verb) = JawsVerb::from_code(what) {
                     let number = bench.command.number + 1;
-                    bench.command = JawsCommand { number, command: verb, size, end_effector_id: id, ..JawsCommand::default() };
+                    bench.command = JawsCommand { number, command: verb, size, end_effector_id: (id != 0).then_some(id), ..JawsCommand::default() };
                 }
                 match what {
                     10 => bench.process = Jaws::default(),

@@ -127,9 +127,9 @@ impl Calibration {
         Some(counts / f64::from(counts_per_unit))
     }
 
-    /// What a sensor says in this tick. `end_effector` is the id of the gripper that is on.
+    /// What a sensor says in this tick. `end_effector` is the id of the gripper that is on, if one is.
     #[must_use]
-    pub fn read(&self, sensor: &SensorPara, devices: &DeviceInputs, end_effector: u8) -> Reading {
+    pub fn read(&self, sensor: &SensorPara, devices: &DeviceInputs, end_effector: Option<u8>) -> Reading {
         let along = |axis| self.force(axis, FORCE_COUNTS_PER_LB, &devices.force);
         let value = match sensor.source {
             SensorSource::Fx => along(0),
@@ -158,13 +158,13 @@ fn holster(sensors: &HolsterSensors, which: i32, pair: u8) -> Reading {
 }
 
 /// Is a beam broken, 1 to 8, or any (0)? Grippers without beams cannot tell.
-fn beam(beams: u8, which: i32, end_effector: u8) -> Reading {
+fn beam(beams: u8, which: i32, end_effector: Option<u8>) -> Reading {
     let mask = match u32::try_from(which) {
         Ok(0) => u8::MAX,
         Ok(number) => 1_u8.checked_shl(number.saturating_sub(1)).unwrap_or(0),
         Err(_) => 0,
     };
-    if mask == 0 || end_effector != BEAM_GRIPPER {
+    if mask == 0 || end_effector != Some(BEAM_GRIPPER) {
         return Reading::FAULTY;
     }
     Reading::switch(beams & mask != 0)
@@ -208,12 +208,12 @@ mod tests {
             (SensorSource::My, -10.0),
         ] {
             for (threshold, guard) in [(5, value > 0.0), (-5, value < 0.0), (90, false), (-90, false)] {
-                let reading = calibration.read(&sensor(source, 0, threshold), &devices(pushed), 3);
+                let reading = calibration.read(&sensor(source, 0, threshold), &devices(pushed), Some(3));
                 assert_eq!((reading.value, reading.guard == Guard::Met), (value, guard), "{source}");
             }
         }
         // At the threshold itself the condition holds.
-        let at = calibration.read(&sensor(SensorSource::Fx, 0, -30), &devices(pushed), 3);
+        let at = calibration.read(&sensor(SensorSource::Fx, 0, -30), &devices(pushed), Some(3));
         assert_eq!(at.guard, Guard::Met);
     }
 
@@ -221,7 +221,7 @@ mod tests {
     fn what_cannot_be_trusted_is_faulty() {
         let good = force(2048);
         let watched = sensor(SensorSource::Fx, 0, 25);
-        let read = |c: &Calibration, force| c.read(&watched, &devices(force), 3).guard;
+        let read = |c: &Calibration, force| c.read(&watched, &devices(force), Some(3)).guard;
         let mut calibration = Calibration::default();
         assert_eq!(read(&calibration, good), Guard::Faulty, "never calibrated");
         calibration = calibrated(&good);
@@ -255,7 +255,7 @@ mod tests {
                         centre: sensors.centre & mask,
                     };
                     let devices = DeviceInputs { holsters, ..DeviceInputs::default() };
-                    calibration.read(&sensor(source, which, 0), &devices, 1).guard
+                    calibration.read(&sensor(source, which, 0), &devices, Some(1)).guard
                 };
                 assert_eq!(read(pair, which), Guard::Met);
                 assert_eq!(read(pair & 0x05, which), Guard::Clear, "one of the two");
@@ -271,7 +271,7 @@ mod tests {
         let mut devices = DeviceInputs::default();
         devices.grip.beams = 0x82;
         let read = |which, id| {
-            Calibration::default().read(&sensor(SensorSource::Beam, which, 0), &devices, id).guard
+            Calibration::default().read(&sensor(SensorSource::Beam, which, 0), &devices, Some(id)).guard
         };
         for beam in 1..=8 {
             assert_eq!(read(beam, 1), if beam == 2 || beam == 8 { Guard::Met } else { Guard::Clear });

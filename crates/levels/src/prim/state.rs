@@ -32,7 +32,7 @@ pub struct Target {
     /// `"sensor"` of a guarded move.
     pub sensor: Option<SensorPara>,
     /// `endeff-id#-in`.
-    pub end_effector_id: u8,
+    pub end_effector_id: Option<u8>,
 }
 
 /// How long the robot has stood since T3I finished the last point of a motion, ticks.

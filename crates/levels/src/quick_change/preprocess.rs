@@ -59,7 +59,7 @@ impl State {
 
     fn read_id(&mut self, id: u8) -> Id {
         if id <= GREATEST_ID {
-            self.end_effector_id = id;
+            self.end_effector_id = (id != 0).then_some(id);
             self.illegal_ticks = 0;
         } else {
             self.illegal_ticks = self.illegal_ticks.saturating_add(1);

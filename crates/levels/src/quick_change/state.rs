@@ -26,8 +26,8 @@ pub struct State {
     pub reading: RingPosition,
     /// Ticks for which it has been the same.
     pub reading_ticks: u8,
-    /// The last legal `endeff-id#` of the mated gripper.
-    pub end_effector_id: u8,
+    /// The last legal `endeff-id#` of the mated gripper, if there was one.
+    pub end_effector_id: Option<u8>,
     /// Ticks for which the id has been illegal.
     pub illegal_ticks: u8,
 }

@@ -159,7 +159,7 @@ fn the_ring_is_locked_and_unlocked_with_the_port_enabled_only_while_it_turns() {
     bench.step(false, true, 1);
     let (locked, ticks) = bench.execute(QuickChangeVerb::Lock, &mut ring, 1);
     assert_eq!((locked.status.report, locked.status.reason), (QuickChangeReport::Locked, Reason::None));
-    assert_eq!((locked.status.echo, locked.status.end_effector_id), (1, 1));
+    assert_eq!((locked.status.echo, locked.status.end_effector_id), (1, Some(1)));
     assert_eq!((locked.valves, ticks), (QuickChangeValves::default(), 9));
     let (again, ticks) = bench.execute(QuickChangeVerb::Lock, &mut ring, 1);
     assert_eq!((again.status.report, ticks), (QuickChangeReport::Locked, 1), "locked already");
@@ -233,10 +233,10 @@ fn a_restart_while_the_ring_turns_leaves_it_where_it_is() {
 fn the_ring_is_reported_before_any_command_and_echoed_after_it() {
     let mut bench = Bench::default();
     let before = bench.step(true, false, 1).status;
-    assert_eq!((before.echo, before.report, before.end_effector_id), (0, QuickChangeReport::Locked, 1));
+    assert_eq!((before.echo, before.report, before.end_effector_id), (0, QuickChangeReport::Locked, Some(1)));
     bench.command(1, QuickChangeVerb::Pause);
     let after = bench.step(false, true, 0).status;
-    assert_eq!((after.echo, after.report, after.end_effector_id), (1, QuickChangeReport::Unlocked, 0));
+    assert_eq!((after.echo, after.report, after.end_effector_id), (1, QuickChangeReport::Unlocked, None));
     assert_eq!(after.reason, Reason::None);
 }
 
@@ -299,7 +299,7 @@ fn a_malfunction_is_reported_only_after_a_while() {
         }
         let outputs = bench.step(locked, unlocked, id);
         assert_eq!(outputs.status.report, QuickChangeReport::SensorMalfunction);
-        assert_eq!(outputs.status.end_effector_id, 1, "an illegal id is not passed on");
+        assert_eq!(outputs.status.end_effector_id, Some(1), "an illegal id is not passed on");
     }
 }
 
@@ -372,7 +372,7 @@ proptest! {
             prop_assert!(!unlock || verb == QuickChangeVerb::Unlock);
             turning += u64::from(port);
             prop_assert!(turning <= TURN_TICKS + 1);
-            prop_assert!(outputs.status.end_effector_id <= 3);
+            prop_assert!(outputs.status.end_effector_id.is_none_or(|id| (1..=3).contains(&id)));
             let image: [u8; 64] = to_bytes(&outputs);
             let again: [u8; 64] = to_bytes(&second.step(locked, unlocked, id));
             prop_assert_eq!(image, again);

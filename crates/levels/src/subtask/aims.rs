@@ -34,7 +34,7 @@ pub struct Aim {
     /// Its record of END-EFF-PARA, if it has that grip.
     pub parameters: Option<u32>,
     /// Gripper that is needed.
-    pub end_effector_id: u8,
+    pub end_effector_id: Option<u8>,
     /// Name of the location.
     pub location: Name10,
     /// Its type.
@@ -85,7 +85,7 @@ impl Aim {
     }
 
     /// A location as such; its pose record is not given yet.
-    const fn at(location: &Location, end_effector_id: u8) -> Self {
+    const fn at(location: &Location, end_effector_id: Option<u8>) -> Self {
         Self {
             object: None,
             grip: 0,
@@ -129,13 +129,13 @@ impl Aim {
 
 impl Aims {
     /// Look up what a command needs beside its own location; `attached` is the id of the gripper on the
-    /// robot, 0 for none, `exchange` that of an exchange that is half done.
+    /// robot, `exchange` that of an exchange that is half done.
     ///
     /// # Errors
     /// What the task data lack for the command.
     pub fn new(
         command: &SubtaskCommand,
-        attached: u8,
+        attached: Option<u8>,
         exchange: Option<u8>,
         data: &TaskData<'_>,
     ) -> Result<Self, Missing> {
@@ -160,23 +160,23 @@ impl Aims {
 
     /// GET-ENDEFF: where the attached gripper is left, and where the wanted one is.
     fn holsters(
-        wanted: u8,
-        attached: u8,
+        wanted: Option<u8>,
+        attached: Option<u8>,
         exchange: Option<u8>,
         data: &TaskData<'_>,
     ) -> Result<Self, Missing> {
         let mut aims = Self::default();
         // An exchange that is half done is finished in the holster in which it is.
-        let own = exchange.unwrap_or(attached);
-        let wanted = if wanted == 0 { own } else { wanted };
-        if exchange.is_none() && attached != 0 && attached == wanted {
+        let own = exchange.or(attached);
+        let wanted = wanted.or(own);
+        if exchange.is_none() && attached.is_some() && attached == wanted {
             return Ok(aims);
         }
         let [own_pose, wanted_pose] = &mut aims.poses;
-        if own != 0 && own != wanted {
+        if let Some(own) = own.filter(|_| own != wanted) {
             aims.first = holster(own, PUT_IN, data, own_pose)?;
         }
-        aims.second = holster(wanted, TAKE_OUT, data, wanted_pose)?;
+        aims.second = holster(wanted.ok_or(Missing::Holster)?, TAKE_OUT, data, wanted_pose)?;
         Ok(aims)
     }
 
@@ -220,7 +220,7 @@ fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<Ai
     *pose = Pose::from_frame(&locpt.frame);
     let place = data.place_of(LocptId::new(assigned.number));
     let location = Location { name: locpt.name, place, sector: 0, frame: locpt.frame };
-    Aim::at(&location, id).with_object(Some(object), grip, data)
+    Aim::at(&location, Some(id)).with_object(Some(object), grip, data)
 }
 
 /// A location point by name.

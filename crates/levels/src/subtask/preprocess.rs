@@ -102,16 +102,14 @@ impl State {
             held,
             grip: grip_held(emove, command),
             vision: vision(emove, command, inputs.data),
-            gripper: if emove.end_effector_id == 0 {
-                Gripper::None
-            } else if command.end_effector_id == 0 || command.end_effector_id == emove.end_effector_id {
-                Gripper::Right
-            } else {
-                Gripper::Wrong
+            gripper: match emove.end_effector_id {
+                None => Gripper::None,
+                Some(id) if command.end_effector_id.is_none_or(|wanted| wanted == id) => Gripper::Right,
+                Some(_) => Gripper::Wrong,
             },
             exchange: match emove.exchange {
                 None => Exchange::None,
-                Some(id) if command.end_effector_id == 0 || command.end_effector_id == id => Exchange::Wanted,
+                Some(id) if command.end_effector_id.is_none_or(|wanted| wanted == id) => Exchange::Wanted,
                 Some(_) => Exchange::Other,
             },
             station: station(emove, command),

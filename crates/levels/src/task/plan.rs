@@ -171,8 +171,8 @@ pub struct Plan {
     pub object: Option<Name16>,
     /// Its serial number.
     pub serial: Name16,
-    /// `obj-endeff-id#` for Subtask (V.3.2): gripper for the object; 0 if any will do.
-    pub end_effector_id: u8,
+    /// `obj-endeff-id#` for Subtask (V.3.2): gripper for the object; none if any will do.
+    pub end_effector_id: Option<u8>,
     /// Where the object is.
     pub source: Site,
     /// Where it, or the robot, is to go.
@@ -288,7 +288,7 @@ impl Plan {
     /// The object as a tool.
     #[must_use]
     pub const fn tool(&self) -> ToolData {
-        if self.end_effector_id != TOOL_GRIPPER {
+        if !matches!(self.end_effector_id, Some(TOOL_GRIPPER)) {
             ToolData::Unfit
         } else if matches!(self.grip(self.tool_site()), Grip::None) {
             ToolData::NoGrip
@@ -307,14 +307,14 @@ impl Plan {
 
 /// The number of the gripper for an object. The tool commands need the tool gripper also if no object is
 /// named.
-fn gripper(verb: TaskVerb, object: Option<&Name16>, data: &TaskData<'_>) -> (u8, Gripper) {
+fn gripper(verb: TaskVerb, object: Option<&Name16>, data: &TaskData<'_>) -> (Option<u8>, Gripper) {
     let id = match object {
         None if verb.is_for_tools() => TOOL_GRIPPER.into(),
         _ => object.and_then(|object| data.obj_grips(object)).map_or(0, |grips| grips.endeff_id),
     };
     match u8::try_from(id) {
-        Ok(id) => (id, Gripper::Valid),
-        Err(_) => (0, Gripper::Invalid),
+        Ok(id) => ((id != 0).then_some(id), Gripper::Valid),
+        Err(_) => (None, Gripper::Invalid),
     }
 }
 

@@ -112,7 +112,7 @@ impl State {
             ends: ends(&plan.end_at, below.at),
             update: self.data_system.update(plan),
             tool: match below.held {
-                _ if below.end_effector_id != TOOL_GRIPPER => Tool::None,
+                _ if below.end_effector_id != Some(TOOL_GRIPPER) => Tool::None,
                 Held::Nothing => Tool::Free,
                 Held::Object(held) if plan.object.is_none_or(|object| object == held.object) => Tool::Held,
                 Held::Object(_) => Tool::None,

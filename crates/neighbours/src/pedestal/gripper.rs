@@ -64,7 +64,7 @@ pub fn encode(hand: &GripOutputs, command: &GripCommand) -> [u8; STATUS] {
     fields.long_integer(command.force);
     fields.long_integer(command.position);
     fields.long_integer(command.velocity);
-    fields.word(command.end_effector_id.into());
+    fields.word(command.end_effector_id.unwrap_or(0).into());
     fields.word(status.felt.code().into());
     fields.flag(hand.calibration.is_some());
     let Calibration { potentiometer, left, right } = hand.calibration.unwrap_or_default();
@@ -101,7 +101,7 @@ pub fn decode(data: &[u8]) -> Result<(GripOutputs, GripCommand), LayoutError> {
         force: fields.long_integer("force")?,
         position: fields.long_integer("position")?,
         velocity: fields.long_integer("velocity")?,
-        end_effector_id: fields.byte("end-effector")?,
+        end_effector_id: Some(fields.byte("end-effector")?).filter(|id| *id != 0),
     };
     status.felt = felt(&mut fields)?;
     let known = fields.flag("scales-known")?;

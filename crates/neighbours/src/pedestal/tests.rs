@@ -113,7 +113,7 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
         force: 30,
         position: 60,
         velocity: 0,
-        end_effector_id: 0,
+        end_effector_id: None,
     };
     let expected = [
         &b"\x02\x00\x00\x00serror    "[..],

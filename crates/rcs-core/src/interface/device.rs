@@ -110,7 +110,7 @@ pub struct QuickChangeSensors {
     pub locked: bool,
     /// The ring is seen in the unlocked position.
     pub unlocked: bool,
-    /// `endeff-id#` of the mated gripper: 0 none, 1 parts, 2 v, 3 tool.
+    /// What the id pins read, `endeff-id#`: 0 where none is mated, 1 parts, 2 v, 3 tool, else a bad contact.
     pub end_effector_id: u8,
 }
 

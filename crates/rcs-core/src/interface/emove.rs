@@ -83,8 +83,8 @@ pub struct EmoveCommand {
     pub location_array: Option<u32>,
     /// `pose-^-in`: the goal pose, if a location is named.
     pub pose: Option<u32>,
-    /// `endeff-id#-in`.
-    pub end_effector_id: u8,
+    /// `endeff-id#-in`; none if any gripper will do.
+    pub end_effector_id: Option<u8>,
 }
 
 /// An object and how it is gripped: approach and depart points belong to both.
@@ -182,8 +182,8 @@ pub struct EmoveStatus {
     pub placed: Option<PlacedObject>,
     /// What vision has found and nothing has made invalid since (extension).
     pub located: Option<LocatedObject>,
-    /// `pres-endeff-id#-out`.
-    pub end_effector_id: u8,
+    /// `pres-endeff-id#-out`, if a gripper is on.
+    pub end_effector_id: Option<u8>,
     /// Where the robot stands, if that is known (extension).
     pub at: Option<Standing>,
     /// Number of the gripper in whose holster the robot stands in the middle of an exchange: between the first and
@@ -274,7 +274,7 @@ pub struct Grasped {
     /// Its record of END-EFF-PARA.
     pub parameters: Option<u32>,
     /// `endeff-id#` of the gripper that holds it.
-    pub gripper: u8,
+    pub gripper: Option<u8>,
     /// Grasp size of the object, 0.01 in.
     pub grasp_size: i32,
     /// Opening when it was grasped, 0.01 in.

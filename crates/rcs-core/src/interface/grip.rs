@@ -42,8 +42,8 @@ pub struct GripCommand {
     pub position: i32,
     /// `svelocity`: 0.01 in/s; 0 means full speed.
     pub velocity: i32,
-    /// `send-effector`.
-    pub end_effector_id: u8,
+    /// `send-effector`; none if any gripper is meant.
+    pub end_effector_id: Option<u8>,
 }
 
 /// `status` of Grip.

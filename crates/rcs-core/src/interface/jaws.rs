@@ -42,8 +42,8 @@ pub struct JawsCommand {
     pub size: i32,
     /// `commanded-vel`: 0.01 in/s; not used by the device.
     pub velocity: i32,
-    /// `endeff-id`.
-    pub end_effector_id: u8,
+    /// `endeff-id`; none if any gripper is meant.
+    pub end_effector_id: Option<u8>,
 }
 
 /// `status-report` of V-Grip (VI.4.2), and of Tool-Grip, which has the same buffers.
@@ -114,7 +114,7 @@ pub struct JawsOutputs {
 /// (size 1.20 in)`.
 impl fmt::Display for JawsCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let prefix = if self.end_effector_id == TOOL_GRIPPER { "TG" } else { "VG" };
+        let prefix = if self.end_effector_id == Some(TOOL_GRIPPER) { "TG" } else { "VG" };
         match self.command {
             JawsVerb::None => Ok(()),
             JawsVerb::Pose => write!(f, "{prefix}RIP-{}", self.command),

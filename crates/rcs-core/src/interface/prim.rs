@@ -51,8 +51,8 @@ pub struct PrimCommand {
     pub movetable: Option<u32>,
     /// `^-traj-para`: record of TRAJ-PARA.
     pub trajectory_parameters: u32,
-    /// `endeff-id#-in`.
-    pub end_effector_id: u8,
+    /// `endeff-id#-in`, if a gripper is on.
+    pub end_effector_id: Option<u8>,
 }
 
 /// `status-report` of Prim.

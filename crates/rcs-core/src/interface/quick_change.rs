@@ -91,8 +91,8 @@ pub struct QuickChangeStatus {
     pub report: QuickChangeReport,
     /// `status-para-out`.
     pub reason: Reason,
-    /// `endeff-id#`: gripper mated, locked or not; 0 for none.
-    pub end_effector_id: u8,
+    /// `endeff-id#`: gripper mated, locked or not, if there is one.
+    pub end_effector_id: Option<u8>,
     /// What the sensors of the ring say in this tick, whatever became of the last command (extension).
     pub ring: RingPosition,
 }

@@ -80,8 +80,8 @@ pub struct SubtaskCommand {
     pub command: SubtaskVerb,
     /// `"obj"`, if one is named.
     pub object: Option<Name16>,
-    /// `obj-endeff-id#`.
-    pub end_effector_id: u8,
+    /// `obj-endeff-id#`; none if any gripper will do.
+    pub end_effector_id: Option<u8>,
     /// `src-grip-#-in`.
     pub source_grip: i32,
     /// `dst-grip-#-in`.
@@ -115,8 +115,8 @@ pub struct SubtaskStatus {
     pub held: Holding,
     /// The object that the last RELEASE has let go, as E-move reports it (extension).
     pub placed: Option<PlacedObject>,
-    /// `pres-endeff-id#-out`.
-    pub end_effector_id: u8,
+    /// `pres-endeff-id#-out`, if a gripper is on.
+    pub end_effector_id: Option<u8>,
     /// Where the robot stands, if E-move knows it (extension).
     pub at: Option<Standing>,
     /// The fingers are around a tool in the tool drum, as E-move reports it (extension).

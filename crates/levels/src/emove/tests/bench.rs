@@ -58,6 +58,11 @@ pub fn data() -> TaskData<'static> {
     store.view()
 }
 
+/// An end effector id as records have it; 0 is none.
+pub fn given(id: u8) -> Option<u8> {
+    (id != 0).then_some(id)
+}
+
 /// The frame of a location point.
 pub fn frame_of(location: &str) -> Frame {
     let id = data().locpt_named(&Name16::clipped(location)).expect("a location point");
@@ -219,7 +224,7 @@ impl Bench {
             object: Some(object).filter(|object| !object.is_empty()),
             grip,
             object_parameters: data.object(&object, grip).map(|(id, _)| id.number()),
-            end_effector_id: gripper,
+            end_effector_id: given(gripper),
             ..EmoveCommand::default()
         };
         if let Some((id, locpt)) = found {

@@ -19,6 +19,7 @@ use rcs_core::{
 };
 use taskdata::files::{MovtabId, TaskData};
 
+use super::bench::given;
 use crate::places::pose_of;
 
 /// Ticks that a double takes for a command.
@@ -245,7 +246,7 @@ impl Prim {
                 "HOL-SEAT" => 0b1111,
                 _ => return false,
             };
-            let which = usize::from(memory.subtask.emove.end_effector_id.clamp(1, 3)) - 1;
+            let which = usize::from(memory.subtask.emove.end_effector_id.unwrap_or(1).clamp(1, 3)) - 1;
             world.holsters[which] & bits == bits
         };
         if command.command == PrimVerb::GoUntil && condition(world) {
@@ -274,7 +275,7 @@ impl Prim {
             PrimVerb::None | PrimVerb::Pause | PrimVerb::CalSensor => {}
             _ if matches!(self.report, PrimReport::Done | PrimReport::NotDetected) => {
                 world.frame = Self::goal(memory, data).expect("Prim is sent to records that exist");
-                world.moved(text, memory.subtask.emove.end_effector_id);
+                world.moved(text, memory.subtask.emove.end_effector_id.unwrap_or(1));
             }
             _ => {}
         }
@@ -327,7 +328,7 @@ impl Ring {
             ..QuickChangeOutputs::default()
         };
         outputs.status.echo = self.receiving.receiver.echo;
-        outputs.status.end_effector_id = world.mated;
+        outputs.status.end_effector_id = given(world.mated);
         outputs.status.ring = match self.failed {
             Some(QuickChangeReport::SensorMalfunction) => RingPosition::Implausible,
             Some(_) => RingPosition::Between,

@@ -384,7 +384,7 @@ fn a_gripper_that_mates_in_its_holster_holds_nothing() {
             bench.step();
         }
         assert_eq!(bench.pause(), DONE);
-        assert_eq!(bench.memory.emove.status.end_effector_id, gripper);
+        assert_eq!(bench.memory.emove.status.end_effector_id, Some(gripper));
         assert_eq!(bench.memory.emove.status.held, Holding::Nothing);
     }
 }

@@ -85,7 +85,7 @@ fn a_part_is_taken_placed_and_left() {
     assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE);
     assert_eq!(bench.log(), ["CLOSE-GRIP"]);
     let command = bench.memory.emove.grip;
-    assert_eq!((command.position, command.force, command.end_effector_id), (60, 30, 1));
+    assert_eq!((command.position, command.force, command.end_effector_id), (60, 30, Some(1)));
     assert!(bench.memory.emove.status.held.is_held());
     assert_eq!(bench.run(GraspObj, "BLOCK", 1, "BENCH", 1), DONE, "it is held");
     assert!(bench.log().is_empty());

@@ -15,7 +15,7 @@ use rcs_core::{
     process::{Inputs, Process},
 };
 
-use super::bench::{Bench, frame_of, moved};
+use super::bench::{Bench, frame_of, given, moved};
 use crate::emove::{Emove, gripper::Gripper};
 
 const OBJECTS: [&str; 6] = ["", "BLOCK", "SHAFT", "CUTTER", "GRIPPER-1", "GRIPPER-3"];
@@ -78,7 +78,7 @@ fn bring(bench: &mut Bench, tick: &Nonsense) {
     (status.link_running, status.joystick_grip) = (link, JoystickGrip::from_code(button).unwrap());
     memory.quick_change.header = header;
     memory.quick_change.status.report = QuickChangeReport::from_code(tick.ring.0).unwrap();
-    memory.quick_change.status.end_effector_id = tick.ring.1;
+    memory.quick_change.status.end_effector_id = given(tick.ring.1);
     memory.grip.header = header;
     memory.grip.status.report = GripReport::from_code(tick.grip.0).unwrap();
     (memory.grip.status.position, memory.grip.status.velocity) = (tick.grip.1, tick.grip.2);

@@ -15,7 +15,7 @@ use rcs_core::{
 };
 
 use super::{
-    bench::{Bench, DONE, error, frame_of, moved},
+    bench::{Bench, DONE, error, frame_of, given, moved},
     doubles::Mishap,
 };
 use crate::{
@@ -82,7 +82,7 @@ fn every_gripper_and_none_can_be_on_at_the_start() {
         // Fingers on something of any size are not the pause's business.
         (bench.v_grip.opening, bench.tool_grip.opening) = (200, 200);
         assert_eq!(bench.pause(), DONE);
-        assert_eq!(bench.memory.emove.status.end_effector_id, gripper);
+        assert_eq!(bench.memory.emove.status.end_effector_id, given(gripper));
     }
 }
 

@@ -166,7 +166,7 @@ fn exchange(bench: &mut Bench, from: u8, to: u8) {
     let (object, holster) = HOLSTERS[usize::from(to) - 1];
     assert_eq!(bench.run(MovToHol, object, 2, holster, to), DONE);
     assert_eq!(bench.run(QcAttach, object, 2, holster, to), DONE, "{:?}", bench.world.log);
-    assert_eq!(bench.memory.emove.status.end_effector_id, to);
+    assert_eq!(bench.memory.emove.status.end_effector_id, Some(to));
     assert_eq!(bench.run(MovToLoc, "", 0, "HOME", 0), DONE);
 }
 

@@ -84,7 +84,7 @@ impl Bench {
         let number = self.memory.emove.grip.number + 1;
         let position = hundredths(opening);
         self.memory.emove.grip =
-            GripCommand { number, command, force, position, velocity, end_effector_id: 1 };
+            GripCommand { number, command, force, position, velocity, end_effector_id: Some(1) };
         self.patterns.clear();
     }
 

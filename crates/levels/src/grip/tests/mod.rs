@@ -241,7 +241,7 @@ fn unattainable_commands_are_refused() {
         assert_eq!(reason(&mut bench), why, "{verb} {opening} {force} {velocity}");
     }
     bench.command(GripVerb::Position, 1.0, 0);
-    bench.memory.emove.grip.end_effector_id = 2;
+    bench.memory.emove.grip.end_effector_id = Some(2);
     assert_eq!(reason(&mut bench), Reason::WrongGripper);
     bench.done(GripVerb::Position, 1.0, 0);
 }
@@ -544,7 +544,7 @@ proptest! {
                 let number = bench.memory.emove.grip.number.wrapping_add(1);
                 let command = &mut bench.memory.emove.grip;
                 (command.number, command.command, command.position) = (number, verb, a);
-                (command.force, command.velocity, command.end_effector_id) = (b, c, id);
+                (command.force, command.velocity, command.end_effector_id) = (b, c, (id != 0).then_some(id));
             }
             match what {
                 10 => bench.process = Grip::default(),
@@ -664,7 +664,7 @@ fn every_row_fires() {
     bench.done(GripVerb::CloseGrip, 0.6, 60);
     // ACCEPT 4 to 6, EXECUTE 2.
     bench.command(GripVerb::Position, 1.0, 0);
-    bench.memory.emove.grip.end_effector_id = 2;
+    bench.memory.emove.grip.end_effector_id = Some(2);
     bench.finish();
     bench.attach(false);
     bench.command(GripVerb::Position, 1.0, 0);

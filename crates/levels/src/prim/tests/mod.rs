@@ -338,7 +338,7 @@ impl Rig {
     fn guard(&mut self, verb: PrimVerb, pose: u32, sensor: &str) {
         self.command(verb, pose);
         let command = &mut self.memory.emove.prim;
-        (command.sensor, command.end_effector_id) = (Some(Name10::new(sensor).unwrap()), 1);
+        (command.sensor, command.end_effector_id) = (Some(Name10::new(sensor).unwrap()), Some(1));
     }
 
     /// The commanded frame, without rounding.

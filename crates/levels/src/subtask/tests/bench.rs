@@ -95,7 +95,7 @@ impl EmoveDouble {
                 self.effect(command);
                 self.hold("", 0);
             }
-            Some(Mishap::OtherGripper(id)) => status.end_effector_id = id,
+            Some(Mishap::OtherGripper(id)) => status.end_effector_id = Some(id),
         }
     }
 
@@ -118,7 +118,7 @@ impl EmoveDouble {
             }
             EmoveVerb::ReleaseTool => self.hold("", 0),
             EmoveVerb::QcDetach => {
-                (self.outputs.status.end_effector_id, self.outputs.status.exchange) = (0, None);
+                (self.outputs.status.end_effector_id, self.outputs.status.exchange) = (None, None);
             }
             EmoveVerb::QcAttach => {
                 self.outputs.status.end_effector_id = command.end_effector_id;
@@ -246,7 +246,7 @@ impl<'d> Bench<'d> {
             tick: Tick::BEFORE_START,
             rows: Coverage::default(),
         };
-        bench.emove.outputs.status.end_effector_id = 1;
+        bench.emove.outputs.status.end_effector_id = Some(1);
         let status = &mut bench.pedestal.outputs.status;
         (status.felt, status.table_position) = (Felt::Nothing, Some(-200));
         bench.step();
@@ -266,7 +266,7 @@ impl<'d> Bench<'d> {
             number,
             command: verb,
             object: Some(object).filter(|object| !object.is_empty()),
-            end_effector_id: self.data.obj_grips(&object).map_or(0, |grips| grips.endeff_id as u8),
+            end_effector_id: self.data.obj_grips(&object).map(|grips| grips.endeff_id as u8).filter(|id| *id != 0),
             source_grip: grips.0,
             destination_grip: grips.1,
             object_parameters: self.data.object(&object, grips.0).map(|(id, _)| id.number()),
@@ -344,7 +344,7 @@ impl<'d> Bench<'d> {
     {
         let mut bench = Self::default();
         bench.emove.outputs.status.end_effector_id =
-            bench.data.obj_grips(&Name16::new(object).unwrap()).map_or(1, |grips| grips.endeff_id as u8);
+            Some(bench.data.obj_grips(&Name16::new(object).unwrap()).map_or(1, |grips| grips.endeff_id as u8));
         bench.step();
         assert_eq!(bench.run(SubtaskVerb::GetObject, object, (grip, 0), "PFIXTURE"), DONE);
         bench

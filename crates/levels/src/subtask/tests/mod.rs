@@ -66,7 +66,7 @@ fn a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched() {
             (c.object.as_ref().map_or("", Name16::as_str), c.grip, c.location.as_str(), c.end_effector_id)
         })
         .collect();
-    let (own, wanted) = (("GRIPPER-1", 1, "HOLSTER-R", 1), ("GRIPPER-2", 2, "HOLSTER-L", 2));
+    let (own, wanted) = (("GRIPPER-1", 1, "HOLSTER-R", Some(1)), ("GRIPPER-2", 2, "HOLSTER-L", Some(2)));
     assert_eq!(aims, [own, own, wanted, wanted]);
     for command in &bench.emove.received {
         assert_eq!(command.pose.unwrap() & pose_range::WRITER, pose_range::SUBTASK);
@@ -81,7 +81,7 @@ fn a_wrong_gripper_is_left_in_its_holster_and_the_right_one_fetched() {
 #[test]
 fn a_bare_robot_goes_to_the_wanted_holster_at_once() {
     let mut bench = Bench::default();
-    bench.emove.outputs.status.end_effector_id = 0;
+    bench.emove.outputs.status.end_effector_id = None;
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "PART", (1, 1), "PFIXTURE"), DONE);
     assert_eq!(bench.sent(), ["MOV-TO-HOL", "QC-ATTACH"]);
@@ -139,7 +139,7 @@ fn a_gripper_without_a_holster_is_refused_before_anything_moves() {
     let mut bench = Bench::default();
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "TOOL-1", (1, 1), ""), error(Reason::UnknownGrip));
     let mut bench = Bench::default();
-    bench.emove.outputs.status.end_effector_id = 0;
+    bench.emove.outputs.status.end_effector_id = None;
     bench.step();
     assert_eq!(bench.run(SubtaskVerb::GetEndeff, "GRIPPER-1", (1, 1), ""), error(Reason::NoHolster));
 }
@@ -329,7 +329,7 @@ fn the_tool_commands_go_down_with_the_transfer_location() {
             (command.object.unwrap_or_default().as_str(), command.location.as_str()),
             ("TOOL-1", "TOOL-TRNS")
         );
-        assert_eq!((command.grip, command.end_effector_id), (1, 3));
+        assert_eq!((command.grip, command.end_effector_id), (1, Some(3)));
         assert_eq!(command.pose.unwrap() & pose_range::WRITER, pose_range::SUBTASK);
         let tool = Name16::new("TOOL-1").unwrap();
         assert_eq!(command.object_parameters, bench.data.object(&tool, 1).map(|(id, _)| id.number()));
@@ -523,7 +523,7 @@ fn where_the_robot_is_and_what_it_holds_are_passed_up() {
         (status.at.unwrap().location.as_str(), status.held.object()),
         ("SAFE", Name16::new("PART").ok())
     );
-    assert_eq!(status.end_effector_id, 1);
+    assert_eq!(status.end_effector_id, Some(1));
 }
 
 /// Rows that the scenarios above fire, played again in one test.
@@ -616,7 +616,7 @@ fn all_rows() -> Coverage {
         play(&mut bench);
     }
     let mut bench = Bench::default();
-    bench.emove.outputs.status.end_effector_id = 0;
+    bench.emove.outputs.status.end_effector_id = None;
     bench.step();
     bench.run(e, "PART", (1, 1), "");
     play(&mut bench);

@@ -264,7 +264,7 @@ fn a_regrip_ends_from_every_state_whether_the_world_obeys_or_ignores() {
 /// holster.
 fn exchanges(ignores: bool, rows: &mut Coverage) {
     for held in ["", "source", "something", "not known"] {
-        for attached in [0, 1, 2] {
+        for attached in [None, Some(1), Some(2)] {
             for exchange in [None, Some(1), Some(2)] {
                 let mut bench = Bench::default();
                 let status = &mut bench.emove.outputs.status;
@@ -273,13 +273,13 @@ fn exchanges(ignores: bool, rows: &mut Coverage) {
                 bench.step();
                 let end = bench.run(SubtaskVerb::GetEndeff, "CYLINDER", (1, 1), "");
                 let status = &bench.memory.emove.status;
-                let right = (status.end_effector_id, status.exchange) == (2, None);
-                assert_eq!(end == DONE, right, "{held}, {attached}, {exchange:?}: {end:?}");
-                assert!(ignores || !held.is_empty() || end == DONE, "{attached}, {exchange:?}: {end:?}");
+                let right = (status.end_effector_id, status.exchange) == (Some(2), None);
+                assert_eq!(end == DONE, right, "{held}, {attached:?}, {exchange:?}: {end:?}");
+                assert!(ignores || !held.is_empty() || end == DONE, "{attached:?}, {exchange:?}: {end:?}");
                 if let Some(id) = exchange {
                     let word = if id == 2 { "QC-ATTACH" } else { "QC-DETACH" };
                     assert_eq!(bench.sent()[0], word, "the exchange is finished first");
-                    assert_eq!(bench.emove.received[0].end_effector_id, id, "in the holster where it is");
+                    assert_eq!(bench.emove.received[0].end_effector_id, exchange, "in the holster where it is");
                 }
                 rows.append(&mut bench.rows);
             }

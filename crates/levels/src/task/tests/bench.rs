@@ -92,7 +92,7 @@ impl SubtaskDouble {
     fn effect(&mut self, command: &SubtaskCommand) {
         let status = &mut self.outputs.status;
         match command.command {
-            SubtaskVerb::GetEndeff if command.end_effector_id != 0 => {
+            SubtaskVerb::GetEndeff if command.end_effector_id.is_some() => {
                 status.end_effector_id = command.end_effector_id;
             }
             SubtaskVerb::GetObject => self.hold(command.object.unwrap_or_default().as_str()),
@@ -229,7 +229,7 @@ impl<'d> Bench<'d> {
             tick: Tick::BEFORE_START,
             rows: Coverage::default(),
         };
-        bench.subtask.outputs.status.end_effector_id = 1;
+        bench.subtask.outputs.status.end_effector_id = Some(1);
         bench.step();
         bench.step();
         bench
@@ -327,7 +327,7 @@ impl<'d> Bench<'d> {
 
     /// The gripper with an id is on, it holds an object, and the robot stands at a location.
     pub fn set(&mut self, gripper: u8, object: &str, at: &str) {
-        self.subtask.outputs.status.end_effector_id = gripper;
+        self.subtask.outputs.status.end_effector_id = (gripper != 0).then_some(gripper);
         self.subtask.hold(object);
         self.subtask.stand(at);
         if let Some(at) = &mut self.subtask.outputs.status.at {

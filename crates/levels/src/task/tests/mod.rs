@@ -89,7 +89,7 @@ fn acquire_gets_the_gripper_and_the_object() {
     let mut bench = Bench::default();
     assert_eq!(bench.run("ACQUIRE CYLINDER +1 PFIXTURE 0 0 -- 0 -- 0"), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GET-OBJECT"]);
-    assert_eq!(bench.subtask.received[0].end_effector_id, 2);
+    assert_eq!(bench.subtask.received[0].end_effector_id, Some(2));
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn a_tool_is_inserted_and_released() {
     assert_eq!(bench.sent(), ["INSERT-TOOL"]);
     let command = bench.subtask.received[0];
     let parameters = bench.data.object(&Name16::new("TOOL-1").unwrap(), 1).map(|(id, _)| id.number());
-    assert_eq!((command.end_effector_id, command.object_parameters, command.source_grip), (3, parameters, 1));
+    assert_eq!((command.end_effector_id, command.object_parameters, command.source_grip), (Some(3), parameters, 1));
     assert_eq!((bench.run(INSERT), bench.sent()), (FINISHED, vec![]), "it is there already");
     assert_eq!(bench.run(RELEASE), FINISHED);
     assert_eq!(bench.sent(), ["RELEASE-TOOL", "GOTO-ENDPT"]);
@@ -131,7 +131,7 @@ fn a_tool_is_acquired_and_removed() {
     assert_eq!(bench.run(ACQUIRE), FINISHED);
     assert_eq!(bench.sent(), ["GET-ENDEFF", "GOTO-DEST", "ACQUIRE-TOOL"]);
     let [gripper, near, acquire] = bench.subtask.received[..] else { panic!() };
-    assert_eq!((gripper.end_effector_id, near.location.as_str()), (3, "TOOL-SAFE"));
+    assert_eq!((gripper.end_effector_id, near.location.as_str()), (Some(3), "TOOL-SAFE"));
     assert_eq!((acquire.object.unwrap_or_default().as_str(), acquire.source_grip), ("TOOL-1", 1));
     assert_eq!((bench.run(ACQUIRE), bench.sent()), (FINISHED, vec![]), "it is held already");
     assert_eq!(bench.run(REMOVE), FINISHED);
@@ -150,7 +150,7 @@ fn a_tool_command_without_an_end_stays_where_it_is_and_without_a_name_means_the_
         assert_eq!(bench.run(line), FINISHED);
         assert_eq!(bench.sent(), [word]);
         assert_eq!(bench.subtask.received[0].object.unwrap_or_default().as_str(), "TOOL-1");
-        assert_eq!(bench.subtask.received[0].end_effector_id, 3);
+        assert_eq!(bench.subtask.received[0].end_effector_id, Some(3));
     }
     // The location that the command names as its source does not count: only TOOL-SAFE is near the drum.
     bench.set(3, "TOOL-1", "HOME");
