@@ -343,8 +343,11 @@ mod tests {
     fn every_process_tells_its_command() {
         let mut memory = CommonMemory::default();
         memory.emove.v_grip = JawsCommand { command: JawsVerb::Grasp, size: 200, ..JawsCommand::default() };
-        memory.emove.tool_grip =
-            JawsCommand { command: JawsVerb::Pose, end_effector_id: Some(TOOL_GRIPPER), ..JawsCommand::default() };
+        memory.emove.tool_grip = JawsCommand {
+            command: JawsVerb::Pose,
+            end_effector_id: Some(TOOL_GRIPPER),
+            ..JawsCommand::default()
+        };
         memory.subtask.pedestal.command = PedestalVerb::Flip;
         memory.subtask.pedestal.table_angle = 1835;
         memory.pedestal.hand.command = GripVerb::CloseGrip;

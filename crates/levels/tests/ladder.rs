@@ -158,7 +158,7 @@ impl Rig {
 
     fn at(&self, location: &str) -> bool {
         let name = Name16::new(location).unwrap();
-        let goal: Frame = store().view().resolve_location(&name, 0, None::<&Name16>).unwrap().frame;
+        let goal: Frame = store().view().resolve_location(&name, None, None::<&Name16>).unwrap().frame;
         let distance = T3.forward(&self.arm.joints).distance(&goal);
         distance.inches < 0.02 && distance.radians < 0.002
     }

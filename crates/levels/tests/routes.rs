@@ -29,7 +29,7 @@ fn data() -> TaskData<'static> {
 fn location(name: &str, sector: i32, object: &str) -> Location {
     let object = Name16::new(object).unwrap();
     let object = (!object.is_empty()).then_some(&object);
-    data().resolve_location(&Name16::new(name).unwrap(), sector, object).unwrap()
+    data().resolve_location(&Name16::new(name).unwrap(), (sector != 0).then_some(sector), object).unwrap()
 }
 
 fn command(verb: EmoveVerb, object: &str, grip: i32, at: &Location) -> EmoveCommand {

@@ -146,7 +146,7 @@ fn start<'a>(store: &'a Store, room: &'a Room) -> Option<State<'a>> {
         .filter_map(|at| Some((away(at)?, data.locpts.get(at)?)))
         .filter(|(inches, _)| *inches < STANDS)
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let location = data.resolve_location::<10, 16>(&nearest.name, 0, None).ok()?;
+    let location = data.resolve_location::<10, 16>(&nearest.name, None, None).ok()?;
     let robot = Robot::standing(&Actuators::from(&room.cell().robot), &joints)?;
     Some(State::new(room, Walk::new(store, &location), robot))
 }
@@ -220,11 +220,13 @@ impl JobLine {
 /// Carry a command out: its phases, and what is wrong with them.
 fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding>) {
     let data = *state.walk.data();
-    let wanted = command.object.and_then(|object| data.obj_grips(&object)).map_or(0, |grips| grips.endeff_id);
-    let wanted = u8::try_from(wanted).unwrap_or(0);
+    let grips = command.object.and_then(|object| data.obj_grips(&object));
+    let wanted = grips.and_then(|grips| u8::try_from(grips.endeff_id).ok()).filter(|id| *id != 0);
     let worn = state.layout.gripper;
-    let change = wanted != 0 && wanted != worn;
-    let before = if change { exchange(worn, wanted, &data) } else { Ok(Vec::new()) };
+    let before = match wanted.filter(|_| wanted != worn) {
+        Some(wanted) => exchange(worn, wanted, &data),
+        None => Ok(Vec::new()),
+    };
     let all = before.and_then(|before| Ok((before, steps(command, state.held, &data)?)));
     let (change, own) = match all {
         Ok(all) => all,

@@ -74,7 +74,7 @@ impl<'a> State<'a> {
     pub fn deliver(&mut self, object: &Name16, at: &Location, aside: [f64; 3], again: bool) -> bool {
         let cell = self.room.cell();
         let Some(kind) = cell.part(object.as_str()) else { return false };
-        let sector = u16::try_from(at.sector).unwrap_or(u16::MAX);
+        let sector = at.sector.map_or(0, |sector| u16::try_from(sector).unwrap_or(u16::MAX));
         let Ok(frame) = cell.delivered(kind, at.name.as_str(), sector, aside) else { return false };
         if again && let Some(there) = self.nearest(object, &at.frame) {
             self.layout.parts.remove(there);

@@ -160,7 +160,7 @@ struct Maker<'a> {
 impl Maker<'_> {
     fn location(&self, name: Option<Name16>, sector: Option<i32>) -> Result<Location, LookupError> {
         let name = name.unwrap_or_default();
-        self.data.resolve_location(&name, sector.unwrap_or(0), self.command.object.as_ref())
+        self.data.resolve_location(&name, sector, self.command.object.as_ref())
     }
 
     /// What the robot holds, if it is the object of the command.
@@ -253,20 +253,20 @@ impl Maker<'_> {
     }
 
     fn relative(&self, steps: &mut Vec<Step>, names: &[&'static str]) -> Result<(), LookupError> {
-        let location = self.data.resolve_location::<16, 16>(&Name16::clipped(TOOL_TRANSFER), 0, None)?;
+        let location = self.data.resolve_location::<16, 16>(&Name16::clipped(TOOL_TRANSFER), None, None)?;
         steps.extend(names.iter().map(|&name| Step::Relative { name, location }));
         Ok(())
     }
 }
 
-/// GET-ENDEFF (V.3.1): the gripper that is on is left in its holster, and the wanted one is taken from its own. End effector ids;
-/// 0 for a bare robot.
+/// GET-ENDEFF (V.3.1): the gripper that is on is left in its holster, and the wanted one is taken from its own. End effector
+/// ids; none for a bare robot.
 ///
 /// # Errors
 /// A holster that the task data do not have.
-pub fn exchange(own: u8, wanted: u8, data: &TaskData<'_>) -> Result<Vec<Step>, LookupError> {
+pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<Step>, LookupError> {
     let mut steps = Vec::new();
-    if own != 0 {
+    if let Some(own) = own {
         let (go, location) = to_holster(own, 1, data)?;
         let [down, seat, up] =
             ["QCD-DOWN", "QCD-SEAT", "QCD-UP"].map(|name| Step::Relative { name, location });
@@ -286,6 +286,6 @@ fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location)
     let record = data.object_named(&object).ok_or(unknown)?;
     let mut assigned = data.object_locations(record).filter(|one| one.kind == RefType::LocationPoint);
     let point = assigned.next().and_then(|one| data.locpt(LocptId::new(one.number))).ok_or(unknown)?;
-    let location = data.resolve_location::<10, 16>(&point.name, 0, None)?;
+    let location = data.resolve_location::<10, 16>(&point.name, None, None)?;
     Ok((Step::Go { verb: EmoveVerb::MovToHol, object: Some(object), grip, location }, location))
 }

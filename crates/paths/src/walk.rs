@@ -380,7 +380,7 @@ fn refusal(verb: EmoveVerb, route: Planning) -> Reason {
 
 /// A command in words.
 fn described(command: &EmoveCommand, location: &Location) -> String {
-    let sector = if location.sector == 0 { String::new() } else { format!(" sector {}", location.sector) };
+    let sector = location.sector.map_or(String::new(), |sector| format!(" sector {sector}"));
     let verb = command.command.text();
     match command.object {
         None => format!("{verb} {}{sector}", location.name),

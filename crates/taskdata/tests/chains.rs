@@ -31,7 +31,7 @@ fn name(text: &str) -> Name16 {
 }
 
 fn at(data: &TaskData<'_>, location: &str, sector: i32, object: &str) -> Location {
-    data.resolve_location(&name(location), sector, Some(&name(object)))
+    data.resolve_location(&name(location), (sector != 0).then_some(sector), Some(&name(object)))
         .unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -72,7 +72,7 @@ BLOCK# 2 OFFSET 20000
     assert!(numbers(&new).iter().all(Option::is_some));
     assert_eq!(new.locpt_named(&name("H")).map(|id| id.number()), Some(3));
     let at = |data: &TaskData<'_>| {
-        let place = data.resolve_location(&name("F"), 0, Some(&name("PART"))).unwrap();
+        let place = data.resolve_location(&name("F"), None, Some(&name("PART"))).unwrap();
         let frame = data.grip_frame(&name("PART"), 1, &place).unwrap();
         let approach = data.path(data.approach(&name("PART"), 1, &place.place).unwrap());
         (frame.position.x, data.traj_para(approach[0].para).unwrap().vel_max)
@@ -179,7 +179,7 @@ proptest! {
             }
             said.extend(movetables);
             parts.extend(objects);
-            let f = new.resolve_location::<16, 16>(&name("F"), 0, None).unwrap();
+            let f = new.resolve_location::<16, 16>(&name("F"), None, None).unwrap();
             for (n, m) in &parts {
                 let frame = new.grip_frame(&name(&format!("P{n}")), 1, &f).unwrap();
                 let expected = 68.0 + f64::from(said[m]) / 100.0;

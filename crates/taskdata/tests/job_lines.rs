@@ -42,7 +42,7 @@ fn tray_vise_and_machine() {
     else {
         panic!()
     };
-    assert_eq!((location.name.as_str(), location.sector, object), ("UNIT_1", 4, name("LINKBAR1_BH")));
+    assert_eq!((location.name.as_str(), location.sector, object), ("UNIT_1", Some(4), name("LINKBAR1_BH")));
     assert_eq!(offset, Some(Offset { x: 50, y: -20, angle: 1500 }));
     let random = action("** tray UNIT_1 4 LINKBAR1_BH");
     assert!(matches!(random, Workstation::Tray { offset: None, .. }));

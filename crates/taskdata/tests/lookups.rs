@@ -44,8 +44,13 @@ fn name(text: &str) -> Name16 {
     Name16::new(text).unwrap()
 }
 
+/// A sector, 0 for none.
+fn given(sector: i32) -> Option<i32> {
+    (sector != 0).then_some(sector)
+}
+
 fn place(data: &TaskData<'_>, location: &str, sector: i32, object: &str) -> Place {
-    data.resolve_location(&name(location), sector, Some(&name(object)))
+    data.resolve_location(&name(location), given(sector), Some(&name(object)))
         .unwrap_or_else(|e| panic!("{e}"))
         .place
 }
@@ -82,11 +87,11 @@ BLOCK# 1 OFFSET 20000
 fn printed_arrays_fall_inside_the_tray_and_count_left_to_right_top_to_bottom() {
     let store = store(CELL);
     let data = store.view();
-    let corner = data.resolve_location::<16, 16>(&name("A"), 0, None).unwrap().frame;
+    let corner = data.resolve_location::<16, 16>(&name("A"), None, None).unwrap().frame;
     for (object, columns, rows) in [("BAR", 2, 2), ("TOOL", 3, 1), ("ROUND", 2, 4)] {
         let mut before: Option<(i32, f64, f64)> = None;
         for sector in 1..=columns * rows {
-            let frame = data.resolve_location(&name("A"), sector, Some(&name(object))).unwrap().frame;
+            let frame = data.resolve_location(&name("A"), Some(sector), Some(&name(object))).unwrap().frame;
             // Seen from the robot: right is world +Y and top is world -X, from the upper left-hand corner of the tray.
             let (right, down) = (frame.position.y - corner.position.y, frame.position.x - corner.position.x);
             assert!(
@@ -111,7 +116,8 @@ fn a_sector_that_is_not_there_is_named_with_those_that_are() {
     let store = store(CELL);
     let data = store.view();
     let at = |location, sector, object: Option<&str>| {
-        data.resolve_location(&name(location), sector, object.map(name).as_ref()).map_err(|e| e.to_string())
+        data.resolve_location(&name(location), given(sector), object.map(name).as_ref())
+            .map_err(|e| e.to_string())
     };
     assert_eq!(at("A", 4, Some("TOOL")).unwrap_err(), "TL-SECTORS at A has sectors 1 to 3, 4 found");
     assert_eq!(at("A", -1, Some("BAR")).unwrap_err(), "SECTORS at A has sectors 1 to 4, -1 found");
@@ -129,7 +135,7 @@ fn a_sector_that_is_not_there_is_named_with_those_that_are() {
     assert_eq!(at("BOTH", 0, None).unwrap_err(), "BOTH only groups locations: name one of its members");
     assert!(at("B", 4, None).is_ok(), "an owner of one array needs no object");
     assert!(matches!(
-        data.resolve_location(&name("A"), 1, Some(&name("NUT"))),
+        data.resolve_location(&name("A"), Some(1), Some(&name("NUT"))),
         Err(LookupError::UnknownObject { .. })
     ));
 }
@@ -253,11 +259,11 @@ fn a_static_array_starts_at_its_own_pose() {
  1 t 0 100 0 -mtb- step   1 rw 0 0 50 -mtb- first",
     );
     let data = store.view();
-    let third = data.resolve_location::<16, 16>(&name("RACK"), 3, None).unwrap();
+    let third = data.resolve_location::<16, 16>(&name("RACK"), Some(3), None).unwrap();
     let expected = [68.0, -42.0, -3.5];
     assert!(third.frame.position.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{third:?}");
     assert_eq!(third.name, Name10::new("RACK").unwrap());
-    assert!(data.resolve_location::<16, 16>(&name("RACK"), 5, None).is_err());
+    assert!(data.resolve_location::<16, 16>(&name("RACK"), Some(5), None).is_err());
     assert!(data.approach_location(&third.place).is_none());
 }
 

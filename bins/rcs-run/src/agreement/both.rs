@@ -61,7 +61,13 @@ impl<'a> Both<'a> {
     /// A location of the task data by its name.
     pub fn location(&self, name: &str, sector: u16, object: Option<&str>) -> Option<Location> {
         let object = object.and_then(|object| Name16::new(object).ok());
-        self.data.resolve_location(&Name16::new(name).ok()?, i32::from(sector), object.as_ref()).ok()
+        self.data
+            .resolve_location(
+                &Name16::new(name).ok()?,
+                (sector != 0).then(|| i32::from(sector)),
+                object.as_ref(),
+            )
+            .ok()
     }
 
     /// Where the frame of a location was entered: its pose, or the array's name.

@@ -78,7 +78,7 @@ pub struct State<'c> {
     /// What was brought into the vise last.
     in_vise: Option<Name16>,
     /// Unit and sector of parts that were put down at random.
-    random: Vec<(Name10, i32)>,
+    random: Vec<(Name10, Option<i32>)>,
 }
 
 /// The vise.
@@ -138,17 +138,15 @@ impl<'c> State<'c> {
     /// A part that was put down at random has to be looked for. Parts that have nests lie in them.
     fn unseen(&self, command: &HwsCommand, part: &PartType) -> Option<Refused> {
         let (object, source) = (command.object?, command.source?);
-        let sector = command.source_sector.unwrap_or(0);
-        let location = self.data.resolve_location(&source, sector, Some(&object)).ok()?;
-        let random = self.random.contains(&(location.name, sector));
+        let location = self.data.resolve_location(&source, command.source_sector, Some(&object)).ok()?;
+        let random = self.random.contains(&(location.name, location.sector));
         let seen = self.data.view(&object, &location.place).is_some_and(|(_, view)| view.enabled);
         let nested = self.cell.nest.iter().any(|nest| nest.takes(part));
+        let sector = location.sector.map_or("in ".to_owned(), |sector| format!("in sector {sector} of "));
         let unit = location.name;
         (random && !seen && !nested).then(|| Refused {
             word: source.to_string(),
-            message: format!(
-                "{object} lies anywhere in sector {sector} of {unit}, and no view finds it there"
-            ),
+            message: format!("{object} lies anywhere {sector}{unit}, and no view finds it there"),
             help: "add a view with en 1 (-vu-, VII.7.6), or write x, y and angle behind the ** tray line",
         })
     }

@@ -193,10 +193,9 @@ impl Names<'_> {
         let Ok(location) = Name16::new(location) else { return BTreeSet::new() };
         let objects = parts.filter_map(|part| Name16::new(part).ok());
         let known = objects.filter(|object| self.data.object_named(object).is_some());
+        let sector = (sector != 0).then(|| i32::from(sector));
         known
-            .filter_map(|object| {
-                self.data.resolve_location(&location, i32::from(sector), Some(&object)).err()
-            })
+            .filter_map(|object| self.data.resolve_location(&location, sector, Some(&object)).err())
             .map(|error| error.to_string())
             .collect()
     }

@@ -108,8 +108,7 @@ fn beside(both: &Both<'_>, number: usize, part: &PartType) -> Option<(Location, 
         } else {
             return None;
         };
-        let sector =
-            if location.sector == 0 { String::new() } else { format!(" sector {}", location.sector) };
+        let sector = location.sector.map_or(String::new(), |sector| format!(" sector {sector}"));
         let at = location.name;
         Some((
             location,

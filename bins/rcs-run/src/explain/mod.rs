@@ -27,8 +27,8 @@ use crate::{
 struct Explanation {
     command: String,
     from: String,
-    /// `endeff-id#` of the object, 0 if any gripper will do.
-    gripper: i32,
+    /// `endeff-id#` of the object; none if any gripper will do.
+    gripper: Option<i32>,
     phases: Vec<Phase>,
     /// Motion alone, seconds.
     motion_s: f64,
@@ -69,16 +69,17 @@ fn command_of(text: &str, store: &Store) -> Result<HwsCommand, Box<Diagnostics>>
 fn explained(store: &Store, command: &HwsCommand, text: &str, from: &str) -> Result<Explanation, Error> {
     let data = store.view();
     let start = data
-        .resolve_location::<16, 16>(&Name16::clipped(from), 0, None)
+        .resolve_location::<16, 16>(&Name16::clipped(from), None, None)
         .map_err(|error| Error::Explain(format!("--from {from}: {error}")))?;
     let steps = steps::steps(command, None, &data).map_err(|error| Error::Explain(error.to_string()))?;
     let mut walk = Walk::new(store, &start);
     let phases: Vec<Phase> = steps.iter().map(|step| walk.step(step)).collect();
+    let grips = command.object.and_then(|object| data.obj_grips(&object));
     let ticks = phases.iter().map(Phase::ticks).sum();
     Ok(Explanation {
         command: text.to_owned(),
         from: from.to_owned(),
-        gripper: command.object.and_then(|object| data.obj_grips(&object)).map_or(0, |grips| grips.endeff_id),
+        gripper: grips.map(|grips| grips.endeff_id).filter(|id| *id != 0),
         phases,
         motion_s: walk::seconds(ticks),
     })
@@ -88,8 +89,8 @@ impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}\nfrom {}", self.command, self.from)?;
         match self.gripper {
-            0 => writeln!(f)?,
-            id => writeln!(f, ", gripper {id} attached")?,
+            None => writeln!(f)?,
+            Some(id) => writeln!(f, ", gripper {id} attached")?,
         }
         for (i, phase) in self.phases.iter().enumerate() {
             writeln!(f, "\n{}. {}", i + 1, phase.what)?;

@@ -38,7 +38,7 @@ fn a_transfer_is_explained_point_by_point() {
             "MOV-TO-LOC SAFE",
         ]
     );
-    assert_eq!(found.gripper, 1);
+    assert_eq!(found.gripper, Some(1));
     assert!(found.phases.iter().all(|phase| phase.missing.is_none()));
     assert_eq!(points(&found, 0).last(), Some(&("goal", "stop")));
     let place = points(&found, 2);

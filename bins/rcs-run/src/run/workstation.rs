@@ -141,7 +141,7 @@ pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<Workstation
             part: object.to_string(),
             unit: location.name.to_string(),
             // The task data have this sector, and none below 0; no cell has one beyond what fits.
-            sector: u16::try_from(location.sector).unwrap_or(u16::MAX),
+            sector: location.sector.map_or(0, |sector| u16::try_from(sector).unwrap_or(u16::MAX)),
             placement: offset.as_ref().map_or(Placement::Random, placement),
         },
         Action::Vise { opening, location, program } => {

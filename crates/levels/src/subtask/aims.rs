@@ -219,11 +219,11 @@ fn holster(id: u8, grip: i32, data: &TaskData<'_>, pose: &mut Pose) -> Result<Ai
     let locpt = data.locpt(LocptId::new(assigned.number)).ok_or(Missing::Holster)?;
     *pose = Pose::from_frame(&locpt.frame);
     let place = data.place_of(LocptId::new(assigned.number));
-    let location = Location { name: locpt.name, place, sector: 0, frame: locpt.frame };
+    let location = Location { name: locpt.name, place, sector: None, frame: locpt.frame };
     Aim::at(&location, Some(id)).with_object(Some(object), grip, data)
 }
 
 /// A location point by name.
 fn point(name: &str, data: &TaskData<'_>) -> Result<Location, Missing> {
-    data.resolve_location(&Name10::clipped(name), 0, None::<&Name16>).map_err(Missing::from)
+    data.resolve_location(&Name10::clipped(name), None, None::<&Name16>).map_err(Missing::from)
 }

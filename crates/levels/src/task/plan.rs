@@ -342,13 +342,13 @@ impl Location {
         data: &TaskData<'_>,
     ) -> Result<Option<Self>, Missing> {
         let Some(name) = name else { return Ok(None) };
-        let found = data.resolve_location(&name, sector.unwrap_or(0), object)?;
+        let found = data.resolve_location(&name, sector, object)?;
         Ok(Some(Self {
             name: found.name,
             kind: found.place.kind,
             record: found.place.locpt.to_option(),
             array: found.place.array.to_option(),
-            sector: Some(found.sector).filter(|sector| *sector != 0),
+            sector: found.sector,
             pose: ChangingPose { number: None, pose: Pose::from_frame(&found.frame) },
         }))
     }

@@ -1,7 +1,7 @@
 //! From the location and the sector of a command to a frame (VII.3 to VII.5, V.4.2).
 //!
 //! A name can be a location point, an owner, an array, or a location point and an owner at once (UNIT_1: the corner of a
-//! tray, and the owner of the ways in which that tray is divided). Sector 0 means the location point; a sector counts through
+//! tray, and the owner of the ways in which that tray is divided). Without a sector the location point is meant; a sector counts through
 //! the array that is assigned to the object at that owner, left to right and top to bottom as the robot sees it (VII.4).
 
 use core::fmt;
@@ -40,8 +40,8 @@ pub struct Location {
     pub name: Name10,
     /// What grips and trajectories are looked up with.
     pub place: Place,
-    /// Sector from 1, or 0.
-    pub sector: i32,
+    /// Sector from 1, if it is one.
+    pub sector: Option<i32>,
     /// Where it is. World, inches.
     pub frame: Frame,
 }
@@ -86,8 +86,8 @@ pub enum LookupError {
         location: Name16,
         /// The array.
         array: Name10,
-        /// The sector asked for.
-        sector: i32,
+        /// The sector asked for, if one was.
+        sector: Option<i32>,
         /// The last sector; the first is 1.
         last: i32,
     },
@@ -122,7 +122,11 @@ impl fmt::Display for LookupError {
                 write!(f, "{location} has no sectors: 0 was expected, {sector} found")
             }
             Self::SectorRange { location, array, sector, last } => {
-                write!(f, "{array} at {location} has sectors 1 to {last}, {sector} found")
+                write!(f, "{array} at {location} has sectors 1 to {last}, ")?;
+                match sector {
+                    Some(sector) => write!(f, "{sector} found"),
+                    None => f.write_str("none found"),
+                }
             }
             Self::OwnerOnly { location } => {
                 write!(f, "{location} only groups locations: name one of its members")
@@ -149,24 +153,24 @@ impl<'a> TaskData<'a> {
     pub fn resolve_location<const N: usize, const M: usize>(
         &self,
         name: &Name<N>,
-        sector: i32,
+        sector: Option<i32>,
         object: Option<&Name<M>>,
     ) -> Result<Location, LookupError> {
         let locpt = self.locpt_named(name);
         let owner = self.owner_named(name);
-        match (locpt, owner, self.array_named(name)) {
-            (Some(locpt), _, _) if sector == 0 => self.point(locpt, name),
-            (_, Some(owner), _) => self.at_owner(owner, name, sector, object),
-            (Some(_), None, _) => Err(LookupError::NoSectors { location: wide(name), sector }),
-            (None, None, Some(array)) => self.static_array(array, name, sector),
-            (None, None, None) => Err(LookupError::UnknownLocation { name: wide(name) }),
+        match (locpt, owner, self.array_named(name), sector) {
+            (Some(locpt), _, _, None) => self.point(locpt, name),
+            (_, Some(owner), _, _) => self.at_owner(owner, name, sector, object),
+            (Some(_), None, _, Some(sector)) => Err(LookupError::NoSectors { location: wide(name), sector }),
+            (None, None, Some(array), _) => self.static_array(array, name, sector),
+            (None, None, None, _) => Err(LookupError::UnknownLocation { name: wide(name) }),
         }
     }
 
     fn point<const N: usize>(&self, id: LocptId, name: &Name<N>) -> Result<Location, LookupError> {
         let locpt = self.locpt(id).ok_or(LookupError::UnknownLocation { name: wide(name) })?;
         let place = Place { kind: LocationKind::Point, locpt: id, array: ArrayId::NULL };
-        Ok(Location { name: locpt.name, place, sector: 0, frame: locpt.frame })
+        Ok(Location { name: locpt.name, place, sector: None, frame: locpt.frame })
     }
 
     /// The member that is assigned to the object: a sector of an array at the owner's location point, or a location point.
@@ -174,31 +178,30 @@ impl<'a> TaskData<'a> {
         &self,
         owner: OwnerId,
         name: &Name<N>,
-        sector: i32,
+        sector: Option<i32>,
         object: Option<&Name<M>>,
     ) -> Result<Location, LookupError> {
         let location = wide(name);
-        let assigned = match object {
-            Some(object) => self.assigned_member(owner, object, location)?,
-            None if sector == 0 => return Err(LookupError::OwnerOnly { location }),
-            None => self.only_array(owner).ok_or(LookupError::ObjectNeeded { location, sector })?,
+        let assigned = match (object, sector) {
+            (Some(object), _) => self.assigned_member(owner, object, location)?,
+            (None, None) => return Err(LookupError::OwnerOnly { location }),
+            (None, Some(sector)) => {
+                self.only_array(owner).ok_or(LookupError::ObjectNeeded { location, sector })?
+            }
         };
         if assigned.kind == RefType::LocationPoint {
-            if sector != 0 {
-                return Err(LookupError::NoSectors { location, sector });
-            }
-            return self.point(LocptId::new(assigned.number), name);
+            return match sector {
+                None => self.point(LocptId::new(assigned.number), name),
+                Some(sector) => Err(LookupError::NoSectors { location, sector }),
+            };
         }
         let array_id = ArrayId::new(assigned.number);
         let array = self.array(array_id).ok_or(LookupError::OwnerOnly { location })?;
         let base = self.tray_corner(owner).ok_or(LookupError::OwnerOnly { location })?;
         let corner = self.locpt(base).ok_or(LookupError::OwnerOnly { location })?;
-        let frame = self.sector_frame(array, &corner.frame, sector).ok_or(LookupError::SectorRange {
-            location,
-            array: array.name,
-            sector,
-            last: array.sectors(),
-        })?;
+        let frame = sector
+            .and_then(|sector| self.sector_frame(array, &corner.frame, sector))
+            .ok_or(LookupError::SectorRange { location, array: array.name, sector, last: array.sectors() })?;
         let place = Place { kind: LocationKind::Owner, locpt: base, array: array_id };
         Ok(Location { name: corner.name, place, sector, frame })
     }
@@ -249,18 +252,15 @@ impl<'a> TaskData<'a> {
         &self,
         id: ArrayId,
         name: &Name<N>,
-        sector: i32,
+        sector: Option<i32>,
     ) -> Result<Location, LookupError> {
         let location = wide(name);
         let array = self.array(id).ok_or(LookupError::UnknownLocation { name: location })?;
         // An array without a pose of its own is known only through its owners (VII.4).
         let base = self.pose(array.pose).ok_or(LookupError::UnknownLocation { name: location })?;
-        let frame = self.sector_frame(array, &base.frame, sector).ok_or(LookupError::SectorRange {
-            location,
-            array: array.name,
-            sector,
-            last: array.sectors(),
-        })?;
+        let frame = sector
+            .and_then(|sector| self.sector_frame(array, &base.frame, sector))
+            .ok_or(LookupError::SectorRange { location, array: array.name, sector, last: array.sectors() })?;
         Ok(Location {
             name: array.name,
             place: Place { kind: LocationKind::Array, locpt: LocptId::NULL, array: id },

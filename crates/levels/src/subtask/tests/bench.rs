@@ -259,14 +259,18 @@ impl<'d> Bench<'d> {
         let mut poses = self.memory.task.poses;
         let place = (!location.is_empty()).then(|| {
             let name = Name16::new(location).unwrap();
-            self.data.resolve_location(&name, 0, None::<&Name16>).map_err(Missing::from).unwrap()
+            self.data.resolve_location(&name, None, None::<&Name16>).map_err(Missing::from).unwrap()
         });
         let number = self.memory.task.subtask.number + 1;
         let mut command = SubtaskCommand {
             number,
             command: verb,
             object: Some(object).filter(|object| !object.is_empty()),
-            end_effector_id: self.data.obj_grips(&object).map(|grips| grips.endeff_id as u8).filter(|id| *id != 0),
+            end_effector_id: self
+                .data
+                .obj_grips(&object)
+                .map(|grips| grips.endeff_id as u8)
+                .filter(|id| *id != 0),
             source_grip: grips.0,
             destination_grip: grips.1,
             object_parameters: self.data.object(&object, grips.0).map(|(id, _)| id.number()),
@@ -343,8 +347,9 @@ impl<'d> Bench<'d> {
         Self: Default,
     {
         let mut bench = Self::default();
-        bench.emove.outputs.status.end_effector_id =
-            Some(bench.data.obj_grips(&Name16::new(object).unwrap()).map_or(1, |grips| grips.endeff_id as u8));
+        bench.emove.outputs.status.end_effector_id = Some(
+            bench.data.obj_grips(&Name16::new(object).unwrap()).map_or(1, |grips| grips.endeff_id as u8),
+        );
         bench.step();
         assert_eq!(bench.run(SubtaskVerb::GetObject, object, (grip, 0), "PFIXTURE"), DONE);
         bench

@@ -279,7 +279,10 @@ fn exchanges(ignores: bool, rows: &mut Coverage) {
                 if let Some(id) = exchange {
                     let word = if id == 2 { "QC-ATTACH" } else { "QC-DETACH" };
                     assert_eq!(bench.sent()[0], word, "the exchange is finished first");
-                    assert_eq!(bench.emove.received[0].end_effector_id, exchange, "in the holster where it is");
+                    assert_eq!(
+                        bench.emove.received[0].end_effector_id, exchange,
+                        "in the holster where it is"
+                    );
                 }
                 rows.append(&mut bench.rows);
             }

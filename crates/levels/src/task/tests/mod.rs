@@ -118,7 +118,10 @@ fn a_tool_is_inserted_and_released() {
     assert_eq!(bench.sent(), ["INSERT-TOOL"]);
     let command = bench.subtask.received[0];
     let parameters = bench.data.object(&Name16::new("TOOL-1").unwrap(), 1).map(|(id, _)| id.number());
-    assert_eq!((command.end_effector_id, command.object_parameters, command.source_grip), (Some(3), parameters, 1));
+    assert_eq!(
+        (command.end_effector_id, command.object_parameters, command.source_grip),
+        (Some(3), parameters, 1)
+    );
     assert_eq!((bench.run(INSERT), bench.sent()), (FINISHED, vec![]), "it is there already");
     assert_eq!(bench.run(RELEASE), FINISHED);
     assert_eq!(bench.sent(), ["RELEASE-TOOL", "GOTO-ENDPT"]);

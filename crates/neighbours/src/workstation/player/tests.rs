@@ -139,7 +139,7 @@ fn command(verb: &str) -> JobLine {
 
 fn action(opening: ViseOpening, name: &str) -> JobLine {
     let name = Name10::new(name).unwrap();
-    let location = Location { name, place: Place::default(), sector: 0, frame: Frame::identity() };
+    let location = Location { name, place: Place::default(), sector: None, frame: Frame::identity() };
     let text = format!("** vise {opening:?} {name}");
     JobLine {
         step: Step::Workstation(Action::Vise { opening, location, program: None }),

@@ -111,10 +111,9 @@ fn origin(list: &[At], position: usize) -> At {
 
 /// A location and its sector in words.
 fn shown(location: &Location) -> String {
-    if location.sector == 0 {
-        location.name.to_string()
-    } else {
-        format!("{} sector {}", location.name, location.sector)
+    match location.sector {
+        None => location.name.to_string(),
+        Some(sector) => format!("{} sector {sector}", location.name),
     }
 }
 
@@ -122,7 +121,7 @@ fn shown(location: &Location) -> String {
 fn at_point(data: &TaskData<'_>, at: Reference) -> Option<Location> {
     let id = LocptId::new(at.number);
     let point = data.locpt(id).filter(|_| at.kind == RefType::LocationPoint)?;
-    Some(Location { name: point.name, place: data.place_of(id), sector: 0, frame: point.frame })
+    Some(Location { name: point.name, place: data.place_of(id), sector: None, frame: point.frame })
 }
 
 /// The owners that have a member.
@@ -137,7 +136,7 @@ fn sectors(data: &TaskData<'_>, owner: OwnerId, array_id: ArrayId) -> Vec<Locati
     let place = Place { kind: LocationKind::Owner, array: array_id, ..corner.place };
     let sector = |n| {
         let frame = data.sector_frame(array, &corner.frame, n)?;
-        Some(Location { name: corner.name, place, sector: n, frame })
+        Some(Location { name: corner.name, place, sector: Some(n), frame })
     };
     (1..=array.sectors()).filter_map(sector).collect()
 }
@@ -150,7 +149,7 @@ fn static_sectors(data: &TaskData<'_>, array_id: ArrayId) -> Vec<Location> {
     let place = Place { kind: LocationKind::Array, locpt: LocptId::NULL, array: array_id };
     let sector = |n| {
         let frame = data.sector_frame(array, &pose.frame, n)?;
-        Some(Location { name: array.name, place, sector: n, frame })
+        Some(Location { name: array.name, place, sector: Some(n), frame })
     };
     (1..=array.sectors()).filter_map(sector).collect()
 }
@@ -196,7 +195,7 @@ fn locations_of(data: &TaskData<'_>, object: ObjectId, at: Reference) -> Vec<Loc
     if found.is_empty() && at.kind != RefType::Array {
         let mut named = locations(data, at);
         // At an owner of arrays an object that is assigned to none of them is at the location point.
-        named.retain(|location| location.sector == 0);
+        named.retain(|location| location.sector.is_none());
         found = named;
     }
     found

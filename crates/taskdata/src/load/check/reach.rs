@@ -209,7 +209,7 @@ impl<'a> Reach<'a> {
         let Some(record) = self.data.trajectories.get(i) else { return };
         let what = || format!("trajectory {}", record.name);
         let starts = locations(self.data, record.start);
-        let mut points = starts.iter().filter(|start| start.sector == 0);
+        let mut points = starts.iter().filter(|start| start.sector.is_none());
         match points.next() {
             Some(start) => {
                 self.follow(record.path, &start.frame, &what, false, findings);

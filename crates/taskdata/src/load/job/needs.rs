@@ -207,7 +207,7 @@ impl Needs<'_, '_> {
             }
             Some(_) => {}
         }
-        let Ok(pedestal) = data.resolve_location(&Name16::clipped(PEDESTAL), 0, Some(&object)) else {
+        let Ok(pedestal) = data.resolve_location(&Name16::clipped(PEDESTAL), None, Some(&object)) else {
             let help = "add it to a location point form (VII.3)";
             self.error(to.at, format!("{what}, and there is no location {PEDESTAL}"), help);
             return;

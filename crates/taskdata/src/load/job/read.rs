@@ -357,7 +357,7 @@ impl Reader<'_, '_> {
             }
             return None;
         }
-        let location = match self.data.resolve_location(&field.name, sector.value, object.as_ref()) {
+        let location = match self.data.resolve_location(&field.name, sector.given(), object.as_ref()) {
             Ok(location) => location,
             Err(error) => {
                 let unknown = matches!(error, LookupError::UnknownLocation { .. });
