@@ -104,7 +104,7 @@ impl State<'_> {
 
     /// Opening of the fingers at the end of a phase, in.
     fn opening(&self, phase: &Phase) -> f64 {
-        let gripper = self.room.gripper(self.layout.gripper);
+        let gripper = self.room.worn(&self.layout);
         match (phase.opening_in, gripper) {
             (Some(opening), Some(gripper)) => opening.clamp(gripper.opening[0], gripper.opening[1]),
             _ => self.layout.opening,

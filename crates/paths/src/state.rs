@@ -55,7 +55,7 @@ impl<'a> State<'a> {
     #[must_use]
     pub fn new(room: &'a Room, walk: Walk<'a>, robot: Robot) -> Self {
         let mut layout = room.at_start();
-        layout.opening = room.gripper(layout.gripper).map_or(0.0, |gripper| gripper.opening[1]);
+        layout.opening = room.worn(&layout).map_or(0.0, |gripper| gripper.opening[1]);
         Self {
             room,
             walk,
@@ -156,7 +156,7 @@ impl<'a> State<'a> {
     pub fn step(&mut self, step: &Step, task: &str) -> (Walked, Vec<Finding>) {
         match *step {
             Step::Go { verb, object, location, .. } => {
-                self.layout.engaged = 0;
+                self.layout.engaged = None;
                 self.last = object.map(|object| (object, location));
                 let phase = self.walk.step(step);
                 let subtask = match task {
@@ -222,10 +222,10 @@ impl<'a> State<'a> {
                 self.before = vec![["RELEASE-TOOL"; 2]];
             }
             Step::Pedestal(verb) => self.pedestal(verb),
-            Step::Engage(id) => self.layout.engaged = id,
-            Step::Leave(id) => (self.layout.gripper, self.layout.engaged) = (0, id),
+            Step::Engage(id) => self.layout.engaged = Some(id),
+            Step::Leave(id) => (self.layout.gripper, self.layout.engaged) = (None, Some(id)),
             Step::Take(id) => {
-                (self.layout.gripper, self.layout.engaged) = (id, 0);
+                (self.layout.gripper, self.layout.engaged) = (Some(id), None);
                 self.layout.opening = self.room.gripper(id).map_or(0.0, |gripper| gripper.opening[0]);
                 self.before = vec![["QC-ATTACH", "QC-ATTACH"]];
             }
@@ -249,7 +249,7 @@ impl<'a> State<'a> {
         let mut frame = tool.inverse().compose(&part.frame);
         // The fingers draw it to their middle.
         frame.position.y = 0.0;
-        let groove = self.room.gripper(self.layout.gripper).and_then(|gripper| gripper.groove);
+        let groove = self.room.worn(&self.layout).and_then(|gripper| gripper.groove);
         if groove.is_none() {
             self.layout.opening = sizes_along(&frame, &part.kind).y;
         }
@@ -270,7 +270,7 @@ impl<'a> State<'a> {
 
     /// The fingers open as far as they can.
     fn open(&mut self, opening: f64) {
-        if let Some(gripper) = self.room.gripper(self.layout.gripper) {
+        if let Some(gripper) = self.room.worn(&self.layout) {
             self.layout.opening = opening.clamp(gripper.opening[0], gripper.opening[1]);
         }
     }

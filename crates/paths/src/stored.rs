@@ -120,7 +120,7 @@ fn segment(room: &Room, from: &Frame, to: &Frame, parameters: TrajPara) -> Optio
     let joints = T3.within_limits(&T3.inverse(from, &HOME_JOINTS).ok()?);
     let mut robot = Robot::standing(&Actuators::from(&room.cell().robot), &joints)?;
     let start = room.at_start();
-    let opening = room.gripper(start.gripper).map_or(start.opening, |gripper| gripper.opening[1]);
+    let opening = room.worn(&start).map_or(start.opening, |gripper| gripper.opening[1]);
     let layout = Layout { opening, ..start };
     // What touches at its ends does so by the approaches there.
     let mut survey = Survey::new(room, &layout, ["", ""], &joints, &[]);

@@ -37,10 +37,10 @@ pub struct Placed {
 /// What a job moves. Openings in inches, the table angle in degrees.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// End effector id of the gripper that the robot wears; 0 for none.
-    pub gripper: u8,
-    /// End effector id of a gripper in its holster that the robot is engaged with, which is no obstacle then; 0 for none.
-    pub engaged: u8,
+    /// End effector id of the gripper that the robot wears, if it wears one.
+    pub gripper: Option<u8>,
+    /// End effector id of a gripper in its holster that the robot is engaged with, if there is one: it is no obstacle then.
+    pub engaged: Option<u8>,
     /// Of its fingers.
     pub opening: f64,
     /// What it carries.
@@ -86,16 +86,16 @@ impl Room {
     #[must_use]
     pub fn at_start(&self) -> Layout {
         let gripper = match self.cell.quick_change.mounted {
-            Mounted::None => 0,
-            Mounted::Parts => 1,
-            Mounted::V => 2,
-            Mounted::Tool => 3,
+            Mounted::None => None,
+            Mounted::Parts => Some(1),
+            Mounted::V => Some(2),
+            Mounted::Tool => Some(3),
         };
         let table = &self.cell.pedestal.table;
         Layout {
             gripper,
-            engaged: 0,
-            opening: self.gripper(gripper).map_or(0.0, |gripper| gripper.initial_opening),
+            engaged: None,
+            opening: gripper.and_then(|id| self.gripper(id)).map_or(0.0, |gripper| gripper.initial_opening),
             held: None,
             parts: Vec::new(),
             program: 0,
@@ -103,6 +103,12 @@ impl Room {
             table: table.angle(table.start),
             hand: self.cell.pedestal.hand.initial_opening,
         }
+    }
+
+    /// The gripper that the robot wears, if it wears one.
+    #[must_use]
+    pub fn worn(&self, layout: &Layout) -> Option<&Gripper> {
+        self.gripper(layout.gripper?)
     }
 
     /// The gripper of an end effector id.
@@ -163,7 +169,7 @@ impl Room {
         let jaw = vise_frame(&self.cell.vise).shifted(Inches::new(0.0, layout.jaws, 0.0));
         let mut devices = bodies::movable_jaw(&self.cell, &jaw);
         for (id, (name, holster)) in (1..).zip(GRIPPERS.into_iter().zip(&self.holsters)) {
-            let stored = self.gripper(id).filter(|_| id != layout.gripper && id != layout.engaged);
+            let stored = self.gripper(id).filter(|_| ![layout.gripper, layout.engaged].contains(&Some(id)));
             let at = to_pose(&holster.gripper(&holster.seated()));
             devices.extend(stored.into_iter().flat_map(|one| bodies::stored(&self.cell, one, name, &at)));
         }
@@ -179,7 +185,7 @@ impl Room {
         let tool = T3.forward(joints);
         let mut movers = Vec::from(bodies::arm(&self.cell, joints));
         movers.extend(bodies::quick_change(&self.cell, &tool));
-        if let Some(gripper) = self.gripper(layout.gripper) {
+        if let Some(gripper) = self.worn(layout) {
             movers.extend(bodies::worn(&self.cell, gripper, &tool, layout.opening));
         }
         if let Some(held) = &layout.held {

@@ -73,7 +73,7 @@ fn at_the_start_the_parts_gripper_is_on_and_the_others_hang_in_their_holsters() 
     assert_eq!(quick_change.end_effector_id, 1);
     assert!(quick_change.locked && !quick_change.unlocked);
     assert_eq!(rig.inputs.holsters, HolsterSensors { right: 0, left: FULL, centre: FULL });
-    assert_eq!(rig.cell.gripper(), 1);
+    assert_eq!(rig.cell.gripper(), Some(1));
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn detaching_leaves_the_gripper_in_its_seat() {
     rig.ticks(8);
     let dropped = rig.inputs.quick_change;
     assert!(dropped.unlocked && dropped.end_effector_id == 1, "the pins still touch: {dropped:?}");
-    assert_eq!(rig.cell.gripper(), 0);
+    assert_eq!(rig.cell.gripper(), None);
     rig.outputs.quick_change = QuickChangeValves::default();
     rig.go_and_stop(over(&HOL_R, 0.35, 1.30), 1.0);
     assert_eq!(rig.inputs.holsters.right, 0b0011, "0.20 before the seat");
@@ -111,7 +111,7 @@ fn any_gripper_can_be_attached_and_used() {
         attach(&mut rig, &holster);
         let quick_change = rig.inputs.quick_change;
         assert_eq!((quick_change.end_effector_id, quick_change.locked), (id, true), "{:?}", rig.log);
-        assert_eq!(rig.cell.gripper(), id);
+        assert_eq!(rig.cell.gripper(), Some(id));
         let open = JawValves { open: true, close: false };
         match id {
             1 => rig.outputs.grip = GripValves { bits: valve::SUPPLY | valve::OPEN_MEDIUM },
@@ -152,7 +152,7 @@ fn a_plate_that_is_not_home_is_not_caught() {
         air(&mut rig, LOCK);
         let quick_change = rig.inputs.quick_change;
         assert!(quick_change.locked && quick_change.end_effector_id == pins, "{what}: {quick_change:?}");
-        assert_eq!(rig.cell.gripper(), 0, "{what}");
+        assert_eq!(rig.cell.gripper(), None, "{what}");
         rig.go_and_stop(over(&HOL_L, 3.0, 1.5), 2.0);
         assert_eq!((rig.inputs.quick_change.end_effector_id, rig.inputs.holsters.left), (0, FULL), "{what}");
     }
@@ -165,7 +165,7 @@ fn a_ring_that_is_locked_beforehand_catches_nothing() {
     rig.go(over(&HOL_L, 14.0, 1.5), 10.0);
     rig.go_and_stop(over(&HOL_L, 0.0, 1.5), 2.0);
     air(&mut rig, LOCK);
-    assert_eq!(rig.cell.gripper(), 0);
+    assert_eq!(rig.cell.gripper(), None);
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn the_ring_does_not_move_without_the_port() {
     air(&mut rig, QuickChangeValves { port: false, ..UNLOCK });
     assert!(rig.inputs.quick_change.locked);
     rig.go_and_stop(over(&HOL_R, 5.0, 0.0), 4.0);
-    assert_eq!(rig.cell.gripper(), 1, "it is still on");
+    assert_eq!(rig.cell.gripper(), Some(1), "it is still on");
     assert_eq!(rig.inputs.holsters.right, 0);
 }
 
@@ -215,10 +215,10 @@ fn lifting_out_of_the_seat_tears_the_gripper_off() {
     rig.go(over(&HOL_L, 14.0, 1.5), 10.0);
     rig.go_and_stop(over(&HOL_L, 0.0, 1.5), 2.0);
     air(&mut rig, LOCK);
-    assert_eq!(rig.cell.gripper(), 2);
+    assert_eq!(rig.cell.gripper(), Some(2));
     rig.go_and_stop(over(&HOL_L, 2.0, 1.5), 1.0);
     assert!(rig.log.contains(&CellEvent::GripperTorn { gripper: "v_gripper".into() }), "{:?}", rig.log);
-    assert_eq!((rig.cell.gripper(), rig.inputs.quick_change.end_effector_id), (0, 0));
+    assert_eq!((rig.cell.gripper(), rig.inputs.quick_change.end_effector_id), (None, 0));
     assert_eq!(rig.inputs.holsters.left, FULL, "the holster keeps it");
 }
 

@@ -22,8 +22,8 @@ pub fn is_commanded(branch: &Branch<'_>) -> bool {
 #[derive(Clone, Debug, PartialEq)]
 pub struct World {
     parts: Vec<PartAt>,
-    /// End effector id of the gripper on the robot.
-    gripper: u8,
+    /// End effector id of the gripper on the robot, if there is one.
+    gripper: Option<u8>,
     /// Middle between the fingertips, world, in.
     hand: [f64; 3],
 }
@@ -60,7 +60,9 @@ impl World {
     #[must_use]
     pub fn unlike(&self, undisturbed: &Self) -> Option<String> {
         if self.gripper != undisturbed.gripper {
-            return Some(format!("the robot has gripper {}, not {}", self.gripper, undisturbed.gripper));
+            let worn = |gripper: Option<u8>| gripper.map_or("none".to_owned(), |id| id.to_string());
+            let (is, was) = (worn(self.gripper), worn(undisturbed.gripper));
+            return Some(format!("the robot has gripper {is}, not {was}"));
         }
         if self.parts.len() != undisturbed.parts.len() {
             return Some(format!("{} parts in the cell, not {}", self.parts.len(), undisturbed.parts.len()));

@@ -177,7 +177,7 @@ impl Changer {
         QuickChangeSensors {
             locked: self.reflectance[0].see(locked, hysteresis),
             unlocked: self.reflectance[1].see(unlocked, hysteresis),
-            end_effector_id: self.mated.map_or(0, Hand::end_effector_id),
+            end_effector_id: self.mated.and_then(Hand::end_effector_id).unwrap_or(0),
         }
     }
 }
@@ -308,10 +308,10 @@ impl Cell {
         }
     }
 
-    /// End effector id of the gripper that the ring of the quick change has; 0 for none. The truth behind the pins, which
-    /// also read a gripper that is mated and not locked.
+    /// End effector id of the gripper that the ring of the quick change has, if it has one. The truth behind the pins,
+    /// which also read a gripper that is mated and not locked.
     #[must_use]
-    pub fn gripper(&self) -> u8 {
-        self.changer.carried().map_or(0, Hand::end_effector_id)
+    pub fn gripper(&self) -> Option<u8> {
+        self.changer.carried().and_then(Hand::end_effector_id)
     }
 }

@@ -69,13 +69,13 @@ impl Hand {
         }
     }
 
-    /// `endeff-id#`; 0 for what the robot cannot wear.
-    pub(super) const fn end_effector_id(self) -> u8 {
+    /// `endeff-id#`, if the robot can wear it.
+    pub(super) const fn end_effector_id(self) -> Option<u8> {
         match self {
-            Self::Parts => 1,
-            Self::V => 2,
-            Self::Tool => 3,
-            Self::Pedestal => 0,
+            Self::Parts => Some(1),
+            Self::V => Some(2),
+            Self::Tool => Some(3),
+            Self::Pedestal => None,
         }
     }
 
