@@ -1,4 +1,4 @@
-//! What the attached gripper holds, as the tables of Subtask and E-move ask for it.
+//! What the attached gripper holds, as the tables of Task, Subtask and E-move ask for it.
 
 use rcs_core::{Plain, interface::emove::Holding, name::Name16};
 

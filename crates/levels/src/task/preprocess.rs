@@ -3,7 +3,7 @@
 use rcs_core::{
     handshake::Lower,
     interface::{
-        emove::{Holding as Held, Standing},
+        emove::{Holding, Standing},
         subtask::SubtaskVerb,
     },
     name::Name10,
@@ -16,7 +16,7 @@ use super::{
     plan::{Found, Plan, Resumed, Site, TOOL_GRIPPER, TaskVerb, is_in_mbd},
     state::State,
     tables::{
-        Drum, Ends, Holding, Ordered, Orders, Request, Seen, Situation, Station, Takeover, Tool, Way,
+        Drum, Ends, Ordered, Orders, Request, Seen, Situation, Station, Takeover, Tool, Way,
         joystick::Control,
     },
 };
@@ -24,6 +24,7 @@ use crate::{
     emove::route::same_location,
     execution::{Asked, Work},
     halt::{Below, BoxState, Intake, Kind, Replaced},
+    held::Held,
     places::{named, place_of},
 };
 
@@ -100,23 +101,17 @@ impl State {
         Situation {
             work: Work::Busy,
             handling: plan.handling(),
-            holding: match below.held {
-                Held::Nothing => Holding::NotHeld,
-                Held::Object(held) if plan.object == Some(held.object) => Holding::Held,
-                Held::Object(_) => Holding::Other,
-                Held::Something => Holding::Something,
-                Held::NotKnown => Holding::NotKnown,
-            },
+            held: Held::of(below.held, plan.object),
             grips: plan.grips(),
             source: plan.source.named(),
             ends: ends(&plan.end_at, below.at),
             update: self.data_system.update(plan),
             tool: match below.held {
                 _ if below.end_effector_id != Some(TOOL_GRIPPER) => Tool::None,
-                Held::Nothing => Tool::Free,
-                Held::Object(held) if plan.object.is_none_or(|object| object == held.object) => Tool::Held,
-                Held::Object(_) => Tool::None,
-                Held::Something | Held::NotKnown => Tool::Unsure,
+                Holding::Nothing => Tool::Free,
+                Holding::Object(held) if plan.object.is_none_or(|object| object == held.object) => Tool::Held,
+                Holding::Object(_) => Tool::None,
+                Holding::Something | Holding::NotKnown => Tool::Unsure,
             },
             station: station(below.at.map(|at| at.location)),
             drum: if below.drum { Drum::Inside } else { Drum::Outside },

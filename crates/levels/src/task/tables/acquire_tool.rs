@@ -12,13 +12,13 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2:  holding: Held, drum: Inside                                 => Finish;
-            3:  holding: Held | Other                                       => Fail(AlreadyHolding);
+            2:  held: Right, drum: Inside                                   => Finish;
+            3:  held: Right | Other                                         => Fail(AlreadyHolding);
             4:  drum: Inside                                                => AcquireTool  -> Acquiring;
-            5:  holding: Something                                          => Fail(UnknownHeld);
-            6:  holding: NotKnown                                           => Fail(HeldNotKnown);
+            5:  held: Something                                             => Fail(UnknownHeld);
+            6:  held: NotKnown                                              => Fail(HeldNotKnown);
             7:  tool: Free, station: Unplaced, resumed: AtTool              => AcquireTool  -> Acquiring;
-            8:  holding: NotHeld                                            => GetEndeff    -> Gripper;
+            8:  held: Nothing                                               => GetEndeff    -> Gripper;
         }
         /// The tool gripper is being fetched.
         Gripper {

@@ -25,7 +25,7 @@ use rcs_core::{
     table::Choice,
 };
 
-pub use self::variables::{DataBase, Drum, Ends, Goal, Holding, Ordered, Station, Tool, Update, Way};
+pub use self::variables::{DataBase, Drum, Ends, Goal, Ordered, Station, Tool, Update, Way};
 use self::{accept::accept, joystick::Control, ordered::ordered};
 use super::{
     ledger::{Part, Placed},
@@ -34,6 +34,7 @@ use super::{
 use crate::{
     execution::{Asked, EXECUTE, Orders as Commander, Outcome, Work},
     halt::{EFFECT, HALT, Replaced},
+    held::Held,
     places::Missing,
 };
 
@@ -116,8 +117,8 @@ pub struct Situation {
     pub work: Work,
     /// Is an object to be handled?
     pub handling: Handling,
-    /// Does the gripper hold something?
-    pub holding: Holding,
+    /// Object status (V.4.1): what the gripper holds.
+    pub held: Held,
     /// Are the source and destination grips the same?
     pub grips: Grips,
     /// Is the source location named?

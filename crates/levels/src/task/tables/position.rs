@@ -13,8 +13,8 @@ decision_table! {
         }
         /// Nothing done yet.
         Start {
-            2:  holding: NotHeld, source: Named             => Position(Source)                -> Moving;
-            3:  holding: NotHeld, source: Null              => Position(Destination)           -> Moving;
+            2:  held: Nothing, source: Named                => Position(Source)                -> Moving;
+            3:  held: Nothing, source: Null                 => Position(Destination)           -> Moving;
             4:  way: NoStart                                => Fail(UnknownStart);
             5:  way: NoTrajectory                           => Fail(NoTrajectory);
             6:  way: Known                                  => Release                         -> Releasing;

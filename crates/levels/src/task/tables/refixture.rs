@@ -13,9 +13,9 @@ decision_table! {
         /// Nothing done yet.
         Start {
             2: part: InPedestal                             => FixGrip        -> Regripping;
-            3: holding: Held                                => GetObject      -> Object;
-            4: holding: NotHeld | Other                     => GetEndeff      -> Gripper;
-            5: holding: Something | NotKnown                => GetEndeff      -> Gripper;
+            3: held: Right                                  => GetObject      -> Object;
+            4: held: Nothing | Other                        => GetEndeff      -> Gripper;
+            5: held: Something | NotKnown                   => GetEndeff      -> Gripper;
         }
         /// The gripper is being fetched.
         Gripper {

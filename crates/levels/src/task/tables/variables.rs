@@ -2,21 +2,6 @@
 
 use rcs_core::Plain;
 
-/// Object status (V.4.1): does the gripper hold something?
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Holding {
-    /// Nothing.
-    NotHeld,
-    /// The object of the command.
-    Held,
-    /// Another object.
-    Other,
-    /// Something, and nothing says what it is.
-    Something,
-    /// The sensors do not tell: counts as held.
-    NotKnown,
-}
-
 /// Where the robot is to be at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ends {
