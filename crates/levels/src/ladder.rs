@@ -84,7 +84,12 @@ macro_rules! ladder {
 
         impl Ladder {
             /// Step a process.
-            fn step_one(&mut self, process: ProcessId, inputs: &Inputs<'_, TaskData<'_>>, after: &mut CommonMemory) {
+            fn step_one(
+                &mut self,
+                process: ProcessId,
+                inputs: &Inputs<'_, TaskData<'_>>,
+                after: &mut CommonMemory,
+            ) {
                 match process { $( ProcessId::$id => self.$field.step(inputs, &mut after.$field), )+ }
             }
 

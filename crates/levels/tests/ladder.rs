@@ -219,7 +219,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     /// docs/design/tick.md "Order": the order of processes within a tick cannot change a bit of the result.
     #[test]
-    fn order_does_not_matter(seed in prop::collection::vec(Just(ProcessId::ALL.to_vec()).prop_shuffle(), 1..20)) {
+    fn order_does_not_matter(
+        seed in prop::collection::vec(Just(ProcessId::ALL.to_vec()).prop_shuffle(), 1..20),
+    ) {
         let run = |orders: &[Vec<ProcessId>]| {
             let mut rig = Rig::new();
             rig.command("PAUSE", "");

@@ -185,7 +185,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn rotation_vectors_come_back(x in -3.0_f64..3.0, y in -3.0_f64..3.0, z in -3.0_f64..3.0, angle in 0.0_f64..3.1) {
+        fn rotation_vectors_come_back(
+            x in -3.0_f64..3.0,
+            y in -3.0_f64..3.0,
+            z in -3.0_f64..3.0,
+            angle in 0.0_f64..3.1,
+        ) {
             prop_assume!(x * x + y * y + z * z > 1e-3);
             let v = Vector::new(x, y, z).normalize() * angle;
             let back = rotation_vector(&rotation_by(&v));
@@ -193,8 +198,14 @@ mod tests {
         }
 
         #[test]
-        fn an_inverse_undoes(x in -90.0_f64..90.0, y in -90.0_f64..90.0, a in -3.0_f64..3.0, b in -3.0_f64..3.0) {
-            let f = Frame { position: Vector::new(x, y, 12.0), rotation: rotation_by(&Vector::new(a, b, 0.3)) };
+        fn an_inverse_undoes(
+            x in -90.0_f64..90.0,
+            y in -90.0_f64..90.0,
+            a in -3.0_f64..3.0,
+            b in -3.0_f64..3.0,
+        ) {
+            let rotation = rotation_by(&Vector::new(a, b, 0.3));
+            let f = Frame { position: Vector::new(x, y, 12.0), rotation };
             let none = f.compose(&f.inverse()).distance(&Frame::identity());
             prop_assert!(none.inches < 1e-9 && none.radians < 1e-9);
         }

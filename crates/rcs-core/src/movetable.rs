@@ -176,12 +176,19 @@ mod tests {
 
     proptest! {
         #[test]
-        fn unapply_undoes_apply(lines in prop::collection::vec((1_u8..6, -18_000_i32..18_000, -9000_i32..9000, -9000_i32..9000), 0..=8),
-                                x in -90.0_f64..90.0, angle in -3.0_f64..3.0) {
+        fn unapply_undoes_apply(
+            lines in prop::collection::vec(
+                (1_u8..6, -18_000_i32..18_000, -9000_i32..9000, -9000_i32..9000),
+                0..=8,
+            ),
+            x in -90.0_f64..90.0,
+            angle in -3.0_f64..3.0,
+        ) {
             let lines: Vec<Line> = lines.into_iter()
                 .map(|(s, a, b, c)| line(System::from_code(s).unwrap(), [a, b, c])).collect();
             let table = Movetable::from_lines(&lines).unwrap();
-            let frame = Frame { position: Vector::new(x, 3.0, -7.0), rotation: Rotation::from_axis_angle(&Vector::z_axis(), angle) };
+            let rotation = Rotation::from_axis_angle(&Vector::z_axis(), angle);
+            let frame = Frame { position: Vector::new(x, 3.0, -7.0), rotation };
             let d = table.unapply(&table.apply(&frame)).distance(&frame);
             prop_assert!(d.inches < 1e-9 && d.radians < 1e-7, "{d:?}");
         }

@@ -36,8 +36,8 @@ use super::{
 
 /// A tool is in its place within this along the way in: the fingers of the drum close on it there, in.
 const SEATED: f64 = 0.15;
-/// The fingers are around it up to this far to the right of the way in, and to the end of ACQ-SLIDE, which ends
-/// where its sensor says, and this much more to the left, in.
+/// The fingers are around it up to this far to the right of the way in, and to the end of ACQ-SLIDE, which
+/// ends where its sensor says, and this much more to the left, in.
 const AROUND: f64 = 0.25;
 /// A tool that is not in its place is on the way in within this to the left and right, in.
 const WIDE_IN: f64 = 0.75;

@@ -38,8 +38,9 @@ const AT_POINT: f64 = 0.12;
 const AT_LOW: f64 = 0.3;
 /// It is clear of the holster within this of the upper points, or beyond them, in.
 const CLEAR: f64 = 0.3;
-/// It is on a segment within [`ASIDE_INCHES`], and this much above it on the way to the seat: QCD-SEAT begins where the
-/// large sensors see the ears, up to half an inch above the low point (V.2.1). QCD-UP ends as much above its point, in.
+/// It is on a segment within [`ASIDE_INCHES`], and this much above it on the way to the seat: QCD-SEAT begins
+/// where the large sensors see the ears, up to half an inch above the low point (V.2.1). QCD-UP ends as much
+/// above its point, in.
 const ABOVE: f64 = 0.6;
 
 /// The points of the exchange in a holster.
@@ -166,8 +167,8 @@ impl State {
         }
     }
 
-    /// The gripper whose change is half done: the robot is in its holster, or it hangs on a ring that is not locked,
-    /// wherever the robot has been led.
+    /// The gripper whose change is half done: the robot is in its holster, or it hangs on a ring that is not
+    /// locked, wherever the robot has been led.
     pub(super) fn changing(&self, memory: &CommonMemory) -> Option<u8> {
         let loose = memory.quick_change.status.end_effector_id.filter(|_| is_open(memory));
         self.beliefs.exchange.map(|exchange| exchange.gripper).or(loose)

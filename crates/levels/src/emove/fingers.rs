@@ -71,7 +71,8 @@ impl State {
         }
         self.sense_loss(inputs);
         if attached != mem::replace(&mut self.attached, attached) {
-            // A ring that is open takes a gripper only in its holster, where none is left that may hold something.
+            // A ring that is open takes a gripper only in its holster, where none is left that may hold
+            // something.
             (self.beliefs.empty, self.beliefs.grasping) = (is_open(memory), None);
         }
         // Before the fingers have closed they feel nothing: that says nothing of what they will hold.
@@ -96,8 +97,8 @@ impl State {
         }
     }
 
-    /// Do the id pins say that the gripper has gone, while the ring has been locked ever since it was there? Then it is
-    /// on, and its pins have a bad contact. What it holds is not known until they read as before.
+    /// Do the id pins say that the gripper has gone, while the ring has been locked ever since it was there?
+    /// Then it is on, and its pins have a bad contact. What it holds is not known until they read as before.
     pub(super) fn is_misread(&self, memory: &CommonMemory) -> bool {
         let read = Gripper::attached(memory);
         let locked = memory.quick_change.status.ring == RingPosition::Locked;
@@ -114,8 +115,8 @@ impl State {
         !looks && !moving && !self.beliefs.empty
     }
 
-    /// Is what was held still there? Fingers that open on it hold it until they have let go: what stops them half-way
-    /// leaves it between them, and the command that lets go can be sent again.
+    /// Is what was held still there? Fingers that open on it hold it until they have let go: what stops them
+    /// half-way leaves it between them, and the command that lets go can be sent again.
     fn sense_loss(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let memory = inputs.memory;
         let Some(held) = self.beliefs.held else { return };

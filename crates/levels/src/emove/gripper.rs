@@ -3,8 +3,8 @@
 //!
 //! The parts gripper servoes an opening or a force and takes five commands (VI.3.1); v-gripper and tool
 //! gripper open or close, no more, and take four (VI.4.1, VI.5). The tables of E-move see neither: they give
-//! an [`FingerVerb`], read one [`Lower`] and know one opening. Which process is meant is what Quick Change reads
-//! from the id pins, every tick anew; only that one is stepped.
+//! an [`FingerVerb`], read one [`Lower`] and know one opening. Which process is meant is what Quick Change
+//! reads from the id pins, every tick anew; only that one is stepped.
 //!
 //! | order     | Grip                  | V-Grip, Tool-Grip                                          |
 //! |-----------|-----------------------|------------------------------------------------------------|
@@ -280,7 +280,8 @@ impl Grippers {
         self.tool.start_from(tick, written.tool_grip.number, memory.tool_grip.status.echo);
     }
 
-    /// In the first tick after a restart: the attached gripper may still be busy with what it was told before.
+    /// In the first tick after a restart: the attached gripper may still be busy with what it was told
+    /// before.
     pub fn adopt(&mut self, memory: &CommonMemory) {
         let (attached, written) = (Gripper::attached(memory), &memory.emove);
         self.order = match attached {
@@ -427,7 +428,8 @@ impl Grippers {
         }
     }
 
-    /// True when the attached gripper has done what [`FingerVerb::Release`] asks for: nothing is held any more.
+    /// True when the attached gripper has done what [`FingerVerb::Release`] asks for: nothing is held any
+    /// more.
     #[must_use]
     pub fn has_let_go(&self, tick: Tick, memory: &CommonMemory) -> bool {
         self.order == FingerVerb::Release && self.status(tick, memory) == Lower::Done

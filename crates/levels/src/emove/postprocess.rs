@@ -300,8 +300,8 @@ impl State {
 
     /// `status-report` and its reason. `joystick-on` lasts as long as the box is active (V.2.2), whatever was
     /// done before; a command that was given up for it ends in an error and is not resumed
-    /// (docs/design/ownership.md "Joystick box"). A link that fails while E-PAUSE stands is no failure of it: the
-    /// reason stands beside `done`.
+    /// (docs/design/ownership.md "Joystick box"). A link that fails while E-PAUSE stands is no failure of it:
+    /// the reason stands beside `done`.
     fn outcome(&self, inputs: &Inputs<'_, TaskData<'_>>) -> (Report, Reason) {
         let execution = &self.execution;
         let prim = &inputs.memory.prim;

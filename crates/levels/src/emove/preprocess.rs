@@ -138,8 +138,9 @@ impl State {
         }
     }
 
-    /// Where in its command E-move is, beside the state variables: the points that were sent, on and back, and the
-    /// pictures that were tried. Above bit 40, which the number of the state variables does not reach.
+    /// Where in its command E-move is, beside the state variables: the points that were sent, on and back,
+    /// and the pictures that were tried. Above bit 40, which the number of the state variables does not
+    /// reach.
     fn progress(&self) -> u64 {
         let back = self.back.map_or(0, |back| u64::from(back.next & 0xFF) << 1 | u64::from(back.complete));
         let on = self.route.map_or(0, |route| u64::from(route.commanded & 0xFF));
@@ -307,8 +308,8 @@ impl State {
     }
 
     /// Quick change and gripper while pausing. Grip's PAUSE is done only when a calibration at the start is
-    /// (VI.3.1 UP-INIT); with no gripper, or one that has come since, there is nothing to wait for. A ring that
-    /// stands half-way is at rest, too: which commands it stands in the way of is said in ACCEPT.
+    /// (VI.3.1 UP-INIT); with no gripper, or one that has come since, there is nothing to wait for. A ring
+    /// that stands half-way is at rest, too: which commands it stands in the way of is said in ACCEPT.
     fn tooling(&self, ring: Ring, gripper: Lower, inputs: &Inputs<'_, TaskData<'_>>) -> Tooling {
         let asked = self.grippers.to == Gripper::attached(inputs.memory);
         match (ring, gripper) {

@@ -37,8 +37,8 @@ use super::{
 const STEP_INCHES: f64 = 0.6;
 /// The farthest that it turns in a tick, radians: 1 rad/s, and a little more.
 const STEP_RADIANS: f64 = 0.05;
-/// Ticks of motion that a link that fails can cut off: between Prim and the arm are the queue of T3I, the line, and
-/// the robot controller, which ramps down.
+/// Ticks of motion that a link that fails can cut off: between Prim and the arm are the queue of T3I, the
+/// line, and the robot controller, which ramps down.
 const CUT_OFF_TICKS: f64 = 5.0;
 
 /// The part of an interrupted way that is flown back.
@@ -106,7 +106,8 @@ fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<boo
     Some(beside(present, &start, &end) <= cut + LOST_INCHES && turned)
 }
 
-/// Does Prim still move the robot for its order, or for the one before? A GO-THRU is done before it is at rest.
+/// Does Prim still move the robot for its order, or for the one before? A GO-THRU is done before it is at
+/// rest.
 fn moves(memory: &CommonMemory) -> bool {
     let (order, status) = (&memory.emove.prim, &memory.prim.status);
     let pending = status.echo != order.number;

@@ -105,8 +105,8 @@ impl State {
         }
     }
 
-    /// The place where the robot stands, unless it has been moved away from there. If it is moved back, as by the
-    /// joystick box, it stands there again.
+    /// The place where the robot stands, unless it has been moved away from there. If it is moved back, as by
+    /// the joystick box, it stands there again.
     pub(super) fn place(&self) -> Option<RobotPlace> {
         self.beliefs.place.filter(|_| !self.away)
     }
@@ -128,8 +128,8 @@ impl State {
     }
 }
 
-/// Can a robot that stands at a location point be there as such? Not in a holster, at the tool drum, or at the
-/// pedestal: there it depends on gripper, tool and part how it may leave.
+/// Can a robot that stands at a location point be there as such? Not in a holster, at the tool drum, or at
+/// the pedestal: there it depends on gripper, tool and part how it may leave.
 fn is_plain(name: &Name10, place: &Place, data: &TaskData<'_>) -> bool {
     let has = |relative: Relative| data.relative_move(&Name10::clipped(relative.text()), place).is_some();
     !has(Relative::QcaBack) && !has(Relative::InsIn) && name.as_str() != named::PEDESTAL

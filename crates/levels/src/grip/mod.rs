@@ -6,9 +6,9 @@
 //! starts again only if the settled reading is outside a wider band than the one that stopped it.
 //!
 //! The command selects the table. UP-INIT runs by itself when the system is booted, and a command that comes
-//! meanwhile waits; later it runs by command alone, and without a calibration commands that move the fingers are
-//! refused: UP-INIT closes with the whole supply pressure, and a part may be held. Only OPEN-GRIP to the open end
-//! works without: all open flows until the readings are steady, and the calibration stays deferred.
+//! meanwhile waits; later it runs by command alone, and without a calibration commands that move the fingers
+//! are refused: UP-INIT closes with the whole supply pressure, and a part may be held. Only OPEN-GRIP to the
+//! open end works without: all open flows until the readings are steady, and the calibration stays deferred.
 //!
 //! ```text
 //!   a command                               the calibration (UP-INIT)

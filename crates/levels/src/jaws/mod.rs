@@ -1,7 +1,7 @@
 //! V-Grip (VI.4) and Tool-Grip (VI.5): grippers that open and close by air, and tell where their fingers are.
 //!
-//! TG-LEVEL is VG-LEVEL with other parameters, so there is one process here and a [`JawsKind`] each. Nothing is
-//! servoed: a command gives air to one side, waits until the potentiometer stands still, and reports where
+//! TG-LEVEL is VG-LEVEL with other parameters, so there is one process here and a [`JawsKind`] each. Nothing
+//! is servoed: a command gives air to one side, waits until the potentiometer stands still, and reports where
 //! the fingers have stopped.
 //!
 //! ```text

@@ -103,8 +103,8 @@ impl State {
 
 impl State {
     /// What is between the fingers, by the potentiometer alone (VI.4 has no force sensors): whatever keeps
-    /// them between the ends of their way. At an end they hold nothing, though a thing that is as small as the
-    /// opening of closed fingers reads the same.
+    /// them between the ends of their way. At an end they hold nothing, though a thing that is as small as
+    /// the opening of closed fingers reads the same.
     fn felt(&self, motion: Motion, stop: Stop, opening: f64, parameters: &Parameters) -> Felt {
         let settled = motion == Motion::Stopped && self.attached_ticks >= SETTLED_TICKS;
         match stop {

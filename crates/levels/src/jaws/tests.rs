@@ -410,7 +410,9 @@ proptest! {
             for bench in [&mut bench, &mut twin] {
                 if let Some(verb) = JawsVerb::from_code(what) {
                     let number = bench.command.number + 1;
-                    bench.command = JawsCommand { number, command: verb, size, end_effector_id: (id != 0).then_some(id), ..JawsCommand::default() };
+                    let end_effector_id = (id != 0).then_some(id);
+                    bench.command =
+                        JawsCommand { number, command: verb, size, end_effector_id, ..JawsCommand::default() };
                 }
                 match what {
                     10 => bench.process = Jaws::default(),

@@ -116,7 +116,8 @@ impl State {
         };
     }
 
-    /// A pedestal that was told to move is told to stop; one that was not needed is left alone. True if it is to be waited for.
+    /// A pedestal that was told to move is told to stop; one that was not needed is left alone. True if it is
+    /// to be waited for.
     fn pause_pedestal(
         &mut self,
         seen: &Seen,

@@ -1,10 +1,10 @@
 //! Task and the Data System (IV.4.2, IX.2): what is asked, asked again, and kept until it is taken.
 //!
 //! While no Data System is connected nothing is told and nothing waited for, as with DB-DONE (Figure IV.1).
-//! Once connected, the move of a command from or to the MBD is told when it has been made, and so is the place
-//! where an object is let go that the data base knows as the robot's. An update that is not taken is kept, also
-//! when another command replaces the one that told it: before the next object is moved, or at the end of the next
-//! STARTUP, it is told again, so that the data base is never more than one command behind.
+//! Once connected, the move of a command from or to the MBD is told when it has been made, and so is the
+//! place where an object is let go that the data base knows as the robot's. An update that is not taken is
+//! kept, also when another command replaces the one that told it: before the next object is moved, or at the
+//! end of the next STARTUP, it is told again, so that the data base is never more than one command behind.
 
 use rcs_core::{
     Plain,
@@ -44,7 +44,8 @@ pub struct DataSystem {
 }
 
 impl DataSystem {
-    /// In its first tick Task takes over what it believed before a restart, and the command that it wrote last.
+    /// In its first tick Task takes over what it believed before a restart, and the command that it wrote
+    /// last.
     pub const fn adopt(&mut self, written: &TaskOutputs, tick: Tick) {
         (self.beliefs, self.request) = (written.beliefs, written.data_base);
         let number = written.data_base.number;

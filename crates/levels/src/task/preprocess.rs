@@ -66,7 +66,8 @@ impl State {
         }
     }
 
-    /// Before the first command after a start: go on from the own output buffers, as they were written before it.
+    /// Before the first command after a start: go on from the own output buffers, as they were written before
+    /// it.
     fn adopt(&mut self, inputs: &Inputs<'_, TaskData<'_>>) {
         let (memory, written) = (inputs.memory, &inputs.memory.task);
         self.subtask.start_from(inputs.tick, written.subtask.number, memory.subtask.status.echo);

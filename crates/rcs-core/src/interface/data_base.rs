@@ -66,7 +66,8 @@ pub enum Connection {
     Interrupted,
 }
 
-/// Updates that Task keeps until they are taken: one of an object that is taken, and one of where it is let go.
+/// Updates that Task keeps until they are taken: one of an object that is taken, and one of where it is let
+/// go.
 pub const KEPT_UPDATES: usize = 2;
 
 /// An item that the robot holds: what the data base is told when it is let go.

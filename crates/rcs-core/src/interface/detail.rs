@@ -1,4 +1,5 @@
-//! What the buffers say about a failure beside its reason: names and distances (docs/design/failures.md "Detail").
+//! What the buffers say about a failure beside its reason: names and distances (docs/design/failures.md
+//! "Detail").
 
 use core::fmt;
 

@@ -186,8 +186,9 @@ pub struct EmoveStatus {
     pub end_effector_id: Option<u8>,
     /// Where the robot stands, if that is known (extension).
     pub at: Option<Standing>,
-    /// Number of the gripper in whose holster the robot stands in the middle of an exchange: between the first and
-    /// the last point of QC-ATTACH or QC-DETACH; or of the one that hangs on a ring that is not locked (extension).
+    /// Number of the gripper in whose holster the robot stands in the middle of an exchange: between the
+    /// first and the last point of QC-ATTACH or QC-DETACH; or of the one that hangs on a ring that is not
+    /// locked (extension).
     pub exchange: Option<u8>,
     /// The fingers are around a tool in the tool drum (extension).
     pub drum: bool,
@@ -325,8 +326,8 @@ pub struct Beliefs {
     pub located: Option<Located>,
     /// The holster in which the robot changes a gripper.
     pub exchange: Option<Exchange>,
-    /// The tool drum at which the robot is half way, between the first and the last point of a tool command. Its
-    /// pose is that of the location.
+    /// The tool drum at which the robot is half way, between the first and the last point of a tool command.
+    /// Its pose is that of the location.
     pub drum: Option<RobotPlace>,
 }
 
@@ -378,7 +379,8 @@ pub struct EmoveOutputs {
     pub vision: VisionRequest,
     /// What E-move believes (extension).
     pub beliefs: Beliefs,
-    /// The known places that are nearest, the nearest first, while it is not known where the robot is (extension).
+    /// The known places that are nearest, the nearest first, while it is not known where the robot is
+    /// (extension).
     pub nearest: [Option<NearPlace>; 2],
     /// Departure, goal, point between, located object.
     pub poses: [ChangingPose; EMOVE_POSES],

@@ -73,8 +73,8 @@ pub struct HwsStatus {
     pub reason: Reason,
 }
 
-/// The last command about an object or a tool that Task has accepted and not finished. It is an output, so that a Task
-/// that is restarted knows it (docs/design/recovery.md "Ledger"; extension).
+/// The last command about an object or a tool that Task has accepted and not finished. It is an output, so
+/// that a Task that is restarted knows it (docs/design/recovery.md "Ledger"; extension).
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Ledger {
     /// The command, without its number.

@@ -1,8 +1,11 @@
 //! The buffers between processes, and between the controller and its devices: chapters V and VI.
 //!
-//! Each process owns one record of output buffers; together they are [`CommonMemory`]. Every buffer record starts with a
-//! [`Header`] and is written only by its owner. Variables have the manual's names in Rust's spelling: `command-#-in` is
-//! `number`, its echo is `echo`, `^-pose` is `pose` and holds a record number. What the manual does not have is marked
+//! Each process owns one record of output buffers; together they are [`CommonMemory`]. Every buffer record
+//! starts with a
+//! [`Header`] and is written only by its owner. Variables have the manual's names in Rust's spelling:
+//! `command-#-in` is
+//! `number`, its echo is `echo`, `^-pose` is `pose` and holds a record number. What the manual does not have
+//! is marked
 //! *extension*.
 
 pub mod data_base;
@@ -230,7 +233,8 @@ pub enum Reason {
     NoEffect,
     /// The gripper holds something unknown: take it out, or let it go with POSITION.
     UnknownHeld,
-    /// The part is in the pedestal's hand: send the command that regrips it again, or open the hand at the pedestal.
+    /// The part is in the pedestal's hand: send the command that regrips it again, or open the hand at the
+    /// pedestal.
     PartInPedestal,
     /// What is in the pedestal's hand is not the object of the command: open the hand at the pedestal.
     PedestalHoldsOther,
@@ -256,8 +260,8 @@ pub enum Reason {
     RobotElsewhere,
     /// The robot is half way at the tool drum: send the tool command again.
     InDrum,
-    /// The id pins of the quick change name no gripper while its ring is locked: see to their contact, send the command
-    /// again.
+    /// The id pins of the quick change name no gripper while its ring is locked: see to their contact, send
+    /// the command again.
     PinsFail,
 }
 
@@ -333,7 +337,8 @@ pub struct ExternalInputs {
     pub devices: DeviceInputs,
     /// From the Data System.
     pub data_base: DataBaseStatus,
-    /// Generation of the task data that the tick uses: 0 as loaded before the first tick, one more after each reload.
+    /// Generation of the task data that the tick uses: 0 as loaded before the first tick, one more after each
+    /// reload.
     pub generation: u32,
     /// From an Active Pedestal that is a system of its own.
     pub pedestal: OutsidePedestal,

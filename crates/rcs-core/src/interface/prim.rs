@@ -158,7 +158,8 @@ pub struct PrimStatus {
 /// Changing poses of Prim: present, sensor, detected, recorded.
 pub const PRIM_POSES: usize = 4;
 
-/// Axes of the force sensor that are connected: forces along tool X, Y, Z, and the moment about tool Y (III.3.8).
+/// Axes of the force sensor that are connected: forces along tool X, Y, Z, and the moment about tool Y
+/// (III.3.8).
 pub const FORCE_AXES: usize = 4;
 
 /// Output buffers of Prim.
@@ -174,8 +175,8 @@ pub struct PrimOutputs {
     pub joystick_leds: u8,
     /// Present, sensor, detected and recorded pose.
     pub poses: [ChangingPose; PRIM_POSES],
-    /// What the force sensor reads without a force of interest, if that was taken: counts off the middle of the
-    /// converters as tool Fx, Fy, Fz, My (III.3.8; extension).
+    /// What the force sensor reads without a force of interest, if that was taken: counts off the middle of
+    /// the converters as tool Fx, Fy, Fz, My (III.3.8; extension).
     pub bias: Option<[f64; FORCE_AXES]>,
 }
 

@@ -3,10 +3,12 @@
 use super::Reason;
 
 impl Reason {
-    /// What a person has to do before the same command can succeed; `None` if PAUSE and the same command may be enough.
+    /// What a person has to do before the same command can succeed; `None` if PAUSE and the same command may
+    /// be enough.
     ///
-    /// A person is needed where the job or the task data are wrong, where something lies or stands where the controller
-    /// does not know it, and where a device or a program has to be switched on (extension: the manual has no reasons).
+    /// A person is needed where the job or the task data are wrong, where something lies or stands where the
+    /// controller does not know it, and where a device or a program has to be switched on (extension: the
+    /// manual has no reasons).
     #[must_use]
     pub const fn remedy(self) -> Option<&'static str> {
         Some(match self {

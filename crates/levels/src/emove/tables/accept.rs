@@ -4,9 +4,10 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// ACCEPT: a new command is refused if the gripper is not the right one, or if a record that it needs is
-    /// missing; nothing has been ordered then, since HALT has stopped what was under way. A robot that changes a
-    /// gripper, is half way at the tool drum, or whose gripper is not locked, goes nowhere; one whose id pins fail
-    /// only to a plain location. Quick change commands have rows of their own for the gripper.
+    /// missing; nothing has been ordered then, since HALT has stopped what was under way. A robot that
+    /// changes a gripper, is half way at the tool drum, or whose gripper is not locked, goes nowhere; one
+    /// whose id pins fail only to a plain location. Quick change commands have rows of their own for the
+    /// gripper.
     pub ACCEPT: fn accept(super::Request) -> super::Action or () {
         1:  asked: Before                                              => consult;
         2:  verb: None                                                 => Refuse(UnknownCommand);

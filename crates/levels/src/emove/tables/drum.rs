@@ -37,9 +37,9 @@ pub enum Belief {
 }
 
 decision_table! {
-    /// DRUM: a robot that has been taken away from the drum, as by the joystick box, is no longer half way there.
-    /// One whose fingers have closed on a tool in the drum stands there, also if the command did not come to that.
-    /// Preprocess consults it while a tool command is half done; no header names its rows.
+    /// DRUM: a robot that has been taken away from the drum, as by the joystick box, is no longer half way
+    /// there. One whose fingers have closed on a tool in the drum stands there, also if the command did not
+    /// come to that. Preprocess consults it while a tool command is half done; no header names its rows.
     pub DRUM: fn drum(self::AtTheDrum) -> self::Belief {
         1: at: Off                                                                        => Leave;
         2: at: Inside, tool: Grasped, outcome: Idle | Done | Error | Joystick             => Stand;

@@ -4,10 +4,11 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// E-PAUSE (V.2.1): do nothing. The first one after the start initializes the link (IV.3.3 step 2), waits
-    /// for the calibration of the parts gripper (VI.3.1 UP-INIT), and finds out where the robot is. Fingers that
-    /// move do first what they were told: a valve that is left open would close them with the whole supply
-    /// pressure. While it stands, the joystick box has robot and gripper. A link that fails before it is done is
-    /// initialized again; one that fails afterwards is reported beside `done`, and the next motion restarts it.
+    /// for the calibration of the parts gripper (VI.3.1 UP-INIT), and finds out where the robot is. Fingers
+    /// that move do first what they were told: a valve that is left open would close them with the whole
+    /// supply pressure. While it stands, the joystick box has robot and gripper. A link that fails before it
+    /// is done is initialized again; one that fails afterwards is reported beside `done`, and the next motion
+    /// restarts it.
     pub E_PAUSE: fn e_pause(enum EPauseStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                              => Wait;

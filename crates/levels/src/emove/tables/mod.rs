@@ -309,7 +309,8 @@ impl Commander for Action {
 commands! {
     /// Consult the tables of a command.
     pub fn of_command(EmoveVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME, drum::DRUM, carried::CARRIED, ordered::ORDERED;
+        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, attend::ATTEND, search::SEARCH, resume::RESUME,
+            drum::DRUM, carried::CARRIED, ordered::ORDERED;
         None | Pause            => e_pause::e_pause;
         MovToLoc                => motion::motion;
         MovToObj | MovToVu      => mov_to_obj::mov_to_obj then motion::motion;

@@ -5,7 +5,8 @@ use rcs_core::decision_table;
 decision_table! {
     /// MOTION: a series of GO-THRU and one GOTO-PT (V.2.1 MOV-TO-LOC). If the goal asks for an opening, the
     /// fingers are brought to it once the last depart point is behind, and the final motion waits for them. A
-    /// gripper that is not calibrated and holds nothing is calibrated on the way: nothing is between its fingers there.
+    /// gripper that is not calibrated and holds nothing is calibrated on the way: nothing is between its
+    /// fingers there.
     pub MOTION: fn motion(enum MotionStep, super::Situation) -> super::Action {
         any {
             1: work: Busy                                         => Wait;

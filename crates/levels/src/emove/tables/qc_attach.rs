@@ -5,8 +5,9 @@ use rcs_core::decision_table;
 decision_table! {
     /// QC-ATTACH (V.2.1): down fast, down slowly, lock, close the gripper, back, lift, check the id, up,
     /// calibrate if required. What is done next depends on where the robot is in the holster and on what is
-    /// mated and locked, so that a command that is sent again goes on (docs/design/recovery.md "Exchange"); an
-    /// order that has changed nothing ends it. A bare robot that has found no gripper leaves upward. Done at once if the gripper is locked on and clear of its holster.
+    /// mated and locked, so that a command that is sent again goes on (docs/design/recovery.md "Exchange");
+    /// an order that has changed nothing ends it. A bare robot that has found no gripper leaves upward. Done
+    /// at once if the gripper is locked on and clear of its holster.
     pub QC_ATTACH: fn qc_attach(enum QcAttachStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                                => Wait;

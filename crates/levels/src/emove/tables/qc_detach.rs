@@ -4,9 +4,10 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// QC-DETACH (V.2.1): down until the large sensors of the holster see the ears, unlock, forward until the
-    /// small ones see them, up, and check that the gripper stayed there. What is done next depends on where the
-    /// robot is in the holster and on what is mated and locked, so that a command that is sent again goes on
-    /// (docs/design/recovery.md "Exchange"); a bare robot in an empty holster leaves upward. Done at once if the gripper is in its holster and the robot clear.
+    /// small ones see them, up, and check that the gripper stayed there. What is done next depends on where
+    /// the robot is in the holster and on what is mated and locked, so that a command that is sent again goes
+    /// on (docs/design/recovery.md "Exchange"); a bare robot in an empty holster leaves upward. Done at once
+    /// if the gripper is in its holster and the robot clear.
     pub QC_DETACH: fn qc_detach(enum QcDetachStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                                   => Wait;
@@ -19,7 +20,8 @@ decision_table! {
             5:  mate: None, holster: Full, along: Off                        => Finish;
             6:  mate: None, holster: Empty | Partial, along: Above | Clear   => Stand;
             7:  mate: None, holster: Empty, along: Out | Coming | Seat       => DeltaMove(QcdOut) -> Leaving;
-            8:  mate: None, holster: Partial, along: Out | Coming | Seat, lock: Unlocked => DeltaMove(QcdOut) -> Leaving;
+            8:  mate: None, holster: Partial, along: Out | Coming | Seat, lock: Unlocked
+                                                                             => DeltaMove(QcdOut) -> Leaving;
             9:  mate: None, holster: Empty | Partial                         => Fail(WrongGripper);
         }
         /// A bare robot that has found no gripper moves up out of the holster.

@@ -123,7 +123,8 @@ pub enum Opening {
     Departing,
     /// To be commanded now.
     Due,
-    /// To be commanded now, but the gripper is not calibrated. It holds nothing, and the robot has left its place.
+    /// To be commanded now, but the gripper is not calibrated. It holds nothing, and the robot has left its
+    /// place.
     Uncalibrated,
     /// The fingers are moving.
     Moving,

@@ -60,8 +60,8 @@ fn situations() -> impl Iterator<Item = Situation> {
     })
 }
 
-/// The orders that a table gives from its first step until it ends, or until EFFECT ends it: the row that ordered
-/// last orders again, and nothing has changed.
+/// The orders that a table gives from its first step until it ends, or until EFFECT ends it: the row that
+/// ordered last orders again, and nothing has changed.
 fn orders<Step: Copy>(first: Step, decide: impl Fn(Step) -> Decision<Action, Step>) {
     let (mut step, mut last) = (first, None);
     let mut orders = Vec::new();

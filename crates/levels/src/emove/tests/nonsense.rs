@@ -103,7 +103,11 @@ proptest! {
     /// Nothing panics; only the attached gripper is commanded, only its process runs; a process that goes on
     /// from a remembered state writes the same bits.
     #[test]
-    fn nothing_panics(gripper in 0_u8..4, at in 1_usize..6, ticks in prop::collection::vec(nonsense(), 1..150)) {
+    fn nothing_panics(
+        gripper in 0_u8..4,
+        at in 1_usize..6,
+        ticks in prop::collection::vec(nonsense(), 1..150),
+    ) {
         let mut bench = Bench::ready(LOCATIONS[at], gripper);
         for tick in &ticks {
             bring(&mut bench, tick);

@@ -4,9 +4,9 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// UP-INIT (VI.3.1): close and open the gripper and read the sensors at both ends of travel and without
-    /// force. Runs by itself if the gripper is there when the system is booted, and commands wait for it. Later
-    /// it runs by command alone, since a part may be held: commands that need the calibration are refused.
-    /// OPEN-GRIP to the open end does not need it: what is held without a calibration can be let go.
+    /// force. Runs by itself if the gripper is there when the system is booted, and commands wait for it.
+    /// Later it runs by command alone, since a part may be held: commands that need the calibration are
+    /// refused. OPEN-GRIP to the open end does not need it: what is held without a calibration can be let go.
     pub UP_INIT: fn up_init(super::Phase, super::Situation) -> super::Action or super::Duty {
         Missing {
             1:  command: Nothing, gripper: Attached             => Begin                    -> Closing;

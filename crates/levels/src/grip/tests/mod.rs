@@ -518,7 +518,8 @@ proptest! {
         right in (10.0..500.0_f64, 10.0..44.0_f64),
     ) {
         let mut gripper = Gripper::new(start, seed);
-        (gripper.noise, gripper.late, gripper.potentiometer, gripper.strain) = (noise, late, potentiometer, [left, right]);
+        (gripper.noise, gripper.late) = (noise, late);
+        (gripper.potentiometer, gripper.strain) = (potentiometer, [left, right]);
         let mut bench = Bench::new(gripper);
         bench.wait(200);
         let found = bench.process.state.calibration.unwrap();
@@ -536,7 +537,10 @@ proptest! {
     #[test]
     fn nonsense(
         seed in any::<u64>(),
-        ticks in prop::collection::vec((0_u8..40, any::<i32>(), any::<i32>(), any::<i32>(), any::<u8>(), any::<u16>()), 1..200),
+        ticks in prop::collection::vec(
+            (0_u8..40, any::<i32>(), any::<i32>(), any::<i32>(), any::<u8>(), any::<u16>()),
+            1..200,
+        ),
     ) {
         let mut bench = Bench::new(Gripper::new(1.0, seed));
         for (what, a, b, c, id, counts) in ticks {

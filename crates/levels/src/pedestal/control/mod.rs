@@ -17,8 +17,8 @@
 //!     can't-do                           error
 //! ```
 //!
-//! A failure sends nothing to the hand: what it holds, it goes on holding. Before a new command is accepted or
-//! refused the table stops, and the hand comes to the end of what it was told; so it is after a restart.
+//! A failure sends nothing to the hand: what it holds, it goes on holding. Before a new command is accepted
+//! or refused the table stops, and the hand comes to the end of what it was told; so it is after a restart.
 //!
 //! * [`state`]: what the process remembers;
 //! * [`orders`]: what a command asks of hand and table;

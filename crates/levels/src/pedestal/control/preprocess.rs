@@ -90,7 +90,8 @@ impl State {
         self.table.read(tick, &memory.table.header, status.echo, status.report.lower())
     }
 
-    /// What the hand feels. Fingers that stand no wider than the grasp size have missed the object (VIII.9.1).
+    /// What the hand feels. Fingers that stand no wider than the grasp size have missed the object
+    /// (VIII.9.1).
     fn object(&self, felt: Felt, memory: &CommonMemory) -> Object {
         let gripping = self.command.command == PedestalVerb::Grip;
         let wide = !gripping || memory.hand.status.position > self.command.grasp_size;

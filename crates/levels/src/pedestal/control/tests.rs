@@ -70,8 +70,8 @@ impl Bench {
         outputs
     }
 
-    /// The hand answers its last command, with fingers that have something between them where they stand in the
-    /// way of an object of 2.56 in.
+    /// The hand answers its last command, with fingers that have something between them where they stand in
+    /// the way of an object of 2.56 in.
     fn hand(&mut self, report: GripReport, position: i32) -> &mut Self {
         let status = &mut self.memory.hand.status;
         (status.echo, status.report, status.position) = (self.memory.pedestal.hand.number, report, position);
@@ -615,8 +615,8 @@ fn the_object_stays_gripped_whatever_fails() {
     }
 }
 
-/// Every pair of commands, the second at some ticks of the first, in worlds that obey and worlds that do not, with
-/// processes that are restarted in between: all end, with a reason if they fail.
+/// Every pair of commands, the second at some ticks of the first, in worlds that obey and worlds that do not,
+/// with processes that are restarted in between: all end, with a reason if they fail.
 #[test]
 fn every_command_ends_whatever_it_interrupts_and_whatever_does_not_obey() {
     let worlds: [fn(&mut Cell); 6] = [
@@ -666,7 +666,12 @@ proptest! {
     /// Whatever is commanded and whatever the neighbours say: no panic, the hand is opened only for PRE-GRIP
     /// and RELEASE, and the same inputs give the same bits.
     #[test]
-    fn nonsense(ticks in prop::collection::vec((0_u8..20, any::<i32>(), any::<i32>(), 0_u8..5, any::<bool>()), 1..200)) {
+    fn nonsense(
+        ticks in prop::collection::vec(
+            (0_u8..20, any::<i32>(), any::<i32>(), 0_u8..5, any::<bool>()),
+            1..200,
+        ),
+    ) {
         let (mut bench, mut twin) = (Bench::new(), Bench::new());
         for (what, a, b, report, answers) in ticks {
             for bench in [&mut bench, &mut twin] {

@@ -6,7 +6,8 @@ decision_table! {
     /// TRANSFER (V.4.1): move an object from one location to another, then go to the end-at location. The
     /// data base is told as soon as the object is there, so that it is right also if the robot cannot leave.
     /// Sent again after an interruption it goes on: with the part in the pedestal's hand, or with an object
-    /// that is placed already. If it is to stay there, and has been sent away since, it goes back to the object.
+    /// that is placed already. If it is to stay there, and has been sent away since, it goes back to the
+    /// object.
     pub TRANSFER: fn transfer(enum TransferStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                    => Wait;

@@ -331,7 +331,8 @@ fn the_books_follow_an_object_out_of_the_hand() {
     assert!(updates(&bench).is_empty());
 }
 
-/// A bench with two updates that have not been taken: of an object that was taken, and of where it was let go.
+/// A bench with two updates that have not been taken: of an object that was taken, and of where it was let
+/// go.
 fn owing_two(trouble: Answer) -> Bench<'static> {
     let mut bench = Bench::connected();
     bench.data_system.answer = trouble;
