@@ -3,7 +3,7 @@
 //! A part is between the fingers if both feel force and stand above the closed end of travel, where fingers
 //! that are shut on each other feel force too; nothing is there if neither feels any. One finger that touches
 //! tells nothing: a part that is held with little force hangs on one of them. A value counts after
-//! [`FELT_TICKS`]; in the meantime nothing that was certain becomes *nothing*.
+//! `FELT_TICKS`; in the meantime nothing that was certain becomes *nothing*.
 
 use rcs_core::{
     Plain,

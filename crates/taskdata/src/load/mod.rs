@@ -10,7 +10,7 @@
 //! 6. [`store`]: the files; [`origins`]: where each record was entered; [`report`]: everything that was found, with its
 //!    [`places`].
 //!
-//! [`print`] writes entries as forms again. [`job`] reads the job files, which stand beside the blocks.
+//! [`mod@print`] writes entries as forms again. [`job`] reads the job files, which stand beside the blocks.
 
 mod check;
 mod collected;

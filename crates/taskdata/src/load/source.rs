@@ -29,7 +29,7 @@ pub struct Source {
     pub text: Arc<str>,
 }
 
-/// A piece of a source: what a diagnostic underlines. Every word of a load has one, so it is small; [`Places`] knows its block,
+/// A piece of a source: what a diagnostic underlines. Every word of a load has one, so it is small; `Places` knows its block,
 /// line and column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct At {
