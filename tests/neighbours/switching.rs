@@ -71,7 +71,7 @@ fn the_workstation_commands_between_lines_of_the_job_and_the_job_goes_on() {
     assert_eq!(verbs, expected);
 }
 
-/// In the middle of a command nobody takes over.
+/// The job hands over between commands only.
 #[test]
 fn a_workstation_that_goes_amid_a_command_ends_the_run() {
     let controller = start("amid", &[hand_over(), go("SAFE")], "workstation", &[]);

@@ -86,7 +86,7 @@ fn scribbles_on_and_on() {
     }
 }
 
-/// The digest of a run that nobody looks at, in fast clock: there the robot does not ramp down after the last tick.
+/// The digest of a run without readers, in fast clock: there the robot does not ramp down after the last tick.
 fn alone(directory: &Path) -> String {
     let fast = ["--ticks", TICKS, "--log", "none", "--shared-memory", "off"];
     Ended::run(directory, "linkbar", &fast).digest().to_owned()
@@ -166,7 +166,7 @@ fn what_is_shared_is_the_owners_alone() {
     let mut run = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(run.attach());
     let mode = |path: &Path| fs::metadata(path).expect("it is there").permissions().mode() & 0o777;
-    assert_eq!(mode(&memory::root()), 0o700, "nobody else comes to the files in it");
+    assert_eq!(mode(&memory::root()), 0o700, "no other user may open the files in it");
     let objects: Vec<_> = traces(&run.name).into_iter().filter(|path| path.starts_with("/dev/shm")).collect();
     assert!(objects.len() > 16, "{objects:?}");
     for object in objects {

@@ -144,7 +144,7 @@ fn control(mut master: File, manner: Manner, stop: &AtomicBool) -> (ControllerSt
     robot.move_to(&at).unwrap();
     let plugged = Instant::now();
     while plugged.elapsed() < late {
-        // Nobody hears it.
+        // The cable is not plugged in: the bytes are lost.
         let _ = master.read(&mut [0; 64]);
         thread::sleep(Duration::from_millis(5));
     }

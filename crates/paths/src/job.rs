@@ -250,7 +250,7 @@ fn run(state: &mut State<'_>, command: &HwsCommand) -> (Vec<Walked>, Vec<Finding
     (phases, findings)
 }
 
-/// What the workstation does. False if nobody can know where the robot is afterwards.
+/// What the workstation does. False if the position of the robot is not known afterwards.
 fn act(state: &mut State<'_>, action: &Workstation) -> bool {
     match action {
         Workstation::Tray { location, object, offset } => {

@@ -72,7 +72,7 @@ pub struct Phase {
     /// Where that is: tool frame, world, inches.
     #[serde(skip)]
     pub from: Frame,
-    /// A sensor ends it, nobody knows where.
+    /// A sensor ends it, at a place that is not known beforehand.
     #[serde(skip)]
     pub guarded: bool,
 }

@@ -67,7 +67,7 @@ struct Time {
     b: String,
 }
 
-/// How two runs differ, in the words of the one who operates the robot.
+/// How two runs differ, in terms of commands, rows and motions.
 #[derive(Debug, Default, Serialize)]
 pub struct Changes {
     rows: Vec<Rows>,

@@ -1,4 +1,4 @@
-//! Who is in a run: a lock for each role, which the system releases when its holder ends, however that happens.
+//! Which programs use a run: a lock for each role. The system releases it when the program ends, for whatever reason.
 //!
 //! The lock is on a file beside the run's objects in shared memory. So whether a run lives is known without opening
 //! anything that a killed or damaged run left.

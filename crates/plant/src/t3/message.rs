@@ -81,7 +81,7 @@ pub fn off_home(frame: &WireFrame) -> i32 {
     values(frame).iter().zip(values(&HOME)).map(|(a, b)| (a - b).abs()).max().unwrap_or_default()
 }
 
-/// What a warning means for who does not know the codes: `WD6 (joint 6 is at its limit)`.
+/// A warning with its meaning: `WD6 (joint 6 is at its limit)`.
 #[must_use]
 pub fn explained(warning: Warning) -> String {
     let meaning = match warning {

@@ -85,7 +85,7 @@ pub enum JobFailure {
     /// An emergency has stopped the robot.
     #[error("{0}")]
     Emergency(String),
-    /// Whoever commands from another process is lost.
+    /// The connection to the workstation controller is lost.
     #[error("{0}")]
     Commander(String),
 }
