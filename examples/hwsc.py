@@ -5,18 +5,20 @@
     examples/hwsc.py unix:/tmp/rcs.sock
 
 delivers a blank into the tray, has the robot TRANSFER it into the vise, and prints every status until `finished`. The
-bytes are those of docs/neighbours.md; with tcp:IP:PORT a file with the secret follows the address.
+bytes are those of docs/neighbours.md; with tcp:IP:PORT the directory follows that `rcs-neighbour keys` has made.
 """
 
-import hmac
+import contextlib
 import os
 import socket
+import ssl
 import struct
 import sys
 
 HWSC_COMMAND, HWSC_STATUS = 0xF6000, 0xF6200  # Table IX.1
 CELL_COMMAND, CELL_STATUS = 0xF6400, 0xF6600  # the simulated cell's
-PULSE, LAST_WORDS, WELCOME = 0, 1, 2
+PULSE, DISCONNECT, WELCOME = 0, 1, 2
+HELLO, VERSION = struct.Struct("<4sHH"), 3
 WORKSTATION = 1
 COMMAND = struct.Struct("<4sHH12s16s16s16sh16shh16sh16sh")
 STATUS = struct.Struct("<4s16sH12s16s16sHHHHH160s")
@@ -38,58 +40,55 @@ def run(main):
 
 
 class Controller:
-    """The mailboxes of a controller, seen by a neighbour: its number, and the mailboxes that it writes."""
+    """The mailboxes of a controller, seen by a neighbour: its number and name, and the mailboxes that it writes."""
 
-    role, writes = WORKSTATION, (HWSC_COMMAND, CELL_COMMAND)
+    role, name, writes = WORKSTATION, "workstation", (HWSC_COMMAND, CELL_COMMAND)
 
-    def __init__(self, address, secret=b""):
+    def __init__(self, address, keys=None):
         kind, _, place = address.partition(":")
         if kind == "unix":
             self.line = socket.socket(socket.AF_UNIX)
             self.line.connect(place)
         else:
-            host, _, port = place.rpartition(":")
-            self.line = socket.create_connection((host.strip("[]"), int(port)))
-        self.seals, self.verified = None, False if secret else None
-        self.greet(secret)
-        self.verified = True
+            self.line = self.connect_tls(place, keys)
+        mark, version, _clock = HELLO.unpack(self.receive(HELLO.size))
+        if (mark, version) != (b"RCS2", VERSION):
+            sys.exit(f"version {VERSION} of the protocol was expected, found {mark} {version}")
+        self.line.sendall(HELLO.pack(b"RCS2", VERSION, self.role))
+        address, _ = self.read_frame()
+        if address != WELCOME:
+            sys.exit(f"a welcome was expected, found a frame with the address {address:05X}")
         self.mailgrams = dict.fromkeys(self.writes, 0)
         self.status = self.cell = self.pulse = None
 
-    def greet(self, secret):
-        """Prove that both know the secret, and agree upon the seals of frames: {out or in: [key, frames so far]}."""
-        said = self.receive(40) + struct.pack("<4sHH", b"RCS2", self.role, 0) + os.urandom(32)
-        mac = lambda word: hmac.digest(secret, said + word, "sha256") if secret else bytes(32)
-        self.line.sendall(said[40:] + mac(b"neighbour"))
-        address, proof = self.read_frame()
-        if address != WELCOME or not hmac.compare_digest(proof, mac(b"controller")):
-            sys.exit("the controller does not know the secret")
-        if secret:
-            self.seals = {"out": [mac(b"up"), 0], "in": [mac(b"down"), 0]}
-
-    def seal(self, way, frame):
-        """What stands behind a frame: who knows the secret has sent it, as the next one."""
-        if not self.seals:
-            return b""
-        self.seals[way][1] += 1
-        key, number = self.seals[way]
-        return hmac.digest(key, struct.pack("<Q", number) + frame, "sha256")[:16]
+    def connect_tls(self, place, keys):
+        """TLS 1.3 with certificates on both sides. The controller's has the same name wherever it is reached."""
+        context = ssl.create_default_context(cafile=os.path.join(keys, "ca.pem"))
+        context.minimum_version = ssl.TLSVersion.TLSv1_3
+        context.verify_flags |= ssl.VERIFY_X509_STRICT
+        context.load_cert_chain(os.path.join(keys, self.name + ".pem"), os.path.join(keys, self.name + ".key"))
+        host, _, port = place.rpartition(":")
+        line = socket.create_connection((host.strip("[]"), int(port)))
+        line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        return context.wrap_socket(line, server_hostname="controller.rcs2.internal")
 
     def send_frame(self, frame):
-        self.line.sendall(frame + self.seal("out", frame))
+        self.line.sendall(frame)
 
     def read_frame(self):
         """Address and data of the next frame."""
-        head = self.receive(6)
-        address, length = struct.unpack("<IH", head)
+        address, length = struct.unpack("<IH", self.receive(6))
         rest = self.receive(length - 2)
-        seal = self.seal("in", head + rest)
-        if not hmac.compare_digest(self.receive(len(seal)), seal):
-            sys.exit("a frame does not come from the controller")
-        if address == LAST_WORDS:
-            unverified = " (unverified)" if self.verified is False else ""
-            sys.exit(f"the controller says: {plain(rest[6:])}{unverified}")
+        if address == DISCONNECT:
+            sys.exit(f"the controller says: {plain(rest[6:])}")
         return address, rest[6:]
+
+    def close(self):
+        """End TLS in order, so that the controller can tell the end from a cut."""
+        with contextlib.suppress(OSError):  # what the controller has sent meanwhile is not read
+            if isinstance(self.line, ssl.SSLSocket):
+                self.line.unwrap()
+        self.line.close()
 
     def receive(self, count):
         data = b""
@@ -168,12 +167,14 @@ class Controller:
 def main():
     if len(sys.argv) not in (2, 3) or not sys.argv[1].startswith(("unix:", "tcp:")):
         sys.exit(__doc__)
-    secret = open(sys.argv[2], "rb").read().rstrip() if len(sys.argv) == 3 else b""
-    controller = Controller(sys.argv[1], secret)
+    if sys.argv[1].startswith("tcp:") != (len(sys.argv) == 3):
+        sys.exit("a directory with keys was expected behind tcp:IP:PORT, and behind it only")
+    controller = Controller(*sys.argv[1:])
     controller.command("PAUSE")
     controller.in_cell("tray UNIT_1 4 LINKBAR1_BH")
     controller.in_cell("vise partial PFIXTURE LINKBAR")
     controller.command("TRANSFER", "LINKBAR1_BH", 2, "UNIT_1", 4, 2, "PFIXTURE", 0, "HOME", serial="17")
+    controller.close()
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@
 
 answers every request from the picture of the simulated cell: the part nearest to the optical axis is the one asked for. With
 --taught it answers Y, Z (inches) and angle (degrees) of a part that was measured by hand, at every first picture, and (0, 0) at the
-second, when the camera is above it. The bytes are those of docs/neighbours.md; with tcp:IP:PORT a file with the secret follows.
+second, when the camera is above it. The bytes are those of docs/neighbours.md; with tcp:IP:PORT the directory with the keys follows.
 """
 
 import math
@@ -27,7 +27,7 @@ HEAD, PART = struct.Struct("<HHQQ"), struct.Struct("<3d3dd3ddd11s")
 class Vision(Controller):
     """A vision system: reads requests and pictures, writes responses."""
 
-    role, writes = VISION, (RESPONSE,)
+    role, name, writes = VISION, "vision", (RESPONSE,)
     picture = request = None
 
     def take(self, address, data):
@@ -85,8 +85,9 @@ def main():
         del arguments[at : at + 4]
     if len(arguments) not in (1, 2) or not arguments[0].startswith(("unix:", "tcp:")) or taught and len(taught) != 3:
         sys.exit(__doc__)
-    secret = open(arguments[1], "rb").read().rstrip() if len(arguments) == 2 else b""
-    Vision(arguments[0], secret).serve(taught)
+    if arguments[0].startswith("tcp:") != (len(arguments) == 2):
+        sys.exit("a directory with keys was expected behind tcp:IP:PORT, and behind it only")
+    Vision(*arguments).serve(taught)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
-//! `--boards split`: the same bits however the processes are spread; and what becomes of a run when boards are killed, stopped,
-//! started by hand or do not fit.
+//! `--boards split`: the same bits however the processes are spread; and what becomes of a run when boards
+//! are killed, stopped, started by hand or do not fit.
 //!
-//! Two variables make a campaign of it: `RCS_KILLS` is how many boards are killed in a row (8 without it), `RCS_ALL_JOBS` lets
-//! every job of the data directory be held against one board (the three shortest without it).
+//! Two variables make a campaign of it: `RCS_KILLS` is how many boards are killed in a row (8 without it),
+//! `RCS_ALL_JOBS` lets every job of the data directory be held against one board (the three shortest without
+//! it).
 
 use std::{
     collections::BTreeMap,
@@ -15,17 +16,15 @@ use std::{
 };
 
 use executive::{
-    boards::conductor::LOST_AFTER,
+    boards::coordinator::LOST_AFTER,
     memory::{self, Attached, RunName},
 };
-use rcs_core::{
-    interface::{
-        CommonMemory, Reason, Report,
-        emove::EmoveVerb,
-        grip::{GripReport, GripVerb},
-    },
-    plain::from_bytes,
+use interfaces::{
+    CommonMemory, Reason, StatusReport,
+    emove::EmoveVerb,
+    grip::{GripReport, GripVerb},
 };
+use rcs_core::plain::from_bytes;
 use record::{Log, replay};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
@@ -33,8 +32,8 @@ use whole_system_tests::{Scratch, command, rcs_run, root};
 
 /// How long anything here may take before the test gives up.
 const PATIENCE: Duration = Duration::from_secs(120);
-/// How often a moment of a run is waited for. A machine that has other things to do may let it pass; the run goes on to its end
-/// then, and is started again.
+/// How often a moment of a run is waited for. A machine that has other things to do may let it pass; the run
+/// goes on to its end then, and is started again.
 const ATTEMPTS: u32 = 20;
 
 /// What a run said at its end.
@@ -229,7 +228,7 @@ fn strike(
     panic!("never caught in {ATTEMPTS} attempts; the last one said: {said}");
 }
 
-/// It has not ended: one that nobody has waited for yet, as under a first process that does not, has.
+/// It has not ended: one that was not waited for yet, as under a first process that does not wait, has.
 fn is_alive(pid: Pid) -> bool {
     let stat = fs::read_to_string(format!("/proc/{}/stat", pid.as_raw_nonzero())).unwrap_or_default();
     stat.rsplit_once(") ").is_some_and(|(_, state)| !state.starts_with(['Z', 'X']))
@@ -296,7 +295,7 @@ const KILLS: &[Kill] = &[
     Kill {
         board: 8,
         phase: "in mid-grasp",
-        moment: |memory| memory.emove.status.report == Report::Executing && grasps(memory),
+        moment: |memory| memory.emove.status.report == StatusReport::Executing && grasps(memory),
         said: "Grip executed",
         held: false,
     },
@@ -316,7 +315,8 @@ fn grasps(memory: &CommonMemory) -> bool {
 }
 
 fn carries(memory: &CommonMemory) -> bool {
-    memory.subtask.emove.command == EmoveVerb::MovObjTo && memory.emove.status.report == Report::Executing
+    memory.subtask.emove.command == EmoveVerb::MovObjTo
+        && memory.emove.status.report == StatusReport::Executing
 }
 
 #[test]
@@ -387,7 +387,7 @@ fn a_board_that_pauses_is_waited_for() {
 #[test]
 fn a_board_that_hangs_is_lost() {
     let bench = Bench::new("hangs");
-    let moves = shows(|memory| memory.emove.status.report == Report::Executing);
+    let moves = shows(|memory| memory.emove.status.report == StatusReport::Executing);
     let ended = strike(&bench, (2, Signal::STOP), moves, |_| true);
     assert!(ended.last_words().contains("board 2 (E-move, Prim; process"), "{}", ended.last_words());
     assert!(ended.last_words().contains("has not answered for 1.0 s"), "{}", ended.last_words());

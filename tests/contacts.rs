@@ -1,5 +1,5 @@
-//! What the robot runs into: a job with a collision has not finished, and says what touched what, how deep, where, and during
-//! which command.
+//! What the robot runs into: a job with a collision has not finished, and says what touched what, how deep,
+//! where, and during which command.
 
 use std::fs;
 
@@ -28,17 +28,7 @@ fn met<'a>(outcome: &'a Outcome, mover: &str, obstacle: &str) -> &'a Value {
 
 #[test]
 fn a_via_point_that_is_too_low_leads_into_the_tray() {
-    let outcome = run_into("linkbar", "low-via", |scratch| {
-        scratch.data_with(
-            "poses.blk",
-            "   -4040    -1471     3398
-   -5450    -1984      800
-   -4424    -4803      800   -pose-   ...         UNIT-V1",
-            "   -4040    -1471     1098
-   -5450    -1984    -1500
-   -4424    -4803    -1500   -pose-   ...         UNIT-V1",
-        );
-    });
+    let outcome = run_into("linkbar", "low-via", Scratch::with_a_low_via_point);
     let first = &contacts(&outcome)[0]["obstacle"];
     assert!(first.as_str().is_some_and(|name| name.starts_with("pot_")), "{:?}", contacts(&outcome));
     assert!(outcome.last_words.contains("during MOV-TO-VU of GET-OBJECT"), "{}", outcome.last_words);
@@ -128,7 +118,7 @@ fn no_contact_is_permitted_that_no_job_needs() {
         let outcome = run(job, 1, &format!("forbidden-{number}"), in_a_cell(cell.replacen(entry, "", 1)));
         let nearest = outcome.result["clearance"]["distance_in"].as_f64();
         let lies_on_it = nearest.is_some_and(|distance| distance < NO_MISS);
-        assert!(!contacts(&outcome).is_empty() || lies_on_it, "nobody needs {entry}");
+        assert!(!contacts(&outcome).is_empty() || lies_on_it, "no job needs {entry}");
     }
 }
 

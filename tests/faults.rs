@@ -1,8 +1,8 @@
-//! Faults in the cell: how each run ends. It may finish, or fail with a reason that a person understands; what it may not do
-//! is crash, hang, or say that it has finished when it has not.
+//! Faults in the cell: how each run ends. It may finish, or fail with a reason that a person understands;
+//! what it may not do is crash, hang, or say that it has finished when it has not.
 //!
-//! `RCS_FAULT_RUNS` is the number of random schedules that are tried, a handful if it is not set; `RCS_FAULT_SEED` the first
-//! of their seeds.
+//! `RCS_FAULT_RUNS` is the number of random schedules that are tried, a handful if it is not set;
+//! `RCS_FAULT_SEED` the first of their seeds.
 
 use std::{env, fmt::Write as _};
 
@@ -100,7 +100,7 @@ endings! {
     no_air: "linkbar", "air-lost" => Failing(1, "Grip", "the gripper does not finish");
     a_stuck_potentiometer: "linkbar", "potentiometer-stuck" => Failing(1, "Grip", "the gripper does not finish");
     a_gage_that_is_off: "linkbar", "gage-off" => Failing(1, "Grip", "the gripper is not calibrated");
-    bad_id_pins: "linkbar", "id-pins-bad" => Failing(1, "E-move", "the id pins of the quick change name no gripper");
+    bad_id_pins: "linkbar", "id-pins-bad" => Failing(1, "E-move", "the id pins of the quick change name another gripper, or none");
     a_stuck_ring: "tool-change", "lock-ring-stuck" => Failing(1, "Quick Change", "the locking ring of the quick change is stuck");
     a_blind_holster: "tool-change", "holster-eye-off" => Failing(1, "E-move", "the sensor condition did not come");
     a_stuck_resolver: "linkbar", "resolver-stuck" => Failing(1, "Prim", "the robot did not come to rest at the goal");

@@ -1,5 +1,5 @@
-//! `finished` means done: a run whose parts are elsewhere than its commands say has failed, and so has one in which a command came to
-//! nothing, whatever the statuses were.
+//! `finished` means done: a run whose parts are elsewhere than its commands say has failed, and so has one in
+//! which a command came to nothing, whatever the statuses were.
 
 use std::fs;
 
@@ -33,7 +33,7 @@ fn a_part_in_another_sector_than_the_command_said_has_not_arrived() {
     let beside = format!("BLOCK# {}", block.replace("   -525   -525", "   -525  -1045"));
     let outcome = run("linkbar.job", 1, "finished-sector", |scratch| {
         fs::write(scratch.file("sectors.blk"), beside).expect("blocks can be written");
-        scratch.job_with("linkbar.job", PUT_BACK, &format!("** load sectors.blk\n{PUT_BACK}"));
+        scratch.job_with("linkbar.job", PUT_BACK, &format!("** load sectors.blk expect error\n{PUT_BACK}"));
     });
     assert_fails(
         &outcome,

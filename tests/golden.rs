@@ -1,9 +1,10 @@
-//! Golden runs: what the controller did, in small files beside the source, so that whoever changes it sees what else it does.
+//! Golden runs: what the controller did, in small files beside the source, so that a change shows what else it does.
 //!
-//! `goldens/scenarios.toml` lists the runs: a job, a seed, what goes wrong in it, and how it is to end. The program `goldens` makes
-//! the runs and writes two files for each: `NAME.golden` with the inputs and the digests of the outputs, and `NAME.txt`, which a
-//! person reads: commands with their durations, warnings and errors, which rows of which tables fired. The test `goldens`
-//! replays the inputs through today's controller, which takes no time, and compares both.
+//! `goldens/scenarios.toml` lists the runs: a job, a seed, what goes wrong in it, and how it is to end. The
+//! program `goldens` makes the runs and writes two files for each: `NAME.golden` with the inputs and the
+//! digests of the outputs, and `NAME.txt`, which a person reads: commands with their durations, warnings and
+//! errors, which rows of which tables fired. The test `goldens` replays the inputs through today's
+//! controller, which takes no time, and compares both.
 //!
 //! A golden cannot be replayed with other records. Before it is made again, [`crate::trace`] and
 //! [`crate::compare`] show that the new version behaves as the old one.

@@ -1,12 +1,10 @@
-//! The jobs of the data directory: each ends with every part where it put it; and what is said when something goes wrong in
-//! the middle of one.
+//! The jobs of the data directory: each ends with every part where it put it; and what is said when something
+//! goes wrong in the middle of one.
 
 use std::fs;
 
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs, Reason, hws::HwsReport},
-    plain::from_bytes,
-};
+use interfaces::{CommonMemory, ExternalInputs, Reason, hws::HwsReport};
+use rcs_core::plain::from_bytes;
 use record::{Log, replay};
 use whole_system_tests::{Outcome, Scratch, run};
 
@@ -114,7 +112,7 @@ fn a_pedestal_that_cannot_turn_so_far_is_reported() {
             ped-table-pos <= 100 ped-flip-angle <= 1835 :R\n\
             >FILE PED-PARA\n";
         fs::write(scratch.file("pedestal.blk"), pedestal).expect("blocks can be written");
-        scratch.job_with("clevis.job", "** tray UNIT_1", "** load pedestal.blk\n** tray UNIT_1");
+        scratch.job_with("clevis.job", "** tray UNIT_1", "** load pedestal.blk expect error\n** tray UNIT_1");
     });
 }
 

@@ -4,6 +4,7 @@
 //! The tests of this package judge the whole: controller, link, cell, executive and log, built as for a
 //! release.
 
+pub mod bench;
 pub mod compare;
 pub mod golden;
 pub mod trace;
@@ -82,16 +83,17 @@ fn program(name: &str, built: &'static OnceLock<PathBuf>) -> &'static Path {
     })
 }
 
-/// What cargo is to build of the workspace: as a part of it a program has the features of the tests, and most of it is built
-/// already. With Zenoh it is built beside a test, so that Zenoh is not built twice: what tests want of the crates below it is a
-/// part of what they are.
+/// What cargo is to build of the workspace: as a part of it a program has the features of the tests, and most
+/// of it is built already. With Zenoh it is built beside a test, so that Zenoh is not built twice: what tests
+/// want of the crates below it is a part of what they are.
 fn selection(name: &str) -> Vec<&str> {
     let program = ["--bin", name];
     let with_zenoh = ["--features", "zenoh", "--test", "neighbours"];
     program.into_iter().chain(with_zenoh.into_iter().filter(|_| cfg!(feature = "zenoh"))).collect()
 }
 
-/// A directory for the files of one run, removed with it. Two of one name are two directories: tests run beside each other.
+/// A directory for the files of one run, removed with it. Two of one name are two directories: tests run
+/// beside each other.
 pub struct Scratch(TempDir);
 
 impl Scratch {
@@ -151,6 +153,22 @@ impl Scratch {
         let text = fs::read_to_string(&path).expect("the file is there");
         assert!(text.contains(from), "{file} has no {from:?}");
         fs::write(path, text.replacen(from, to, 1)).expect("the file can be written");
+    }
+
+    /// Copy the task data, and let the via point over UNIT_1 be so low that the arm meets the pot of the tray.
+    ///
+    /// # Panics
+    /// If the via point is another one.
+    pub fn with_a_low_via_point(&self) {
+        self.data_with(
+            "poses.blk",
+            "   -4040    -1471     3398
+   -5450    -1984      800
+   -4424    -4803      800   -pose-   ...         UNIT-V1",
+            "   -4040    -1471     1098
+   -5450    -1984    -1500
+   -4424    -4803    -1500   -pose-   ...         UNIT-V1",
+        );
     }
 
     /// Copy the task data.

@@ -2,11 +2,11 @@
 
 use std::{fs, sync::OnceLock, thread, time::Duration};
 
+use interfaces::{CommonMemory, ExternalInputs, Reason};
 use levels::ladder::{Ladder, ProcessId};
 use proptest::prelude::*;
 use rcs_core::{
     Plain,
-    interface::{CommonMemory, ExternalInputs, Reason},
     plain::{Writer, from_bytes},
     tick::Tick,
 };

@@ -19,7 +19,7 @@
 //!
 //! ```toml
 //! renamed = [{ old = "emove.status.at", new = "emove.status.location" }, { old = "grip.*", new = "jaw.*" }]
-//! dropped = [{ path = "prim.status.sensed", reason = "nobody reads it" }]
+//! dropped = [{ path = "prim.status.sensed", reason = "it is not read" }]
 //! added = [{ path = "task.status.since", reason = "for the screen" }]
 //! value = [{ path = "*.status.reason", old = "", new = "none" }]
 //! ```

@@ -20,9 +20,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use interfaces::{CommonMemory, Decided, DeviceOutputs, Header};
 use rcs_core::{
     Plain,
-    interface::{CommonMemory, Decided, DeviceOutputs, Header},
     plain::{Schema, StructSchema, Writer, from_bytes},
     tick::Tick,
 };

@@ -1,10 +1,7 @@
 //! Traces and their comparison: every change is in the trace, and every difference is found.
 
-use rcs_core::{
-    interface::{CommonMemory, Decided, Reason, emove::Holding},
-    name::Name16,
-    tick::Tick,
-};
+use interfaces::{CommonMemory, Decided, Reason, emove::Holding};
+use rcs_core::{name::Name16, tick::Tick};
 use whole_system_tests::{
     compare::{CompareError, Comparison, Moment, Renames, RowMap, compare},
     golden::Ending,
@@ -71,7 +68,7 @@ fn a_missing_field_and_a_new_one_are_differences_unless_they_are_meant() {
     assert!(text.contains("prim.old: was \"1\", is no such field; differs in 9 ticks\n"), "{text}");
     assert!(text.contains("prim.new: was no such field, is \"3\"; differs in 9 ticks\n"), "{text}");
     let meant = r#"
-        dropped = [{ path = "prim.old", reason = "nobody reads it" }]
+        dropped = [{ path = "prim.old", reason = "it is not read" }]
         added = [{ path = "*.new", reason = "for the screen" }]
     "#;
     assert_eq!(differences(&was, &is, meant), "");

@@ -1,5 +1,5 @@
-//! `rcs-log why` on failures that were provoked: it must find the first cause, tell the commands that led there with their rows,
-//! what was sensed meanwhile, and how the failure went up.
+//! `rcs-log why` on failures that were provoked: it must find the first cause, tell the commands that led
+//! there with their rows, what was sensed meanwhile, and how the failure went up.
 
 #![expect(clippy::print_stdout, reason = "what it says is what it is for")]
 
@@ -140,17 +140,7 @@ fn a_run_that_no_process_failed() {
 
 #[test]
 fn a_contact_leads_to_the_line_of_the_data_that_the_robot_followed() {
-    let outcome = run("linkbar", 1, "why-contact", |scratch| {
-        scratch.data_with(
-            "poses.blk",
-            "   -4040    -1471     3398
-   -5450    -1984      800
-   -4424    -4803      800   -pose-   ...         UNIT-V1",
-            "   -4040    -1471     1098
-   -5450    -1984    -1500
-   -4424    -4803    -1500   -pose-   ...         UNIT-V1",
-        );
-    });
+    let outcome = run("linkbar", 1, "why-contact", Scratch::with_a_low_via_point);
     let (answer, text) = why(&outcome);
     let world = &answer["world"];
     assert!(world["text"].as_str().is_some_and(|said| said.contains(" runs into pot_")), "{text}");

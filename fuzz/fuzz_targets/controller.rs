@@ -7,14 +7,12 @@
 
 use depc::{
     Limits, Plate,
-    controller::{Controller, ControllerInputs, ControllerState, JointProblem, Robot, joints_for},
+    controller::{Controller, ControllerInputs, ControllerState, Refusal, Robot, joints_for},
     wire::DataCommand,
 };
 use libfuzzer_sys::fuzz_target;
-use rcs_core::{
-    interface::device::LinkBytes,
-    kinematics::{HOME_JOINTS, Joints, T3},
-};
+use geometry::kinematics::{HOME_JOINTS, Joints, T3};
+use interfaces::device::LinkBytes;
 
 const HOME: Plate = Plate { words: [0, -6293, -636, -9000, 13500, 0] };
 
@@ -25,11 +23,11 @@ struct Watched {
 }
 
 impl Robot for Watched {
-    fn present(&self) -> Plate {
+    fn present(&mut self) -> Plate {
         self.at
     }
 
-    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+    fn accept(&mut self, goal: &Plate) -> Result<(), Refusal> {
         assert_eq!(Limits::NBS.check(&self.at, goal), Ok(()));
         self.joints = joints_for(&T3, goal, &self.joints)?;
         self.at = *goal;

@@ -1,6 +1,7 @@
 //! The reader of logs: any bytes as a file, and as the messages of a file whose checksums are right.
 //!
-//! What can be read comes in the order of its ticks, and everything else is an error in words. Memory is bounded by the fuzzer.
+//! What can be read comes in the order of its ticks, and everything else is an error in words. Memory is
+//! bounded by the fuzzer.
 
 #![no_main]
 

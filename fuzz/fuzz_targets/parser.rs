@@ -11,7 +11,7 @@ use depc::{
     wire::{DataCommand, Report},
 };
 use libfuzzer_sys::fuzz_target;
-use rcs_core::interface::device::LinkBytes;
+use interfaces::device::LinkBytes;
 
 const HOME: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
 

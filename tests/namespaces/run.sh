@@ -45,14 +45,14 @@ ip netns exec "$line" python3 tests/namespaces/relay.py rcs-va rcs-vb 1 < "$work
 exec 9> "$work/orders"
 order() { echo "$*" >&9; }
 
-(umask 077; head -c 24 /dev/urandom | base64 > "$work/secret")
+"$programs/rcs-neighbour" keys "$work/keys" > /dev/null
 for _ in $(seq $((commands + 1))); do echo "== PAUSE -- +0 -- 0 +0 -- 0 -- 0"; done > "$work/short.job"
 for _ in $(seq 40); do echo "== PAUSE -- +0 -- 0 +0 -- 0 -- 0"; echo "** wait 5"; done > "$work/long.job"
 
 # Plays a job from the other namespace.
 play() {
     timeout 120 ip netns exec "$b" "$programs/rcs-neighbour" workstation --network "$address" \
-        --secret "$work/secret" "$work/$1.job" > "$work/$1.out" 2> "$work/$1.err"
+        --keys "$work/keys" "$work/$1.job" > "$work/$1.out" 2> "$work/$1.err"
 }
 # Ticks of the commands but the first, which waits for the robot: the mean, and the longest.
 ticks() {
@@ -75,7 +75,7 @@ try() { # TRANSPORT ADDRESS
     address=$2
     order 0 0 0
     ip netns exec "$a" "$programs/rcs-run" --clock real --network "$address" --outside workstation \
-        --secret "$work/secret" --log none --shared-memory off > "$work/page" 2> "$work/said" &
+        --keys "$work/keys" --log none --shared-memory off > "$work/page" 2> "$work/said" &
     controller=$!
     while read -r what condition; do
         order $condition
@@ -103,12 +103,12 @@ CONDITIONS
     row "$transport" "healed" $(ticks "$work/short.out")
     kill -TERM "$(pgrep -P "$controller" -x rcs-run || echo "$controller")"
     wait "$controller" || fail "the controller ended with $?"
-    echo "        the controller's events: $(grep -oE 'has gone: [^"]*' "$work/page" | sort | uniq -c | sort -rn | tr -s ' ' | paste -sd ';')"
+    echo "        the controller's events: $(grep -oE 'has disconnected: [^"]*' "$work/page" | sort | uniq -c | sort -rn | tr -s ' ' | paste -sd ';')"
 }
 
 try tcp tcp:10.99.0.1:7400
-if "$programs/rcs-neighbour" workstation --network zenoh:t3@tcp/127.0.0.1:1 --secret "$work/secret" --wait 0 \
-    "$work/short.job" 2>&1 | grep -q 'built without Zenoh'; then
+if { "$programs/rcs-neighbour" workstation --network zenoh:t3@tcp/127.0.0.1:1 --keys "$work/keys" --wait 0 \
+    "$work/short.job" 2>&1 || true; } | grep -q "built without Zenoh"; then
     echo "not tried: Zenoh, without which these programs were built"
 else
     try zenoh zenoh:t3@tcp/10.99.0.1:7447

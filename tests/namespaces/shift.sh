@@ -35,7 +35,7 @@ for end in "$a rcs-va" "$b rcs-vb"; do
     ip -n "$space" link set lo up
     ip -n "$space" route add 224.0.0.0/4 dev "$interface"
 done
-(umask 077; head -c 24 /dev/urandom | base64 > "$work/secret")
+"$programs/rcs-neighbour" keys "$work/keys" > /dev/null
 
 digest() { python3 -c 'import json, sys; print(json.load(open(sys.argv[1]))["digest"])' "$1"; }
 "$programs/rcs-run" shift --json --log none --shared-memory off > "$work/inside.json" 2> "$work/inside.err"
@@ -46,15 +46,15 @@ shifts=0
 shift_over() { # ADDRESS
     local address=$1 servants=()
     items=$work/items-$((++shifts)).db
-    neighbour() { ip netns exec "$b" "$programs/rcs-neighbour" "$1" --network "$address" --secret "$work/secret" --wait 20 "${@:2}"; }
-    ip netns exec "$a" "$programs/rcs-run" shift --json --log none --shared-memory off --network "$address" --secret "$work/secret" \
+    neighbour() { ip netns exec "$b" "$programs/rcs-neighbour" "$1" --network "$address" --keys "$work/keys" --wait 20 "${@:2}"; }
+    ip netns exec "$a" "$programs/rcs-run" shift --json --log none --shared-memory off --network "$address" --keys "$work/keys" \
         --outside workstation,data-system,pedestal,vision --outbox "$items.outbox" > "$work/run.json" 2> "$work/run.err" &
     local run=$!
     neighbour data-system "$items" > /dev/null 2> "$work/data-system.err" & servants+=($!)
     neighbour pedestal > /dev/null 2> "$work/pedestal.err" & servants+=($!)
     neighbour vision > /dev/null 2> "$work/vision.err" & servants+=($!)
     local began; began=$(date +%s%N)
-    timeout 300 ip netns exec "$b" "$programs/rcs-neighbour" workstation --network "$address" --secret "$work/secret" --wait 20 shift \
+    timeout 300 ip netns exec "$b" "$programs/rcs-neighbour" workstation --network "$address" --keys "$work/keys" --wait 20 shift \
         > /dev/null 2> "$work/workstation.err" || fail "the shift over $address"
     wait "$run" || fail "rcs-run over $address"
     local took=$((($(date +%s%N) - began) / 1000000))

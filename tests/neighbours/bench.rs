@@ -3,25 +3,25 @@
 use std::{
     fs,
     io::{BufRead as _, BufReader, Read as _},
-    os::unix::fs::PermissionsExt as _,
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     thread::{self, JoinHandle},
     time::{Duration, Instant},
 };
 
+use interfaces::HwsCommand;
 use neighbours::{
     mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS, Mailbox},
-    network::{Address, Peer, PeerError, Received, Role, Secret},
+    network::{Address, NeighbourKeys, Peer, PeerError, Received, Role},
     workstation::{
         Status,
         cell::{self, CellStatus},
         command, status,
     },
 };
-use rcs_core::{interface::HwsCommand, name::Name16};
+use rcs_core::name::Name16;
 use serde_json::Value;
-use whole_system_tests::{Scratch, rcs_run, root};
+use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 
 /// How long something may take that takes milliseconds.
 pub const PATIENCE: Duration = Duration::from_secs(120);
@@ -84,12 +84,12 @@ impl Controller {
     }
 
     /// Connect to it, if need be as soon as it has noticed that another one has gone.
-    pub fn connect(&self, role: Role, secret: Option<&Secret>) -> Peer {
+    pub fn connect(&self, role: Role, keys: Option<&Path>) -> Peer {
         let started = Instant::now();
         loop {
-            match self.try_connect(role, secret) {
-                Err(PeerError::LastWords(words)) if words.ends_with("is connected already") => {
-                    assert!(started.elapsed() < PATIENCE, "{words}");
+            match self.try_connect(role, keys) {
+                Err(PeerError::Disconnected(why)) if why.ends_with("is connected already") => {
+                    assert!(started.elapsed() < PATIENCE, "{why}");
                     thread::sleep(Duration::from_millis(10));
                 }
                 peer => return peer.expect("it waits"),
@@ -98,8 +98,9 @@ impl Controller {
     }
 
     /// Connect to it, or hear why not.
-    pub fn try_connect(&self, role: Role, secret: Option<&Secret>) -> Result<Peer, PeerError> {
-        Peer::connect_within(PATIENCE, &self.address, role, secret)
+    pub fn try_connect(&self, role: Role, keys: Option<&Path>) -> Result<Peer, PeerError> {
+        let keys = keys.map(|keys| NeighbourKeys::load(keys, role).expect("they can be used"));
+        Peer::connect_within(PATIENCE, &self.address, role, keys.as_ref())
     }
 
     /// Kill it, so that it can do nothing more; what it leaves.
@@ -149,8 +150,8 @@ impl Workstation {
         Self::connect_with(controller, None)
     }
 
-    pub fn connect_with(controller: &Controller, secret: Option<&Secret>) -> Self {
-        let peer = controller.connect(Role::Workstation, secret);
+    pub fn connect_with(controller: &Controller, keys: Option<&Path>) -> Self {
+        let peer = controller.connect(Role::Workstation, keys);
         let command_box = Mailbox::initialized(HWSC_COMMAND);
         let cell_box = Mailbox::initialized(CELL_COMMAND);
         let mut workstation = Self { peer, tick: 0, unanswered: false, command_box, cell_box, line: 0 };
@@ -268,12 +269,16 @@ pub fn example(name: &str) -> PathBuf {
     root().join("examples").join(name)
 }
 
-/// A secret in a file of its owner's, and the file.
-pub fn secret(scratch: &Scratch, name: &str, text: &str) -> (Secret, String) {
-    let file = scratch.file(name);
-    fs::write(&file, text).expect("a file can be written");
-    fs::set_permissions(&file, fs::Permissions::from_mode(0o600)).expect("its mode can be set");
-    (Secret::load(&file).expect("it is long enough"), file.display().to_string())
+/// An authority of its own, and certificates of so many days, in a directory.
+pub fn make_keys(scratch: &Scratch, name: &str, days: u16) -> PathBuf {
+    let directory = scratch.file(name);
+    let made = Command::new(rcs_neighbour())
+        .args(["keys", "--days", &days.to_string()])
+        .arg(&directory)
+        .output()
+        .expect("rcs-neighbour can be started");
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    directory
 }
 
 /// The digest of a shipped job, whose pedestal is in the controller's own process.

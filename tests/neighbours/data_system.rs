@@ -9,6 +9,7 @@ use std::{
     time::Duration,
 };
 
+use interfaces::HwsCommand;
 use neighbours::{
     data_system::{
         Server, Store, command,
@@ -17,7 +18,7 @@ use neighbours::{
     mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox},
     network::{Peer, Received, Role},
 };
-use rcs_core::{interface::HwsCommand, name::Name16};
+use rcs_core::name::Name16;
 use whole_system_tests::{Scratch, rcs_neighbour, rcs_run, root};
 
 use crate::bench::{Controller, Ended, Workstation, bare};

@@ -2,12 +2,13 @@
 
 use std::thread;
 
+use interfaces::HwsCommand;
 use neighbours::{
     mailbox::{HWSC_STATUS, Mailbox},
     network::{Received, Role},
     workstation::cell::Trouble,
 };
-use rcs_core::{interface::HwsCommand, name::Name16};
+use rcs_core::name::Name16;
 use rustix::process::{Pid, Signal, kill_process};
 
 use crate::bench::{Controller, Ended, Workstation, attend, bare};
@@ -84,7 +85,7 @@ fn who_goes_while_others_are_waited_for_ends_the_run_in_its_first_tick() {
     assert_eq!(ended.result["ticks"], 1);
     let events = ended.result["events"]["first"].as_array().expect("events").iter();
     let texts: Vec<_> = events.map(|event| event["text"].as_str().expect("a text")).collect();
-    assert!(texts.iter().any(|text| text.starts_with("workstation has gone: ")), "{texts:?}");
+    assert!(texts.iter().any(|text| text.starts_with("workstation has disconnected: ")), "{texts:?}");
     pedestal.join().expect("it has not panicked");
 }
 
@@ -168,8 +169,8 @@ const BY_HAND: [&str; 6] = [
     "panel cycle-start",
 ];
 
-/// A command replaces the one that is executed: the robot stops, and goes on from there. The operator may bring it to HOME
-/// instead.
+/// A command replaces the one that is executed: the robot stops, and goes on from there. The operator may
+/// bring it to HOME instead.
 #[test]
 fn a_robot_that_was_stopped_on_its_way_goes_on_or_is_brought_back_by_hand() {
     let (controller, mut workstation) = start_moving("by-hand");

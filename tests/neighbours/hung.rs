@@ -1,4 +1,5 @@
-//! Neighbours that hang: connected, but without an answer to any pulse. On the 40 ms grid the robot goes on without them.
+//! Neighbours that hang: connected, but without an answer to any pulse. On the 40 ms grid the robot goes on
+//! without them.
 
 use std::thread;
 
@@ -8,7 +9,7 @@ use whole_system_tests::Scratch;
 
 use crate::bench::{Controller, Workstation, bare};
 
-/// What whoever hangs hears at last.
+/// What a neighbour that hangs is told at last.
 const TOLD: &str = "the controller says: no answer for 10 s";
 
 /// Read, as the system does behind a program that stands still, and answer nothing; what is heard last.
@@ -50,7 +51,7 @@ fn who_hangs_is_disconnected_and_the_robot_goes_on() {
     let ended = controller.end();
     assert_eq!(ended.status, Some(0), "{}", ended.said);
     for role in HUNG {
-        let gone = format!("{role} has gone: no answer for 10 s");
+        let gone = format!("{role} has disconnected: no answer for 10 s");
         assert!(ended.page.contains(&gone), "{gone}: {}", ended.page);
     }
 }

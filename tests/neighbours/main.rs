@@ -1,4 +1,4 @@
-//! Neighbours in other processes: whoever commands the robot can be replaced, and nobody else commands it.
+//! Neighbours in other processes: the process that commands the robot can be replaced, and no other commands it.
 //!
 //! Nearly all of it in fast clock, where the tick waits for its neighbours: nothing depends on how fast the machine is.
 

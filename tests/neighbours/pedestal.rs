@@ -1,7 +1,9 @@
-//! The Active Pedestal in another process (VI.7, IX.3): not a bit of a run changes by it, and whatever becomes of it, the robot keeps
-//! what it holds, its hand keeps what it holds, and the command ends with words that name it.
+//! The Active Pedestal in another process (VI.7, IX.3): not a bit of a run changes by it, and whatever
+//! becomes of it, the robot keeps what it holds, its hand keeps what it holds, and the command ends with
+//! words that name it.
 //!
-//! All in fast clock: the controller's time stands still while its workstation controller, which is the test, does not answer.
+//! All in fast clock: the controller's time stands still while its workstation controller, which is the test,
+//! does not answer.
 
 use std::{
     io::{BufRead as _, BufReader},
@@ -14,18 +16,16 @@ use std::{
     thread::{self, JoinHandle},
 };
 
+use interfaces::{
+    HwsCommand, Reason,
+    pedestal::{PedestalReport, PedestalVerb},
+};
 use neighbours::{
     mailbox::{Mailbox, PEDESTAL_COMMAND, PEDESTAL_SENSORS, PEDESTAL_STATUS},
     network::{Peer, Received, Role},
-    pedestal::{Station, cell, command as bytes, status::Status},
+    pedestal::{System, cell::SensorsLayout, command::CommandLayout, status::Status},
 };
-use rcs_core::{
-    interface::{
-        HwsCommand, Reason,
-        pedestal::{PedestalReport, PedestalVerb},
-    },
-    name::Name16,
-};
+use rcs_core::name::Name16;
 use whole_system_tests::{Scratch, rcs_log, rcs_neighbour, rcs_run, root};
 
 use crate::bench::{Controller, Ended, Workstation, bare, digest_of};
@@ -143,7 +143,7 @@ enum Fate {
 }
 
 /// A pedestal when it has ended, and the counts of its finger potentiometer.
-type Remains = (Station, u16);
+type Remains = (System, u16);
 
 /// A pedestal on a thread, which ends when its fate or the line does.
 struct Guest {
@@ -161,14 +161,14 @@ impl Guest {
 }
 
 fn serve(mut peer: Peer, fate: Fate, is_there: &AtomicBool) -> Remains {
-    let (mut station, mut opening) = (Station::default(), 0);
+    let (mut system, mut opening) = (System::default(), 0);
     let mut forged = Mailbox::initialized(PEDESTAL_STATUS);
     let (mut sent, mut numbers, mut ticks, mut turning) = ([0; 4], Vec::new(), 0, 0);
     while let Ok(received) = peer.receive() {
         let Received::Pulse(pulse) = received else { continue };
         is_there.store(true, Ordering::Release);
         let command_box = peer.mailbox(PEDESTAL_COMMAND);
-        let number = bytes::decode(command_box.data()).expect("the controller commands").number;
+        let number = CommandLayout::decode(command_box.data()).expect("the controller commands").number;
         if !numbers.contains(&number) {
             (numbers, ticks) = ([numbers, vec![number]].concat(), 0);
         }
@@ -176,18 +176,18 @@ fn serve(mut peer: Peer, fate: Fate, is_there: &AtomicBool) -> Remains {
         // The first one stood there when it came.
         let commanded = numbers.len() > 1;
         let sensors_box = peer.mailbox(PEDESTAL_SENSORS);
-        opening = cell::decode_sensors(sensors_box.data()).expect("its devices are there").potentiometer;
-        station.step(command_box, sensors_box);
-        turning += u32::from(station.command().command == PedestalVerb::Flip);
+        opening = SensorsLayout::decode(sensors_box.data()).expect("its devices are there").potentiometer;
+        system.step(command_box, sensors_box);
+        turning += u32::from(system.command().command == PedestalVerb::Flip);
         let over = match fate {
             Fate::DiesTurning(limit) => turning > limit,
             Fate::Serves(limit) => ticks > limit,
             Fate::AnswersForAnother | Fate::Babbles => numbers.len() > 2 && ticks > 5,
         };
         if over {
-            return (station, opening);
+            return (system, opening);
         }
-        for (mailbox, sent) in station.outgoing().iter().zip(&mut sent) {
+        for (mailbox, sent) in system.outgoing().iter().zip(&mut sent) {
             if mailbox.mailgram() == *sent {
                 continue;
             }
@@ -209,14 +209,14 @@ fn serve(mut peer: Peer, fate: Fate, is_there: &AtomicBool) -> Remains {
                 }
             }
             if peer.send(&own).is_err() {
-                return (station, opening);
+                return (system, opening);
             }
         }
         if peer.pulse(pulse).is_err() {
-            return (station, opening);
+            return (system, opening);
         }
     }
-    (station, opening)
+    (system, opening)
 }
 
 /// A pedestal in another process, and whether it has said that it has got a pulse.
@@ -272,7 +272,7 @@ fn whatever_becomes_of_the_pedestal_the_command_ends_and_nothing_is_dropped() {
     assert_eq!(shop.fails(), SILENT);
     let (dead, held) = shop.see_off(guest);
     assert!(dead.memory().hand.status.position > 240, "it held the clevis");
-    // Its successor leaves the hand as it is as long as nobody commands otherwise.
+    // Its successor leaves the hand as it is as long as no other command comes.
     let guest = shop.admit(Fate::Serves(300));
     let (successor, opening) = shop.see_off(guest);
     let status = successor.memory().pedestal.status;
@@ -305,7 +305,7 @@ fn a_pedestal_that_is_killed_and_started_again_turns_the_next_part() {
     assert!(second.wait().expect("a child").success());
 }
 
-/// What whoever runs a job reads when its pedestal is not there.
+/// What a run says when its pedestal is not there.
 #[test]
 fn a_job_without_its_pedestal_says_so() {
     let scratch = Scratch::new("no-pedestal");

@@ -1,5 +1,5 @@
-//! Neighbours that do not answer. A run in fast clock waits for them, but not beyond its own end. A Data System that answers every
-//! pulse, and not what it is asked, is asked again.
+//! Neighbours that do not answer. A run in fast clock waits for them, but not beyond its own end. A Data
+//! System that answers every pulse, and not what it is asked, is asked again.
 
 use std::{
     sync::mpsc::{Receiver, Sender, channel},
@@ -20,7 +20,7 @@ use whole_system_tests::Scratch;
 
 use crate::bench::{Controller, Ended, PATIENCE, Workstation, attend, bare};
 
-/// Exchanges after which nobody can say that he was not given time.
+/// Exchanges after which it has had time enough.
 const LONG: usize = 50;
 
 /// Start a controller that is commanded from outside, and a Data System that does as it is told here.
@@ -85,7 +85,7 @@ fn a_run_ends_as_asked_for_while_a_tick_waits_for_a_neighbour() {
         heard.recv_timeout(PATIENCE).expect("a tick waits");
         let ended = terminate(controller);
         assert_eq!(ended.status, Some(0), "{silent}: {}", ended.said);
-        assert!(!ended.page.contains("has gone"), "{silent}: {}", ended.page);
+        assert!(!ended.page.contains("has disconnected"), "{silent}: {}", ended.page);
         for peer in peers {
             peer.join().expect("it has not panicked");
         }

@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use rcs_core::{interface::HwsCommand, name::Name16};
+use interfaces::HwsCommand;
+use rcs_core::name::Name16;
 use whole_system_tests::Scratch;
 
 use crate::bench::{Controller, Ended, Workstation, bare};

@@ -1,5 +1,5 @@
-//! Vision in another process (IX.4, V.2.1): the same bits as in the cell, and whatever it does, the arm goes nowhere by it that
-//! E-move has not checked.
+//! Vision in another process (IX.4, V.2.1): the same bits as in the cell, and whatever it does, the arm goes
+//! nowhere by it that E-move has not checked.
 
 use std::{
     fs,
@@ -8,18 +8,16 @@ use std::{
     thread::{self, JoinHandle},
 };
 
+use interfaces::{
+    HwsCommand,
+    device::{VisionRequest, VisionResponse, VisionStatus},
+};
 use neighbours::{
     mailbox::{Mailbox, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE},
     network::{Peer, Received, Role},
     vision::{Areas, Picture, Ready, request},
 };
-use rcs_core::{
-    interface::{
-        HwsCommand,
-        device::{VisionRequest, VisionResponse, VisionStatus},
-    },
-    name::Name16,
-};
+use rcs_core::name::Name16;
 use whole_system_tests::{Scratch, golden, rcs_log, rcs_neighbour, root};
 
 use crate::bench::{Controller, Ended, Workstation, bare, example};
@@ -96,7 +94,8 @@ fn jobs_have_the_same_bits_with_vision_in_another_process() {
     }
 }
 
-/// What E-move's table has for all that an answer may be (V.2.1 LOCATE-OBJ). Picture 1 is the fast flood, 2 the precise one.
+/// What E-move's table has for all that an answer may be (V.2.1 LOCATE-OBJ). Picture 1 is the fast flood, 2
+/// the precise one.
 #[test]
 fn pictures_that_fail_are_taken_again_and_given_up() {
     for (faults, reason) in [
@@ -122,7 +121,8 @@ fn pictures_that_fail_are_taken_again_and_given_up() {
     }
 }
 
-/// What is no answer to the present request is as if none had come: not a bit of what the controller does differs, and it says why.
+/// What is no answer to the present request is as if none had come: not a bit of what the controller does
+/// differs, and it says why.
 #[test]
 fn what_is_no_answer_moves_nothing_and_is_said() {
     let silent = linkbar("silent", "1:off");
@@ -185,7 +185,8 @@ fn vision_with_another_cell_description_ends_and_says_why() {
     assert!(ended.said.contains("vision does not answer"), "{}", ended.said);
 }
 
-/// The vision system in another language that the documentation shows: it has nothing but the bytes in common with the other one.
+/// The vision system in another language that the documentation shows: it has nothing but the bytes in common
+/// with the other one.
 #[test]
 fn the_python_example_locates_a_part() {
     let python =
@@ -315,8 +316,8 @@ fn fetch(number: u32) -> HwsCommand {
     }
 }
 
-/// In fast clock, and with a workstation controller that does nothing meanwhile, time stands still until the next vision system is
-/// there: the request that it finds is the one that was not answered.
+/// In fast clock, and with a workstation controller that does nothing meanwhile, time stands still until the
+/// next vision system is there: the request that it finds is the one that was not answered.
 #[test]
 fn vision_that_is_killed_in_the_middle_and_started_again_answers() {
     for fate in [Fate::Answers, Fate::DiesAtOnce, Fate::DiesInTheMiddle] {

@@ -2,6 +2,7 @@
 
 use std::process::{Command, Stdio};
 
+use interfaces::HwsCommand;
 use neighbours::{
     mailbox::HWSC_COMMAND,
     workstation::{
@@ -9,11 +10,10 @@ use neighbours::{
         command,
     },
 };
-use rcs_core::interface::HwsCommand;
 use rustix::process::{Pid, Signal, kill_process};
 use whole_system_tests::{Scratch, rcs_neighbour, root};
 
-use crate::bench::{Controller, Workstation, bare, example, run_alone, secret};
+use crate::bench::{Controller, Workstation, bare, example, make_keys, run_alone};
 
 /// The job of the controller's own emulator and that of one in another process are the same to the bit.
 #[test]
@@ -53,7 +53,7 @@ fn boards_are_commanded_from_another_process() {
     assert_eq!(ended.status, Some(0), "{}", ended.said);
 }
 
-/// The client in another language that the documentation shows, with proofs and seals.
+/// The client in another language that the documentation shows, with TLS and strict verification of certificates.
 #[test]
 fn the_python_example_transfers_a_part() {
     let python =
@@ -63,12 +63,12 @@ fn the_python_example_transfers_a_part() {
         return;
     }
     let scratch = Scratch::new("python");
-    let (_, file) = secret(&scratch, "secret", "the key under the third flower pot");
-    let more = ["--json", "--secret", file.as_str()];
+    let keys = make_keys(&scratch, "keys", 1).display().to_string();
+    let more = ["--json", "--keys", keys.as_str()];
     let controller = Controller::start_at(scratch, Some("tcp:127.0.0.1:0"), "workstation", &more);
     let output = Command::new("python3")
         .arg(example("hwsc.py"))
-        .args([&controller.address.to_string(), &file])
+        .args([&controller.address.to_string(), &keys])
         .output()
         .expect("python3 can be started");
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -88,7 +88,7 @@ fn digest_with(name: &str, what: impl FnOnce(&mut Workstation)) -> String {
     drop(workstation);
     let ended = controller.end();
     assert_eq!(ended.status, Some(0), "{}", ended.said);
-    assert_eq!(ended.result["ticks"], 200, "a run in fast clock ends when nobody commands");
+    assert_eq!(ended.result["ticks"], 200, "a run in fast clock ends with its workstation controller");
     ended.result["digest"].as_str().expect("a digest").to_owned()
 }
 
@@ -129,12 +129,12 @@ fn refused_commands_say_why_and_nothing_moves() {
     assert_eq!(disturbed, quiet);
 }
 
-/// Every mailgram with a line for the cell is answered: with its number, and a sentence if it is refused. Nothing is opened for one.
+/// Every mailgram with a line for the cell is answered: with its number, and a sentence if it is refused.
+/// Nothing is opened for one.
 #[test]
 fn lines_for_the_cell_are_refused_by_their_number_and_their_words() {
     const LOAD: &str =
         "load stands in the controller's own jobs only, whose blocks are read before the first tick";
-    const END: &str = "the data end before line does";
     let controller = Controller::start("lines", "workstation", &[]);
     let mut workstation = Workstation::connect(&controller);
     let line = |number, text| cell::encode_line(number, text).to_vec();
@@ -163,8 +163,8 @@ fn lines_for_the_cell_are_refused_by_their_number_and_their_words() {
             20,
             "printable characters and blanks behind them were expected for line, found C3 at byte 9",
         ),
-        (line(21, "vise close PFIXTURE")[..100].to_vec(), 21, END),
-        (vec![22, 0], 22, END),
+        (line(21, "vise close PFIXTURE")[..100].to_vec(), 21, "a line of 242 bytes was expected, found 100"),
+        (vec![22, 0], 22, "a line of 242 bytes was expected, found 2"),
         (vec![7], 22, "the data end before number does"),
         (Vec::new(), 22, "the data end before number does"),
     ];
@@ -201,7 +201,8 @@ fn a_command_that_task_does_not_know_fails_and_the_next_one_is_carried_out() {
     assert_eq!(statuses, ["error", "error", "finished"]);
 }
 
-/// On the 40 ms grid the controller goes on without anybody, and numbers are synchronized when somebody comes (IX.1).
+/// On the 40 ms grid the controller goes on alone, and numbers are synchronized when a workstation controller
+/// connects (IX.1).
 #[test]
 fn a_workstation_controller_that_comes_again_goes_on_from_the_echo() {
     let controller = Controller::start("again", "workstation", &["--json", "--clock", "real"]);

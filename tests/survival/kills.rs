@@ -3,9 +3,10 @@
 
 use executive::memory::ReadError;
 use record::replay;
-use whole_system_tests::Scratch;
-
-use crate::bench::{Ended, ONE_AT_A_TIME, Running, assert_cleaned, traces};
+use whole_system_tests::{
+    Scratch,
+    bench::{Ended, ONE_AT_A_TIME, Running, assert_cleaned, traces},
+};
 
 /// Jobs whose runs are killed, with their lengths in ticks.
 const JOBS: [(&str, u64); 4] =

@@ -3,7 +3,7 @@
 //! `RCS_KILLS` sets how often runs are killed (4 if it is not set); the tests that need more than an ordinary
 //! user's rights say so and look at the rest if they do not have them.
 
-mod bench;
+mod campaign;
 mod damage;
 mod kills;
 mod neighbours;

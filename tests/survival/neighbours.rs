@@ -2,9 +2,11 @@
 
 use std::{fs, os::unix::process::CommandExt, process::Stdio};
 
-use whole_system_tests::{NOBODY, Scratch, may_become_nobody, rcs_run};
-
-use crate::bench::{Ended, ONE_AT_A_TIME, Running, assert_cleaned, rcs, traces, wait_for};
+use whole_system_tests::{
+    NOBODY, Scratch,
+    bench::{Ended, ONE_AT_A_TIME, Running, assert_cleaned, rcs, traces, wait_for},
+    may_become_nobody, rcs_run,
+};
 
 #[test]
 fn two_runs_side_by_side_do_not_meet() {
@@ -35,7 +37,7 @@ fn another_user_runs_beside_and_after_the_first() {
     let _alone = ONE_AT_A_TIME.lock();
     let mut first = Running::start(&scratch.file(""), "linkbar", &["--clock", "real", "--log", "none"]);
     drop(first.attach());
-    // The program where anybody can start it: the target directory may be the owner's alone.
+    // The program where every user can start it: the target directory may be the owner's alone.
     let program = scratch.file("rcs-run");
     fs::copy(rcs_run(), &program).expect("the program can be copied");
     let data = scratch.file("data");
@@ -43,7 +45,7 @@ fn another_user_runs_beside_and_after_the_first() {
     let as_nobody = |arguments: &[&str]| {
         let mut command = std::process::Command::new(&program);
         command.args(arguments).current_dir(scratch.file("")).uid(NOBODY).gid(NOBODY).stdin(Stdio::null());
-        Ended::of(&command.output().expect("nobody can start the program"))
+        Ended::of(&command.output().expect("user nobody can start the program"))
     };
     let data = data.display().to_string();
     let run = ["run", "linkbar", "--ticks", "50", "--json", "--log", "none", "--data", data.as_str()];
@@ -52,7 +54,7 @@ fn another_user_runs_beside_and_after_the_first() {
     beside.assert_shared();
     let cleaned = as_nobody(&["clean"]);
     assert_eq!(cleaned.status, Some(0), "{}", cleaned.said);
-    assert!(!traces(&first.name).is_empty(), "nobody removes what is not his");
+    assert!(!traces(&first.name).is_empty(), "what belongs to another user is not removed");
     let refused = as_nobody(&["status", first.name.as_str()]);
     assert_eq!(refused.status, Some(2));
     assert!(refused.last_words().contains("there is no run named"), "{}", refused.said);

@@ -5,9 +5,10 @@ use std::{path::Path, thread, time::Duration};
 
 use record::replay;
 use rustix::process::{Signal, WaitOptions, waitpid};
-use whole_system_tests::Scratch;
-
-use crate::bench::{Ended, ONE_AT_A_TIME, Running};
+use whole_system_tests::{
+    Scratch,
+    bench::{Ended, ONE_AT_A_TIME, Running},
+};
 
 /// Ticks of a run that is stopped.
 const TICKS: &str = "400";
@@ -43,7 +44,7 @@ fn skipped_slots_are_counted_and_change_nothing() {
     // The identity of the grid, as far as it can be seen from outside: the result's time is a little longer.
     let elapsed = ended.result["wall_s"].as_f64().expect("a time");
     assert!((ticks + skipped) as f64 * 0.040 <= elapsed + 0.040, "{}", ended.result);
-    let blamed = ended.result["overruns_by"].as_object().expect("somebody is to blame");
+    let blamed = ended.result["overruns_by"].as_object().expect("a part is to blame");
     assert_eq!(blamed.values().filter_map(serde_json::Value::as_u64).sum::<u64>(), skipped, "{blamed:?}");
     assert!(ended.said.contains("slots of 40 ms skipped: "), "{}", ended.said);
     // In real time the robot ramps down after the last tick.

@@ -4,28 +4,13 @@ use std::{
     fs::{self, Permissions},
     os::unix::fs::PermissionsExt as _,
     path::Path,
-    process::Command,
 };
 
 use rustix::process::geteuid;
-use whole_system_tests::{Scratch, rcs_run};
-
-use crate::bench::{Ended, ONE_AT_A_TIME, Running, job, rcs};
-
-/// Run in a file system name space of its own, after some commands of the shell; `None` if this user may not
-/// make one.
-fn apart(directory: &Path, shell: &str, more: &[&str]) -> Option<Ended> {
-    let arguments = job("linkbar");
-    let output = Command::new("unshare")
-        .args(["--mount", "sh", "-c", &format!("{shell}; exec \"$@\""), "sh"])
-        .arg(rcs_run())
-        .args(arguments.iter().map(String::as_str).chain(more.iter().copied()))
-        .current_dir(directory)
-        .output();
-    let ended = Ended::of(&output.ok()?);
-    let refused = ["unshare: ", "mount: "].iter().any(|tool| ended.said.contains(tool));
-    (!refused).then_some(ended)
-}
+use whole_system_tests::{
+    Scratch,
+    bench::{Ended, ONE_AT_A_TIME, Running, apart, job, rcs},
+};
 
 /// A run of 500 ticks ended well and says a sentence.
 fn assert_goes_on(ended: &Ended, sentence: &str) {
@@ -43,8 +28,11 @@ fn without_shared_memory_nobody_looks_on_and_the_run_goes_on() {
         eprintln!("no right to mount: a full /dev/shm cannot be tried");
         return;
     };
-    assert_goes_on(&ended, "nobody can look on, shared memory cannot be had: /dev/shm has 65536 bytes left");
-    // Enough to begin with, and then taken by somebody else while the run goes on.
+    assert_goes_on(
+        &ended,
+        "the run cannot be watched, shared memory cannot be had: /dev/shm has 65536 bytes left",
+    );
+    // Enough to begin with, and then taken by another process while the run goes on.
     let fills = "mount -t tmpfs -o size=8m tmpfs /dev/shm && \
                  { (until ls /dev/shm/rcs-*data; do sleep 0.1; done; sleep 2; \
                     head -c 16M /dev/zero > /dev/shm/filler) > /dev/null 2>&1 & }";
@@ -58,7 +46,7 @@ fn without_shared_memory_nobody_looks_on_and_the_run_goes_on() {
 fn memory_that_is_taken_while_a_run_begins_is_missed_in_words() {
     let _alone = ONE_AT_A_TIME.lock();
     let scratch = Scratch::new("race");
-    // Enough to begin with, and taken by somebody else as soon as the first object is there.
+    // Enough to begin with, and taken by another process as soon as the first object is there.
     let fills = "mount -t tmpfs -o size=2200k tmpfs /dev/shm && \
                  { (i=0; until ls /dev/shm/rcs-* || [ $((i += 1)) -gt 3000 ]; do :; done; \
                     head -c 4M /dev/zero > /dev/shm/filler) > /dev/null 2>&1 & }";
@@ -135,6 +123,27 @@ fn a_full_disk_ends_the_log_and_not_the_run() {
     };
     assert_eq!((ended.status, ended.number("ticks")), (Some(0), 2000), "{}", ended.said);
     assert!(ended.said.contains("the log ended before the run did"), "{}", ended.said);
+}
+
+#[test]
+fn a_log_that_is_cut_from_outside_does_not_end_the_run_and_is_missed() {
+    let _alone = ONE_AT_A_TIME.lock();
+    let scratch = Scratch::new("cut-log");
+    let more = ["--clock", "real", "--ticks", "100", "--log", "run.mcap"];
+    let mut run = Running::start(&scratch.file(""), "linkbar", &more);
+    let reader = run.attach();
+    run.reach(&reader, 40);
+    let log = fs::File::options().write(true).open(scratch.file("run.mcap")).expect("the log is there");
+    let length = log.metadata().expect("a file").len();
+    assert!(length > 1_000, "{length} bytes after 40 ticks");
+    log.set_len(length / 2).expect("it can be cut");
+    drop(reader);
+    let ended = run.end();
+    assert_eq!((ended.status, ended.number("ticks")), (Some(0), 100), "{}", ended.said);
+    let cut = format!("another program cut the file to {} bytes", length / 2);
+    for words in ["the log ended before the run did", &cut] {
+        assert!(ended.said.contains(words), "{words}: {}", ended.said);
+    }
 }
 
 #[test]

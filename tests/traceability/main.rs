@@ -13,11 +13,11 @@ use std::{
     fs,
 };
 
+use interfaces::{CommonMemory, ExternalInputs, Reason};
 use levels::task::plan::TaskVerb;
 use neighbours::{mailbox::TABLE, network::Role};
 use rcs_core::{
     Plain,
-    interface::{CommonMemory, ExternalInputs, Reason},
     plain::{EnumSchema, Schema, StructSchema, UnionSchema, VariantSchema},
 };
 use whole_system_tests::root;
@@ -270,7 +270,7 @@ fn the_figures_are_right_and_the_sections_are_those_of_the_interfaces() {
     }
 }
 
-/// docs/reasons.md: whoever reads a code from a mailbox finds there what it means.
+/// docs/reasons.md: it tells what a code in a mailbox means.
 #[test]
 fn every_reason_is_on_its_page() {
     let mut rows = String::new();

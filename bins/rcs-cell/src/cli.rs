@@ -1,11 +1,13 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::{path::PathBuf, str::FromStr};
 
 use clap::Parser;
 use depc::Limits;
+use egm_robot::EgmOptions;
 
-/// The simulated T3 controller behind a pseudo-terminal: opens as a serial port, speaks DEPC.
+/// The simulated T3 controller behind a pseudo-terminal: opens as a serial port, speaks DEPC. With --egm a robot
+/// with ABB's Externally Guided Motion takes its place; with --emulate it is such a robot itself.
 #[derive(Debug, Parser)]
 #[command(
     name = "rcs-cell",
@@ -22,6 +24,9 @@ Examples:
   rcs-cell --link /tmp/t3 --auto       the start-up by itself, ready for a host
   rcs-run --robot serial:/tmp/t3 --clock real    a host (in another terminal)
   rcs-cell --link /tmp/t3 --auto --faults data/faults/noisy-line.toml    the same over a bad line
+  rcs-cell --link /tmp/t3 --egm 6510   a gateway: the robot with EGM that sends to UDP port 6510, as a T3
+  rcs-cell --emulate egm:6510          an EGM robot that sends to UDP port 6510 of this machine
+  rcs-cell --emulate egm:10.0.0.7:6510,gain=10,loss=5,jitter=10    to another machine, over a bad network
   rcs-cell --link /tmp/t3 < start.txt  commands from a file; `wait 4` waits between them
 
 Exit status: 0 ended by quit, the end of input or a signal; 1 the pseudo-terminal failed; 2 usage, or \
@@ -29,8 +34,24 @@ the path cannot be used. The reason is the last line on standard error."
 )]
 pub struct Cli {
     /// Where to link the pseudo-terminal; nothing else may be there
-    #[arg(long, value_name = "PATH")]
-    pub link: PathBuf,
+    #[arg(long, value_name = "PATH", required_unless_present = "emulate")]
+    pub link: Option<PathBuf>,
+    /// PORT or ADDRESS:PORT, options behind commas: give the host the robot with EGM that sends to this UDP port
+    ///
+    /// Options: robot=NAME|FILE, its frames; from=ADDRESS, only datagrams from there count;
+    /// speed-ref=on|off (on); slack=MS (10), by how much a command may be late.
+    #[arg(long, value_name = "PORT", requires = "link", conflicts_with_all = ["auto", "faults", "emulate"])]
+    pub egm: Option<EgmOptions>,
+    /// egm:PORT or egm:ADDRESS:PORT, options behind commas: be an EGM robot that sends to this UDP port
+    ///
+    /// Options of the robot: robot=NAME|FILE, gain=K (5), filter=HZ (20), ramp=S (0.5), deviation=DEG/S (90),
+    /// timeout=S (1), do-not-restart=on|off (on). Of the network: loss, double, reorder=PERCENT, delay, jitter=MS,
+    /// silent-at, silent-for=S, seed=N.
+    #[arg(long, value_name = "egm:PORT", conflicts_with_all = ["link", "auto", "faults"])]
+    pub emulate: Option<EgmTarget>,
+    /// Directory with robots/NAME.toml
+    #[arg(long, value_name = "DIR", default_value = "data")]
+    pub data: PathBuf,
     /// Go through the start-up without a person, and answer ENTER when a host comes
     #[arg(long)]
     pub auto: bool,
@@ -44,6 +65,19 @@ pub struct Cli {
     /// Fault plan (TOML): what happens to bytes on the line; its ticks are the controller's steps, one a period or so
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
+}
+
+/// Where an emulated robot sends to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EgmTarget(pub EgmOptions);
+
+impl FromStr for EgmTarget {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let target = text.strip_prefix("egm:").ok_or("egm:[ADDRESS:]PORT[,OPTION...] was expected")?;
+        EgmOptions::to_emulate(target).map(Self)
+    }
 }
 
 fn period(text: &str) -> Result<Limits, String> {
@@ -62,6 +96,23 @@ mod tests {
     #[test]
     fn the_definitions_are_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_robot_with_egm_is_behind_the_link_or_this_program_itself() {
+        let cli = |arguments: &[&str]| Cli::try_parse_from(["rcs-cell"].iter().chain(arguments));
+        assert!(cli(&["--link", "x", "--egm", "6510,slack=20"]).is_ok());
+        assert!(cli(&["--emulate", "egm:6510,gain=10,loss=5"]).is_ok());
+        for wrong in [
+            &["--egm", "6510"][..],
+            &["--emulate", "6510"],
+            &["--emulate", "egm:6510", "--link", "x"],
+            &["--emulate", "egm:6510,slack=20,from=x"],
+            &["--link", "x", "--egm", "6510,gain=5"],
+            &["--link", "x", "--egm", "6510", "--auto"],
+        ] {
+            assert_eq!(cli(wrong).expect_err("refused").exit_code(), 2, "{wrong:?}");
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@
 use std::collections::VecDeque;
 
 use depc::wire::{FRAME_BYTES, START};
-use rcs_core::interface::device::LinkBytes;
+use interfaces::device::LinkBytes;
 
 /// Bytes that wait on the line; a host that sends more finds the pseudo-terminal full.
 const MOST_WAITING: usize = 1024;

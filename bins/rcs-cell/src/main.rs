@@ -1,4 +1,5 @@
-//! `rcs-cell`: the simulated T3 controller behind a pseudo-terminal.
+//! `rcs-cell`: the simulated T3 controller behind a pseudo-terminal; a gateway to a robot with EGM in its place;
+//! an emulated robot with EGM.
 //!
 //! Any DEPC host can open the terminal and finds what it would find on the serial line of a Cincinnati Milacron T3: the
 //! start-up of the manual's IV.3.3 at the console, the function of appendix A on the line, 9600 baud.
@@ -9,12 +10,15 @@
 //!                               line: bytes in time ◄──► pty ◄──► host
 //! ```
 //!
-//! The controller and its arm are those of the simulated cell, [`plant::t3`]. They, [`line`], [`auto`] and [`console`] neither read
-//! a clock nor do I/O; [`shell`] and [`pty`] do nothing else.
+//! The controller and its arm are those of the simulated cell, [`plant::t3`]. They, [`mod@line`],
+//! [`auto`] and [`console`] neither read a clock nor do I/O; [`shell`] and [`pty`] do nothing else.
 
 mod auto;
 mod cli;
 mod console;
+mod emulate;
+mod gateway;
+mod host_line;
 mod line;
 mod pty;
 mod shell;
@@ -29,7 +33,7 @@ use clap::Parser;
 use depc::fault::{FaultKind, Plan, Rule, text};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
-use crate::{cli::Cli, pty::Pty, shell::Shell};
+use crate::{cli::Cli, emulate::Emulation, gateway::Gateway, pty::Pty, shell::Shell};
 
 /// Exit status if the pseudo-terminal fails while it runs.
 const FAILED: u8 = 1;
@@ -44,17 +48,37 @@ fn main() -> ExitCode {
             return fail(UNUSABLE, &format!("signals cannot be caught: {error}"));
         }
     }
+    let Some(link) = &cli.link else { return emulate(&cli, &stop) };
     let plan = match cli.faults.as_deref().map(plan).transpose() {
         Ok(plan) => plan,
         Err(reason) => return fail(UNUSABLE, &reason),
     };
-    let pty = match Pty::open(&cli.link) {
+    let pty = match Pty::open(link) {
         Ok(pty) => pty,
         Err(error) => return fail(UNUSABLE, &error.to_string()),
     };
-    match Shell::new(&cli, plan.as_ref(), pty, stop).run() {
+    let ended = match &cli.egm {
+        Some(options) => match Gateway::new(options, &cli.data, cli.period, pty) {
+            Ok(mut gateway) => gateway.run(&stop),
+            Err(reason) => return fail(UNUSABLE, &reason),
+        },
+        None => Shell::new(&cli, plan.as_ref(), pty, stop).run(),
+    };
+    match ended {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => fail(FAILED, &error.to_string()),
+    }
+}
+
+/// An emulated robot; the command line has one if it has no link.
+fn emulate(cli: &Cli, stop: &Arc<AtomicBool>) -> ExitCode {
+    let target = cli.emulate.as_ref().ok_or_else(|| "--link or --emulate is needed".to_owned());
+    match target.and_then(|target| Emulation::new(target, &cli.data)) {
+        Ok(mut emulation) => match emulation.run(stop) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => fail(FAILED, &format!("the socket has failed: {error}")),
+        },
+        Err(reason) => fail(UNUSABLE, &reason),
     }
 }
 

@@ -1,11 +1,12 @@
 //! The pseudo-terminal behind a path.
 //!
-//! The path is a symbolic link to the slave; a host opens it as it would open a serial port. A pseudo-terminal has no modem
-//! lines: that a host has it open stands for the host's DTR.
+//! The path is a symbolic link to the slave; a host opens it as it would open a serial port. A
+//! pseudo-terminal has no modem lines: that a host has it open stands for the host's DTR.
 //!
-//! The terminal stays when a host hangs up, and is made ready for the next: raw again, and empty. One thing cannot be taken
-//! back from outside: a host that was killed leaves the exclusive lock of the port (TIOCEXCL) behind, and nobody but the
-//! superuser could open it again. Then a new terminal takes its place under the same path.
+//! The terminal stays when a host hangs up, and is made ready for the next: raw again, and empty. One thing
+//! cannot be taken back from outside: a host that was killed leaves the exclusive lock of the port (TIOCEXCL)
+//! behind, and only the superuser could open it again. Then a new terminal takes its place under the same
+//! path.
 //!
 //! While the program lives it holds an abstract socket that is named after the path; the kernel removes it whenever the
 //! program ends, however it ends. So a link without its socket is dead and may be replaced.
@@ -161,9 +162,9 @@ impl Pty {
 
 impl Drop for Pty {
     fn drop(&mut self) {
-        // Not if someone has put something else there in the meantime.
+        // Not if something else was put there in the meantime.
         if self.path.read_link().is_ok_and(|target| target == self.slave) {
-            // There is nobody left to tell if this fails; the next start replaces the dead link.
+            // If this fails there is nothing left to report to; the next start replaces the dead link.
             let _ = std::fs::remove_file(&self.path);
         }
     }

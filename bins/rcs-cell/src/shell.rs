@@ -14,25 +14,25 @@ use std::{
 };
 
 use depc::fault::{Direction, Injector, Plan};
+use interfaces::device::LinkBytes;
 use os_io::stdout_line;
 use plant::{
     Key,
     description::Actuators,
     t3::{Message, StepInputs, T3Controller},
 };
-use rcs_core::{interface::device::LinkBytes, tick::Tick};
+use rcs_core::tick::Tick;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use crate::{
     auto::Operator,
     cli::Cli,
     console::{self, Lines},
-    line::{Cadence, SerialLine},
+    host_line::HostLine,
+    line::Cadence,
     pty::{Pty, PtyError},
 };
 
-/// Baud of the link (VI.1).
-const BAUD: u32 = 9600;
 /// Longest sleep, microseconds: a signal is noticed within it.
 const LONGEST_SLEEP: u64 = 50_000;
 /// Longest time that a step makes up for, seconds, if the program was stopped.
@@ -53,9 +53,7 @@ pub enum ShellError {
 pub struct Shell {
     start: Instant,
     stop: Arc<AtomicBool>,
-    pty: Pty,
-    host: bool,
-    line: SerialLine,
+    host: HostLine,
     faults: Option<Injector>,
     /// Steps of the controller: the ticks of the fault plan.
     tick: Tick,
@@ -78,9 +76,7 @@ impl Shell {
         Self {
             start: Instant::now(),
             stop,
-            pty,
-            host: false,
-            line: SerialLine::new(BAUD),
+            host: HostLine::new(pty),
             faults: plan.map(Injector::new),
             tick: Tick::BEFORE_START,
             cadence: Cadence::new(cli.period.period_us(), 0),
@@ -99,20 +95,17 @@ impl Shell {
     /// # Errors
     /// [`ShellError`].
     pub fn run(&mut self) -> Result<(), ShellError> {
-        stdout_line!("[link] {} waits for a host; help lists the commands", self.pty.slave().display());
+        stdout_line!("help lists the commands");
         while !self.stop.load(Ordering::Relaxed) {
-            self.watch_host()?;
-            self.take_bytes()?;
+            self.host.poll(self.now())?;
             self.take_input()?;
             if self.obey() {
                 break;
             }
-            if self.cadence.next(&self.line) <= self.now() {
+            if self.cadence.next(self.host.line()) <= self.now() {
                 self.step();
             }
-            while let Some(byte) = self.line.delivered(self.now()) {
-                self.pty.write(byte)?;
-            }
+            self.host.deliver(self.now())?;
             self.sleep()?;
         }
         Ok(())
@@ -121,37 +114,6 @@ impl Shell {
     /// Microseconds since the start.
     fn now(&self) -> u64 {
         u64::try_from(self.start.elapsed().as_micros()).unwrap_or(u64::MAX)
-    }
-
-    fn watch_host(&mut self) -> Result<(), ShellError> {
-        let host = self.pty.has_host();
-        if host == self.host {
-            return Ok(());
-        }
-        self.host = host;
-        if host {
-            stdout_line!("[link] a host has opened the link");
-        } else {
-            self.line.clear();
-            let text = if self.pty.renew()? {
-                format!("[link] the host has left it locked, now at {}", self.pty.slave().display())
-            } else {
-                "[link] the host has hung up".to_owned()
-            };
-            stdout_line!("{text}");
-        }
-        Ok(())
-    }
-
-    fn take_bytes(&mut self) -> Result<(), ShellError> {
-        let mut bytes = [0; 256];
-        let room = self.line.room().min(bytes.len());
-        if self.host && room > 0 {
-            let count = self.pty.read(&mut bytes[..room])?;
-            let now = self.now();
-            self.line.host_sent(now, &bytes[..count]);
-        }
-        Ok(())
     }
 
     fn take_input(&mut self) -> Result<(), ShellError> {
@@ -217,8 +179,8 @@ impl Shell {
         let now = self.now();
         let elapsed = Duration::from_micros(now - self.cadence.last()).as_secs_f64();
         self.tick = self.tick.next();
-        let arrived = self.line.arrived(now);
-        let (rx, cts) = self.carry(Direction::ToController, arrived, self.host);
+        let arrived = self.host.arrived(now);
+        let (rx, cts) = self.carry(Direction::ToController, arrived, self.host.has_host());
         if let Some(key) = self.operator.next(&self.t3, cts) {
             stdout_line!("[auto] {}", key.text());
             self.press(key);
@@ -226,9 +188,7 @@ impl Shell {
         self.t3.advance(elapsed.min(LONGEST_STEP_S), &[self.t3.arm().tool_weight()]);
         let out = self.t3.step(&StepInputs { rx, cts });
         let (tx, _) = self.carry(Direction::ToHost, out.tx, true);
-        if self.host {
-            self.line.send(now, tx.as_slice());
-        }
+        self.host.send(now, tx.as_slice());
         self.pressed = false;
         self.cadence.stepped(now, out.busy);
         self.show();
@@ -249,7 +209,7 @@ impl Shell {
             "[status] {}; hold {}; host {}; DEPC {}; {} moves, {} NAKs, {} reports",
             t3.stage().text(),
             if t3.hold() { "on" } else { "off" },
-            if self.host { "there" } else { "not there" },
+            if self.host.has_host() { "there" } else { "not there" },
             depc.state(),
             counts.moves,
             counts.naks,
@@ -269,7 +229,7 @@ impl Shell {
     /// Sleep until something comes or is due.
     fn sleep(&self) -> Result<(), ShellError> {
         let now = self.now();
-        let due = [Some(self.cadence.next(&self.line)), self.line.next_delivery()]
+        let due = [Some(self.cadence.next(self.host.line())), self.host.line().next_delivery()]
             .into_iter()
             .flatten()
             .fold(now + LONGEST_SLEEP, u64::min);
@@ -277,9 +237,8 @@ impl Shell {
         let timeout = Timespec::try_from(left).map_err(io::Error::other)?;
         let stdin = io::stdin();
         let mut fds = Vec::with_capacity(2);
-        // Without a host the master reports a hang-up all the time; a full line has no room for what is there.
-        if self.host && self.line.room() > 0 {
-            fds.push(PollFd::from_borrowed_fd(self.pty.fd(), PollFlags::IN));
+        if let Some(fd) = self.host.readable() {
+            fds.push(PollFd::from_borrowed_fd(fd, PollFlags::IN));
         }
         if self.input_open {
             fds.push(PollFd::new(&stdin, PollFlags::IN));

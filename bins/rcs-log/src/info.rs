@@ -2,10 +2,8 @@
 
 use std::{collections::BTreeMap, fmt, path::PathBuf, process::ExitCode};
 
-use rcs_core::{
-    interface::t3i::LinkCounters,
-    tick::{TICK_S, Tick},
-};
+use interfaces::t3i::LinkCounters;
+use rcs_core::tick::{TICK_S, Tick};
 use record::{Log, proto::foxglove::Level};
 use serde::Serialize;
 

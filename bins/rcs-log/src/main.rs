@@ -65,6 +65,9 @@ enum Command {
     /// Write the run as one page of HTML that needs nothing else
     Report(report::Arguments),
     /// Make the small files that tests replay, and their texts for review
+    ///
+    /// A log is refused unless it is complete, nothing in it is damaged, and this program computes every tick of it
+    /// again: a golden is the reference of a test, and one with a gap would not be the run.
     Golden(golden::Arguments),
 }
 

@@ -3,12 +3,9 @@
 use std::path::Path;
 
 use executive::failure::{Failure, Watch};
+use interfaces::{CommonMemory, ExternalInputs, hws::HwsReport};
 use levels::ladder::Ladder;
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs, hws::HwsReport},
-    plain::from_bytes,
-    tick::Tick,
-};
+use rcs_core::{plain::from_bytes, tick::Tick};
 use record::{Log, ReadError, Timing, reader::LoggedTick, remarks::hws_text};
 use serde::Serialize;
 

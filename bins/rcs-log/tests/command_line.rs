@@ -1,19 +1,14 @@
 //! `rcs-log` as a program: what it answers to logs that the recorder wrote.
 
 use std::{
-    fs,
+    fs, io,
     path::{Path, PathBuf},
-    process::{Command, Output},
+    process::{Child, Command, Output, Stdio},
 };
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::Ladder;
-use rcs_core::{
-    Plain,
-    digest::Digest,
-    interface::{CommonMemory, ExternalInputs},
-    name::Name16,
-    tick::Tick,
-};
+use rcs_core::{Plain, digest::Digest, name::Name16, tick::Tick};
 use record::{CellFrame, CellModel, End, Epoch, Pace, Recorder, Setup};
 use taskdata::files::TaskData;
 use tempfile::TempDir;
@@ -138,6 +133,23 @@ fn why_finds_the_tick_of_the_failure_and_names_the_row() {
 }
 
 #[test]
+fn an_answer_without_a_reader_ends_quietly() {
+    let scratch = Scratch::new();
+    let log = scratch.log("run.mcap", 1000);
+    for arguments in [&["why"][..], &["why", "--json"], &["info"], &["replay"], &["diff"]] {
+        let (reader, writer) = io::pipe().expect("a pipe");
+        drop(reader);
+        let files = if arguments == ["diff"] { 2 } else { 1 };
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-log"));
+        command.args(arguments).args(vec![&log; files]);
+        let output = command.stdout(writer).stderr(Stdio::piped()).spawn().and_then(Child::wait_with_output);
+        let output = output.expect("rcs-log runs");
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}");
+        assert_eq!(String::from_utf8_lossy(&output.stderr), "", "{arguments:?}");
+    }
+}
+
+#[test]
 fn replay_takes_several_logs_and_says_which_cannot_be_used() {
     let scratch = Scratch::new();
     let (one, two) = (scratch.log("one.mcap", 1000), scratch.log("two.mcap", 500));
@@ -202,7 +214,7 @@ fn a_report_is_one_page_with_the_failure_on_it() {
     assert!(output.status.success());
     let page = fs::read_to_string(log.with_extension("html")).expect("the page is there");
     assert!(page.contains("the object is not in the task data"), "{page}");
-    assert!(page.contains("TRANSFER NOBODY") && page.ends_with("</body></html>\n"));
+    assert!(page.contains("TRANSFER NOBODY") && page.ends_with("</body></html>"));
     assert!(!page.contains("http"), "the page needs nothing from elsewhere");
     let output = rcs_log(&["report", "--output", "/nowhere/page.html"], &[&log]);
     assert_eq!(output.status.code(), Some(2));

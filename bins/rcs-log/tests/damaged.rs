@@ -1,27 +1,16 @@
-//! Damaged logs: whatever stands in the file, `rcs-log` answers or says why not, within a gigabyte of memory.
-//!
-//! ```text
-//! DAMAGED_LOGS=10000 cargo test --release -p rcs-log --test damaged -- --nocapture
-//! ```
-//!
-//! tries so many, 200 without it. Half are bytes that change in the file, half are messages that change in chunks whose checksums
-//! are right: what only an intruder writes.
+//! Logs that are damaged in places that are known, and files that are no logs: `rcs-log` reads the rest, or
+//! says why not, within a gigabyte of memory. The robustness campaign (tests/robustness) damages logs at
+//! random.
 
 use std::{
-    env,
     fs::{self, File},
-    io::Cursor,
     path::{Path, PathBuf},
     process::{Command, Output},
 };
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::Ladder;
-use mcap::{MessageStream, WriteOptions, records::MessageHeader, records::Metadata};
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs},
-    name::Name16,
-    tick::Tick,
-};
+use rcs_core::{name::Name16, tick::Tick};
 use record::{CellFrame, CellModel, End, Epoch, Log, Pace, Recorder, Setup, Timing};
 use taskdata::files::TaskData;
 
@@ -51,65 +40,6 @@ fn record(path: &Path) {
     recorder.finish(End { result: "failed".into(), ..End::default() }).expect("the log ends");
 }
 
-/// Xorshift: the same damages in every run.
-struct Chance(u64);
-
-impl Chance {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        usize::try_from(self.0 >> 11).unwrap() % limit.max(1)
-    }
-
-    /// Damage some bytes.
-    fn damage(&mut self, bytes: &mut Vec<u8>) {
-        for _ in 0..=self.below(4) {
-            let at = self.below(bytes.len());
-            let rest = bytes.len() - at;
-            let length = self.below(64).min(rest);
-            match self.below(7) {
-                0 if rest > 0 => bytes[at] ^= 1 << self.below(8),
-                1 if rest > 0 => bytes[at] = u8::try_from(self.below(256)).unwrap(),
-                // A length or a number that is very large.
-                2 if rest >= 8 => {
-                    bytes[at..at + 8].copy_from_slice(&(u64::MAX >> self.below(64)).to_le_bytes())
-                }
-                3 => drop(bytes.drain(at..at + length)),
-                4 => drop(bytes.splice(at..at, vec![0xFF; length])),
-                5 => bytes[at..at + length].fill(0),
-                6 if self.below(10) == 0 => bytes.truncate(at),
-                _ => {}
-            }
-        }
-    }
-}
-
-/// The log once more, with some messages damaged, in chunks with the right checksums.
-fn forged(log: &[u8], whole: &Log, chance: &mut Chance) -> Vec<u8> {
-    let mut writer = WriteOptions::new().create(Cursor::new(Vec::new())).unwrap();
-    let run = Metadata { name: "rcs-run".into(), metadata: whole.run.clone() };
-    writer.write_metadata(&run).unwrap();
-    let mut channels = std::collections::BTreeMap::new();
-    let every = 1 + chance.below(400);
-    for message in MessageStream::new(log).unwrap() {
-        let mcap::Message { channel, sequence, log_time, publish_time, data } = message.unwrap();
-        let id = *channels.entry(channel.id).or_insert_with(|| {
-            let schema = channel.schema.as_ref().unwrap();
-            let schema = writer.add_schema(&schema.name, &schema.encoding, &schema.data).unwrap();
-            writer.add_channel(schema, &channel.topic, &channel.message_encoding, &channel.metadata).unwrap()
-        });
-        let mut data = data.into_owned();
-        if chance.below(every) == 0 {
-            chance.damage(&mut data);
-        }
-        let header = MessageHeader { channel_id: id, sequence, log_time, publish_time };
-        writer.write_to_known_channel(&header, &data).unwrap();
-    }
-    writer.finish().unwrap();
-    writer.into_inner().into_inner()
-}
-
 /// `rcs-log` with little memory.
 fn rcs_log(arguments: &[&str], files: &[&Path]) -> Output {
     let mut command = Command::new("sh");
@@ -128,48 +58,6 @@ fn assert_answered(output: &Output, what: &str) -> i32 {
     );
     assert!(status != Some(2) || said.contains("rcs-log: "), "{what}: no sentence: {said}");
     status.unwrap()
-}
-
-fn logs() -> u64 {
-    env::var("DAMAGED_LOGS").map_or(200, |count| count.parse().expect("a number of logs"))
-}
-
-#[test]
-fn a_damaged_log_is_answered_or_refused_in_words() {
-    let place = tempfile::tempdir().unwrap();
-    let (good, bad) = (place.path().join("good.mcap"), place.path().join("bad.mcap"));
-    record(&good);
-    let bytes = fs::read(&good).unwrap();
-    let whole = Log::open(&good).unwrap();
-    let html = place.path().join("page.html").display().to_string();
-    let golden = place.path().join("goldens").display().to_string();
-    let asked: [(&[&str], bool); 7] = [
-        (&["info"], false),
-        (&["why"], false),
-        (&["why", "--tick", "60"], false),
-        (&["replay"], false),
-        (&["diff"], true),
-        (&["report", "-o", &html], false),
-        (&["golden", "-o", &golden], false),
-    ];
-    let mut statuses = [0_u64; 3];
-    for seed in 1..=logs() {
-        let mut chance = Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
-        let damaged = if seed % 2 == 0 {
-            forged(&bytes, &whole, &mut chance)
-        } else {
-            let mut damaged = bytes.clone();
-            chance.damage(&mut damaged);
-            damaged
-        };
-        fs::write(&bad, damaged).unwrap();
-        let (arguments, with_good) = asked[chance.below(asked.len())];
-        let files: &[&Path] = if with_good { &[&good, &bad] } else { &[&bad] };
-        let status = assert_answered(&rcs_log(arguments, files), &format!("seed {seed}, {arguments:?}"));
-        statuses[usize::try_from(status).unwrap()] += 1;
-    }
-    println!("{} damaged logs: {statuses:?} ended with status 0, 1, 2", logs());
-    assert!(statuses[0] > 0 && statuses[2] > 0, "{statuses:?}: the damages are too small or too large");
 }
 
 /// A log with a chunk in the middle whose bytes are changed, and the ticks in it.

@@ -1,10 +1,11 @@
 //! `rcs-neighbour`: neighbours of the controller as processes of their own, on this machine or on another.
 //!
-//! Each connects to the mailboxes of a run (`rcs-run --network … --outside …`) and does there what the one in the controller's
-//! process would do. Programs of others speak the same bytes: docs/neighbours.md.
+//! Each connects to the mailboxes of a run (`rcs-run --network … --outside …`) and does there what the one in
+//! the controller's process would do. Programs of others speak the same bytes: docs/neighbours.md.
 
 mod cli;
 mod data_system;
+mod keys;
 mod pedestal;
 mod vision;
 mod workstation;
@@ -18,14 +19,15 @@ use std::{
 use clap::Parser as _;
 use neighbours::{
     data_system::StoreError,
-    network::{
-        Peer, PeerError, Role, Secret, address::AddressError, hello::SecretError, office::AttachError,
-    },
+    network::{AttachError, KeysError, NeighbourKeys, Peer, PeerError, Role, address::AddressError},
 };
 use plant::description::DescriptionError;
 use taskdata::load::Diagnostics;
 
-use crate::cli::{Cli, Command, ControllerArguments};
+use crate::{
+    cli::{Cli, Command, ControllerArguments},
+    keys::KeysFailure,
+};
 
 /// Exit status of a job that failed, or a connection that broke.
 const FAILED: u8 = 1;
@@ -35,12 +37,15 @@ const UNUSABLE: u8 = 2;
 /// Why a neighbour ends before its time.
 #[derive(Debug, thiserror::Error)]
 enum Error {
-    /// The controller cannot be reached, or has gone.
+    /// The controller cannot be reached, or has closed the connection.
     #[error(transparent)]
     Peer(#[from] PeerError),
-    /// The secret cannot be used.
+    /// Keys or certificates cannot be used.
     #[error(transparent)]
-    Secret(#[from] SecretError),
+    Keys(#[from] KeysError),
+    /// Keys or certificates cannot be made.
+    #[error(transparent)]
+    Make(#[from] KeysFailure),
     /// Options of the network do not fit together.
     #[error(transparent)]
     Address(#[from] AddressError),
@@ -80,7 +85,8 @@ impl Error {
             Self::Peer(error) if error.is_usage() => UNUSABLE,
             Self::Peer(_) | Self::Job(_) => FAILED,
             Self::Address(_)
-            | Self::Secret(_)
+            | Self::Keys(_)
+            | Self::Make(_)
             | Self::DataBase(_)
             | Self::Cell(_)
             | Self::AnotherCell { .. }
@@ -95,6 +101,7 @@ fn main() -> ExitCode {
         Command::DataSystem(arguments) => data_system::serve(&arguments),
         Command::Pedestal(arguments) => pedestal::serve(&arguments),
         Command::Vision(arguments) => vision::serve(&arguments),
+        Command::Keys(arguments) => keys::make(&arguments).map_err(Error::Make),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -152,7 +159,7 @@ fn connect_again(
     while started.elapsed() < NOTICED {
         reconnect.wait();
         match connect(arguments, role) {
-            Err(Error::Peer(PeerError::LastWords(why) | PeerError::Unverified(why))) if why == occupied => {}
+            Err(Error::Peer(PeerError::Disconnected(why))) if why == occupied => {}
             Err(Error::Peer(error)) if error.is_passing() => return Ok(None),
             other => return other.map(Some),
         }
@@ -162,10 +169,10 @@ fn connect_again(
 
 /// Connect to the controller.
 fn connect(arguments: &ControllerArguments, role: Role) -> Result<Peer, Error> {
-    let secret = arguments.secret.as_deref().map(Secret::load).transpose()?;
+    let keys = arguments.keys.as_deref().map(|directory| NeighbourKeys::load(directory, role)).transpose()?;
     let wait = Duration::from_secs(arguments.wait);
     let address = arguments.network.clone().configured(arguments.zenoh_config.clone())?;
-    Ok(Peer::connect_within(wait, &address, role, secret.as_ref())?)
+    Ok(Peer::connect_within(wait, &address, role, keys.as_ref())?)
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
 //! The Active Pedestal: its three processes, behind their mailboxes, for one run after the other.
 //!
-//! A line that was cut is mended: the pedestal goes on as it is. Another run has another cell, in which the pedestal was switched on
-//! just now.
+//! A line that was cut is mended: the pedestal goes on as it is. Another run has another cell, in which the
+//! pedestal was switched on just now.
 
+use interfaces::pedestal::PedestalReport;
 use neighbours::{
     mailbox::{PEDESTAL_COMMAND, PEDESTAL_SENSORS},
     network::{Peer, PeerError, Received, Role},
-    pedestal::Station,
+    pedestal::System,
 };
-use rcs_core::interface::pedestal::PedestalReport;
 
 use crate::{Error, Reconnect, cli::PedestalArguments, connect, connect_again};
 
@@ -21,7 +21,7 @@ pub fn serve(arguments: &PedestalArguments) -> Result<(), Error> {
         match served.attend(&mut peer) {
             Err(Error::Peer(error)) if error.is_passing() => {
                 os_io::stdout_line!("{error}");
-                if matches!(error, PeerError::LastWords(_)) {
+                if matches!(error, PeerError::Disconnected(_)) {
                     served = Served::default();
                 }
             }
@@ -39,7 +39,7 @@ pub fn serve(arguments: &PedestalArguments) -> Result<(), Error> {
 /// The pedestal, and what it was told last.
 #[derive(Default)]
 struct Served {
-    station: Station,
+    system: System,
     /// The last pulse.
     pulse: u64,
     /// What was said last: number, report, and why the command was refused.
@@ -49,7 +49,7 @@ struct Served {
 impl Served {
     /// Carry out the commands of a run.
     fn attend(&mut self, peer: &mut Peer) -> Result<(), Error> {
-        self.station.join();
+        self.system.join();
         let (mut sent, mut is_there) = ([0; 4], false);
         loop {
             let Received::Pulse(pulse) = peer.receive()? else { continue };
@@ -62,8 +62,8 @@ impl Served {
                 *self = Self::default();
             }
             self.pulse = pulse;
-            self.station.step(peer.mailbox(PEDESTAL_COMMAND), peer.mailbox(PEDESTAL_SENSORS));
-            for (mailbox, sent) in self.station.outgoing().iter().zip(&mut sent) {
+            self.system.step(peer.mailbox(PEDESTAL_COMMAND), peer.mailbox(PEDESTAL_SENSORS));
+            for (mailbox, sent) in self.system.outgoing().iter().zip(&mut sent) {
                 if mailbox.mailgram() != *sent {
                     *sent = mailbox.mailgram();
                     peer.send(mailbox)?;
@@ -76,13 +76,13 @@ impl Served {
 
     /// One line on standard output for everything that becomes of a command.
     fn tell(&mut self) {
-        let status = &self.station.memory().pedestal.status;
-        let refused = self.station.refusal().map(ToString::to_string).unwrap_or_default();
+        let status = &self.system.memory().pedestal.status;
+        let refused = self.system.refusal().map(ToString::to_string).unwrap_or_default();
         let says = (status.echo, status.report, refused);
         if says == self.said || (status.echo == 0 && says.2.is_empty()) {
             return;
         }
-        let command = self.station.command();
+        let command = self.system.command();
         let verb = if command.number == status.echo { command.command.text() } else { "" };
         match (says.2.as_str(), status.reason.text()) {
             ("", "") => os_io::stdout_line!("{verb} {}: {}", says.0, says.1),

@@ -3,9 +3,10 @@
 use std::{collections::VecDeque, path::PathBuf};
 
 use neighbours::{
-    fields::{FieldError, successor},
+    fields::successor,
+    layout::LayoutError,
     mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS, Mailbox},
-    network::{Peer, Received, Role, hello::ClockKind},
+    network::{ClockKind, Peer, Received, Role},
     workstation::{
         cell::{self, CellStatus, Trouble},
         command,
@@ -62,7 +63,7 @@ pub fn play(arguments: &WorkstationArguments) -> Result<(), Error> {
     }
 }
 
-fn unreadable(error: FieldError) -> Error {
+fn unreadable(error: LayoutError) -> Error {
     Error::Job(format!("a status of the controller cannot be read: {error}"))
 }
 
@@ -114,7 +115,7 @@ impl Default for Cell {
 }
 
 impl Cell {
-    fn read(&mut self, mailbox: &Mailbox) -> Result<(), FieldError> {
+    fn read(&mut self, mailbox: &Mailbox) -> Result<(), LayoutError> {
         let CellStatus { echo, busy, trouble, text } = CellStatus::decode(mailbox.data())?;
         (self.echo, self.busy, self.trouble) = (echo, busy, trouble);
         self.text.clear();

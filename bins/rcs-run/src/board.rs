@@ -10,15 +10,18 @@ use executive::{
         Member,
         member::{MemberEnd, end_with_parent},
     },
+    memory::{OnStuck, SET_UP_LIMIT, within_limit},
     realtime::{self, Verdict},
 };
 use os_io::stderr_line;
-use signal_hook::consts::{SIGHUP, SIGINT};
+use runtime::{boards, setup::TaskFiles};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::{
     cli::BoardArguments,
     error::{Error, STOPPED},
-    run::{boards, interruption, setup::TaskFiles},
+    interrupt::interruption,
+    memory_fault::stuck,
 };
 
 /// Take a board's place in a run until the run is over.
@@ -29,8 +32,8 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
     let stop = match arguments.parent {
         None => interruption()?,
         Some(parent) => {
-            // The interrupt and the hang-up of a terminal reach all processes of a run; board 0 ends it in good order.
-            for signal in [SIGINT, SIGHUP] {
+            // A terminal and a service manager send their signals to all processes of a run; board 0 ends it in order.
+            for signal in [SIGINT, SIGHUP, SIGTERM] {
                 signal_hook::flag::register(signal, Arc::default()).map_err(Error::Signals)?;
             }
             if !end_with_parent(parent)? {
@@ -40,7 +43,8 @@ pub fn board(arguments: &BoardArguments) -> Result<ExitCode, Error> {
         }
     };
     let TaskFiles { store, job, .. } = TaskFiles::load(&arguments.data, arguments.played())?;
-    let mut member = Member::join(&arguments.run, arguments.board, boards::fingerprint(&store, &job))?;
+    let join = || Member::join(&arguments.run, arguments.board, boards::fingerprint(&store, &job));
+    let mut member = within_limit(SET_UP_LIMIT, Some(stuck as OnStuck), join)?;
     let name = arguments.board;
     let real_time = member.is_real_time().then(|| realtime::acquire(arguments.cpu));
     let verdict = real_time.as_ref().map(|granted| &granted.verdict);

@@ -1,28 +1,41 @@
 //! `rcs-run check`: loads everything that a run needs, and prints what was found.
 
+#[cfg(test)]
+#[path = "../tests/common/data.rs"]
+mod data;
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod variants;
+
 use std::{
+    collections::HashMap,
     fs, io,
-    path::{Path, PathBuf},
+    path::Path,
     process::ExitCode,
+    sync::{Arc, Mutex, PoisonError},
 };
 
 use os_io::{console, files};
-use plant::{
-    Cell, CellDescription,
-    description::{DescriptionError, TextSpan},
-};
+use paths::known::Known;
+use plant::{Cell, CellDescription};
 use serde::Serialize;
 use taskdata::load::{
-    Diagnostic, Diagnostics, Job, Severity, Source, Store, places::Places, report::Problems, source::At,
+    Diagnostic, Diagnostics, Job, Severity, Source, Store,
+    places::Places,
+    report::{Problems, amount},
+};
+
+use runtime::{
+    StartError,
+    agreement::{self, cell_report, source},
+    setup::{CELL, jobs},
 };
 
 use crate::{
-    agreement,
     cli::CheckArguments,
     error::{Error, UNUSABLE},
-    explain, long_json,
-    run::setup::{CELL, EXTENSION, JOBS},
-    ways,
+    explain, long_json, ways,
 };
 
 /// One finding, for editors and scripts.
@@ -67,7 +80,7 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     let named = arguments.directory.clone().unwrap_or_else(|| arguments.data.clone());
     let arguments = &CheckArguments { data: named, ..arguments.clone() };
     if !arguments.data.is_dir() {
-        return Err(Error::NoData(arguments.data.clone()));
+        return Err(StartError::NoData(arguments.data.clone()).into());
     }
     if let Some(command) = &arguments.explain {
         return explain::explain(arguments, command);
@@ -75,64 +88,12 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     if let Some(job) = &arguments.explain_job {
         return ways::explain(arguments, job);
     }
-    let (store, data) = match Store::load(&arguments.data) {
-        Ok((store, report)) => (Some(store), report),
-        Err(report) => (None, *report),
-    };
-    let mut outcome = Outcome {
-        ok: true,
-        errors: 0,
-        warnings: 0,
-        files: data.files,
-        blocks: data.blocks,
-        records: data.loaded.iter().map(|l| (l.file.to_owned(), l.records.into())).collect(),
-        jobs: Vec::new(),
-        findings: Vec::new(),
-    };
-    let mut reports = vec![("task data".to_owned(), data)];
-    let path = arguments.data.join(CELL);
-    let (cell, cell_report) = cell(&path, store.as_ref());
-    let (mut sound, mut rows) = (Vec::new(), Vec::new());
-    for job in jobs(&arguments.data) {
-        // Without task data a job cannot be checked: the names of its commands mean nothing yet.
-        let Some(store) = &store else { break };
-        let name = job.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let report = match Job::load(&job, store) {
-            Ok((job, report)) => match &cell {
-                Some(cell) => {
-                    let report = report.with(agreement::of_job(&job, cell.description(), store, &path));
-                    if !report.has_errors() {
-                        sound.push(job);
-                        rows.push(reports.len());
-                    }
-                    report
-                }
-                None => report,
-            },
-            Err(report) => *report,
-        };
-        reports.push((format!("job {name}"), report));
-        outcome.jobs.push(name);
-    }
-    if let Some((store, cell)) = store.as_ref().zip(cell.as_ref()) {
-        let (of_jobs, of_stored) = ways::of_all(&sound, store, cell.description());
-        for (row, found) in rows.into_iter().zip(of_jobs).chain([(0, of_stored)]) {
-            if let Some((_, report)) = reports.get_mut(row) {
-                *report = std::mem::take(report).with(found);
-            }
-        }
-    }
-    reports.push(("cell description".to_owned(), cell_report));
-    if let Some((path, cell)) = arguments.urdf.as_ref().zip(cell) {
+    let checked = Checked::of(&arguments.data, &Flights::default());
+    if let Some((path, cell)) = arguments.urdf.as_ref().zip(checked.cell.as_ref()) {
         fs::write(path, cell.urdf()).map_err(|source| Error::Write { path: path.clone(), source })?;
     }
-    for (_, report) in &reports {
-        outcome.findings.extend(report.diagnostics().iter().map(finding));
-    }
-    let count = |severity| outcome.findings.iter().filter(|finding| finding.severity == severity).count();
-    (outcome.errors, outcome.warnings) = (count("error"), count("warning"));
-    outcome.ok = outcome.errors == 0;
-    console::answer(&if arguments.json { long_json(&outcome)? } else { text(&reports) })?;
+    let outcome = checked.outcome();
+    console::answer(&if arguments.json { long_json(&outcome)? } else { text(&checked.reports) })?;
     if !outcome.ok {
         os_io::stderr_line!(
             "rcs-run: {} cannot be used: {}",
@@ -143,8 +104,99 @@ pub fn check(arguments: &CheckArguments) -> Result<ExitCode, Error> {
     Ok(ExitCode::from(if outcome.ok { 0 } else { UNUSABLE }))
 }
 
-/// The cell of a description, and what is wrong with that, by itself and beside the task data.
-fn cell(path: &Path, store: Option<&Store>) -> (Option<Cell>, Diagnostics) {
+/// Flights of all checks of this process, by the text of the cell description.
+#[derive(Default)]
+struct Flights(Mutex<HashMap<Arc<str>, Arc<Known>>>);
+
+impl Flights {
+    fn of(&self, cell: &Source) -> Arc<Known> {
+        let mut cells = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        Arc::clone(cells.entry(Arc::clone(&cell.text)).or_default())
+    }
+}
+
+/// A data directory, looked at.
+struct Checked {
+    /// The reports, each with what it is about: task data, the jobs, the cell description.
+    reports: Vec<(String, Diagnostics)>,
+    jobs: Vec<String>,
+    /// The cell, if its description is sound.
+    cell: Option<Cell>,
+}
+
+impl Checked {
+    /// Look at everything under a data directory. Ways that earlier checks of the same cell have flown are not flown
+    /// again.
+    fn of(data: &Path, flights: &Flights) -> Self {
+        let (store, report) = match Store::load_part(data) {
+            Ok((store, report)) => (Ok(store), report),
+            Err((part, report)) => (Err(part), *report),
+        };
+        let mut reports = vec![("task data".to_owned(), report)];
+        let path = data.join(CELL);
+        let (cell, of_cell) = cell(&path, store.as_ref().ok());
+        let (mut names, mut sound, mut rows) = (Vec::new(), Vec::new(), Vec::new());
+        for job in jobs(data) {
+            let name = job.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let report = match (&store, &cell) {
+                (Err(part), _) => Job::check_part(&job, part),
+                (Ok(store), cell) => match (Job::load(&job, store), cell) {
+                    (Ok((job, report)), Some((cell, source))) => {
+                        let of_job = agreement::of_job(&job, source, cell.description(), store, &path);
+                        let report = report.with(of_job);
+                        if !report.has_errors() {
+                            sound.push(job);
+                            rows.push(reports.len());
+                        }
+                        report
+                    }
+                    (Ok((_, report)), None) => report,
+                    (Err(report), _) => *report,
+                },
+            };
+            reports.push((format!("job {name}"), report));
+            names.push(name);
+        }
+        if let (Ok(store), Some((cell, source))) = (&store, &cell) {
+            let known = flights.of(source);
+            let (of_jobs, of_stored) = ways::of_all(&sound, store, cell.description(), &known);
+            for (row, found) in rows.into_iter().zip(of_jobs).chain([(0, of_stored)]) {
+                if let Some((_, report)) = reports.get_mut(row) {
+                    *report = std::mem::take(report).with(found);
+                }
+            }
+        }
+        if let [_, jobs @ ..] = reports.as_mut_slice() {
+            Diagnostics::tell_once(&mut jobs.iter_mut().map(|(_, report)| report).collect::<Vec<_>>());
+        }
+        reports.push(("cell description".to_owned(), of_cell));
+        Self { reports, jobs: names, cell: cell.map(|(cell, _)| cell) }
+    }
+
+    /// The same for scripts.
+    fn outcome(&self) -> Outcome {
+        let all = || self.reports.iter().map(|(_, report)| report);
+        let (errors, warnings) = (
+            all().map(|report| report.errors().count()).sum(),
+            all().map(|report| report.warnings().count()).sum(),
+        );
+        let data = self.reports.first().map(|(_, report)| report);
+        let loaded = data.into_iter().flat_map(|report| &report.loaded);
+        Outcome {
+            ok: errors == 0,
+            errors,
+            warnings,
+            files: data.map_or(0, |report| report.files),
+            blocks: data.map_or(0, |report| report.blocks),
+            records: loaded.map(|one| (one.file.to_owned(), one.records.into())).collect(),
+            jobs: self.jobs.clone(),
+            findings: all().flat_map(|report| report.diagnostics()).map(finding).collect(),
+        }
+    }
+}
+
+/// The cell of a description with its text, and what is wrong with that, by itself and beside the task data.
+fn cell(path: &Path, store: Option<&Store>) -> (Option<(Cell, Source)>, Diagnostics) {
     let mut problems = Problems::default();
     let text = match files::read_text(path) {
         Ok(text) => text,
@@ -164,55 +216,10 @@ fn cell(path: &Path, store: Option<&Store>) -> (Option<Cell>, Diagnostics) {
     let source = source(text);
     let report = Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new());
     let report = match store {
-        Some(store) => report.with(agreement::of_cell(source, &description, store)),
+        Some(store) => report.with(agreement::of_cell(source.clone(), &description, store)),
         None => report,
     };
-    (cell.ok(), report)
-}
-
-pub fn source(text: String) -> Source {
-    Source { name: CELL.to_owned(), text: text.into() }
-}
-
-/// The faults of a cell description, told as those of task data are.
-pub fn cell_report(text: String, error: &DescriptionError) -> Diagnostics {
-    let mut problems = Problems::default();
-    match error {
-        DescriptionError::Faults(faults) => {
-            for fault in faults.all() {
-                let (message, place) = (fault.message.clone(), fault.place);
-                match place {
-                    Some(place) => problems.error(fault.code, at(&place), message),
-                    None => problems.general(fault.code, message),
-                }
-                if let Some(expected) = &fault.expected {
-                    problems.expected(expected);
-                }
-                if let Some(nearest) = &fault.nearest {
-                    problems.nearest("one", nearest);
-                }
-            }
-        }
-        DescriptionError::Unreadable { .. } => problems.general("file", error.to_string()),
-    }
-    Diagnostics::new(problems, Places::in_lines(&[source(text)]), 0, Vec::new())
-}
-
-/// A piece of a file without blocks.
-pub fn at(place: &TextSpan) -> At {
-    let small = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
-    At { source: 0, start: small(place.start), length: small(place.length) }
-}
-
-/// All jobs of a data directory.
-pub fn jobs(data: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(data.join(JOBS)).into_iter().flatten().flatten();
-    let mut jobs: Vec<PathBuf> = entries
-        .map(|entry| entry.path())
-        .filter(|path| path.extension().is_some_and(|e| e == EXTENSION))
-        .collect();
-    jobs.sort();
-    jobs
+    (cell.ok().map(|cell| (cell, source)), report)
 }
 
 fn finding(diagnostic: &Diagnostic) -> Finding {
@@ -242,8 +249,4 @@ fn text(reports: &[(String, Diagnostics)]) -> String {
     let line =
         |(what, report): &(String, Diagnostics)| format!("{what}: {}\n", report.render(graphical).trim_end());
     reports.iter().map(line).collect()
-}
-
-fn amount(count: usize, one: &str) -> String {
-    if count == 1 { format!("1 {one}") } else { format!("{count} {one}s") }
 }

@@ -1,14 +1,14 @@
 //! The command line.
 
-use std::{fmt, path::PathBuf, str::FromStr};
+use std::path::PathBuf;
 
 use crate::campaign::CampaignArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use depc::host::RESTART_TICKS;
-use executive::{boards::Board, memory::RunName, overrun::Policy, serial::SerialSettings};
+use executive::{boards::Board, memory::RunName, overrun::Policy};
 use neighbours::network::{Address, Role};
+use runtime::{Boards, ClockKind, LogTarget, RobotConfig, RunConfig};
 
-/// The RCS-II/T3 controller: runs jobs in the simulated cell, or with a robot at a serial port.
+/// The RCS-II/T3 controller: runs jobs in the simulated cell, with a robot at a serial port, or with one by EGM.
 #[derive(Debug, Parser)]
 #[command(
     name = "rcs-run",
@@ -82,7 +82,8 @@ pub struct RunArguments {
     /// Run ticks at once, or one every 40 ms
     #[arg(long, value_enum, default_value_t = ClockKind::Fast)]
     pub clock: ClockKind,
-    /// What to do about slots of the 40 ms grid that are skipped: count, hold[:SLOTS] or stop[:SLOTS]
+    /// What to do about slots of the 40 ms grid that are skipped: count, hold, hold:SLOTS, stop or
+    /// stop:SLOTS
     ///
     /// hold: if SLOTS (1) are skipped in a row, the robot ramps down and holds until 25 ticks were punctual;
     /// stop: it ramps down, and the run ends with exit status 3.
@@ -91,20 +92,25 @@ pub struct RunArguments {
     /// The core to run on with --clock real [default: the highest that is allowed]
     #[arg(long, value_name = "N")]
     pub cpu: Option<usize>,
-    /// The robot to command: sim, the simulated one, or serial:PATH[,OPTION...], one at a serial port
+    /// The robot to command: sim, the simulated one, serial:PATH[,OPTION...], one at a serial port, or
+    /// egm:PORT or egm:ADDRESS:PORT, one of ABB that sends EGM to this UDP port
     ///
-    /// Options: silence=SECONDS (60), how long to wait for a robot controller that does not answer although its DTR is on; for a
-    /// port also baud=N (9600), parity=none|even|odd (none), stop=1|2 (1), cts=watch|ignore (watch; ignore is for cables of three
-    /// wires). A robot at a port needs --clock real.
-    #[arg(long, value_name = "ROBOT", default_value = "sim", value_parser = robot)]
-    pub robot: Robot,
+    /// Options: silence=SECONDS (60), how long to wait for a robot controller that does not answer although
+    /// its DTR is on; for a port also baud=N (9600), parity=none|even|odd (none), stop=1|2 (1),
+    /// cts=watch|ignore (watch; ignore is for cables of three wires). A robot at a port needs --clock real.
+    ///
+    /// Options of EGM: robot=NAME|FILE, its frames (data/robots/NAME.toml); from=ADDRESS, only datagrams from
+    /// there count; speed-ref=on|off (on); slack=MS (10), by how much a tick may be late. egm:sim[,OPTION...] is an
+    /// emulated robot in simulated time; docs/egm.md has its options.
+    #[arg(long, value_name = "ROBOT", default_value = "sim")]
+    pub robot: RobotConfig,
     /// Faults of the cell and of the line to the simulated robot, on schedule or by chance (TOML; data/README.md)
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
     /// How the control processes are spread over boards
     #[arg(long, value_enum, default_value_t = Boards::One)]
     pub boards: Boards,
-    /// Name of the run in shared memory [default: <job>-<number of this process>]
+    /// Name of the run in shared memory [default: JOB-PID, PID the number of this process]
     #[arg(long, value_name = "NAME")]
     pub run: Option<RunName>,
     /// How many seconds to wait for boards that are started by hand, and for neighbours in other processes
@@ -113,29 +119,29 @@ pub struct RunArguments {
     /// Seed of the cell's noise and of where parts are delivered
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Where to write the log; none for no log [default: runs/<job>.mcap]
+    /// Where to write the log; none for no log [default: runs/JOB.mcap]
     #[arg(long, value_name = "FILE")]
     pub log: Option<LogTarget>,
     /// Keep the items of the Data System in this SQLite file, which is made if it is not there [default: forget them]
     #[arg(long, value_name = "FILE")]
     pub data_base: Option<PathBuf>,
-    /// Let neighbours in other processes connect here: unix:PATH, or with a secret tcp:IP:PORT or zenoh:NAME[@ENDPOINT]
-    /// (docs/neighbours.md)
+    /// Let neighbours in other processes connect here: unix:PATH, or with --keys tcp:IP:PORT,
+    /// zenoh:NAME or zenoh:NAME@ENDPOINT (docs/neighbours.md)
     #[arg(long, value_name = "ADDRESS", requires = "outside")]
     pub network: Option<Address>,
     /// Neighbours that are other processes, with commas between them: workstation, data-system, pedestal, vision
     #[arg(long, value_name = "NEIGHBOURS", value_delimiter = ',', requires = "network")]
     pub outside: Vec<Role>,
-    /// Begin under stand-alone command: play the job; its lines `** workstation` hand over to the workstation controller until it
-    /// disconnects (IV.4.1)
+    /// Begin under stand-alone command: play the job; its lines `** workstation` hand over to the workstation
+    /// controller until it disconnects (IV.4.1)
     #[arg(long, requires = "outside")]
     pub stand_alone: bool,
     /// File in which updates wait for a Data System in another process
     #[arg(long, value_name = "FILE", default_value = "runs/data-system.outbox")]
     pub outbox: PathBuf,
-    /// File with the secret that proves neighbours to be ours, at least 16 bytes
-    #[arg(long, value_name = "FILE", requires = "network")]
-    pub secret: Option<PathBuf>,
+    /// Directory with keys and certificates for neighbours on other machines, as `rcs-neighbour keys` makes it
+    #[arg(long, value_name = "DIR", requires = "network")]
+    pub keys: Option<PathBuf>,
     /// File with Zenoh's own configuration (JSON5): TLS, access control, routers
     #[arg(long, value_name = "FILE", requires = "network")]
     pub zenoh_config: Option<PathBuf>,
@@ -182,10 +188,33 @@ pub struct BoardArguments {
 }
 
 impl RunArguments {
-    /// The job that is played; `None` if another process commands.
+    /// What to run.
     #[must_use]
-    pub fn played(&self) -> Option<&str> {
-        (self.stand_alone || !self.outside.contains(&Role::Workstation)).then_some(self.job.as_str())
+    pub fn config(&self) -> RunConfig {
+        let own = self.clone();
+        RunConfig {
+            clock: own.clock,
+            overrun: own.overrun,
+            cpu: own.cpu,
+            robot: own.robot,
+            faults: own.faults,
+            boards: own.boards,
+            name: own.run,
+            wait: own.wait,
+            seed: own.seed,
+            log: own.log.unwrap_or(LogTarget::Default),
+            data_base: own.data_base,
+            network: own.network,
+            outside: own.outside,
+            stand_alone: own.stand_alone,
+            outbox: own.outbox,
+            keys: own.keys,
+            zenoh_config: own.zenoh_config,
+            ticks: own.ticks,
+            retry: own.retry,
+            shared_memory: own.shared_memory == Switch::On,
+            ..RunConfig::new(own.data, own.job)
+        }
     }
 }
 
@@ -201,8 +230,8 @@ impl BoardArguments {
 #[derive(Clone, Debug, Args)]
 pub struct LinkTestArguments {
     /// The robot: serial:PATH[,OPTION...], with the options of a run
-    #[arg(long, value_name = "ROBOT", value_parser = robot)]
-    pub robot: Robot,
+    #[arg(long, value_name = "ROBOT")]
+    pub robot: RobotConfig,
     /// How long to try
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=86_400))]
     pub seconds: u32,
@@ -268,26 +297,6 @@ pub struct CheckArguments {
     pub from: String,
 }
 
-/// When ticks are run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ClockKind {
-    /// As fast as the cell can be simulated
-    Fast,
-    /// On a 40 ms grid
-    Real,
-}
-
-impl ClockKind {
-    /// The word on the command line.
-    #[must_use]
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Fast => "fast",
-            Self::Real => "real",
-        }
-    }
-}
-
 /// Yes or no.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Switch {
@@ -295,109 +304,6 @@ pub enum Switch {
     On,
     /// No
     Off,
-}
-
-/// Which robot is commanded.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum RobotKind {
-    /// The one of the simulated cell.
-    Sim,
-    /// One at a serial port.
-    Serial(SerialSettings),
-}
-
-/// The robot, and how long to wait for its answer.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Robot {
-    /// Which.
-    pub kind: RobotKind,
-    /// Seconds that a controller may be silent while its DTR is on, if they were named.
-    pub silence: Option<u16>,
-}
-
-/// The longest silence that can be waited for, seconds.
-const LONGEST_SILENCE: u16 = 2600;
-
-impl Robot {
-    /// Ticks that a controller may be silent, if they were named.
-    #[must_use]
-    pub fn patience(&self) -> Option<u16> {
-        self.silence.map(|seconds| seconds * RESTART_TICKS)
-    }
-}
-
-impl fmt::Display for Robot {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.kind {
-            RobotKind::Sim => f.write_str("sim"),
-            RobotKind::Serial(settings) => write!(f, "serial:{}", settings.path.display()),
-        }
-    }
-}
-
-fn robot(text: &str) -> Result<Robot, String> {
-    let is_silence = |part: &&str| part.starts_with("silence=");
-    let silence = text.split(',').find(is_silence).map(silence).transpose()?;
-    let rest: Vec<&str> = text.split(',').filter(|part| !is_silence(part)).collect();
-    let rest = rest.join(",");
-    let kind = match rest.split_once(':') {
-        None if rest == "sim" => RobotKind::Sim,
-        Some(("serial", port)) => RobotKind::Serial(port.parse()?),
-        _ => return Err("sim[,silence=SECONDS] or serial:PATH[,OPTION...] was expected".into()),
-    };
-    Ok(Robot { kind, silence })
-}
-
-/// `silence=SECONDS`.
-fn silence(part: &str) -> Result<u16, String> {
-    let seconds = part.trim_start_matches("silence=");
-    seconds.parse().ok().filter(|seconds| (1..=LONGEST_SILENCE).contains(seconds)).ok_or_else(|| {
-        format!("silence is a number of seconds from 1 to {LONGEST_SILENCE}, such as 60; found {seconds}")
-    })
-}
-
-/// How processes are spread.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Boards {
-    /// All in one thread
-    One,
-    /// One operating system process a board: 0 (this one), 2, 4, 6, 8
-    Split,
-    /// The same, but the boards are started by hand, with rcs-run board
-    Manual,
-}
-
-impl Boards {
-    /// The word on the command line.
-    #[must_use]
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::One => "one",
-            Self::Split => "split",
-            Self::Manual => "manual",
-        }
-    }
-}
-
-/// Where the log goes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LogTarget {
-    /// Nowhere.
-    None,
-    /// Into a file.
-    File(PathBuf),
-}
-
-impl FromStr for LogTarget {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match text {
-            "" => Err("a file name or none was expected".into()),
-            "none" | "/dev/null" => Ok(Self::None),
-            path => Ok(Self::File(path.into())),
-        }
-    }
 }
 
 #[cfg(test)]
@@ -442,29 +348,5 @@ mod tests {
         let error = overrun("wait").expect_err("no such policy");
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("count, hold[:SLOTS] or stop[:SLOTS] was expected"), "{error}");
-    }
-
-    #[test]
-    fn a_robot_is_simulated_or_at_a_port() {
-        let robot = |text| Cli::try_parse_from(["rcs-run", "--robot", text]).map(|cli| cli.run.robot);
-        assert_eq!(robot("sim").ok(), Some(Robot { kind: RobotKind::Sim, silence: None }));
-        let kind = RobotKind::Serial(SerialSettings::new("/dev/ttyS0"));
-        let port = Robot { kind, silence: None };
-        assert_eq!((robot("serial:/dev/ttyS0").ok(), port.patience()), (Some(port.clone()), None));
-        let patient = Robot { silence: Some(90), ..port };
-        assert_eq!(robot("serial:/dev/ttyS0,silence=90,stop=1").ok(), Some(patient.clone()));
-        assert_eq!(patient.patience(), Some(90 * 25));
-        assert_eq!(robot("sim,silence=5").ok().and_then(|robot| robot.patience()), Some(125));
-        for wrong in [
-            "serial",
-            "serial:",
-            "serial:/dev/x,stop=3",
-            "/dev/ttyS0",
-            "sim,stop=1",
-            "sim,silence=0",
-            "sim,silence=2601",
-        ] {
-            assert_eq!(robot(wrong).expect_err(wrong).exit_code(), 2);
-        }
     }
 }

@@ -20,7 +20,7 @@ use executive::{
 use rcs_core::tick::TICK_MS;
 use serde::Serialize;
 
-use crate::{answer, cli::LatencyArguments, error::Error, run::interruption};
+use crate::{answer, cli::LatencyArguments, error::Error, interrupt::interruption};
 
 /// Length of a slot.
 const SLOT: Duration = Duration::from_millis(TICK_MS);
@@ -73,7 +73,7 @@ impl Fitness {
 struct Measurement {
     seconds: f64,
     wakeups: u64,
-    /// Slots in which nobody woke.
+    /// Slots in which the thread did not wake.
     skipped: u64,
     late_us: Late,
     /// Wake-ups that were at most so late: microseconds and count.

@@ -19,8 +19,10 @@ use depc::{
     wire::{DataCommand, FRAME_BYTES, NO_FUNCTION},
 };
 use executive::serial::{SerialLine, SerialSettings};
+use interfaces::device::LinkBytes;
 use os_io::stderr_line;
-use rcs_core::{interface::device::LinkBytes, tick::TICK_MS};
+use rcs_core::tick::TICK_MS;
+use runtime::RobotKind;
 
 use self::{
     dump::{Dump, Way},
@@ -28,9 +30,9 @@ use self::{
 };
 use crate::{
     answer,
-    cli::{LinkTestArguments, RobotKind},
+    cli::LinkTestArguments,
     error::{Error, FAILED, STOPPED},
-    run::interruption,
+    interrupt::interruption,
 };
 
 /// Length of a tick.

@@ -7,17 +7,19 @@
 
 #![deny(unsafe_code)]
 
-mod agreement;
 mod board;
-mod bus_error;
 mod campaign;
 mod check;
 mod clean;
 mod cli;
 mod error;
 mod explain;
+mod interrupt;
 mod latency;
 mod link_test;
+mod memory_fault;
+mod page;
+mod progress;
 mod run;
 mod status;
 mod tables;
@@ -40,7 +42,7 @@ static ALLOCATOR: executive::alloc::Counting = executive::alloc::Counting;
 fn main() -> ExitCode {
     let cli = Cli::parse();
     let outcome =
-        bus_error::explain().and_then(|()| bus_error::survive_file_limit()).and_then(|()| execute(cli));
+        memory_fault::explain().and_then(|()| memory_fault::survive_file_limit()).and_then(|()| execute(cli));
     match outcome {
         Ok(code) => code,
         Err(error) => {
@@ -50,7 +52,7 @@ fn main() -> ExitCode {
                 stderr_line!("{}", details.trim_end());
             }
             stderr_line!("rcs-run: {error}");
-            ExitCode::from(error::UNUSABLE)
+            ExitCode::from(error.status())
         }
     }
 }

@@ -3,13 +3,13 @@
 use std::process::ExitCode;
 
 use executive::{
-    memory::{self, Attached, RunName, SharedMemoryError, mirror},
+    memory::{self, Attached, OnStuck, RunName, SET_UP_LIMIT, SharedMemoryError, mirror, within_limit},
     status::Status,
 };
 
 use os_io::console;
 
-use crate::{answer, cli::StatusArguments, error::Error};
+use crate::{answer, cli::StatusArguments, error::Error, memory_fault::stuck};
 
 /// Look at a run and print.
 ///
@@ -21,7 +21,7 @@ pub fn status(arguments: &StatusArguments) -> Result<ExitCode, Error> {
         Some(name) => name.clone(),
         None => only_run()?,
     };
-    let run = Attached::open(&name)?;
+    let run = within_limit(SET_UP_LIMIT, Some(stuck as OnStuck), || Attached::open(&name))?;
     if arguments.directory {
         console::answer(&format!("{}\n", mirror::directory(&name).display()))?;
         return Ok(ExitCode::SUCCESS);

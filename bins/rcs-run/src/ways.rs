@@ -1,4 +1,5 @@
-//! The ways of jobs and stored routes in `rcs-run check`: walked before anything moves ([`paths`]), and `check --explain-job`.
+//! The ways of jobs and stored routes in `rcs-run check`: walked before anything moves ([`paths`]), and
+//! `check --explain-job`.
 
 use std::{panic::resume_unwind, path::Path, process::ExitCode, thread};
 
@@ -6,10 +7,15 @@ use os_io::console;
 use paths::{
     finding::Segment,
     job::{JobLine, NOT_CHECKED, WalkedJob, walk_job},
+    known::Known,
     stored::walk_stored,
     walk::seconds,
 };
 use plant::{CellDescription, room::Room};
+use runtime::{
+    StartError,
+    setup::{CELL, job_path},
+};
 use serde::Serialize;
 use taskdata::load::{Diagnostics, Job, Source, Store, places::Places, report::Problems, source::At};
 
@@ -17,17 +23,23 @@ use crate::{
     cli::CheckArguments,
     error::{Error, UNUSABLE},
     long_json,
-    run::setup::{CELL, job_path},
 };
 
-/// What is wrong with the ways of jobs, in their order, and with the stored routes.
-pub fn of_all(jobs: &[Job], store: &Store, cell: &CellDescription) -> (Vec<Diagnostics>, Diagnostics) {
-    let room = Room::new(cell);
-    let room = &room;
+/// What is wrong with the ways of jobs, in their order, and with the stored routes. `known` has flights in the same
+/// cell.
+pub fn of_all(
+    jobs: &[Job],
+    store: &Store,
+    cell: &CellDescription,
+    known: &Known,
+) -> (Vec<Diagnostics>, Diagnostics) {
+    let room = &Room::new(cell);
     thread::scope(|scope| {
-        let stored = scope.spawn(move || of_stored(store, room));
-        let walks: Vec<_> =
-            jobs.iter().map(|job| scope.spawn(move || of_job(job, &walk_job(job, store, room)))).collect();
+        let stored = scope.spawn(move || of_stored(store, room, known));
+        let walks: Vec<_> = jobs
+            .iter()
+            .map(|job| scope.spawn(move || of_job(job, &walk_job(job, store, room, known))))
+            .collect();
         let jobs = walks.into_iter().map(|walk| walk.join().unwrap_or_else(|panic| resume_unwind(panic)));
         let jobs = jobs.collect();
         (jobs, stored.join().unwrap_or_else(|panic| resume_unwind(panic)))
@@ -46,13 +58,14 @@ fn of_job(job: &Job, walked: &WalkedJob) -> Diagnostics {
         } else {
             problems.warning(finding.code, at, finding.message.clone(), finding.help.clone());
         }
+        problems.same_as(finding.key.clone());
     }
     Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(job.source())), 0, Vec::new())
 }
 
-fn of_stored(store: &Store, room: &Room) -> Diagnostics {
+fn of_stored(store: &Store, room: &Room, known: &Known) -> Diagnostics {
     let mut problems = Problems::default();
-    for finding in walk_stored(store, room).findings {
+    for finding in walk_stored(store, room, known).findings {
         problems.error("path.stored", finding.at, finding.message);
     }
     Diagnostics::new(problems, Places::in_blocks(store.sources()), 0, Vec::new())
@@ -80,14 +93,14 @@ struct Explained<'a> {
 /// # Errors
 /// Task data, a cell or a job that cannot be read.
 pub fn explain(arguments: &CheckArguments, name: &str) -> Result<ExitCode, Error> {
-    let unusable = |what: String| move |report: Box<Diagnostics>| Error::Data { what, report };
+    let unusable = |what: String| move |report: Box<Diagnostics>| StartError::Data { what, report };
     let data = &arguments.data;
     let (store, _) =
         Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
     let path = job_path(name, data)?;
     let (job, _) = Job::load(&path, &store).map_err(unusable(format!("the job {}", path.display())))?;
     let cell = cell(data)?;
-    let walked = walk_job(&job, &store, &Room::new(&cell));
+    let walked = walk_job(&job, &store, &Room::new(&cell), &Known::default());
     console::answer(&if arguments.json {
         long_json(&Explained { job: &walked, never_checked: NOT_CHECKED })?
     } else {

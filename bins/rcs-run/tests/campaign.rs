@@ -21,7 +21,8 @@ fn json(arguments: &[&str]) -> Value {
     serde_json::from_str(&rcs_run(arguments)).expect("the output is JSON")
 }
 
-/// The same number of ticks and the same digest: of the undisturbed run, and of a branch that an operator plays to its end.
+/// The same number of ticks and the same digest: of the undisturbed run, and of a branch that an operator
+/// plays to its end.
 #[test]
 fn a_branch_that_is_not_interrupted_is_the_ordinary_run_bit_for_bit() {
     for job in ["linkbar", "turned-part"] {
@@ -61,16 +62,16 @@ fn the_table_is_written_as_markdown() {
     rcs_run(&[&["campaign", "linkbar"], &campaign[..]].concat());
     let table = std::fs::read_to_string(&file).expect("the table is written");
     let rows: Vec<&str> = table.lines().filter(|line| line.starts_with("| ")).skip(1).collect();
-    assert_eq!(rows.len(), 4, "{table}");
-    assert!(rows[0].starts_with("| clevis | pause | 2 |") && rows[1].contains("held:task"), "{table}");
-    assert!(rows[2].starts_with("| linkbar | pause | 2 |") && rows[3].contains("held:task"), "{table}");
+    assert_eq!(rows, ["| pause | 2/2 | 2/2 |", "| held:task | 2/2 | 2/2 |"], "{table}");
+    assert!(table.contains("| interruption | linkbar | clevis |"), "{table}");
 }
 
 /// Interruptions that a job must survive in 97 of 100 branches, without harm.
 const REQUIRED: &str =
     "pause,pause-twice,refused,replaced,answer-lost,answer-late,answer-damaged,hold,nudge,held,restart";
 
-/// A sample of the campaign: all jobs, all required kinds and the E-stop, at ticks that follow from the number of the job.
+/// A sample of the campaign: all jobs, all required kinds and the E-stop, at ticks that follow from the
+/// number of the job.
 #[test]
 fn a_sample_of_the_campaign_goes_on_and_hurts_nothing() {
     let count = |row: &Value, name: &str| row[name].as_u64().expect("counts are numbers");

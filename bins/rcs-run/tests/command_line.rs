@@ -78,7 +78,7 @@ fn json(output: &Output) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text:?}; {}", last_line(output)))
 }
 
-/// Whoever opens a pipe waits until somebody writes into it, and no device is a file of blocks.
+/// A reader of a pipe waits until there is a writer, and no device is a file of blocks.
 #[test]
 fn blocks_are_loaded_from_regular_files_only() {
     let place = Place::new();
@@ -90,6 +90,70 @@ fn blocks_are_loaded_from_regular_files_only() {
     // The words may be broken into lines, for a person.
     let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(said.contains(why), "{said}");
+}
+
+/// A pedestal form that turns the part beyond the table's limit, in the blocks that a job loads.
+#[test]
+fn blocks_that_a_job_loads_are_checked_against_the_cell() {
+    let place = Place::new();
+    let blocks = "BLOCK# 1 OFFSET 22000\n:S \"p-object\" <= LCLEVIS_IH\nped-appr <= 500 ped-grasp-size <= 250\n\
+                  ped-force <= 0 ped-release-size <= 450\nped-table-pos <= 100 ped-flip-angle <= 1835 :R\n\
+                  >FILE PED-PARA\n";
+    fs::write(place.0.path().join("pedestal.blk"), blocks).unwrap();
+    let refused = |line: &str| {
+        let output = rcs_run(&["run", &place.job("loads", &format!("{line}\n")), "--log", "none"]);
+        assert_eq!(output.status.code(), Some(2));
+        // The words may be broken into lines, for a person.
+        String::from_utf8_lossy(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    for line in ["** load pedestal.blk", "** after 50 load pedestal.blk"] {
+        let said = refused(&format!("{line}\n== PAUSE -- +0 -- 0 +0 -- 0 -- 0"));
+        for found in ["ped-table-pos is 10.0 degrees", "ped-force 0 lb, 1 to"] {
+            let place = "pedestal.blk: block 1 (offset 22000), line";
+            assert!(said.contains(found) && said.contains(place), "{found}: {said}");
+        }
+    }
+    // On purpose: then they must not fit.
+    let marked = place.job("marked", "** load pedestal.blk expect error\n** wait 1\n");
+    assert_eq!(rcs_run(&["run", &marked, "--log", "none"]).status.code(), Some(0));
+    fs::write(
+        place.0.path().join("pedestal.blk"),
+        blocks.replace("<= 100", "<= -2135").replace("<= 0", "<= 50"),
+    )
+    .unwrap();
+    let said = refused("** load pedestal.blk expect error");
+    assert!(said.contains("the blocks fit the cell"), "{said}");
+}
+
+/// Two objects that differ in their vision ids alone; then the cell has parts of two sizes by these names.
+#[test]
+fn objects_that_only_the_camera_can_tell_apart_are_warned_of() {
+    let place = Place::new();
+    let data = place.data();
+    let blocks = "BLOCK# 1 OFFSET 22000\n-obj- ONE 1 300 60 30 350   -obj- TWO 1 300 60 30 350\n\
+                  -grip- ONE 1 lpt UNIT_1 LK-GRP-1\n-grip- TWO 1 lpt UNIT_1 LK-GRP-1\n\
+                  -vu- ONE 1 21 lpt UNIT_1 GR-PIC lpt 561 1\n-vu- TWO 1 22 lpt UNIT_1 GR-PIC lpt 561 1\n";
+    fs::write(data.join("objects/two.blk"), blocks).unwrap();
+    let directory = fs::read_to_string(data.join("directory.blk")).unwrap();
+    let last = "890 load ( brush, TABLE    )\n";
+    fs::write(data.join("directory.blk"), directory.replacen(last, &format!("{last}  22000 1 OLOAD\n"), 1))
+        .unwrap();
+    let cell = fs::read_to_string(data.join("cell.toml")).unwrap();
+    let part = |name, id: i32, width: f64| {
+        format!(
+            "[[part]]\nname = \"{name}\"\nsize = [1.0, {width:?}, 4.0]\nweight = 0.4\nvision_id = {id}\n\n"
+        )
+    };
+    let warned = |width| {
+        let parts = format!("{cell}\n{}{}", part("ONE", 21, 0.5), part("TWO", 22, width));
+        fs::write(data.join("cell.toml"), parts).unwrap();
+        let output = rcs_run(&["check", "--json", "--data", &data.display().to_string()]);
+        let found = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(found.contains("TWO is a part, and no OBJ-GRIPS record"), "{found}");
+        found.contains("TWO differs from ONE in nothing but its vision id")
+    };
+    assert!(warned(0.5));
+    assert!(!warned(0.6));
 }
 
 #[test]
@@ -182,7 +246,7 @@ fn a_name_that_only_the_cell_has_is_told_before_the_first_tick() {
         &[
             "cell.toml: line 216, column 12: vise.location: expected a location of the task data, found PFIXTUR",
             "the nearest one is PFIXTURE",
-            "linkbar.job: line 7, column 17: there is no vise at PFIXTURE; the cell description has one at PFIXTUR",
+            ".job: line 7, column 17: there is no vise at PFIXTURE; the cell description has one at PFIXTUR",
         ],
     );
     unknown("unit = \"UNIT_1\"", "unit = \"UNIT_11\"", &["tray[1].unit: expected", "no unit named UNIT_1;"]);
@@ -276,7 +340,7 @@ fn a_few_ticks_give_the_same_bits_every_time() {
     assert_eq!(one["commands"][0]["text"], "PAUSE");
     assert!(one["failure"].is_null() && one["log"].is_null());
     let shared = json(&rcs_run(&["--ticks", "50", "--json", "--log", "none", "--shared-memory", "on"]));
-    assert_eq!(shared["digest"], one["digest"], "whoever looks on changes nothing");
+    assert_eq!(shared["digest"], one["digest"], "a reader changes nothing");
 }
 
 #[test]

@@ -1,14 +1,18 @@
 //! Standard output and standard error that go away: a tool ends quietly, and a run goes on.
 
+mod common;
+
 use std::{
     fs::File,
     io::{self, Read},
     os::fd::OwnedFd,
-    path::{Path, PathBuf},
+    path::Path,
     process::{Command, Output, Stdio},
 };
 
 use rustix::pty;
+
+use common::command;
 
 /// A pipe whose reader has gone, as in `rcs-run | head`.
 fn closed_pipe() -> Stdio {
@@ -41,16 +45,6 @@ fn closed_terminal() -> Stdio {
 
 /// All ways to lose a stream.
 const LOST: [fn() -> Stdio; 3] = [closed_pipe, full, closed_terminal];
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-run"));
-    command.args(arguments).current_dir(root()).stdin(Stdio::null());
-    command
-}
 
 /// A job that fails: the sentence about it goes to standard error.
 const FAILS: &str = "** tray UNIT_1 4 LINKBAR1_BH 0 0 0\n** tray UNIT_1 4 LINKBAR1_BH 0 0 0\n";
@@ -116,9 +110,10 @@ fn without_output(arguments: &[&str], lost: Stdio) -> Output {
     command(arguments).stdout(lost).stderr(Stdio::piped()).spawn().unwrap().wait_with_output().unwrap()
 }
 
-const TOOLS: [&[&str]; 8] = [
+const TOOLS: [&[&str]; 9] = [
     &["check"],
     &["check", "--json"],
+    &["check", "--explain-job", "linkbar"],
     &["check", "--explain", "MOVE LINKBAR1_BH +2 UNIT_1 4 +2 PFIXTURE 0 -- 0"],
     &["tables"],
     &["latency", "--seconds", "1"],

@@ -1,4 +1,4 @@
-//! The Data System behind a run: items in a file that outlives it, and that anybody can ask.
+//! The Data System behind a run: items in a file that outlives it, and that other programs can read.
 
 use std::{
     fs,
@@ -106,8 +106,7 @@ fn what_was_told_survives_a_run_that_is_killed() {
 #[test]
 fn a_file_of_another_kind_is_refused_before_the_first_tick() {
     let place = Place::new();
-    fs::write(place.file("items.db"), "these are the holiday pictures, or were, before somebody named them")
-        .unwrap();
+    fs::write(place.file("items.db"), "these are holiday pictures under a wrong name").unwrap();
     let output = place.run(CONNECT);
     assert_eq!(output.status.code(), Some(2));
     let error = String::from_utf8_lossy(&output.stderr);

@@ -1,12 +1,14 @@
 //! The program with a robot at a serial port: over a pseudo-terminal, with the controller of [`depc`] behind it.
 
+mod common;
+
 use std::{
     fs::{self, File},
     io::{ErrorKind, Read as _, Write as _},
     os::unix::fs::symlink,
     panic::{self, AssertUnwindSafe},
     path::{Path, PathBuf},
-    process::{Child, Command, Output, Stdio},
+    process::{Child, Output, Stdio},
     sync::{
         Arc, Mutex,
         atomic::{AtomicBool, Ordering},
@@ -17,12 +19,10 @@ use std::{
 
 use depc::{
     Limits, Plate,
-    controller::{Controller, ControllerInputs, ControllerState, JointProblem, Robot, joints_for},
+    controller::{Controller, ControllerInputs, ControllerState, Refusal, Robot, joints_for},
 };
-use rcs_core::{
-    interface::device::LinkBytes,
-    kinematics::{HOME_JOINTS, Joints, T3},
-};
+use geometry::kinematics::{HOME_JOINTS, Joints, T3};
+use interfaces::device::LinkBytes;
 use rustix::{
     fs::OFlags,
     process::{Pid, Signal, kill_process},
@@ -31,6 +31,8 @@ use rustix::{
 };
 use serde_json::Value;
 use tempfile::TempDir;
+
+use common::command;
 
 /// A directory of one test, removed with it.
 struct Place(TempDir);
@@ -60,11 +62,11 @@ struct Exact {
 }
 
 impl Robot for Exact {
-    fn present(&self) -> Plate {
+    fn present(&mut self) -> Plate {
         self.at
     }
 
-    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+    fn accept(&mut self, goal: &Plate) -> Result<(), Refusal> {
         self.joints = joints_for(&T3, goal, &self.joints)?;
         let changes = goal.words.iter().zip(self.at.words).map(|(to, from)| to.abs_diff(from));
         let step = changes.max().unwrap_or(0);
@@ -102,7 +104,7 @@ impl Peer {
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
         grantpt(&master).unwrap();
         unlockpt(&master).unwrap();
-        // A cable has no echo: what is said before anybody opens the port would come back.
+        // A cable has no echo: what is sent before the port is open would come back.
         let mut settings = tcgetattr(&master).unwrap();
         settings.make_raw();
         tcsetattr(&master, OptionalActions::Now, &settings).unwrap();
@@ -141,7 +143,7 @@ fn control(mut master: File, manner: Manner, stop: &AtomicBool) -> (ControllerSt
     let mut at = Plate::from_frame(&T3.forward_plate(&HOME_JOINTS), &Plate::default()).unwrap();
     at.words[2] += raised;
     let mut robot = Exact { joints: HOME_JOINTS, at, last: [0; 3], longest: 0 };
-    robot.move_to(&at).unwrap();
+    robot.accept(&at).unwrap();
     let plugged = Instant::now();
     while plugged.elapsed() < late {
         // The cable is not plugged in: the bytes are lost.
@@ -155,7 +157,7 @@ fn control(mut master: File, manner: Manner, stop: &AtomicBool) -> (ControllerSt
         inputs.rx = LinkBytes::default();
         match master.read(&mut inputs.rx.bytes) {
             Ok(count) => inputs.rx.length = u8::try_from(count).unwrap(),
-            // Nothing there, or nobody has the port open.
+            // Nothing there, or no process has the port open.
             Err(error) => assert!(error.kind() == ErrorKind::WouldBlock || error.raw_os_error() == Some(5)),
         }
         // Silence is a step of its own: it ends a torn frame.
@@ -176,11 +178,7 @@ fn control(mut master: File, manner: Manner, stop: &AtomicBool) -> (ControllerSt
 
 /// Run the program to its end.
 fn rcs_run(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_rcs-run"))
-        .args(arguments)
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
-        .output()
-        .unwrap()
+    command(arguments).output().unwrap()
 }
 
 fn last_words(output: &Output) -> String {
@@ -218,8 +216,8 @@ fn linkbar(place: &Place, ticks: &str) -> (Output, Value) {
 }
 
 const PROMPT: Option<Duration> = Some(Duration::from_millis(2));
-/// How often a test on the 40 ms grid is begun. A machine that has other things to do may hold up a frame; what is wrong is wrong
-/// every time.
+/// How often a test on the 40 ms grid is begun. A machine that has other things to do may hold up a frame;
+/// what is wrong is wrong every time.
 const ATTEMPTS: u32 = 5;
 
 /// Try something on the 40 ms grid, with nothing else of this file beside it.
@@ -265,6 +263,25 @@ fn the_dump_shows_every_frame() {
         assert!(text.contains("< FF FF 03 00 00 E7 6B") && lines("report") >= 1, "{text}");
         assert!(text.contains("> 03 00 00 00 00 E7 6B"), "the reported position is held: {text}");
         assert!(lines("data") > 10 && lines("ACK") >= lines("data") - 1, "{text}");
+    });
+}
+
+#[test]
+fn a_dump_without_a_reader_ends_quietly() {
+    on_the_grid(|| {
+        let place = Place::new();
+        let _peer = Peer::plug(&place.port(), PROMPT);
+        let mut child = command(&["link-test", "--robot", &place.robot(), "--seconds", "2", "--dump"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut line = [0; 16];
+        child.stdout.take().unwrap().read_exact(&mut line).unwrap();
+        let output = child.wait_with_output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        assert!(!said.contains("panicked") && !said.contains("Broken pipe"), "{said}");
     });
 }
 
@@ -347,13 +364,7 @@ fn moving(place: &Place) -> Child {
         "--shared-memory",
         "off",
     ];
-    let child = Command::new(env!("CARGO_BIN_EXE_rcs-run"))
-        .args(run)
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../.."))
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let child = command(&run).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     thread::sleep(Duration::from_secs(6));
     child
 }
@@ -465,7 +476,7 @@ fn what_does_not_go_together_is_refused_at_once() {
         (&["--robot", "serial:/dev/none", "--clock", "real"][..], "no serial port /dev/none"),
         (
             &["--robot", "serial:/dev/none", "--clock", "real", "--faults", "data/faults/noisy-line.toml"],
-            "a serial port has faults of its own",
+            "a robot elsewhere has faults of its own",
         ),
         (&["--faults", "/none.toml"], "/none.toml"),
         (&["link-test", "--robot", "sim"], "serial:PATH"),

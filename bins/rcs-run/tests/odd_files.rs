@@ -1,9 +1,13 @@
 //! Files that are none, limits of files, and signals: a run refuses in words, or ends in order.
 
+mod common;
+#[path = "common/data.rs"]
+mod data;
+
 use std::{
     fs,
     os::unix::fs::symlink,
-    path::{Path, PathBuf},
+    path::Path,
     process::{Child, Command, Output, Stdio},
     time::{Duration, Instant},
 };
@@ -13,15 +17,8 @@ use rustix::{
     process::{Pid, Signal, kill_process},
 };
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_rcs-run"));
-    command.args(arguments).current_dir(root()).stdin(Stdio::null());
-    command
-}
+use common::{command, root};
+use data::copy;
 
 /// What the program says on standard error, on one line.
 fn said(output: &Output) -> String {
@@ -49,18 +46,6 @@ fn run(arguments: &[&str]) -> Output {
 fn fifo(path: &Path) -> &str {
     mkfifoat(CWD, path, Mode::RUSR | Mode::WUSR).unwrap();
     path.to_str().unwrap()
-}
-
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap();
-    for entry in fs::read_dir(from).unwrap().flatten() {
-        let target = to.join(entry.file_name());
-        if entry.path().is_dir() {
-            copy(&entry.path(), &target)
-        } else {
-            drop(fs::copy(entry.path(), target))
-        }
-    }
 }
 
 #[test]

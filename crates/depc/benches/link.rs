@@ -5,19 +5,17 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use depc::link::LinkBytes;
 use depc::{
     Limits, Plate,
-    controller::{Controller, ControllerInputs, JointProblem, Robot, joints_for},
+    controller::{Controller, ControllerInputs, Refusal, Robot, joints_for},
     fault::{Direction, FaultKind, Injector, Plan, Rule},
     host::{ANSWER_TICKS, Host, Intent},
     receive::ReplyReceiver,
     wire::{DataCommand, NO_FUNCTION, Report},
 };
-use rcs_core::{
-    interface::device::LinkBytes,
-    kinematics::{HOME_JOINTS, Joints, T3},
-    tick::Tick,
-};
+use geometry::kinematics::{HOME_JOINTS, Joints, T3};
+use rcs_core::tick::Tick;
 
 const HOME: Plate = Plate { words: [0, -6296, -635, -9000, 13495, 0] };
 
@@ -28,11 +26,11 @@ struct Exact {
 }
 
 impl Robot for Exact {
-    fn present(&self) -> Plate {
+    fn present(&mut self) -> Plate {
         self.at
     }
 
-    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+    fn accept(&mut self, goal: &Plate) -> Result<(), Refusal> {
         self.joints = joints_for(&T3, goal, &self.joints)?;
         self.at = *goal;
         Ok(())

@@ -4,28 +4,43 @@
 //! acknowledges, checks, and moves. What it cannot do becomes a warning on the controller's screen; the operator answers
 //! ENTER (begin again) or CANCEL (give up). The line says nothing of a warning: the host only sees that no answer comes.
 //!
-//! The state machine knows no robot; it moves whatever implements [`Robot`].
+//! The state machine knows no robot; it moves whatever implements [`Robot`]: the simulated T3, or a robot
+//! with another link.
 
-use rcs_core::{Plain, interface::device::LinkBytes};
+use rcs_core::Plain;
 
+pub use crate::warning::{JointProblem, Refusal, Warning, joints_for};
+
+use crate::link::LinkBytes;
 use crate::{
     Limits, Plate,
     receive::{Command, CommandReceiver},
     wire::{Control, DataCommand, FRAME_BYTES, NO_FUNCTION, Report, Response},
 };
 
-pub use crate::warning::{JointProblem, Warning, joints_for};
-
-/// What the controller moves.
+/// What the controller moves: the border to a robot, whatever drives it.
+///
+/// Positions are words of the line. A robot that can use more takes the frames behind the words from
+/// [`crate::exact::ExactFrames`].
 pub trait Robot {
-    /// The position that the robot holds, in words of the line: to command it moves nothing.
-    fn present(&self) -> Plate;
+    /// Where the robot stands, or will stand when what it was sent is over: to command it moves nothing. The
+    /// next point comes from there.
+    fn present(&mut self) -> Plate;
 
     /// Make `goal` the set point that is reached within the coming period.
     ///
     /// # Errors
-    /// [`JointProblem`] if the joints cannot; then the set point stays as it was.
-    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem>;
+    /// [`Refusal`] if the robot cannot; then the set point stays as it was, and the warning is shown.
+    fn accept(&mut self, goal: &Plate) -> Result<(), Refusal>;
+
+    /// What the robot complains of by itself. While there is something no command is taken, and the function
+    /// does not begin.
+    fn warning(&self) -> Option<Warning> {
+        None
+    }
+
+    /// No further point comes: the function has ended, or waits for an answer to a warning.
+    fn stop(&mut self) {}
 }
 
 /// State of the DEPC function.
@@ -106,6 +121,12 @@ impl Controller {
         Self { limits, ..Self::default() }
     }
 
+    /// The limits that positions are checked against.
+    #[must_use]
+    pub const fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
     /// State of the function.
     #[must_use]
     pub const fn state(&self) -> ControllerState {
@@ -131,7 +152,8 @@ impl Controller {
             ..Default::default()
         };
         self.receiver.accept(&inputs.rx);
-        match self.state {
+        let before = self.state;
+        match before {
             ControllerState::Off | ControllerState::Ended => {
                 self.receiver.clear();
                 if inputs.start {
@@ -148,17 +170,22 @@ impl Controller {
                 }
             }
         }
+        if before == ControllerState::Running && self.state != before {
+            robot.stop();
+        }
         out.dtr = matches!(self.state, ControllerState::Running | ControllerState::Warning);
         out
     }
 
     /// The function begins, or begins again: the checks in their order, then the report.
-    fn begin(&mut self, inputs: &ControllerInputs, robot: &impl Robot, out: &mut ControllerOutputs) {
+    fn begin(&mut self, inputs: &ControllerInputs, robot: &mut impl Robot, out: &mut ControllerOutputs) {
         self.receiver.clear();
         if !inputs.board {
             self.warn(Warning::BoardMissing);
         } else if !inputs.cts {
             self.warn(Warning::CtsLow);
+        } else if let Some(warning) = robot.warning() {
+            self.warn(warning);
         } else {
             self.state = ControllerState::Running;
             self.warning = Warning::None;
@@ -172,6 +199,9 @@ impl Controller {
         }
         if !inputs.cts {
             return self.warn(Warning::CtsLow);
+        }
+        if let Some(warning) = robot.warning() {
+            return self.warn(warning);
         }
         if inputs.hold {
             return;
@@ -205,7 +235,7 @@ impl Controller {
             .limits
             .check(&self.commanded, &command.plate)
             .map_err(Warning::from)
-            .and_then(|()| robot.move_to(&command.plate).map_err(Warning::from));
+            .and_then(|()| robot.accept(&command.plate).map_err(Warning::from));
         match accepted {
             Ok(()) => {
                 self.commanded = command.plate;
@@ -219,7 +249,7 @@ impl Controller {
     fn wait_for_answer(
         &mut self,
         inputs: &ControllerInputs,
-        robot: &impl Robot,
+        robot: &mut impl Robot,
         out: &mut ControllerOutputs,
     ) {
         let command = self.receiver.take();
@@ -233,7 +263,7 @@ impl Controller {
         }
     }
 
-    fn report(&mut self, inputs: &ControllerInputs, robot: &impl Robot, out: &mut ControllerOutputs) {
+    fn report(&mut self, inputs: &ControllerInputs, robot: &mut impl Robot, out: &mut ControllerOutputs) {
         self.commanded = robot.present();
         let mut frame = [0; FRAME_BYTES];
         Report { plate: self.commanded }.emit(&mut frame);
@@ -256,7 +286,8 @@ impl Controller {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::kinematics::{HOME_JOINTS, Joints, T3};
+    use crate::limit::Exceeded;
+    use geometry::kinematics::{HOME_JOINTS, Joints, T3};
 
     const HOME: Plate = Plate { words: [0, -6293, -636, -9000, 13500, 0] };
 
@@ -267,11 +298,11 @@ mod tests {
     }
 
     impl Robot for Exact {
-        fn present(&self) -> Plate {
+        fn present(&mut self) -> Plate {
             self.at
         }
 
-        fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+        fn accept(&mut self, goal: &Plate) -> Result<(), Refusal> {
             self.joints = joints_for(&T3, goal, &self.joints)?;
             self.at = *goal;
             Ok(())
@@ -467,5 +498,49 @@ mod tests {
         assert_eq!(controller.step(&line(&[0x05]), &mut robot).tx.length, 0);
         let out = controller.step(&ControllerInputs { start: true, ..well() }, &mut robot);
         assert_eq!((out.tx.length, out.dtr, controller.state()), (16, true, ControllerState::Running));
+    }
+
+    /// A robot with complaints of its own.
+    struct Complaining {
+        complaint: Option<Warning>,
+        stopped: u32,
+    }
+
+    impl Robot for Complaining {
+        fn present(&mut self) -> Plate {
+            HOME
+        }
+
+        fn accept(&mut self, _goal: &Plate) -> Result<(), Refusal> {
+            Err(Refusal::TooFast(Exceeded::Translation))
+        }
+
+        fn warning(&self) -> Option<Warning> {
+            self.complaint
+        }
+
+        fn stop(&mut self) {
+            self.stopped += 1;
+        }
+    }
+
+    #[test]
+    fn a_robot_s_own_warning_is_shown_until_it_is_gone_and_the_host_begins_again() {
+        let (mut controller, mut robot) =
+            (Controller::new(Limits::NBS), Complaining { complaint: None, stopped: 0 });
+        controller.step(&ControllerInputs { start: true, ..well() }, &mut robot);
+        assert_eq!((controller.state(), robot.stopped), (ControllerState::Running, 0));
+        robot.complaint = Some(Warning::OffPath);
+        for _ in 0..3 {
+            let out = controller.step(&line(&[0x05]), &mut robot);
+            assert!(out.dtr && out.tx.length == 0);
+            assert_eq!((controller.warning(), robot.stopped), (Warning::OffPath, 1));
+        }
+        robot.complaint = None;
+        assert_eq!(controller.step(&line(&[0x05]), &mut robot).tx.length, 16);
+        // A refusal of the robot is a warning as well.
+        let out = controller.step(&to([10, -6293, -636, -9000, 13500, 0], NO_FUNCTION), &mut robot);
+        assert_eq!((out.tx.as_slice(), out.moving), (&[0x06][..], false));
+        assert_eq!((controller.warning(), robot.stopped), (Warning::Translation, 2));
     }
 }

@@ -1,30 +1,28 @@
 //! The host's end of the link: what the T3 Interface process uses to talk to the robot controller (A 2.3, VI.1).
 //!
-//! Each tick has two halves: [`Host::receive`] takes in what arrived and moves the state, [`Host::transmit`] sends at most one
-//! frame. One frame is outstanding at a time. An answer bears no number, so a frame that got none is never sent again:
-//! it may have been executed. The host then sends a restart, discards everything until a report with a right checksum
-//! comes, and goes on from there. Only a NAK, which says that nothing was executed, is answered with the same bytes.
+//! Each tick has two halves: [`Host::receive`] takes in what arrived and moves the state, [`Host::transmit`]
+//! sends at most one frame. One frame is outstanding at a time. An answer bears no number, so a frame that
+//! got none is never sent again: it may have been executed. The host then sends a restart, discards
+//! everything until a report with a right checksum comes, and goes on from there. Only a NAK, which says that
+//! nothing was executed, is answered with the same bytes.
 //!
-//! A controller whose DTR is on and that does not answer may be in Hold, show a warning D1 to D6, have a dead receiver, or
-//! the wire may be cut: this end cannot tell. It sends a restart a second, and calls the link failed after
-//! [`Host::set_patience`].
+//! A controller whose DTR is on and that does not answer may be in Hold, show a warning D1 to D6, have a dead
+//! receiver, or the wire may be cut: this end cannot tell. It sends a restart a second, and calls the link
+//! failed after [`Host::set_patience`].
 //!
-//! A report bears no number either. On a slow line several may be on their way, and the robot may have moved since the
-//! first: if more than one has been asked for, the last is believed, and only when none has followed for longer than the
-//! time for an answer.
+//! A report bears no number either. On a slow line several may be on their way, and the robot may have moved
+//! since the first: if more than one has been asked for, the last is believed, and only when none has
+//! followed for longer than the time for an answer.
 
-use rcs_core::{
-    Plain,
-    interface::{
-        device::LinkBytes,
-        t3i::{LinkCounters, LinkFault},
-    },
-};
+mod start;
 
+use rcs_core::Plain;
+
+use crate::link::{LinkBytes, LinkCounters, LinkFault};
 use crate::{
     Plate,
     receive::{Reply, ReplyReceiver},
-    wire::{Control, DataCommand, FRAME_BYTES, NO_FUNCTION, Response},
+    wire::{Control, DataCommand, FRAME_BYTES, Response},
 };
 
 /// Ticks without an answer after which a frame counts as lost
@@ -113,14 +111,16 @@ pub struct Host {
     patience: u16,
     /// Ticks with DTR on that this one has taken.
     starting: u16,
+    /// No report has come for [`RESTART_TICKS`] with DTR on. [`Host::forgive`] does not end that: a report does.
+    silent: bool,
     /// A restart was sent, and its report has not come.
     restarted: bool,
     /// What was wrong with the last attempt of this start; none if nothing came.
     attempt: LinkFault,
     retries: u8,
     attempts: u8,
-    /// Reports that are on their way, as far as this end can know: restarts sent since the last start, and a report that
-    /// comes unasked.
+    /// Reports that are on their way, as far as this end can know: restarts sent since the last start, and a
+    /// report that comes unasked.
     asked: u8,
     /// A report that may not be the last: more than one was asked for.
     candidate: Plate,
@@ -155,7 +155,7 @@ impl Host {
     /// DTR is on, and for [`RESTART_TICKS`] or longer no report has come.
     #[must_use]
     pub const fn is_silent(&self) -> bool {
-        matches!(self.state, HostState::Starting) && self.starting >= RESTART_TICKS
+        matches!(self.state, HostState::Starting) && self.silent
     }
 
     /// State of this end.
@@ -195,7 +195,7 @@ impl Host {
     }
 
     /// Function bytes of the last data command that was lost with a function: it may or may not have run, and is not
-    /// repeated. [`NO_FUNCTION`] if there was none.
+    /// repeated. [`crate::wire::NO_FUNCTION`] if there was none.
     #[must_use]
     pub const fn lost_function(&self) -> [u8; 2] {
         self.lost_function
@@ -212,8 +212,9 @@ impl Host {
         count(&mut self.counters.limited);
     }
 
-    /// Before the first half of a tick: the port has not taken all bytes of the last one (`status-arg-out` 4, VI.1.2). What
-    /// was on the line was torn, so that it counts as lost; the port may have been stuck for longer than the controller waits.
+    /// Before the first half of a tick: the port has not taken all bytes of the last one (`status-arg-out` 4,
+    /// VI.1.2). What was on the line was torn, so that it counts as lost; the port may have been stuck for
+    /// longer than the controller waits.
     pub fn unsent(&mut self) -> HostEvent {
         match self.state {
             HostState::Waiting => self.lost(LinkFault::NotTransmitted),
@@ -326,9 +327,10 @@ impl Host {
     /// What one reply means in the present state. What has no meaning is noise, and ignored: if it took the place of
     /// an answer, no answer comes.
     ///
-    /// A report is believed only if it is the `last` of its tick: nothing is sent behind it, and the checksum does not tell
-    /// a report that has lost an FF in it from one that is closed by the first FF of the next. An answer is
-    /// believed only in a tick of few bytes: it has no checksum at all, and may be a byte of a broken report.
+    /// A report is believed only if it is the `last` of its tick: nothing is sent behind it, and the checksum
+    /// does not tell a report that has lost an FF in it from one that is closed by the first FF of the next.
+    /// An answer is believed only in a tick of few bytes: it has no checksum at all, and may be a byte of a
+    /// broken report.
     fn take(&mut self, reply: Reply, last: bool) -> HostEvent {
         if reply == Reply::BadChecksum {
             count(&mut self.counters.checksum_errors);
@@ -366,7 +368,7 @@ impl Host {
                 self.resend_due = true;
                 HostEvent::None
             }
-            // Nobody asked for it: the controller has stopped with a warning and begun again (A 2.4).
+            // It was not asked for: the controller has stopped with a warning and begun again (A 2.4).
             // Or the line is slow, and the report is not the only one.
             (HostState::Ready | HostState::Waiting, Reply::Report(_)) => {
                 self.asked = 1;
@@ -382,142 +384,6 @@ impl Host {
                 HostEvent::None
             }
             _ => HostEvent::None,
-        }
-    }
-
-    /// Go on from a reported position.
-    fn start(&mut self, plate: Plate) -> HostEvent {
-        self.position = plate;
-        self.state = HostState::Ready;
-        (self.attempts, self.starting, self.asked, self.has_candidate) = (0, 0, 0, false);
-        HostEvent::Started
-    }
-
-    /// A NAK. One that comes later than in the next tick may be the answer to noise behind a command whose ACK was lost: to
-    /// repeat the position does no harm then, to repeat a function would.
-    fn refused(&mut self) -> HostEvent {
-        let ambiguous = self.waited > 1 && self.function() != NO_FUNCTION;
-        if self.retries >= MOST_RETRIES || ambiguous {
-            return self.lost(LinkFault::NotTransmitted);
-        }
-        self.retries = self.retries.saturating_add(1);
-        self.resend_due = true;
-        self.waited = 0;
-        HostEvent::None
-    }
-
-    fn without_answer(&mut self) -> HostEvent {
-        match self.state {
-            HostState::Waiting => {
-                count(&mut self.counters.timeouts);
-                self.lost(LinkFault::NotResponding)
-            }
-            // On a slow line the reports to all restarts come one by one, and the first would be out of date by the time the
-            // last is here: only one that stays the last for longer than the time between two restarts is believed.
-            HostState::Starting if self.has_candidate => {
-                if self.waited > self.answer_ticks {
-                    self.start(self.candidate)
-                } else {
-                    HostEvent::None
-                }
-            }
-            HostState::Starting if self.restarted && self.waited < RESTART_TICKS => HostEvent::None,
-            HostState::Starting => {
-                count(&mut self.counters.timeouts);
-                self.restart_due = true;
-                HostEvent::None
-            }
-            HostState::Cancelling => {
-                count(&mut self.counters.timeouts);
-                self.resend_due = true;
-                HostEvent::None
-            }
-            HostState::Down | HostState::Ready | HostState::Ended => HostEvent::None,
-        }
-    }
-
-    fn without_dtr(&mut self) -> HostEvent {
-        if matches!(self.state, HostState::Cancelling | HostState::Ended) {
-            // What was asked for; the ACK, which comes with it, is not waited for.
-            self.receiver.clear();
-            self.state = HostState::Ended;
-            self.resend_due = false;
-            return HostEvent::None;
-        }
-        let was_running = self.is_running();
-        if was_running {
-            (self.starting, self.attempt) = (0, LinkFault::None);
-            self.note_lost_function();
-            self.blame(LinkFault::NotResponding);
-        } else if self.state == HostState::Starting || self.waited >= self.answer_ticks {
-            self.waited = 0;
-            self.attempts = self.attempts.saturating_add(1);
-            if self.attempts >= START_ATTEMPTS {
-                self.blame(LinkFault::NotResponding);
-            }
-        }
-        self.receiver.clear();
-        self.state = HostState::Down;
-        (self.restart_due, self.resend_due, self.has_candidate) = (false, false, false);
-        self.asked = 0;
-        if was_running { HostEvent::Lost } else { HostEvent::None }
-    }
-
-    fn lost(&mut self, fault: LinkFault) -> HostEvent {
-        self.blame(fault);
-        self.restart();
-        HostEvent::Lost
-    }
-
-    /// Nothing is outstanding any more; a restart goes out in this tick.
-    fn restart(&mut self) {
-        self.note_lost_function();
-        self.resend_due = false;
-        if self.state != HostState::Down {
-            self.receiver.clear();
-            if self.state != HostState::Starting {
-                self.begin_start();
-            }
-            self.has_candidate = false;
-            self.restart_due = true;
-        }
-    }
-
-    /// DTR is on, or the link was lost. A DTR that comes and goes does not begin the patience anew.
-    fn begin_start(&mut self) {
-        if self.is_running() {
-            (self.starting, self.attempt) = (0, LinkFault::None);
-        }
-        self.state = HostState::Starting;
-        self.restarted = false;
-    }
-
-    /// A tick of a start with DTR on is over.
-    fn be_patient(&mut self) {
-        if self.state != HostState::Starting {
-            return;
-        }
-        self.starting = self.starting.saturating_add(1);
-        if self.starting >= self.patience && !self.has_candidate {
-            let silent = self.attempt == LinkFault::None;
-            self.blame(if silent { LinkFault::NotResponding } else { self.attempt });
-        }
-    }
-
-    fn note_lost_function(&mut self) {
-        if self.state == HostState::Waiting && self.function() != NO_FUNCTION {
-            self.lost_function = self.function();
-        }
-    }
-
-    /// Function bytes of the last data command.
-    fn function(&self) -> [u8; 2] {
-        DataCommand::parse(&self.frame).map_or(NO_FUNCTION, |command| command.function)
-    }
-
-    fn blame(&mut self, fault: LinkFault) {
-        if self.fault == LinkFault::None {
-            self.fault = fault;
         }
     }
 }

@@ -2,19 +2,21 @@
 //! Milacron T3 (NBSIR 88-3692, appendix A; version 1.1, 7 Jul 82).
 //!
 //! Both ends are state machines without I/O and without a clock. Each is stepped once a tick with the bytes that arrived
-//! and hands back the bytes to send ([`rcs_core::interface::device::LinkBytes`]):
+//! and hands back the bytes to send ([`link::LinkBytes`]):
 //!
 //! ```text
 //!   host (T3 Interface)                         controller (Acramatic)
-//!   host::Host          -- 03 data, 18, 05 -->  controller::Controller -- Robot::move_to --> servos
+//!   host::Host          -- 03 data, 18, 05 -->  controller::Controller -- Robot::accept --> servos
 //!                       <-- FF FF 03, 06, 15 --
 //! ```
 //!
+//! * [`link`]: the bytes of a tick, faults and counters;
 //! * [`plate`]: the six words of a position, the one place that knows their coding;
 //! * [`wire`]: one file a frame, every byte shown;
 //! * [`receive`]: byte-by-byte receivers of both ends;
 //! * [`limit`], [`step`]: the velocity limits, and steps that respect them;
 //! * [`host`], [`controller`]: the two ends; [`warning`]: what the controller complains of;
+//! * [`exact`]: the frames behind the words, for a robot that can use more than 0.01 in;
 //! * [`fault`]: faults on the line between them, by plan and seed.
 //!
 //! All that the appendix leaves open is marked ASSUMED where it is decided.
@@ -39,9 +41,11 @@ extern crate std;
 
 pub mod controller;
 pub mod error;
+pub mod exact;
 pub mod fault;
 pub mod host;
 pub mod limit;
+pub mod link;
 pub mod plate;
 pub mod receive;
 pub mod step;

@@ -16,13 +16,13 @@
 
 use core::f64::consts::PI;
 
-use nalgebra::Rotation3;
-use rcs_core::{
-    Plain,
+use geometry::{
     frame::{Frame, Rotation, Vector},
     kinematics::Arm,
     units::{hundredths, hundredths_of_degree, inches, radians},
 };
+use nalgebra::Rotation3;
+use rcs_core::Plain;
 
 use crate::Error;
 
@@ -171,11 +171,11 @@ impl Plate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
-    use rcs_core::{
+    use geometry::{
         kinematics::T3,
         pose::{Pose, WireFrame},
     };
+    use proptest::prelude::*;
 
     const HOME: WireFrame =
         WireFrame { tool: [0, -7145, -1483], wrist_to_tool: [0, -2123, -2119], tool_to_finger: [3000, 0, 0] };

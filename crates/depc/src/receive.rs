@@ -4,8 +4,9 @@
 //! any garbage, and never waits for the end of a frame that does not come: a tick in which nothing arrives ends whatever
 //! was begun (a frame takes 17 ms, a tick 40 ms).
 
-use rcs_core::{Plain, interface::device::LinkBytes};
+use rcs_core::Plain;
 
+use crate::link::LinkBytes;
 use crate::{
     Error, Plate,
     wire::{Control, DataCommand, FRAME_BYTES, Report, Response, START},

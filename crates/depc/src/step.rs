@@ -9,11 +9,11 @@
 //! in another direction than it came would need a jump of D. There D and R are turned together, at the limit and with the
 //! tool still, until D shows the way out; so no goal is waited for in vain.
 
-use rcs_core::{
-    Plain,
+use geometry::{
     frame::{Frame, Vector, rotation_by, rotation_vector},
     kinematics::Arm,
 };
+use rcs_core::Plain;
 
 use crate::{
     Error, Limits, Plate,
@@ -179,9 +179,9 @@ fn way_out(line: &StraightLine<'_>) -> Result<Plate, Error> {
 mod tests {
     use super::*;
     use core::f64::consts::PI;
+    use geometry::frame::norm;
+    use geometry::kinematics::T3;
     use proptest::prelude::*;
-    use rcs_core::frame::norm;
-    use rcs_core::kinematics::T3;
 
     const HOME: Plate = Plate { words: [0, -6293, -636, -9000, 13500, 0] };
 

@@ -1,9 +1,7 @@
 //! What the controller complains of: the codes of its screen, and the joints behind some of them (A 2.3).
 
-use rcs_core::{
-    Plain,
-    kinematics::{Arm, Joints, ReachError},
-};
+use geometry::kinematics::{Arm, Joints, ReachError};
+use rcs_core::Plain;
 
 use crate::{Plate, limit::Exceeded};
 
@@ -19,6 +17,21 @@ pub enum JointProblem {
     Joint,
     /// The gripper axis is along the pitch axis.
     WristSingularity,
+}
+
+/// Why a robot does not take a position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// The joints cannot.
+    Joints(JointProblem),
+    /// It is too far from the position before.
+    TooFast(Exceeded),
+}
+
+impl From<JointProblem> for Refusal {
+    fn from(problem: JointProblem) -> Self {
+        Self::Joints(problem)
+    }
 }
 
 /// The joint angles (radians) for a position of the end plate, within the limits of `arm`.
@@ -82,6 +95,9 @@ pub enum Warning {
     /// DEPC link terminated (unrecoverable).
     #[text = "PIG"]
     Terminated,
+    /// The robot behind the function has left its path and comes to rest (extension: no T3 shows it).
+    #[text = "OFF-PATH"]
+    OffPath,
 }
 
 impl Warning {
@@ -89,7 +105,7 @@ impl Warning {
     /// are of its kind; what an operator or the wiring has caused, and a broken velocity limit, take an ENTER (ASSUMED).
     #[must_use]
     pub const fn host_can_restart(self) -> bool {
-        matches!(self, Self::JointLimit | Self::ShoulderUp | Self::OtherJoint | Self::Wrist)
+        matches!(self, Self::JointLimit | Self::ShoulderUp | Self::OtherJoint | Self::Wrist | Self::OffPath)
     }
 }
 
@@ -100,6 +116,15 @@ impl From<JointProblem> for Warning {
             JointProblem::Roll => Self::JointLimit,
             JointProblem::Joint => Self::OtherJoint,
             JointProblem::WristSingularity => Self::Wrist,
+        }
+    }
+}
+
+impl From<Refusal> for Warning {
+    fn from(refusal: Refusal) -> Self {
+        match refusal {
+            Refusal::Joints(problem) => problem.into(),
+            Refusal::TooFast(exceeded) => exceeded.into(),
         }
     }
 }
@@ -116,7 +141,7 @@ impl From<Exceeded> for Warning {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::kinematics::{HOME_JOINTS, T3};
+    use geometry::kinematics::{HOME_JOINTS, T3};
 
     const HOME: Plate = Plate { words: [0, -6293, -636, -9000, 13500, 0] };
 

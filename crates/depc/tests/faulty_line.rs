@@ -3,11 +3,11 @@
 
 mod session;
 
+use depc::link::LinkFault;
 use depc::{
     controller::{ControllerState, Warning},
     fault::{Direction, FaultKind, Plan, Rule},
 };
-use rcs_core::interface::t3i::LinkFault;
 use session::{Session, Truth};
 
 /// Bytes lost, changed, doubled and late, and frames cut short; noise that is no command.

@@ -2,25 +2,25 @@
 
 use depc::{
     Limits, Plate,
-    controller::{Controller, ControllerInputs, JointProblem, Robot, Warning},
+    controller::{Controller, ControllerInputs, Refusal, Robot, Warning},
     step::{Position, step},
     wire::{DataCommand, NO_FUNCTION, Report},
 };
-use proptest::prelude::*;
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector, rotation_by},
     kinematics::T3,
 };
+use proptest::prelude::*;
 
 /// A robot with joints for everything, so that only the velocity limits can refuse.
 struct Anywhere(Plate);
 
 impl Robot for Anywhere {
-    fn present(&self) -> Plate {
+    fn present(&mut self) -> Plate {
         self.0
     }
 
-    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+    fn accept(&mut self, goal: &Plate) -> Result<(), Refusal> {
         self.0 = *goal;
         Ok(())
     }

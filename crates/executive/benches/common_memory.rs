@@ -14,16 +14,14 @@ use std::{
 use executive::{
     memory::{
         Attached, Publisher, RunName,
-        buffers::{Pulse, SERVICES},
+        layout::{Pulse, SERVICES},
     },
     runner::Runner,
 };
 use iceoryx2::prelude::*;
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::{Ladder, PROCESS_COUNT};
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs},
-    tick::Tick,
-};
+use rcs_core::tick::Tick;
 use taskdata::files::TaskData;
 
 /// Bytes of a bare value, about those of a buffer of middling size.

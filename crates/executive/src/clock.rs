@@ -1,6 +1,6 @@
 //! When ticks are run (docs/design/tick.md "Grid").
 //!
-//! The controller itself has no clock; somebody has to say "now". [`Clock::Fast`] says it at once: the
+//! The controller itself has no clock. [`Clock::Fast`] begins a tick at once: the
 //! simulated cell advances 40 ms a tick, however long that takes. [`Clock::Real`] says it on an absolute 40
 //! ms [`Grid`]: slot `n` starts 40 ms x `n` after the start of the run, a late wake-up does not shift the
 //! slots after it, and a slot whose start has passed is skipped and counted. So this holds at every wake-up,
@@ -11,7 +11,7 @@
 //! ```
 //!
 //! Sleeping has a price: the system wakes a thread some ten microseconds late, and 40 ms are enough for other
-//! programs to take the caches. Whoever wants to be ready when a slot begins calls [`Grid::wake_early`], makes
+//! programs to take the caches. A caller that must be ready when a slot begins calls [`Grid::wake_early`], makes
 //! use of the time that is left, and then [`Grid::wait`]s, awake, for the slot.
 
 use std::time::Duration;

@@ -5,11 +5,11 @@
 //! on: [`Watch`] therefore keeps, for each process, common memory as it was in the tick when the process
 //! began to report its reason.
 
+use interfaces::{CommonMemory, Detail, ExternalInputs, Fault, Header, HwsCommand, Reason};
 use levels::ladder::{PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
     Plain,
     handshake::Lower,
-    interface::{CommonMemory, Detail, ExternalInputs, Fault, Header, HwsCommand, Reason},
     table::{Row, Table},
     tick::Tick,
 };
@@ -182,19 +182,16 @@ pub fn unfinished_commands(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::{
-        Actions, Plain, Variables, decision_table,
-        interface::{
-            Decided,
-            emove::{EmoveVerb, RobotPlace},
-            grip::GripVerb,
-            jaws::{JawsCommand, JawsVerb, TOOL_GRIPPER},
-            pedestal::{PedestalVerb, TableCommand, TableVerb},
-            subtask::SubtaskVerb,
-            t3i::LinkFault,
-        },
-        name::Name10,
+    use interfaces::{
+        Decided,
+        emove::{EmoveVerb, RobotPlace},
+        grip::GripVerb,
+        jaws::{JawsCommand, JawsVerb, TOOL_GRIPPER},
+        pedestal::{PedestalVerb, TableCommand, TableVerb},
+        subtask::SubtaskVerb,
+        t3i::LinkFault,
     };
+    use rcs_core::{Actions, Plain, Variables, decision_table, name::Name10};
 
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
     enum Fingers {

@@ -1,14 +1,14 @@
 //! Generations of the task data: blocks that are loaded while the robot runs
 //! (docs/design/ownership.md "Reload").
 //!
-//! A reload is built and checked outside the tick. It becomes visible as a whole between two ticks, and only when no command
-//! is being executed: a command in progress keeps the records that it began with. Record numbers of names that existed stay
-//! the same from one generation to the next, so that what the processes remember between commands (where the robot is, what
-//! it holds) stays true.
+//! A reload is built and checked outside the tick. It becomes visible as a whole between two ticks, and only
+//! when no command is being executed: a command in progress keeps the records that it began with. Record
+//! numbers of names that existed stay the same from one generation to the next, so that what the processes
+//! remember between commands (where the robot is, what it holds) stays true.
 
 use std::collections::VecDeque;
 
-use rcs_core::interface::{CommonMemory, Report, hws::HwsReport};
+use interfaces::{CommonMemory, StatusReport, hws::HwsReport};
 use taskdata::load::Store;
 
 /// The task data in use, and the next ones if they wait.
@@ -37,14 +37,14 @@ impl Generations {
         self.number
     }
 
-    /// Let task data wait for the end of the command in progress. Several that wait become visible one after the other, a
-    /// tick each.
+    /// Let task data wait for the end of the command in progress. Several that wait become visible one after
+    /// the other, a tick each.
     pub fn propose(&mut self, store: Store) {
         self.waiting.push_back(store);
     }
 
-    /// Between two ticks: use what waits, if `memory` says that no command is being executed. True if the generation is a new
-    /// one.
+    /// Between two ticks: use what waits, if `memory` says that no command is being executed. True if the
+    /// generation is a new one.
     pub fn advance(&mut self, memory: &CommonMemory) -> bool {
         if is_busy(memory) {
             return false;
@@ -58,8 +58,8 @@ impl Generations {
 
 fn is_busy(memory: &CommonMemory) -> bool {
     memory.task.status.report == HwsReport::Executing
-        || memory.subtask.status.report == Report::Executing
-        || memory.emove.status.report == Report::Executing
+        || memory.subtask.status.report == StatusReport::Executing
+        || memory.emove.status.report == StatusReport::Executing
 }
 
 #[cfg(test)]
@@ -76,10 +76,10 @@ mod tests {
         generations.propose(Store::default());
         assert!(!generations.advance(&memory), "Task executes a command");
         memory.task.status.report = HwsReport::Finished;
-        memory.emove.status.report = Report::Executing;
+        memory.emove.status.report = StatusReport::Executing;
         assert!(!generations.advance(&memory), "the robot still moves");
 
-        memory.emove.status.report = Report::Done;
+        memory.emove.status.report = StatusReport::Done;
         assert!(generations.advance(&memory));
         assert_eq!(generations.number(), 1);
         assert!(!generations.advance(&memory), "nothing waits any more");

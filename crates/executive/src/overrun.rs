@@ -10,7 +10,7 @@
 
 use std::{fmt, str::FromStr, time::Duration};
 
-use rcs_core::interface::CommonMemory;
+use interfaces::CommonMemory;
 
 use crate::{
     clock::SLOT,

@@ -97,17 +97,23 @@ pub fn acquire(core: Option<usize>) -> RealTime {
     lock_memory(&mut verdict);
     touch_stack();
     verdict.add("stack touched", Ok(()));
-    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    let outcome =
-        ThreadPriority::try_from(PRIORITY).map_err(|error| error.to_string()).and_then(|priority| {
-            set_thread_priority_and_policy(thread_native_id(), priority, policy).map_err(in_words)
-        });
-    verdict.add(format!("SCHED_FIFO {PRIORITY}"), outcome);
+    verdict.add(format!("SCHED_FIFO {PRIORITY}"), raise_priority());
     pin(&mut verdict, core);
     let idle_states = limit_idle_states();
     let outcome = idle_states.as_ref().map(|_| ()).map_err(ToString::to_string);
     verdict.add("no deep idle states", outcome);
     RealTime { verdict, _idle_states: idle_states.ok() }
+}
+
+/// Ask for the priority alone, for the calling thread: one that serves a link beside the ticks.
+///
+/// # Errors
+/// Why it is not granted.
+pub fn raise_priority() -> Result<(), String> {
+    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+    ThreadPriority::try_from(PRIORITY).map_err(|error| error.to_string()).and_then(|priority| {
+        set_thread_priority_and_policy(thread_native_id(), priority, policy).map_err(in_words)
+    })
 }
 
 fn in_words(error: thread_priority::Error) -> String {

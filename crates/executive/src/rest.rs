@@ -1,6 +1,7 @@
 //! Does the commanded frame rest? So that a stream of points ends at rest, whatever ends the run.
 
-use rcs_core::{interface::CommonMemory, pose::WireFrame};
+use geometry::pose::WireFrame;
+use interfaces::CommonMemory;
 
 /// The robot is at rest when the commanded frame has not changed for so many ticks.
 pub const AT_REST: u32 = 5;

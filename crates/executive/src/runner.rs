@@ -12,20 +12,16 @@
 
 use std::convert::Infallible;
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::{Ladder, ProcessId};
-use rcs_core::{
-    Plain,
-    digest::Digest,
-    interface::{CommonMemory, ExternalInputs},
-    tick::Tick,
-};
+use rcs_core::{Plain, digest::Digest, tick::Tick};
 use taskdata::files::TaskData;
 
 use crate::{
     alloc::{self, Section},
     failure::Watch,
     histogram::Histogram,
-    memory::{Publisher, buffers::Pulse},
+    memory::{Publisher, layout::Pulse},
     timing::{Stage, StageTimes},
 };
 
@@ -47,7 +43,7 @@ pub trait Levels<Data: ?Sized> {
         after: &mut CommonMemory,
     ) -> Result<(), Self::Error>;
 
-    /// The same, with somebody who is told of each stage as soon as it is over, as by
+    /// The same; calls `observe` after each stage, as by
     /// [`Ladder::step_observed`]. What is not told of counts as the executive's.
     ///
     /// # Errors
@@ -220,7 +216,7 @@ impl<L> Runner<L> {
         &mut self.levels
     }
 
-    /// Run the next tick on a copy and forget it: see the head of this module. Changes nothing that anybody
+    /// Run the next tick on a copy and forget it: see the head of this module. Changes nothing that another process
     /// can see; what was published last is published once more. Between two ticks, when there is time.
     ///
     /// The first warm-up makes the copy, which allocates; no later one does.
@@ -282,7 +278,7 @@ impl<L> Runner<L> {
         self.digest
     }
 
-    /// Who failed first, if anybody did.
+    /// The process that failed first, if one did.
     #[must_use]
     pub const fn watch(&self) -> &Watch {
         &self.watch

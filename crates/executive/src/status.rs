@@ -4,14 +4,12 @@
 
 use std::fmt;
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::{Ladder, ProcessId};
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs},
-    tick::TICK_S,
-};
+use rcs_core::tick::TICK_S;
 use serde::Serialize;
 
-use crate::{failure::command, memory::buffers::Pulse};
+use crate::{failure::command, memory::layout::Pulse};
 
 /// A process.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -140,11 +138,8 @@ impl fmt::Display for Status {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::{
-        interface::{Decided, emove::EmoveVerb, grip::GripReport},
-        name::Name16,
-        tick::Tick,
-    };
+    use interfaces::{Decided, emove::EmoveVerb, grip::GripReport};
+    use rcs_core::{name::Name16, tick::Tick};
 
     #[test]
     fn every_process_is_told_in_its_own_words() {

@@ -1,9 +1,9 @@
 //! Where the time of a tick goes: each part of it, timed.
 //!
-//! A tick is a chain of parts, one after the other; whoever has finished one calls [`StageTimes::mark`], which takes
-//! the time since the part before. Nothing is summed up until the tick is over ([`StageTimes::finish`]), so that
-//! measuring costs a look at the clock a part. If slots of the grid were skipped, [`StageTimes::worst`] says which
-//! part is to blame.
+//! A tick is a chain of parts, one after the other; the code that has finished one calls
+//! [`StageTimes::mark`], which takes the time since the part before. Nothing is summed up until the tick is
+//! over ([`StageTimes::finish`]), so that measuring costs a look at the clock a part. If slots of the grid
+//! were skipped, [`StageTimes::worst`] says which part is to blame.
 
 use std::{fmt, time::Instant};
 

@@ -1,8 +1,8 @@
-//! Boards in threads of one process: the same bits as on one board, nothing allocated, and what happens when one leaves or does
-//! not fit.
+//! Boards in threads of one process: the same bits as on one board, nothing allocated, and what happens when
+//! one leaves or does not fit.
 //!
-//! The boards' programs, with everything that only processes can do to each other, are tested in `tests/boards.rs` of the
-//! whole system.
+//! The boards' programs, with everything that only processes can do to each other, are tested in
+//! `tests/boards.rs` of the whole system.
 
 use std::{
     path::{Path, PathBuf},
@@ -18,21 +18,17 @@ use std::{
 use executive::{
     alloc::Counting,
     boards::{
-        Board, Conductor, Fingerprint, Lost, Member, MemberError,
-        conductor::{BoardEvent, How},
+        Board, Coordinator, Fingerprint, Lost, Member, MemberError,
+        coordinator::{BoardEvent, How},
         member::MemberEnd,
         pulse::RunCard,
     },
     memory::{self, RunName},
     runner::{Levels, Runner},
 };
+use interfaces::{ExternalInputs, HwsCommand, device::single_step};
 use levels::ladder::Ladder;
-use rcs_core::{
-    digest::Digest,
-    interface::{ExternalInputs, HwsCommand, device::single_step},
-    name::Name16,
-    tick::Tick,
-};
+use rcs_core::{digest::Digest, name::Name16, tick::Tick};
 use taskdata::{files::TaskData, load::Store};
 
 #[global_allocator]
@@ -53,7 +49,8 @@ fn store() -> &'static Store {
     })
 }
 
-/// What comes from outside in a tick: commands, hands at the joystick box, a gripper that comes and goes, another generation.
+/// What comes from outside in a tick: commands, hands at the joystick box, a gripper that comes and goes,
+/// another generation.
 fn external(tick: Tick) -> ExternalInputs {
     let mut external = ExternalInputs::default();
     let number = u32::try_from(tick.0 / 100).unwrap();
@@ -121,12 +118,12 @@ fn four_boards_compute_the_bits_of_one_and_allocate_nothing() {
     let name = RunName::unique("bits");
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
-        let mut conductor = Conductor::create(&name, &CARD).expect("this machine has shared memory");
+        let mut coordinator = Coordinator::create(&name, &CARD).expect("this machine has shared memory");
         let boards: Vec<_> = Board::ALL.iter().map(|&b| board(scope, &name, b, &stop)).collect();
         let mut arrivals = 0;
-        conductor.gather(PATIENCE, &stop, |_, _| arrivals += 1).expect("all come");
+        coordinator.gather(PATIENCE, &stop, |_, _| arrivals += 1).expect("all come");
         assert_eq!(arrivals, 4);
-        let (split, lost) = play(conductor, TICKS);
+        let (split, lost) = play(coordinator, TICKS);
         assert_eq!(lost, None);
         assert_eq!(split.digest(), one.digest());
         assert_ne!(one.digest(), Digest::new());
@@ -156,13 +153,13 @@ fn a_board_that_leaves_stops_the_pulse_and_is_named() {
     let name = RunName::unique("leaves");
     let (stop, leave) = (AtomicBool::new(false), AtomicBool::new(false));
     thread::scope(|scope| {
-        let mut conductor = Conductor::create(&name, &CARD).expect("this machine has shared memory");
+        let mut coordinator = Coordinator::create(&name, &CARD).expect("this machine has shared memory");
         for &b in Board::ALL {
             board(scope, &name, b, if b == Board::Eight { &leave } else { &stop });
         }
-        conductor.gather(PATIENCE, &stop, |_, _| ()).expect("all come");
+        coordinator.gather(PATIENCE, &stop, |_, _| ()).expect("all come");
         let (runner, lost) =
-            play_watched(conductor, 500, |tick| leave.store(tick == Tick(400), Ordering::Relaxed));
+            play_watched(coordinator, 500, |tick| leave.store(tick == Tick(400), Ordering::Relaxed));
         let lost: Lost = lost.expect("a board left");
         assert_eq!((lost.board, lost.how), (Board::Eight, How::Left));
         // The flag rises while the board may still answer the tick before.
@@ -180,12 +177,12 @@ fn who_is_missing_is_said() {
     let name = RunName::unique("missing");
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
-        let mut conductor = Conductor::create(&name, &CARD).expect("this machine has shared memory");
+        let mut coordinator = Coordinator::create(&name, &CARD).expect("this machine has shared memory");
         for &b in &[Board::Two, Board::Four, Board::Eight] {
             board(scope, &name, b, &stop);
         }
         let mut absent = Vec::new();
-        let error = conductor.gather(PATIENCE, &stop, |event, missing| {
+        let error = coordinator.gather(PATIENCE, &stop, |event, missing| {
             assert!(matches!(event, BoardEvent::Came { .. }), "{event:?}");
             absent = missing.to_vec();
             // Who waits knows who is missing; that is enough here.
@@ -194,7 +191,7 @@ fn who_is_missing_is_said() {
         assert_eq!(absent, [Board::Six]);
         let error = error.expect_err("one is missing");
         assert_eq!(error.to_string(), "interrupted while waiting for board 6");
-        let error = conductor.gather(Duration::ZERO, &AtomicBool::new(false), |_, _| ());
+        let error = coordinator.gather(Duration::ZERO, &AtomicBool::new(false), |_, _| ());
         let error = error.expect_err("it does not come");
         assert_eq!(error.to_string(), "board 6 did not come within 0 s");
     });
@@ -206,7 +203,7 @@ fn a_board_with_other_data_or_in_a_taken_place_is_refused() {
     let name = RunName::unique("refused");
     let stop = AtomicBool::new(false);
     thread::scope(|scope| {
-        let conductor = Conductor::create(&name, &CARD).expect("this machine has shared memory");
+        let coordinator = Coordinator::create(&name, &CARD).expect("this machine has shared memory");
         let other = Fingerprint { data: 9, ..FINGERPRINT };
         let Err(error) = Member::join(&name, Board::Two, other) else { panic!("it has other data") };
         assert!(
@@ -222,7 +219,7 @@ fn a_board_with_other_data_or_in_a_taken_place_is_refused() {
         has_joined.recv().expect("the first one joins");
         let second = Member::join(&name, Board::Two, FINGERPRINT);
         assert!(matches!(second, Err(MemberError::Taken { board: Board::Two, .. })));
-        drop(conductor);
+        drop(coordinator);
         let end = first.join().expect("no panic");
         assert!(matches!(end, Ok(MemberEnd::Over)), "{end:?}");
         let late = Member::join(&name, Board::Two, FINGERPRINT);
@@ -238,12 +235,12 @@ fn a_board_that_is_replaced_goes_on_as_one_whose_processes_were_restarted() {
     let name = RunName::unique("replaced");
     let (stop, leave) = (AtomicBool::new(false), AtomicBool::new(false));
     thread::scope(|scope| {
-        let mut conductor = Conductor::create(&name, &CARD).expect("this machine has shared memory");
+        let mut coordinator = Coordinator::create(&name, &CARD).expect("this machine has shared memory");
         for &b in Board::ALL {
             board(scope, &name, b, if b == Board::Two { &leave } else { &stop });
         }
-        conductor.gather(PATIENCE, &stop, |_, _| ()).expect("all come");
-        let mut runner = Runner::new(conductor, None);
+        coordinator.gather(PATIENCE, &stop, |_, _| ()).expect("all come");
+        let mut runner = Runner::new(coordinator, None);
         let data = store().view();
         let mut restarted = None;
         for tick in (1..=TICKS).map(Tick) {

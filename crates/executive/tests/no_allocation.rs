@@ -14,10 +14,8 @@ use executive::{
     memory::{Attached, Publisher, RunName},
     runner::{Levels, Runner},
 };
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs, Reason},
-    tick::Tick,
-};
+use interfaces::{CommonMemory, ExternalInputs, Reason};
+use rcs_core::tick::Tick;
 
 use crate::common::headers;
 

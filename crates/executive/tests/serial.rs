@@ -13,7 +13,7 @@ use executive::{
     alloc::{Counting, Section, allocations, is_installed},
     serial::{OpenError, RETRY, SerialCounts, SerialLine, SerialSettings},
 };
-use rcs_core::interface::device::LinkBytes;
+use interfaces::device::LinkBytes;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
 #[global_allocator]
@@ -119,7 +119,7 @@ fn a_line_that_takes_nothing_more_is_reported_and_rests_for_a_tick() {
     let peer = Peer::new();
     let mut line = peer.line();
     let started = Instant::now();
-    // A pseudo-terminal takes some ten thousand bytes that nobody reads.
+    // A pseudo-terminal takes some ten thousand bytes that are not read.
     let sent = (0..2000).take_while(|_| line.send(&bytes(&[3; 64]))).count();
     assert!(sent > 0 && sent < 2000, "{sent} frames were taken");
     assert!(line.counts().unsent > 0 && line.has_unsent());
@@ -150,7 +150,7 @@ fn a_port_that_comes_back_is_taken_over_and_begins_clean() {
     assert_eq!((rx, line.is_there()), (LinkBytes::default(), false));
     let second = Peer::new();
     plug(&second);
-    (&second.master).write_all(b"said before anybody listened").unwrap();
+    (&second.master).write_all(b"sent before the port was open").unwrap();
     let started = Instant::now();
     while !line.receive(&mut rx) {
         assert!(started.elapsed() < Duration::from_secs(5), "it was not opened again");

@@ -11,10 +11,10 @@ use std::{
     },
 };
 
-use executive::memory::{self, Attached, Publisher, RunName, SharedMemoryError, buffers::Pulse, list};
+use executive::memory::{self, Attached, Publisher, RunName, SharedMemoryError, layout::Pulse, list};
+use interfaces::{CommonMemory, Decided, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport};
 use rcs_core::{
     Plain,
-    interface::{CommonMemory, Decided, ExternalInputs, Header, emove::EmoveVerb, hws::HwsReport},
     name::Name16,
     plain::{Schema, from_bytes},
     tick::Tick,

@@ -2,10 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use rcs_core::{
-    interface::{Decided, Header},
-    table::Table,
-};
+use interfaces::{Decided, Header};
+use rcs_core::table::Table;
 
 use crate::execution::EXECUTE;
 

@@ -2,9 +2,9 @@
 
 use depc::{
     Plate,
-    controller::{JointProblem, Robot, joints_for},
+    controller::{Refusal, Robot, joints_for},
 };
-use rcs_core::kinematics::{Joints, T3};
+use geometry::kinematics::{Joints, T3};
 
 pub struct Exact {
     pub joints: Joints,
@@ -12,11 +12,11 @@ pub struct Exact {
 }
 
 impl Robot for Exact {
-    fn present(&self) -> Plate {
+    fn present(&mut self) -> Plate {
         self.at
     }
 
-    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+    fn accept(&mut self, goal: &Plate) -> Result<(), Refusal> {
         self.joints = joints_for(&T3, goal, &self.joints)?;
         self.at = *goal;
         Ok(())

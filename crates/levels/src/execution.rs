@@ -16,13 +16,13 @@
 //!
 //! A process consults in turn, until a row decides: [`EXECUTE`], its table ACCEPT with what a new command
 //! needs, its table of what all commands have in common, if it has one, and the table of the command. A
-//! process with others below it consults [`HALT`](crate::halt::HALT) before ACCEPT and
+//! process with others below it consults [`HALT`](crate::halt::HALT) before ACCEPT; Subtask and E-move consult
 //! [`EFFECT`](crate::halt::EFFECT) after the table of the command. `docs/design/tables.md` tells more.
 
+use interfaces::{Decided, Header, Reason, StatusReport};
 use rcs_core::{
     Actions, Plain, Variables, decision_table,
     handshake::{Arrival, Lower, Receiver},
-    interface::{Decided, Header, Reason, Report},
     name::Name16,
     table::{Choice, Decision, Verdict},
     tick::Tick,
@@ -368,13 +368,13 @@ impl Execution {
 
     /// The outcome as `status-report` (V.2.2, V.3.2).
     #[must_use]
-    pub const fn report(&self) -> Report {
+    pub const fn report(&self) -> StatusReport {
         match self.outcome {
-            Outcome::Idle => Report::Idle,
-            Outcome::Executing => Report::Executing,
-            Outcome::Done => Report::Done,
-            Outcome::Error => Report::Error,
-            Outcome::Joystick => Report::JoystickOn,
+            Outcome::Idle => StatusReport::Idle,
+            Outcome::Executing => StatusReport::Executing,
+            Outcome::Done => StatusReport::Done,
+            Outcome::Error => StatusReport::Error,
+            Outcome::Joystick => StatusReport::JoystickOn,
         }
     }
 
@@ -403,14 +403,14 @@ mod tests {
             end(&mut e);
             (course, e.report(), e.reason)
         };
-        assert_eq!(course(0, |_| {}), (Course::Rest, Report::Idle, Reason::None));
-        assert_eq!(course(1, |_| {}), (Course::Begin, Report::Executing, Reason::None));
-        assert_eq!(course(1, Execution::finish), (Course::Continue, Report::Done, Reason::None));
-        assert_eq!(course(1, |_| {}), (Course::Rest, Report::Done, Reason::None));
+        assert_eq!(course(0, |_| {}), (Course::Rest, StatusReport::Idle, Reason::None));
+        assert_eq!(course(1, |_| {}), (Course::Begin, StatusReport::Executing, Reason::None));
+        assert_eq!(course(1, Execution::finish), (Course::Continue, StatusReport::Done, Reason::None));
+        assert_eq!(course(1, |_| {}), (Course::Rest, StatusReport::Done, Reason::None));
         let refuse = |e: &mut Execution| e.fail(Reason::UnknownObject);
-        assert_eq!(course(2, refuse), (Course::Begin, Report::Error, Reason::UnknownObject));
-        assert_eq!(course(2, |_| {}), (Course::Rest, Report::Error, Reason::UnknownObject));
-        assert_eq!(course(3, |_| {}), (Course::Begin, Report::Executing, Reason::None));
+        assert_eq!(course(2, refuse), (Course::Begin, StatusReport::Error, Reason::UnknownObject));
+        assert_eq!(course(2, |_| {}), (Course::Rest, StatusReport::Error, Reason::UnknownObject));
+        assert_eq!(course(3, |_| {}), (Course::Begin, StatusReport::Executing, Reason::None));
     }
 
     #[test]
@@ -418,10 +418,10 @@ mod tests {
         let mut e = Execution::default();
         e.course(Arrival::New);
         assert!(e.accepts(&Verdict::<Refusal, (), ()>::Passed(())));
-        assert_eq!((e.report(), e.decided), (Report::Executing, None));
+        assert_eq!((e.report(), e.decided), (StatusReport::Executing, None));
         let refusal = Decision { row: 2, action: Refusal::Fail(Reason::UnknownCommand), next: () };
         assert!(!e.accepts(&Verdict::Decided(refusal)));
-        assert_eq!((e.report(), e.reason), (Report::Error, Reason::UnknownCommand));
+        assert_eq!((e.report(), e.reason), (StatusReport::Error, Reason::UnknownCommand));
         assert_eq!(e.decided, Some(Decided { table: ACCEPT_NUMBER, row: 2 }));
         assert!(!e.begins(Arrival::New));
     }

@@ -12,7 +12,8 @@
 //! under way too, and its end is reported only when nothing moves any more. If nothing is under way, a
 //! command is accepted in the tick in which it comes.
 
-use rcs_core::{Actions, Plain, Variables, decision_table, handshake::Lower, interface::Reason};
+use interfaces::Reason;
+use rcs_core::{Actions, Plain, Variables, decision_table, handshake::Lower};
 
 /// The command of a process, for [`HALT`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]

@@ -1,6 +1,7 @@
 //! What the attached gripper holds, as the tables of Task, Subtask and E-move ask for it.
 
-use rcs_core::{Plain, interface::emove::Holding, name::Name16};
+use interfaces::emove::Holding;
+use rcs_core::{Plain, name::Name16};
 
 /// Is the object of the command held (V.3.1)?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]

@@ -7,19 +7,20 @@
 //! The processes of an Active Pedestal that is a system of its own are not stepped: what they sent is adopted
 //! in their place.
 
-use rcs_core::{
-    Plain, for_each_process,
-    interface::{
-        CommonMemory, Decided, ExternalInputs, Header, OutsidePedestal,
-        device::{JoystickBox, single_step},
-    },
+use interfaces::{
+    CommonMemory, Decided, ExternalInputs, Header, OutsidePedestal,
+    device::{JoystickBox, single_step},
+    for_each_process,
     process::{Inputs, Process},
+};
+use rcs_core::{
+    Plain,
     table::{Row, Table},
     tick::Tick,
 };
 use taskdata::files::TaskData;
 
-pub use rcs_core::interface::{PROCESS_COUNT, ProcessId};
+pub use interfaces::{PROCESS_COUNT, ProcessId};
 
 use crate::processes::*;
 

@@ -1,6 +1,6 @@
 //! The control processes of RCS-II/T3 (chapters V and VI): a folder each.
 //!
-//! Every process is a pure state machine ([`rcs_core::process::Process`]) in the manual's three phases:
+//! Every process is a pure state machine ([`interfaces::process::Process`]) in the manual's three phases:
 //! *preprocess* reads input buffers and sets state variables, a *decision table* of the current command
 //! selects one row, *postprocess* fills the output buffers. Processes read what was written in the tick
 //! before, so their order within a tick does not matter.
@@ -57,7 +57,7 @@ pub mod subtask;
 pub mod t3i;
 pub mod task;
 
-/// The types of the control processes, each under its identifier in `rcs_core::for_each_process!`.
+/// The types of the control processes, each under its identifier in `interfaces::for_each_process!`.
 pub mod processes {
     pub use crate::{
         emove::Emove,

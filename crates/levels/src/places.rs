@@ -1,11 +1,14 @@
 //! Places of task data in the words of the interfaces, and back.
 
-use rcs_core::{
-    Plain,
-    frame::Frame,
-    interface::{CommonMemory, pose_range, subtask::LocationKind},
+use geometry::{frame::Frame, pose::Pose};
+use interfaces::{
+    CommonMemory,
+    emove::{GoneTo, RobotPlace},
+    pose_range,
+    subtask::LocationKind,
 };
-use taskdata::files::{ArrayId, LocptId, LookupError, Place, PoseId, TaskData};
+use rcs_core::Plain;
+use taskdata::files::{ArrayId, Location, LocptId, LookupError, Place, PoseId, TaskData};
 
 /// Locations that the processes name themselves, because no command of the workstation controller does.
 pub mod named {
@@ -29,6 +32,19 @@ pub const fn place_of(
     location_array: Option<u32>,
 ) -> Place {
     Place { kind, locpt: LocptId::from_option(location_record), array: ArrayId::from_option(location_array) }
+}
+
+/// The robot at a location, with the tool at a frame (world, inches).
+#[must_use]
+pub fn robot_at(gone_to: GoneTo, at: &Location, frame: &Frame) -> RobotPlace {
+    RobotPlace {
+        gone_to,
+        location: at.name,
+        kind: at.place.kind,
+        record: at.place.locpt.to_option(),
+        array: at.place.array.to_option(),
+        pose: Pose::from_frame(frame),
+    }
 }
 
 /// The frame of a record of POSE, or of a changing record. World, inches.

@@ -4,18 +4,16 @@
 mod fingers;
 
 use fingers::Fingers;
-use levels::{emove::Emove, grip::Grip, t3i::T3i};
-use rcs_core::{
-    interface::{
-        CommonMemory, EmoveOutputs, ExternalInputs, GripOutputs, T3iOutputs,
-        emove::{EmoveCommand, EmoveVerb},
-        grip::{GripCommand, GripReport, GripVerb},
-        prim::PrimVerb,
-        t3i::{T3iCommand, T3iVerb},
-    },
+use interfaces::{
+    CommonMemory, EmoveOutputs, ExternalInputs, GripOutputs, T3iOutputs,
+    emove::{EmoveCommand, EmoveVerb},
+    grip::{GripCommand, GripReport, GripVerb},
+    prim::PrimVerb,
     process::{Inputs, Process},
-    tick::Tick,
+    t3i::{T3iCommand, T3iVerb},
 };
+use levels::{emove::Emove, grip::Grip, t3i::T3i};
+use rcs_core::tick::Tick;
 use taskdata::files::TaskData;
 
 #[test]

@@ -9,18 +9,21 @@ use std::{path::Path, sync::OnceLock};
 
 use depc::{Limits, Plate, controller};
 use fingers::Fingers;
+use geometry::{
+    frame::Frame,
+    kinematics::{HOME_JOINTS, Joints, T3},
+};
+use interfaces::{
+    CommonMemory, ExternalInputs, Header, HwsCommand, OutsidePedestal, Reason,
+    device::{LinkBytes, RESOLVER_COUNTS, single_step},
+    hws::HwsReport,
+    prim::{PrimReport, PrimVerb},
+};
 use levels::ladder::{Ladder, LadderState, PROCESS_COUNT, ProcessId};
 use proptest::prelude::*;
 use rcs_core::{
     Plain,
     digest::Digest,
-    frame::Frame,
-    interface::{
-        CommonMemory, ExternalInputs, Header, HwsCommand, OutsidePedestal, Reason,
-        device::{LinkBytes, RESOLVER_COUNTS, single_step},
-        hws::HwsReport,
-    },
-    kinematics::{HOME_JOINTS, Joints, T3},
     name::Name16,
     plain::{Writer, from_bytes},
     tick::Tick,
@@ -42,11 +45,11 @@ struct PlainArm {
 }
 
 impl controller::Robot for PlainArm {
-    fn present(&self) -> Plate {
+    fn present(&mut self) -> Plate {
         self.plate
     }
 
-    fn move_to(&mut self, goal: &Plate) -> Result<(), controller::JointProblem> {
+    fn accept(&mut self, goal: &Plate) -> Result<(), controller::Refusal> {
         self.joints = controller::joints_for(&T3, goal, &self.joints)?;
         self.plate = *goal;
         Ok(())
@@ -213,6 +216,35 @@ fn a_bad_command_is_refused_and_nothing_moves() {
         assert_eq!(rig.finish(ProcessId::ALL, 100), (HwsReport::Error, reason), "{verb} {location}");
     }
     assert_eq!(rig.arm.joints, joints);
+}
+
+/// docs/design/motion.md "Flying on": the goal after a through point takes a hop up and a hop down.
+#[test]
+fn prim_flies_on_for_two_ticks_after_a_through_point() {
+    let mut rig = Rig::new();
+    rig.command("PAUSE", "");
+    assert_eq!(rig.finish(ProcessId::ALL, 2000), FINISHED);
+    let (mut passed, mut points) = (None, 0);
+    for k in 0..6000 {
+        if k % 2000 == 0 {
+            rig.command("MOVE", ["PFIXTURE", "SAFE", "HOME"][k / 2000]);
+        }
+        let (was, command) = (rig.before.prim, rig.before.emove.prim.command);
+        rig.step(ProcessId::ALL);
+        let now = rig.before.prim;
+        if let Some(tick) = passed {
+            assert_ne!(now.t3i.frame, was.t3i.frame, "the robot moves on in tick {}", rig.tick);
+            if now.status.echo != was.status.echo {
+                assert_eq!(rig.tick.since(tick), 2);
+                (passed, points) = (None, points + 1);
+            }
+        }
+        let ends = was.status.report == PrimReport::Executing && now.status.report == PrimReport::Done;
+        if ends && command == PrimVerb::GoThru {
+            passed = Some(rig.tick);
+        }
+    }
+    assert!(rig.at("HOME") && points > 1, "{points} points");
 }
 
 proptest! {
@@ -453,7 +485,7 @@ fn only_the_process_of_the_attached_gripper_is_stepped() {
             assert_eq!(rig.header(process).republished, id != own, "{process} with gripper {id}");
         }
         let outputs = rig.before.device_outputs();
-        assert_eq!((outputs.v_grip, outputs.tool_grip), Default::default(), "nobody commanded anything");
+        assert_eq!((outputs.v_grip, outputs.tool_grip), Default::default(), "nothing was commanded");
     }
     for _ in 0..50 {
         rig.step(ProcessId::ALL);

@@ -3,13 +3,12 @@
 
 use std::{path::Path, sync::OnceLock};
 
-use levels::emove::route::{Ahead, Goal, LegGoal, Planning, Route};
-use rcs_core::{
-    frame::Frame,
-    interface::emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace},
-    name::{Name10, Name16},
-    pose::Pose,
+use interfaces::emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace};
+use levels::{
+    emove::route::{Ahead, Goal, LegGoal, Planning, Route},
+    places::robot_at,
 };
+use rcs_core::name::{Name10, Name16};
 use taskdata::{
     files::{Location, MovtabId, TaskData},
     load::Store,
@@ -46,17 +45,6 @@ fn command(verb: EmoveVerb, object: &str, grip: i32, at: &Location) -> EmoveComm
         location_record: at.place.locpt.to_option(),
         location_array: at.place.array.to_option(),
         ..EmoveCommand::default()
-    }
-}
-
-fn robot_at(gone_to: GoneTo, at: &Location, frame: &Frame) -> RobotPlace {
-    RobotPlace {
-        gone_to,
-        location: at.name,
-        kind: at.place.kind,
-        record: at.place.locpt.to_option(),
-        array: at.place.array.to_option(),
-        pose: Pose::from_frame(frame),
     }
 }
 

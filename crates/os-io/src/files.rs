@@ -18,8 +18,9 @@ pub const TEXT: u64 = 16 << 20;
 /// Read a regular file of at most `limit` bytes. Returns at once whatever `path` is.
 ///
 /// # Errors
-/// [`ErrorKind::InvalidInput`] with the kind that was found if it is no regular file, [`ErrorKind::FileTooLarge`] if it is larger,
-/// [`ErrorKind::OutOfMemory`] if there is no memory for it; else what the system says.
+/// [`ErrorKind::InvalidInput`] with the kind that was found if it is no regular file,
+/// [`ErrorKind::FileTooLarge`] if it is larger, [`ErrorKind::OutOfMemory`] if there is no memory for it; else
+/// what the system says.
 pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     let length = file.metadata()?.len();
@@ -36,7 +37,8 @@ pub fn read(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Read a regular file of at most [`TEXT`] bytes of UTF-8, with or without a byte order mark; lines end with LF, CR LF or CR.
+/// Read a regular file of at most [`TEXT`] bytes of UTF-8, with or without a byte order mark; lines end with
+/// LF, CR LF or CR.
 ///
 /// # Errors
 /// As [`read`], and [`ErrorKind::InvalidData`] with the first line that is not UTF-8.

@@ -5,7 +5,7 @@
 use std::{hint::black_box, path::Path};
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use paths::{job::walk_job, stored::walk_stored};
+use paths::{job::walk_job, known::Known, stored::walk_stored};
 use plant::{CellDescription, room::Room};
 use taskdata::load::{Job, Store};
 
@@ -21,11 +21,14 @@ fn walks(criterion: &mut Criterion) {
     group.sample_size(10);
     group.bench_function("all jobs", |bencher| {
         bencher.iter(|| {
-            jobs.iter().map(|job| walk_job(black_box(job), &store, &room).findings.len()).sum::<usize>()
+            let known = Known::default();
+            jobs.iter()
+                .map(|job| walk_job(black_box(job), &store, &room, &known).findings.len())
+                .sum::<usize>()
         });
     });
     group.bench_function("stored segments", |bencher| {
-        bencher.iter(|| walk_stored(black_box(&store), &room).findings.len());
+        bencher.iter(|| walk_stored(black_box(&store), &room, &Known::default()).findings.len());
     });
     group.finish();
 }

@@ -7,7 +7,7 @@ use crate::{plan::Phase, survey::Passing};
 /// Something that is wrong with a way.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Finding {
-    /// `path.joint`, `path.contact`, `path.link`, `path.grip` or `path.margin`.
+    /// `path.joint`, `path.contact`, `path.link`, `path.grip`, `path.place` or `path.margin`.
     pub code: &'static str,
     /// It fails, or runs into something; else it is only near to that.
     pub error: bool,

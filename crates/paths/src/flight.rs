@@ -1,19 +1,19 @@
-//! Points as the robot flies them: Prim's motion at full speed, the limits of the link (A 2.3), the T3's joints with the roll
-//! that it has accumulated, and its servos with their lag.
+//! Points as the robot flies them: Prim's motion at full speed, the limits of the link (A 2.3), the T3's
+//! joints with the roll that it has accumulated, and its servos with their lag.
 
 use depc::{
     Limits as LinkLimits, Plate,
     controller::{JointProblem, joints_for},
     step::{Position, step},
 };
+use geometry::{
+    frame::Frame,
+    kinematics::{Joints, Margin, T3},
+};
+use interfaces::device::KNOB_FULL;
 use levels::prim::motion::{Motion, limits::Limits};
 use plant::{arm::Arm, description::Actuators};
-use rcs_core::{
-    frame::Frame,
-    interface::device::KNOB_FULL,
-    kinematics::{Joints, Margin, T3},
-    tick::TICK_S,
-};
+use rcs_core::tick::TICK_S;
 use taskdata::files::TrajPara;
 
 /// From the tick in which a through point is passed to the one in which Prim has the next goal
@@ -58,7 +58,7 @@ pub struct Flown {
 }
 
 /// The robot: what its controller was sent last, and where its arm has come to.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
     position: Position,
     joints: Joints,
@@ -112,8 +112,8 @@ impl Robot {
         Err(Trouble::Endless)
     }
 
-    /// Fly through points to the last one and come to rest. `look` is called each tick with the number of the point and the
-    /// joint angles of the arm.
+    /// Fly through points to the last one and come to rest. `look` is called each tick with the number of the
+    /// point and the joint angles of the arm.
     pub fn fly(
         &mut self,
         points: &[(Frame, TrajPara)],
@@ -159,6 +159,7 @@ impl Robot {
             }
             self.tick(&mut |joints| look(last, joints));
         }
+        self.arm.settle();
         (flown, None)
     }
 }

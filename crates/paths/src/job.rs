@@ -1,10 +1,13 @@
-//! The lines of a job in their order: every way is flown, with what stands where and what the robot holds carried along.
+//! The lines of a job in their order: every way is flown, with what stands where and what the robot holds
+//! carried along.
 
+use geometry::kinematics::T3;
+use interfaces::HwsCommand;
 use plant::{
     description::Actuators,
     room::{Placed, Room},
 };
-use rcs_core::{interface::HwsCommand, kinematics::T3, name::Name16};
+use rcs_core::name::Name16;
 use serde::Serialize;
 use taskdata::{
     files::{Location, LocptId},
@@ -17,6 +20,7 @@ use taskdata::{
 use crate::{
     finding::{Finding, Walked},
     flight::Robot,
+    known::Known,
     plan::Phase,
     state::State,
     steps::{exchange, steps},
@@ -35,8 +39,8 @@ pub const NOT_CHECKED: [&str; 6] = [
 ];
 /// A robot this near to a location point at the start stands there, in.
 const STANDS: f64 = 0.5;
-/// Where in its sector a part is tried that is delivered at random: x and y in shares of the greatest offset, and the angle in
-/// degrees. Half a turn changes nothing for two fingers.
+/// Where in its sector a part is tried that is delivered at random: x and y in shares of the greatest offset,
+/// and the angle in degrees. Half a turn changes nothing for two fingers.
 const TRIED: [[f64; 3]; 12] = [
     [0.0, 0.0, 22.5],
     [0.0, 0.0, 45.0],
@@ -99,37 +103,52 @@ impl WalkedJob {
     }
 }
 
-/// Walk a job. The task data must be sound, and the job checked against them.
+/// Walk a job. The task data must be sound, and the job checked against them. `known` has flights of other jobs
+/// in the same cell.
 #[must_use]
-pub fn walk_job(job: &Job, store: &Store, room: &Room) -> WalkedJob {
+pub fn walk_job(job: &Job, store: &Store, room: &Room, known: &Known) -> WalkedJob {
     let mut walked = WalkedJob { job: job.name.clone(), ..WalkedJob::default() };
-    let Some(mut state) = start(store, room) else {
+    let Some(mut state) = start(store, room, known) else {
         walked.not_checked.push("the job: the robot does not start at a location point".to_owned());
         return walked;
     };
+    // A command keeps the data with which it began (docs/design/ownership.md "Reload").
+    let mut loaded = None;
     let mut interrupted = false;
     for line in &job.steps {
+        let mut unknown = None;
         match &line.step {
             Line::Command(command) => {
                 let (done, findings) = command_line(&mut state, command, line.line, &line.text);
                 walked.lines.push(done);
                 walked.findings.extend(findings);
-                if state.stranded {
-                    let what = format!("what comes after line {}: the robot does not get so far", line.line);
-                    walked.not_checked.push(what);
-                    break;
+                if let Some(store) = loaded.take() {
+                    state.walk.load(store);
+                }
+                unknown = state.stranded.then_some("the robot does not get so far");
+            }
+            Line::Workstation(Workstation::Load { .. })
+            | Line::After { action: Workstation::Load { .. }, .. }
+                if line.expects_error =>
+            {
+                unknown = Some("what it loads does not fit the cell");
+            }
+            Line::Workstation(Workstation::Load { number }) => {
+                if let Some(reload) = job.reload(*number) {
+                    state.walk.load(&reload.store);
                 }
             }
-            Line::Workstation(action) => {
-                interrupted |= !act(&mut state, action);
+            Line::After { action: Workstation::Load { number }, .. } => {
+                loaded = job.reload(*number).map(|reload| &reload.store);
             }
+            Line::Workstation(action) => interrupted |= !act(&mut state, action),
             Line::After { action, .. } => interrupted |= !matches!(action, Workstation::Wait { .. }),
         }
         if interrupted && !matches!(line.step, Line::After { .. }) {
-            walked.not_checked.push(format!(
-                "what comes after line {}: where the robot is then depends on what happens there",
-                line.line
-            ));
+            unknown = unknown.or(Some("where the robot is then depends on what happens there"));
+        }
+        if let Some(why) = unknown {
+            walked.not_checked.push(format!("what comes after line {}: {why}", line.line));
             break;
         }
     }
@@ -137,7 +156,7 @@ pub fn walk_job(job: &Job, store: &Store, room: &Room) -> WalkedJob {
 }
 
 /// The robot as a run begins, at the location point where it stands.
-fn start<'a>(store: &'a Store, room: &'a Room) -> Option<State<'a>> {
+fn start<'a>(store: &'a Store, room: &'a Room, known: &'a Known) -> Option<State<'a>> {
     let joints = room.cell().robot.start_joints();
     let tool = T3.forward(&joints);
     let data = store.view();
@@ -148,7 +167,7 @@ fn start<'a>(store: &'a Store, room: &'a Room) -> Option<State<'a>> {
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let location = data.resolve_location::<10, 16>(&nearest.name, None, None).ok()?;
     let robot = Robot::standing(&Actuators::from(&room.cell().robot), &joints)?;
-    Some(State::new(room, Walk::new(store, &location), robot))
+    Some(State::new(room, known, Walk::new(store, &location), robot))
 }
 
 /// Walk a command; where a part lies at random in its sector, over the range of places and attitudes.
@@ -160,8 +179,8 @@ fn command_line(
 ) -> (JobLine, Vec<Finding>) {
     let random = state.random.iter().position(|part| Some(part.object) == command.object);
     let random = random.map(|at| state.random.remove(at));
-    let before = state.clone();
-    let (phases, mut findings) = run(state, command);
+    let mut tries = vec![state.clone()];
+    let (phases, findings) = run(state, command);
     let mut done = JobLine {
         line,
         text: text.to_owned(),
@@ -169,14 +188,17 @@ fn command_line(
         holds: state.held.map(|(object, grip)| format!("{object} with grip {grip:+}")),
         tried: 1,
     };
+    let mut all: Vec<(usize, Finding)> = findings.into_iter().map(|one| (0, one)).collect();
     if let Some(part) = random {
-        let greatest = before.room.cell().tray_shape.random_offset;
+        let greatest = state.room.cell().tray_shape.random_offset;
         for [x, y, angle] in TRIED {
-            let mut other = before.clone();
+            let Some(mut other) = tries.first().cloned() else { break };
             let placement = [x * greatest, y * greatest, angle];
             if !other.deliver(&part.object, &part.location, placement, true) {
                 continue;
             }
+            let number = tries.len();
+            tries.push(other.clone());
             let (phases, more) = run(&mut other, command);
             let lies = format!(
                 "with the part {:.2}, {:.2} in from the middle of its sector, turned by {angle:.1} degrees: ",
@@ -184,26 +206,38 @@ fn command_line(
             );
             // The outermost corners are seldom met: what fails only there is no reason to refuse the job.
             let often = x == 0.0 && y == 0.0;
-            findings.extend(more.into_iter().map(|one| Finding {
-                message: lies.clone() + &one.message,
-                error: one.error && often,
-                ..one
+            all.extend(more.into_iter().map(|one| {
+                let (message, error) = (lies.clone() + &one.message, one.error && often);
+                (number, Finding { message, error, ..one })
             }));
             done.merge(&phases);
             done.tried += 1;
         }
     }
-    let mut worst: Vec<Finding> = Vec::new();
-    for finding in findings {
-        match worst.iter_mut().find(|known| known.key == finding.key) {
-            Some(known) if (finding.error, finding.depth) > (known.error, known.depth) => {
-                *known = Finding { line, ..finding }
+    let mut worst: Vec<(usize, Finding)> = Vec::new();
+    for (number, finding) in all {
+        let finding = Finding { line, ..finding };
+        match worst.iter_mut().find(|(_, known)| known.key == finding.key) {
+            Some(known) if (finding.error, finding.depth) > (known.1.error, known.1.depth) => {
+                *known = (number, finding);
             }
             Some(_) => {}
-            None => worst.push(Finding { line, ..finding }),
+            None => worst.push((number, finding)),
         }
     }
-    (done, worst)
+    // Via points are tried for these alone; what was flown before is known.
+    for (number, mut one) in tries.into_iter().enumerate() {
+        if !worst.iter().any(|(of, finding)| *of == number && finding.error) {
+            continue;
+        }
+        one.advises = true;
+        let (_, advised) = run(&mut one, command);
+        for (_, finding) in worst.iter_mut().filter(|(of, _)| *of == number) {
+            let same = advised.iter().find(|other| other.key == finding.key);
+            finding.help = same.and_then(|same| same.help.clone());
+        }
+    }
+    (done, worst.into_iter().map(|(_, finding)| finding).collect())
 }
 
 impl JobLine {
@@ -265,12 +299,12 @@ fn act(state: &mut State<'_>, action: &Workstation) -> bool {
         Workstation::Vise { opening, program, .. } => state.move_vise(*opening, program.as_ref()),
         Workstation::Machine { blank, part, .. } => state.machine(blank, part),
         Workstation::Drum(Drum::Tool(tool)) => state.put_into_drum(tool),
-        Workstation::Drum(Drum::Grip | Drum::Release) | Workstation::Wait { .. } => {}
+        Workstation::Drum(drum @ (Drum::Grip | Drum::Release)) => state.drum_grips = *drum == Drum::Grip,
+        Workstation::Wait { .. } | Workstation::Load { .. } => {}
         Workstation::Joystick(_)
         | Workstation::Press(_)
         | Workstation::Release(_)
         | Workstation::Panel(_)
-        | Workstation::Load { .. }
         | Workstation::HandOver => return false,
     }
     true
@@ -287,7 +321,7 @@ pub struct Random {
 
 /// A part by its name and place.
 #[must_use]
-pub fn placed(room: &Room, object: &Name16, frame: rcs_core::frame::Frame) -> Option<Placed> {
+pub fn placed(room: &Room, object: &Name16, frame: geometry::frame::Frame) -> Option<Placed> {
     let kind = room.cell().part(object.as_str())?.clone();
     Some(Placed { kind, frame })
 }

@@ -1,50 +1,32 @@
-//! A phase flown as it is planned, and back as an interruption would have it (docs/design/recovery.md "On the way"): what is wrong
-//! with it, in words.
+//! A phase flown as it is planned, and back as an interruption would have it (docs/design/recovery.md "On the
+//! way"): what is wrong with it, in words.
+
+use std::sync::Arc;
 
 use depc::controller::{JointProblem, Warning};
-use rcs_core::{
+use geometry::{
     frame::Frame,
-    interface::emove::EmoveVerb,
-    kinematics::{JOINT_NAMES, Joints, T3},
-    name::Name10,
+    kinematics::{JOINT_NAMES, T3},
 };
-use taskdata::files::{Target, TaskData, TrajPara};
+use interfaces::emove::EmoveVerb;
+use rcs_core::name::Name10;
+use taskdata::files::{Target, TaskData};
 
 use crate::{
     finding::{Finding, Segment, Walked},
-    flight::{Flown, Robot, Trouble},
+    flight::Trouble,
+    known::{Asked, Outcome, Points},
     plan::{Leg, Phase},
     state::State,
     steps::Step,
-    survey::{Seen, Survey},
 };
 
 /// A joint that comes nearer to a limit than this is warned of, degrees.
 pub const LEAST_MARGIN: f64 = 0.5;
 
-/// The middle of the fingers may be so far beside that of a part that the closed jaws of the vise hold, in (ASSUMED): the part cannot
-/// be drawn to it, and slips when the jaws open.
+/// The middle of the fingers may be so far beside that of a part that the closed jaws of the vise hold, in
+/// (ASSUMED): the part cannot be drawn to it, and slips when the jaws open.
 const BESIDE: f64 = 0.015;
-
-/// A flight and what was seen on it.
-struct Outcome {
-    robot: Robot,
-    flown: Vec<Flown>,
-    seen: Vec<Seen>,
-    trouble: Option<Trouble>,
-}
-
-impl Outcome {
-    fn is_clear(&self) -> bool {
-        self.trouble.is_none() && self.seen.iter().all(|seen| seen.touched.is_none())
-    }
-}
-
-/// Points, and from which of them on the fingers are as open as at the goal.
-struct Points {
-    list: Vec<(Frame, TrajPara)>,
-    opens: usize,
-}
 
 impl State<'_> {
     /// Fly a phase under these commands of E-move and Subtask; `clear` says whether what it touches can be known.
@@ -56,17 +38,17 @@ impl State<'_> {
         let list = phase.legs.iter().map(|leg| (leg.frame, leg.parameters())).collect();
         let forth = Points { list, opens };
         let opening = self.opening(&phase);
-        let there = self.try_points(&forth, opening, commands, clear);
+        let there = self.try_points(&forth, opening, commands, clear, false);
         let mut findings = self.findings(&phase, &there, &names(&phase), "", clear);
         let segments = segments(&phase, &there);
         let is_route = phase.legs.len() > 1 && !commands.contains(&">POSITION");
         self.stranded = there.trouble.is_some();
-        self.robot = there.robot;
+        self.robot.clone_from(&there.robot);
         self.layout.opening = opening;
         self.before = vec![commands];
         if is_route && findings.iter().all(|finding| !finding.error) {
             let (back, names) = backwards(&phase, opens);
-            let returned = self.try_points(&back, opening, commands, clear);
+            let returned = self.try_points(&back, opening, commands, clear, false);
             findings.extend(self.findings(
                 &phase,
                 &returned,
@@ -111,27 +93,26 @@ impl State<'_> {
         }
     }
 
-    fn try_points(&self, points: &Points, opening: f64, commands: [&'static str; 2], clear: bool) -> Outcome {
-        let mut robot = self.robot.clone();
-        let start = *robot.joints();
-        let mut survey = Survey::new(self.room, &self.layout, commands, &start, &self.before);
-        let mut seen: Vec<Seen> = Vec::new();
-        let (flown, trouble) = robot.fly(&points.list, |leg, joints: &Joints| {
-            if !clear {
-                return;
-            }
-            while seen.len() < leg {
-                seen.push(survey.take());
-            }
-            // Fingers need time: they are taken to be as wide as before on the leg on which they close.
-            if leg > points.opens || (leg == points.opens && opening > self.layout.opening) {
-                survey.open(opening);
-            }
-            survey.look(leg, joints);
-        });
-        seen.push(survey.take());
-        seen.resize_with(flown.len(), Seen::default);
-        Outcome { robot, flown, seen, trouble }
+    fn try_points(
+        &self,
+        points: &Points,
+        opening: f64,
+        commands: [&'static str; 2],
+        clear: bool,
+        tries: bool,
+    ) -> Arc<Outcome> {
+        let asked = Asked {
+            robot: self.robot.clone(),
+            gripper: self.layout.gripper,
+            held: self.layout.held.clone(),
+            points: points.clone(),
+            openings: [self.layout.opening, opening],
+            commands,
+            before: self.before.clone(),
+            clear,
+            tries,
+        };
+        self.known.outcome(asked, self.room, &self.layout)
     }
 
     fn findings(
@@ -161,7 +142,9 @@ impl State<'_> {
                 });
             };
             if let Some(touched) = &seen.touched {
-                let key = format!("{} {}", touched.mover, touched.obstacle);
+                // Of a part that is turned the other way the other finger touches.
+                let mover = touched.mover.trim_start_matches("left_").trim_start_matches("right_");
+                let key = format!("{mover} {}", touched.obstacle);
                 add("path.contact", true, touched.to_string(), key, -touched.clearance_in);
             }
             if let Some(trouble) = outcome.trouble.filter(|_| leg == last) {
@@ -174,7 +157,7 @@ impl State<'_> {
                 add("path.margin", false, what, joint.to_owned(), -degrees);
             }
         }
-        if prefix.is_empty() && findings.iter().any(|finding| finding.error) {
+        if self.advises && prefix.is_empty() && findings.iter().any(|finding| finding.error) {
             let help = self.help(phase, outcome, clear);
             findings.iter_mut().filter(|finding| finding.error).for_each(|one| one.help = Some(help.clone()));
         }
@@ -188,24 +171,21 @@ impl State<'_> {
         let Some(leg) = phase.legs.get(at) else { return String::new() };
         let before = at.checked_sub(1).and_then(|at| phase.legs.get(at)).map_or(phase.from, |leg| leg.frame);
         let opens = phase.legs.iter().take_while(|leg| leg.part == "depart").count();
-        let mut best: Option<(f64, Name10)> = None;
-        if at >= opens {
-            for (name, via) in vias(self.walk.data()) {
-                let detour = before.distance(&via).path() + via.distance(&leg.frame).path();
-                if via == before || via == leg.frame || best.is_some_and(|(least, _)| detour >= least) {
-                    continue;
-                }
-                let mut list: Vec<_> = phase.legs.iter().map(|leg| (leg.frame, leg.parameters())).collect();
-                list.insert(at, (via, leg.parameters()));
-                let tried = self.try_points(&Points { list, opens }, self.opening(phase), ["", ""], clear);
-                if tried.is_clear() {
-                    best = Some((detour, name));
-                }
-            }
+        if at < opens {
+            return "change the depart points, or the place itself".to_owned();
         }
-        match best {
-            Some((_, name)) => format!("a via point at {name} between the two would help"),
-            None if at < opens => "change the depart points, or the place itself".to_owned(),
+        let helps = |via: Frame| {
+            let mut list: Vec<_> = phase.legs.iter().map(|leg| (leg.frame, leg.parameters())).collect();
+            list.insert(at, (via, leg.parameters()));
+            let points = Points { list, opens };
+            self.try_points(&points, self.opening(phase), ["", ""], clear, true).is_clear()
+        };
+        let others = vias(self.walk.data()).filter(|(_, via)| *via != before && *via != leg.frame);
+        let detour = |via: &Frame| before.distance(via).path() + via.distance(&leg.frame).path();
+        let mut nearest: Vec<_> = others.map(|(name, via)| (detour(&via), name, via)).collect();
+        nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
+        match nearest.into_iter().find(|(_, _, via)| helps(*via)) {
+            Some((_, name, _)) => format!("a via point at {name} between the two would help"),
             None => "no via point of the stored trajectories helps alone: give this way its own, or change its ends"
                 .to_owned(),
         }

@@ -1,8 +1,9 @@
 //! What a command is made of: phases, and the points that each is flown through.
 
-use rcs_core::frame::Frame;
+use geometry::frame::Frame;
+use interfaces::emove::EmoveCommand;
 use serde::Serialize;
-use taskdata::files::TrajPara;
+use taskdata::files::{Location, TrajPara};
 
 /// Where something was entered.
 #[derive(Clone, Debug, Serialize)]
@@ -97,5 +98,15 @@ impl Phase {
     #[must_use]
     pub fn ticks(&self) -> u32 {
         self.legs.iter().map(|leg| leg.ticks).sum()
+    }
+}
+
+/// A command in words.
+pub(crate) fn described(command: &EmoveCommand, location: &Location) -> String {
+    let sector = location.sector.map_or(String::new(), |sector| format!(" sector {sector}"));
+    let verb = command.command.text();
+    match command.object {
+        None => format!("{verb} {}{sector}", location.name),
+        Some(object) => format!("{verb} {object} with grip {:+} at {}{sector}", command.grip, location.name),
     }
 }

@@ -1,22 +1,21 @@
 //! Where everything is in the course of a job, and what a step changes.
 
+use geometry::frame::{Frame, Vector, rotation_by};
+use interfaces::emove::EmoveVerb;
 use plant::{
     part::sizes_along,
     pedestal::hand_frame,
     room::{Layout, Placed, Room},
     vise::Jaws,
 };
-use rcs_core::{
-    frame::{Frame, Vector, rotation_by},
-    interface::emove::EmoveVerb,
-    name::Name16,
-};
+use rcs_core::name::Name16;
 use taskdata::{files::Location, load::job::ViseOpening};
 
 use crate::{
     finding::{Finding, Walked},
     flight::Robot,
     job::{Random, placed},
+    known::Known,
     plan::Phase,
     steps::{PedestalVerb, Step},
     walk::Walk,
@@ -30,6 +29,8 @@ const THERE: f64 = 8.0;
 pub struct State<'a> {
     /// The cell.
     pub room: &'a Room,
+    /// Flights that were looked at.
+    pub known: &'a Known,
     /// Where the robot is by the task data.
     pub walk: Walk<'a>,
     /// Where it is.
@@ -40,6 +41,8 @@ pub struct State<'a> {
     pub held: Option<(Name16, i32)>,
     /// Parts that lie anywhere in their sectors.
     pub random: Vec<Random>,
+    /// A flight that fails is tried with more via points.
+    pub advises: bool,
     /// It cannot go on: its controller has stopped.
     pub stranded: bool,
     /// Commands under which the robot has come to stand as it does.
@@ -48,29 +51,38 @@ pub struct State<'a> {
     regrip: Option<Name16>,
     /// The object and the place of the last motion.
     last: Option<(Name16, Location)>,
+    /// The drum has closed its fingers on a tool.
+    pub(crate) drum_grips: bool,
+    /// Parts that were not where they should be, which is told once, and what they were to become.
+    pub(crate) lacking: Vec<Name16>,
 }
 
 impl<'a> State<'a> {
     /// A robot that has started up: its fingers are open.
     #[must_use]
-    pub fn new(room: &'a Room, walk: Walk<'a>, robot: Robot) -> Self {
+    pub fn new(room: &'a Room, known: &'a Known, walk: Walk<'a>, robot: Robot) -> Self {
         let mut layout = room.at_start();
         layout.opening = room.worn(&layout).map_or(0.0, |gripper| gripper.opening[1]);
         Self {
             room,
+            known,
             walk,
             robot,
             layout,
             held: None,
             random: Vec::new(),
+            advises: false,
             stranded: false,
             before: Vec::new(),
             regrip: None,
             last: None,
+            drum_grips: false,
+            lacking: Vec::new(),
         }
     }
 
-    /// Put a part into a sector, or another place of it there if it is there already. False if the cell has no such place.
+    /// Put a part into a sector, or another place of it there if it is there already. False if the cell has
+    /// no such place.
     pub fn deliver(&mut self, object: &Name16, at: &Location, aside: [f64; 3], again: bool) -> bool {
         let cell = self.room.cell();
         let Some(kind) = cell.part(object.as_str()) else { return false };
@@ -138,6 +150,9 @@ impl<'a> State<'a> {
         if let (Some(next), Some(one)) = (next, self.layout.parts.iter_mut().find(is)) {
             one.kind.clone_from(next);
         }
+        if self.lacking.contains(blank) {
+            self.lacking.push(*part);
+        }
         if self.room.in_vise(&self.layout).is_some() {
             self.clamp();
         }
@@ -149,11 +164,22 @@ impl<'a> State<'a> {
         if let Some(pose) = drum.pose.frame() {
             let frame = pose.shifted(Vector::new(drum.middle, 0.0, 0.0));
             self.layout.parts.extend(placed(self.room, tool, frame));
+            self.drum_grips = true;
         }
     }
 
     /// Make a step; `task` is the command of Task that it belongs to.
     pub fn step(&mut self, step: &Step, task: &str) -> (Walked, Vec<Finding>) {
+        let hindrance = self.hindrance(step);
+        let (walked, mut findings) = self.make(step, task);
+        // What is not there, or held elsewhere, also touches; that need not be said.
+        if let Some(hindrance) = hindrance {
+            findings = vec![hindrance];
+        }
+        (walked, findings)
+    }
+
+    fn make(&mut self, step: &Step, task: &str) -> (Walked, Vec<Finding>) {
         match *step {
             Step::Go { verb, object, location, .. } => {
                 self.layout.engaged = None;
@@ -210,7 +236,8 @@ impl<'a> State<'a> {
                 self.before = vec![["RELEASE", ""]];
             }
             Step::GraspTool => {
-                // Where the guarded moves have ended is not known: the fingers are taken to be where the drum has its tools.
+                // Where the guarded moves have ended is not known: the fingers are taken to be where the drum
+                // has its tools.
                 let drum = self.room.cell().drum.pose.frame();
                 if let Some((object, drum)) = self.tool_in_drum().zip(drum) {
                     self.grasp(&object, 1, &drum);
@@ -233,7 +260,7 @@ impl<'a> State<'a> {
         }
     }
 
-    fn tool_in_drum(&self) -> Option<Name16> {
+    pub(crate) fn tool_in_drum(&self) -> Option<Name16> {
         let tool = self.robot.tool();
         let away = |part: &Placed| (part.frame.position - tool.position).norm();
         let part = self.layout.parts.iter().filter(|part| part.kind.tool && away(part) < THERE);
@@ -244,7 +271,10 @@ impl<'a> State<'a> {
     /// Take hold of the nearest part of a name with the tool frame at `tool`.
     fn grasp(&mut self, object: &Name16, grip: i32, tool: &Frame) {
         self.held = Some((*object, grip));
-        let Some(index) = self.nearest(object, tool) else { return };
+        let Some(index) = self.nearest(object, tool) else {
+            self.lacking.push(*object);
+            return;
+        };
         let part = self.layout.parts.remove(index);
         let mut frame = tool.inverse().compose(&part.frame);
         // The fingers draw it to their middle.
@@ -327,8 +357,9 @@ impl<'a> State<'a> {
     }
 }
 
-/// The part frame that vision answers with (V.2.1 LOCATE-OBJ): in the plane of the place, at the middle of the part, turned by no
-/// more than a quarter turn so that tool Y lies across its wider side for grip 1, else across the narrower (VII.7.6).
+/// The part frame that vision answers with (V.2.1 LOCATE-OBJ): in the plane of the place, at the middle of
+/// the part, turned by no more than a quarter turn so that tool Y lies across its wider side for grip 1, else
+/// across the narrower (VII.7.6).
 fn found(place: &Frame, part: &Placed, grip: i32) -> Frame {
     let aside = part.frame.position - place.position;
     let at = Vector::new(0.0, aside.dot(&place.y()), aside.dot(&place.z()));

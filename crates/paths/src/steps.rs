@@ -1,12 +1,10 @@
 //! What Task and Subtask make of a command: the commands of E-move, one after the other (V.3.1, V.4.1).
 //!
-//! It is the way without accidents: the right gripper is attached, nothing is held before that the command does not expect,
-//! vision finds the object where it is meant to be.
+//! It is the way without accidents: the right gripper is attached, nothing is held before that the command
+//! does not expect, vision finds the object where it is meant to be.
 
-use rcs_core::{
-    interface::{HwsCommand, emove::EmoveVerb},
-    name::Name16,
-};
+use interfaces::{HwsCommand, emove::EmoveVerb};
+use rcs_core::name::Name16;
 use taskdata::files::{Location, LocptId, LookupError, RefType, TaskData};
 
 /// Where the Active Pedestal holds an object (V.3.1 FIX-GRIP).
@@ -259,8 +257,8 @@ impl Maker<'_> {
     }
 }
 
-/// GET-ENDEFF (V.3.1): the gripper that is on is left in its holster, and the wanted one is taken from its own. End effector
-/// ids; none for a bare robot.
+/// GET-ENDEFF (V.3.1): the gripper that is on is left in its holster, and the wanted one is taken from its
+/// own. End effector ids; none for a bare robot.
 ///
 /// # Errors
 /// A holster that the task data do not have.
@@ -279,7 +277,8 @@ pub fn exchange(own: Option<u8>, wanted: u8, data: &TaskData<'_>) -> Result<Vec<
     Ok(steps)
 }
 
-/// The way to the holster of a gripper, with grip 1 for one that is on and 2 for a bare robot, and where that is (VII.7.3).
+/// The way to the holster of a gripper, with grip 1 for one that is on and 2 for a bare robot, and where that
+/// is (VII.7.3).
 fn to_holster(id: u8, grip: i32, data: &TaskData<'_>) -> Result<(Step, Location), LookupError> {
     let object = Name16::clipped(&format!("GRIPPER-{id}"));
     let unknown = LookupError::UnknownObject { name: object };

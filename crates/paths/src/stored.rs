@@ -1,16 +1,17 @@
 //! Each segment of the stored trajectories once, forth and back, with the fingers wide open and nothing between them.
 //!
-//! A segment leads from one pose or location point to the next, whatever the objects at its ends; those are walked with the jobs.
+//! A segment leads from one pose or location point to the next, whatever the objects at its ends; those are
+//! walked with the jobs.
 
 use std::collections::HashSet;
 
+use geometry::{
+    frame::Frame,
+    kinematics::{HOME_JOINTS, T3},
+};
 use plant::{
     description::Actuators,
     room::{Layout, Room},
-};
-use rcs_core::{
-    frame::Frame,
-    kinematics::{HOME_JOINTS, T3},
 };
 use taskdata::{
     files::{Direction, LocptId, PathPoint, RefType, Reference, Target, TaskData, TrajPara},
@@ -18,9 +19,9 @@ use taskdata::{
 };
 
 use crate::{
-    flight::{Robot, Trouble},
+    flight::Robot,
     judge::in_words,
-    survey::{Seen, Survey},
+    known::{Asked, Known, Points},
 };
 
 /// What is wrong with a segment.
@@ -49,12 +50,12 @@ struct Fixed {
     at: At,
 }
 
-/// Walk the segments of all trajectories. The task data must be sound.
+/// Walk the segments of all trajectories. The task data must be sound. `known` has flights in the same cell.
 #[must_use]
-pub fn walk_stored(store: &Store, room: &Room) -> Stored {
+pub fn walk_stored(store: &Store, room: &Room, known: &Known) -> Stored {
     let data = store.view();
     let mut stored = Stored::default();
-    let mut known = HashSet::new();
+    let mut walked = HashSet::new();
     for (number, record) in data.trajectories.iter().enumerate() {
         let Some(&at) = store.origins().trajectories.get(number) else { continue };
         let mut points = vec![end_of(&data, record.start, Direction::Depart, at)];
@@ -70,7 +71,7 @@ pub fn walk_stored(store: &Store, room: &Room) -> Stored {
         for pair in points.windows(2) {
             let [Some(from), Some(to)] = pair else { continue };
             for (from, to, at) in [(from, to, to.at), (to, from, to.at)] {
-                if !known.insert((from.name.clone(), to.name.clone())) {
+                if !walked.insert((from.name.clone(), to.name.clone())) {
                     continue;
                 }
                 stored.segments += 1;
@@ -79,7 +80,7 @@ pub fn walk_stored(store: &Store, room: &Room) -> Stored {
                 } else {
                     to.parameters
                 };
-                if let Some(what) = segment(room, &from.frame, &to.frame, parameters) {
+                if let Some(what) = segment(room, known, &from.frame, &to.frame, parameters) {
                     let message =
                         format!("trajectory {}, from {} to {}: {what}", record.name, from.name, to.name);
                     stored.findings.push(StoredFinding { at, message });
@@ -116,15 +117,25 @@ fn fixed(data: &TaskData<'_>, point: &PathPoint, at: At) -> Option<Fixed> {
 }
 
 /// What is wrong with a straight segment, if anything.
-fn segment(room: &Room, from: &Frame, to: &Frame, parameters: TrajPara) -> Option<String> {
+fn segment(room: &Room, known: &Known, from: &Frame, to: &Frame, parameters: TrajPara) -> Option<String> {
     let joints = T3.within_limits(&T3.inverse(from, &HOME_JOINTS).ok()?);
-    let mut robot = Robot::standing(&Actuators::from(&room.cell().robot), &joints)?;
+    let robot = Robot::standing(&Actuators::from(&room.cell().robot), &joints)?;
     let start = room.at_start();
     let opening = room.worn(&start).map_or(start.opening, |gripper| gripper.opening[1]);
     let layout = Layout { opening, ..start };
-    // What touches at its ends does so by the approaches there.
-    let mut survey = Survey::new(room, &layout, ["", ""], &joints, &[]);
-    let (_, trouble) = robot.fly(&[(*to, parameters)], |leg, joints| survey.look(leg, joints));
-    let Seen { touched, .. } = survey.take();
-    trouble.map(|trouble: Trouble| in_words(trouble).0).or_else(|| touched.map(|touched| touched.to_string()))
+    let asked = Asked {
+        robot,
+        gripper: layout.gripper,
+        held: None,
+        points: Points { list: vec![(*to, parameters)], opens: 0 },
+        openings: [opening, opening],
+        // What touches at its ends does so by the approaches there.
+        commands: ["", ""],
+        before: Vec::new(),
+        clear: true,
+        tries: false,
+    };
+    let outcome = known.outcome(asked, room, &layout);
+    let touched = || outcome.seen.iter().find_map(|seen| seen.touched.as_ref()).map(ToString::to_string);
+    outcome.trouble.map(|trouble| in_words(trouble).0).or_else(touched)
 }

@@ -1,24 +1,28 @@
-//! What arm, gripper and held part touch or pass on a flight, judged by the permits of the cell description as in a run.
+//! What arm, gripper and held part touch or pass on a flight, judged by the permits of the cell description
+//! as in a run.
 
 use std::{collections::BTreeMap, fmt};
 
+use geometry::kinematics::Joints;
 use plant::{
     clearance::{Body, Contact},
     description::Kind,
     room::{Layout, Room},
+    swept::Swept,
 };
-use rcs_core::kinematics::Joints;
 use serde::Serialize;
 
 /// Distances greater than this are not told, in.
 pub const MARGIN: f64 = 2.0;
 /// How far is looked, in: the farther, the more ticks can be skipped, and the longer each look takes.
-const SIGHT: f64 = 4.0;
+pub(crate) const SIGHT: f64 = 4.0;
 /// What was permitted to touch and is this far apart has come free, in.
 const FREE: f64 = 0.05;
-/// How deep a held part may be in what it is put into or taken out of, in (ASSUMED): how it lies in the fingers depends on vision.
+/// How deep a held part may be in what it is put into or taken out of, in (ASSUMED): how it lies in the
+/// fingers depends on vision.
 pub const FIT: f64 = 0.02;
-/// How deep the fingers may be in a part that they push, beside what is permitted, in (ASSUMED): it lies as it was dropped.
+/// How deep the fingers may be in a part that they push, beside what is permitted, in (ASSUMED): it lies as
+/// it was dropped.
 const PUSH_FIT: f64 = 0.05;
 /// How far a point of the robot moves at the most when a joint turns by a radian, in: base to roll.
 const LEVERS: Joints = [105.0, 105.0, 65.0, 30.0, 27.0, 12.0];
@@ -76,7 +80,9 @@ pub struct Seen {
 pub struct Survey<'a> {
     room: &'a Room,
     layout: Layout,
-    devices: Vec<Body>,
+    devices: &'a [Body],
+    /// Where the robot was looked at.
+    swept: Swept,
     /// Commands of E-move and Subtask.
     commands: [&'static str; 2],
     /// How deep pairs were while that was permitted.
@@ -90,12 +96,13 @@ pub struct Survey<'a> {
 }
 
 impl<'a> Survey<'a> {
-    /// A survey that begins at joint angles (radians) at which what touches may do so under other commands, those under which the
-    /// robot has come there.
+    /// A survey among the devices of a layout. It begins at joint angles (radians) at which what touches may
+    /// do so under other commands, those under which the robot has come there.
     #[must_use]
     pub fn new(
         room: &'a Room,
         layout: &Layout,
+        devices: &'a [Body],
         commands: [&'static str; 2],
         start: &Joints,
         before: &[[&'static str; 2]],
@@ -103,7 +110,8 @@ impl<'a> Survey<'a> {
         let mut survey = Self {
             room,
             layout: layout.clone(),
-            devices: room.devices(layout),
+            devices,
+            swept: Swept::default(),
             commands,
             allowed: BTreeMap::new(),
             at: *start,
@@ -112,7 +120,9 @@ impl<'a> Survey<'a> {
             seen: Seen::default(),
         };
         let permits = &room.cell().contact;
-        for contact in room.look(layout, &survey.devices, start, 0.0) {
+        let movers = room.movers(layout, start);
+        survey.swept.begin(&movers);
+        for contact in room.look(&movers, devices, 0.0) {
             let most = before.iter().map(|one| permits.during(contact.mover(), contact.obstacle(), *one));
             let most = most.fold(0.0, f64::max);
             if most > 0.0 {
@@ -126,6 +136,18 @@ impl<'a> Survey<'a> {
     pub fn take(&mut self) -> Seen {
         (self.leg, self.free) = (None, 0.0);
         std::mem::take(&mut self.seen)
+    }
+
+    /// Something was touched on this leg that may not be.
+    #[must_use]
+    pub const fn touches(&self) -> bool {
+        self.seen.touched.is_some()
+    }
+
+    /// Where the robot was looked at.
+    #[must_use]
+    pub fn into_swept(self) -> Swept {
+        self.swept
     }
 
     /// The fingers open or close to so many inches.
@@ -148,7 +170,13 @@ impl<'a> Survey<'a> {
             return;
         }
         self.leg = Some(leg);
-        let contacts = self.room.look(&self.layout, &self.devices, joints, SIGHT);
+        let movers = self.room.movers(&self.layout, joints);
+        if begins {
+            self.swept.begin(&movers);
+        } else {
+            self.swept.add(&movers);
+        }
+        let contacts = self.room.look(&movers, self.devices, SIGHT);
         self.allowed.retain(|pair, _| contacts.iter().any(|one| one.depth > -FREE && one.pair() == *pair));
         let mut least = SIGHT;
         for contact in &contacts {

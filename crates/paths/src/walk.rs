@@ -1,22 +1,25 @@
-//! The way of the robot through the steps of a command: each goal and each point on the way to it, planned by E-move's own
-//! route, timed by Prim's own motion.
+//! The way of the robot through the steps of a command: each goal and each point on the way to it, planned by
+//! E-move's own route, timed by Prim's own motion.
 
+use geometry::{
+    frame::Frame,
+    kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
+    pose::Pose,
+};
+use interfaces::{
+    Reason,
+    emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace},
+};
 use levels::{
     emove::{
         route::{Goal, LegGoal, Planning, Route},
         tables::{Action, Request, accept::accept},
     },
     execution::Asked,
+    places::{place_of, robot_at},
 };
 use rcs_core::{
-    frame::Frame,
-    interface::{
-        Reason,
-        emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace},
-    },
-    kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
     name::Name16,
-    pose::Pose,
     table::{Decision, Verdict},
     tick::TICK_S,
 };
@@ -31,7 +34,7 @@ use taskdata::{
 
 use crate::{
     flight::time,
-    plan::{Entry, Leg, Phase},
+    plan::{Entry, Leg, Phase, described},
     steps::Step,
 };
 
@@ -57,6 +60,11 @@ impl<'a> Walk<'a> {
     pub fn new(store: &'a Store, start: &Location) -> Self {
         let place = robot_at(GoneTo::Location, start, &start.frame);
         Self { store, data: store.view(), place, found: None }
+    }
+
+    /// Other task data are in force from now on.
+    pub fn load(&mut self, store: &'a Store) {
+        (self.store, self.data) = (store, store.view());
     }
 
     /// Where the robot is.
@@ -90,8 +98,8 @@ impl<'a> Walk<'a> {
         phase
     }
 
-    /// Make a step; what it consists of, or why it cannot be made. A step that cannot be made ends at its location all the
-    /// same, so that what follows can be explained.
+    /// Make a step; what it consists of, or why it cannot be made. A step that cannot be made ends at its
+    /// location all the same, so that what follows can be explained.
     pub fn step(&mut self, step: &Step) -> Phase {
         match *step {
             Step::Go { verb, object, grip, location } => self.go(verb, object, grip, &location),
@@ -155,7 +163,7 @@ impl<'a> Walk<'a> {
     /// Parameters of the last motion to a view.
     fn view_stop(&self) -> Option<TrajParaId> {
         let GoneTo::View(ObjectGrip { object, grip }) = self.place.gone_to else { return None };
-        let place = levels::places::place_of(self.place.kind, self.place.record, self.place.array);
+        let place = place_of(self.place.kind, self.place.record, self.place.array);
         Some(self.data.path(self.data.view_approach(&object, grip, &place)?).last()?.para)
     }
 
@@ -329,8 +337,7 @@ impl<'a> Walk<'a> {
         approach: PathId,
     ) {
         let (data, origins) = (&self.data, self.store.origins());
-        let place =
-            levels::places::place_of(command.location_kind, command.location_record, command.location_array);
+        let place = place_of(command.location_kind, command.location_record, command.location_array);
         match command.command {
             EmoveVerb::MovToVu => {
                 let view = command
@@ -358,33 +365,11 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The robot at a location.
-fn robot_at(gone_to: GoneTo, at: &Location, frame: &Frame) -> RobotPlace {
-    RobotPlace {
-        gone_to,
-        location: at.name,
-        kind: at.place.kind,
-        record: at.place.locpt.to_option(),
-        array: at.place.array.to_option(),
-        pose: Pose::from_frame(frame),
-    }
-}
-
 /// The reason with which E-move refuses a command whose way cannot be planned.
 fn refusal(verb: EmoveVerb, route: Planning) -> Reason {
     match accept((), &Request { asked: Asked::Now, verb, route, ..Request::default() }) {
         Verdict::Decided(Decision { action: Action::Refuse(reason), .. }) => reason,
         Verdict::Decided(_) | Verdict::Passed(()) => Reason::None,
-    }
-}
-
-/// A command in words.
-fn described(command: &EmoveCommand, location: &Location) -> String {
-    let sector = location.sector.map_or(String::new(), |sector| format!(" sector {sector}"));
-    let verb = command.command.text();
-    match command.object {
-        None => format!("{verb} {}{sector}", location.name),
-        Some(object) => format!("{verb} {object} with grip {:+} at {}{sector}", command.grip, location.name),
     }
 }
 

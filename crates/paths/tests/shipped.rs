@@ -1,9 +1,10 @@
 //! The shipped data: every way of every job can be flown, and passes what it must.
 
-use std::path::Path;
+use std::{collections::BTreeSet, path::Path};
 
 use paths::{
     job::{WalkedJob, walk_job},
+    known::Known,
     stored::walk_stored,
 };
 use plant::{CellDescription, room::Room};
@@ -18,7 +19,7 @@ fn walked(job: &str) -> WalkedJob {
     let (job, _) = Job::load(&data().join("jobs").join(format!("{job}.job")), &store)
         .unwrap_or_else(|report| panic!("{report}"));
     let room = Room::new(&CellDescription::load(&data().join("cell.toml")).unwrap());
-    walk_job(&job, &store, &room)
+    walk_job(&job, &store, &room, &Known::default())
 }
 
 /// No findings, and all lines walked.
@@ -54,7 +55,7 @@ fn tool_change() {
 fn stored_routes() {
     let (store, _) = Store::load(data()).unwrap_or_else(|report| panic!("{report}"));
     let room = Room::new(&CellDescription::load(&data().join("cell.toml")).unwrap());
-    let stored = walk_stored(&store, &room);
+    let stored = walk_stored(&store, &room, &Known::default());
     assert!(stored.segments > 40, "{}", stored.segments);
     let texts: Vec<&str> = stored.findings.iter().map(|one| one.message.as_str()).collect();
     assert_eq!(texts, [""; 0]);
@@ -88,7 +89,7 @@ fn each_sector_is_fit_or_not() {
             let text = text.replace("UNIT_1 4", &format!("{unit} {sector}"));
             let source = Source { name: "linkbar.job".into(), text: text.into() };
             let (job, _) = Job::from_source(source, &store).unwrap_or_else(|report| panic!("{report}"));
-            let findings = walk_job(&job, &store, &room).findings;
+            let findings = walk_job(&job, &store, &room, &Known::default()).findings;
             assert!(findings.iter().all(|one| one.code == "path.contact"), "{unit} {sector}: {findings:?}");
             assert_eq!(findings.is_empty(), unit == "UNIT_1", "the fingers meet a pot in a corner of UNIT_2");
             if findings.iter().any(|one| one.error) {
@@ -97,4 +98,37 @@ fn each_sector_is_fit_or_not() {
         }
     }
     assert_eq!(unfit, [("UNIT_2", 3), ("UNIT_2", 4)]);
+}
+
+/// What is loaded counts for the lines after it; in the middle of a command, for the command after that.
+#[test]
+fn after_load_the_new_data_count() {
+    let (store, _) = Store::load(data()).unwrap_or_else(|report| panic!("{report}"));
+    let room = Room::new(&CellDescription::load(&data().join("cell.toml")).unwrap());
+    let place = tempfile::tempdir().unwrap();
+    // On the way to SAFE is a point in the body of the vise.
+    let low = "BLOCK# 1 OFFSET 22000
+   3950 -4400 -800
+   6950 -4400 -800
+   6950 -1400 -800  -pose- ... LOW
+-traj  HOME-SAFE  lpt HOME  lpt SAFE
+  -ppt  4 100 8 0  pos LOW
+";
+    std::fs::write(place.path().join("low.blk"), low).unwrap();
+    let failing = |load: &str, before: bool| {
+        let go = "== MOVE -- +0 -- 0 +0 SAFE 0 -- 0\n== MOVE -- +0 -- 0 +0 HOME 0 -- 0\n";
+        let text = if before { format!("{load}\n{go}{go}") } else { format!("{go}{load}\n{go}") };
+        let name = place.path().join("load.job").display().to_string();
+        let (job, _) = Job::from_source(Source { name, text: text.into() }, &store)
+            .unwrap_or_else(|report| panic!("{report}"));
+        let walked = walk_job(&job, &store, &room, &Known::default());
+        let errors = walked.findings.iter().filter(|one| one.error);
+        (errors.map(|one| one.line).collect::<BTreeSet<u32>>(), walked.not_checked)
+    };
+    assert_eq!(failing("% nothing", true), (BTreeSet::new(), vec![]));
+    assert_eq!(failing("** load low.blk", true), (BTreeSet::from([2, 4]), vec![]));
+    assert_eq!(failing("** after 50 load low.blk", true), (BTreeSet::from([4]), vec![]));
+    assert_eq!(failing("** load low.blk", false), (BTreeSet::from([4]), vec![]));
+    let not_checked = "what comes after line 1: what it loads does not fit the cell".to_owned();
+    assert_eq!(failing("** load low.blk expect error", true), (BTreeSet::new(), vec![not_checked]));
 }

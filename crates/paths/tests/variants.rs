@@ -2,7 +2,10 @@
 
 use std::{fmt::Write, path::Path};
 
-use paths::job::{WalkedJob, walk_job};
+use paths::{
+    job::{WalkedJob, walk_job},
+    known::Known,
+};
 use plant::{CellDescription, room::Room};
 use taskdata::load::{Diagnostics, Job, Source, Store, source::read_blocks_under};
 
@@ -246,7 +249,7 @@ fn walked(variant: &Variant, sources: &[Source], room: &Room) -> Result<WalkedJo
     let (store, _) = Store::from_sources(sources).map_err(|report| first(&report))?;
     let path = data().join("jobs").join(format!("{job}.job"));
     let (job, _) = Job::load(&path, &store).map_err(|report| first(&report))?;
-    Ok(walk_job(&job, &store, room))
+    Ok(walk_job(&job, &store, room, &Known::default()))
 }
 
 #[test]
@@ -266,7 +269,9 @@ fn each_variant_gets_its_answer() {
                 }
                 for finding in walked.findings.iter().take(3) {
                     writeln!(said, "    line {}: {}", finding.line, finding.message).unwrap();
-                    writeln!(said, "        {}", finding.help.as_deref().unwrap_or_default()).unwrap();
+                    if let Some(help) = &finding.help {
+                        writeln!(said, "        {help}").unwrap();
+                    }
                 }
             }
         }

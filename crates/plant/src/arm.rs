@@ -1,27 +1,27 @@
 //! The hydraulic arm: servos that follow a command under pressure, joints that sag without.
 //!
-//! Under pressure the joints follow a command that runs to its goal at an even rate, with a first-order lag and no faster
-//! than their greatest speed. The lag is integrated exactly, so that an arm that is left alone comes to rest at its command
-//! to the last bit that a resolver can tell. What the load does to the powered arm is not here but in the spring between
-//! hand and fingers ([`crate::gripper`]).
+//! Under pressure the joints follow a command that runs to its goal at an even rate, with a first-order lag
+//! and no faster than their greatest speed. The lag is integrated exactly, so that an arm that is left alone
+//! comes to rest at its command to the last bit that a resolver can tell. What the load does to the powered
+//! arm is not here but in the spring between hand and fingers ([`crate::gripper`]).
 //!
-//! Without pressure (III.6) each joint is a damper that gives way to the weight of the links, to what hangs on them, and to
-//! what they run into:
+//! Without pressure (III.6) each joint is a damper that gives way to the weight of the links, to what hangs
+//! on them, and to what they run into:
 //!
 //! ```text
 //!   damping x rate = torque of the weights + torque of the contacts
 //! ```
 //!
-//! There is no inertia in it: at three degrees a second it is of no account. The equation is solved implicitly in the
-//! stiffness of the contacts, which is large, so that an arm that comes to lie on something lies still. The shot pin stops
-//! the shoulder, the joints' limits stop the others. Meanwhile the servos keep their command, as far as their following error
-//! allows, and jump back to it when the pressure returns.
+//! There is no inertia in it: at three degrees a second it is of no account. The equation is solved
+//! implicitly in the stiffness of the contacts, which is large, so that an arm that comes to lie on something
+//! lies still. The shot pin stops the shoulder, the joints' limits stop the others. Meanwhile the servos keep
+//! their command, as far as their following error allows, and jump back to it when the pressure returns.
 
-use nalgebra::{Matrix6, Vector6};
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector},
     kinematics::{HOME_JOINTS, Joints, T3},
 };
+use nalgebra::{Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -42,11 +42,12 @@ const UPPER_ARM_CENTRE: f64 = 0.5 * T3.upper_arm;
 const FOREARM_CENTRE: f64 = 0.4 * T3.forearm;
 /// Centre of mass of the wrist, in from the yaw axis (ASSUMED: halfway from the pitch axis to the end plate).
 const WRIST_CENTRE: f64 = 1.5;
-/// Centre of mass of quick change and gripper, in from the yaw axis (ASSUMED: halfway from the end plate to the fingertips).
+/// Centre of mass of quick change and gripper, in from the yaw axis (ASSUMED: halfway from the end plate to
+/// the fingertips).
 pub const TOOL_CENTRE: f64 = T3.yaw_to_plate + T3.plate_to_tool / 2.0;
 
-/// An arm without pressure none of whose joints is faster has come to rest, rad/s: the last degrees of a limb that swings
-/// down against a damper take for ever.
+/// An arm without pressure none of whose joints is faster has come to rest, rad/s: the last degrees of a limb
+/// that swings down against a damper take for ever.
 const AT_REST: f64 = 0.2 * (core::f64::consts::PI / 180.0);
 /// Friction is full at this speed and less below, in/s: what sticks creeps by less than an arm that has come to rest.
 const STICKING: f64 = 0.1;
@@ -56,7 +57,7 @@ const STEP_S: f64 = 0.0025;
 const SETTLED: f64 = 0.005 * (core::f64::consts::PI / 180.0);
 
 /// A command that runs evenly from one set of joint angles to another.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 struct Ramp {
     from: Joints,
     goal: Joints,
@@ -83,7 +84,7 @@ impl Ramp {
 }
 
 /// Joints, servos and pressure. Angles in radians.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Arm {
     actuators: Actuators,
     /// Of each joint without pressure, lb·in·s.
@@ -134,7 +135,8 @@ impl Arm {
         Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), self.actuators.hydraulics.tool_weight)
     }
 
-    /// Turn the pressure on or off. Off ends the motion, the command stays where it has come to, and the shot pin comes out.
+    /// Turn the pressure on or off. Off ends the motion, the command stays where it has come to, and the shot
+    /// pin comes out.
     pub fn set_pressure(&mut self, on: bool) {
         if self.pressure && !on {
             self.stop();
@@ -162,8 +164,8 @@ impl Arm {
         self.command = Ramp::at(self.command.present());
     }
 
-    /// Let `seconds` pass. While `held` the command stands still. `loads` are the forces on the arm beside the weight of its
-    /// links; they move it only without pressure.
+    /// Let `seconds` pass. While `held` the command stands still. `loads` are the forces on the arm beside
+    /// the weight of its links; they move it only without pressure.
     pub fn advance(&mut self, seconds: f64, held: bool, loads: &[Load]) {
         let mut left = seconds;
         while left > 0.0 {
@@ -278,6 +280,14 @@ impl Arm {
         self.pressure && self.command.is_over() && self.joints.iter().zip(&self.command.goal).all(near)
     }
 
+    /// Put joints that have [`settled`](Self::settled) exactly to where they were led.
+    pub fn settle(&mut self) {
+        if self.settled() {
+            self.joints = self.command.goal;
+            self.command = Ramp::at(self.joints);
+        }
+    }
+
     /// Without pressure: the arm has sagged as far as it will. False before the first step without pressure.
     #[must_use]
     pub fn has_sagged(&self) -> bool {
@@ -312,8 +322,8 @@ fn weights(chain: &Chain, hydraulics: &Hydraulics) -> [Load; 3] {
     ]
 }
 
-/// Dampers that give way at the droop rate to what the joints carry at HOME; the base, which carries nothing, has that of the
-/// shoulder, yaw and roll have that of the pitch.
+/// Dampers that give way at the droop rate to what the joints carry at HOME; the base, which carries nothing,
+/// has that of the shoulder, yaw and roll have that of the pitch.
 fn dampers(hydraulics: &Hydraulics) -> [f64; 6] {
     let chain = Chain::new(&HOME_JOINTS);
     let tool = Load::weight(END_PLATE, chain.along(END_PLATE, TOOL_CENTRE), hydraulics.tool_weight);

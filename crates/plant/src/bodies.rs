@@ -1,15 +1,16 @@
 //! The shapes with which robot and devices collide, from the description of the cell and from where they are.
 //!
-//! Links of the arm are capsules, hands and furniture boxes, plates and round parts cylinders. The simulated cell and the check
-//! of paths ([`crate::room`]) both make their bodies here, so that what one lets pass the other does too.
+//! Links of the arm are capsules, hands and furniture boxes, plates and round parts cylinders. The simulated
+//! cell and the check of paths ([`crate::room`]) both make their bodies here, so that what one lets pass the
+//! other does too.
 
 use core::f64::consts::{FRAC_PI_2, SQRT_2};
 
-use rapier3d_f64::{math::Rotation as Turn, prelude::*};
-use rcs_core::{
+use geometry::{
     frame::{Frame, Rotation, Vector as Inches},
     kinematics::{Joints, T3},
 };
+use rapier3d_f64::{math::Rotation as Turn, prelude::*};
 
 use crate::{
     clearance::Body,
@@ -114,8 +115,9 @@ pub fn palm(gripper: &Gripper) -> (Frame, Inches) {
     (Frame { position: middle, rotation: Rotation::identity() }, Inches::from(gripper.body))
 }
 
-/// The gripper that the robot wears: its body, and its fingers where the air wants them with this opening (in), not where their
-/// springs have given way to: how deep the arm has led them into something is what counts.
+/// The gripper that the robot wears: its body, and its fingers where the air wants them with this opening
+/// (in), not where their springs have given way to: how deep the arm has led them into something is what
+/// counts.
 #[must_use]
 pub fn worn(cell: &CellDescription, gripper: &Gripper, tool: &Frame, opening: f64) -> Vec<Body> {
     let tool = to_pose(tool);
@@ -163,8 +165,8 @@ pub fn stored(cell: &CellDescription, gripper: &Gripper, name: &'static str, at:
         .collect()
 }
 
-/// Palm and fingers of the pedestal's hand at its frame with an opening in inches: the robot's fingers come near them, and what it
-/// carries is put between them.
+/// Palm and fingers of the pedestal's hand at its frame with an opening in inches: the robot's fingers come
+/// near them, and what it carries is put between them.
 #[must_use]
 pub fn pedestal(cell: &CellDescription, hand: &Frame, opening: f64) -> [Body; 3] {
     let description = &cell.pedestal.hand;

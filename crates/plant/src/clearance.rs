@@ -1,15 +1,16 @@
-//! Collisions of the robot: each tick arm, gripper, and what the gripper carries, against everything else in the cell, and
-//! against the arm itself.
+//! Collisions of the robot: each tick arm, gripper, and what the gripper carries, against everything else in
+//! the cell, and against the arm itself.
 //!
-//! The arm is led on its path whatever it meets, as a hydraulic arm would be; so a collision must be seen, not felt. What may
-//! touch is a list of the cell description ([`crate::description::Permits`]). Of the pairs that are not on it for all times
-//! the check keeps, each tick, those that touch or are nearer than a margin, with their depth and direction: whoever knows the
-//! present command judges them, and whoever moves the arm sees what it is led into.
+//! The arm is led on its path whatever it meets, as a hydraulic arm would be; so a collision must be seen,
+//! not felt. What may touch is a list of the cell description ([`crate::description::Permits`]). Of the pairs
+//! that are not on it for all times the check keeps, each tick, those that touch or are nearer than a margin,
+//! with their depth and direction: the caller that has the present command judges them, and the caller that
+//! moves the arm sees what it is led into.
 
 use std::{borrow::Cow, collections::BTreeSet};
 
+use geometry::frame::Vector as Inches;
 use rapier3d_f64::{parry::query, prelude::*};
-use rcs_core::frame::Vector as Inches;
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -33,7 +34,8 @@ pub struct Body {
     pub shape: SharedShape,
     /// Its surroundings.
     pub aabb: Aabb,
-    /// Its place in the chain of the arm, from 1 at the base; 0 if it is not of it. Neighbours in the chain do not collide.
+    /// Its place in the chain of the arm, from 1 at the base; 0 if it is not of it. Neighbours in the chain
+    /// do not collide.
     pub chain: u8,
 }
 
@@ -51,6 +53,12 @@ impl Body {
 
     fn id(&self) -> (&str, Kind) {
         (&self.name, self.kind)
+    }
+
+    /// The same thing at the same place.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.id() == other.id() && self.pose == other.pose && self.aabb == other.aabb
     }
 
     /// They are neighbours in the chain of the arm, or the same link.
@@ -124,8 +132,8 @@ impl Clearance {
         self.margin = metres(margin.max(0.0));
     }
 
-    /// Everything that touched or was near in the last check, each pair of names once, where it is deepest; without what may
-    /// always touch.
+    /// Everything that touched or was near in the last check, each pair of names once, where it is deepest;
+    /// without what may always touch.
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts
@@ -137,7 +145,8 @@ impl Clearance {
         self.contacts
     }
 
-    /// Look at all pairs. Returns those that touch deeper than they may whatever the robot does, and have just begun to.
+    /// Look at all pairs. Returns those that touch deeper than they may whatever the robot does, and have
+    /// just begun to.
     pub fn check<'a>(
         &mut self,
         permits: &Permits,
@@ -240,7 +249,7 @@ mod tests {
             clearance.contacts().iter().map(|one| one.depth).collect::<Vec<_>>()
         };
         let gap = 0.15 + metres(0.5);
-        assert_eq!(near(&mut clearance, gap), [], "nobody looks out for it");
+        assert_eq!(near(&mut clearance, gap), [], "it is not watched");
         clearance.watch(1.0);
         let listed = near(&mut clearance, gap);
         assert!(listed.len() == 1 && (listed[0] + 0.5).abs() < 1e-6, "{listed:?}");
@@ -253,7 +262,7 @@ mod tests {
         let (mut clearance, table) = (Clearance::default(), table());
         let some = permit(Some(0.1));
         assert!(clearance.check(&some, &hand(0.15 - metres(0.09)), [&table].into_iter()).is_empty());
-        assert_eq!(clearance.contacts().len(), 1, "but whoever moves the arm may know");
+        assert_eq!(clearance.contacts().len(), 1, "but it is there for the caller that moves the arm");
         assert_eq!(clearance.check(&some, &hand(0.15 - metres(0.11)), [&table].into_iter()).len(), 1);
         assert!(clearance.check(&permit(None), &hand(0.1), [&table].into_iter()).is_empty());
         assert!(clearance.contacts().is_empty());

@@ -3,10 +3,10 @@
 //! The controller, the description file and the interface of this crate speak inches, pounds and radians; rapier and the
 //! viewers speak metres, newtons and kilograms.
 
+use geometry::frame::{Frame, Vector};
 use nalgebra::{Matrix3, Rotation3};
 use rapier3d_f64::math::{Pose, Real, Rotation, Vector as Metres};
 use rapier3d_f64::parry::glamx::DMat3;
-use rcs_core::frame::{Frame, Vector};
 
 /// Metres in an inch.
 pub const METRES_PER_INCH: f64 = 0.0254;
@@ -78,7 +78,7 @@ pub fn on_the_side_of(near: &Rotation, rotation: Rotation) -> Rotation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::frame::rotation_by;
+    use geometry::frame::rotation_by;
 
     #[test]
     fn a_frame_comes_back() {

@@ -1,9 +1,9 @@
 //! The cell description: one TOML file that says where things stand, how large and how strong they are.
 //!
-//! Everything in the file is in inches, degrees, pounds and seconds, in world coordinates. Reading finds all faults at once: what is
-//! no TOML, keys that are missing, unknown or misspelt, values of another kind, and numbers and names that
-//! [`CellDescription::validate`] does not accept. Each has its entry, its place in the text, what was expected and what was
-//! found.
+//! Everything in the file is in inches, degrees, pounds and seconds, in world coordinates. Reading finds all
+//! faults at once: what is no TOML, keys that are missing, unknown or misspelt, values of another kind, and
+//! numbers and names that [`CellDescription::validate`] does not accept. Each has its entry, its place in the
+//! text, what was expected and what was found.
 
 mod check;
 mod contact;
@@ -15,14 +15,14 @@ mod tooling;
 
 use std::{ops::Range, path::Path};
 
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector},
     kinematics::Joints,
     movetable::straight_down,
 };
 use serde::{Deserialize, Serialize};
 
-use reading::Document;
+use reading::{Document, Found, above_zero};
 
 pub use contact::{Kind, Pattern, Permit, Permits, commands, known};
 pub(crate) use fault::nearest;
@@ -107,7 +107,7 @@ pub struct Physics {
     pub contact_damping: f64,
 }
 
-/// The arm's servos and outline; its lengths are [`rcs_core::kinematics::T3`].
+/// The arm's servos and outline; its lengths are [`geometry::kinematics::T3`].
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
@@ -495,9 +495,15 @@ impl CellDescription {
         let mut value = None;
         if let Some(reading) = reading {
             found = reading.faults;
-            let unfit = reading.value.as_ref().map(|description| description.faults(&reading.stand_ins));
-            found.extend(unfit.into_iter().flatten().map(|fault| (fault, None)));
             value = reading.value;
+            if let Some(description) = &value {
+                let (unfit, positive) = description.faults(&reading.stand_ins);
+                let refine = |(fault, at): Found| {
+                    (if positive.contains(&fault.entry) { above_zero(fault) } else { fault }, at)
+                };
+                found = found.into_iter().map(refine).collect();
+                found.extend(unfit.into_iter().map(|fault| (fault, None)));
+            }
         }
         match value {
             Some(description) if found.is_empty() => Ok(description),
@@ -505,8 +511,8 @@ impl CellDescription {
         }
     }
 
-    /// Where an entry stands in the text of a description, by the way to it: `gripper.parts.body[0]`; if it is not there, the
-    /// nearest table around it.
+    /// Where an entry stands in the text of a description, by the way to it: `gripper.parts.body[0]`; if it
+    /// is not there, the nearest table around it.
     #[must_use]
     pub fn place(text: &str, entry: &str) -> TextSpan {
         let Range { start, end } = Document::parse(text).0.place(entry);

@@ -12,8 +12,8 @@
 //! that slide to the right (tool -Z) or come from there and stand over the tool. They are bodies as everything else, and the
 //! fingers give way to them by their springs.
 
+use geometry::frame::{Frame, Rotation, Vector};
 use rapier3d_f64::math::Real;
-use rcs_core::frame::{Frame, Rotation, Vector};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -246,7 +246,7 @@ mod tests {
     #[test]
     fn a_tool_is_centred_with_the_roll_that_it_has() {
         let drum = drum();
-        let turn = rcs_core::frame::rotation_by(&Vector::new(0.7, 0.0, 0.0));
+        let turn = geometry::frame::rotation_by(&Vector::new(0.7, 0.0, 0.0));
         let tool = drum.place(&drum.frame.turned(&turn));
         let rolled = drum.frame.inverse().compose(&tool);
         assert!((rolled.position.x - drum.description.middle).abs() < 1e-12);

@@ -4,10 +4,8 @@
 //! nothing. To it come the weight of what hangs on the sensor, which turns with the robot, an offset of the bridges, and
 //! noise: CAL-SENSOR has to find out what no contact reads (V.1.1). Only four of the six axes are connected.
 
-use rcs_core::{
-    frame::Vector,
-    interface::device::{FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, MOMENT_COUNTS_PER_IN_LB},
-};
+use geometry::frame::Vector;
+use interfaces::device::{FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, MOMENT_COUNTS_PER_IN_LB};
 
 use crate::{description::ForceGages, noise::Noise, sensor::Analog};
 

@@ -1,13 +1,16 @@
-//! A gripper: two fingers that move oppositely, driven by air, and what they hold. The robot has three, the pedestal one.
+//! A gripper: two fingers that move oppositely, driven by air, and what they hold. The robot has three, the
+//! pedestal one.
 //!
-//! [`Air`] turns what the valves let flow ([`Supply`]) into an opening and a force: free fingers move by the flow, blocked
-//! fingers gain force instead, and without flow both stay. The fingers are two bodies that hang on the hand by springs: the
-//! stiffness of arm, wrist and fingers together. So whatever the gripper runs into meets a finite force, and an arm that
-//! over-travels by 0.015 in against the vise presses with 30 lb and not with the world's weight. Fingers are blocked when
-//! the geometry says so ([`crate::squeeze`]); what they hold then is a [`Hold`].
+//! [`Air`] turns what the valves let flow ([`Supply`]) into an opening and a force: free fingers move by the
+//! flow, blocked fingers gain force instead, and without flow both stay. The fingers are two bodies that hang
+//! on the hand by springs: the stiffness of arm, wrist and fingers together. So whatever the gripper runs
+//! into meets a finite force, and an arm that over-travels by 0.015 in against the vise presses with 30 lb
+//! and not with the world's weight. Fingers are blocked when the geometry says so ([`crate::squeeze`]); what
+//! they hold then is a [`Hold`].
 
+use geometry::frame::Vector as Inches;
+use interfaces::device::GripSensors;
 use rapier3d_f64::{math::Rotation, prelude::*};
-use rcs_core::{frame::Vector as Inches, interface::device::GripSensors};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -26,8 +29,8 @@ use crate::{
 const FREE_GAP: f64 = 0.001;
 /// How long the seals hold free fingers before trapped air drives them on, s; a part that slides out is clear by then.
 const BREAKAWAY_TIME: f64 = 0.25;
-/// Fingers that can sleep do so when no point of them has moved faster than this for half a second, m/s (rad/s): what is left of
-/// their way then is less than 1e-11 m.
+/// Fingers that can sleep do so when no point of them has moved faster than this for half a second, m/s
+/// (rad/s): what is left of their way then is less than 1e-11 m.
 const STILL: Real = 1e-9;
 /// Speed of fingers that trapped air drives, in/s: that of the coarse flow, which the same ports limit.
 pub const EXPANSION_SPEED: f64 = 4.0;
@@ -112,8 +115,8 @@ impl Air {
         self.relieved = self.force < force;
     }
 
-    /// Air that is pressed in behind fingers which nothing blocks any more drives them on: a part that was torn out of the
-    /// fingers leaves them more closed than it was wide.
+    /// Air that is pressed in behind fingers which nothing blocks any more drives them on: a part that was
+    /// torn out of the fingers leaves them more closed than it was wide.
     fn expand(&mut self, dt: f64, stop: f64) {
         let gap = self.opening - stop;
         if self.force <= 0.0 || gap <= FREE_GAP {
@@ -167,8 +170,8 @@ struct Finger {
 }
 
 impl Gripper {
-    /// Build the gripper at a tool pose, metres. `stiffness` is that of both fingers together at the tips, lb/in; `group` the
-    /// collision group of its bodies, which do not meet each other.
+    /// Build the gripper at a tool pose, metres. `stiffness` is that of both fingers together at the tips,
+    /// lb/in; `group` the collision group of its bodies, which do not meet each other.
     pub fn new(
         world: &mut PhysicsWorld,
         description: &Description,
@@ -222,8 +225,9 @@ impl Gripper {
         Pads { x: [-length, 0.0], z: [-width / 2.0, width / 2.0], groove }
     }
 
-    /// From now on the fingers sleep while nothing moves them: nobody computes how springs hold what does not move. They wake
-    /// when the air moves them, when something touches them, and when the hand is led. See [`Gripper::stand`].
+    /// From now on the fingers sleep while nothing moves them: it is not computed how springs hold what does not
+    /// move. They wake when the air moves them, when something touches them, and when the hand is led. See
+    /// [`Gripper::stand`].
     pub fn let_fingers_sleep(&self, world: &mut PhysicsWorld) {
         for finger in &self.fingers {
             let activation = world.bodies[finger.body].activation_mut();
@@ -233,8 +237,8 @@ impl Gripper {
         }
     }
 
-    /// The hand stands where it is. A body that is led never sleeps, and keeps awake what hangs on it: that is wanted only for a
-    /// part, which may slide under the least change of its load.
+    /// The hand stands where it is. A body that is led never sleeps, and keeps awake what hangs on it: that
+    /// is wanted only for a part, which may slide under the least change of its load.
     pub fn stand(&self, world: &mut PhysicsWorld) {
         let led = self.hold.is_some();
         let kind = if led { RigidBodyType::KinematicPositionBased } else { RigidBodyType::Fixed };
@@ -355,8 +359,8 @@ impl Gripper {
         }
     }
 
-    /// The light beams in the tool frame: pairs of end points on the pads, metres. ASSUMED: two columns of four, 0.5 in to
-    /// either side of the middle of a finger, 0.10 to 1.20 in behind the tips.
+    /// The light beams in the tool frame: pairs of end points on the pads, metres. ASSUMED: two columns of
+    /// four, 0.5 in to either side of the middle of a finger, 0.10 to 1.20 in behind the tips.
     pub fn beams(&self) -> impl Iterator<Item = (Vector, Vector)> + use<> {
         let half = metres(self.air.opening() / 2.0);
         let columns = [metres(-0.5), metres(0.5)];
@@ -426,8 +430,8 @@ impl Finger {
             .collision_groups(groups(group, Group::ALL & !group));
         let collider = world.insert_collider(collider, Some(body));
         let linear = newtons(stiffness) / metres(1.0) / 2.0;
-        // The moment arm of a fingertip is half the finger's length: the springs about the middle are made so stiff that
-        // they add a hundredth to what the tip gives way.
+        // The moment arm of a fingertip is half the finger's length: the springs about the middle are made so
+        // stiff that they add a hundredth to what the tip gives way.
         let angular = 100.0 * linear * x * x;
         let inertia = mass / 3.0 * (x * x + z * z);
         let mut data = GenericJointBuilder::new(JointAxesMask::empty())
@@ -459,7 +463,7 @@ pub fn body_opening(world: &PhysicsWorld, gripper: &Gripper) -> f64 {
 mod tests {
     use super::*;
     use crate::description::CellDescription;
-    use rcs_core::interface::device::valve;
+    use interfaces::device::valve;
 
     fn air() -> Air {
         let cell = CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap();

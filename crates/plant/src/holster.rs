@@ -8,7 +8,7 @@
 //! down, along the gripper. All grippers have the same ears, so any of them fits; which one belongs where is the
 //! controller's affair.
 
-use rcs_core::frame::{Frame, Rotation, Vector, rotation_vector};
+use geometry::frame::{Frame, Rotation, Vector, rotation_vector};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -160,7 +160,7 @@ impl Holster {
     }
 
     /// How far the ears of a gripper, wherever it is, are beyond the range of the four sensors in the order of the bits of
-    /// [`rcs_core::interface::device::HolsterSensors`], in; negative inside of it.
+    /// [`interfaces::device::HolsterSensors`], in; negative inside of it.
     #[must_use]
     pub fn beyond(&self, gripper: &Frame, ears: &[Frame; 2]) -> [f64; 4] {
         let Holsters { large_range, small_range, seat, .. } = self.description;
@@ -239,7 +239,7 @@ pub fn ears(holsters: &Holsters, gripper: &Gripper) -> [Frame; 2] {
 mod tests {
     use super::*;
     use crate::description::CellDescription;
-    use rcs_core::frame::rotation_by;
+    use geometry::frame::rotation_by;
 
     fn cell() -> CellDescription {
         CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap()

@@ -31,7 +31,7 @@ pub mod record {
 
 /// Frames, as position and the columns of the rotation.
 pub mod frame {
-    use rcs_core::frame::{Frame, Rotation, Vector};
+    use geometry::frame::{Frame, Rotation, Vector};
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     /// Write position and columns.

@@ -1,10 +1,11 @@
 //! Air to a gripper: what the valves let flow.
 //!
-//! The parts gripper and the hand of the pedestal have eight valves, whose flows add up (III.3.6); the v-gripper and the tool
-//! gripper have two, and open or close at one speed (VI.4, VI.5). Both drive the same cylinder ([`crate::gripper::Air`]):
-//! free fingers move, blocked fingers gain force, and trapped air keeps both.
+//! The parts gripper and the hand of the pedestal have eight valves, whose flows add up (III.3.6); the
+//! v-gripper and the tool gripper have two, and open or close at one speed (VI.4, VI.5). Both drive the same
+//! cylinder ([`crate::gripper::Air`]): free fingers move, blocked fingers gain force, and trapped air keeps
+//! both.
 
-use rcs_core::interface::device::{JawValves, valve};
+use interfaces::device::{JawValves, valve};
 
 /// Speeds of the six flow valves, in/s, opening positive ([`valve`]).
 const FLOWS: [(u8, f64); 6] = [

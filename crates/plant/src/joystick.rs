@@ -3,7 +3,7 @@
 //! Switches and knob stay as they were set; stick and buttons go back by themselves when the hand has held them for as long
 //! as it was told. One hand: what is told while it still holds something begins at once and is held beside it.
 
-use rcs_core::interface::device::{JoystickBox, KNOB_FULL};
+use interfaces::device::{JoystickBox, KNOB_FULL};
 use serde::{Deserialize, Serialize};
 
 /// Ticks that a short press takes: long enough to be seen, whatever runs when.
@@ -31,7 +31,7 @@ pub enum BoxButton {
 /// What is done at the box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoxAction {
-    /// Set the coordinate switches: bits of [`rcs_core::interface::device::joystick_frame`].
+    /// Set the coordinate switches: bits of [`interfaces::device::joystick_frame`].
     Frame(u8),
     /// Deflect the stick for so many ticks: -1000 to 1000.
     Stick {
@@ -50,7 +50,7 @@ pub enum BoxAction {
     Record,
     /// Enter the carriage return.
     Resume,
-    /// Throw the switches that suspend processes: bits of [`rcs_core::interface::device::single_step`].
+    /// Throw the switches that suspend processes: bits of [`interfaces::device::single_step`].
     Hold(u8),
     /// Throw them back.
     Free(u8),
@@ -159,7 +159,7 @@ impl Held {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::interface::device::{joystick_frame, single_step};
+    use interfaces::device::{joystick_frame, single_step};
 
     #[test]
     fn at_the_start_the_shownis_off_and_the_knob_full() {

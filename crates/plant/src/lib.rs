@@ -1,14 +1,15 @@
 //! The simulated cell: robot controller, arm, gripper, trays, vise, camera and parts, in rapier.
 //!
-//! [`Cell::step`] takes what the controller wrote to its devices in a tick and gives what it will read from them in the
-//! next; between the two the cell advances by exactly 40 ms. What a person, a job file or a test does beside the robot goes
-//! through [`Cell::workstation`]; what happens that should not comes out of [`Cell::events`].
+//! [`Cell::step`] takes what the controller wrote to its devices in a tick and gives what it will read from
+//! them in the next; between the two the cell advances by exactly 40 ms. What a person, a job file or a test
+//! does beside the robot goes through [`Cell::workstation`]; what happens that should not comes out of
+//! [`Cell::events`].
 //!
 //! # How the arm and the grip are modelled, and why
 //!
-//! The linkbar job lives on gaps of 0.04 to 0.08 in. At rest the arm must be within 0.01 in, contacts may sink by 0.1 mm, a
-//! grip may creep by 0.1 mm and must yet give way at friction, and the linkbar is to run at 50 times real time with one core
-//! for physics, better at 200 times.
+//! The linkbar job lives on gaps of 0.04 to 0.08 in. At rest the arm must be within 0.01 in, contacts may
+//! sink by 0.1 mm, a grip may creep by 0.1 mm and must yet give way at friction, and the linkbar is to run at
+//! 50 times real time with one core for physics, better at 200 times.
 //!
 //! | | multibody arm, motors | chosen: led arm, sprung fingers |
 //! |---|---|---|
@@ -70,6 +71,7 @@ pub mod scene;
 pub mod sensor;
 pub mod solid;
 pub mod squeeze;
+pub mod swept;
 pub mod t3;
 pub mod vise;
 

@@ -1,12 +1,12 @@
 //! The arm as a chain of links: where they are, and what forces on them do at the joints.
 //!
-//! Lengths are those of [`rcs_core::kinematics::T3`]. Inches, pounds and radians: a torque is in lb·in.
+//! Lengths are those of [`geometry::kinematics::T3`]. Inches, pounds and radians: a torque is in lb·in.
 
-use nalgebra::Vector6;
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector, rotation_by},
     kinematics::{Joints, T3},
 };
+use nalgebra::Vector6;
 
 /// Axes of the joints from base to roll, in the frames of the links that they turn.
 pub const AXES: [[f64; 3]; 6] =
@@ -113,8 +113,8 @@ impl Chain {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use geometry::kinematics::HOME_JOINTS;
     use proptest::prelude::*;
-    use rcs_core::kinematics::HOME_JOINTS;
 
     #[test]
     fn the_last_link_is_the_end_plate() {

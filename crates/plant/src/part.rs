@@ -1,7 +1,7 @@
 //! Parts: boxes and cylinders that move, and what is said of them.
 
+use geometry::frame::{Frame, Vector as Inches, rotation_from_x_y};
 use rapier3d_f64::prelude::*;
-use rcs_core::frame::{Frame, Vector as Inches, rotation_from_x_y};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -193,7 +193,7 @@ mod tests {
         };
         // Part X down, Y along vise X, a little askew.
         let upright =
-            rcs_core::frame::rotation_from_x_y(&Inches::new(0.02, 0.01, -1.0), &Inches::x()).unwrap();
+            geometry::frame::rotation_from_x_y(&Inches::new(0.02, 0.01, -1.0), &Inches::x()).unwrap();
         let here = Frame { position: Inches::zeros(), rotation: upright };
         assert!((sizes_along(&here, &kind) - Inches::new(2.0, 3.0, 1.0)).norm() < 1e-12);
     }

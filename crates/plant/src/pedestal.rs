@@ -1,19 +1,18 @@
-//! The Active Pedestal (II.1.2.3, III.9, III.10): a hand like the parts gripper, pointing up, on a table that a step motor turns.
+//! The Active Pedestal (II.1.2.3, III.9, III.10): a hand like the parts gripper, pointing up, on a table that
+//! a step motor turns.
 //!
 //! Three angles, all in degrees and positive to the left seen from above (ASSUMED):
 //!
 //! * the *counter* of the motor's controller: steps from wherever it was last set to a value. The only angle that the
-//!   controller of the pedestal has; it means nothing before somebody has run the motor to the + limit and set it;
+//!   controller of the pedestal has; it means nothing before the motor was run to the + limit and the counter set;
 //! * the *motor angle*: what the counter shows after a calibration as IV.1 step 3 has it. The switches stand at fixed motor
 //!   angles. The motor stops dead at a switch and runs away from it;
 //! * the *table angle*: where the hand is. VII.7.4 lets a motor angle of 183.5 flip a part by 180, so that the gear is not
 //!   quite one to one (ASSUMED); the two agree where the fingers move across the radial line from the robot.
 
+use geometry::frame::{Frame, Vector as Inches, rotation_from_x_y};
+use interfaces::device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH};
 use rapier3d_f64::prelude::*;
-use rcs_core::{
-    frame::{Frame, Vector as Inches, rotation_from_x_y},
-    interface::device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH},
-};
 use serde::{Deserialize, Serialize};
 
 use crate::{

@@ -7,10 +7,8 @@
 //!
 //! What carries a gripper, and what happens to it when nothing does, is in [`crate::cell`].
 
-use rcs_core::{
-    frame::{Frame, rotation_vector},
-    interface::device::QuickChangeValves,
-};
+use geometry::frame::{Frame, rotation_vector};
+use interfaces::device::QuickChangeValves;
 use serde::{Deserialize, Serialize};
 
 use crate::description::QuickChange as Description;
@@ -109,7 +107,7 @@ impl Gap {
 mod tests {
     use super::*;
     use crate::description::CellDescription;
-    use rcs_core::frame::{Vector, rotation_by};
+    use geometry::frame::{Vector, rotation_by};
 
     fn description() -> Description {
         CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap().quick_change

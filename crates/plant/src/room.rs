@@ -1,9 +1,11 @@
-//! The cell as the check of paths sees it: what stands where, and what the robot carries, without physics and without time.
+//! The cell as the check of paths sees it: what stands where, and what the robot carries, without physics and
+//! without time.
 //!
-//! A [`Layout`] says where everything is that a job moves. [`Room::look`] puts the robot to joint angles and says what it touches
-//! and what it is near, with the bodies ([`crate::bodies`]) and the clearance check of a run.
+//! A [`Layout`] says where everything is that a job moves. [`Room::look`] puts the robot to joint angles and
+//! says what it touches and what it is near, with the bodies ([`crate::bodies`]) and the clearance check of a
+//! run.
 
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector as Inches},
     kinematics::{Joints, T3},
 };
@@ -39,7 +41,8 @@ pub struct Placed {
 pub struct Layout {
     /// End effector id of the gripper that the robot wears, if it wears one.
     pub gripper: Option<u8>,
-    /// End effector id of a gripper in its holster that the robot is engaged with, if there is one: it is no obstacle then.
+    /// End effector id of a gripper in its holster that the robot is engaged with, if there is one: it is no
+    /// obstacle then.
     pub engaged: Option<u8>,
     /// Of its fingers.
     pub opening: f64,
@@ -124,8 +127,8 @@ impl Room {
         self.cell.vise.program.get(program).map_or(0.0, |program| jaws.gap(program))
     }
 
-    /// The seat in the vise, by a program, of a part that is near to it: its frame, and the distance of the inner faces of the jaws
-    /// that are closed on it, in.
+    /// The seat in the vise, by a program, of a part that is near to it: its frame, and the distance of the
+    /// inner faces of the jaws that are closed on it, in.
     #[must_use]
     pub fn vise_seat(&self, program: usize, part: &Placed) -> Option<(Frame, f64)> {
         let program = self.cell.vise.program.get(program)?;
@@ -194,16 +197,15 @@ impl Room {
         movers
     }
 
-    /// What the robot touches at joint angles in radians, and what is nearer to it than `margin` inches: as
-    /// [`crate::Cell::contacts`]. `devices` are those of the layout.
+    /// What the robot touches, and what is nearer to it than `margin` inches: as [`crate::Cell::contacts`].
+    /// `movers` are the robot's and `devices` those of a layout.
     #[must_use]
-    pub fn look(&self, layout: &Layout, devices: &[Body], joints: &Joints, margin: f64) -> Vec<Contact> {
-        let movers = self.movers(layout, joints);
+    pub fn look(&self, movers: &[Body], devices: &[Body], margin: f64) -> Vec<Contact> {
         let arm = movers.iter().filter(|body| body.kind.is_obstacle());
         let all = self.standing.iter().chain(devices).chain(arm);
         let mut clearance = Clearance::default();
         clearance.watch(margin);
-        clearance.check(&self.cell.contact, &movers, all);
+        clearance.check(&self.cell.contact, movers, all);
         clearance.into_contacts()
     }
 }
@@ -212,7 +214,7 @@ impl Room {
 mod tests {
     use super::*;
     use crate::{Cell, WorkstationAction};
-    use rcs_core::kinematics::HOME_JOINTS;
+    use geometry::kinematics::HOME_JOINTS;
 
     fn cell() -> CellDescription {
         CellDescription::from_toml(include_str!("../../../data/cell.toml")).unwrap()
@@ -247,7 +249,7 @@ mod tests {
             layout.parts.push(Placed { kind, frame });
             layout.opening = cell.fingers().0;
             let devices = room.devices(&layout);
-            let found = room.look(&layout, &devices, &cell.joints(), 20.0);
+            let found = room.look(&room.movers(&layout, &cell.joints()), &devices, 20.0);
             let expected = cell.contacts();
             assert!(!expected.is_empty());
             assert_eq!(found.len(), expected.len());

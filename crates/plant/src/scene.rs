@@ -4,8 +4,8 @@
 
 use core::f64::consts::FRAC_PI_2;
 
+use geometry::frame::{Frame, Rotation, Vector as Inches};
 use rapier3d_f64::prelude::*;
-use rcs_core::frame::{Frame, Rotation, Vector as Inches};
 
 use crate::{
     clearance::Body,

@@ -2,8 +2,8 @@
 
 use core::f64::consts::FRAC_PI_2;
 
+use geometry::frame::{Frame, Rotation as Turn, Vector as Inches};
 use rapier3d_f64::prelude::*;
-use rcs_core::frame::{Frame, Rotation as Turn, Vector as Inches};
 
 use crate::{
     convert::metres,

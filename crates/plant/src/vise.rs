@@ -1,16 +1,17 @@
 //! The programmable vise: a fixed jaw, a movable jaw, and what is clamped between them.
 //!
-//! Both jaws have steps, one for each family of parts. A program of the vise is such a step with its openings. Openings are
-//! counted between the clamping faces of the step of the program that is on, as its user counts them; what the jaw moves by
-//! is the distance of the inner faces. A part stops the jaw in whatever step it stands.
+//! Both jaws have steps, one for each family of parts. A program of the vise is such a step with its
+//! openings. Openings are counted between the clamping faces of the step of the program that is on, as its
+//! user counts them; what the jaw moves by is the distance of the inner faces. A part stops the jaw in
+//! whatever step it stands.
 //!
-//! The jaw moves at its speed to an opening. When it reaches a part on its way it takes the part along, flush with its
-//! face, and is stopped when the part lies against the fixed face; from then on the closing force and friction hold it. The
-//! gripper does not resist that: 500 lb against at most twice the finger force. A part that is still between the fingers is
-//! pushed aside in them.
+//! The jaw moves at its speed to an opening. When it reaches a part on its way it takes the part along, flush
+//! with its face, and is stopped when the part lies against the fixed face; from then on the closing force
+//! and friction hold it. The gripper does not resist that: 500 lb against at most twice the finger force. A
+//! part that is still between the fingers is pushed aside in them.
 
+use geometry::frame::{Frame, Vector as Inches};
 use rapier3d_f64::prelude::*;
-use rcs_core::frame::{Frame, Vector as Inches};
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -70,7 +71,8 @@ pub struct Vise {
     pub clamped: Option<Clamped>,
 }
 
-/// A part between the jaws: nothing in the cell but a crash is stronger than the vise, so it is led and does not give way.
+/// A part between the jaws: nothing in the cell but a crash is stronger than the vise, so it is led and does
+/// not give way.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Clamped {
     /// Index of the part.
@@ -175,7 +177,8 @@ impl Vise {
         self.moving() && self.target < self.gap
     }
 
-    /// Command an opening of the program that is on. Who commands one that is wider must first let go of what is clamped.
+    /// Command an opening of the program that is on. Who commands one that is wider must first let go of what
+    /// is clamped.
     pub fn command(&mut self, jaws: Jaws) {
         self.target = jaws.gap(self.step(self.program));
         self.stopped &= self.target < self.gap;
@@ -211,8 +214,8 @@ impl Vise {
         to_pose(&self.frame.shifted(Inches::new(0.0, self.gap, 0.0)))
     }
 
-    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for where the fixed one is. What a deeper step has cut
-    /// out of them before its own back is missing.
+    /// The clamping faces of a step as pads; see [`Vise::fixed_face`] for where the fixed one is. What a
+    /// deeper step has cut out of them before its own back is missing.
     #[must_use]
     pub fn pads(&self, step: usize) -> Pads {
         let step = self.step(step);

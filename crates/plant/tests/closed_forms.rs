@@ -5,12 +5,12 @@
 
 mod rig;
 
-use plant::{CellDescription, CellEvent, WorkstationAction};
-use rcs_core::{
+use geometry::{
     frame::{Frame, Rotation, Vector, rotation_by, rotation_from_x_y, rotation_vector},
     movetable::System,
-    tick::TICK_S,
 };
+use plant::{CellDescription, CellEvent, WorkstationAction};
+use rcs_core::tick::TICK_S;
 use rig::{CELL, PFIX, Rig, UNIT_V1, description, table};
 
 /// Standard gravity, in/s².

@@ -6,17 +6,16 @@ use depc::{
     Plate,
     wire::{DataCommand, NO_FUNCTION, Report},
 };
-use plant::{Cell, CellEvent, Key, Placement, WorkstationAction, WorkstationError};
-use rcs_core::{
-    Plain,
+use geometry::{
     frame::Vector,
-    interface::device::{
-        DeviceInputs, DeviceOutputs, Picture, RESOLVER_COUNTS, VisionRequest, VisionResponse, VisionStatus,
-        valve,
-    },
     kinematics::{HOME_JOINTS, T3},
     movetable::System,
 };
+use interfaces::device::{
+    DeviceInputs, DeviceOutputs, Picture, RESOLVER_COUNTS, VisionRequest, VisionResponse, VisionStatus, valve,
+};
+use plant::{Cell, CellEvent, Key, Placement, WorkstationAction, WorkstationError};
+use rcs_core::Plain;
 use rig::{Rig, UNIT_V1, description, table};
 
 fn bytes(inputs: &DeviceInputs) -> Vec<u8> {
@@ -143,7 +142,7 @@ fn look(
     let sector = description().tray("UNIT_1").unwrap().sector(4).unwrap();
     let place = sector
         .shifted(Vector::new(0.0, shift[0], shift[1]))
-        .turned(&rcs_core::frame::rotation_by(&Vector::new(roll, 0.0, 0.0)));
+        .turned(&geometry::frame::rotation_by(&Vector::new(roll, 0.0, 0.0)));
     let view = table(&[(System::Tool, [-1468, 0, -252]), (System::ToolOrigin, [-300, 0, 0])]).apply(&place);
     rig.go_and_stop(view, 10.0);
     rig.outputs.vision = VisionRequest { number, picture, object_id, grip: 2, range_mm: 590, variation: 0 };

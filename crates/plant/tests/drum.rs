@@ -2,12 +2,12 @@
 
 mod rig;
 
-use plant::{CellEvent, WorkstationAction, WorkstationError};
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector},
-    interface::device::{FORCE_COUNTS_PER_LB, ForceSensor, JawValves, MOMENT_COUNTS_PER_IN_LB},
     pose::Pose,
 };
+use interfaces::device::{FORCE_COUNTS_PER_LB, ForceSensor, JawValves, MOMENT_COUNTS_PER_IN_LB};
+use plant::{CellEvent, WorkstationAction, WorkstationError};
 use rig::{FIX_V1, Rig};
 
 /// Poses of the cell proposal, §4.
@@ -55,8 +55,8 @@ fn jaws(rig: &mut Rig, open: bool) {
     rig.ticks(5);
 }
 
-/// Move on in a straight line from `from` to `to` until the forces since the start do what they should; how far along X or Z
-/// that was, and the forces then.
+/// Move on in a straight line from `from` to `to` until the forces since the start do what they should; how
+/// far along X or Z that was, and the forces then.
 fn until(
     rig: &mut Rig,
     from: (f64, f64),

@@ -2,11 +2,11 @@
 
 mod rig;
 
+use interfaces::device::{DeviceOutputs, VisionStatus};
 use plant::{
     Cell, CellEvent, Placement, WorkstationAction,
     fault::{FaultPlan, text::parse},
 };
-use rcs_core::interface::device::{DeviceOutputs, VisionStatus};
 use rig::{Rig, description};
 
 fn plan(text: &str) -> FaultPlan {
@@ -39,8 +39,7 @@ fn lost_air_keeps_the_grip_and_opens_nothing() {
         rig.tick();
     }
     let force = rig.cell.fingers().1;
-    rig.outputs.grip.bits =
-        rcs_core::interface::device::valve::SUPPLY | rcs_core::interface::device::valve::OPEN_COARSE;
+    rig.outputs.grip.bits = interfaces::device::valve::SUPPLY | interfaces::device::valve::OPEN_COARSE;
     rig.ticks(1500);
     assert_eq!(rig.cell.fingers().1, force, "trapped air");
     assert!(rig.part().held);
@@ -82,7 +81,7 @@ fn deliveries_go_wrong_as_planned() {
     deliver(&mut wrong, "LINKBAR1_BH").unwrap();
     let [a, b] = [&right, &wrong].map(|cell| cell.part_frame(1).unwrap());
     let away = b.position - a.position;
-    assert!((away - rcs_core::frame::Vector::new(1.0, -0.5, 0.0)).norm() < 1e-9, "{away:?}");
+    assert!((away - geometry::frame::Vector::new(1.0, -0.5, 0.0)).norm() < 1e-9, "{away:?}");
     assert!((a.z().dot(&b.z()) - 30_f64.to_radians().cos()).abs() < 1e-9);
 }
 
@@ -105,7 +104,7 @@ fn a_moved_pedestal_takes_its_stand_and_its_hand_along() {
     let moved = cell("[[fault]]\nkind = \"pedestal-moved\"\nx = 0.5\ny = -0.25\nangle = 2\n");
     let there = Cell::new(&description(), 1).unwrap().pedestal();
     let away = moved.pedestal().position - there.position;
-    assert!((away - rcs_core::frame::Vector::new(0.5, -0.25, 0.0)).norm() < 1e-9);
+    assert!((away - geometry::frame::Vector::new(0.5, -0.25, 0.0)).norm() < 1e-9);
     let turned = there.y().dot(&moved.pedestal().y()).acos().to_degrees();
     assert!((turned - 2.0).abs() < 1e-6, "{turned}");
 }
@@ -116,7 +115,7 @@ fn a_camera_that_is_off_stays_silent_and_a_blind_one_sees_nothing() {
         let mut cell = cell(text);
         let mut outputs = DeviceOutputs::default();
         outputs.vision.number = 1;
-        outputs.vision.picture = rcs_core::interface::device::Picture::FastFlood;
+        outputs.vision.picture = interfaces::device::Picture::FastFlood;
         ticks(&mut cell, &outputs, 20);
         cell.inputs().vision
     };
@@ -133,8 +132,7 @@ fn a_saved_cell_goes_on_with_its_faults() {
         [[fault]]\nkind = \"slow\"\nsensor = \"grip.potentiometer\"\nby = 4\n";
     let mut cell = cell(text);
     let mut outputs = DeviceOutputs::default();
-    outputs.grip.bits =
-        rcs_core::interface::device::valve::SUPPLY | rcs_core::interface::device::valve::OPEN_FINE;
+    outputs.grip.bits = interfaces::device::valve::SUPPLY | interfaces::device::valve::OPEN_FINE;
     ticks(&mut cell, &outputs, 50);
     let mut restored = Cell::restore(&description(), &cell.save().unwrap()).unwrap();
     for _ in 0..100 {

@@ -2,11 +2,11 @@
 
 mod rig;
 
-use plant::{Placement, WorkstationAction, WorkstationError};
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector, rotation_by, rotation_from_x_y},
     movetable::System,
 };
+use plant::{Placement, WorkstationAction, WorkstationError};
 use rig::{PFIX, Rig, description, table};
 
 fn place(rig: &mut Rig, part: &str, unit: &str, sector: u16) -> Result<(), WorkstationError> {

@@ -2,11 +2,9 @@
 
 mod rig;
 
+use geometry::frame::{Vector, rotation_vector};
+use interfaces::device::valve;
 use plant::{CellEvent, Placement, WorkstationAction};
-use rcs_core::{
-    frame::{Vector, rotation_vector},
-    interface::device::valve,
-};
 use rig::{Rig, UNIT_V1, description, table};
 
 /// Where the part is, seen from the fingertips, in.
@@ -54,8 +52,8 @@ fn lift_block(weight: f64, force: f64) -> Rig {
     rig.place("BLOCK", 4, 0.0, 0.0, 0.0);
     let sector = description().tray("UNIT_1").unwrap().sector(4).unwrap();
     let grip = table(&[
-        (rcs_core::movetable::System::Tool, [-60, 0, 0]),
-        (rcs_core::movetable::System::ToolOrigin, [-300, 0, 0]),
+        (geometry::movetable::System::Tool, [-60, 0, 0]),
+        (geometry::movetable::System::ToolOrigin, [-300, 0, 0]),
     ])
     .apply(&sector);
     rig.go(UNIT_V1.to_frame().unwrap(), 10.0);

@@ -3,12 +3,12 @@
 mod rig;
 
 use depc::{controller::ControllerState, wire::Report};
-use plant::{Cell, CellDescription, CellEvent, Cut, Droop, EStop, Key, WorkstationAction, t3::Stage};
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector},
-    interface::device::DeviceOutputs,
     kinematics::T3,
 };
+use interfaces::device::DeviceOutputs;
+use plant::{Cell, CellDescription, CellEvent, Cut, Droop, EStop, Key, WorkstationAction, t3::Stage};
 use rig::{FIX_V1, FX1, Rig, UNIT_V1, description};
 
 /// Ticks in which an arm has come to rest, whatever it fell on.
@@ -157,7 +157,7 @@ fn an_emergency_stop_ends_the_link_and_the_start_up_brings_it_back() {
         start_up(&mut rig, &PROGRAM);
         assert_eq!((rig.cell.t3().stage(), rig.cell.depc()), (Stage::Depc, ControllerState::Running));
         assert!(rig.inputs.link_ready);
-        let home = T3.forward(&rcs_core::kinematics::HOME_JOINTS);
+        let home = T3.forward(&geometry::kinematics::HOME_JOINTS);
         assert!(home.distance(&Frame { ..T3.forward(&rig.cell.joints()) }).inches < 0.01);
     }
 }

@@ -6,8 +6,11 @@ use std::{
     panic::{AssertUnwindSafe, catch_unwind},
 };
 
-use plant::{Cell, CellDescription};
-use rcs_core::interface::device::DeviceOutputs;
+use interfaces::device::DeviceOutputs;
+use plant::{
+    Cell, CellDescription,
+    description::{DescriptionError, Fault},
+};
 
 /// Where the numbers stand in a description: behind an equals sign, or in an array.
 fn numbers(text: &str) -> Vec<Range<usize>> {
@@ -70,4 +73,32 @@ fn every_number_is_refused_in_words_or_runs() {
         }
     }
     assert!(panicked.is_empty(), "{panicked:#?}");
+}
+
+/// What a description is refused for in this place of the text: expected values of the entry that stands there.
+fn expected(text: &str, place: &Range<usize>, value: &str) -> Option<String> {
+    let changed = format!("{}{value}{}", &text[..place.start], &text[place.end..]);
+    let DescriptionError::Faults(faults) = CellDescription::from_toml(&changed).err()? else { return None };
+    let here = |fault: &&Fault| fault.place.is_some_and(|at| at.start == place.start);
+    faults.all().iter().find(here).and_then(|fault| fault.expected.clone())
+}
+
+#[test]
+fn what_must_be_more_than_0_is_offered_no_other_number() {
+    let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/cell.toml")).unwrap();
+    let mut positive = 0;
+    for place in numbers(&text) {
+        if expected(&text, &place, "-1.0").as_deref() == Some("more than 0") {
+            positive += 1;
+            for value in ["1e308", "-1e308", "1e-300"] {
+                let offered = expected(&text, &place, value);
+                assert_eq!(
+                    offered.as_deref(),
+                    Some("a number from 0.000001 to 100000"),
+                    "{value} at {place:?}"
+                );
+            }
+        }
+    }
+    assert!(positive > 100, "{positive} numbers must be more than 0");
 }

@@ -2,12 +2,12 @@
 
 mod rig;
 
-use plant::{CellEvent, WorkstationAction};
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector, rotation_from_x_y, rotation_vector},
-    interface::device::{MotorOrder, TABLE_STEPS_PER_TENTH, valve},
     movetable::System,
 };
+use interfaces::device::{MotorOrder, TABLE_STEPS_PER_TENTH, valve};
+use plant::{CellEvent, WorkstationAction};
 use rig::{PED, Rig, description, table};
 
 /// The pedestal's frame: X away from the robot, Y left, Z up.

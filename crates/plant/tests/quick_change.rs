@@ -2,12 +2,12 @@
 
 mod rig;
 
-use plant::CellEvent;
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector, rotation_by},
-    interface::device::{GripValves, HolsterSensors, JawValves, QuickChangeValves, valve},
     pose::Pose,
 };
+use interfaces::device::{GripValves, HolsterSensors, JawValves, QuickChangeValves, valve};
+use plant::CellEvent;
 use rig::{Rig, description};
 
 /// Poses of the cell proposal, §4.

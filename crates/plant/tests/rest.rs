@@ -4,12 +4,12 @@
 
 mod rig;
 
-use plant::{CellDescription, WorkstationAction};
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector, rotation_by, rotation_from_x_y, rotation_vector},
-    interface::device::JawValves,
     movetable::System,
 };
+use interfaces::device::JawValves;
+use plant::{CellDescription, WorkstationAction};
 use rig::{CELL, Rig, UNIT_V1, description, scenes, table};
 
 /// A minute.

@@ -2,15 +2,12 @@
 
 mod rig;
 
-use plant::description::Mounted;
-use rcs_core::{
-    frame::Vector,
-    interface::device::{
-        FORCE_COUNTS_PER_LB, FORCE_ZERO, Picture, RESOLVER_COUNTS, VisionRequest, VisionResponse,
-        VisionStatus, valve,
-    },
-    movetable::System,
+use geometry::{frame::Vector, movetable::System};
+use interfaces::device::{
+    FORCE_COUNTS_PER_LB, FORCE_ZERO, Picture, RESOLVER_COUNTS, VisionRequest, VisionResponse, VisionStatus,
+    valve,
 };
+use plant::description::Mounted;
 use rig::{Rig, UNIT_V1, description, table};
 
 /// A rig with the tool gripper on.
@@ -84,7 +81,10 @@ fn late_converters_show_what_was() {
     let before = rig.inputs.grip.potentiometer;
     rig.outputs.grip.bits = valve::SUPPLY | valve::OPEN_MEDIUM;
     rig.ticks(5);
-    assert_eq!(rig.inputs.grip.potentiometer, before, "the fingers have moved, and nobody knows");
+    assert_eq!(
+        rig.inputs.grip.potentiometer, before,
+        "the fingers have moved, and the sensor does not show it"
+    );
     assert!(rig.cell.fingers().0 > 0.29);
     rig.tick();
     // 1 in/s is 28 counts a tick.

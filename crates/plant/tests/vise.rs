@@ -2,8 +2,8 @@
 
 mod rig;
 
+use geometry::frame::{Frame, Vector, rotation_by, rotation_from_x_y};
 use plant::{CellEvent, WorkstationAction, WorkstationError};
-use rcs_core::frame::{Frame, Vector, rotation_by, rotation_from_x_y};
 use rig::{PFIX, Rig, description};
 
 /// A bar upright in the vise: its middle at `position` in the fixture's frame, leaning to the front by `lean` degrees about

@@ -22,11 +22,13 @@ impl Digest {
 
     /// The digest of nothing.
     #[must_use]
+    #[inline]
     pub const fn new() -> Self {
         Self(Self::START)
     }
 
     /// Add bytes, and how many they are.
+    #[inline]
     pub fn add(&mut self, bytes: &[u8]) {
         let (words, rest) = bytes.as_chunks::<8>();
         for word in words {
@@ -38,12 +40,14 @@ impl Digest {
         self.mix(u64::try_from(bytes.len()).unwrap_or(u64::MAX));
     }
 
+    #[inline]
     const fn mix(&mut self, word: u64) {
         let product = (self.0 ^ word).wrapping_mul(Self::FACTOR);
         self.0 = product ^ (product >> 32);
     }
 
     /// Add a record through a scratch buffer that is at least as large as its image.
+    #[inline]
     pub fn add_record<T: Plain>(&mut self, record: &T, scratch: &mut [u8]) {
         let Some(image) = scratch.get_mut(..T::SIZE) else { return };
         record.encode(&mut Writer::new(image));
@@ -52,18 +56,21 @@ impl Digest {
 
     /// The hash.
     #[must_use]
+    #[inline]
     pub const fn value(self) -> u64 {
         self.0
     }
 }
 
 impl Default for Digest {
+    #[inline]
     fn default() -> Self {
         Self::new()
     }
 }
 
 impl core::fmt::Display for Digest {
+    #[inline]
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         write!(f, "{:016x}", self.0)
     }

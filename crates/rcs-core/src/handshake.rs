@@ -11,7 +11,7 @@
 //! | k+1  | reads echo n-1: `Pending`     | reads n, acts, writes echo n and status   |
 //! | k+2  | reads echo n and its status   |                                           |
 
-use crate::{Plain, interface::Header, tick::Tick};
+use crate::{Plain, header::Header, tick::Tick};
 
 /// Ticks after which a command that is not echoed counts as lost.
 pub const ECHO_LIMIT: u64 = 3;

@@ -36,6 +36,7 @@ pub enum NameError {
 }
 
 impl fmt::Display for NameError {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::TooLong { allowed, found } => {
@@ -63,6 +64,7 @@ impl<const N: usize> Name<N> {
     /// # Errors
     /// [`NameError`] if the text is longer than `N` or holds a blank or a character that is not printable
     /// ASCII.
+    #[inline]
     pub const fn new(text: &str) -> Result<Self, NameError> {
         let from = text.as_bytes();
         if from.len() > N {
@@ -85,6 +87,7 @@ impl<const N: usize> Name<N> {
     /// The first `N` characters of a text; what the manual does when a twelve-character command meets a
     /// ten-character field (SPECNOTES.md, contradiction 22). Characters that a name cannot have become `?`.
     #[must_use]
+    #[inline]
     pub fn clipped(text: &str) -> Self {
         let mut bytes = [0; N];
         for (slot, byte) in bytes.iter_mut().zip(text.bytes()) {
@@ -95,6 +98,7 @@ impl<const N: usize> Name<N> {
 
     /// The text of the name.
     #[must_use]
+    #[inline]
     pub fn as_str(&self) -> &str {
         let end = self.0.iter().position(|&b| b == 0).unwrap_or(N);
         self.0.get(..end).and_then(|bytes| core::str::from_utf8(bytes).ok()).unwrap_or("")
@@ -102,18 +106,21 @@ impl<const N: usize> Name<N> {
 
     /// True if the name is null.
     #[must_use]
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.0.first().is_none_or(|&b| b == 0)
     }
 
     /// The bytes, zero-filled at the end.
     #[must_use]
+    #[inline]
     pub const fn bytes(&self) -> &[u8; N] {
         &self.0
     }
 }
 
 impl<const N: usize> Default for Name<N> {
+    #[inline]
     fn default() -> Self {
         Self::EMPTY
     }
@@ -122,18 +129,21 @@ impl<const N: usize> Default for Name<N> {
 impl<const N: usize> FromStr for Name<N> {
     type Err = NameError;
 
+    #[inline]
     fn from_str(text: &str) -> Result<Self, NameError> {
         Self::new(text)
     }
 }
 
 impl<const N: usize> fmt::Display for Name<N> {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.as_str())
     }
 }
 
 impl<const N: usize> fmt::Debug for Name<N> {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Debug::fmt(self.as_str(), f)
     }
@@ -143,10 +153,12 @@ impl<const N: usize> Plain for Name<N> {
     const SCHEMA: Schema = Schema::Text(N);
     const ZERO: Self = Self::EMPTY;
 
+    #[inline]
     fn encode(&self, w: &mut Writer<'_>) {
         w.put(&self.0);
     }
 
+    #[inline]
     fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
         let bytes: [u8; N] = r.take()?;
         let length = bytes.iter().position(|&b| b == 0).unwrap_or(N);

@@ -119,6 +119,7 @@ pub struct FieldSchema {
 impl Schema {
     /// Bytes of the image.
     #[must_use]
+    #[inline]
     pub const fn size(&self) -> usize {
         match self {
             Self::U8 | Self::Bool | Self::Enum(_) => 1,
@@ -137,6 +138,7 @@ impl Schema {
 impl EnumSchema {
     /// The variant with a Rust name.
     #[must_use]
+    #[inline]
     pub fn named(&self, name: &str) -> Option<&'static VariantSchema> {
         self.variants.iter().find(|variant| variant.name == name)
     }
@@ -145,6 +147,7 @@ impl EnumSchema {
 impl UnionSchema {
     /// Bytes of the largest value that a variant carries.
     #[must_use]
+    #[inline]
     pub const fn payload_size(&self) -> usize {
         let (mut rest, mut largest) = (self.variants, 0_usize);
         while let Some((variant, more)) = rest.split_first() {
@@ -162,6 +165,7 @@ impl UnionSchema {
 impl StructSchema {
     /// Bytes of the image.
     #[must_use]
+    #[inline]
     pub const fn size(&self) -> usize {
         let (mut rest, mut size) = (self.fields, 0_usize);
         while let Some((field, more)) = rest.split_first() {
@@ -193,6 +197,7 @@ pub enum DecodeError {
 }
 
 impl fmt::Display for DecodeError {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::TooShort => f.write_str("the bytes end before the record does"),
@@ -214,11 +219,13 @@ pub struct Writer<'a> {
 
 impl<'a> Writer<'a> {
     /// A writer over `bytes`.
+    #[inline]
     pub const fn new(bytes: &'a mut [u8]) -> Self {
         Self { rest: bytes, missing: 0 }
     }
 
     /// Append `bytes`.
+    #[inline]
     pub fn put(&mut self, bytes: &[u8]) {
         let room = core::mem::take(&mut self.rest);
         match room.split_at_mut_checked(bytes.len()) {
@@ -231,6 +238,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Append so many zeros.
+    #[inline]
     pub fn zeros(&mut self, count: usize) {
         for _ in 0..count {
             self.put(&[0]);
@@ -239,6 +247,7 @@ impl<'a> Writer<'a> {
 
     /// Bytes that found no room.
     #[must_use]
+    #[inline]
     pub const fn missing(&self) -> usize {
         self.missing
     }
@@ -252,6 +261,7 @@ pub struct Reader<'a> {
 impl<'a> Reader<'a> {
     /// A reader over `bytes`.
     #[must_use]
+    #[inline]
     pub const fn new(bytes: &'a [u8]) -> Self {
         Self { rest: bytes }
     }
@@ -260,6 +270,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// [`DecodeError::TooShort`] if fewer are left.
+    #[inline]
     pub fn take<const N: usize>(&mut self) -> Result<[u8; N], DecodeError> {
         let (here, rest) = self.rest.split_first_chunk::<N>().ok_or(DecodeError::TooShort)?;
         self.rest = rest;
@@ -270,6 +281,7 @@ impl<'a> Reader<'a> {
     ///
     /// # Errors
     /// [`DecodeError::BadFill`] if one of them is not zero, [`DecodeError::TooShort`] if fewer are left.
+    #[inline]
     pub fn zeros(&mut self, count: usize) -> Result<(), DecodeError> {
         for _ in 0..count {
             let [found] = self.take()?;
@@ -306,10 +318,12 @@ macro_rules! number {
             const SCHEMA: Schema = Schema::$schema;
             const ZERO: Self = $zero;
 
+            #[inline]
             fn encode(&self, w: &mut Writer<'_>) {
                 w.put(&self.to_le_bytes());
             }
 
+            #[inline]
             fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
                 Ok(Self::from_le_bytes(r.take()?))
             }
@@ -331,10 +345,12 @@ impl Plain for bool {
     const SCHEMA: Schema = Schema::Bool;
     const ZERO: Self = false;
 
+    #[inline]
     fn encode(&self, w: &mut Writer<'_>) {
         u8::from(*self).encode(w);
     }
 
+    #[inline]
     fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
         match u8::decode(r)? {
             0 => Ok(false),
@@ -348,12 +364,14 @@ impl<T: Plain + 'static, const N: usize> Plain for [T; N] {
     const SCHEMA: Schema = Schema::Array(&T::SCHEMA, N);
     const ZERO: Self = [T::ZERO; N];
 
+    #[inline]
     fn encode(&self, w: &mut Writer<'_>) {
         for item in self {
             item.encode(w);
         }
     }
 
+    #[inline]
     fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
         let mut all = Self::ZERO;
         for item in &mut all {
@@ -367,6 +385,7 @@ impl<T: Plain + 'static> Plain for Option<T> {
     const SCHEMA: Schema = Schema::Option(&T::SCHEMA);
     const ZERO: Self = None;
 
+    #[inline]
     fn encode(&self, w: &mut Writer<'_>) {
         self.is_some().encode(w);
         match self {
@@ -375,12 +394,14 @@ impl<T: Plain + 'static> Plain for Option<T> {
         }
     }
 
+    #[inline]
     fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
         if bool::decode(r)? { T::decode(r).map(Some) } else { r.zeros(T::SIZE).map(|()| None) }
     }
 }
 
 /// The byte image of a record whose size is `N`.
+#[inline]
 pub fn to_bytes<const N: usize, T: Plain>(record: &T) -> [u8; N] {
     let mut bytes = [0; N];
     record.encode(&mut Writer::new(&mut bytes));
@@ -391,6 +412,7 @@ pub fn to_bytes<const N: usize, T: Plain>(record: &T) -> [u8; N] {
 ///
 /// # Errors
 /// [`DecodeError`] if the bytes are not the image of a legal record.
+#[inline]
 pub fn from_bytes<T: Plain>(bytes: &[u8]) -> Result<T, DecodeError> {
     T::decode(&mut Reader::new(bytes))
 }

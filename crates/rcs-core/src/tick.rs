@@ -23,30 +23,35 @@ impl Tick {
 
     /// The next cycle.
     #[must_use]
+    #[inline]
     pub const fn next(self) -> Self {
         Self(self.0.saturating_add(1))
     }
 
     /// The previous cycle; tick 0 stays tick 0.
     #[must_use]
+    #[inline]
     pub const fn previous(self) -> Self {
         Self(self.0.saturating_sub(1))
     }
 
     /// Cycles from `earlier` to `self`, 0 if `earlier` is later.
     #[must_use]
+    #[inline]
     pub const fn since(self, earlier: Self) -> u64 {
         self.0.saturating_sub(earlier.0)
     }
 
     /// Milliseconds since the start of the run.
     #[must_use]
+    #[inline]
     pub const fn milliseconds(self) -> u64 {
         self.0.saturating_mul(TICK_MS)
     }
 }
 
 impl fmt::Display for Tick {
+    #[inline]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.0.fmt(f)
     }
@@ -56,10 +61,12 @@ impl Plain for Tick {
     const SCHEMA: Schema = Schema::U64;
     const ZERO: Self = Self::BEFORE_START;
 
+    #[inline]
     fn encode(&self, w: &mut Writer<'_>) {
         self.0.encode(w);
     }
 
+    #[inline]
     fn decode(r: &mut Reader<'_>) -> Result<Self, DecodeError> {
         u64::decode(r).map(Self)
     }

@@ -8,11 +8,9 @@ use std::{
     time::{Duration, Instant},
 };
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::Ladder;
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs},
-    tick::Tick,
-};
+use rcs_core::tick::Tick;
 use record::{CellFrame, End, Pace, Recorder, Setup, Timing, writer::TickRecord};
 use taskdata::files::TaskData;
 

@@ -12,11 +12,11 @@ use std::{
     ops::Range,
 };
 
+use interfaces::{CommonMemory, Decided, ExternalInputs, Header};
 use levels::ladder::{Ladder, ProcessInfo};
 use mcap::{McapResult, records::MessageHeader};
 use prost_types::field_descriptor_proto::Type;
 use rcs_core::{
-    interface::{CommonMemory, Decided, ExternalInputs, Header},
     plain::{self, Schema, StructSchema},
     table::{Row, Table},
     tick::Tick,

@@ -162,13 +162,10 @@ fn apply_runs(mut runs: &[u8], field: &mut [u8]) -> Option<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::{CommonMemory, ExternalInputs};
     use levels::ladder::LadderState;
     use proptest::prelude::*;
-    use rcs_core::{
-        Plain,
-        interface::{CommonMemory, ExternalInputs},
-        plain::Writer,
-    };
+    use rcs_core::{Plain, plain::Writer};
 
     fn image<T: Plain>(record: &T) -> Vec<u8> {
         let mut bytes = vec![0xA5; T::SIZE];

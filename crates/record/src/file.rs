@@ -11,12 +11,14 @@ use os_io::files;
 
 use crate::error::RecordError;
 
-/// A file that this run alone writes, until it is dropped.
+/// A file that this run alone writes, until it is dropped. One that was made for a log that never began is removed then.
 pub struct LogFile {
     path: PathBuf,
     file: File,
     /// Device and inode.
     identity: (u64, u64),
+    /// It was not there before, and the log has not begun.
+    unused: bool,
 }
 
 impl LogFile {
@@ -29,14 +31,21 @@ impl LogFile {
         if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
             fs::create_dir_all(directory).map_err(failed)?;
         }
-        let file = files::create(path).map_err(failed)?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(RecordError::InUse { path: path.to_owned() }),
-            Err(TryLockError::Error(source)) => return Err(failed(source)),
+        loop {
+            let unused = fs::symlink_metadata(path).is_err();
+            let file = files::create(path).map_err(failed)?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => return Err(RecordError::InUse { path: path.to_owned() }),
+                Err(TryLockError::Error(source)) => return Err(failed(source)),
+            }
+            let found = file.metadata().map_err(failed)?;
+            let claimed = Self { path: path.to_owned(), file, identity: (found.dev(), found.ino()), unused };
+            // Another run may have removed the file, which it had not used, before it was locked here.
+            if claimed.look().is_ok() {
+                return Ok(claimed);
+            }
         }
-        let found = file.metadata().map_err(failed)?;
-        Ok(Self { path: path.to_owned(), file, identity: (found.dev(), found.ino()) })
     }
 
     /// Claim `<name>.mcap` in a directory, or `<name>-2.mcap` and so on while other runs write those before it.
@@ -60,8 +69,9 @@ impl LogFile {
         &self.path
     }
 
-    /// The file, empty.
-    pub(crate) fn emptied(&self) -> io::Result<File> {
+    /// The file, empty: the log begins.
+    pub(crate) fn emptied(&mut self) -> io::Result<File> {
+        self.unused = false;
         self.file.set_len(0)?;
         self.file.try_clone()
     }
@@ -78,9 +88,33 @@ impl LogFile {
     }
 }
 
+impl Drop for LogFile {
+    fn drop(&mut self) {
+        if self.unused && self.look().is_ok() {
+            // One that cannot be removed stays, empty.
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_whose_log_never_began_is_removed_if_it_was_made_for_it() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("run.mcap");
+        drop(LogFile::claim(&path).unwrap());
+        assert!(!path.exists());
+        let mut begun = LogFile::claim(&path).unwrap();
+        begun.emptied().unwrap();
+        drop(begun);
+        assert!(path.exists());
+        fs::write(&path, "of a run before").unwrap();
+        drop(LogFile::claim(&path).unwrap());
+        assert_eq!(fs::read_to_string(&path).unwrap(), "of a run before");
+    }
 
     #[test]
     fn a_second_run_gets_a_name_of_its_own_and_an_explicit_name_is_refused() {

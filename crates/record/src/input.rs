@@ -153,7 +153,7 @@ pub struct CellFrame {
     pub transforms: [Transform; MAX_LINKS],
     /// Positions of the joints, radians or metres, in the order of [`CellModel::joints`].
     pub joints: [f64; MAX_JOINTS],
-    /// Digest of everything in the cell; none if nobody has worked it out.
+    /// Digest of everything in the cell; none if it was not worked out.
     pub digest: Option<u64>,
 }
 

@@ -17,10 +17,10 @@
 
 use std::fmt::Write as _;
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::LadderState;
 use rcs_core::{
     digest::Digest,
-    interface::{CommonMemory, ExternalInputs},
     plain::{FieldSchema, Schema, StructSchema, UnionSchema},
 };
 
@@ -61,8 +61,9 @@ impl Leaf {
         if self.is_in(image) { value_text(self.schema, self.bytes(image)) } else { NONE.to_owned() }
     }
 
-    /// The field holds a record number of the task data. A record has another number when something is added before it, and means the
-    /// same: runs with different task data are compared without these fields, by what is named and by what comes of it.
+    /// The field holds a record number of the task data. A record has another number when something is added
+    /// before it, and means the same: runs with different task data are compared without these fields, by
+    /// what is named and by what comes of it.
     #[must_use]
     pub fn is_record_number(&self) -> bool {
         let number = match self.schema {
@@ -309,7 +310,7 @@ pub fn first_difference<'a>(leaves: &'a [Leaf], was: &[u8], is: &[u8]) -> Option
         return None;
     }
     let differ = |leaf: &&Leaf| leaf.differs(was, is);
-    // Bytes that no value holds differ only between images that nobody encoded.
+    // Bytes that no value holds differ only between images that were not encoded.
     leaves.iter().find(differ).or_else(|| leaves.iter().find(|leaf| leaf.bytes(was) != leaf.bytes(is)))
 }
 
@@ -379,7 +380,8 @@ fn kind_name(schema: &Schema) -> String {
     }
 }
 
-/// How images are written on `/replay`: see [`crate::delta`]. Logs of another format are refused as those of another layout.
+/// How images are written on `/replay`: see [`crate::delta`]. Logs of another format are refused as those of
+/// another layout.
 const FORMAT: &str = "format 2: differences by field\n";
 
 /// The layout of all images of a log: the text that goes into each log, and from which the version is made.
@@ -521,8 +523,8 @@ mod tests {
         assert_eq!(value_text(&Schema::U32, &[0, 0, 0, 0x80]), "2147483648");
         assert_eq!(value_text(&Schema::F64, &0.25_f64.to_le_bytes()), "0.25");
         assert_eq!(value_text(&Schema::Text(5), b"HOME\0"), "\"HOME\"");
-        assert_eq!(value_text(&rcs_core::interface::Report::SCHEMA, &[3]), "\"error-state\"");
-        assert_eq!(value_text(&rcs_core::interface::Report::SCHEMA, &[99]), "code 99");
+        assert_eq!(value_text(&interfaces::StatusReport::SCHEMA, &[3]), "\"error-state\"");
+        assert_eq!(value_text(&interfaces::StatusReport::SCHEMA, &[99]), "code 99");
         let number = Schema::Option(&Schema::U16);
         assert_eq!([[0, 0, 0], [1, 7, 1]].map(|bytes| value_text(&number, &bytes)), ["none", "263"]);
         let phases = [[0, 0], [1, 0], [9, 0]].map(|bytes| value_text(&Phase::SCHEMA, &bytes));

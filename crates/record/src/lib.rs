@@ -9,7 +9,7 @@
 //! * [`recorder`]: what the run calls. Nothing there allocates or waits in a real-time run.
 //! * [`writer`]: what a log holds, and how it gets into the file.
 //! * [`reader`]: reads a log back, also one whose program was killed.
-//! * [`replay`]: runs the control processes on the recorded inputs and compares every output buffer of every
+//! * [`mod@replay`]: runs the control processes on the recorded inputs and compares every output buffer of every
 //!   tick, bit for bit.
 //! * [`layout`], [`delta`]: byte images, and what changed in them.
 //! * [`proto`]: the messages of the channels.

@@ -1,8 +1,9 @@
 //! The file of a log in pieces, whatever has happened to it.
 //!
-//! No length in the file is believed before it is checked against what is there. A piece that cannot be read ends at the next
-//! record that can: a chunk or an attachment with the right checksum, or metadata of this program. What is decompressed, in all, is
-//! bounded by the size of the file, so that reading takes memory and time in proportion to it.
+//! No length in the file is believed before it is checked against what is there. A piece that cannot be read
+//! ends at the next record that can: a chunk or an attachment with the right checksum, or metadata of this
+//! program. What is decompressed, in all, is bounded by the size of the file, so that reading takes memory
+//! and time in proportion to it.
 
 use std::ops::Range;
 
@@ -127,8 +128,8 @@ fn frame(bytes: &[u8], at: usize) -> Option<(u8, usize)> {
     (end <= bytes.len()).then_some((*opcode, end))
 }
 
-/// A record that is looked at; of another one its bytes. The library takes memory for a text before it looks whether the text is
-/// there, so the lengths are checked here.
+/// A record that is looked at; of another one its bytes. The library takes memory for a text before it looks
+/// whether the text is there, so the lengths are checked here.
 fn parse(opcode: u8, body: &[u8]) -> Option<Record<'_>> {
     match opcode {
         op::METADATA => texts(body, text(body, 0)?)?,

@@ -1,8 +1,9 @@
 //! Reads a log back, whole or not.
 //!
-//! A program that was killed leaves a file without an end, perhaps with half a record in it; a disk or a hand can damage a file
-//! anywhere. Everything that can be read is read ([`crate::pieces`]). Images are differences, so after a damaged chunk the ticks go
-//! on with the next whole images, which the recorder writes once a second. What is missing is told, and is no error.
+//! A program that was killed leaves a file without an end, perhaps with half a record in it; a disk or a hand
+//! can damage a file anywhere. Everything that can be read is read ([`crate::pieces`]). Images are
+//! differences, so after a damaged chunk the ticks go on with the next whole images, which the recorder
+//! writes once a second. What is missing is told, and is no error.
 
 use std::{
     collections::BTreeMap,
@@ -62,9 +63,9 @@ pub struct LoggedTick {
     pub tick: Tick,
     /// Ticks that are missing before it.
     pub gap: u64,
-    /// Byte image of [`ExternalInputs`].
+    /// Byte image of [`interfaces::ExternalInputs`].
     pub external: Vec<u8>,
-    /// Byte image of [`CommonMemory`] after the tick.
+    /// Byte image of [`interfaces::CommonMemory`] after the tick.
     pub memory: Vec<u8>,
     /// Byte image of [`levels::ladder::LadderState`] after the tick, where it was recorded.
     pub state: Option<Vec<u8>>,

@@ -2,7 +2,7 @@
 //!
 //! In a tick the recorder copies three records into memory that was there before the first tick: it allocates
 //! nothing, and in a real-time run it never waits. A tick that finds the ring full is counted, and the count
-//! travels with the next tick that finds room. In a fast run there is nobody to be late for, so there the
+//! travels with the next tick that finds room. A fast run has no grid to keep, so there the
 //! recorder waits and nothing is lost.
 //!
 //! The writer thread ends at the first error. Then the ring has no reader, the recorder returns at once from
@@ -18,11 +18,9 @@ use std::{
     time::Duration,
 };
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::LadderState;
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs},
-    tick::Tick,
-};
+use rcs_core::tick::Tick;
 use rtrb::{Consumer, Producer, RingBuffer};
 
 use crate::{
@@ -139,7 +137,7 @@ impl Recorder {
     ///
     /// # Errors
     /// [`RecordError`] if the file cannot be emptied, or its head cannot be written.
-    pub fn start_in(file: LogFile, pace: Pace, setup: Setup) -> Result<Self, RecordError> {
+    pub fn start_in(mut file: LogFile, pace: Pace, setup: Setup) -> Result<Self, RecordError> {
         if let Some(cell) = &setup.cell {
             cell.check()?;
         }
@@ -203,8 +201,8 @@ impl Recorder {
         }
     }
 
-    /// A file that came up during the run, such as a reload of task data; before [`Recorder::tick`] of the tick from which it
-    /// counts. The file is the caller's to allocate, outside the tick.
+    /// A file that came up during the run, such as a reload of task data; before [`Recorder::tick`] of the
+    /// tick from which it counts. The file is the caller's to allocate, outside the tick.
     pub fn attach(&mut self, tick: Tick, attachment: Attachment) {
         if !has_room(&self.files, self.pace) || self.files.push((tick, attachment)).is_err() {
             self.lost.files += 1;
@@ -252,7 +250,8 @@ impl Recorder {
         self.lost
     }
 
-    /// Ticks that are handed over and that the writer has not yet taken: more than a few only if the machine does not let it run.
+    /// Ticks that are handed over and that the writer has not yet taken: more than a few only if the machine
+    /// does not let it run.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.ticks.buffer().capacity() - self.ticks.slots()

@@ -4,16 +4,16 @@
 //! move, a part, a gripper), what the link suffered, and each failure as one sentence: which process, why, and
 //! by which row of which decision table.
 
+use interfaces::{
+    CommonMemory, Detail, Fault, Header, ProcessId,
+    data_base::Connection,
+    emove::Holding,
+    hws::{HwsCommand, HwsReport},
+    prim::{PrimReport, PrimVerb},
+    t3i::{T3iStatus, T3iVerb},
+};
 use rcs_core::{
     handshake::Lower,
-    interface::{
-        CommonMemory, Detail, Fault, Header, ProcessId,
-        data_base::Connection,
-        emove::Holding,
-        hws::{HwsCommand, HwsReport},
-        prim::{PrimReport, PrimVerb},
-        t3i::{T3iStatus, T3iVerb},
-    },
     name::Name16,
     table::{Row, Table},
 };
@@ -154,7 +154,8 @@ fn link(headers: &[HeaderPlace], before: &CommonMemory, after: &CommonMemory, sa
 /// The processes whose commands are of interest to who follows the job; those of the others are details.
 const FOLLOWED: [ProcessId; 3] = [ProcessId::Subtask, ProcessId::Emove, ProcessId::Pedestal];
 
-/// A command on its way down: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`. The points to T3I are left out: there is one a tick.
+/// A command on its way down: `-> E-move: GRASP-OBJ LINKBAR1 at PFIXTURE`. The points to T3I are left out:
+/// there is one a tick.
 fn down(before: &CommonMemory, after: &CommonMemory, mut say: impl FnMut(Level, &str, String)) {
     for process in ProcessId::ALL.iter().copied().filter(|process| *process != ProcessId::T3i) {
         let Some(commander) = process.commander() else { continue };
@@ -245,16 +246,14 @@ pub fn hws_text(command: &HwsCommand) -> String {
 mod tests {
     use super::*;
     use crate::channels::headers;
-    use rcs_core::{
-        interface::{
-            Decided, Reason, Report,
-            emove::ObjectGrip,
-            grip::GripReport,
-            jaws::{JawsReport, JawsVerb},
-            pedestal::{PedestalReport, PedestalVerb, TableVerb},
-        },
-        name::Name10,
+    use interfaces::{
+        Decided, Reason, StatusReport,
+        emove::ObjectGrip,
+        grip::GripReport,
+        jaws::{JawsReport, JawsVerb},
+        pedestal::{PedestalReport, PedestalVerb, TableVerb},
     };
+    use rcs_core::name::Name10;
 
     #[test]
     fn a_command_is_told_once() {
@@ -407,7 +406,7 @@ mod tests {
         let before = CommonMemory::default();
         let mut after = before;
         after.subtask.status.reason = Reason::UnknownLocation;
-        after.subtask.status.report = Report::Error;
+        after.subtask.status.report = StatusReport::Error;
         after.subtask.header.decided = Some(Decided { table: 2, row: 5 });
         let said = remarks(&headers(), &HwsCommand::default(), &before, &after);
         assert_eq!(said.len(), 1, "{said:?}");

@@ -6,7 +6,8 @@
 //!
 //! Where ticks are missing, nothing can be computed; the replay goes on from the states recorded with the
 //! first tick after the gap. In the same way a replay can begin in the middle: states are recorded once a
-//! second. Other task data than those of the log answer the question what they would have changed: then record numbers are not compared.
+//! second. Other task data than those of the log answer the question what they would have changed: then
+//! record numbers are not compared.
 
 use std::{
     collections::BTreeMap,
@@ -14,11 +15,11 @@ use std::{
     time::{Duration, Instant},
 };
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::{Ladder, LadderState};
 use rcs_core::{
     Plain,
     digest::Digest,
-    interface::{CommonMemory, ExternalInputs},
     plain::{Writer, from_bytes},
     tick::{TICK_MS, Tick},
 };
@@ -69,7 +70,8 @@ pub struct Options {
 }
 
 impl Options {
-    /// The digest at the end of the run is that of the replay only if the replay has all ticks in it, and the records their numbers.
+    /// The digest at the end of the run is that of the replay only if the replay has all ticks in it, and the
+    /// records their numbers.
     const fn has_digest(&self) -> bool {
         self.from.is_none() && self.until.is_none() && self.data.is_none()
     }

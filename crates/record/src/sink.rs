@@ -1,9 +1,9 @@
 //! The file that a log is written to.
 //!
-//! What has been flushed survives the end of the program, whatever ends it: the system has it. That it also survives the
-//! end of the power, the disk must have it, and to wait for the disk costs milliseconds. So a run in real time
-//! waits for it with every flush, once a second, in the thread of the log; a run in fast clock does not, because
-//! it can be run again.
+//! What has been flushed survives the end of the program, whatever ends it: the system has it. That it also
+//! survives the end of the power, the disk must have it, and to wait for the disk costs milliseconds. So a
+//! run in real time waits for it with every flush, once a second, in the thread of the log; a run in fast
+//! clock does not, because it can be run again.
 
 use std::{
     fs::File,

@@ -22,15 +22,11 @@ use std::{
     io::{Seek, Write},
 };
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::LadderState;
 use mcap::{Compression, McapResult, WriteOptions, records::Metadata};
 use prost_types::field_descriptor_proto::Type;
-use rcs_core::{
-    Plain,
-    interface::{CommonMemory, ExternalInputs},
-    plain::Writer,
-    tick::Tick,
-};
+use rcs_core::{Plain, plain::Writer, tick::Tick};
 
 use crate::{
     channels::{Buffers, HeaderPlace, Output, Rows, headers},

@@ -1,9 +1,10 @@
-//! A run that is killed with `kill -9` at ten random moments: what is left can be read and replayed, and of the ticks that the
-//! writer was given at most a second is missing.
+//! A run that is killed with `kill -9` at ten random moments: what is left can be read and replayed, and of
+//! the ticks that the writer was given at most a second is missing.
 //!
-//! The program is its own victim: started with an argument of ours it records a run in real time, twice as fast as a robot's,
-//! and says each tick on its standard output once it has handed it over, with how many of them wait for the writer. On a machine
-//! that has other things to do many may wait; none of them is the fault of the log, however slow the machine is.
+//! The program is its own victim: started with an argument of ours it records a run in real time, twice as
+//! fast as a robot's, and says each tick on its standard output once it has handed it over, with how many of
+//! them wait for the writer. On a machine that has other things to do many may wait; none of them is the
+//! fault of the log, however slow the machine is.
 //!
 //! `cargo test --release -p record --test kill` prints the ten moments, and what was left.
 
@@ -18,11 +19,9 @@ use std::{
     time::Duration,
 };
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::Ladder;
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs},
-    tick::Tick,
-};
+use rcs_core::tick::Tick;
 use record::{Epoch, Log, Pace, Recorder, Setup, replay, writer::FULL_SET};
 use taskdata::files::TaskData;
 
@@ -55,7 +54,7 @@ fn record_until_killed(path: &Path) -> ExitCode {
         external.devices.resolvers.counts = [u32::try_from(tick.0 * 37 % 131_072).unwrap_or_default(); 6];
         ladder.step(tick, &before, &external, &TaskData::default(), &mut memory);
         recorder.tick(tick, &external, &memory, || ladder.state());
-        // Whoever started this may be gone: then nobody kills it either.
+        // The process that started this may be gone: then it is not killed either.
         if writeln!(out, "{tick} {}", recorder.pending()).and_then(|()| out.flush()).is_err() {
             break;
         }

@@ -9,14 +9,9 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::{Ladder, LadderState};
-use rcs_core::{
-    Plain,
-    interface::{CommonMemory, ExternalInputs},
-    name::Name16,
-    plain::to_bytes,
-    tick::Tick,
-};
+use rcs_core::{Plain, name::Name16, plain::to_bytes, tick::Tick};
 use record::{
     Attachment, CellFrame, CellModel, End, Epoch, Level, Link, Log, Lost, Options, Pace, ReadError,
     RecordError, Recorder, ReplayError, Setup, Timing, Transform, golden, replay, replay_with,

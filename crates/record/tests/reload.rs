@@ -2,14 +2,9 @@
 
 use std::path::Path;
 
+use interfaces::{CommonMemory, ExternalInputs, Reason, hws::HwsReport};
 use levels::ladder::Ladder;
-use rcs_core::{
-    Plain,
-    digest::Digest,
-    interface::{CommonMemory, ExternalInputs, Reason, hws::HwsReport},
-    name::Name16,
-    tick::Tick,
-};
+use rcs_core::{Plain, digest::Digest, name::Name16, tick::Tick};
 use record::{Attachment, End, Epoch, Pace, Recorder, ReplayError, Setup, replay};
 use taskdata::load::{Source, Store};
 
@@ -28,7 +23,7 @@ fn home() -> Vec<Source> {
     )
 }
 
-/// MOVE to HOME, which nobody knows before the reload: once before it and once after.
+/// MOVE to HOME, which is not in the data before the reload: once before it and once after.
 fn inputs(tick: u64) -> ExternalInputs {
     let mut external = ExternalInputs::default();
     external.hws.number = if tick < 10 { 0 } else { 1 + u32::from(tick > RELOADED + 10) };

@@ -2,12 +2,10 @@
 
 use std::{fs, path::Path};
 
+use interfaces::{CommonMemory, ExternalInputs};
 use prost::Message as _;
 use prost_types::{DescriptorProto, FileDescriptorSet, field_descriptor_proto::Type};
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs},
-    tick::Tick,
-};
+use rcs_core::tick::Tick;
 use record::{CellFrame, CellModel, End, Epoch, Pace, Recorder, Setup};
 use serde_json::Value;
 

@@ -1,13 +1,13 @@
-//! Parts on their way: what the grips of clevis, turned part and tools do to a part from place to place, and that the places are
-//! those of the cell.
+//! Parts on their way: what the grips of clevis, turned part and tools do to a part from place to place, and
+//! that the places are those of the cell.
 
 use std::path::Path;
 
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector, rotation_by},
-    name::Name16,
     pose::Pose,
 };
+use rcs_core::name::Name16;
 use taskdata::{
     files::{Location, SensorSource, TaskData},
     load::{Diagnostics, Store},

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use rcs_core::{frame::Frame, name::Name16, units::radians};
+use geometry::{frame::Frame, units::radians};
+use rcs_core::name::Name16;
 use taskdata::{
     files::{Location, Target, TaskData},
     load::{Diagnostics, Job, Step, Store, Workstation},
@@ -145,7 +146,7 @@ fn the_camera_stands_straight_above_the_sector() {
     assert_eq!((vision.id, vision.range, vision.enabled), (17, 590, true));
     let view = data.moved(&sector.frame, vision.movetable);
     // Image plane at tool (-9, 0, 3), looking along (cos 3, 0, -sin 3).
-    let image = view.shifted(rcs_core::frame::Vector::new(-9.0, 0.0, 3.0));
+    let image = view.shifted(geometry::frame::Vector::new(-9.0, 0.0, 3.0));
     assert!((image.position.x - sector.frame.position.x).abs() < 0.01);
     assert!((image.position.y - sector.frame.position.y).abs() < 1e-9);
     assert!((image.position.z - sector.frame.position.z - 605.0 / 25.4).abs() < 0.01, "{:?}", image.position);

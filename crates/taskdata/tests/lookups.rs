@@ -1,10 +1,8 @@
 //! Look-ups over small data sets that are made for the purpose: order of preference, sectors, and that no input panics.
 
+use geometry::frame::Frame;
 use proptest::prelude::*;
-use rcs_core::{
-    frame::Frame,
-    name::{Name10, Name16},
-};
+use rcs_core::name::{Name10, Name16};
 use taskdata::{
     files::{LookupError, Place, TaskData},
     load::{Job, Source, Store, report::Severity},
@@ -203,7 +201,7 @@ BLOCK# 850 OFFSET 21000
     assert_eq!(points(&f, &a), Some(2), "the exact names come before the owner");
     assert_eq!(points(&f, &b), Some(1), "the start is exact before it is an owner");
     assert_eq!(points(&a, &b), Some(0));
-    assert_eq!(points(&a, &f), None, "nobody wrote the way back");
+    assert_eq!(points(&a, &f), None, "the way back is not written");
     assert_eq!(data.place_named(&name("A"), Some(&name("BAR"))), Some(a));
     assert_eq!(data.place_named(&name("F"), Some(&name("BAR"))), Some(f));
     assert_eq!(data.place_named::<16, 16>(&name("G"), None), None);

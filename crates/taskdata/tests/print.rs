@@ -1,10 +1,8 @@
 //! What is printed is read again as what it was: every form, whatever stands in it.
 
+use geometry::movetable::{MovetableLine, System};
 use proptest::{prelude::*, sample::select};
-use rcs_core::{
-    movetable::{Line, System},
-    name::Name,
-};
+use rcs_core::name::Name;
 use taskdata::{
     files::{Direction, RefType, SensorSource, TrajPara},
     load::{
@@ -15,7 +13,8 @@ use taskdata::{
             TrajEntry, Typed, ViewEntry,
         },
         lex::words,
-        parse::{COMPILING_WORDS, parse},
+        parse::parse,
+        parser::COMPILING_WORDS,
         places::Places,
         print,
         report::Problems,
@@ -84,7 +83,7 @@ fn movetable() -> impl Strategy<Value = Entry> {
             System::ToolOrigin | System::WristOrigin => [x, y, 0],
             _ => [x, y, z],
         };
-        Line { system, values }
+        MovetableLine { system, values }
     });
     (prop::collection::vec(line, 1..=8), named())
         .prop_map(|(lines, name)| Entry::Movetable(MovetableEntry { lines, name }))

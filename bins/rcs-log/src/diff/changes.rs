@@ -1,12 +1,11 @@
-//! What a person asks first of two runs: which rows decided otherwise, where the robot went another way, what took another time.
+//! What a person asks first of two runs: which rows decided otherwise, where the robot went another way, what
+//! took another time.
 
 use std::fmt;
 
+use interfaces::{Decided, device::LinkBytes};
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId};
-use rcs_core::{
-    interface::{Decided, device::LinkBytes},
-    tick::TICK_S,
-};
+use rcs_core::tick::TICK_S;
 use record::remarks::row_text;
 use serde::Serialize;
 

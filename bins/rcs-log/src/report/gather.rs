@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use executive::failure;
+use geometry::pose::WireFrame;
+use interfaces::{
+    CommonMemory,
+    device::{FORCE_COUNTS_PER_LB, FORCE_ZERO},
+};
 use levels::ladder::{Ladder, ProcessId};
 use rcs_core::{
-    interface::{
-        CommonMemory,
-        device::{FORCE_COUNTS_PER_LB, FORCE_ZERO},
-    },
     name::Name16,
-    pose::WireFrame,
     tick::{TICK_S, Tick},
 };
 use record::{Attachment, Log, proto::foxglove::Level, remarks::is_restart_ordered};

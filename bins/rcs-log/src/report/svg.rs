@@ -1,7 +1,6 @@
 //! Drawings of the page: lanes, curves and paths as SVG. Coordinates are pixels of a drawing [`WIDTH`] wide.
 
-use std::fmt::Write as _;
-
+use maud::{Markup, html};
 use rcs_core::tick::TICK_S;
 
 use super::gather::Stretch;
@@ -16,12 +15,6 @@ const LANE: f64 = 26.0;
 const POINTS: usize = 1200;
 /// Divisions of an axis, about.
 const DIVISIONS: f64 = 10.0;
-
-/// Text that is safe in HTML.
-#[must_use]
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
 
 /// Where a tick stands in a drawing over the whole run.
 #[derive(Clone, Copy)]
@@ -62,27 +55,32 @@ fn division(range: f64) -> f64 {
         .unwrap_or(power)
 }
 
-/// The seconds below drawings over the whole run.
-#[must_use]
-pub fn scale(axis: TimeAxis) -> String {
-    let mut out = format!("<svg viewBox=\"0 0 {WIDTH} 18\" aria-hidden=\"true\">");
-    for seconds in axis.seconds() {
-        let x = axis.x(seconds / TICK_S);
-        let anchor = if x > WIDTH - 30.0 { "end" } else { "middle" };
-        let _ = write!(
-            out,
-            "<text class=\"scale\" text-anchor=\"{anchor}\" x=\"{x:.1}\" y=\"12\">{seconds} s</text>"
-        );
-    }
-    out + "</svg>\n"
+/// A coordinate, to a tenth of a pixel.
+fn px(value: f64) -> String {
+    format!("{value:.1}")
 }
 
-fn grid(axis: TimeAxis, height: f64) -> String {
-    axis.seconds().into_iter().fold(String::new(), |mut out, seconds| {
-        let x = axis.x(seconds / TICK_S);
-        let _ = write!(out, "<line class=\"grid\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"0\" y2=\"{height:.1}\"/>");
-        out
-    })
+/// The seconds below drawings over the whole run.
+#[must_use]
+pub fn scale(axis: TimeAxis) -> Markup {
+    html! {
+        svg viewBox=(format_args!("0 0 {WIDTH} 18")) aria-hidden="true" {
+            @for seconds in axis.seconds() {
+                @let x = axis.x(seconds / TICK_S);
+                @let anchor = if x > WIDTH - 30.0 { "end" } else { "middle" };
+                text.scale text-anchor=(anchor) x=(px(x)) y="12" { (format_args!("{seconds} s")) }
+            }
+        }
+    }
+}
+
+fn grid(axis: TimeAxis, height: f64) -> Markup {
+    html! {
+        @for seconds in axis.seconds() {
+            @let x = px(axis.x(seconds / TICK_S));
+            line.grid x1=(x) x2=(x) y1="0" y2=(px(height)) {}
+        }
+    }
 }
 
 /// Something that happened in a tick.
@@ -95,58 +93,52 @@ pub struct Mark<'a> {
     pub text: &'a str,
 }
 
-/// Lanes under one another, a box a stretch; a command in words where it fits, and as a tool tip everywhere. Marks go through
-/// all lanes.
+/// Lanes under one another, a box a stretch; a command in words where it fits, and as a tool tip everywhere. Marks go
+/// through all lanes.
 #[must_use]
-pub fn lanes(lanes: &[(&str, Vec<Stretch>)], marks: &[Mark<'_>], axis: TimeAxis) -> String {
+pub fn lanes(lanes: &[(&str, Vec<Stretch>)], marks: &[Mark<'_>], axis: TimeAxis) -> Markup {
     let height = LANE * lanes.len() as f64;
-    let mut out = format!("<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\">{}\n", grid(axis, height));
-    for (index, (name, stretches)) in lanes.iter().enumerate() {
-        let top = index as f64 * LANE;
-        let _ = writeln!(out, "<text x=\"0\" y=\"{:.1}\">{}</text>", top + 17.0, escape(name));
-        for stretch in stretches.iter().filter(|stretch| !stretch.text.is_empty()) {
-            put_stretch(stretch, top, axis, &mut out);
+    html! {
+        svg viewBox=(format_args!("0 0 {WIDTH} {height}")) role="img" {
+            (grid(axis, height))
+            @for (index, (name, stretches)) in lanes.iter().enumerate() {
+                @let top = index as f64 * LANE;
+                text x="0" y=(px(top + 17.0)) { (name) }
+                @for stretch in stretches.iter().filter(|stretch| !stretch.text.is_empty()) {
+                    (boxed(stretch, top, axis))
+                }
+            }
+            @for Mark { tick, error, text } in marks {
+                @let x = px(axis.x(*tick as f64));
+                g {
+                    title { "tick " (tick) ": " (text) }
+                    line class=(if *error { "mark" } else { "mark warn" }) x1=(x) x2=(x) y1="0" y2=(height) {}
+                }
+            }
         }
     }
-    for Mark { tick, error, text } in marks {
-        let (x, class) = (axis.x(*tick as f64), if *error { "mark" } else { "mark warn" });
-        let _ = writeln!(
-            out,
-            "<g><title>tick {tick}: {}</title><line class=\"{class}\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"0\" y2=\"{height}\"/></g>",
-            escape(text)
-        );
-    }
-    out + "</svg>\n"
 }
 
-fn put_stretch(stretch: &Stretch, top: f64, axis: TimeAxis, out: &mut String) {
+fn boxed(stretch: &Stretch, top: f64, axis: TimeAxis) -> Markup {
     let (from, to) = (axis.x(stretch.from as f64), axis.x(stretch.to as f64 + 1.0));
-    let (width, text) = ((to - from).max(0.5), escape(&stretch.text));
-    let steps: String =
-        stretch.steps.iter().map(|(tick, step)| format!("\ntick {tick}: {}", escape(step))).collect();
-    let _ = write!(
-        out,
-        "<g><title>{text}, ticks {} to {}{steps}</title><rect class=\"box c{}\" x=\"{from:.1}\" y=\"{:.1}\" width=\"{width:.1}\" \
-         height=\"{:.1}\" rx=\"2\"/>",
-        stretch.from,
-        stretch.to,
-        color(&stretch.text),
-        top + 3.0,
-        LANE - 6.0
-    );
+    let width = (to - from).max(0.5);
     // About six pixels a letter.
     let letters = (width / 6.5) as usize;
-    if letters > 3 {
-        let short: String = stretch.text.chars().take(letters).collect();
-        let _ = write!(
-            out,
-            "<text class=\"in\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
-            from + 4.0,
-            top + 17.0,
-            escape(&short)
-        );
+    html! {
+        g {
+            title {
+                (stretch.text) ", ticks " (stretch.from) " to " (stretch.to)
+                @for (tick, step) in &stretch.steps { "\ntick " (tick) ": " (step) }
+            }
+            rect class=(format_args!("box c{}", color(&stretch.text))) x=(px(from)) y=(px(top + 3.0))
+                width=(px(width)) height=(px(LANE - 6.0)) rx="2" {}
+            @if letters > 3 {
+                text.in x=(px(from + 4.0)) y=(px(top + 17.0)) {
+                    (stretch.text.chars().take(letters).collect::<String>())
+                }
+            }
+        }
     }
-    out.push_str("</g>\n");
 }
 
 /// The same word has the same colour wherever it stands.
@@ -169,35 +161,30 @@ pub struct Curve<'a> {
 
 /// A curve with its scale on the left, and its limit.
 #[must_use]
-pub fn curve(curve: &Curve<'_>, ticks: &[u64], axis: TimeAxis) -> String {
+pub fn curve(curve: &Curve<'_>, ticks: &[u64], axis: TimeAxis) -> Markup {
     const HEIGHT: f64 = 92.0;
     const BASE: f64 = HEIGHT - 6.0;
     let most = curve.values.iter().copied().fold(curve.limit.unwrap_or(0.0), f64::max).max(1e-9);
     let y = |value: f64| BASE - value.max(0.0) / most * (HEIGHT - 22.0);
-    let mut out = format!("<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\">{}", grid(axis, HEIGHT));
-    let _ = writeln!(
-        out,
-        "<text x=\"0\" y=\"18\">{}</text><text class=\"scale\" x=\"0\" y=\"34\">{}, to {most:.2}</text>\
-         <line class=\"axis\" x1=\"{LEFT}\" x2=\"{WIDTH}\" y1=\"{BASE}\" y2=\"{BASE}\"/>",
-        escape(curve.name),
-        escape(curve.unit)
-    );
     let points: Vec<(f64, f64)> = thinned(ticks, curve.values)
         .into_iter()
         .map(|(tick, value)| (axis.x(tick as f64), y(value)))
         .collect();
-    let _ =
-        writeln!(out, "<polygon class=\"area\" points=\"{LEFT},{BASE} {}{WIDTH},{BASE}\"/>", list(&points));
-    let _ = writeln!(out, "<polyline class=\"curve\" points=\"{}\"/>", list(&points));
-    if let Some(limit) = curve.limit {
-        let _ = writeln!(
-            out,
-            "<line class=\"limit\" x1=\"{LEFT}\" x2=\"{WIDTH}\" y1=\"{0:.1}\" y2=\"{0:.1}\"/>\
-             <text class=\"limit-text\" x=\"0\" y=\"50\">limit {limit}</text>",
-            y(limit)
-        );
+    let line = list(&points);
+    html! {
+        svg viewBox=(format_args!("0 0 {WIDTH} {HEIGHT}")) role="img" {
+            (grid(axis, HEIGHT))
+            text x="0" y="18" { (curve.name) }
+            text.scale x="0" y="34" { (curve.unit) ", to " (format_args!("{most:.2}")) }
+            line.axis x1=(LEFT) x2=(WIDTH) y1=(BASE) y2=(BASE) {}
+            polygon.area points=(format_args!("{LEFT},{BASE} {line}{WIDTH},{BASE}")) {}
+            polyline.curve points=(line) {}
+            @if let Some(limit) = curve.limit {
+                line.limit x1=(LEFT) x2=(WIDTH) y1=(px(y(limit))) y2=(px(y(limit))) {}
+                text.limit-text x="0" y="50" { "limit " (limit) }
+            }
+        }
     }
-    out + "</svg>\n"
 }
 
 /// At most [`POINTS`] of a series, the greatest of each group: peaks must not be lost.
@@ -211,86 +198,90 @@ fn thinned(ticks: &[u64], values: &[f64]) -> Vec<(u64, f64)> {
 }
 
 fn list(points: &[(f64, f64)]) -> String {
-    points.iter().fold(String::new(), |mut out, (x, y)| {
-        let _ = write!(out, "{x:.1},{y:.1} ");
-        out
-    })
+    points.iter().map(|(x, y)| format!("{x:.1},{y:.1} ")).collect()
 }
 
-/// A path seen along an axis: `seen` takes the coordinates that are drawn, across and up, from a point. `stops` are places worth
-/// a dot.
+/// Where the points of a path stand in a square drawing.
+struct Square {
+    middle: [f64; 2],
+    range: f64,
+}
+
+impl Square {
+    /// Width and height.
+    const SIZE: f64 = 560.0;
+    const MARGIN: f64 = 26.0;
+
+    /// A square that shows all points; none if there is no path.
+    fn around(points: &[[f64; 2]]) -> Option<Self> {
+        let (mut least, mut most) = ([f64::MAX; 2], [f64::MIN; 2]);
+        for axis in 0..2 {
+            for point in points {
+                (least[axis], most[axis]) = (least[axis].min(point[axis]), most[axis].max(point[axis]));
+            }
+        }
+        let range = (most[0] - least[0]).max(most[1] - least[1]).max(1.0);
+        let middle = [0, 1].map(|axis| f64::midpoint(least[axis], most[axis]));
+        (points.len() > 1).then_some(Self { middle, range })
+    }
+
+    fn place(&self, point: [f64; 2]) -> (f64, f64) {
+        let at = |share: f64| (share / self.range).mul_add(Self::SIZE - 2.0 * Self::MARGIN, Self::SIZE / 2.0);
+        (at(point[0] - self.middle[0]), at(self.middle[1] - point[1]))
+    }
+
+    /// Round numbers along an axis of the drawing (0 across, 1 up), each with its place.
+    fn divisions(&self, axis: usize) -> Vec<(f64, f64)> {
+        let step = division(self.range);
+        let value = |index: i32| ((self.middle[axis] / step).round() + f64::from(index)) * step;
+        let placed = |value: f64| {
+            let place = self.place([value; 2]);
+            (value, if axis == 0 { place.0 } else { place.1 })
+        };
+        let inside = |(_, at): &(f64, f64)| (0.0..=Self::SIZE).contains(at);
+        (-12..=12).map(|index| placed(value(index))).filter(inside).collect()
+    }
+}
+
+/// A path seen along an axis: `seen` takes the coordinates that are drawn, across and up, from a point. `stops` are
+/// places worth a dot.
 #[must_use]
 pub fn path(
     title: &str,
     points: &[[f64; 3]],
     stops: &[[f64; 3]],
     seen: impl Fn(&[f64; 3]) -> [f64; 2],
-) -> String {
-    const SIZE: f64 = 560.0;
-    const MARGIN: f64 = 26.0;
+) -> Markup {
+    const SIZE: f64 = Square::SIZE;
     // Before the link runs no frame has been commanded.
-    let known: Vec<[f64; 2]> = points.iter().filter(|point| **point != [0.0; 3]).map(&seen).collect();
-    let (mut least, mut most) = ([f64::MAX; 2], [f64::MIN; 2]);
-    for axis in 0..2 {
-        for point in &known {
-            (least[axis], most[axis]) = (least[axis].min(point[axis]), most[axis].max(point[axis]));
-        }
-    }
-    let mut out = format!("<figure><svg viewBox=\"0 0 {SIZE} {SIZE}\" role=\"img\">");
-    if let (Some(first), Some(_)) = (known.first(), known.get(1)) {
-        let range = (most[0] - least[0]).max(most[1] - least[1]).max(1.0);
-        let middle = [0, 1].map(|axis| f64::midpoint(least[axis], most[axis]));
-        let place = |point: [f64; 2]| {
-            let share = [(point[0] - middle[0]) / range, (middle[1] - point[1]) / range];
-            (
-                share[0].mul_add(SIZE - 2.0 * MARGIN, SIZE / 2.0),
-                share[1].mul_add(SIZE - 2.0 * MARGIN, SIZE / 2.0),
-            )
-        };
-        put_net(middle, range, place, SIZE, &mut out);
-        let step = known.len().div_ceil(4 * POINTS).max(1);
-        let line: Vec<(f64, f64)> = known.iter().step_by(step).map(|point| place(*point)).collect();
-        let _ = write!(out, "<polyline class=\"path\" points=\"{}\"/>", list(&line));
-        for (x, y) in stops.iter().filter(|stop| **stop != [0.0; 3]).map(|stop| place(seen(stop))) {
-            let _ = write!(out, "<circle class=\"dot\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.6\"/>");
-        }
-        let (x, y) = place(*first);
-        let _ = write!(
-            out,
-            "<circle class=\"start\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\"><title>start</title></circle>"
-        );
-    }
-    format!("{out}</svg><figcaption>{}</figcaption></figure>\n", escape(title))
-}
-
-/// Lines at round numbers, with the numbers.
-fn put_net(
-    middle: [f64; 2],
-    range: f64,
-    place: impl Fn([f64; 2]) -> (f64, f64),
-    size: f64,
-    out: &mut String,
-) {
-    let step = division(range);
-    for index in -12_i32..=12 {
-        let x = ((middle[0] / step).round() + f64::from(index)) * step;
-        let y = ((middle[1] / step).round() + f64::from(index)) * step;
-        let (across, down) = (place([x, middle[1]]).0, place([middle[0], y]).1);
-        if (0.0..=size).contains(&across) {
-            let _ = write!(
-                out,
-                "<line class=\"grid\" x1=\"{across:.1}\" x2=\"{across:.1}\" y1=\"0\" y2=\"{size}\"/>\
-                 <text class=\"scale\" text-anchor=\"middle\" x=\"{across:.1}\" y=\"{:.1}\">{x}</text>",
-                size - 4.0
-            );
-        }
-        if (0.0..=size).contains(&down) {
-            let _ = write!(
-                out,
-                "<line class=\"grid\" x1=\"0\" x2=\"{size}\" y1=\"{down:.1}\" y2=\"{down:.1}\"/>\
-                 <text class=\"scale\" x=\"3\" y=\"{:.1}\">{y}</text>",
-                down - 3.0
-            );
+    let known = |points: &[[f64; 3]]| -> Vec<[f64; 2]> {
+        points.iter().filter(|point| **point != [0.0; 3]).map(&seen).collect()
+    };
+    let (points, stops) = (known(points), known(stops));
+    let step = points.len().div_ceil(4 * POINTS).max(1);
+    html! {
+        figure {
+            svg viewBox=(format_args!("0 0 {SIZE} {SIZE}")) role="img" {
+                @if let Some(square) = Square::around(&points) {
+                    @for (value, x) in square.divisions(0) {
+                        line.grid x1=(px(x)) x2=(px(x)) y1="0" y2=(SIZE) {}
+                        text.scale text-anchor="middle" x=(px(x)) y=(px(SIZE - 4.0)) { (value) }
+                    }
+                    @for (value, y) in square.divisions(1) {
+                        line.grid x1="0" x2=(SIZE) y1=(px(y)) y2=(px(y)) {}
+                        text.scale x="3" y=(px(y - 3.0)) { (value) }
+                    }
+                    @let line: Vec<_> = points.iter().step_by(step).map(|point| square.place(*point)).collect();
+                    polyline.path points=(list(&line)) {}
+                    @for (x, y) in stops.iter().map(|stop| square.place(*stop)) {
+                        circle.dot cx=(px(x)) cy=(px(y)) r="2.6" {}
+                    }
+                    @for (x, y) in points.iter().take(1).map(|start| square.place(*start)) {
+                        circle.start cx=(px(x)) cy=(px(y)) r="4" { title { "start" } }
+                    }
+                }
+            }
+            figcaption { (title) }
         }
     }
 }
@@ -301,11 +292,10 @@ mod tests {
 
     #[test]
     fn text_of_a_log_cannot_become_markup() {
-        assert_eq!(escape("<b a=\"1\">&"), "&lt;b a=&quot;1&quot;&gt;&amp;");
         let stretches =
             vec![Stretch { from: 1, to: 100, text: "<script>".into(), steps: vec![(2, "a<b".into())] }];
         let marks = [Mark { tick: 5, error: true, text: "<script>" }];
-        let drawn = lanes(&[("Task", stretches)], &marks, TimeAxis::new(1, 100));
+        let drawn = lanes(&[("Task", stretches)], &marks, TimeAxis::new(1, 100)).into_string();
         assert!(!drawn.contains("<script>") && drawn.contains("\ntick 2: a&lt;b</title>"), "{drawn}");
     }
 
@@ -328,8 +318,8 @@ mod tests {
 
     #[test]
     fn a_path_without_points_is_an_empty_picture() {
-        assert!(!path("nowhere", &[[0.0; 3]], &[], |p| [p[0], p[1]]).contains("polyline"));
+        assert!(!path("nowhere", &[[0.0; 3]], &[], |p| [p[0], p[1]]).into_string().contains("polyline"));
         let corner = [[1.0, 0.0, 0.0], [2.0, 5.0, 0.0]];
-        assert!(path("somewhere", &corner, &corner, |p| [p[0], p[1]]).contains("polyline"));
+        assert!(path("somewhere", &corner, &corner, |p| [p[0], p[1]]).into_string().contains("polyline"));
     }
 }

@@ -1,16 +1,15 @@
 //! The chain of causes behind a failure, walked back over ticks.
 //!
-//! It begins with the process that bears the reason which arrived at Task. In the tick in which that process began to report
-//! it, a row fired; what the row did not see a tick before is what was new. If a process below reports a failure by then, or
-//! reported anything new in the tick before, it is asked the same for the tick in which it began to: so the walk goes down and
-//! back until nobody below has said anything. What is left there is a device, a limit, or data. From there the commands lead up
-//! again: who commanded it, when, by which row.
+//! It begins with the process that bears the reason which arrived at Task. In the tick in which that process
+//! began to report it, a row fired; what the row did not see a tick before is what was new. If a process
+//! below reports a failure by then, or reported anything new in the tick before, it is asked the same for the
+//! tick in which it began to: so the walk goes down and back until no process below has reported anything.
+//! What is left there is a device, a limit, or data. From there the commands lead up again: who commanded it,
+//! when, by which row.
 
+use interfaces::t3i::LinkFault;
 use levels::ladder::{PROCESS_COUNT, ProcessId};
-use rcs_core::{
-    interface::t3i::LinkFault,
-    table::{Condition, Row},
-};
+use rcs_core::table::{Condition, Row};
 use serde::Serialize;
 
 use super::history::{Fired, History, condition, info, row_of, row_words};
@@ -35,8 +34,8 @@ pub struct Root {
     pub tick: u64,
 }
 
-/// Walk from a report down to where nobody below has said anything. The links come in the order of the walk: the last one is
-/// the first cause.
+/// Walk from a report down to where no process below has reported anything. The links come in the order of
+/// the walk: the last one is the first cause.
 pub fn down(history: &History, process: ProcessId, tick: u64) -> (Root, Vec<Link>) {
     let (mut root, mut links) = (Root { process, tick }, Vec::new());
     // The ladder has four levels above the link: a longer walk would be a circle.
@@ -50,8 +49,8 @@ pub fn down(history: &History, process: ProcessId, tick: u64) -> (Root, Vec<Link
     (root, links)
 }
 
-/// Who below gave the row of this tick its news: a neighbour that reports a reason, or that reported anything new in the tick
-/// before.
+/// Who below gave the row of this tick its news: a neighbour that reports a reason, or that reported anything
+/// new in the tick before.
 fn below(history: &History, at: Root) -> Option<Root> {
     let seen = at.tick.checked_sub(1)?;
     let said = |process: ProcessId| Some((process, history.report(process, seen)?));
@@ -153,10 +152,8 @@ pub fn up(history: &History, from: ProcessId, tick: u64) -> Vec<Link> {
 mod tests {
     use super::*;
     use crate::story::Moment;
-    use rcs_core::{
-        interface::{CommonMemory, Decided, ExternalInputs, Header, Reason, Report, prim::PrimReport},
-        tick::Tick,
-    };
+    use interfaces::{CommonMemory, Decided, ExternalInputs, Header, Reason, StatusReport, prim::PrimReport};
+    use rcs_core::tick::Tick;
 
     /// Plays ticks, each changed by a closure.
     fn history(changes: &[fn(&mut ExternalInputs, &mut CommonMemory)]) -> History {
@@ -194,7 +191,7 @@ mod tests {
                 };
             },
             |_, memory| {
-                memory.emove.status.report = Report::Error;
+                memory.emove.status.report = StatusReport::Error;
                 memory.emove.status.reason = Reason::NotDetached;
             },
             |_, memory| memory.subtask.status.reason = Reason::NotDetached,

@@ -4,15 +4,15 @@
 //! one line, and what is not there at all is left out. A guarded move is told by its sensor: what would have ended it, how near
 //! the reading came, and how far the robot went meanwhile.
 
+use geometry::pose::WireFrame;
+use interfaces::{ExternalInputs, prim::PrimVerb};
 use levels::{
     ladder::{LadderState, ProcessId},
     prim::{sensors::Reading, tables},
 };
 use rcs_core::{
     Plain,
-    interface::{ExternalInputs, prim::PrimVerb},
     plain::{Schema, Writer, from_bytes},
-    pose::WireFrame,
 };
 use record::{
     Log,

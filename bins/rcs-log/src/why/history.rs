@@ -1,9 +1,9 @@
 //! What every process did over a whole run, kept by change: its commands, rows and reports.
 
 use executive::failure;
+use interfaces::{Decided, Header, StatusReport};
 use levels::ladder::{Ladder, PROCESS_COUNT, ProcessId, ProcessInfo};
 use rcs_core::{
-    interface::{Decided, Header, Report},
     name::Name16,
     table::{Condition, Row, Table},
 };
@@ -89,11 +89,11 @@ impl History {
         latest(&self.rows[process.position()], tick, |fired| fired.tick)
     }
 
-    /// The tick in which a row fired last in a process that has had nothing to decide since; `None` if one fired in this tick. A header
-    /// repeats the last row while its process rests.
+    /// The tick in which a row fired last in a process that has had nothing to decide since; `None` if one
+    /// fired in this tick. A header repeats the last row while its process rests.
     pub fn rests_since(&self, process: ProcessId, moment: &Moment) -> Option<u64> {
         let tick = moment.tick.0;
-        let executes = |report: &Reported| report.report == Report::Executing.text();
+        let executes = |report: &Reported| report.report == StatusReport::Executing.text();
         let arrives = |command: &Commanded| command.tick + u64::from(process != ProcessId::Task) == tick;
         let is_held = moment.after.header(process).republished;
         // T3I decides in every tick what goes out.
@@ -175,7 +175,7 @@ pub fn row_words(process: ProcessId, fired: &Fired) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::interface::ExternalInputs;
+    use interfaces::ExternalInputs;
 
     #[test]
     fn what_processes_read_are_inputs() {

@@ -1,9 +1,11 @@
 //! `rcs-log why`: why something failed, or what each level did in any tick, and by which row.
 //!
-//! What went wrong first in the world comes first ([`world`]): a contact, a lost part, a warning of the robot controller, a line of the
-//! workstation that could not be carried out. A failure is told as a chain of causes across ticks ([`chain`]): the commands that led to the process that failed, each with
-//! the row that gave it; what the devices said while it tried ([`evidence`]); what happened in the cell meanwhile; the first
-//! cause; and how the failure went up to Task. The sources are buffers and rows of the log ([`history`]), nothing is guessed.
+//! What went wrong first in the world comes first ([`world`]): a contact, a lost part, a warning of the robot
+//! controller, a line of the workstation that could not be carried out. A failure is told as a chain of
+//! causes across ticks ([`chain`]): the commands that led to the process that failed, each with the row that
+//! gave it; what the devices said while it tried ([`evidence`]); what happened in the cell meanwhile; the
+//! first cause; and how the failure went up to Task. The sources are buffers and rows of the log
+//! ([`history`]), nothing is guessed.
 
 mod chain;
 mod evidence;
@@ -34,8 +36,8 @@ const LINES_BEFORE: usize = 12;
 /// Lines about the cell and the link that are told with a failure.
 const LINES_MEANWHILE: usize = 8;
 
-/// Sources of lines about what happened around the robot: the cell, and faults that were injected. They are written with the
-/// tick after the one in which it happened.
+/// Sources of lines about what happened around the robot: the cell, and faults that were injected. They are
+/// written with the tick after the one in which it happened.
 const EVENTS: [&str; 2] = ["cell", FAULT];
 const FAULT: &str = "fault";
 
@@ -79,7 +81,7 @@ pub struct Story {
     pub commands: Vec<Link>,
     /// From the failure to its first cause.
     pub causes: Vec<Link>,
-    /// Where nobody below had said anything: process and tick.
+    /// Where no process below had reported anything: process and tick.
     pub first_cause: String,
     /// What the devices said while the command was carried out.
     pub evidence: Vec<String>,

@@ -1,9 +1,10 @@
-//! What went wrong in the world: the first contact, lost part, or warning of the robot controller, or what ended the run where no
-//! process failed. From there the commands lead up to the workstation controller, each with the row that gave it, and the row that gave
-//! the last one used data: each is told with its file, block and line.
+//! What went wrong in the world: the first contact, lost part, or warning of the robot controller, or what
+//! ended the run where no process failed. From there the commands lead up to the workstation controller, each
+//! with the row that gave it, and the row that gave the last one used data: each is told with its file, block
+//! and line.
 
+use interfaces::{CommonMemory, pose_range};
 use levels::ladder::ProcessId;
-use rcs_core::interface::{CommonMemory, pose_range};
 use record::{Log, proto::foxglove::Level, replay::generations};
 use serde::Serialize;
 use taskdata::{
@@ -56,8 +57,8 @@ pub fn first(log: &Log, history: &History) -> Option<World> {
     Some(World { tick, text, commands, data })
 }
 
-/// The lowest process whose command did it: the gripper for a part that is lost, T3I for a warning of the robot controller, Prim for
-/// all that moves.
+/// The lowest process whose command did it: the gripper for a part that is lost, T3I for a warning of the
+/// robot controller, Prim for all that moves.
 fn mover(text: &str, memory: &CommonMemory) -> ProcessId {
     if text.starts_with("the T3 controller shows") {
         return ProcessId::T3i;

@@ -2,8 +2,8 @@
 
 use std::{ops::RangeInclusive, str::FromStr};
 
+use interfaces::device::{VisionResponse, VisionStatus};
 use neighbours::vision::{Areas, Ready};
-use rcs_core::interface::device::{VisionResponse, VisionStatus};
 
 /// What goes wrong with a picture. `off` and `camera-blind` are words of fault files as well (data/README.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,12 @@
-//! The vision system: the picture analysis of the simulated cell, behind the vision mailbox, for one run after the other.
+//! The vision system: the picture analysis of the simulated cell, behind the vision mailbox, for one run
+//! after the other.
 
 mod fault;
 
 use std::path::Path;
 
+use geometry::frame::Vector;
+use interfaces::device::{VisionRequest, VisionStatus};
 use neighbours::{
     mailbox::{Mailbox, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE},
     network::{Peer, PeerError, Received, Role},
@@ -12,10 +15,6 @@ use neighbours::{
 use plant::{
     CellDescription,
     camera::{Analysis, Face, Subject},
-};
-use rcs_core::{
-    frame::Vector,
-    interface::device::{VisionRequest, VisionStatus},
 };
 
 pub use self::fault::{Fault, Kind};
@@ -103,8 +102,8 @@ impl Vision {
         self.said = VisionStatus::Idle;
     }
 
-    /// Read what the controller has written, and begin with a new request when its picture is there. What cannot be read is said,
-    /// and not answered.
+    /// Read what the controller has written, and begin with a new request when its picture is there. What
+    /// cannot be read is said, and not answered.
     fn look(&mut self, requests: &Mailbox, pictures: &Mailbox) -> Result<(), Error> {
         let said = |what: &str, why: &VisionError| {
             os_io::stderr_line!("rcs-neighbour: {what} cannot be read: {why}")
@@ -211,13 +210,13 @@ fn subject(part: &Part) -> Subject {
 
 #[cfg(test)]
 mod tests {
-    use rcs_core::interface::device;
+    use interfaces::device;
 
     use super::*;
 
     const CELL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/cell.toml");
 
-    fn request(number: u32) -> [u8; request::REQUEST] {
+    fn request(number: u32) -> [u8; request::RequestLayout::BYTES] {
         let request = VisionRequest {
             number,
             picture: device::Picture::Precise,

@@ -19,8 +19,8 @@ pub struct CampaignArguments {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// What interrupts, with commas between them: pause, pause-twice, refused, replaced, answer-lost,
-    /// answer-late, answer-damaged, hold, nudge, away, estop, held[:PROCESS], restart[:PROCESS],
-    /// fault[:FILE], none or all
+    /// answer-late, answer-damaged, hold, nudge, away, estop, held or held:PROCESS, restart or
+    /// restart:PROCESS, fault or fault:FILE, none or all
     #[arg(long, value_name = "KIND", value_delimiter = ',', default_value = "pause")]
     pub interrupt: Vec<String>,
     /// Fork at every so many ticks [default: 23 without --changes and --at]
@@ -47,7 +47,8 @@ pub struct CampaignArguments {
     /// Print one JSON object a job on standard output, a line each, and nothing else there
     #[arg(long)]
     pub json: bool,
-    /// Write the table as Markdown: between the two marks of a page that has them (docs/campaign.md), whose rows of other jobs stay
+    /// Write the table as Markdown: between the two marks of a page that has them (docs/campaign.md), whose
+    /// rows of other jobs stay
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
     /// Ticks before the interruption and after it of which a single branch prints every row that fires

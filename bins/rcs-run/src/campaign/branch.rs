@@ -2,14 +2,18 @@
 //! shared memory.
 //!
 //!
-//! A [`Branch`] does in a tick what `rcs-run run` does in fast clock with the simulated robot, in the same order, so that
-//! both have the same digest. A [`Fork`] is what the next tick depends on; any number of branches can go on from it, each
-//! in its own thread.
+//! A [`Branch`] does in a tick what `rcs-run run` does in fast clock with the simulated robot, in the same
+//! order, so that both have the same digest. A [`Fork`] is what the next tick depends on; any number of
+//! branches can go on from it, each in its own thread.
 
 use std::sync::Arc;
 
 use depc::fault::{Direction, FaultKind, Injector, Plan, Rule};
 use executive::failure::Watch;
+use interfaces::{
+    CommonMemory, DataBaseCommand, DeviceInputs, DeviceOutputs, ExternalInputs, HwsCommand, OutsidePedestal,
+    StatusReport, hws::HwsReport,
+};
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::{
     data_system::{self, ANSWER_TICKS, DataSystem, Pace},
@@ -21,28 +25,20 @@ use neighbours::{
     },
 };
 use plant::{Cell, CellDescription, CellEvent};
-use rcs_core::{
-    Plain,
-    digest::Digest,
-    interface::{
-        CommonMemory, DataBaseCommand, DeviceInputs, DeviceOutputs, ExternalInputs, HwsCommand,
-        OutsidePedestal, Report, hws::HwsReport,
-    },
-    tick::Tick,
-};
+use rcs_core::{Plain, digest::Digest, tick::Tick};
 use taskdata::{
     files::TaskData,
     load::{Job, Store},
 };
 
-use crate::{
-    error::Error,
-    run::{
-        contacts::{Commands, ContactCheck},
-        neighbours::task_state,
-        workstation::{SimulatedWorkstation, WorkstationState},
-    },
+use runtime::{
+    StartError,
+    contacts::ContactCheck,
+    neighbours::task_state,
+    workstation::{SimulatedWorkstation, WorkstationState},
 };
+
+use crate::error::Error;
 
 /// Ticks that a late answer needs more than one that is not: beyond the three that the host waits.
 const LATE: u16 = 5;
@@ -168,7 +164,7 @@ impl<'f> Branch<'f> {
     /// # Errors
     /// [`Error`] if the cell or its data base cannot be built.
     pub fn start(facility: &'f Facility) -> Result<Self, Error> {
-        let cell = Cell::new(&facility.description, facility.seed)?;
+        let cell = Cell::new(&facility.description, facility.seed).map_err(StartError::from)?;
         let control = Control {
             ladder: Ladder::default(),
             tick: Tick::BEFORE_START,
@@ -264,7 +260,7 @@ impl<'f> Branch<'f> {
     fn observe(&mut self) {
         let control = &mut self.control;
         self.events = self.workstation.events(control.tick);
-        let commands = Commands::from(&control.memory);
+        let commands = control.check.commands(&control.memory);
         control.check.look(control.tick, self.workstation.cell.contacts(), commands);
         self.workstation.cell.watch_clearance(control.check.margin());
     }
@@ -299,8 +295,8 @@ impl<'f> Branch<'f> {
         control.asked.extend(self.workstation.loads());
         let memory = &control.memory;
         let busy = memory.task.status.report == HwsReport::Executing
-            || memory.subtask.status.report == Report::Executing
-            || memory.emove.status.report == Report::Executing;
+            || memory.subtask.status.report == StatusReport::Executing
+            || memory.emove.status.report == StatusReport::Executing;
         if !busy && !control.asked.is_empty() {
             control.generation = control.asked.remove(0);
         }
@@ -377,5 +373,6 @@ fn data(facility: &Facility, generation: u32) -> TaskData<'_> {
 }
 
 fn data_system() -> Result<DataSystem, Error> {
-    Ok(DataSystem::new(data_system::Store::in_memory()?, ANSWER_TICKS, Pace::Wait))
+    let items = data_system::Store::in_memory().map_err(StartError::from)?;
+    Ok(DataSystem::new(items, ANSWER_TICKS, Pace::Wait))
 }

@@ -4,7 +4,7 @@ use plant::{CellEvent, t3::Stage};
 use rcs_core::tick::Tick;
 
 use super::branch::Branch;
-use crate::run::contacts::{Collision, Commands};
+use runtime::contacts::{Collision, Commands};
 
 /// A part may lie so far from where the undisturbed run has it, in.
 const PART: f64 = 0.5;
@@ -120,13 +120,15 @@ pub struct HarmMonitor {
     harms: Vec<Harm>,
     /// What has slid in the fingers while no point was commanded, as when the arm jumps at the start-up.
     slide: Option<(String, Harm)>,
+    /// Parts in contacts that no commanded point has caused.
+    moved: Vec<String>,
 }
 
 impl HarmMonitor {
     /// Watch what happens from now on.
     #[must_use]
     pub fn from_now(branch: &Branch<'_>) -> Self {
-        Self { seen: branch.check().collisions().len(), harms: Vec::new(), slide: None }
+        Self { seen: branch.check().collisions().len(), harms: Vec::new(), slide: None, moved: Vec::new() }
     }
 
     /// What has happened: the first that a commanded point has caused, or else the first.
@@ -155,8 +157,13 @@ impl HarmMonitor {
         for (at, contact) in contacts.iter().enumerate().skip(self.seen) {
             let Collision { mover, obstacle, commands, .. } = contact;
             let kind = format!("{mover} runs into {obstacle} during {commands}");
-            let commanded = commanded && (contact.is_of_robot() || !self.is_displaced());
+            let harmless = if contact.is_of_robot() { self.is_moved(obstacle) } else { self.is_displaced() };
+            let commanded = commanded && !harmless;
             self.harms.push(Harm { tick, what: contact.to_string(), kind, commanded, contact: Some(at) });
+            if !commanded {
+                let parts = branch.workstation.cell.parts().into_iter().map(|part| part.name);
+                self.moved.extend(parts.filter(|part| part == mover || part == obstacle));
+            }
         }
         self.seen = contacts.len();
         // What has become of a contact is known later than that it is there.
@@ -180,8 +187,15 @@ impl HarmMonitor {
         }
     }
 
-    /// An arm without pressure or a person has touched something, or let a part slide in the fingers: the controller cannot
-    /// know where parts are then.
+    /// Is it a part that may lie elsewhere than the controller can know: it has slid in the fingers, or it was in a
+    /// contact that no commanded point has caused?
+    fn is_moved(&self, part: &str) -> bool {
+        self.slide.as_ref().is_some_and(|(slid, _)| slid == part)
+            || self.moved.iter().any(|moved| moved == part)
+    }
+
+    /// An arm without pressure or a person has touched something, or let a part slide in the fingers: the
+    /// controller cannot know where parts are then.
     fn is_displaced(&self) -> bool {
         self.slide.is_some() || self.harms.iter().any(|harm| !harm.commanded)
     }

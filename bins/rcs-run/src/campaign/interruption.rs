@@ -3,6 +3,7 @@
 use std::{fmt, path::Path, sync::Arc};
 
 use depc::fault::{ALWAYS, FaultKind, Plan, Rule};
+use interfaces::device::{KNOB_FULL, joystick_frame, single_step};
 use levels::ladder::ProcessId;
 use plant::{
     BoxAction, BoxButton, CellDescription, EStop, Key, WorkstationAction,
@@ -12,10 +13,9 @@ use plant::{
     },
     t3::Stage,
 };
-use rcs_core::{
-    interface::device::{KNOB_FULL, joystick_frame, single_step},
-    tick::Tick,
-};
+use rcs_core::tick::Tick;
+
+use runtime::StartError;
 
 use super::branch::Branch;
 use crate::error::Error;
@@ -240,7 +240,7 @@ fn words() -> String {
 /// All files of faults that can be switched on.
 fn faults(data: &Path, cell: &CellDescription) -> Result<Vec<Kind>, Error> {
     let directory = data.join("faults");
-    let unreadable = |source| Error::Read { path: directory.clone(), source };
+    let unreadable = |source| StartError::Read { path: directory.clone(), source };
     let entries = std::fs::read_dir(&directory).map_err(unreadable)?;
     let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
@@ -251,8 +251,8 @@ fn faults(data: &Path, cell: &CellDescription) -> Result<Vec<Kind>, Error> {
 /// The faults of a file; none if it has none that can be switched on for a time.
 fn fault(path: &Path, cell: &CellDescription) -> Result<Option<Kind>, Error> {
     let text =
-        os_io::files::read_text(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
-    let file = text::parse(&path.display().to_string(), &text, cell)?;
+        os_io::files::read_text(path).map_err(|source| StartError::Read { path: path.to_owned(), source })?;
+    let file = text::parse(&path.display().to_string(), &text, cell).map_err(StartError::from)?;
     let lasting = |what: &What| !what.is_delivery() && !matches!(what, What::PedestalMoved { .. });
     let switchable = file.line.is_some() || file.cell.faults.iter().any(|fault| lasting(&fault.what));
     let name = path.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();

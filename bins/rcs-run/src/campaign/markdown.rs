@@ -1,57 +1,107 @@
-//! The table of a page: made anew for the jobs that were run, kept for the others.
+//! The table of a page: a column a job, made anew for the jobs that were run and kept for the others.
+
+use std::fmt::Write as _;
 
 /// The line in front of the table.
 const BEGIN: &str = "<!-- campaign: made by rcs-run campaign JOB... --markdown FILE -->";
 /// The line behind it.
 const END: &str = "<!-- end of the campaign -->";
-/// Its head.
-const HEAD: &str = "| job | interruption | branches | done | stranded | hurt | apart | done of those not apart |\n\
-                    |---|---|---:|---:|---:|---:|---:|---:|\n";
+/// The head of the first column.
+const FIRST: &str = "interruption";
 
-/// The rows of a job.
-pub struct Rows {
+/// What came of a job, for each interruption.
+#[derive(Debug, PartialEq)]
+pub struct Column {
     /// The job.
     pub job: String,
-    /// Its rows, a line each.
-    pub text: String,
+    /// Interruption, and what came of it.
+    pub cells: Vec<(String, String)>,
 }
 
 /// A page with the table: the table alone if there is no page yet.
 ///
 /// # Errors
 /// A sentence, if the page has no place for the table.
-pub fn page(page: Option<&str>, tables: &[Rows]) -> Result<String, String> {
-    let fresh: String = tables.iter().map(|rows| rows.text.as_str()).collect();
-    let Some(page) = page else { return Ok(format!("{BEGIN}\n{HEAD}{fresh}{END}\n")) };
-    let parts = page.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?)));
-    let Some((before, (table, after))) = parts else {
+pub fn page(page: Option<&str>, fresh: &[Column]) -> Result<String, String> {
+    let parts = match page {
+        None => Some(("", "", "\n")),
+        Some(page) => page.split_once(BEGIN).and_then(|(before, rest)| {
+            let (table, after) = rest.split_once(END)?;
+            Some((before, table, after))
+        }),
+    };
+    let Some((before, old, after)) = parts else {
         return Err(format!("the page for the table needs the lines {BEGIN} and {END}, found not both"));
     };
-    let is_other = |line: &&str| {
-        let job = line.strip_prefix("| ").and_then(|line| line.split(' ').next());
-        job.is_some_and(|job| tables.iter().all(|rows| rows.job != job))
+    let old = columns(old);
+    let of = |job: &str, among: &[Column]| among.iter().position(|column| column.job == job);
+    let replaced = old.iter().map(|column| of(&column.job, fresh).map_or(column, |at| &fresh[at]));
+    let new = fresh.iter().filter(|column| of(&column.job, &old).is_none());
+    Ok(format!("{before}{BEGIN}\n{}{END}{after}", table(&replaced.chain(new).collect::<Vec<_>>())))
+}
+
+/// The columns of a table as [`table`] writes it; none if it is another.
+fn columns(table: &str) -> Vec<Column> {
+    let mut rows = table.lines().filter_map(|line| {
+        let line = line.trim().strip_prefix('|')?.strip_suffix('|')?;
+        let mut cells = line.split('|').map(str::trim);
+        Some((cells.next()?, cells.collect::<Vec<_>>()))
+    });
+    let Some((FIRST, jobs)) = rows.next() else { return Vec::new() };
+    let rows: Vec<_> = rows.skip(1).collect();
+    let column = |(at, job): (usize, &&str)| {
+        let cells = rows.iter().filter_map(|(interruption, cells)| {
+            let cell = cells.get(at).filter(|cell| !cell.is_empty())?;
+            Some(((*interruption).to_owned(), (*cell).to_owned()))
+        });
+        Column { job: (*job).to_owned(), cells: cells.collect() }
     };
-    // Behind the head.
-    let rows = table.lines().skip_while(|line| !line.starts_with("|---")).skip(1);
-    let kept: String = rows.filter(is_other).map(|line| format!("{line}\n")).collect();
-    Ok(format!("{before}{BEGIN}\n{HEAD}{kept}{fresh}{END}{after}"))
+    jobs.iter().enumerate().map(column).collect()
+}
+
+/// Columns side by side, their interruptions in the order in which they occur first.
+fn table(columns: &[&Column]) -> String {
+    let mut interruptions: Vec<&str> = Vec::new();
+    for (interruption, _) in columns.iter().flat_map(|column| &column.cells) {
+        if !interruptions.contains(&interruption.as_str()) {
+            interruptions.push(interruption);
+        }
+    }
+    let jobs: Vec<&str> = columns.iter().map(|column| column.job.as_str()).collect();
+    let mut text = format!("| {FIRST} | {} |\n|---|{}\n", jobs.join(" | "), "---|".repeat(jobs.len()));
+    for interruption in interruptions {
+        let cells: Vec<&str> = columns
+            .iter()
+            .map(|column| {
+                let cell = column.cells.iter().find(|(of, _)| of == interruption);
+                cell.map_or("", |(_, cell)| cell.as_str())
+            })
+            .collect();
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "| {interruption} | {} |", cells.join(" | "));
+    }
+    text
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn rows(job: &str, text: &str) -> Rows {
-        Rows { job: job.to_owned(), text: format!("| {job} | {text} |\n") }
+    fn column(job: &str, cells: &[(&str, &str)]) -> Column {
+        let cells = cells.iter().map(|(of, cell)| ((*of).to_owned(), (*cell).to_owned()));
+        Column { job: job.to_owned(), cells: cells.collect() }
     }
 
     #[test]
-    fn rows_of_other_jobs_and_the_text_around_the_table_stay() {
-        let first = page(None, &[rows("linkbar", "1"), rows("shift", "2")]).expect("a new page");
+    fn columns_of_other_jobs_and_the_text_around_the_table_stay() {
+        let shift = column("shift", &[("pause", "2/2")]);
+        let old = column("linkbar", &[("pause", "1/2, 1 stranded"), ("hold", "2/2")]);
+        let first = page(None, &[old, shift]).expect("a new page");
         let around = format!("# Title\n\n{first}\nMore.\n");
-        let second = page(Some(&around), &[rows("linkbar", "3")]).expect("it has a table");
-        let table = format!("{BEGIN}\n{HEAD}| shift | 2 |\n| linkbar | 3 |\n{END}\n");
-        assert_eq!(second, format!("# Title\n\n{table}\nMore.\n"));
+        let second = page(Some(&around), &[column("linkbar", &[("hold", "3/3")])]).expect("it has a table");
+        let rows =
+            "| interruption | linkbar | shift |\n|---|---|---|\n| hold | 3/3 |  |\n| pause |  | 2/2 |\n";
+        assert_eq!(second, format!("# Title\n\n{BEGIN}\n{rows}{END}\n\nMore.\n"));
         assert!(page(Some("# Title\n"), &[]).expect_err("no place").contains("found not both"));
     }
 }

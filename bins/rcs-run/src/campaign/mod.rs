@@ -1,4 +1,5 @@
-//! `rcs-run campaign`: a job is interrupted at many ticks, an operator follows the recovery procedure, and each branch is judged.
+//! `rcs-run campaign`: a job is interrupted at many ticks, an operator follows the recovery procedure, and
+//! each branch is judged.
 //!
 //! ```text
 //!   undisturbed run:  ──●────●────●────●────●──►     once to list the ticks and the world after each line, once to fork
@@ -32,6 +33,10 @@ use std::{
 
 use indicatif::{ProgressBar, ProgressStyle};
 use os_io::console;
+use runtime::{
+    StartError,
+    setup::{CellFile, TaskFiles},
+};
 
 pub use self::arguments::CampaignArguments;
 use self::{
@@ -41,10 +46,7 @@ use self::{
     report::CampaignReport,
     trial::{BranchResult, Procedure, Verdict},
 };
-use crate::{
-    error::Error,
-    run::setup::{CellFile, TaskFiles},
-};
+use crate::error::Error;
 
 /// Ticks between two forks unless others are asked for.
 const EVERY: u64 = 23;
@@ -54,24 +56,24 @@ const EVERY: u64 = 23;
 /// # Errors
 /// [`Error`] if data or arguments cannot be used, or if the job does not finish undisturbed.
 pub fn campaign(arguments: &CampaignArguments) -> Result<ExitCode, Error> {
-    let mut tables = Vec::new();
+    let mut columns = Vec::new();
     for job in &arguments.jobs {
-        tables.extend(of_job(arguments, job)?);
+        columns.extend(of_job(arguments, job)?);
     }
     if let Some(path) = &arguments.markdown {
         let page = match fs::read_to_string(path) {
             Ok(page) => Some(page),
             Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-            Err(source) => return Err(Error::Read { path: path.clone(), source }),
+            Err(source) => return Err(StartError::Read { path: path.clone(), source }.into()),
         };
-        let text = markdown::page(page.as_deref(), &tables).map_err(Error::Campaign)?;
+        let text = markdown::page(page.as_deref(), &columns).map_err(Error::Campaign)?;
         fs::write(path, text).map_err(|source| Error::Write { path: path.clone(), source })?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// The campaign of a job; its rows of the table, none if a single branch was printed.
-fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::Rows>, Error> {
+/// The campaign of a job; its column of the table, none if a single branch was printed.
+fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::Column>, Error> {
     let facility = facility(arguments, job)?;
     let kinds = kinds(arguments, &facility)?;
     let procedure =
@@ -106,7 +108,7 @@ fn of_job(arguments: &CampaignArguments, job: &str) -> Result<Option<markdown::R
     let called = format!("rcs-run campaign {job} --seed {}", arguments.seed);
     let report = CampaignReport::new(&facility.job.name, called, &parent, &results);
     console::answer(&if arguments.json { report.json()? } else { report.text() })?;
-    Ok(Some(report.markdown()))
+    Ok(Some(report.column()))
 }
 
 fn facility(arguments: &CampaignArguments, job: &str) -> Result<Facility, Error> {

@@ -9,19 +9,19 @@
 //!                                                      └─────────────┘ tries left; else stranded
 //! ```
 
+use interfaces::{HwsCommand, hws::HwsReport};
 use neighbours::workstation::{
     Status, TaskState,
     player::{Workstation as _, pause},
 };
-use rcs_core::{
-    interface::{HwsCommand, hws::HwsReport},
-    tick::Tick,
-};
+use rcs_core::tick::Tick;
 use taskdata::load::job::{JobLine, Step, Workstation as Action};
 
 use super::branch::Commander;
-use crate::run::workstation::SimulatedWorkstation;
+use runtime::workstation::SimulatedWorkstation;
 
+/// Ticks that the robot may take to come to rest after the joystick box is off.
+const REST_LIMIT: u64 = 25;
 /// Ticks that a command may take: five minutes, as in a run.
 const TIME_LIMIT: u64 = neighbours::workstation::player::TIME_LIMIT;
 /// Ticks in which Task has to echo a command.
@@ -110,7 +110,8 @@ pub struct Operator<'f> {
 }
 
 impl<'f> Operator<'f> {
-    /// An operator that comes upon line `current` of a job, which began at `began`; `last` is the command that Task has.
+    /// An operator that comes upon line `current` of a job, which began at `began`; `last` is the command
+    /// that Task has.
     #[must_use]
     pub fn new(lines: &'f [JobLine], current: usize, began: Tick, last: &HwsCommand, tries: u32) -> Self {
         let mut operator = Self {
@@ -225,7 +226,8 @@ impl<'f> Operator<'f> {
         match status.report {
             HwsReport::Finished | HwsReport::Idle => Some(Ok(())),
             HwsReport::Error => Some(Err(status.code.text().to_owned())),
-            HwsReport::JoystickOn => Some(Err("the joystick box is on".to_owned())),
+            // Task says so until what it has stopped below is at rest.
+            HwsReport::JoystickOn => (ticks > REST_LIMIT).then(|| Err("the joystick box is on".to_owned())),
             HwsReport::Executing => (ticks > TIME_LIMIT).then(|| Err("not finished within 300 s".to_owned())),
         }
     }

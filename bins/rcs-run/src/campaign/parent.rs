@@ -1,9 +1,10 @@
 //! The undisturbed run: which line of the job goes on in a tick, what the world is like at the end of each, and in which ticks
 //! something changes.
 
+use interfaces::CommonMemory;
 use levels::ladder::ProcessId;
 use neighbours::workstation::player::{Hwsc, JobFailure, Progress, TIME_LIMIT};
-use rcs_core::{interface::CommonMemory, name::Name16, tick::Tick};
+use rcs_core::{name::Name16, tick::Tick};
 
 use super::{
     branch::{Branch, Facility},

@@ -5,7 +5,7 @@ use std::{collections::BTreeMap, fmt::Write as _, io};
 use serde::Serialize;
 
 use super::{
-    markdown::Rows,
+    markdown::Column,
     parent::Parent,
     trial::{BranchResult, Verdict},
 };
@@ -37,6 +37,17 @@ impl Row {
             Verdict::Apart => self.apart += 1,
             Verdict::Hurt => self.hurt += 1,
         }
+    }
+
+    /// How many of the branches are done, and what became of the others.
+    fn cell(&self) -> String {
+        let mut text = format!("{}/{}", self.done, self.branches);
+        for (count, word) in [(self.stranded, "stranded"), (self.hurt, "hurt"), (self.apart, "apart")] {
+            if count > 0 {
+                let _ = write!(text, ", {count} {word}");
+            }
+        }
+        text
     }
 
     fn share(&self) -> f64 {
@@ -73,7 +84,8 @@ struct Json<'a> {
 }
 
 impl<'a> CampaignReport<'a> {
-    /// The report on these branches, which stand in the order of their interruptions; `command` runs the campaign again.
+    /// The report on these branches, which stand in the order of their interruptions; `command` runs the
+    /// campaign again.
     #[must_use]
     pub fn new(job: &'a str, command: String, parent: &'a Parent, results: &'a [BranchResult]) -> Self {
         let mut rows: Vec<Row> = Vec::new();
@@ -99,21 +111,11 @@ impl<'a> CampaignReport<'a> {
         Ok(serde_json::to_string(&json).map_err(io::Error::from)? + "\n")
     }
 
-    /// The rows of the table, as Markdown.
+    /// A column of the table of a page.
     #[must_use]
-    pub fn markdown(&self) -> Rows {
-        let mut text = String::new();
-        for row in &self.rows {
-            let Row { interruption, branches, done, stranded, apart, hurt, .. } = row;
-            let share = row.share();
-            // Writing to a String cannot fail.
-            let _ = writeln!(
-                text,
-                "| {} | {interruption} | {branches} | {done} | {stranded} | {hurt} | {apart} | {share:.1} % |",
-                self.job
-            );
-        }
-        Rows { job: self.job.to_owned(), text }
+    pub fn column(&self) -> Column {
+        let cells = self.rows.iter().map(|row| (row.interruption.clone(), row.cell()));
+        Column { job: self.job.to_owned(), cells: cells.collect() }
     }
 
     /// For people.

@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use executive::failure;
+use interfaces::Decided;
 use levels::ladder::{Ladder, ProcessId};
-use rcs_core::{interface::Decided, tick::Tick};
+use rcs_core::tick::Tick;
 
 use super::{
     branch::Branch,

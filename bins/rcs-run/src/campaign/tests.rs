@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use geometry::frame::Frame;
+use interfaces::HwsCommand;
 use neighbours::workstation::{Status, player::Hwsc};
 use plant::{Placement, WorkstationAction};
-use rcs_core::{digest::Digest, frame::Frame, interface::HwsCommand, tick::Tick};
+use rcs_core::{digest::Digest, tick::Tick};
 use taskdata::load::{Job, Source};
 
 use super::{
@@ -15,7 +17,7 @@ use super::{
     pool,
     trial::{self, BranchResult, NoObserver, Procedure, Until, Verdict},
 };
-use crate::run::{
+use runtime::{
     setup::{CellFile, TaskFiles},
     workstation::SimulatedWorkstation,
 };

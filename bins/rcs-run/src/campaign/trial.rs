@@ -1,9 +1,10 @@
 //! One branch: it is interrupted, an operator follows the recovery procedure, and what became of it is judged.
 
 use executive::failure;
+use interfaces::HwsCommand;
 use levels::ladder::{Ladder, ProcessId};
 use neighbours::workstation::player::Workstation as _;
-use rcs_core::{interface::HwsCommand, name::Name16, tick::Tick};
+use rcs_core::{name::Name16, tick::Tick};
 use serde::Serialize;
 
 use super::{
@@ -367,7 +368,7 @@ impl super::branch::Commander for Silent {
         &mut self,
         _: Tick,
         _: &neighbours::workstation::Status<'_>,
-        _: &mut crate::run::workstation::SimulatedWorkstation,
+        _: &mut runtime::workstation::SimulatedWorkstation,
     ) -> Option<HwsCommand> {
         None
     }

@@ -1,18 +1,20 @@
 //! `rcs-run check --explain COMMAND`: the whole way of a command, as the levels would find it in the task data.
 //!
-//! Places, grips, approaches and trajectories are looked up by E-move's own route ([`paths::walk`]), so that what is printed is what
-//! would be flown; times come from Prim's own motion with the knob at full speed. What the fingers, the camera and the pedestal
-//! take is not counted, nor is the lag of line and arm.
+//! Places, grips, approaches and trajectories are looked up by E-move's own route ([`paths::walk`]), so that
+//! what is printed is what would be flown; times come from Prim's own motion with the knob at full speed.
+//! What the fingers, the camera and the pedestal take is not counted, nor is the lag of line and arm.
 
 use std::{fmt, process::ExitCode};
 
+use interfaces::HwsCommand;
 use os_io::console;
 use paths::{
     plan::{Leg, Phase},
     steps,
     walk::{self, Walk},
 };
-use rcs_core::{interface::HwsCommand, name::Name16};
+use rcs_core::name::Name16;
+use runtime::StartError;
 use serde::Serialize;
 use taskdata::load::{Diagnostics, Job, Source, Step, Store};
 
@@ -39,7 +41,7 @@ struct Explanation {
 /// # Errors
 /// A command, a start or task data that cannot be read.
 pub fn explain(arguments: &CheckArguments, text: &str) -> Result<ExitCode, Error> {
-    let unusable = |what: String| move |report: Box<Diagnostics>| Error::Data { what, report };
+    let unusable = |what: String| move |report: Box<Diagnostics>| StartError::Data { what, report };
     let (store, _) = Store::load(&arguments.data)
         .map_err(unusable(format!("the task data under {}", arguments.data.display())))?;
     let command = command_of(text, &store).map_err(unusable(format!("the command {text}")))?;

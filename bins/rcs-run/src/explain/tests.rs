@@ -1,6 +1,7 @@
 use std::path::Path;
 
-use rcs_core::{interface::HwsCommand, name::Name16};
+use interfaces::HwsCommand;
+use rcs_core::name::Name16;
 use taskdata::load::Store;
 
 use super::{Explanation, command_of, explained};
@@ -149,7 +150,8 @@ fn a_regrip_leads_over_the_pedestal() {
             "RELEASE LCLEVIS_IH: to 4.00 in",
         ]
     );
-    // Nobody has written the approaches of the clevis in these data; each is named, and the rest is explained all the same.
+    // These data have no approaches of the clevis; each is named, and the rest is explained
+    // all the same.
     let missing: Vec<&str> = found.phases.iter().filter_map(|phase| phase.missing.as_deref()).collect();
     assert_eq!(missing.first(), Some(&"from HOME: no approach trajectory for the object at the location"));
     assert_eq!(missing.len(), 5, "{missing:?}");

@@ -3,7 +3,8 @@
 use std::{fmt, time::Duration};
 
 use executive::serial::{SerialCounts, SerialSettings};
-use rcs_core::{interface::t3i::LinkCounters, tick::TICK_MS};
+use interfaces::t3i::LinkCounters;
+use rcs_core::tick::TICK_MS;
 use serde::Serialize;
 
 /// An ACK that comes within a tick.

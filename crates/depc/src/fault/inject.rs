@@ -4,9 +4,10 @@
 //! other. A line holds bytes with the tick in which they are due; they leave it in order, and as many a tick as
 //! [`LinkBytes`] holds.
 
-use rcs_core::{Plain, interface::device::LinkBytes, tick::Tick};
+use rcs_core::{Plain, tick::Tick};
 
 use super::{ALWAYS, Direction, FaultKind, KINDS, Numbers, Plan, Rule};
+use crate::link::LinkBytes;
 
 /// Bytes that a line holds while it is late or stalls; further ones are lost.
 pub const LINE_BYTES: usize = 256;

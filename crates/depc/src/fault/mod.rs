@@ -10,14 +10,15 @@
 //! | `flip` | each byte | one bit of it is inverted | |
 //! | `duplicate` | each byte | the byte arrives twice | |
 //! | `delay` | each byte | the byte, and what is behind it, is late | how late |
-//! | `insert` | each tick | a byte arrives that nobody sent, a given one or any | |
+//! | `insert` | each tick | a byte arrives that was not sent, a given one or any | |
 //! | `truncate` | each tick that bears bytes | the end of them is lost, at least one byte | |
 //! | `stall` | each tick | nothing arrives; what was sent comes afterwards, in order | how long |
 //! | `cts-low` | each tick | the receiving end sees the other's DTR off | how long |
 //!
-//! A rule acts with a *rate*, the chance of each byte or tick; in a *window* of ticks; or both. In a window without a rate
-//! it acts on every byte or tick. A serial line does not reorder, and neither does the injector. In one tick the order is:
-//! truncate, then for each byte drop, flip, delay, duplicate, then insert, then stall.
+//! A rule acts with a *rate*, the chance of each byte or tick; in a *window* of ticks; or both. In a window
+//! without a rate it acts on every byte or tick. A serial line does not reorder, and neither does the
+//! injector. In one tick the order is: truncate, then for each byte drop, flip, delay, duplicate, then
+//! insert, then stall.
 //!
 //! With the feature `plan`, [`text`] reads a plan from a file.
 
@@ -53,7 +54,7 @@ pub enum FaultKind {
     Duplicate,
     /// A byte and what is behind it arrive later.
     Delay,
-    /// A byte arrives that nobody sent.
+    /// A byte arrives that was not sent.
     Insert,
     /// The end of what was sent in a tick is lost.
     Truncate,
@@ -251,8 +252,8 @@ impl Plan {
         Self { seed, ..Self::default() }
     }
 
-    /// The plan with at most `most` faults in a tick and direction (at least 1). With one, no frame is hit twice in a tick,
-    /// and the checksum sees every fault.
+    /// The plan with at most `most` faults in a tick and direction (at least 1). With one, no frame is hit
+    /// twice in a tick, and the checksum sees every fault.
     #[must_use]
     pub const fn most_per_tick(mut self, most: u8) -> Self {
         self.most_per_tick = if most == 0 { 1 } else { most };

@@ -24,9 +24,10 @@
 //!
 //! A fault needs a rate, a tick or a range of ticks. Without a rate it strikes every byte or tick of its range.
 //!
-//! The line is not all that can fail: the same file may hold faults of other kinds, of sensors, valves and parts. Who knows
-//! them reads the file as a [`Sheet`], takes the entries that are not the line's ([`Entry::is_of_line`]) for himself and
-//! leaves the others to [`Sheet::plan`]. A file for the line alone is read by [`load`].
+//! The line is not all that can fail: the same file may hold faults of other kinds, of sensors, valves and
+//! parts. Who knows them reads the file as a [`Sheet`], takes the entries that are not the line's
+//! ([`Entry::is_of_line`]) for himself and leaves the others to [`Sheet::plan`]. A file for the line alone is
+//! read by [`load`].
 
 use std::{
     io,

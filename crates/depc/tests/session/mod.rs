@@ -2,20 +2,20 @@
 
 #![allow(dead_code, unreachable_pub, reason = "each test uses a part of it")]
 
+use depc::link::{LinkBytes, LinkFault};
 use depc::{
     Limits, Plate,
-    controller::{Controller, ControllerInputs, ControllerState, JointProblem, Robot, Warning, joints_for},
+    controller::{Controller, ControllerInputs, ControllerState, Refusal, Robot, Warning, joints_for},
     fault::{Direction, Injector, Numbers, Plan},
     host::{ANSWER_TICKS, Host, HostEvent, Intent},
     step::{Position, step},
     wire::{DataCommand, NO_FUNCTION},
 };
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector, rotation_by},
-    interface::{device::LinkBytes, t3i::LinkFault},
     kinematics::{HOME_JOINTS, Joints, T3},
-    tick::Tick,
 };
+use rcs_core::tick::Tick;
 
 /// Ticks after which the operator answers a warning, or starts the program again.
 const OPERATOR_TICKS: u32 = 50;
@@ -32,11 +32,11 @@ pub struct Watched {
 }
 
 impl Robot for Watched {
-    fn present(&self) -> Plate {
+    fn present(&mut self) -> Plate {
         self.at
     }
 
-    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
+    fn accept(&mut self, goal: &Plate) -> Result<(), Refusal> {
         self.joints = joints_for(&T3, goal, &self.joints)?;
         let way = goal.to_frame().position - self.at.to_frame().position;
         assert!(way.norm() < 0.5601, "a jump of {} in", way.norm());

@@ -1,12 +1,13 @@
 //! What the boards exchange: the outputs of each process, doubled by tick parity, and what it remembers.
 //!
-//! Each process has one blackboard service with three entries: its outputs in even ticks, its outputs in odd ticks, its state.
-//! An entry is a byte image under the number of the tick that wrote it; iceoryx2 hands it over whole or not at all. A reader
-//! that finds another number than the one it needs takes nothing: then the process's outputs keep their old stamp, and its
-//! neighbours know it for lost (docs/design/handshake.md "Stamp").
+//! Each process has one blackboard service with three entries: its outputs in even ticks, its outputs in odd
+//! ticks, its state. An entry is a byte image under the number of the tick that wrote it; iceoryx2 hands it
+//! over whole or not at all. A reader that finds another number than the one it needs takes nothing: then the
+//! process's outputs keep their old stamp, and its neighbours know it for lost (docs/design/handshake.md
+//! "Stamp").
 //!
-//! A service belongs to the board on which the process runs, and bears the board's epoch in its name: a board that takes over
-//! from a killed one opens the next.
+//! A service belongs to the board on which the process runs, and bears the board's epoch in its name: a board
+//! that takes over from a killed one opens the next.
 
 use std::{fmt::Debug, marker::PhantomData};
 
@@ -15,21 +16,20 @@ use iceoryx2::{
     port::{reader::EntryHandle, writer::EntryHandleMut},
     prelude::ipc,
 };
+use interfaces::{CommonMemory, for_each_process, process::Process};
 use levels::{
     ladder::{LadderState, ProcessId},
     processes::*,
 };
 use rcs_core::{
-    Plain, for_each_process,
-    interface::CommonMemory,
+    Plain,
     plain::{DecodeError, Reader, Writer},
-    process::Process,
     tick::Tick,
 };
 use taskdata::files::TaskData;
 
 use super::{BOARDS, Board};
-use crate::memory::{SharedMemoryError, buffers::Epoch, runs::service_name};
+use crate::memory::{SharedMemoryError, layout::Epoch, runs::service_name};
 
 /// Who may read a board's blackboards: the other boards, board 0, and a board that takes over.
 pub(super) const READERS: usize = BOARDS + 2;
@@ -247,8 +247,8 @@ macro_rules! exchange {
                 )+ })
             }
 
-            /// Take over what the processes wrote in `tick`; the outputs of a process that did not write then stay as they
-            /// are. True if all did. Does not allocate.
+            /// Take over what the processes wrote in `tick`; the outputs of a process that did not write then
+            /// stay as they are. True if all did. Does not allocate.
             ///
             /// # Errors
             /// If there are bytes that no process writes.

@@ -1,12 +1,13 @@
 //! A board's side of `--boards split`: waits for the pulse and steps its processes.
 //!
-//! A board does what the ladder does on one board, with the same code ([`Ladder::step_in_order`]), for its own processes.
-//! Everything it needs to know of a tick comes with the pulse: the number, what came from outside, the generation of the task
-//! data. It never counts pulses and never looks at a clock.
+//! A board does what the ladder does on one board, with the same code ([`Ladder::step_in_order`]), for its
+//! own processes. Everything it needs to know of a tick comes with the pulse: the number, what came from
+//! outside, the generation of the task data. It never counts pulses and never looks at a clock.
 //!
-//! A board that takes over from a killed one in the middle of a run finds a pulse that the other has not answered. It latches
-//! the outputs of its predecessor, whose processes it starts anew: they adopt the numbers of the commands that they find and
-//! report that they were restarted (docs/design/handshake.md "Restart").
+//! A board that takes over from a killed one in the middle of a run finds a pulse that the other has not
+//! answered. It latches the outputs of its predecessor, whose processes it starts anew: they adopt the
+//! numbers of the commands that they find and report that they were restarted (docs/design/handshake.md
+//! "Restart").
 
 use std::{
     sync::atomic::{AtomicBool, Ordering},
@@ -14,14 +15,15 @@ use std::{
 };
 
 use iceoryx2::{node::Node, prelude::ipc};
+use interfaces::CommonMemory;
 use levels::ladder::{Ladder, ProcessId};
-use rcs_core::{Plain, interface::CommonMemory, plain::DecodeError, tick::Tick};
+use rcs_core::{Plain, plain::DecodeError, tick::Tick};
 use rustix::process::{Pid, Signal, getppid, set_parent_process_death_signal};
 use taskdata::files::TaskData;
 
 use super::{
     BOARDS, Board,
-    conductor::BOARD_0,
+    coordinator::BOARD_0,
     exchange::{Readers, Writers},
     pulse::{BoardReport, Fingerprint, PulseTaker, ReportWriter, RunCard, SystemPulse, sleep},
 };
@@ -29,7 +31,7 @@ use crate::{
     alloc::{self, Section},
     memory::{
         self, RunName, SharedMemoryError,
-        buffers::Epoch,
+        layout::Epoch,
         publish::FIRST_EPOCH,
         runs::{self, RunNode},
     },
@@ -70,7 +72,7 @@ pub enum MemberError {
         /// What iceoryx2 says.
         source: SharedMemoryError,
     },
-    /// Nobody knows what the devices of the board are to do.
+    /// What the devices of the board are to do is not known.
     #[error("{board} cannot be taken over: what it wrote in tick {last} is lost")]
     NothingToLatch {
         /// This board.
@@ -150,7 +152,8 @@ impl Member {
     /// Take a board's place in a run.
     ///
     /// # Errors
-    /// [`MemberError`] if there is no such run, if it runs with something else than `fingerprint`, or if the place is taken.
+    /// [`MemberError`] if there is no such run, if it runs with something else than `fingerprint`, or if the
+    /// place is taken.
     pub fn join(name: &RunName, board: Board, fingerprint: Fingerprint) -> Result<Self, MemberError> {
         runs::find_living(name)?;
         let node = runs::enter(name, board.name())?;
@@ -207,8 +210,8 @@ impl Member {
         self.card.real_time
     }
 
-    /// Step the board's processes, once a pulse, until the run is over. `data` gives a generation of the task data; `stop` asks
-    /// to leave. `punctual` says whether everything that real time needs was granted.
+    /// Step the board's processes, once a pulse, until the run is over. `data` gives a generation of the task
+    /// data; `stop` asks to leave. `punctual` says whether everything that real time needs was granted.
     ///
     /// # Errors
     /// [`MemberError`] if the run does what no run does.
@@ -268,8 +271,8 @@ impl Member {
         started.elapsed() < LOOK
     }
 
-    /// Open the neighbours that came, or came anew, since the last look; true if all are there. With the first time the board
-    /// is ready.
+    /// Open the neighbours that came, or came anew, since the last look; true if all are there. With the
+    /// first time the board is ready.
     fn follow(&mut self, pulse: &SystemPulse) -> bool {
         let Some(ports) = &mut self.ports else { return false };
         let (mut complete, mut changed) = (true, !self.report.ready);
@@ -279,7 +282,7 @@ impl Member {
             if place.as_ref().is_some_and(|(opened, _)| *opened == epoch) {
                 continue;
             }
-            // What cannot be opened is not there yet; until it is, whoever takes over may need what is open.
+            // What cannot be opened is not there yet; until it is, a successor may need what is open.
             match Readers::open(&ports.node, board, epoch) {
                 Ok(readers) => (*place, changed) = (Some((epoch, readers)), true),
                 Err(_) => complete = false,
@@ -348,7 +351,7 @@ fn latch(
 impl Drop for Member {
     fn drop(&mut self) {
         drop(self.ports.take());
-        // Board 0 or another board keeps the files; whoever leaves last removes them.
+        // Board 0 or another board keeps the files; the process that leaves last removes them.
         let _ = runs::remove_if_deserted(&self.name, &memory::layout());
     }
 }

@@ -8,10 +8,10 @@
 //! | 6     | Task, Subtask                                                                               |
 //! | 8     | Quick Change, the grippers; the Active Pedestal with its hand and table                     |
 //!
-//! The pedestal has a rack of its own in the original (III.2), on the other side of the factory network; here it shares the
-//! board of the grippers, since its hand is a gripper and a network is not what is tested.
+//! The pedestal has a rack of its own in the original (III.2), on the other side of the factory network; here
+//! it shares the board of the grippers, since its hand is a gripper and a network is not what is tested.
 //!
-//! A tick, seen from board 0 ([`conductor`]) and from one of the others ([`member`]):
+//! A tick, seen from board 0 ([`coordinator`]) and from one of the others ([`member`]):
 //!
 //! ```text
 //!   board 0                                     board n
@@ -24,15 +24,15 @@
 //!   gathers the halves of tick k: common memory
 //! ```
 //!
-//! So no board can be a tick ahead of another by more than one, and two halves are enough: while a fast board writes tick k, a
-//! slow one still reads k-1 from the other half ([`exchange`]). The pulse only wakes; what a board does follows from the number
-//! that it reads, so a pulse that is lost or comes twice changes nothing.
+//! So no board can be a tick ahead of another by more than one, and two halves are enough: while a fast board
+//! writes tick k, a slow one still reads k-1 from the other half ([`exchange`]). The pulse only wakes; what a
+//! board does follows from the number that it reads, so a pulse that is lost or comes twice changes nothing.
 //!
-//! The blackboards between the boards are not those that programs outside read ([`crate::memory`]): board 0 publishes common
-//! memory for them as in a run on one board. Whoever looks on sees the same services however the processes are spread, follows
-//! no board that is restarted, and cannot delay one.
+//! The blackboards between the boards are not those that programs outside read ([`crate::memory`]): board 0
+//! publishes common memory for them as in a run on one board. An observer sees the same services however the
+//! processes are spread, follows no board that is restarted, and cannot delay one.
 
-pub mod conductor;
+pub mod coordinator;
 pub mod exchange;
 pub mod member;
 pub mod pulse;
@@ -41,7 +41,7 @@ use std::{fmt, str::FromStr};
 
 use levels::ladder::ProcessId;
 
-pub use conductor::{Conductor, Lost, SplitError};
+pub use coordinator::{Coordinator, Lost, SplitError};
 pub use member::{Member, MemberError};
 pub use pulse::{Epochs, Fingerprint};
 

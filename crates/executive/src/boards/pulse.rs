@@ -1,10 +1,12 @@
 //! The system pulse (II.2.3) and the stamps that answer it.
 //!
-//! Board 0 owns the service `pulse`: what every board must know of the run ([`RunCard`]), and for each tick its number and what
-//! came from outside ([`SystemPulse`]). It needs no halves: the next pulse is not given before all boards have stamped this one.
-//! Each board owns a service with its [`BoardReport`], which it writes last in a tick.
+//! Board 0 owns the service `pulse`: what every board must know of the run ([`RunCard`]), and for each tick
+//! its number and what came from outside ([`SystemPulse`]). It needs no halves: the next pulse is not given
+//! before all boards have stamped this one. Each board owns a service with its [`BoardReport`], which it
+//! writes last in a tick.
 //!
-//! Two event services wake: `pulse/wake` the boards, `pulse/done` board 0. Events carry nothing; whoever wakes reads a number.
+//! Two event services wake: `pulse/wake` the boards, `pulse/done` board 0. Events carry nothing; a
+//! process that wakes reads a number.
 
 use std::{fmt::Debug, time::Duration};
 
@@ -14,7 +16,8 @@ use iceoryx2::{
     prelude::ipc,
     service::port_factory::event,
 };
-use rcs_core::{Plain, digest::Digest, interface::ExternalInputs, plain::DecodeError, tick::Tick};
+use interfaces::ExternalInputs;
+use rcs_core::{Plain, digest::Digest, plain::DecodeError, tick::Tick};
 use taskdata::load::Source;
 
 use super::{
@@ -23,7 +26,7 @@ use super::{
 };
 use crate::memory::{
     SharedMemoryError,
-    buffers::{Epoch, layout_version},
+    layout::{Epoch, layout_version},
     runs::service_name,
 };
 
@@ -161,10 +164,10 @@ fn notifier(
     event(node, service)?.notifier_builder().create().map_err(|error| failed(service)(&error))
 }
 
-/// Sleep until somebody notifies, or for so long. A signal ends it early.
+/// Sleep until a notification comes, or for so long. A signal ends it early.
 pub(super) fn sleep(listener: &Listener<ipc::Service>, at_most: Duration) {
-    // Who notified, and how often, does not matter: the caller looks at numbers. Without a listener that works it looks more
-    // often, but not all the time.
+    // Who notified, and how often, does not matter: the caller looks at numbers. Without a listener that
+    // works it looks more often, but not all the time.
     if listener.timed_wait(|_| (), at_most).is_err() {
         std::thread::sleep(at_most.min(Duration::from_millis(1)));
     }
@@ -204,8 +207,8 @@ impl PulseGiver {
         self.wake();
     }
 
-    /// Wake the boards once more. A board that cannot be woken, because it is gone or does not empty its socket, is found
-    /// by its missing stamp.
+    /// Wake the boards once more. A board that cannot be woken, because it is gone or does not empty its
+    /// socket, is found by its missing stamp.
     pub(super) fn wake(&self) {
         let _ = self.wake.notify();
     }

@@ -1,16 +1,10 @@
 //! The side of the others: look into a run without disturbing it.
 
-use rcs_core::{
-    interface::{CommonMemory, ExternalInputs},
-    plain::DecodeError,
-};
+use interfaces::{CommonMemory, ExternalInputs};
+use rcs_core::plain::DecodeError;
 
 use super::{
-    buffers::{Pulse, Readers},
-    error::SharedMemoryError,
-    name::RunName,
-    place,
-    publish::FIRST_EPOCH,
+    buffers::Readers, error::SharedMemoryError, layout::Pulse, name::RunName, place, publish::FIRST_EPOCH,
     runs,
 };
 
@@ -59,16 +53,16 @@ impl Attached {
         &self.name
     }
 
-    /// Common memory as one tick left it: all processes bear its stamp, but for those of a pedestal in another system that does
-    /// not answer, which bear an older one.
+    /// Common memory as one tick left it: all processes bear its stamp, but for those of a pedestal in
+    /// another system that does not answer, which bear an older one.
     ///
     /// # Errors
     /// [`ReadError`].
     pub fn memory(&self) -> Result<CommonMemory, ReadError> {
         let Some(Ports { readers, .. }) = &self.ports else { return Err(ReadError::Busy) };
         for _ in 0..ATTEMPTS {
-            // What is written last is read first, and what is written first is read last: if both are of one tick, so is all
-            // between them.
+            // What is written last is read first, and what is written first is read last: if both are of one
+            // tick, so is all between them.
             let tick = readers.executive.read()?.tick;
             let memory = readers.processes()?;
             if readers.outside.read()?.tick == tick {

@@ -2,19 +2,14 @@
 
 use std::{fmt::Debug, io, path::PathBuf, time::Duration};
 
-use super::name::{RUN_NAME_MAX, RunName};
+use super::name::{NameError, RunName};
 
 /// Why common memory is not shared.
 #[derive(Debug, thiserror::Error)]
 pub enum SharedMemoryError {
     /// A name that no run can have.
-    #[error(
-        "a run's name has 1 to {RUN_NAME_MAX} letters, digits, dots, hyphens or underscores, {0:?} is not one"
-    )]
-    BadName(String),
-    /// A path that iceoryx2 does not take.
-    #[error("{0:?} cannot be used for shared memory: the path is too long or has unusual characters")]
-    BadPath(PathBuf),
+    #[error(transparent)]
+    BadName(#[from] NameError),
     /// No living run of that name, or none at all.
     #[error("there is no run{}: {}", .run.as_ref().map_or_else(String::new, |run| format!(" named {run}")), alive_in_words(.alive))]
     NoSuchRun {
@@ -38,7 +33,7 @@ pub enum SharedMemoryError {
     /// The node could not be created.
     #[error("iceoryx2 could not be started in {place:?}: {what}")]
     Node {
-        /// Directory of the run.
+        /// Its directory.
         place: PathBuf,
         /// What iceoryx2 says.
         what: String,

@@ -2,7 +2,8 @@
 //!
 //! `iox2`, the tool of iceoryx2 (`cargo install iceoryx2-cli`), lists nodes and services of a run, but shows
 //! no values of blackboards. So a thread of its own, far from the tick, sums up ten times a second what was
-//! published last ([`Status`]) and publishes the sum as one JSON object, on the service [`SERVICE`]. `iox2` finds a run by the configuration file that the mirror writes into the run's directory:
+//! published last ([`Status`]) and publishes the sum as one JSON object, on the service [`SERVICE`]. `iox2`
+//! finds a run by the configuration file that the mirror writes into the run's directory:
 //!
 //! ```sh
 //! cd "$(rcs-run status --directory)"
@@ -12,7 +13,7 @@
 //! ```
 //!
 //! The mirror is a convenience inside the program that moves a robot, so it must not be what ends it: it reads
-//! what the tick left for it in this program's own memory, where nobody else can write; its shared memory is laid
+//! what the tick left for it in this program's own memory, where no other process can write; its shared memory is laid
 //! out beforehand and never grows, and it is silent while there is so little of it that a new subscriber could not
 //! be given his.
 

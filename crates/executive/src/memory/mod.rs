@@ -6,21 +6,24 @@
 //! the devices, the executive) has one iceoryx2 *blackboard* service: latest value, one writer, no
 //! allocation. Its buffers are the keys.
 //!
-//! A value is bytes, never a Rust structure: a [`Header`](rcs_core::interface::Header) with the tick that
+//! A value is bytes, never a Rust structure: a [`Header`](interfaces::Header) with the tick that
 //! wrote it, then the buffer's byte image (`rcs_core::record`). So there is no padding, no pointer and no
 //! enum that another program could make illegal; a reader decodes with checks.
 //!
-//! * [`buffers`]: which buffers there are, and how they are written and read;
+//! * [`mod@layout`]: which services there are, [`buffers`]: how they are written and read;
 //! * [`publish`]: the side of the run;
 //! * [`attach`]: the side of the others;
 //! * [`mirror`]: the status for programs that know nothing of the buffers;
 //! * [`name`], [`place`]: names, directories, prefixes, and that they are this user's alone;
 //! * [`presence`]: which programs of a run live;
-//! * [`runs`]: entering, finding and removing runs.
+//! * [`runs`]: entering, finding and removing runs;
+//! * [`limit`]: how long setting up may take.
 
 pub mod attach;
 pub mod buffers;
 mod error;
+pub mod layout;
+pub mod limit;
 pub mod mirror;
 mod name;
 mod place;
@@ -30,9 +33,10 @@ pub mod runs;
 
 pub use attach::{Attached, ReadError};
 pub use error::SharedMemoryError;
+pub use limit::{OnStuck, SET_UP_LIMIT, within_limit};
 pub use mirror::Mirror;
-pub use name::RunName;
-pub(crate) use place::{have_room, have_sockets, reserve};
+pub use name::{NameError, RunName};
+pub(crate) use place::{have_room, reserve};
 pub use place::{layout, prefix, root};
 pub use publish::Publisher;
 pub use runs::{clean, clean_objects, list, traces};

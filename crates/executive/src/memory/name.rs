@@ -2,10 +2,16 @@
 
 use std::{fmt, str::FromStr};
 
-use super::error::SharedMemoryError;
-
 /// Most characters of a run's name. The path of an event's socket holds it, and Linux gives such a path 107 bytes.
 pub const RUN_NAME_MAX: usize = 28;
+
+/// A text that is no name of a run.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "a run's name has 1 to {RUN_NAME_MAX} letters, digits, dots, hyphens or underscores, {0:?} is not one"
+)]
+pub struct NameError(pub String);
+
 /// Name of a run: letters, digits, dots, hyphens and underscores.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RunName(String);
@@ -34,13 +40,13 @@ fn is_name_character(c: char) -> bool {
 }
 
 impl FromStr for RunName {
-    type Err = SharedMemoryError;
+    type Err = NameError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let good = (1..=RUN_NAME_MAX).contains(&text.len())
             && text.chars().all(is_name_character)
             && text.starts_with(|c: char| c.is_ascii_alphanumeric());
-        if good { Ok(Self(text.to_owned())) } else { Err(SharedMemoryError::BadName(text.to_owned())) }
+        if good { Ok(Self(text.to_owned())) } else { Err(NameError(text.to_owned())) }
     }
 }
 
@@ -58,7 +64,7 @@ mod tests {
     fn names_are_checked() {
         assert!("linkbar-17".parse::<RunName>().is_ok());
         for bad in ["", "a/b", "..", "-x", "ab cd", &"x".repeat(RUN_NAME_MAX + 1)] {
-            assert!(matches!(bad.parse::<RunName>(), Err(SharedMemoryError::BadName(_))), "{bad:?}");
+            assert!(matches!(bad.parse::<RunName>(), Err(NameError(_))), "{bad:?}");
         }
         let long = RunName::unique(&"job with blanks ".repeat(5));
         assert!(long.as_str().len() <= RUN_NAME_MAX && long.as_str().parse::<RunName>().is_ok(), "{long}");

@@ -1,8 +1,13 @@
-//! Where runs live: a directory for the files of iceoryx2, a prefix for the names of objects in shared memory, and
-//! the checks that both belong to this user alone.
+//! Where runs live: a directory that lists them by name, a prefix for the names of objects in shared memory, a
+//! directory
+//! among these for the files of iceoryx2, and the checks that all belong to this user alone.
 //!
-//! The prefix is a hash over a random number in the directory of runs. So runs under another `TMPDIR` never meet, also not
-//! in containers that share `/dev/shm`, and another user cannot take a name before the run does.
+//! The files of iceoryx2 do not lie under `TMPDIR`: there are sockets among them, whose paths have 107 bytes at most,
+//! and it panics over paths of more than 255 bytes.
+//!
+//! The prefix is a hash over a random number in the directory of runs. So runs under another `TMPDIR` never
+//! meet, also not in containers that share `/dev/shm`, and another user cannot take a name before the run
+//! does.
 
 use std::{
     fs::{self, DirBuilder, File, Metadata, OpenOptions, Permissions, TryLockError},
@@ -19,16 +24,15 @@ use rustix::{
     process::geteuid,
 };
 
-use super::{buffers::layout_version, error::SharedMemoryError, name::RunName};
+use super::{error::SharedMemoryError, layout::layout_version, name::RunName};
 
 /// Where Linux keeps shared memory objects.
 pub(super) const SHARED_MEMORY: &str = "/dev/shm";
-/// Bytes of shared memory that must be free before a run makes its objects: more than twice what they take.
+/// Bytes of shared memory that must be free before a run makes its objects, which take 1.2 MB with boards and less
+/// without.
 const NEEDED: u64 = 2 * 1024 * 1024;
-/// Bytes of a path that a socket can have.
-const SOCKET_PATH: usize = 107;
-/// Most bytes that iceoryx2 puts between a prefix and the end of a socket's path: a number of 31 digits and `.event`.
-const SOCKET_NAME: usize = 37;
+/// What follows the prefix in the name of the directory of iceoryx2.
+const FILES: &str = "files";
 /// Longest wait for a lock that is held for milliseconds.
 pub(super) const LOCK_LIMIT: Duration = Duration::from_secs(5);
 /// Time between two attempts at a lock.
@@ -51,6 +55,11 @@ pub fn layout() -> String {
 /// Directory of a run.
 pub(super) fn place(name: &RunName, layout: &str) -> PathBuf {
     root().join(format!("{name}@{layout}"))
+}
+
+/// Directory of the files that iceoryx2 makes for the run with this prefix.
+pub(super) fn files(prefix: &str) -> PathBuf {
+    Path::new(SHARED_MEMORY).join(format!("{prefix}{FILES}"))
 }
 
 /// What the names of a run's objects in shared memory start with: short, since it stands in paths of sockets too.
@@ -122,8 +131,12 @@ pub(super) fn have_salt() -> Result<(), SharedMemoryError> {
 }
 
 /// The directory of runs is there, and this user's alone.
-pub(super) fn own_root() -> Result<(), SharedMemoryError> {
-    let path = root();
+fn own_root() -> Result<(), SharedMemoryError> {
+    own_directory(root())
+}
+
+/// A directory is there, and this user's alone.
+pub(super) fn own_directory(path: PathBuf) -> Result<(), SharedMemoryError> {
     let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
     match DirBuilder::new().mode(0o700).create(&path) {
         Ok(()) => return Ok(()),
@@ -165,10 +178,12 @@ fn alone(path: &Path, found: &Metadata) -> Result<(), SharedMemoryError> {
     Err(SharedMemoryError::NotOurs { path: path.to_owned(), what })
 }
 
-/// All objects of a run are regular files of this user's alone.
+/// All objects of a run are regular files of this user's alone, but for the directory of iceoryx2.
 pub(super) fn own_objects(prefix: &str) -> Result<(), SharedMemoryError> {
+    let directory = files(prefix);
     for path in objects(prefix) {
         match fs::symlink_metadata(&path) {
+            Ok(found) if path == directory && found.is_dir() => alone(&path, &found)?,
             Ok(found) => ours(&path, &found)?,
             // A reader that has just left takes its object with it.
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
@@ -178,8 +193,8 @@ pub(super) fn own_objects(prefix: &str) -> Result<(), SharedMemoryError> {
     Ok(())
 }
 
-/// Name behind the prefix, and first bytes, of the object that iceoryx2 0.10.0 keeps for all nodes of a run: its version and
-/// a counter.
+/// Name behind the prefix, and first bytes, of the object that iceoryx2 0.10.0 keeps for all nodes of a run:
+/// its version and a counter.
 const NODES: (&str, [u8; 16]) = (
     "9204dd183d1c4d8e1ff592a30766ffa6765aa8b5_node.0_10_0.global_mgmt",
     [0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0],
@@ -196,13 +211,6 @@ pub(super) fn have_nodes(prefix: &str) -> Result<(), SharedMemoryError> {
     }
 }
 
-/// See that events of a run can have their sockets.
-pub(crate) fn have_sockets(name: &RunName) -> Result<(), SharedMemoryError> {
-    let (place, prefix) = (place(name, &layout()), prefix(name, &layout()));
-    let longest = place.as_os_str().len() + 1 + prefix.len() + SOCKET_NAME;
-    if longest > SOCKET_PATH { Err(SharedMemoryError::BadPath(place)) } else { Ok(()) }
-}
-
 /// See that there is shared memory for a run. A page that the system cannot lay under an object when it is
 /// first touched ends the program with a bus error, so one has to ask beforehand.
 pub(crate) fn have_room() -> Result<(), SharedMemoryError> {
@@ -214,7 +222,8 @@ pub(crate) fn have_room() -> Result<(), SharedMemoryError> {
 /// Have the system lay pages under all objects of a run, so that none is missing when it is first touched.
 pub(crate) fn reserve(name: &RunName) -> Result<(), SharedMemoryError> {
     let prefix = prefix(name, &layout());
-    for path in objects(&prefix) {
+    let directory = files(&prefix);
+    for path in objects(&prefix).filter(|path| *path != directory) {
         let failed = |source| SharedMemoryError::Io { path: path.clone(), source };
         let file = match File::options().read(true).write(true).open(&path) {
             // Of a board that has left meanwhile.

@@ -3,11 +3,12 @@
 
 use std::sync::{Arc, Mutex, TryLockError};
 
-use rcs_core::interface::{CommonMemory, ExternalInputs};
+use interfaces::{CommonMemory, ExternalInputs};
 
 use super::{
-    buffers::{Epoch, Pulse, Writers},
+    buffers::Writers,
     error::SharedMemoryError,
+    layout::{Epoch, Pulse},
     name::RunName,
     place, runs,
 };
@@ -23,8 +24,9 @@ pub(super) struct Published {
     pub pulse: Pulse,
 }
 
-/// What was published last, for other threads of this program: nothing that somebody else writes into shared memory gets in
-/// here. Neither side ever waits for the other, so that no tick is late because of a thread that looks.
+/// What was published last, for other threads of this program: nothing that another process writes into shared
+/// memory gets in here. Neither side ever waits for the other, so that no tick is late because of a thread
+/// that looks.
 #[derive(Default)]
 pub(super) struct Window(Mutex<Published>);
 
@@ -41,7 +43,7 @@ impl Window {
 }
 
 /// The writers of all buffers of a run. Dropping it ends the run in shared memory: readers that are still
-/// attached see [`Pulse::over`], and whoever leaves last removes the files.
+/// attached see [`Pulse::over`], and the process that leaves last removes the files.
 pub struct Publisher {
     name: RunName,
     // Taken out before the files are removed: iceoryx2 must have let go of them by then.

@@ -1,10 +1,15 @@
 //! How runs are entered, found and removed.
 //!
-//! Every run has a name, a directory of its own, and its own prefix of names in shared memory ([`place`](super::place)). A run
-//! lives as long as a program holds a role in it ([`presence`](super::presence)). What lives no more is removed by name;
-//! nothing of it is opened.
+//! Every run has a name, a directory of its own, and its own prefix of names in shared memory
+//! ([`super::place`]). A run lives as long as a program holds a role in it
+//! ([`super::presence`]). What lives no more is removed by name; nothing of it is opened.
 
-use std::{fs, io, ops::Deref, path::PathBuf};
+use std::{
+    fs, io,
+    ops::Deref,
+    os::unix::ffi::OsStrExt as _,
+    path::{self, PathBuf},
+};
 
 use iceoryx2::{
     config::Config,
@@ -14,10 +19,12 @@ use iceoryx2::{
 };
 
 use super::{
-    buffers::Epoch,
     error::SharedMemoryError,
+    layout::Epoch,
     name::RunName,
-    place::{have_nodes, have_salt, layout, lock, objects, own_objects, place, prefix, root},
+    place::{
+        files, have_nodes, have_salt, layout, lock, objects, own_directory, own_objects, place, prefix, root,
+    },
     presence::{self, Presence},
 };
 
@@ -70,12 +77,12 @@ pub fn traces(name: &RunName) -> Vec<PathBuf> {
 
 /// The configuration under which all of a run's files and objects are its own.
 pub(super) fn config(name: &RunName) -> Result<Config, SharedMemoryError> {
-    let place = place(name, &layout());
-    let bad = || SharedMemoryError::BadPath(place.clone());
+    let prefix = prefix(name, &layout());
+    let place = files(&prefix);
+    let failed = |error| SharedMemoryError::Node { place: place.clone(), what: format!("{error:?}") };
     let mut config = Config::default();
-    config.global.prefix = FileName::new(prefix(name, &layout()).as_bytes()).map_err(|_| bad())?;
-    let path = place.to_str().ok_or_else(bad)?;
-    config.global.set_root_path(&Path::new(path.as_bytes()).map_err(|_| bad())?);
+    config.global.prefix = FileName::new(prefix.as_bytes()).map_err(failed)?;
+    config.global.set_root_path(&Path::new(place.as_os_str().as_bytes()).map_err(failed)?);
     Ok(config)
 }
 
@@ -86,9 +93,11 @@ pub(crate) fn enter(name: &RunName, role: &str) -> Result<RunNode, SharedMemoryE
     let _lock = lock()?;
     have_salt()?;
     let (place, prefix, config) = (place(name, &layout()), prefix(name, &layout()), config(name)?);
-    let failed = |what: String| SharedMemoryError::Node { place: place.clone(), what };
+    let directory = files(&prefix);
+    let failed = |what: String| SharedMemoryError::Node { place: directory.clone(), what };
     let presence = Presence::enter(&prefix, role)?;
-    fs::create_dir_all(&place).map_err(|source| SharedMemoryError::Io { path: place.clone(), source })?;
+    fs::create_dir_all(&place).map_err(|source| SharedMemoryError::Io { path: place, source })?;
+    own_directory(directory.clone())?;
     have_nodes(&prefix)?;
     own_objects(&prefix)?;
     let role = role.try_into().map_err(|error| failed(format!("{error:?}")))?;
@@ -171,7 +180,8 @@ pub fn clean() -> Result<Cleaned, SharedMemoryError> {
     Ok(cleaned)
 }
 
-/// Remove the objects of killed runs whose directory is gone or lies under another `TMPDIR`; says how many runs these were.
+/// Remove the objects of killed runs whose directory is gone or lies under another `TMPDIR`; says how many
+/// runs these were.
 ///
 /// # Errors
 /// [`SharedMemoryError::Io`] with the first object that could not be removed.
@@ -190,9 +200,7 @@ pub(crate) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, S
         return Ok(false);
     }
     remove_objects(&prefix)?;
-    let is_directory = fs::symlink_metadata(&place).is_ok_and(|found| found.is_dir());
-    let removed = if is_directory { fs::remove_dir_all(&place) } else { fs::remove_file(&place) };
-    match removed {
+    match remove(&place) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => {
             Err(SharedMemoryError::Io { path: place, source })
         }
@@ -200,10 +208,16 @@ pub(crate) fn remove_if_deserted(name: &RunName, layout: &str) -> Result<bool, S
     }
 }
 
+/// Removes a directory with all that is in it, or a file.
+fn remove(path: &path::Path) -> io::Result<()> {
+    let is_directory = fs::symlink_metadata(path).is_ok_and(|found| found.is_dir());
+    if is_directory { fs::remove_dir_all(path) } else { fs::remove_file(path) }
+}
+
 /// Removes the objects of a run.
 fn remove_objects(prefix: &str) -> Result<(), SharedMemoryError> {
     for path in objects(prefix) {
-        match fs::remove_file(&path) {
+        match remove(&path) {
             Err(source) if source.kind() != io::ErrorKind::NotFound => {
                 return Err(SharedMemoryError::Io { path, source });
             }

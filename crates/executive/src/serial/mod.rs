@@ -29,7 +29,7 @@ use std::{
     time::Duration,
 };
 
-use rcs_core::interface::device::LinkBytes;
+use interfaces::device::LinkBytes;
 use rustix::{
     event::{PollFd, PollFlags, Timespec, poll},
     fs::{Mode, OFlags},
@@ -177,7 +177,7 @@ impl SerialLine {
     }
 
     /// True if not all bytes of the last [`SerialLine::send`] went out: `link_unsent` of
-    /// [`rcs_core::interface::DeviceInputs`].
+    /// [`interfaces::DeviceInputs`].
     #[must_use]
     pub const fn has_unsent(&self) -> bool {
         self.unsent

@@ -1,7 +1,7 @@
 //! What several tests of this crate need.
 
+use interfaces::{CommonMemory, Header};
 use levels::ladder::PROCESS_COUNT;
-use rcs_core::interface::{CommonMemory, Header};
 
 /// The headers of all processes.
 pub const fn headers(memory: &mut CommonMemory) -> [&mut Header; PROCESS_COUNT] {

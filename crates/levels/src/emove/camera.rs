@@ -1,14 +1,11 @@
 //! LOCATE-OBJ's outputs (V.2.1): pictures and the moves of the camera between them.
 
-use rcs_core::{
-    frame::Frame,
-    interface::{
-        EmoveOutputs,
-        device::Picture,
-        emove::{EmoveCommand, Located},
-        prim::PrimVerb,
-    },
-    pose::Pose,
+use geometry::{frame::Frame, pose::Pose};
+use interfaces::{
+    CommonMemory, EmoveOutputs,
+    device::Picture,
+    emove::{EmoveCommand, Located},
+    prim::{PrimReport, PrimVerb},
     process::Inputs,
 };
 use taskdata::files::{MovtabId, TaskData, TrajParaId};
@@ -32,6 +29,14 @@ pub(super) struct Aim {
 }
 
 impl State {
+    /// A robot controller that was switched off has let the arm sink, perhaps onto what the camera has seen: the
+    /// pictures no longer count.
+    pub(super) fn sense_pictures(&mut self, memory: &CommonMemory) {
+        if memory.prim.status.report == PrimReport::T3LinkOff {
+            self.beliefs.located = None;
+        }
+    }
+
     /// From where the camera is moved next, and how; `None` if the resolvers or the task data do not say.
     pub(super) fn aim(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Aim> {
         let data = inputs.data;

@@ -10,13 +10,13 @@
 //!
 //! All points follow from the pose of the drum's location and the relative moves of the four tool commands.
 
-use rcs_core::{
+use geometry::{
     frame::{Frame, norm},
-    interface::{
-        CommonMemory,
-        emove::{EmoveCommand, EmoveVerb, GoneTo, RobotPlace},
-    },
     pose::Pose,
+};
+use interfaces::{
+    CommonMemory,
+    emove::{EmoveCommand, EmoveVerb, GoneTo, RobotPlace},
     process::Inputs,
 };
 use taskdata::files::TaskData;

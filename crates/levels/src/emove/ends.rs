@@ -1,10 +1,8 @@
 //! What E-move notes when a command ends: where the robot is, and what it has taken hold of.
 
-use rcs_core::{
-    interface::{
-        EmoveOutputs,
-        emove::{EmoveCommand, GoneTo, Grasped, ObjectGrip},
-    },
+use interfaces::{
+    EmoveOutputs,
+    emove::{EmoveCommand, GoneTo, Grasped, ObjectGrip},
     process::Inputs,
 };
 use taskdata::files::TaskData;

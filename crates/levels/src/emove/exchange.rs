@@ -9,13 +9,13 @@
 //!
 //! All points follow from the pose of the holster and the relative moves of the two commands.
 
-use rcs_core::{
+use geometry::{
     frame::{Frame, norm},
-    interface::{
-        CommonMemory,
-        emove::{EmoveCommand, EmoveVerb, Exchange},
-    },
     pose::Pose,
+};
+use interfaces::{
+    CommonMemory,
+    emove::{EmoveCommand, EmoveVerb, Exchange},
     process::Inputs,
 };
 use taskdata::files::TaskData;

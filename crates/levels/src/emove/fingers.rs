@@ -3,16 +3,14 @@
 
 use core::mem;
 
-use rcs_core::{
-    handshake::Lower,
-    interface::{
-        CommonMemory,
-        emove::{EmoveCommand, EmoveVerb, Grasped, Holding, PlacedObject, RobotPlace},
-        grip::Felt,
-        quick_change::RingPosition,
-    },
+use interfaces::{
+    CommonMemory,
+    emove::{EmoveCommand, EmoveVerb, Grasped, Holding, PlacedObject, RobotPlace},
+    grip::Felt,
     process::Inputs,
+    quick_change::RingPosition,
 };
+use rcs_core::handshake::Lower;
 use taskdata::files::{EndEffId, EndEffPara, TaskData};
 
 use super::{
@@ -74,6 +72,10 @@ impl State {
             // A ring that is open takes a gripper only in its holster, where none is left that may hold
             // something.
             (self.beliefs.empty, self.beliefs.grasping) = (is_open(memory), None);
+            if attached != Gripper::None {
+                // Its process wakes, and answers nothing that it was told before it was left.
+                self.grippers.to = Gripper::None;
+            }
         }
         // Before the fingers have closed they feel nothing: that says nothing of what they will hold.
         let closing =

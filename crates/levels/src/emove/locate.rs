@@ -4,13 +4,13 @@
 //! from the tool frame at which a picture was taken to the place in the middle of the picture; no other
 //! mounting data of the camera is needed. Vision answers in the axes of that place.
 
-use rcs_core::{
+use geometry::{
     frame::{Frame, Rotation, Vector},
-    interface::{
-        device::{Picture, VisionRequest, VisionResponse},
-        emove::EmoveCommand,
-    },
     units::{inches, radians},
+};
+use interfaces::{
+    device::{Picture, VisionRequest, VisionResponse},
+    emove::EmoveCommand,
 };
 use taskdata::files::{MovtabId, TaskData, VisionId, VisionPara};
 

@@ -27,12 +27,14 @@
 //! * [`tables`]: the decision tables, a file a command;
 //! * [`postprocess`], [`camera`] and [`ends`]: the outputs that a row asks for.
 
+pub mod back;
 pub mod camera;
 pub mod drum;
 pub mod ends;
 pub mod exchange;
 pub mod fingers;
 pub mod gripper;
+pub mod grippers;
 pub mod locate;
 pub mod order;
 pub mod plan;
@@ -42,17 +44,18 @@ pub mod relative;
 pub mod robot_place;
 pub mod route;
 pub mod state;
+pub mod surroundings;
 pub mod tables;
 #[cfg(test)]
 mod tests;
 pub mod way;
 pub mod whereabouts;
 
-use rcs_core::{
-    interface::EmoveOutputs,
+use interfaces::{
+    EmoveOutputs,
     process::{Inputs, Process},
-    table::{Table, Variables as _, Verdict},
 };
+use rcs_core::table::{Table, Variables as _, Verdict};
 use taskdata::files::TaskData;
 
 use self::{

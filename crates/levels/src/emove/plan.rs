@@ -1,19 +1,18 @@
 //! What a command needs, looked up when it comes: nothing moves for a command that cannot be executed.
 
-use rcs_core::{
-    frame::Frame,
-    interface::{
-        CommonMemory,
-        emove::{EmoveCommand, EmoveVerb},
-        pose_range,
-        quick_change::RingPosition,
-    },
-    name::Name10,
+use geometry::frame::Frame;
+use interfaces::{
+    CommonMemory,
+    emove::{EmoveCommand, EmoveVerb},
+    pose_range,
     process::Inputs,
+    quick_change::RingPosition,
 };
+use rcs_core::name::Name10;
 use taskdata::files::{PoseId, TaskData};
 
 use super::{
+    back::Back,
     fingers::{gripper_on, sizes},
     gripper::Gripper,
     locate::view_of,
@@ -24,7 +23,6 @@ use super::{
     tables::{
         Attached, Coupling, Exchange, HolsterData, Knowledge, Ordered, Record, Request, Target, ToolWork,
     },
-    way::Back,
 };
 use crate::execution::Asked;
 

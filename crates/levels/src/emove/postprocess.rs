@@ -1,18 +1,16 @@
 //! Postprocess of E-move: commands to Prim, the gripper and Quick Change, and the status to Subtask.
 
-use rcs_core::{
-    handshake::Lower,
-    interface::{
-        ChangingPose, EmoveOutputs, Reason, Report,
-        device::Picture,
-        emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject},
-        pose_range,
-        prim::{PrimCommand, PrimReport, PrimVerb},
-        quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
-    },
-    pose::Pose,
+use geometry::pose::Pose;
+use interfaces::{
+    ChangingPose, EmoveOutputs, Reason, StatusReport,
+    device::Picture,
+    emove::{EmoveCommand, EmoveStatus, EmoveVerb, GoneTo, Located, LocatedObject},
+    pose_range,
+    prim::{PrimCommand, PrimReport, PrimVerb},
     process::Inputs,
+    quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb},
 };
+use rcs_core::handshake::Lower;
 use taskdata::files::{TaskData, TrajParaId};
 
 use super::{
@@ -302,18 +300,18 @@ impl State {
     /// done before; a command that was given up for it ends in an error and is not resumed
     /// (docs/design/ownership.md "Joystick box"). A link that fails while E-PAUSE stands is no failure of it:
     /// the reason stands beside `done`.
-    fn outcome(&self, inputs: &Inputs<'_, TaskData<'_>>) -> (Report, Reason) {
+    fn outcome(&self, inputs: &Inputs<'_, TaskData<'_>>) -> (StatusReport, Reason) {
         let execution = &self.execution;
         let prim = &inputs.memory.prim;
         let taken =
             prim.status.report == PrimReport::JoystickOn && prim.header.stamp == inputs.tick.previous();
         match (taken, execution.outcome) {
-            (true, Outcome::Done | Outcome::Joystick) => (Report::JoystickOn, Reason::JoystickOn),
-            (false, Outcome::Joystick) => (Report::Error, Reason::JoystickOn),
+            (true, Outcome::Done | Outcome::Joystick) => (StatusReport::JoystickOn, Reason::JoystickOn),
+            (false, Outcome::Joystick) => (StatusReport::Error, Reason::JoystickOn),
             (false, Outcome::Done) if inputs.memory.subtask.emove.command == EmoveVerb::Pause => {
                 let below =
                     self.prim.read(inputs.tick, &prim.header, prim.status.echo, prim.status.report.lower());
-                (Report::Done, if below == Lower::Error { prim.status.reason } else { Reason::None })
+                (StatusReport::Done, if below == Lower::Error { prim.status.reason } else { Reason::None })
             }
             _ => (execution.report(), execution.reason),
         }
@@ -338,7 +336,12 @@ impl State {
                 record,
                 array,
             }),
-            end_effector_id: inputs.memory.quick_change.status.end_effector_id,
+            // Pins with a bad contact do not make the robot bare: Subtask would fetch the gripper that is on.
+            end_effector_id: if self.is_misread(inputs.memory) {
+                self.attached.id()
+            } else {
+                inputs.memory.quick_change.status.end_effector_id
+            },
             at: self.place().as_ref().map(standing),
             exchange: self.changing(inputs.memory),
             drum: self.is_around_tool(inputs.memory, inputs.data),

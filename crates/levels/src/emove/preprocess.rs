@@ -2,18 +2,16 @@
 
 use core::mem;
 
-use rcs_core::{
-    handshake::Lower,
-    interface::{
-        CommonMemory, EmoveOutputs,
-        device::VisionStatus,
-        emove::{EmoveCommand, EmoveVerb, GoneTo},
-        prim::{JoystickGrip, PrimReport, PrimVerb},
-        quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
-    },
-    pose::Pose,
+use geometry::pose::Pose;
+use interfaces::{
+    CommonMemory, EmoveOutputs,
+    device::VisionStatus,
+    emove::{EmoveCommand, EmoveVerb, GoneTo, RobotPlace},
+    prim::{JoystickGrip, PrimReport, PrimVerb},
     process::Inputs,
+    quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
 };
+use rcs_core::handshake::Lower;
 use taskdata::files::TaskData;
 
 use super::{
@@ -46,6 +44,10 @@ const MAX_TRIES: u8 = 3;
 /// Ticks for which a GO-UNTIL may stay not-detected (1 s): the robot stands, and what has not come by then
 /// does not come.
 const PATIENCE: u32 = 25;
+/// A picture says where a part is if the robot is within this of where it was sent, in …
+const STANDS_INCHES: f64 = 0.1;
+/// … and radians (half a degree).
+const STANDS_RADIANS: f64 = 0.5 * core::f64::consts::PI / 180.0;
 /// Bits of the four sensors of a holster (V.1.2).
 const HOLSTER_SENSORS: u8 = 0x0F;
 
@@ -78,6 +80,7 @@ impl State {
         self.adopt(inputs.memory, outputs);
         self.sense_neighbours(inputs);
         self.sense_way(inputs.memory);
+        self.sense_pictures(inputs.memory);
         self.sense_held(command, inputs);
         let watch = self.sense_place(command, inputs);
         self.sense_exchange(inputs);
@@ -242,7 +245,7 @@ impl State {
             shut: self.shut(command, inputs),
             at: self.at(command),
             drum: self.at_drum(command, inputs),
-            sight: sight(inputs),
+            sight: sight(self.beliefs.place.as_ref(), inputs),
             aim: known(self.aim(command, inputs).is_some()),
             tries: if self.tries.saturating_add(1) < MAX_TRIES { Tries::Left } else { Tries::Spent },
             link: if memory.prim.status.link_running { Link::Up } else { Link::Down },
@@ -338,12 +341,24 @@ impl State {
     }
 }
 
+/// Does the robot stand where it was sent, as far as that is known? An arm that sinks has moved since the
+/// picture was taken.
+fn is_where_sent(place: Option<&RobotPlace>, memory: &CommonMemory) -> bool {
+    let sent = place.and_then(|place| place.pose.to_frame().ok());
+    match (sent, present_frame(memory)) {
+        (Some(sent), Some(present)) => near(&sent, &present, STANDS_INCHES, STANDS_RADIANS),
+        _ => true,
+    }
+}
+
 /// What vision has answered.
-fn sight(inputs: &Inputs<'_, TaskData<'_>>) -> Sight {
+fn sight(place: Option<&RobotPlace>, inputs: &Inputs<'_, TaskData<'_>>) -> Sight {
     let (request, answer) = (&inputs.memory.emove.vision, &inputs.external.devices.vision);
     match answer.status {
         VisionStatus::NotRecognised => Sight::Unrecognised,
-        VisionStatus::Done if !is_plausible(request, answer) => Sight::Implausible,
+        VisionStatus::Done if !is_plausible(request, answer) || !is_where_sent(place, inputs.memory) => {
+            Sight::Implausible
+        }
         VisionStatus::Done if is_another(request, answer) => Sight::Unrecognised,
         VisionStatus::Done => Sight::Seen,
         _ => Sight::Missing,

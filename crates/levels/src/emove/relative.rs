@@ -5,15 +5,12 @@
 //! location, wherever the robot has come to stand; others lead from where it stands, because a guarded move
 //! before it ended where the sensor said.
 
-use rcs_core::{
-    Plain,
-    interface::{
-        CommonMemory,
-        emove::{EmoveCommand, EmoveVerb},
-        pose_range,
-    },
-    name::Name10,
+use interfaces::{
+    CommonMemory,
+    emove::{EmoveCommand, EmoveVerb},
+    pose_range,
 };
+use rcs_core::{Plain, name::Name10};
 use taskdata::files::{PoseId, RelativeMove, TaskData};
 
 use super::robot_place::place_named;

@@ -1,14 +1,11 @@
 //! Where the robot is (docs/design/motion.md "Where the robot is"): by E-move's last completed move, and by
 //! what Prim says.
 
-use rcs_core::{
-    frame::Frame,
-    interface::{
-        CommonMemory,
-        emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace, Standing},
-        prim::PrimReport,
-    },
-    pose::Pose,
+use geometry::{frame::Frame, pose::Pose};
+use interfaces::{
+    CommonMemory,
+    emove::{EmoveCommand, EmoveVerb, GoneTo, ObjectGrip, RobotPlace, Standing},
+    prim::PrimReport,
 };
 use taskdata::files::Place;
 

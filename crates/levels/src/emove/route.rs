@@ -7,12 +7,12 @@
 //!   that was gone to           of locations      object and grip
 //! ```
 
-use rcs_core::{
-    Plain,
+use geometry::{
     frame::{Frame, norm},
-    interface::emove::{EmoveCommand, EmoveVerb, GoneTo, Leg as Part, ObjectGrip, RobotPlace},
     pose::Pose,
 };
+use interfaces::emove::{EmoveCommand, EmoveVerb, GoneTo, Leg as Part, ObjectGrip, RobotPlace};
+use rcs_core::Plain;
 use taskdata::files::{EndEffId, MovtabId, PathId, PathPoint, Place, Target, TaskData, TrajParaId, VisionId};
 
 use super::robot_place::{gone_to, place, place_named, robot_at};

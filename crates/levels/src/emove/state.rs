@@ -1,17 +1,15 @@
 //! What E-move remembers from tick to tick.
 
-use rcs_core::{
-    Plain,
-    handshake::Commander,
-    interface::{emove::Beliefs, prim::JoystickGrip},
-};
+use interfaces::{emove::Beliefs, prim::JoystickGrip};
+use rcs_core::{Plain, handshake::Commander};
 
 use super::{
-    gripper::{Gripper, Grippers},
+    back::Back,
+    gripper::Gripper,
+    grippers::Grippers,
     route::Route,
+    surroundings::Surroundings,
     tables::{Ordered, Step},
-    way::Back,
-    whereabouts::Surroundings,
 };
 use crate::execution::Execution;
 

@@ -10,24 +10,19 @@
 //! another goal. Stopped inside the depart leg it goes out of it. The way itself is not remembered point by
 //! point: it follows from its two ends and the task data.
 
-use rcs_core::{
-    Plain,
-    frame::Frame,
-    interface::{
-        CommonMemory,
-        emove::{Direction, EmoveCommand, GoneTo, Leg as Part, RobotPlace, Way},
-        prim::{PrimReport, PrimVerb},
-    },
-    pose::Pose,
+use geometry::{frame::Frame, pose::Pose};
+use interfaces::{
+    CommonMemory,
+    emove::{Direction, EmoveCommand, GoneTo, Leg as Part, RobotPlace, Way},
+    prim::{PrimReport, PrimVerb},
     process::Inputs,
 };
-use taskdata::files::{TaskData, TrajParaId};
+use taskdata::files::TaskData;
 
 use super::{
+    back::Back,
     robot_place::{commanded_pose, place, present_frame},
-    route::{
-        Ahead, Goal, Leg, LegGoal, Planning, Route, THERE_INCHES, THERE_RADIANS, beside, near, same_location,
-    },
+    route::{Ahead, Goal, Leg, Planning, Route, THERE_INCHES, THERE_RADIANS, beside, near, same_location},
     state::State,
     tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
     whereabouts::{LOST_INCHES, LOST_RADIANS},
@@ -40,44 +35,6 @@ const STEP_RADIANS: f64 = 0.05;
 /// Ticks of motion that a link that fails can cut off: between Prim and the arm are the queue of T3I, the
 /// line, and the robot controller, which ramps down.
 const CUT_OFF_TICKS: f64 = 5.0;
-
-/// The part of an interrupted way that is flown back.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Back {
-    /// The way.
-    pub route: Route,
-    /// The point before which the robot is, in the direction of the goal: it goes to the one before that.
-    pub next: u16,
-    /// The end of the depart leg has been commanded.
-    pub complete: bool,
-}
-
-impl Back {
-    /// The next leg back. `None` if a record is missing.
-    fn leg(&self, data: &TaskData<'_>) -> Option<Leg> {
-        let (_, from) = self.route.point(self.next, data)?;
-        let (frame, to) = match self.next.checked_sub(1) {
-            Some(point) => self.route.point(point, data)?,
-            None => (self.route.from.pose.to_frame().ok()?, from),
-        };
-        Some(Leg { at: LegGoal::Computed(frame), parameters: slower(from, to, data) })
-    }
-
-    /// Note that it has been commanded.
-    fn advance(&mut self, data: &TaskData<'_>) {
-        if self.next <= self.route.depart_points(data) {
-            self.complete = true;
-        } else {
-            self.next = self.next.saturating_sub(1);
-        }
-    }
-}
-
-/// The parameters with the lower velocity: those of both ends of a segment hold when it is flown back.
-fn slower(a: TrajParaId, b: TrajParaId, data: &TaskData<'_>) -> TrajParaId {
-    let velocity = |id| data.traj_para(id).map_or(i32::MAX, |parameters| parameters.vel_max);
-    if velocity(b) < velocity(a) { b } else { a }
-}
 
 /// The route of a way, from its ends.
 fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {

@@ -1,21 +1,21 @@
 //! Whether it is known where the robot is, and looking for the location point at which it stands.
 
-use rcs_core::{
-    Plain,
-    frame::Frame,
-    handshake::Lower,
-    interface::{
-        emove::{GoneTo, NearPlace, RobotPlace},
-        subtask::LocationKind,
-    },
-    name::Name10,
-    pose::Pose,
+use geometry::{frame::Frame, pose::Pose};
+use interfaces::{
+    emove::{GoneTo, RobotPlace},
     process::Inputs,
+    subtask::LocationKind,
 };
-use taskdata::files::{LocptId, Place, TaskData};
+use rcs_core::handshake::Lower;
+use taskdata::files::{LocptId, TaskData};
 
-use super::{relative::Relative, route::near, state::State, tables::Whereabouts};
-use crate::places::{named, place_of};
+use super::{
+    route::near,
+    state::State,
+    surroundings::{Surroundings, is_plain},
+    tables::Whereabouts,
+};
+use crate::places::place_of;
 
 /// The robot is no longer where its last move ended if it is more than this many inches …
 /// (docs/design/motion.md "Where the robot is")
@@ -26,49 +26,6 @@ pub(super) const LOST_RADIANS: f64 = 2.0 * core::f64::consts::PI / 180.0;
 pub(super) const ASIDE_INCHES: f64 = 0.35;
 /// Location points that are looked at in a tick to find out where the robot is.
 const SEARCH_PER_TICK: u32 = 64;
-/// Location points that are looked at in a tick for the nearest ones.
-const NEAREST_PER_TICK: u32 = 16;
-
-/// The known places around a robot that is at none: the location points are looked through again and again.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Surroundings {
-    /// Location points that have been looked at in this round.
-    looked: u32,
-    /// The nearest of them, the nearest first.
-    found: [Option<NearPlace>; 2],
-    /// Those of the last complete round.
-    pub nearest: [Option<NearPlace>; 2],
-}
-
-impl Surroundings {
-    /// Look at some more location points.
-    fn look(&mut self, present: &Frame, data: &TaskData<'_>) {
-        for _ in 0..NEAREST_PER_TICK {
-            let next = LocptId::new(self.looked.saturating_add(1));
-            let Some(locpt) = data.locpt(next) else {
-                *self = Self { nearest: self.found, ..Self::default() };
-                return;
-            };
-            self.looked = next.number();
-            if is_plain(&locpt.name, &place_of(LocationKind::Point, next.to_option(), None), data) {
-                let distance = locpt.frame.distance(present);
-                let (inches, degrees) = (distance.inches, distance.radians.to_degrees());
-                self.insert(NearPlace { location: locpt.name, inches, degrees });
-            }
-        }
-    }
-
-    /// Keep a place if it is one of the two nearest.
-    fn insert(&mut self, place: NearPlace) {
-        let nearer = |than: Option<NearPlace>| than.is_none_or(|than| place.inches < than.inches);
-        let [first, second] = self.found;
-        if nearer(first) {
-            self.found = [Some(place), first];
-        } else if nearer(second) {
-            self.found = [first, Some(place)];
-        }
-    }
-}
 
 impl State {
     /// Look through some more location points for the one at which the robot stands.
@@ -126,11 +83,4 @@ impl State {
             Whereabouts::Unknown
         }
     }
-}
-
-/// Can a robot that stands at a location point be there as such? Not in a holster, at the tool drum, or at
-/// the pedestal: there it depends on gripper, tool and part how it may leave.
-fn is_plain(name: &Name10, place: &Place, data: &TaskData<'_>) -> bool {
-    let has = |relative: Relative| data.relative_move(&Name10::clipped(relative.text()), place).is_some();
-    !has(Relative::QcaBack) && !has(Relative::InsIn) && name.as_str() != named::PEDESTAL
 }

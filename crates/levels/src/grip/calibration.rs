@@ -1,12 +1,10 @@
 //! From counts to inches and pounds: scale and offset of the sensors, found by UP-INIT.
 
-use rcs_core::{
-    Plain,
-    interface::{
-        device::{ADC_FULL_SCALE, GripSensors},
-        grip::{Calibration, Scale},
-    },
+use interfaces::{
+    device::{ADC_FULL_SCALE, GripSensors},
+    grip::{Calibration, Scale},
 };
+use rcs_core::Plain;
 
 use super::goal::{CLOSED_END, OPEN_END, SUPPLY_FORCE};
 

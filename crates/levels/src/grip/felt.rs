@@ -5,21 +5,21 @@
 //! tells nothing: a part that is held with little force hangs on one of them. A value counts after
 //! `FELT_TICKS`; in the meantime nothing that was certain becomes *nothing*.
 
-use rcs_core::{
-    Plain,
-    interface::{
-        device::{ADC_FULL_SCALE, GripSensors},
-        grip::Felt,
-    },
+use interfaces::{
+    device::{ADC_FULL_SCALE, GripSensors},
+    grip::Felt,
 };
 
 use super::{
     goal::{CLOSED_END, OPEN_END},
-    preprocess::{CONTACT, MISSED_AT_END},
-    state::{Sensed, State},
+    state::{Sensed, State, Touch},
     tables::{Measured, Phase},
 };
 
+/// A finger that feels more than this touches something, lb.
+pub(super) const CONTACT: f64 = 1.0;
+/// The same near the closed end, where no opening is below: in above the closed end.
+pub(super) const MISSED_AT_END: f64 = 0.02;
 /// Ticks for which the sensors must say the same (0.2 s): longer than it takes to push a part from one finger
 /// to the other.
 pub(super) const FELT_TICKS: u8 = 5;
@@ -30,17 +30,6 @@ const STILL_COUNTS: u16 = 6;
 const BEYOND: f64 = 0.15;
 /// A finger that feels less than this has a strain gage that fails, lb.
 const LEAST_PLAUSIBLE_FORCE: f64 = -5.0;
-
-/// What the fingers touch in a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Touch {
-    /// Nothing can be said: one finger touches, or both do and move.
-    Unclear,
-    /// Neither finger touches anything, or they touch each other.
-    Free,
-    /// Both fingers touch something between them, at rest.
-    Both,
-}
 
 impl State {
     /// Take what the fingers touch in this tick; `before` are the readings of the tick before.

@@ -1,12 +1,11 @@
 //! What a command asks of the fingers.
 
-use rcs_core::{
-    Plain,
-    interface::grip::{GripCommand, GripVerb},
-    units::inches,
-};
+use geometry::units::inches;
+use interfaces::grip::{GripCommand, GripVerb};
+use rcs_core::Plain;
 
-use super::tables::Flow;
+use super::tables::{Command, Flow};
+use crate::execution::Course;
 
 /// Opening at the closed end of travel, in (VIII.9.1: a closed gripper has 0.10 in).
 pub(super) const CLOSED_END: f64 = 0.10;
@@ -60,6 +59,21 @@ impl Goal {
             Some(speed) if speed >= 4.0 => Flow::Coarse,
             Some(speed) if speed >= 1.0 => Flow::Medium,
             Some(_) => Flow::Fine,
+        }
+    }
+
+    /// What EXECUTE and ACCEPT leave of the command.
+    pub(super) fn command(&self, course: Course, accepted: bool) -> Command {
+        match course {
+            Course::Rest => Command::Nothing,
+            Course::Begin | Course::Continue if accepted => match self.verb {
+                GripVerb::OpenGrip if self.opening >= OPEN_END => Command::OpenWide,
+                GripVerb::None => Command::Refused,
+                GripVerb::Pause => Command::Pause,
+                GripVerb::UpInit => Command::UpInit,
+                GripVerb::Position | GripVerb::OpenGrip | GripVerb::CloseGrip => Command::Motion,
+            },
+            Course::Refuse | Course::Begin | Course::Continue => Command::Refused,
         }
     }
 }

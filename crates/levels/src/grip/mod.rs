@@ -63,18 +63,16 @@ pub(crate) mod tests;
 
 use core::marker::PhantomData;
 
-use rcs_core::{
-    interface::GripOutputs,
+use interfaces::{
+    GripOutputs,
     process::{Inputs, Process},
-    table::{Table, Verdict},
 };
+use rcs_core::table::{Table, Verdict};
 
 use self::{
     site::{PartsGripper, Site},
     state::State,
-    tables::{
-        Action, Command, Duty, Seen, Situation, Step, accept::accept, number, of_command, up_init::up_init,
-    },
+    tables::{Action, Duty, Seen, Situation, Step, accept::accept, number, of_command, up_init::up_init},
 };
 use crate::execution::Course;
 
@@ -109,7 +107,7 @@ impl<S: Site, Data: ?Sized> Process<Data> for Servo<S> {
             state.step = Step::Start;
         }
         let accepted = state.execution.accepts(&accept(state.step, &seen.request));
-        let command = Command::of(course, accepted, &state.goal);
+        let command = state.goal.command(course, accepted);
         let situation = Situation { command, ..seen.situation };
         match up_init(state.phase, &situation) {
             Verdict::Decided(decision) => {

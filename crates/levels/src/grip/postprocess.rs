@@ -1,14 +1,12 @@
 //! Postprocess of Grip: the valves, the calibration that a row asks for, and the status to the commander.
 
-use rcs_core::{
-    interface::{
-        GripOutputs,
-        device::{GripValves, valve},
-        grip::{Felt, GripReport, GripStatus},
-    },
-    tick::Tick,
-    units::{hundredths, rounded},
+use geometry::units::{hundredths, rounded};
+use interfaces::{
+    GripOutputs,
+    device::{GripValves, valve},
+    grip::{Felt, GripReport, GripStatus},
 };
+use rcs_core::tick::Tick;
 
 use super::{
     calibration::{Readings, Steady, calibration},

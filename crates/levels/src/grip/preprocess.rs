@@ -1,20 +1,19 @@
 //! Preprocess of Grip: its state variables, from the command and the sensors.
 //!
 //! Bands are chosen for valves that act between one and two samples after the reading that they answer, at
-//! the flows of [`rcs_core::interface::device::valve`]: a coarse flow moves 0.16 in a tick, a medium one 0.04
+//! the flows of [`interfaces::device::valve`]: a coarse flow moves 0.16 in a tick, a medium one 0.04
 //! in or 4 lb, a fine one 0.01 in or 1 lb. Each band is wider than two ticks of the flow used in it, so no
 //! flow overshoots the next finer band.
 
+use interfaces::{GripOutputs, device::GripSensors, grip::GripCommand, process::Inputs};
 use rcs_core::{
     handshake::Arrival,
-    interface::{GripOutputs, device::GripSensors, grip::GripCommand},
-    process::Inputs,
     tick::{TICK_S, Tick},
 };
 
 use super::{
     calibration::{Steady, is_plausible, value},
-    felt,
+    felt::{self, CONTACT, MISSED_AT_END},
     goal::{CLOSED_END, Goal},
     site::Site,
     state::{Sensed, State, WINDOW},
@@ -35,8 +34,6 @@ const DEAD_BAND: f64 = 0.010;
 /// noise.
 const REST_BAND: f64 = 0.016;
 
-/// A finger that feels more than this touches something, lb.
-pub(super) const CONTACT: f64 = 1.0;
 /// The least force that the servo aims at, lb: below it contact comes and goes.
 const LEAST_FORCE: f64 = 3.0;
 /// Farther than this from the commanded force a medium flow is used, lb.
@@ -48,8 +45,6 @@ const FORCE_REST_BAND: f64 = 2.0;
 /// So far below the grasp size fingers without force have missed the object, in: reported openings are
 /// rounded to 0.01 in, and "nothing held" must read at or below the grasp size.
 const MISSED_BELOW: f64 = 0.02;
-/// The same near the closed end, where no opening is below: in above the closed end.
-pub(super) const MISSED_AT_END: f64 = 0.02;
 /// Ticks in which force must build up if there is anything between the fingers.
 const MISSED_TICKS: u8 = 3;
 

@@ -1,6 +1,6 @@
 //! Where a gripper that is servoed has its sensor words and its command.
 
-use rcs_core::interface::{
+use interfaces::{
     CommonMemory, Reason,
     device::{DeviceInputs, GripSensors},
     grip::GripCommand,

@@ -1,17 +1,13 @@
 //! What Grip remembers from tick to tick.
 
-use rcs_core::{
-    Plain,
-    interface::{
-        device::GripSensors,
-        grip::{Calibration, Felt},
-    },
-    tick::Tick,
+use interfaces::{
+    device::GripSensors,
+    grip::{Calibration, Felt},
 };
+use rcs_core::{Plain, tick::Tick};
 
 use super::{
     calibration::{Readings, Steady},
-    felt::Touch,
     goal::Goal,
     tables::{Phase, Step},
 };
@@ -27,6 +23,17 @@ pub struct Sensed {
     pub last: GripSensors,
     /// Counts of the potentiometer, the newest first.
     pub window: [u16; WINDOW],
+}
+
+/// What the fingers touch in a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Touch {
+    /// Nothing can be said: one finger touches, or both do and move.
+    Unclear,
+    /// Neither finger touches anything, or they touch each other.
+    Free,
+    /// Both fingers touch something between them, at rest.
+    Both,
 }
 
 /// State of Grip.

@@ -1,6 +1,6 @@
 //! What makes one gripper that opens and closes differ from another.
 
-use rcs_core::interface::{CommonMemory, jaws::JawsCommand};
+use interfaces::{CommonMemory, jaws::JawsCommand};
 
 /// What makes one gripper differ from another.
 #[derive(Clone, Copy, Debug, PartialEq)]

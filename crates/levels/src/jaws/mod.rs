@@ -49,11 +49,11 @@ pub use self::{
 
 use core::marker::PhantomData;
 
-use rcs_core::{
-    interface::JawsOutputs,
+use interfaces::{
+    JawsOutputs,
     process::{Inputs, Process},
-    table::Table,
 };
+use rcs_core::table::Table;
 
 use self::{
     state::State,

@@ -1,14 +1,12 @@
 //! Postprocess of V-Grip and Tool-Grip: the valves, and the status to E-move.
 
-use rcs_core::{
-    interface::{
-        JawsOutputs, Reason,
-        device::JawValves,
-        jaws::{JawsReport, JawsStatus},
-    },
-    tick::Tick,
-    units::hundredths,
+use geometry::units::hundredths;
+use interfaces::{
+    JawsOutputs, Reason,
+    device::JawValves,
+    jaws::{JawsReport, JawsStatus},
 };
+use rcs_core::tick::Tick;
 
 use super::{
     state::State,

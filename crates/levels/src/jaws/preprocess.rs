@@ -1,11 +1,10 @@
 //! Preprocess of V-Grip and Tool-Grip: their state variables, from the command and the sensors.
 
+use geometry::units::inches;
+use interfaces::{JawsOutputs, device::QuickChangeSensors, grip::Felt, jaws::JawsCommand, process::Inputs};
 use rcs_core::{
     handshake::Arrival,
-    interface::{JawsOutputs, device::QuickChangeSensors, grip::Felt, jaws::JawsCommand},
-    process::Inputs,
     tick::{TICK_S, Tick},
-    units::inches,
 };
 
 use super::{

@@ -1,13 +1,10 @@
 //! What V-Grip and Tool-Grip remember from tick to tick.
 
-use rcs_core::{
-    Plain,
-    interface::{
-        device::JawValves,
-        jaws::{JawsReport, JawsVerb},
-    },
-    tick::Tick,
+use interfaces::{
+    device::JawValves,
+    jaws::{JawsReport, JawsVerb},
 };
+use rcs_core::{Plain, tick::Tick};
 
 use super::tables::Step;
 use crate::execution::Execution;

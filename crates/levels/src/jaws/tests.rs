@@ -1,18 +1,18 @@
 //! Scenarios of V-Grip and Tool-Grip with a simulated gripper.
 
+use geometry::units::hundredths;
+use interfaces::{
+    CommonMemory, ExternalInputs, JawsOutputs, Reason,
+    device::{JawValves, QuickChangeSensors},
+    grip::Felt,
+    jaws::{JawsCommand, JawsReport, JawsVerb},
+    process::{Inputs, Process},
+};
 use proptest::prelude::*;
 use rcs_core::{
     Plain,
-    interface::{
-        CommonMemory, ExternalInputs, JawsOutputs, Reason,
-        device::{JawValves, QuickChangeSensors},
-        grip::Felt,
-        jaws::{JawsCommand, JawsReport, JawsVerb},
-    },
     plain::to_bytes,
-    process::{Inputs, Process},
     tick::{TICK_S, Tick},
-    units::hundredths,
 };
 
 use super::{

@@ -1,7 +1,7 @@
 //! The hand of the pedestal (III.9.2): "nearly identical" to the parts gripper, so that the servo of Grip
 //! serves it.
 
-use rcs_core::interface::{
+use interfaces::{
     CommonMemory, Reason,
     device::{DeviceInputs, GripSensors},
     grip::GripCommand,

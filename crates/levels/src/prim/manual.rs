@@ -9,13 +9,12 @@
 //! `wo`). Its velocity is counted at the lever of [`INCHES_PER_RADIAN`], or at the tool point if that is
 //! farther from the centre, so that all frames have the same limits in inches of path.
 
-use rcs_core::{
-    Plain,
+use geometry::{
     frame::{Frame, INCHES_PER_RADIAN, Vector, norm, rotation_by, rotation_from_x_y},
-    interface::device::{JoystickBox, KNOB_FULL, joystick_frame},
     pose::POINT_DISTANCE,
-    tick::TICK_S,
 };
+use interfaces::device::{JoystickBox, KNOB_FULL, joystick_frame};
+use rcs_core::{Plain, tick::TICK_S};
 
 /// in/s of path with stick and velocity knob at their ends. ASSUMED.
 pub const SPEED: f64 = 5.0;

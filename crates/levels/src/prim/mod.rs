@@ -42,11 +42,11 @@ pub mod tables;
 #[cfg(test)]
 mod tests;
 
-use rcs_core::{
-    interface::{PrimOutputs, Reason},
+use interfaces::{
+    PrimOutputs, Reason,
     process::{Inputs, Process},
-    table::Table,
 };
+use rcs_core::table::Table;
 use taskdata::files::TaskData;
 
 use self::{

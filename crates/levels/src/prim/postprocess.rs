@@ -1,19 +1,18 @@
 //! Postprocess of Prim: the motion, the command to T3I, and the status to E-move.
 
-use rcs_core::{
-    handshake::Lower,
-    interface::{
-        ChangingPose, PrimOutputs, Reason,
-        device::JoystickBox,
-        pose_range,
-        prim::{JoystickGrip, PrimReport, PrimStatus, PrimVerb},
-        t3i::{T3iCommand, T3iVerb},
-    },
+use geometry::{
     pose::{Pose, WireFrame},
-    process::Inputs,
-    tick::Tick,
     units::hundredths,
 };
+use interfaces::{
+    ChangingPose, PrimOutputs, Reason,
+    device::JoystickBox,
+    pose_range,
+    prim::{JoystickGrip, PrimReport, PrimStatus, PrimVerb},
+    process::Inputs,
+    t3i::{T3iCommand, T3iVerb},
+};
+use rcs_core::{handshake::Lower, tick::Tick};
 use taskdata::files::TaskData;
 
 use super::{

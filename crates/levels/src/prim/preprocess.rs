@@ -3,18 +3,18 @@
 
 use core::mem;
 
-use rcs_core::{
+use geometry::{
     frame::Frame,
-    handshake::{Arrival, Lower, successor},
-    interface::{
-        PrimOutputs,
-        device::{JoystickBox, single_step},
-        prim::{PrimCommand, PrimVerb},
-        t3i::{LinkFault, ReportCheck, T3iCommand, T3iReport, T3iStatus, T3iVerb},
-    },
-    process::Inputs,
     units::{inches, rounded},
 };
+use interfaces::{
+    PrimOutputs,
+    device::{JoystickBox, single_step},
+    prim::{PrimCommand, PrimVerb},
+    process::Inputs,
+    t3i::{LinkFault, ReportCheck, T3iCommand, T3iReport, T3iStatus, T3iVerb},
+};
+use rcs_core::handshake::{Arrival, Lower, successor};
 use taskdata::files::{MovtabId, SensorPara, TaskData, TrajParaId};
 
 use super::{

@@ -10,16 +10,14 @@
 //! refused with `sensor-error`; so it is when a reading stands at an end of its converter, because beyond it
 //! every force looks alike.
 
-use rcs_core::{
-    Plain,
-    interface::{
-        device::{
-            ADC_FULL_SCALE, DeviceInputs, FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, HolsterSensors,
-            MOMENT_COUNTS_PER_IN_LB,
-        },
-        prim::FORCE_AXES,
+use interfaces::{
+    device::{
+        ADC_FULL_SCALE, DeviceInputs, FORCE_COUNTS_PER_LB, FORCE_ZERO, ForceSensor, HolsterSensors,
+        MOMENT_COUNTS_PER_IN_LB,
     },
+    prim::FORCE_AXES,
 };
+use rcs_core::Plain;
 use taskdata::files::{SensorPara, SensorSource};
 
 use super::tables::{Guard, Samples};

@@ -1,6 +1,8 @@
 //! What Prim remembers from tick to tick.
 
-use rcs_core::{Plain, handshake::Commander, interface::prim::PrimVerb, pose::WireFrame, tick::Tick};
+use geometry::pose::WireFrame;
+use interfaces::prim::PrimVerb;
+use rcs_core::{Plain, handshake::Commander, tick::Tick};
 use taskdata::files::SensorPara;
 
 use super::{

@@ -43,11 +43,11 @@ pub mod tables;
 #[cfg(test)]
 mod tests;
 
-use rcs_core::{
-    interface::QuickChangeOutputs,
+use interfaces::{
+    QuickChangeOutputs,
     process::{Inputs, Process},
-    table::Table,
 };
+use rcs_core::table::Table;
 
 use self::{
     state::State,

@@ -1,13 +1,11 @@
 //! Postprocess of Quick Change: the valves, and the status to E-move.
 
-use rcs_core::{
-    interface::{
-        QuickChangeOutputs,
-        device::QuickChangeValves,
-        quick_change::{QuickChangeReport, QuickChangeStatus},
-    },
-    tick::Tick,
+use interfaces::{
+    QuickChangeOutputs,
+    device::QuickChangeValves,
+    quick_change::{QuickChangeReport, QuickChangeStatus},
 };
+use rcs_core::tick::Tick;
 
 use super::{state::State, tables::Action};
 use crate::execution::Outcome;

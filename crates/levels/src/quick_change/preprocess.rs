@@ -1,10 +1,7 @@
 //! Preprocess of Quick Change: its state variables, from the command and the sensors; which readings count.
 
-use rcs_core::{
-    handshake::Arrival,
-    interface::{device::QuickChangeSensors, quick_change::RingPosition},
-    process::Inputs,
-};
+use interfaces::{device::QuickChangeSensors, process::Inputs, quick_change::RingPosition};
+use rcs_core::handshake::Arrival;
 
 use super::{
     state::State,

@@ -1,10 +1,7 @@
 //! What Quick Change remembers from tick to tick.
 
-use rcs_core::{
-    Plain,
-    interface::quick_change::{QuickChangeVerb, RingPosition},
-    tick::Tick,
-};
+use interfaces::quick_change::{QuickChangeVerb, RingPosition};
+use rcs_core::{Plain, tick::Tick};
 
 use super::tables::Step;
 use crate::execution::Execution;

@@ -1,16 +1,13 @@
 //! Scenarios of Quick Change.
 
-use proptest::prelude::*;
-use rcs_core::{
-    interface::{
-        CommonMemory, ExternalInputs, QuickChangeOutputs, Reason,
-        device::{QuickChangeSensors, QuickChangeValves},
-        quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb, RingPosition},
-    },
-    plain::to_bytes,
+use interfaces::{
+    CommonMemory, ExternalInputs, QuickChangeOutputs, Reason,
+    device::{QuickChangeSensors, QuickChangeValves},
     process::{Inputs, Process},
-    tick::Tick,
+    quick_change::{QuickChangeCommand, QuickChangeReport, QuickChangeVerb, RingPosition},
 };
+use proptest::prelude::*;
+use rcs_core::{plain::to_bytes, tick::Tick};
 
 use super::{
     QuickChange,

@@ -4,14 +4,14 @@
 //! looks them up when the command arrives, before anything moves, and publishes their poses in its own
 //! changing records.
 
+use geometry::pose::Pose;
+use interfaces::{
+    emove::{EmoveCommand, EmoveVerb},
+    subtask::{LocationKind, SubtaskCommand, SubtaskVerb},
+};
 use rcs_core::{
     Plain,
-    interface::{
-        emove::{EmoveCommand, EmoveVerb},
-        subtask::{LocationKind, SubtaskCommand, SubtaskVerb},
-    },
     name::{Name10, Name16},
-    pose::Pose,
 };
 use taskdata::files::{Location, LocptId, RefType, TaskData};
 
@@ -22,7 +22,7 @@ const PUT_IN: i32 = 1;
 /// Grip of a holster's object with which the bare robot takes the gripper out.
 const TAKE_OUT: i32 = 2;
 /// The holsters' objects: what the gripper with id 1, 2, 3 is called as a thing that can be put somewhere.
-const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
+pub const GRIPPERS: [&str; 3] = ["GRIPPER-1", "GRIPPER-2", "GRIPPER-3"];
 
 /// What a command to E-move is aimed at: an object, a location, or an object at a location.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]

@@ -29,11 +29,11 @@ pub mod tables;
 #[cfg(test)]
 pub(crate) mod tests;
 
-use rcs_core::{
-    interface::SubtaskOutputs,
+use interfaces::{
+    SubtaskOutputs,
     process::{Inputs, Process},
-    table::{Table, Variables as _},
 };
+use rcs_core::table::{Table, Variables as _};
 use taskdata::files::TaskData;
 
 use self::{

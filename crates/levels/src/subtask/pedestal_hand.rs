@@ -1,6 +1,6 @@
 //! The part in the pedestal's hand: what the hand feels, and what Subtask believes that it is.
 
-use rcs_core::interface::{
+use interfaces::{
     grip::Felt,
     pedestal::PedestalStatus,
     subtask::{Regrip, SubtaskCommand},
@@ -47,7 +47,7 @@ impl State {
             (Held::Nothing | Held::Other, PedestalHand::HoldsPart) => Part::Hand,
             (Held::Right, PedestalHand::Free) => Part::Robot,
             (Held::Something, PedestalHand::Free) => Part::Unknown,
-            (Held::Nothing | Held::Other, PedestalHand::Free) => Part::Nobody,
+            (Held::Nothing | Held::Other, PedestalHand::Free) => Part::Neither,
         }
     }
 }

@@ -1,14 +1,12 @@
 //! Postprocess of Subtask: commands to E-move and to the Active Pedestal, and the status to Task.
 
-use rcs_core::{
-    interface::{
-        ChangingPose, Reason, Report, SubtaskOutputs,
-        emove::{EmoveCommand, EmoveVerb},
-        pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
-        pose_range,
-        subtask::{SubtaskStatus, SubtaskVerb},
-    },
+use interfaces::{
+    ChangingPose, Reason, StatusReport, SubtaskOutputs,
+    emove::{EmoveCommand, EmoveVerb},
+    pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
+    pose_range,
     process::Inputs,
+    subtask::{SubtaskStatus, SubtaskVerb},
 };
 use taskdata::files::TaskData;
 
@@ -154,15 +152,15 @@ impl State {
         let execution = &self.execution;
         let below = &inputs.memory.emove.status;
         // The operator can take the robot at any time, also between two commands (V.4.1 PAUSE).
-        let (report, reason) = if below.report == Report::JoystickOn {
-            (Report::JoystickOn, Reason::JoystickOn)
+        let (report, reason) = if below.report == StatusReport::JoystickOn {
+            (StatusReport::JoystickOn, Reason::JoystickOn)
         } else if execution.outcome == Outcome::Joystick {
-            (Report::Error, Reason::JoystickOn)
+            (StatusReport::Error, Reason::JoystickOn)
         } else if execution.outcome == Outcome::Done
             && inputs.memory.task.subtask.command == SubtaskVerb::Pause
         {
             // A link that fails while S-PAUSE stands is no failure of it.
-            (Report::Done, below.reason)
+            (StatusReport::Done, below.reason)
         } else {
             (execution.report(), execution.reason)
         };

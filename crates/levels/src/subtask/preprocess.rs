@@ -1,15 +1,13 @@
 //! Preprocess of Subtask: its state variables, from the statuses of E-move and of the Active Pedestal.
 
-use rcs_core::{
-    handshake::Lower,
-    interface::{
-        Report,
-        emove::{EmoveStatus, EmoveVerb, Holding},
-        pedestal::{PedestalReport, PedestalVerb},
-        subtask::{SubtaskCommand, SubtaskVerb},
-    },
+use interfaces::{
+    StatusReport,
+    emove::{EmoveStatus, EmoveVerb, Holding},
+    pedestal::{PedestalReport, PedestalVerb},
     process::Inputs,
+    subtask::{SubtaskCommand, SubtaskVerb},
 };
+use rcs_core::handshake::Lower;
 use taskdata::files::TaskData;
 
 use super::{
@@ -157,7 +155,7 @@ fn replaced(
     let robot = Below::of(emove, written.emove.command == EmoveVerb::Pause);
     let turning = if pedestal == Pedestal::Moving { Lower::Executing } else { Lower::Done };
     let part = Below::of(turning, written.pedestal.command == PedestalVerb::Pause);
-    let on = inputs.memory.emove.status.report == Report::JoystickOn;
+    let on = inputs.memory.emove.status.report == StatusReport::JoystickOn;
     Replaced {
         intake: Intake::Taken,
         kind: if command.command == SubtaskVerb::Pause { Kind::Pause } else { Kind::Other },

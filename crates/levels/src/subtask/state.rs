@@ -1,6 +1,7 @@
 //! What Subtask remembers from tick to tick.
 
-use rcs_core::{Plain, handshake::Commander, interface::subtask::Regrip};
+use interfaces::subtask::Regrip;
+use rcs_core::{Plain, handshake::Commander};
 use taskdata::files::PedPara;
 
 use super::{

@@ -37,11 +37,11 @@ pub mod tables;
 mod tests;
 
 use depc::Limits;
-use rcs_core::{
-    interface::{Decided, T3iOutputs},
+use interfaces::{
+    Decided, T3iOutputs,
     process::{Inputs, Process},
-    table::Table,
 };
+use rcs_core::table::Table;
 
 pub use self::state::State;
 use self::tables::{

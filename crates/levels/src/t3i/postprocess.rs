@@ -7,18 +7,14 @@ use depc::{
     step::Position,
     wire::{DataCommand, NO_FUNCTION},
 };
-use rcs_core::{
-    handshake::Arrival,
-    interface::{
-        Header, T3iOutputs,
-        device::{LinkBytes, RESOLVER_COUNTS, Resolvers},
-        t3i::{LinkFault, SentWords, T3iReport, T3iStatus},
-    },
-    kinematics::T3,
-    name::Name16,
-    pose::WireFrame,
+use geometry::{kinematics::T3, pose::WireFrame};
+use interfaces::{
+    Header, T3iOutputs,
+    device::{LinkBytes, RESOLVER_COUNTS, Resolvers},
     process::Inputs,
+    t3i::{LinkFault, SentWords, T3iReport, T3iStatus},
 };
+use rcs_core::{handshake::Arrival, name::Name16};
 
 use super::{
     state::State,

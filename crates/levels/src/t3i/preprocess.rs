@@ -5,22 +5,19 @@ use depc::{
     host::{HostEvent, PATIENCE_TICKS},
     step::{Position, Step, step},
 };
-use rcs_core::{
-    handshake::{Arrival, successor},
-    interface::{
-        T3iOutputs,
-        t3i::{LinkFault, SentWords, T3iCommand, T3iVerb},
-    },
-    kinematics::T3,
-    pose::WireFrame,
+use geometry::{kinematics::T3, pose::WireFrame};
+use interfaces::{
+    T3iOutputs,
     process::Inputs,
+    t3i::{LinkFault, SentWords, T3iCommand, T3iVerb},
 };
+use rcs_core::handshake::{Arrival, successor};
 
 use super::{
     state::State,
     tables::{
-        Above, Answer, Dtr, Line, Link, Place, Point, Queue, Request, Seen, Situation, Start, Trouble, Way,
-        Words, receive::ReceiveStep,
+        Above, Answer, Dtr, Line, Link, Point, Queue, Reported, Request, Seen, Situation, Start, Trouble,
+        Way, Words, receive::ReceiveStep,
     },
 };
 
@@ -72,7 +69,7 @@ impl State {
     }
 
     /// Give the host's end of the link the bytes that have arrived. The queue does not outlive the link.
-    fn receive_bytes<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> (HostEvent, Place) {
+    fn receive_bytes<Data: ?Sized>(&mut self, inputs: &Inputs<'_, Data>) -> (HostEvent, Reported) {
         let devices = &inputs.external.devices;
         self.host.set_patience(devices.link_patience.unwrap_or(PATIENCE_TICKS));
         // First, because a port that has taken a part of a frame is not ready either, and this says more.
@@ -90,13 +87,13 @@ impl State {
     }
 
     /// Is the position that was reported last on the way to which the robot was sent?
-    fn place(&self) -> Place {
+    fn place(&self) -> Reported {
         let reported = self.host.position();
         let near = |sent: &SentWords| {
             let (last, before) = (Plate { words: sent.last }, Plate { words: sent.before });
             reported.is_between(&before, &last, NEAR_COUNTS)
         };
-        if self.sent.as_ref().is_some_and(near) { Place::Near } else { Place::Far }
+        if self.sent.as_ref().is_some_and(near) { Reported::Near } else { Reported::Far }
     }
 
     /// What the point of a new command is worth.

@@ -5,15 +5,12 @@ use depc::{
     host::{ANSWER_TICKS, Host},
     step::Position,
 };
-use rcs_core::{
-    Plain,
-    handshake::Receiver,
-    interface::{
-        Decided,
-        t3i::{ReportCheck, SentWords, T3iVerb},
-    },
-    pose::WireFrame,
+use geometry::pose::WireFrame;
+use interfaces::{
+    Decided,
+    t3i::{ReportCheck, SentWords, T3iVerb},
 };
+use rcs_core::{Plain, handshake::Receiver};
 
 use super::tables::{Before, Step, receive::ReceiveStep};
 

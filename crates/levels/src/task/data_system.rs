@@ -6,14 +6,14 @@
 //! kept, also when another command replaces the one that told it: before the next object is moved, or at the
 //! end of the next STARTUP, it is told again, so that the data base is never more than one command behind.
 
+use interfaces::{
+    DataBaseCommand, DataBaseStatus, TaskOutputs,
+    data_base::{Carried, Connection, DataBaseBeliefs, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
+    emove::Standing,
+};
 use rcs_core::{
     Plain,
     handshake::Commander,
-    interface::{
-        DataBaseCommand, DataBaseStatus, TaskOutputs,
-        data_base::{Carried, Connection, DataBaseBeliefs, DataBaseReport, DataBaseVerb, KEPT_UPDATES},
-        emove::Standing,
-    },
     name::{Name10, Name16},
     tick::Tick,
 };
@@ -137,13 +137,19 @@ impl DataSystem {
         (self.beliefs.connected, self.beliefs.connecting) = (true, false);
     }
 
-    /// The robot holds the object of a MOVE or an ACQUIRE.
+    /// The robot holds the object of a MOVE or an ACQUIRE. An ACQUIRE that found it in the hand, taken elsewhere,
+    /// leaves where that was.
     pub fn carry(&mut self, plan: &Plan, told: bool) {
-        let site = plan.destination.location.or(plan.source.location).unwrap_or_default();
         let item = plan.object.unwrap_or_default();
-        let told = told || self.beliefs.carried.is_some_and(|carried| carried.item == item && carried.told);
-        self.beliefs.carried =
-            Some(Carried { item, serial: plan.serial, location: site.name, sector: site.sector, told });
+        let before = self.beliefs.carried.filter(|carried| carried.item == item);
+        let (location, sector) = if plan.from_elsewhere {
+            before.map_or_else(Default::default, |carried| (carried.location, carried.sector))
+        } else {
+            let site = plan.destination.location.or(plan.source.location).unwrap_or_default();
+            (site.name, site.sector)
+        };
+        let told = told || before.is_some_and(|carried| carried.told);
+        self.beliefs.carried = Some(Carried { item, serial: plan.serial, location, sector, told });
     }
 
     /// REPORT-ITEM (IX.2): write where the object of a command now is, and keep it until it is taken.

@@ -6,14 +6,13 @@
 //! on with the update and the way to its end-at location, while the same TRANSFER after a finished one begins
 //! anew. What has been achieved is not in the ledger; the statuses from below say that.
 
-use rcs_core::{
-    Plain,
-    interface::{
-        emove::Standing,
-        hws::{HwsCommand, Ledger},
-        subtask::{SubtaskStatus, SubtaskVerb},
-    },
+use interfaces::{
+    data_base::Carried,
+    emove::Standing,
+    hws::{HwsCommand, Ledger},
+    subtask::{SubtaskStatus, SubtaskVerb},
 };
+use rcs_core::Plain;
 
 use super::plan::{Plan, Resumed};
 
@@ -77,6 +76,25 @@ pub fn placed(plan: &Plan, below: &SubtaskStatus) -> Placed {
     }
 }
 
+/// Is the object of a new command held already, and was it taken at another place than the source? The ledger
+/// says where, if it is about the object, else what the robot carries (docs/design/recovery.md "Data base").
+#[must_use]
+pub fn is_from_elsewhere(
+    command: &HwsCommand,
+    plan: &Plan,
+    ledger: Option<&Ledger>,
+    carried: Option<&Carried>,
+) -> bool {
+    let source = |command: &HwsCommand| (command.source, command.source_sector);
+    match ledger.map(|ledger| (&ledger.command, ledger.told)).filter(|(last, _)| last.object == plan.object) {
+        Some((last, told)) => told || source(last) != source(command),
+        None => !plan.source.location.zip(carried).is_some_and(|(location, carried)| {
+            Some(carried.item) == plan.object
+                && (carried.location, carried.sector) == (location.name, location.sector)
+        }),
+    }
+}
+
 /// The ledger when a command has been accepted. A command that is about no object says nothing of one that
 /// is.
 #[must_use]
@@ -84,5 +102,5 @@ pub fn opened(ledger: Option<Ledger>, command: &HwsCommand, plan: &Plan) -> Opti
     if !plan.is_about_something() || plan.resumed != Resumed::Not {
         return ledger;
     }
-    Some(Ledger { command: content(command), last: SubtaskVerb::None, told: false })
+    Some(Ledger { command: content(command), last: SubtaskVerb::None, told: plan.from_elsewhere })
 }

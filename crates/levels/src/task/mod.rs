@@ -32,11 +32,11 @@ pub mod tables;
 #[cfg(test)]
 mod tests;
 
-use rcs_core::{
-    interface::TaskOutputs,
+use interfaces::{
+    TaskOutputs,
     process::{Inputs, Process},
-    table::{Table, Variables as _, Verdict},
 };
+use rcs_core::table::{Table, Verdict};
 use taskdata::files::TaskData;
 
 use self::{
@@ -48,8 +48,8 @@ use self::{
     },
 };
 use crate::{
-    execution::{Course, Orders as _},
-    halt::{BoxState, Replaced},
+    execution::Course,
+    halt::{BoxState, Halting, Replaced},
 };
 
 /// The Task process.
@@ -86,15 +86,14 @@ impl<'d> Process<TaskData<'d>> for Task {
         let manual = state.control == Control::Manual;
         let joystick = if manual { BoxState::On } else { BoxState::Off };
         match state.execution.admit(course, &Replaced { joystick, ..seen.replaced }) {
-            Err(halting) => return (takeover, Action::of_halt(halting)),
-            Ok(Course::Rest | Course::Refuse) => return (takeover, Action::Wait),
+            Err(Halting::Stop) => return (takeover, Action::Pause),
+            Err(Halting::Wait) | Ok(Course::Rest | Course::Refuse) => return (takeover, Action::Wait),
             Ok(Course::Begin) => state.step = Step::first(seen.plan.verb),
             Ok(Course::Continue) => {}
         }
         let request = Request { control: state.control, ..seen.request };
         let orders = Orders { takeover, ..seen.orders };
         let choice = tables::decide(state.step, &Seen { request, orders, ..*seen });
-        let choice = state.execution.effective(choice, seen.situation.code());
         state.execution.note(&choice);
         state.step = choice.next;
         (takeover, choice.action)

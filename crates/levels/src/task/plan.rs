@@ -1,11 +1,11 @@
 //! A command of the workstation controller with its names looked up (V.4.2): TRANSLATE-HWS-CMD of Figure
 //! IV.1.
 
+use geometry::pose::Pose;
+use interfaces::{ChangingPose, HwsCommand, subtask::LocationKind};
 use rcs_core::{
     Plain,
-    interface::{ChangingPose, HwsCommand, subtask::LocationKind},
     name::{Name10, Name16},
-    pose::Pose,
 };
 use taskdata::files::{LocptId, Reference, TaskData};
 
@@ -181,6 +181,8 @@ pub struct Plan {
     pub end_at: Site,
     /// The data base is still to be told that the object is moved from or to the MBD.
     pub update_due: bool,
+    /// An ACQUIRE of an object that is held already, and was not taken from the source.
+    pub from_elsewhere: bool,
     /// Was the command sent before and not finished?
     pub resumed: Resumed,
 }

@@ -1,14 +1,12 @@
 //! Postprocess of Task: commands to Subtask and to the Data System, and the status to the HWSC.
 
-use rcs_core::{
-    interface::{
-        ChangingPose, Reason, TaskOutputs,
-        data_base::DataBaseVerb,
-        hws::{HwsReport, HwsStatus},
-        pose_range,
-        subtask::{SubtaskCommand, SubtaskVerb},
-    },
+use interfaces::{
+    ChangingPose, Reason, TaskOutputs,
+    data_base::DataBaseVerb,
+    hws::{HwsReport, HwsStatus},
+    pose_range,
     process::Inputs,
+    subtask::{SubtaskCommand, SubtaskVerb},
 };
 use taskdata::files::TaskData;
 

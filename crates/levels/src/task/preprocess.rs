@@ -1,18 +1,15 @@
 //! Preprocess of Task: its state variables, from the statuses of Subtask and of the Data System.
 
-use rcs_core::{
-    handshake::Lower,
-    interface::{
-        emove::{Holding, Standing},
-        subtask::SubtaskVerb,
-    },
-    name::Name10,
+use interfaces::{
+    emove::{Holding, Standing},
     process::Inputs,
+    subtask::SubtaskVerb,
 };
+use rcs_core::{handshake::Lower, name::Name10};
 use taskdata::files::TaskData;
 
 use super::{
-    ledger::{Part, placed, resumed},
+    ledger::{Part, is_from_elsewhere, placed, resumed},
     plan::{Found, Plan, Resumed, Site, TOOL_GRIPPER, TaskVerb, is_in_mbd},
     state::State,
     tables::{
@@ -83,11 +80,16 @@ impl State {
         let resumed = resumed(&inputs.external.hws, ledger);
         let told = resumed != Resumed::Not && ledger.is_some_and(|ledger| ledger.told);
         let in_mbd = below.at.is_some_and(|at| is_in_mbd(at.record, inputs.data));
+        let is_held = plan.object.is_some() && plan.object == below.held.object();
+        let carried = self.data_system.beliefs.carried.as_ref();
+        let from_elsewhere = plan.verb == TaskVerb::Acquire
+            && is_held
+            && is_from_elsewhere(&inputs.external.hws, plan, ledger, carried);
         let update_due = match plan.verb {
             TaskVerb::Position => self.data_system.is_to_be_told_of(below.held.object(), in_mbd),
-            _ => plan.update_due && !told,
+            _ => plan.update_due && !told && !from_elsewhere,
         };
-        Plan { resumed, update_due, ..*plan }
+        Plan { resumed, update_due, from_elsewhere, ..*plan }
     }
 
     /// Status of Subtask.

@@ -1,6 +1,6 @@
 //! The parts gripper of tests that need one: its fingers follow the valves.
 
-use rcs_core::interface::device::{GripSensors, valve};
+use interfaces::device::{GripSensors, valve};
 
 /// The fingers of a parts gripper without a part: opening, in, and the force with which they press on each
 /// other, lb.

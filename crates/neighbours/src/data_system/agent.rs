@@ -1,20 +1,22 @@
 //! The controller's side of a Data System in another process.
 //!
-//! A thread of its own, which may wait: for the disk, and for the network. A command goes into the mailbox, and the status that
-//! answers it comes back with the pulse of the same exchange, or of a later one. Updates are kept on the disk until they are answered
-//! ([`Outbox`]). Those that an earlier run could not tell follow the next STARTUP, before Task learns that it is done: the data
-//! base hears everything in the order in which it happened.
+//! A thread of its own, which may wait: for the disk, and for the network. A command goes into the mailbox,
+//! and the status that answers it comes back with the pulse of the same exchange, or of a later one. Updates
+//! are kept on the disk until they are answered ([`Outbox`]). Those that an earlier run could not tell
+//! follow the next STARTUP, before Task learns that it is done: the data base hears everything in the order
+//! in which it happened.
 //!
-//! On the line the agent numbers the commands itself, since what is told after STARTUP has no number of Task's:
+//! On the line the agent numbers the commands itself, since what is told after STARTUP has no number of
+//! Task's:
 //!
 //! | what is sent                                  | command-id#     | which status answers it                                     |
 //! |-----------------------------------------------|-----------------|-------------------------------------------------------------|
 //! | another command than before                   | the next number | one of this number that is written afterwards               |
-//! | the same again, since nobody has answered it  | the same        | one to any of its sendings: they are one command            |
+//! | the same again, since it has no answer yet    | the same        | one to any of its sendings: they are one command            |
 //! | the same again, since it is asked for anew    | the next number | one of this number: an answer that comes twice counts once  |
 //!
-//! Who does not answer for the patience of the clock is silent, and so is who answers with bytes that are no status. Task hears nothing
-//! then, and asks again (V.4.1).
+//! A server that does not answer for the patience of the clock is silent, and so is one that answers with
+//! bytes that are no status. Task gets no answer then, and asks again (V.4.1).
 
 use std::{
     fmt, thread,
@@ -30,11 +32,7 @@ use super::{
 use crate::{
     fields::successor,
     mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, MailboxError},
-    network::{
-        Desk, News,
-        listener::patience,
-        office::{Closer, Presence},
-    },
+    network::{Endpoint, NetEvent, Presence, StopHandle, clock::answer_limit},
 };
 
 /// Between two looks at a server that has not answered yet.
@@ -43,8 +41,8 @@ const PAUSE: Duration = Duration::from_millis(5);
 /// What there is to say of the Data System.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Remark {
-    /// It has come or gone, or somebody was refused.
-    News(News),
+    /// It has connected or disconnected, or a connection was refused.
+    Network(NetEvent),
     /// What it wrote cannot be read; said once for every sending of a command.
     Garbled(StatusError),
     /// It is connected, and does not answer.
@@ -59,7 +57,7 @@ pub enum Remark {
 impl fmt::Display for Remark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::News(news) => news.fmt(f),
+            Self::Network(event) => event.fmt(f),
             Self::Garbled(why) => {
                 write!(
                     f,
@@ -77,7 +75,7 @@ impl fmt::Display for Remark {
 
 /// The controller's side.
 pub struct Agent {
-    desk: Desk,
+    endpoint: Endpoint,
     outbox: Outbox,
     /// How long an answer is waited for.
     patience: Duration,
@@ -86,19 +84,20 @@ pub struct Agent {
     command_id: u16,
     /// That command has not been answered.
     open: bool,
-    /// Mailgram number of the status that stood there when it was sent for the first time: it answers something else.
+    /// Mailgram number of the status that stood there when it was sent for the first time: it answers
+    /// something else.
     before: u16,
     remarks: Vec<Remark>,
 }
 
 impl Agent {
-    /// Speaks at a desk, and keeps updates in an outbox. An answer is waited for as long as the network waits for a pulse: 10 s on the
-    /// 40 ms grid, 60 s in fast clock.
+    /// Works with an endpoint, and keeps updates in an outbox. An answer is waited for as long as the
+    /// network waits for a pulse: 10 s on the 40 ms grid, 60 s in fast clock.
     #[must_use]
-    pub const fn new(desk: Desk, outbox: Outbox) -> Self {
-        let patience = patience(desk.clock());
+    pub fn new(endpoint: Endpoint, outbox: Outbox) -> Self {
+        let patience = answer_limit(endpoint.clock());
         Self {
-            desk,
+            endpoint,
             outbox,
             patience,
             exchanges: 0,
@@ -116,10 +115,10 @@ impl Agent {
         self
     }
 
-    /// Ends all waiting from another thread, for the rest of the run: then nobody answers.
+    /// Ends all waiting from another thread, for the rest of the run: then no answer comes.
     #[must_use]
-    pub fn closer(&self) -> Closer {
-        self.desk.closer()
+    pub fn stop_handle(&self) -> StopHandle {
+        self.endpoint.stop_handle()
     }
 
     /// What there is to say, since the last call.
@@ -127,12 +126,13 @@ impl Agent {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Between commands: see who is there.
+    /// Between commands: see whether a server is connected.
     pub fn idle(&mut self) {
         self.exchange();
     }
 
-    /// Have a command carried out; `None` if nobody answers. The answer has the number that Task has given to the command.
+    /// Have a command carried out; `None` if no answer comes. The answer has the number that Task has given
+    /// to the command.
     pub fn execute(&mut self, bytes: &[u8]) -> Option<Answer> {
         let (command_id, transaction) = match command::decode(bytes) {
             Ok(received) => (received.command_id, received.transaction),
@@ -170,8 +170,9 @@ impl Agent {
         }
     }
 
-    /// Tell all that is kept, the oldest first; the last answer, if there was anything to tell, or `None` if nobody answers.
-    #[expect(clippy::option_option, reason = "nobody there is not nothing to tell")]
+    /// Tell all that is kept, the oldest first; the last answer, if there was anything to tell, or `None` if
+    /// no answer comes.
+    #[expect(clippy::option_option, reason = "no answer differs from nothing to tell")]
     fn tell_all(&mut self) -> Option<Option<Answer>> {
         let pending = match self.outbox.pending() {
             Ok(pending) => pending,
@@ -200,23 +201,24 @@ impl Agent {
 
     fn exchange(&mut self) -> Presence {
         self.exchanges += 1;
-        let presence = self.desk.exchange(self.exchanges);
+        let presence = self.endpoint.exchange(self.exchanges);
         if presence.new {
             // Another server counts its mailgrams from the beginning.
             self.before = 0;
         }
-        self.remarks.extend(std::iter::from_fn(|| self.desk.news()).map(Remark::News));
+        self.remarks.extend(std::iter::from_fn(|| self.endpoint.event()).map(Remark::Network));
         presence
     }
 
-    /// Send a command and wait for its status; `None` if nobody is there, or nobody answers, or the run is to end before.
+    /// Send a command and wait for its status; `None` if no Data System is connected, or no answer comes, or
+    /// the run is to end before.
     fn ask(&mut self, bytes: &[u8]) -> Option<Answer> {
         if let Err(error) = self.send(bytes) {
             return Some(refused(error.to_string()));
         }
         let (sent, mut garbled) = (Instant::now(), false);
         loop {
-            if !self.exchange().here {
+            if !self.exchange().connected {
                 return None;
             }
             match self.written() {
@@ -232,7 +234,7 @@ impl Agent {
                 }
                 _ => {}
             }
-            if self.desk.is_interrupted() {
+            if self.endpoint.is_interrupted() {
                 return None;
             }
             if sent.elapsed() >= self.patience {
@@ -244,23 +246,24 @@ impl Agent {
         }
     }
 
-    /// Write a command into the mailbox, under the next number; the last one under its own if it has not been answered.
+    /// Write a command into the mailbox, under the next number; the last one under its own if it has not
+    /// been answered.
     fn send(&mut self, bytes: &[u8]) -> Result<(), MailboxError> {
         let mut bytes = bytes.to_vec();
         command::identify(&mut bytes, self.command_id);
-        if !self.open || self.desk.outgoing(DATA_SYSTEM_COMMAND).data() != bytes {
+        if !self.open || self.endpoint.outgoing(DATA_SYSTEM_COMMAND).data() != bytes {
             self.command_id = successor(self.command_id);
             command::identify(&mut bytes, self.command_id);
-            self.before = self.desk.incoming(DATA_SYSTEM_STATUS).mailgram();
+            self.before = self.endpoint.incoming(DATA_SYSTEM_STATUS).mailgram();
         }
-        self.desk.outgoing(DATA_SYSTEM_COMMAND).write(&bytes)?;
+        self.endpoint.outgoing(DATA_SYSTEM_COMMAND).write(&bytes)?;
         self.open = true;
         Ok(())
     }
 
     /// The status that has been written since the command was sent.
     fn written(&self) -> Option<Result<Status, StatusError>> {
-        let mailbox = self.desk.incoming(DATA_SYSTEM_STATUS);
+        let mailbox = self.endpoint.incoming(DATA_SYSTEM_STATUS);
         let fresh = mailbox.mailgram() != 0 && mailbox.mailgram() != self.before;
         fresh.then(|| Status::decode(mailbox.data()))
     }

@@ -1,7 +1,7 @@
 //! The command buffer of Figure IX.2, byte by byte.
 //!
-//! Two kinds: a reconfiguration command has 28 bytes, a DML command 240. The bytes are tagged fields that hold one another;
-//! their lengths are what makes the two kinds differ:
+//! Two kinds: a reconfiguration command has 28 bytes, a DML command 240. The bytes are tagged fields that
+//! hold one another; their lengths are what makes the two kinds differ:
 //!
 //! ```text
 //!   at   bytes                variable                         28 bytes    240 bytes
@@ -17,18 +17,17 @@
 //!   32       106 + 102 bytes  the DML string, see STRING       -           yes
 //! ```
 //!
-//! The manual gives the values of the 28-byte command and says that DSClen, TRNSlen and TYPEindc are changed for a DML
-//! command: the lengths follow by counting. Of TYPEindc it gives 0x55 only, as what stands there first; CHOSEN: 0x55 is the
-//! first command of a connection (ABORT), 0x56 INITIATE, 0x57 STARTUP, 0x58 DML. CHOSEN too: trans-id# numbers an update that is to be
-//! carried out once, however often it is sent; 0 numbers nothing. Numbers are stored low byte first, lengths of the
-//! protocol high byte first, as the values in the figure show.
+//! The manual gives the values of the 28-byte command and says that DSClen, TRNSlen and TYPEindc are changed
+//! for a DML command: the lengths follow by counting. Of TYPEindc it gives 0x55 only, as what stands there
+//! first; CHOSEN: 0x55 is the first command of a connection (ABORT), 0x56 INITIATE, 0x57 STARTUP, 0x58 DML.
+//! CHOSEN too: trans-id# numbers an update that is to be carried out once, however often it is sent; 0
+//! numbers nothing. Numbers are stored low byte first, lengths of the protocol high byte first, as the values
+//! in the figure show.
 
 use std::ops::Range;
 
-use rcs_core::{
-    interface::{DataBaseCommand, data_base::DataBaseVerb},
-    name::{Name10, Name16},
-};
+use interfaces::{DataBaseCommand, data_base::DataBaseVerb};
+use rcs_core::name::{Name10, Name16};
 
 /// Bytes of a reconfiguration command.
 pub const RECONFIGURATION: usize = 28;

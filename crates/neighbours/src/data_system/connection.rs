@@ -1,8 +1,8 @@
 //! The Data System as a run has it: mailboxes at one end, a server on a thread of its own at the other.
 //!
-//! A disk takes its time and must not take the tick's. A run in fast clock waits for the server where an answer is due, so
-//! that its ticks are the same in every run; a run on the 40 ms grid takes the answer when it is there. Neither waits beyond its own
-//! end: a server in another process may be silent for long.
+//! A disk takes its time and must not take the tick's. A run in fast clock waits for the server where an
+//! answer is due, so that its ticks are the same in every run; a run on the 40 ms grid takes the answer when
+//! it is there. Neither waits beyond its own end: a server in another process may be silent for long.
 
 use std::{
     sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel},
@@ -10,9 +10,9 @@ use std::{
     time::{Duration, Instant},
 };
 
+use interfaces::{DataBaseCommand, DataBaseStatus, data_base::DataBaseReport};
 use rcs_core::{
     handshake::{self, Arrival},
-    interface::{DataBaseCommand, DataBaseStatus, data_base::DataBaseReport},
     tick::Tick,
 };
 
@@ -25,15 +25,16 @@ use super::{
 };
 use crate::{
     mailbox::{DATA_SYSTEM_COMMAND, DATA_SYSTEM_STATUS, Mailbox, MailboxError},
-    network::office::Closer,
+    network::StopHandle,
 };
 
 /// Ticks for an answer unless a run asks for others: 1 s.
 pub const ANSWER_TICKS: u64 = 25;
-/// A server that is silent for so long in a run that waits for it is taken for dead: for a disk it is long. An agent gives up by itself.
+/// A server that is silent for so long in a run that waits for it is taken for dead: for a disk it is long.
+/// An agent gives up by itself.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Between two looks at who is there while nothing is asked.
+/// Between two looks at whether a server is connected while nothing is asked.
 const IDLE: Duration = Duration::from_millis(500);
 
 /// Whether a run waits for the server.
@@ -56,12 +57,12 @@ enum Request {
 enum Response {
     /// What became of the command of this number.
     Executed(u16, Answer),
-    /// Nobody has answered the command of this number.
+    /// The command of this number has no answer.
     Silent(u16),
     Items(rusqlite::Result<Vec<Item>>),
 }
 
-/// Who keeps the items.
+/// Where the items are kept.
 enum Keeper {
     /// A server on the thread.
     Here(Box<Server>),
@@ -117,7 +118,7 @@ pub struct DataSystem {
     refusals: Vec<String>,
     remarks: Receiver<Remark>,
     /// Ends the waiting for a server in another process; none if it is in this one.
-    closer: Option<Closer>,
+    stop_handle: Option<StopHandle>,
     requests: Option<Sender<Request>>,
     responses: Receiver<Response>,
     thread: Option<JoinHandle<()>>,
@@ -130,14 +131,14 @@ impl DataSystem {
         Self::with(Keeper::Here(Box::new(Server::new(store))), answer_ticks, pace)
     }
 
-    /// A Data System in another process. Where a run waits its answers count after as many ticks as those of one here, so that
-    /// both runs are the same; on the grid they count when they are there.
+    /// A Data System in another process. Where a run waits its answers count after as many ticks as those of
+    /// one here, so that both runs are the same; on the grid they count when they are there.
     #[must_use]
     pub fn elsewhere(agent: Agent, pace: Pace) -> Self {
         let ticks = if pace == Pace::Wait { ANSWER_TICKS } else { 0 };
-        let closer = Some(agent.closer());
+        let stop_handle = Some(agent.stop_handle());
         let mut system = Self::with(Keeper::Elsewhere(Box::new(agent)), ticks, pace);
-        system.closer = closer;
+        system.stop_handle = stop_handle;
         system
     }
 
@@ -172,7 +173,7 @@ impl DataSystem {
             status_box: Mailbox::initialized(DATA_SYSTEM_STATUS),
             refusals: Vec::new(),
             remarks,
-            closer: None,
+            stop_handle: None,
             requests: Some(requests),
             responses,
             thread: Some(thread),
@@ -237,7 +238,8 @@ impl DataSystem {
         }
     }
 
-    /// Take the answer to the command under way, if it is there; one to a command before it comes too late and is nobody's.
+    /// Take the answer to the command under way, if it is there; one to a command before it comes too late
+    /// and belongs to no command.
     fn receive(&mut self) {
         loop {
             match self.response() {
@@ -270,7 +272,7 @@ impl DataSystem {
                 Err(TryRecvError::Empty) => Ok(None),
                 Err(TryRecvError::Disconnected) => Err(Dead),
             },
-            Pace::Wait if self.closer.is_some() => self.responses.recv().map(Some).map_err(|_| Dead),
+            Pace::Wait if self.stop_handle.is_some() => self.responses.recv().map(Some).map_err(|_| Dead),
             Pace::Wait => self.responses.recv_timeout(PATIENCE).map(Some).map_err(|_| Dead),
         }
     }
@@ -308,12 +310,13 @@ impl DataSystem {
         self.refusals.push(why);
     }
 
-    /// The items that were reported, by name and number; none of a server in another process, which is to be asked where it keeps them.
+    /// The items that were reported, by name and number; none of a server in another process, which is to be
+    /// asked where it keeps them.
     ///
     /// # Errors
     /// Why the data base does not give them.
     pub fn items(&mut self) -> Result<Vec<Item>, String> {
-        if self.closer.is_some() {
+        if self.stop_handle.is_some() {
             // The agent may be waiting for it.
             return Ok(Vec::new());
         }
@@ -331,9 +334,9 @@ impl DataSystem {
 
 impl Drop for DataSystem {
     fn drop(&mut self) {
-        if let Some(closer) = &self.closer {
+        if let Some(stop_handle) = &self.stop_handle {
             // What is not answered yet stands in the outbox.
-            closer.close();
+            stop_handle.stop();
         }
         // Without requests to come the thread ends; it closes the data base, and no journal is left behind.
         self.requests = None;
@@ -352,10 +355,8 @@ impl Drop for DataSystem {
 
 #[cfg(test)]
 mod tests {
-    use rcs_core::{
-        interface::data_base::DataBaseVerb,
-        name::{Name10, Name16},
-    };
+    use interfaces::data_base::DataBaseVerb;
+    use rcs_core::name::{Name10, Name16};
 
     use super::*;
 

@@ -1,4 +1,4 @@
-//! The AMRF Data System (IV.4.2, IX.2): who has which item where.
+//! The AMRF Data System (IV.4.2, IX.2): where each item is.
 //!
 //! Task knows a command record and a status record. Between them and the data base stand a mailbox each way:
 //!
@@ -7,9 +7,10 @@
 //!   DataBaseStatus  <--status::decode--     14 bytes     <--Server--  what became of it
 //! ```
 //!
-//! [`DataSystem`] is the controller's end: with the server on a thread of its own, or in another process ([`Agent`]), where updates
-//! wait on the controller's disk until they are answered ([`Outbox`]). The server takes bytes and gives bytes, and is strict: about the
-//! bytes, about the statement, and about the order of a connection.
+//! [`DataSystem`] is the controller's end: with the server on a thread of its own, or in another process
+//! ([`Agent`]), where updates wait on the controller's disk until they are answered ([`Outbox`]). The server
+//! takes bytes and gives bytes, and is strict: about the bytes, about the statement, and about the order of
+//! a connection.
 
 mod agent;
 pub mod command;

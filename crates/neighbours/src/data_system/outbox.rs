@@ -1,8 +1,9 @@
 //! Updates that the Data System has not taken yet, on the controller's disk.
 //!
-//! An update is kept here before it is sent, under a number that no other one has had, and struck out when the Data System has
-//! answered it. Who is killed in between finds it again, and sends it with the same number: the Data System knows it by that number,
-//! and counts it once. The file is an SQLite data base, whose journal is flushed to the disk before anything is sent.
+//! An update is kept here before it is sent, under a number that no other one has had, and struck out when
+//! the Data System has answered it. A run that is killed in between leaves it to the next one, and sends it
+//! with the same number: the Data System knows it by that number, and counts it once. The file is an SQLite
+//! data base, whose journal is flushed to the disk before anything is sent.
 
 use std::path::{Path, PathBuf};
 
@@ -58,7 +59,7 @@ pub struct Kept {
 }
 
 impl Outbox {
-    /// The outbox in a file, which is made if it is not there. Nobody else can have it at the same time.
+    /// The outbox in a file, which is made if it is not there. No other process can have it at the same time.
     ///
     /// # Errors
     /// [`OutboxError`].

@@ -1,8 +1,9 @@
 //! The server: bytes of a command in, bytes of a status out.
 //!
-//! It is strict about the order of a connection: an item is taken only from a client that has made itself known and begun
-//! (IV.4.2: Abort, Initiate, Startup). A step that is asked for once more, since its answer was lost, is done already. How far
-//! a client has come stands in the data base: a server that is restarted goes on as if it had only been slow.
+//! It is strict about the order of a connection: an item is taken only from a client that has made itself
+//! known and begun (IV.4.2: Abort, Initiate, Startup). A step that is asked for once more, since its answer
+//! was lost, is done already. How far a client has come stands in the data base: a server that is restarted
+//! goes on as if it had only been slow.
 //!
 //! ```text
 //!            INITIATE              STARTUP
@@ -86,7 +87,7 @@ impl Server {
         let session = Session::from_code(self.store.session(received.client).map_err(kept)?);
         let session = match (received.transaction, session) {
             (Transaction::Abort, _) => Session::Closed,
-            // Who asks again has not heard the answer.
+            // A client that asks again has not got the answer.
             (Transaction::Initiate, Session::Closed | Session::Initiated) => Session::Initiated,
             (Transaction::Startup, Session::Initiated | Session::Started) => Session::Started,
             (Transaction::Dml, Session::Started) => return self.update(received),
@@ -137,10 +138,8 @@ fn one_digit(text: &str) -> Option<u8> {
 
 #[cfg(test)]
 mod tests {
-    use rcs_core::{
-        interface::{DataBaseCommand, data_base::DataBaseVerb},
-        name::{Name10, Name16},
-    };
+    use interfaces::{DataBaseCommand, data_base::DataBaseVerb};
+    use rcs_core::name::{Name10, Name16};
 
     use super::*;
 

@@ -1,8 +1,8 @@
 //! The data base: items, devices, storage positions, and where every item has been, in one SQLite file.
 //!
-//! An item with a number is found by it, whatever it is called: a blank that has been machined keeps its number and changes
-//! its name. Items without a number are told apart by name. A report that says what is known already changes nothing, so
-//! that one that is sent twice counts once.
+//! An item with a number is found by it, whatever it is called: a blank that has been machined keeps its
+//! number and changes its name. Items without a number are told apart by name. A report that says what is
+//! known already changes nothing, so that one that is sent twice counts once.
 //!
 //! ```sql
 //! SELECT * FROM whereabouts WHERE number = '17';   -- where it is
@@ -20,7 +20,8 @@ const APPLICATION_ID: i32 = 0x5243_5332;
 /// Version of the tables.
 const VERSION: i32 = 2;
 
-/// What came with version 2: who speaks with us, how far he has come, and what he said last under a number.
+/// What came with version 2: the controllers that connect, the last number of each, and the last command
+/// under a number.
 const CLIENTS: &str = "
     CREATE TABLE client (
         name TEXT PRIMARY KEY,
@@ -98,7 +99,7 @@ pub struct Item {
 pub struct Visit {
     /// When it was reported, in UTC.
     pub at: String,
-    /// Who reported it.
+    /// The client that reported it.
     pub client: String,
     /// `STORAGE_POS`.
     pub position: String,
@@ -198,7 +199,7 @@ impl Store {
             let transaction =
                 connection.transaction_with_behavior(TransactionBehavior::Immediate).map_err(failed)?;
             if number(&transaction, "application_id")? == APPLICATION_ID {
-                // Somebody else who found it empty was faster.
+                // Another process that found it empty was faster.
                 transaction.commit().map_err(failed)?;
                 return Self::with_tables(connection, file);
             }
@@ -209,7 +210,7 @@ impl Store {
             transaction.commit().map_err(failed)?;
         }
         connection.pragma_update(None, "foreign_keys", true).map_err(failed)?;
-        // With a journal ahead of the file nobody who reads holds up a report; what was answered survives a power cut.
+        // With a journal ahead of the file no reader delays a report; what was answered survives a power cut.
         connection.pragma_update(None, "journal_mode", "wal").map_err(failed)?;
         connection.pragma_update(None, "synchronous", "full").map_err(failed)?;
         Ok(Self { connection })
@@ -240,8 +241,8 @@ impl Store {
 
     /// An item is where a client says. True if that is news.
     ///
-    /// With a number other than 0 a statement counts once: said again under the same number it changes nothing, whatever
-    /// has been said since by others.
+    /// With a number other than 0 a statement counts once: said again under the same number it changes
+    /// nothing, whatever has been said since by others.
     ///
     /// # Errors
     /// What SQLite says; nothing has changed then.

@@ -2,32 +2,32 @@
 
 use std::{fmt, net::SocketAddr, path::PathBuf, str::FromStr};
 
-use super::station::{Station, StationError};
+use super::zenoh_address::{ZenohAddress, ZenohAddressError};
 
 /// An address: `unix:PATH`, `tcp:IP:PORT` or `zenoh:NAME[@ENDPOINT]`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Address {
     /// A socket in the file system, for processes of the same user on this machine.
     Unix(PathBuf),
-    /// A TCP port, for whoever knows the secret.
+    /// A TCP port: TLS with certificates on both sides.
     Tcp(SocketAddr),
-    /// A Zenoh network, for whoever knows the secret.
-    Zenoh(Station),
+    /// A Zenoh network, with the same TLS inside.
+    Zenoh(ZenohAddress),
 }
 
 /// Why a text is no address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
-    /// No scheme that is known.
+    /// An unknown scheme.
     #[error("unix:PATH, tcp:IP:PORT or zenoh:NAME was expected, found {0}")]
     Scheme(String),
-    /// No numbers.
+    /// No IP address and port.
     #[error("an IP address and a port were expected behind tcp:, as in tcp:127.0.0.1:7400, found {0}")]
     Socket(String),
-    /// No station.
+    /// No zenoh.
     #[error(transparent)]
-    Station(#[from] StationError),
-    /// A configuration for something else.
+    ZenohAddress(#[from] ZenohAddressError),
+    /// A configuration of Zenoh for another kind of address.
     #[error("a configuration of Zenoh is for an address that begins with zenoh:, found {0}")]
     NotZenoh(Address),
 }
@@ -39,7 +39,7 @@ impl Address {
     /// [`AddressError::NotZenoh`].
     pub fn configured(self, file: Option<PathBuf>) -> Result<Self, AddressError> {
         match (self, file) {
-            (Self::Zenoh(station), Some(file)) => Ok(Self::Zenoh(station.configured(file))),
+            (Self::Zenoh(zenoh), Some(file)) => Ok(Self::Zenoh(zenoh.configured(file))),
             (other, None) => Ok(other),
             (other, Some(_)) => Err(AddressError::NotZenoh(other)),
         }
@@ -55,7 +55,7 @@ impl FromStr for Address {
             Some(("tcp", socket)) => {
                 socket.parse().map(Self::Tcp).map_err(|_| AddressError::Socket(socket.to_owned()))
             }
-            Some(("zenoh", station)) => Ok(Self::Zenoh(station.parse()?)),
+            Some(("zenoh", zenoh)) => Ok(Self::Zenoh(zenoh.parse()?)),
             _ => Err(AddressError::Scheme(text.to_owned())),
         }
     }
@@ -66,7 +66,7 @@ impl fmt::Display for Address {
         match self {
             Self::Unix(path) => write!(f, "unix:{}", path.display()),
             Self::Tcp(socket) => write!(f, "tcp:{socket}"),
-            Self::Zenoh(station) => write!(f, "zenoh:{station}"),
+            Self::Zenoh(zenoh) => write!(f, "zenoh:{zenoh}"),
         }
     }
 }
@@ -86,7 +86,7 @@ mod tests {
         for text in ["tcp:", "tcp:localhost", "tcp:127.0.0.1"] {
             assert!(matches!(text.parse::<Address>(), Err(AddressError::Socket(_))), "{text}");
         }
-        assert!(matches!("zenoh:".parse::<Address>(), Err(AddressError::Station(_))));
+        assert!(matches!("zenoh:".parse::<Address>(), Err(AddressError::ZenohAddress(_))));
     }
 
     #[test]
@@ -94,8 +94,8 @@ mod tests {
         let of = |text: &str, file: Option<&str>| {
             text.parse::<Address>().unwrap().configured(file.map(PathBuf::from))
         };
-        let Address::Zenoh(station) = of("zenoh:t3", Some("tls.json5")).unwrap() else { panic!("it is") };
-        assert_eq!(station.configuration(), Some(std::path::Path::new("tls.json5")));
+        let Address::Zenoh(zenoh) = of("zenoh:t3", Some("tls.json5")).unwrap() else { panic!("it is") };
+        assert_eq!(zenoh.configuration(), Some(std::path::Path::new("tls.json5")));
         assert!(of("unix:here", None).is_ok());
         assert!(matches!(of("unix:here", Some("tls.json5")), Err(AddressError::NotZenoh(_))));
     }

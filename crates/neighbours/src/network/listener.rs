@@ -1,15 +1,14 @@
-//! The controller's end of the line: waits for neighbours, lets in who may, and reads what they send.
+//! Where the controller accepts connections: a thread waits at a socket, another serves each connection.
 //!
-//! Over sockets one thread waits for connections; each connection has a thread that says hello and then reads. Who is let in: at a socket in
-//! the file system, processes of the same user; at a TCP port, who knows the secret. Everybody else is told why and
-//! refused, and the controller is told.
+//! At a socket in the file system processes of the same user are admitted; at a TCP port, neighbours with a
+//! certificate ([`keys`](super::keys)). All others are refused with a reason, and the controller is told.
 
 use std::{
     fs, io,
     net::TcpListener,
     os::unix::{
         fs::{FileTypeExt as _, MetadataExt as _, PermissionsExt as _},
-        net::UnixListener,
+        net::{UnixListener, UnixStream},
     },
     path::{Path, PathBuf},
     sync::{
@@ -17,35 +16,16 @@ use std::{
         atomic::{AtomicBool, Ordering},
     },
     thread::{self, JoinHandle},
-    time::{Duration, Instant},
+    time::Duration,
 };
 
-use rustix::{
-    net::{Shutdown, shutdown, sockopt},
-    process::geteuid,
-};
+use rustix::net::{Shutdown, shutdown};
 
 #[cfg(feature = "zenoh")]
 use super::over_zenoh;
-use super::{
-    Address, Desk, News, Parting, Secret,
-    door::{self, Door},
-    frame::{Frame, FrameError},
-    hello::{ANSWER, Agreement, Challenge, ClockKind, welcome},
-    office::{Counter, Outlet as _},
-    peer::Inlet as _,
-    stream::{Receiver, Sender, Stream, is_timeout},
-};
+use super::{Address, Endpoint, KeysError, keys::ControllerKeys, server::Server, socket::Socket};
 
-/// A neighbour that does not answer a pulse for so long is gone.
-const PATIENCE: Duration = Duration::from_secs(10);
-/// In fast clock nothing stands still but the run, and a machine may be busy with other things.
-const FAST_PATIENCE: Duration = Duration::from_secs(60);
-
-/// What is said to those for whom there is no place at the door.
-pub(super) const CROWDED: &str = "too many connect at once";
-
-/// Why nobody can connect.
+/// Why no neighbour can connect.
 #[derive(Debug, thiserror::Error)]
 pub enum ListenError {
     /// The address cannot be had.
@@ -59,9 +39,9 @@ pub enum ListenError {
     /// Another run has it.
     #[error("{0}: another run waits for its neighbours there")]
     InUse(Address),
-    /// Anybody on the network could command the robot.
-    #[error("{0}: a network needs a secret that the neighbours know; name a file with --secret")]
-    NoSecret(Address),
+    /// The keys do not go with the address.
+    #[error(transparent)]
+    Keys(#[from] KeysError),
     /// Zenoh is left out of this program.
     #[cfg(not(feature = "zenoh"))]
     #[error("{0}: {NO_ZENOH}")]
@@ -73,32 +53,32 @@ pub enum ListenError {
 pub(super) const NO_ZENOH: &str = "this program was built without Zenoh; cargo build --release --workspace --features zenoh \
                                    builds it with Zenoh";
 
-enum Socket {
+enum Accepting {
     Unix(UnixListener),
     Tcp(TcpListener),
 }
 
-/// Waits for neighbours.
+/// Accepts connections as long as it lives.
 pub struct Listener {
-    /// Where they can connect: with the port that the system has chosen, if it was to.
+    /// Where neighbours can connect: with the port that the system has chosen, if it was to.
     address: Address,
     _line: Line,
 }
 
 /// What it waits at.
 enum Line {
-    Sockets {
-        _sockets: Sockets,
+    Socket {
+        _socket: ListeningSocket,
     },
     #[cfg(feature = "zenoh")]
     Zenoh {
-        _reception: over_zenoh::controller::Reception,
+        _acceptor: over_zenoh::Acceptor,
     },
 }
 
-/// Waits at a socket.
-struct Sockets {
-    socket: Arc<Socket>,
+/// A socket, and the thread that waits at it.
+struct ListeningSocket {
+    socket: Arc<Accepting>,
     file: Option<SocketFile>,
     over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -126,54 +106,45 @@ impl SocketFile {
     }
 }
 
-/// What the threads work with.
-struct Reception {
-    counters: Vec<Counter>,
-    secret: Option<Secret>,
-    clock: ClockKind,
-    door: Door,
-}
-
 impl Listener {
-    /// Wait for the neighbours of some desks at an address.
+    /// Accept connections for some endpoints at an address.
     ///
     /// # Errors
     /// [`ListenError`].
     ///
     /// # Panics
-    /// If there are no desks.
+    /// If there are no endpoints.
     pub fn start<'a>(
         address: &Address,
-        secret: Option<Secret>,
-        desks: impl IntoIterator<Item = &'a Desk>,
+        keys: Option<ControllerKeys>,
+        endpoints: impl IntoIterator<Item = &'a Endpoint>,
     ) -> Result<Self, ListenError> {
-        let counters: Vec<_> = desks.into_iter().map(Desk::counter).collect();
-        let clock = counters.first().expect("a network has neighbours").clock();
+        KeysError::check(address, keys.is_some())?;
+        let handles: Vec<_> = endpoints.into_iter().map(Endpoint::handle).collect();
+        let clock = handles.first().expect("a network has neighbours").clock();
+        let server = Arc::new(Server::new(handles, keys, clock));
         let failed = |source| ListenError::Address { address: address.clone(), source };
-        let (socket, bound) =
-            match (address, secret.clone()) {
-                (Address::Unix(path), _) => (Socket::Unix(unix(path, address)?), address.clone()),
-                (_, None) => return Err(ListenError::NoSecret(address.clone())),
-                (Address::Tcp(place), Some(_)) => {
-                    let listener = TcpListener::bind(place).map_err(failed)?;
-                    let bound = listener.local_addr().map_err(failed)?;
-                    (Socket::Tcp(listener), Address::Tcp(bound))
-                }
-                #[cfg(not(feature = "zenoh"))]
-                (Address::Zenoh(_), Some(_)) => return Err(ListenError::NoZenoh(address.clone())),
-                #[cfg(feature = "zenoh")]
-                (Address::Zenoh(station), Some(secret)) => {
-                    let _reception = over_zenoh::controller::Reception::open(station, secret, counters)
-                        .map_err(|error| match error.kind() {
-                            io::ErrorKind::AddrInUse => ListenError::InUse(address.clone()),
-                            _ => failed(error),
-                        })?;
-                    return Ok(Self { address: address.clone(), _line: Line::Zenoh { _reception } });
-                }
-            };
-        let reception = Arc::new(Reception { counters, secret, clock, door: Door::default() });
-        let _sockets = Sockets::listen(socket, &bound, reception).map_err(failed)?;
-        Ok(Self { address: bound, _line: Line::Sockets { _sockets } })
+        let (socket, bound) = match address {
+            Address::Unix(path) => (Accepting::Unix(unix(path, address)?), address.clone()),
+            Address::Tcp(place) => {
+                let listener = TcpListener::bind(place).map_err(failed)?;
+                let bound = listener.local_addr().map_err(failed)?;
+                (Accepting::Tcp(listener), Address::Tcp(bound))
+            }
+            #[cfg(not(feature = "zenoh"))]
+            Address::Zenoh(_) => return Err(ListenError::NoZenoh(address.clone())),
+            #[cfg(feature = "zenoh")]
+            Address::Zenoh(zenoh) => {
+                let opened = over_zenoh::Acceptor::open(zenoh, server);
+                let _acceptor = opened.map_err(|error| match error.kind() {
+                    io::ErrorKind::AddrInUse => ListenError::InUse(address.clone()),
+                    _ => failed(error),
+                })?;
+                return Ok(Self { address: address.clone(), _line: Line::Zenoh { _acceptor } });
+            }
+        };
+        let _socket = ListeningSocket::listen(socket, &bound, server).map_err(failed)?;
+        Ok(Self { address: bound, _line: Line::Socket { _socket } })
     }
 
     /// Where neighbours can connect.
@@ -183,26 +154,26 @@ impl Listener {
     }
 }
 
-impl Sockets {
-    fn listen(socket: Socket, address: &Address, reception: Arc<Reception>) -> io::Result<Self> {
+impl ListeningSocket {
+    fn listen(socket: Accepting, address: &Address, server: Arc<Server>) -> io::Result<Self> {
         let file = match address {
             Address::Unix(path) => Some(SocketFile::at(path)?),
             Address::Tcp(_) | Address::Zenoh(_) => None,
         };
         let (socket, over) = (Arc::new(socket), Arc::new(AtomicBool::new(false)));
-        let (waiting, flag) = (Arc::clone(&socket), Arc::clone(&over));
-        let thread = Some(thread::spawn(move || listen(&waiting, &flag, &reception)));
+        let (accepting, flag) = (Arc::clone(&socket), Arc::clone(&over));
+        let thread = Some(thread::spawn(move || accept(&accepting, &flag, &server)));
         Ok(Self { socket, file, over, thread })
     }
 }
 
-impl Drop for Sockets {
+impl Drop for ListeningSocket {
     fn drop(&mut self) {
         self.over.store(true, Ordering::Release);
         // Wakes the thread that waits for a connection, whatever stands at the address by now.
         let woken = match &*self.socket {
-            Socket::Unix(listener) => shutdown(listener, Shutdown::Both),
-            Socket::Tcp(listener) => shutdown(listener, Shutdown::Both),
+            Accepting::Unix(listener) => shutdown(listener, Shutdown::Both),
+            Accepting::Tcp(listener) => shutdown(listener, Shutdown::Both),
         };
         if let Some(thread) = self.thread.take().filter(|_| woken.is_ok()) {
             // It has nothing to return, and a panic in it was reported.
@@ -214,20 +185,12 @@ impl Drop for Sockets {
     }
 }
 
-/// How long a neighbour may take to answer a pulse.
-pub(crate) const fn patience(clock: ClockKind) -> Duration {
-    match clock {
-        ClockKind::Real => PATIENCE,
-        ClockKind::Fast => FAST_PATIENCE,
-    }
-}
-
 /// A socket that a killed run has left is taken over.
 fn unix(path: &Path, address: &Address) -> Result<UnixListener, ListenError> {
     let failed = |source| ListenError::Address { address: address.clone(), source };
     let listener = match UnixListener::bind(path) {
         Err(error) if error.kind() == io::ErrorKind::AddrInUse => {
-            if std::os::unix::net::UnixStream::connect(path).is_ok() {
+            if UnixStream::connect(path).is_ok() {
                 return Err(ListenError::InUse(address.clone()));
             }
             if !fs::symlink_metadata(path).map_err(failed)?.file_type().is_socket() {
@@ -242,169 +205,49 @@ fn unix(path: &Path, address: &Address) -> Result<UnixListener, ListenError> {
     Ok(listener)
 }
 
-fn listen(socket: &Socket, over: &AtomicBool, reception: &Arc<Reception>) {
-    let mut crowded: Option<Instant> = None;
+fn accept(socket: &Accepting, over: &AtomicBool, server: &Arc<Server>) {
     while !over.load(Ordering::Acquire) {
         let accepted = match socket {
-            Socket::Unix(listener) => listener.accept().map(|(stream, _)| Stream::Unix(stream)),
-            Socket::Tcp(listener) => listener.accept().map(|(stream, _)| Stream::Tcp(stream)),
+            Accepting::Unix(listener) => listener.accept().map(|(stream, _)| Socket::Unix(stream)),
+            Accepting::Tcp(listener) => listener.accept().map(|(stream, _)| Socket::Tcp(stream)),
         };
-        let Ok(stream) = accepted else {
-            if over.load(Ordering::Acquire) {
-                return;
-            }
+        match accepted {
+            _ if over.load(Ordering::Acquire) => return,
+            Ok(socket) => server.enter(socket),
             // Out of file descriptors, perhaps: it must not become a busy loop.
-            thread::sleep(Duration::from_millis(100));
-            continue;
-        };
-        if over.load(Ordering::Acquire) {
-            return;
-        }
-        let reception = Arc::clone(reception);
-        if let Ok(Some(ticket)) = reception.door.enter(&stream) {
-            thread::spawn(move || receive(stream, &reception, ticket));
-        } else {
-            send_away(stream, reception.clock);
-            if crowded.is_none_or(|since| since.elapsed() >= door::SAFE) {
-                crowded = Some(Instant::now());
-                reception.tell(News::Refused(CROWDED.to_owned()));
-            }
-        }
-    }
-}
-
-/// Say that there is no place. What is new holds so many bytes, so nobody is waited for.
-fn send_away(mut stream: Stream, clock: ClockKind) {
-    if let Ok(challenge) = Challenge::new(clock)
-        && io::Write::write_all(&mut stream, challenge.bytes()).is_ok()
-    {
-        let mut sender = Sender::new(stream);
-        // He may be gone already.
-        let _ = sender.send(&Frame::last_words(CROWDED));
-    }
-}
-
-impl Reception {
-    fn tell(&self, news: News) {
-        if let Some(counter) = self.counters.first() {
-            counter.tell(news);
-        }
-    }
-
-    /// Say hello; whose desk it is, and what was agreed upon. Who is refused has said his hello before, so that he can hear why.
-    fn greet(&self, stream: &mut Stream) -> Result<(&Counter, Option<Agreement>), String> {
-        let said = |error: &dyn std::fmt::Display| error.to_string();
-        stream.prepare(patience(self.clock)).map_err(|error| said(&error))?;
-        let challenge = Challenge::new(self.clock).map_err(|error| said(&error))?;
-        io::Write::write_all(stream, challenge.bytes()).map_err(|error| said(&error))?;
-        let mut answer = [0; ANSWER];
-        io::Read::read_exact(stream, &mut answer).map_err(|error| match error {
-            error if is_timeout(&error) => format!("no hello within {} s", patience(self.clock).as_secs()),
-            error => format!("no hello: {error}"),
-        })?;
-        if let Stream::Unix(socket) = stream {
-            let peer = sockopt::socket_peercred(socket).map_err(|error| said(&error))?;
-            if peer.uid != geteuid() {
-                return Err(format!(
-                    "user {} was expected, found user {}",
-                    geteuid().as_raw(),
-                    peer.uid.as_raw()
-                ));
-            }
-        }
-        let (role, agreement) =
-            challenge.judge(&answer, self.secret.as_ref()).map_err(|error| said(&error))?;
-        let counter = self.counters.iter().find(|counter| counter.role() == role);
-        counter
-            .map(|counter| (counter, agreement))
-            .ok_or_else(|| format!("no {role} was expected in another process"))
-    }
-}
-
-/// A connection, from the hello to its end.
-fn receive(mut stream: Stream, reception: &Reception, ticket: u64) {
-    let place = reception.door.place(ticket);
-    match admit(&mut stream, reception) {
-        Ok((counter, agreement)) => {
-            drop(place);
-            let mut receiver = Receiver::new(stream);
-            receiver.seal(agreement.as_ref().map(Agreement::up));
-            let (limit, clerk) = (patience(reception.clock), counter.clone());
-            counter.detach(match receiver.wait_until(move || clerk.is_late(limit)) {
-                Ok(()) => read(&mut receiver, counter, limit),
-                Err(error) => Parting::Left(error.to_string()),
-            });
-        }
-        Err(why) => {
-            reception.tell(News::Refused(why));
-            thread::sleep(door::SAFE);
-        }
-    }
-}
-
-/// Let a neighbour in, or tell him why not.
-fn admit<'a>(
-    stream: &mut Stream,
-    reception: &'a Reception,
-) -> Result<(&'a Counter, Option<Agreement>), String> {
-    let mut sender = Sender::new(stream.try_clone().map_err(|error| error.to_string())?);
-    match reception.greet(stream) {
-        Ok((counter, agreement)) => {
-            let welcome = Frame::welcome(&welcome(agreement.as_ref()));
-            sender.seal_behind_first(agreement.as_ref().map(Agreement::down));
-            counter.attach(Box::new(sender), Some(&welcome)).map_err(|error| error.to_string())?;
-            Ok((counter, agreement))
-        }
-        Err(why) => {
-            // He may be gone already.
-            let _ = sender.send(&Frame::last_words(&why));
-            sender.close();
-            Err(why)
-        }
-    }
-}
-
-/// Read until the connection ends; why it did.
-fn read(receiver: &mut Receiver, counter: &Counter, limit: Duration) -> Parting {
-    loop {
-        match receiver.receive() {
-            Ok(frame) => {
-                if let Err(error) = counter.deliver(&frame) {
-                    return Parting::Dismissed(error.to_string());
-                }
-                // He may talk without end, and answer nothing.
-                if counter.is_late(limit) {
-                    return Parting::silent(limit);
-                }
-            }
-            Err(FrameError::Stream(error)) if is_timeout(&error) => return Parting::silent(limit),
-            Err(FrameError::Stream(error)) if error.kind() == io::ErrorKind::UnexpectedEof => {
-                return Parting::closed();
-            }
-            Err(FrameError::Stream(error)) => return Parting::Left(error.to_string()),
-            Err(error) => return Parting::Dismissed(error.to_string()),
+            Err(_) => thread::sleep(Duration::from_millis(100)),
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::time::Instant;
+
     use super::*;
-    use crate::network::{Peer, Role, hello::HELLO};
+    use crate::network::{
+        NetEvent, Peer, Role,
+        accept_queue::{SAFE, SLOTS},
+        clock::{ClockKind, answer_limit},
+    };
+
+    fn endpoint(clock: ClockKind) -> Endpoint {
+        Endpoint::new(Role::Workstation, clock).unwrap()
+    }
 
     #[test]
     fn a_socket_that_was_left_behind_is_taken_over_and_no_other_file_is() {
         let place = tempfile::tempdir().unwrap();
         let (socket, file) = (place.path().join("rcs.sock"), place.path().join("notes"));
-        let desk = Desk::new(Role::Workstation, ClockKind::Real);
+        let endpoint = endpoint(ClockKind::Real);
         drop(UnixListener::bind(&socket).unwrap());
-        let listener = Listener::start(&Address::Unix(socket.clone()), None, [&desk]).unwrap();
-        let second = Listener::start(&Address::Unix(socket.clone()), None, [&desk]);
+        let listener = Listener::start(&Address::Unix(socket.clone()), None, [&endpoint]).unwrap();
+        let second = Listener::start(&Address::Unix(socket.clone()), None, [&endpoint]);
         assert!(matches!(second, Err(ListenError::InUse(_))));
         drop(listener);
         assert!(!socket.exists());
         fs::write(&file, "not to be lost").unwrap();
-        let refused = Listener::start(&Address::Unix(file.clone()), None, [&desk]);
+        let refused = Listener::start(&Address::Unix(file.clone()), None, [&endpoint]);
         assert!(matches!(refused, Err(ListenError::Address { .. })));
         assert_eq!(fs::read_to_string(file).unwrap(), "not to be lost");
     }
@@ -413,8 +256,8 @@ mod tests {
     fn a_listener_whose_path_was_taken_by_another_ends_and_leaves_the_other_alone() {
         let place = tempfile::tempdir().unwrap();
         let socket = place.path().join("rcs.sock");
-        let desk = Desk::new(Role::Workstation, ClockKind::Real);
-        let first = Listener::start(&Address::Unix(socket.clone()), None, [&desk]).unwrap();
+        let endpoint = endpoint(ClockKind::Real);
+        let first = Listener::start(&Address::Unix(socket.clone()), None, [&endpoint]).unwrap();
         fs::remove_file(&socket).unwrap();
         let _second = UnixListener::bind(&socket).unwrap();
         drop(first);
@@ -422,46 +265,36 @@ mod tests {
     }
 
     #[test]
-    fn for_whom_there_is_no_place_is_told_so() {
-        let (ours, mut theirs) = std::os::unix::net::UnixStream::pair().unwrap();
-        send_away(Stream::Unix(ours), ClockKind::Real);
-        let mut bytes = [0; HELLO];
-        io::Read::read_exact(&mut theirs, &mut bytes).unwrap();
-        assert!(Challenge::from_bytes(bytes).is_ok());
-        assert_eq!(Frame::read(&mut theirs).unwrap(), Frame::last_words(CROWDED));
-    }
-
-    #[test]
-    fn strangers_that_say_nothing_keep_nobody_out() {
+    fn clients_that_send_nothing_keep_no_other_out() {
         let place = tempfile::tempdir().unwrap();
         let socket = place.path().join("rcs.sock");
         let address = Address::Unix(socket.clone());
-        let desk = Desk::new(Role::Workstation, ClockKind::Fast);
-        let _listener = Listener::start(&address, None, [&desk]).unwrap();
-        let _silent: Vec<_> = (0..door::PLACES * 2)
-            .map(|_| std::os::unix::net::UnixStream::connect(&socket).unwrap())
-            .collect();
-        Peer::connect_within(FAST_PATIENCE / 2, &address, Role::Workstation, None).unwrap();
+        let endpoint = endpoint(ClockKind::Fast);
+        let _listener = Listener::start(&address, None, [&endpoint]).unwrap();
+        let _silent: Vec<_> = (0..SLOTS * 2).map(|_| UnixStream::connect(&socket).unwrap()).collect();
+        Peer::connect_within(answer_limit(ClockKind::Fast) / 2, &address, Role::Workstation, None).unwrap();
     }
 
-    /// Everybody gets the same answer, but the run hears of no more than it can take, and is open again soon.
+    /// All get the same answer, but the run is told of no more than it can take, and accepts others again
+    /// soon.
     #[test]
-    fn who_tries_again_and_again_fills_no_log_and_locks_nobody_out() {
+    fn a_client_that_tries_again_and_again_fills_no_log_and_locks_no_other_out() {
         let place = tempfile::tempdir().unwrap();
         let address = Address::Unix(place.path().join("rcs.sock"));
-        let desk = Desk::new(Role::Workstation, ClockKind::Real);
-        let _listener = Listener::start(&address, None, [&desk]).unwrap();
+        let endpoint = endpoint(ClockKind::Real);
+        let _listener = Listener::start(&address, None, [&endpoint]).unwrap();
         let started = Instant::now();
         let mut tried = 0_u32;
-        while started.elapsed() < door::SAFE * 3 {
-            assert!(Peer::connect(&address, Role::DataSystem, None).is_err(), "nobody expects one");
+        while started.elapsed() < SAFE * 3 {
+            assert!(Peer::connect(&address, Role::DataSystem, None).is_err(), "none is expected");
             tried += 1;
         }
-        Peer::connect_within(FAST_PATIENCE, &address, Role::Workstation, None).unwrap();
-        let heard = std::iter::from_fn(|| desk.news()).filter(|news| matches!(news, News::Refused(_)));
-        let heard = u32::try_from(heard.count()).unwrap();
-        // A place at the door once in a penalty, and a word about the crowd; time goes on behind the loop as well.
-        let most = (started.elapsed().as_secs_f64() / door::SAFE.as_secs_f64()).ceil() as u32 + 1;
-        assert!(heard <= most * (door::PLACES as u32 + 1), "{heard} of {tried} in {most} s");
+        Peer::connect_within(answer_limit(ClockKind::Fast), &address, Role::Workstation, None).unwrap();
+        let events = std::iter::from_fn(|| endpoint.event());
+        let told =
+            u32::try_from(events.filter(|event| matches!(event, NetEvent::Refused(_))).count()).unwrap();
+        // A slot once in a penalty, and a word about the crowd; time goes on behind the loop as well.
+        let most = (started.elapsed().as_secs_f64() / SAFE.as_secs_f64()).ceil() as u32 + 1;
+        assert!(told <= most * (SLOTS as u32 + 1), "{told} of {tried} in {most} s");
     }
 }

@@ -1,42 +1,52 @@
 //! How mailboxes travel between the controller and neighbours in other processes, or on other machines.
 //!
-//! The mailboxes are the controller's: common memory, which the network fills and empties (IX). The tick copies in and out of
-//! it and never waits for the network; threads of their own carry what is new. As in the original a mailbox holds the latest
-//! mailgram, and nothing queues.
+//! The mailboxes are the controller's: common memory, which the network fills and empties (IX). The tick
+//! copies in and out of it and never waits for a socket; a thread for each connection carries what is new.
+//! As in the original a mailbox holds the latest mailgram, and nothing queues.
 //!
 //! ```text
-//!   tick --Desk--> mailboxes in memory <--Counter-- threads <--socket--> Peer in another process
+//!   tick -- Endpoint -- mailboxes in memory -- Link -- thread with Session -- Channel -- Peer in another process
 //! ```
 //!
-//! * [`role`]: who a neighbour is, and which mailboxes are his;
-//! * [`frame`]: a mailgram on the line, and the pulse that tells of ticks;
-//! * [`hello`]: how a connection begins, and who is let in, `door`: who waits for it; [`seal`]: that a frame comes from him;
-//! * [`office`]: the mailboxes between tick and threads; [`news`]: what the tick hears of who comes and goes;
-//! * [`listener`]: the controller's end of the line, [`peer`]: the neighbour's;
-//! * [`station`]: a controller in a Zenoh network, between machines (with the feature `zenoh`).
+//! * [`role`]: which neighbours there are, and which mailboxes each has;
+//! * `clock`: the clock of the run, and how long it waits for a neighbour;
+//! * [`frame`]: a mailgram on the line, and the pulse that tells of ticks; [`session`]: the protocol,
+//!   without I/O;
+//! * [`endpoint`]: the tick's side of the mailboxes, `shared`: the network's; [`event`]: what the tick is
+//!   told;
+//! * [`keys`]: TLS between machines, and which certificate is which neighbour;
+//! * `socket`, `channel`: bytes of a session over a socket, with TLS or without;
+//! * [`listener`], `accept_queue`, `server`: the controller's end of connections, [`peer`]: the neighbour's;
+//! * [`zenoh_address`], `over_zenoh`: connections through a Zenoh network (with the feature `zenoh`).
 //!
-//! In fast clock the tick waits for the pulse of every neighbour that is there, so that runs with neighbours in other processes
-//! have the same bits every time.
+//! In fast clock the tick waits for the pulse of every neighbour that is connected, so that runs with
+//! neighbours in other processes have the same bits every time.
 
+mod accept_queue;
 pub mod address;
-mod door;
+mod channel;
+pub mod clock;
+pub mod endpoint;
+pub mod event;
 pub mod frame;
-pub mod hello;
+pub mod keys;
 pub mod listener;
-pub mod news;
-pub mod office;
 #[cfg(feature = "zenoh")]
 mod over_zenoh;
 pub mod peer;
 pub mod role;
-pub mod seal;
-pub mod station;
-mod stream;
+mod server;
+pub mod session;
+mod shared;
+mod socket;
+pub mod zenoh_address;
 
 pub use address::Address;
-pub use hello::Secret;
+pub use clock::ClockKind;
+pub use endpoint::{Endpoint, Presence, StopHandle};
+pub use event::{Disconnect, NetEvent};
+pub use keys::{ControllerKeys, KeysError, NeighbourKeys};
 pub use listener::Listener;
-pub use news::{News, Parting};
-pub use office::Desk;
 pub use peer::{Peer, PeerError, Received};
 pub use role::Role;
+pub use shared::{AttachError, EndpointHandle};

@@ -13,24 +13,23 @@ use super::listener::NO_ZENOH;
 #[cfg(feature = "zenoh")]
 use super::over_zenoh;
 use super::{
-    Address, Role, Secret,
-    frame::{Frame, FrameError, LAST_WORDS, WELCOME},
-    hello::{Agreement, Challenge, ClockKind, HELLO, HelloError, check_welcome},
-    listener::CROWDED,
-    office::{OVER, Outlet},
-    stream::{Receiver, Sender, Stream, is_timeout},
+    Address, ClockKind, KeysError, NeighbourKeys, Role,
+    channel::Channel,
+    session::{Event, NEIGHBOUR_LIMIT, Session, SessionError},
+    shared::OVER,
+    socket::Socket,
 };
 use crate::mailbox::{Mailbox, MailboxError, Place};
 
-/// How long the other side may take for a hello or a frame.
-pub(super) const LIMIT: Duration = Duration::from_secs(10);
 /// Between two attempts to connect.
-pub(super) const PAUSE: Duration = Duration::from_millis(50);
+const PAUSE: Duration = Duration::from_millis(50);
+/// How long the end of a connection may take.
+const FAREWELL: Duration = Duration::from_secs(1);
 
 /// Why a connection does not come about, or ends.
 #[derive(Debug, thiserror::Error)]
 pub enum PeerError {
-    /// Nobody is there, or the line broke.
+    /// No controller is there, or the line broke.
     #[error("{address}: {source}")]
     Line {
         /// Where.
@@ -38,35 +37,37 @@ pub enum PeerError {
         /// Why.
         source: io::Error,
     },
-    /// The other side is no controller.
-    #[error("{address}: {source}")]
-    Hello {
+    /// TLS refuses the other side, or the other side refuses the certificate.
+    #[error("{address}: TLS: {source}")]
+    Tls {
         /// Where.
         address: Address,
         /// Why.
-        source: HelloError,
+        source: Box<rustls::Error>,
+    },
+    /// The other side is no controller, or breaks the protocol.
+    #[error("{address}: {source}")]
+    Session {
+        /// Where.
+        address: Address,
+        /// How.
+        source: SessionError,
     },
     /// The line is dead.
-    #[error("nothing has come from the controller for {} s", LIMIT.as_secs())]
-    Silent,
-    /// The controller has gone without a word.
+    #[error("nothing has come from the controller for {} s", .0.as_secs())]
+    Silent(Duration),
+    /// The controller has gone without a reason.
     #[error("the controller has closed the connection")]
     Closed,
-    /// What came is no frame.
-    #[error(transparent)]
-    Frame(#[from] FrameError),
     /// What came fits no mailbox.
     #[error(transparent)]
     Mailbox(#[from] MailboxError),
     /// The controller has closed the connection, and said why.
     #[error("the controller says: {0}")]
-    LastWords(String),
-    /// The other side has closed the connection, and said why, before it has proved that it knows the secret.
-    #[error("the controller says: {0} (unverified: it has not proved that it knows the secret)")]
-    Unverified(String),
-    /// Anybody on the network could pose as the controller.
-    #[error("{0}: a network needs the secret that the controller knows; name a file with --secret")]
-    NoSecret(Address),
+    Disconnected(String),
+    /// The keys do not go with the address.
+    #[error(transparent)]
+    Keys(#[from] KeysError),
     /// Zenoh is left out of this program.
     #[cfg(not(feature = "zenoh"))]
     #[error("{0}: {NO_ZENOH}")]
@@ -74,13 +75,13 @@ pub enum PeerError {
 }
 
 impl PeerError {
-    /// True if a later attempt may do better: nobody is there, or he has just gone.
+    /// True if a later attempt may succeed: no controller is there, or it has just gone.
     #[must_use]
     pub fn is_passing(&self) -> bool {
         match self {
-            Self::Line { .. } | Self::Silent | Self::Closed => true,
-            Self::Frame(FrameError::Stream(_) | FrameError::Number(_)) => true,
-            Self::LastWords(text) | Self::Unverified(text) => [OVER, CROWDED].contains(&text.as_str()),
+            Self::Line { source, .. } => source.kind() != io::ErrorKind::PermissionDenied,
+            Self::Silent(_) | Self::Closed => true,
+            Self::Disconnected(reason) => reason == OVER,
             _ => false,
         }
     }
@@ -89,7 +90,7 @@ impl PeerError {
     #[must_use]
     pub const fn is_usage(&self) -> bool {
         match self {
-            Self::NoSecret(_) => true,
+            Self::Keys(_) => true,
             #[cfg(not(feature = "zenoh"))]
             Self::NoZenoh(_) => true,
             _ => false,
@@ -106,42 +107,31 @@ pub enum Received {
     Pulse(u64),
 }
 
-/// Where frames come in from the controller.
-pub(super) trait Inlet: Send {
-    /// The next one.
-    ///
-    /// # Errors
-    /// [`FrameError`]; [`io::ErrorKind::TimedOut`] or [`io::ErrorKind::WouldBlock`] if nothing comes for too long,
-    /// [`io::ErrorKind::UnexpectedEof`] if the controller has gone.
-    fn receive(&mut self) -> Result<Frame, FrameError>;
-}
-
-/// A connection, whatever it goes over.
-pub(super) struct Connection {
-    pub sender: Box<dyn Outlet>,
-    pub receiver: Box<dyn Inlet>,
-    pub clock: ClockKind,
-}
-
 /// A connection to the controller.
 pub struct Peer {
-    sender: Box<dyn Outlet>,
-    receiver: Box<dyn Inlet>,
+    address: Address,
+    channel: Channel,
+    session: Session,
     role: Role,
     clock: ClockKind,
     incoming: Vec<Mailbox>,
+    /// The controller has not closed the connection.
+    open: bool,
+    /// What carries the connection, if it is not the system.
+    #[cfg(feature = "zenoh")]
+    _tunnel: Option<over_zenoh::Tunnel>,
 }
 
 impl Peer {
     /// Connect as a neighbour.
     ///
     /// # Errors
-    /// [`PeerError`]; [`PeerError::LastWords`] if one is not let in.
-    pub fn connect(address: &Address, role: Role, secret: Option<&Secret>) -> Result<Self, PeerError> {
-        Self::connect_within(Duration::ZERO, address, role, secret)
+    /// [`PeerError`]; [`PeerError::Disconnected`] if it is not admitted.
+    pub fn connect(address: &Address, role: Role, keys: Option<&NeighbourKeys>) -> Result<Self, PeerError> {
+        Self::connect_within(Duration::ZERO, address, role, keys)
     }
 
-    /// Connect, and try again for a while as long as nobody is there.
+    /// Connect, and try again for a while as long as no controller is there.
     ///
     /// # Errors
     /// The last [`PeerError`].
@@ -149,26 +139,64 @@ impl Peer {
         limit: Duration,
         address: &Address,
         role: Role,
-        secret: Option<&Secret>,
+        keys: Option<&NeighbourKeys>,
     ) -> Result<Self, PeerError> {
+        KeysError::check(address, keys.is_some())?;
         let until = Instant::now() + limit;
-        let Connection { sender, receiver, clock } = match address {
-            Address::Unix(_) | Address::Tcp(_) => loop {
-                match over_socket(address, role, secret) {
-                    Err(error) if error.is_passing() && Instant::now() < until => thread::sleep(PAUSE),
-                    other => break other?,
-                }
-            },
+        loop {
+            match Self::attempt(address, role, keys, until) {
+                Err(error) if error.is_passing() && Instant::now() < until => thread::sleep(PAUSE),
+                other => return other,
+            }
+        }
+    }
+
+    fn attempt(
+        address: &Address,
+        role: Role,
+        keys: Option<&NeighbourKeys>,
+        #[cfg_attr(not(feature = "zenoh"), expect(unused_variables, reason = "Zenoh waits itself"))]
+        until: Instant,
+    ) -> Result<Self, PeerError> {
+        let failed = |source| PeerError::Line { address: address.clone(), source };
+        #[cfg(feature = "zenoh")]
+        let mut tunnel = None;
+        let socket = match address {
+            Address::Unix(path) => UnixStream::connect(path).map(Socket::Unix),
+            Address::Tcp(place) => TcpStream::connect_timeout(place, NEIGHBOUR_LIMIT).map(Socket::Tcp),
             #[cfg(not(feature = "zenoh"))]
             Address::Zenoh(_) => return Err(PeerError::NoZenoh(address.clone())),
             #[cfg(feature = "zenoh")]
-            Address::Zenoh(station) => {
-                let secret = secret.ok_or_else(|| PeerError::NoSecret(address.clone()))?;
-                over_zenoh::neighbour::connect(address, station, role, secret, until)?
-            }
+            Address::Zenoh(zenoh) => over_zenoh::Tunnel::open(zenoh, until).map(|(opened, socket)| {
+                tunnel = Some(opened);
+                Socket::Unix(socket)
+            }),
         };
-        let incoming = role.from_controller().iter().map(|&place| Mailbox::initialized(place)).collect();
-        Ok(Self { sender, receiver, role, clock, incoming })
+        let socket = socket.map_err(failed)?;
+        socket.check_user().map_err(failed)?;
+        let tls = keys.map(NeighbourKeys::connection).transpose();
+        let tls =
+            tls.map_err(|source| PeerError::Tls { address: address.clone(), source: Box::new(source) })?;
+        let mut peer = Self {
+            address: address.clone(),
+            channel: Channel::new(socket, tls.map(Into::into)).map_err(failed)?,
+            session: Session::neighbour(role, Instant::now()),
+            role,
+            clock: ClockKind::Real,
+            incoming: role.from_controller().iter().map(|&place| Mailbox::initialized(place)).collect(),
+            open: true,
+            #[cfg(feature = "zenoh")]
+            _tunnel: tunnel,
+        };
+        peer.clock = loop {
+            if let Some(Event::Welcome(clock)) =
+                peer.session.event(Instant::now()).map_err(broken(address))?
+            {
+                break clock;
+            }
+            peer.turn()?;
+        };
+        Ok(peer)
     }
 
     /// The clock of the controller.
@@ -192,15 +220,18 @@ impl Peer {
     /// # Errors
     /// [`PeerError`] if the connection ends.
     pub fn receive(&mut self) -> Result<Received, PeerError> {
-        let frame = receive(self.receiver.as_mut())?;
-        if let Some(tick) = frame.as_pulse()? {
-            return Ok(Received::Pulse(tick));
+        loop {
+            match self.session.event(Instant::now()).map_err(broken(&self.address))? {
+                Some(Event::Mailgram(place, used)) => {
+                    let mailbox = self.incoming.iter_mut().find(|mailbox| mailbox.place() == place);
+                    mailbox.map_or(Ok(()), |mailbox| mailbox.receive(used))?;
+                    return Ok(Received::Mailgram(place));
+                }
+                Some(Event::Pulse(tick)) => return Ok(Received::Pulse(tick)),
+                Some(Event::Hello(_) | Event::Welcome(_)) => {}
+                None => self.turn()?,
+            }
         }
-        let expected = self.role.from_controller();
-        let mailbox = self.incoming.iter_mut().find(|mailbox| mailbox.place().address == frame.address());
-        let mailbox = mailbox.ok_or(FrameError::Address { expected, found: frame.address() })?;
-        mailbox.receive(frame.mailbox())?;
-        Ok(Received::Mailgram(mailbox.place()))
     }
 
     /// Answer all pulses up to the one of a tick.
@@ -208,7 +239,8 @@ impl Peer {
     /// # Errors
     /// [`PeerError`] if the connection ends.
     pub fn pulse(&mut self, tick: u64) -> Result<(), PeerError> {
-        self.frame(&Frame::pulse(tick))
+        self.session.pulse(tick, Instant::now());
+        self.flush()
     }
 
     /// Send what stands in a mailbox.
@@ -216,88 +248,80 @@ impl Peer {
     /// # Errors
     /// [`PeerError`] if the connection ends.
     pub fn send(&mut self, mailbox: &Mailbox) -> Result<(), PeerError> {
-        self.frame(&Frame::of(mailbox))
+        self.session.send(mailbox);
+        self.flush()
     }
 
-    fn frame(&mut self, frame: &Frame) -> Result<(), PeerError> {
-        match self.sender.send(frame) {
-            Err(error) if is_end(&error) => Err(self.last()),
-            sent => sent.map_err(|error| FrameError::Stream(error).into()),
+    /// Until the system has taken all that is to be sent.
+    fn flush(&mut self) -> Result<(), PeerError> {
+        let until = Instant::now() + NEIGHBOUR_LIMIT;
+        loop {
+            match self.channel.send(&mut self.session) {
+                Ok(()) if self.channel.is_flushed() => return Ok(()),
+                Ok(()) if Instant::now() >= until => return Err(PeerError::Silent(NEIGHBOUR_LIMIT)),
+                Ok(()) => drop(self.channel.wait(None, Some(until)).map_err(|error| self.failed(error))?),
+                Err(error) if is_end(&error) => return Err(self.reason()),
+                Err(error) => return Err(self.failed(error)),
+            }
         }
     }
 
-    /// Why the controller has closed the connection: what it said last stands behind what was not read yet.
-    fn last(&mut self) -> PeerError {
+    /// Why the controller has closed the connection: its reason stands behind what was not read yet.
+    fn reason(&mut self) -> PeerError {
         loop {
-            if let Err(error) = receive(self.receiver.as_mut()) {
+            if let Err(error) = self.receive() {
                 return error;
             }
         }
     }
+
+    /// Wait for more bytes.
+    fn turn(&mut self) -> Result<(), PeerError> {
+        if !self.open {
+            return Err(PeerError::Closed);
+        }
+        match self.channel.send(&mut self.session) {
+            // The reason can still be read.
+            Err(error) if is_end(&error) => {}
+            sent => sent.map_err(|error| self.failed(error))?,
+        }
+        self.session.check_time(Instant::now()).map_err(broken(&self.address))?;
+        let ready = self.channel.wait(None, self.session.deadline()).map_err(|error| self.failed(error))?;
+        if ready {
+            let received = self.channel.receive(&mut self.session, Instant::now());
+            self.open = received.map_err(|error| self.failed(error))?;
+        }
+        Ok(())
+    }
+
+    fn failed(&self, error: io::Error) -> PeerError {
+        let address = self.address.clone();
+        if is_end(&error) {
+            return PeerError::Closed;
+        }
+        match error.downcast::<rustls::Error>() {
+            Ok(source) => PeerError::Tls { address, source: Box::new(source) },
+            Err(source) => PeerError::Line { address, source },
+        }
+    }
 }
 
-/// Connect at a socket.
-fn over_socket(address: &Address, role: Role, secret: Option<&Secret>) -> Result<Connection, PeerError> {
-    let failed = |source| PeerError::Line { address: address.clone(), source };
-    let mistrusted = |source| PeerError::Hello { address: address.clone(), source };
-    let mut stream = match address {
-        Address::Unix(path) => UnixStream::connect(path).map(Stream::Unix),
-        Address::Tcp(place) => TcpStream::connect_timeout(place, LIMIT).map(Stream::Tcp),
-        Address::Zenoh(_) => Err(io::ErrorKind::Unsupported.into()),
+impl Drop for Peer {
+    fn drop(&mut self) {
+        self.channel.finish(&mut self.session, Instant::now() + FAREWELL);
     }
-    .map_err(failed)?;
-    stream.prepare(LIMIT).map_err(failed)?;
-    let mut bytes = [0; HELLO];
-    io::Read::read_exact(&mut stream, &mut bytes).map_err(failed)?;
-    let challenge = Challenge::from_bytes(bytes).map_err(mistrusted)?;
-    let (answer, agreement) = challenge.answer(role, secret).map_err(failed)?;
-    let answered = io::Write::write_all(&mut stream, &answer);
-    let mut sender = Sender::new(stream.try_clone().map_err(failed)?);
-    let mut receiver = Receiver::new(stream.try_clone().map_err(failed)?);
-    // Who is not let in may be told why before he has answered.
-    let welcome = match (receive(&mut receiver), answered) {
-        (Err(error @ PeerError::LastWords(_)), _) if secret.is_some() => return Err(unverified(error)),
-        (Err(error @ PeerError::LastWords(_)), _) => return Err(error),
-        (_, Err(error)) => return Err(failed(error)),
-        (welcome, Ok(())) => welcome?,
-    };
-    if welcome.address() != WELCOME {
-        return Err(mistrusted(HelloError::Impostor));
-    }
-    check_welcome(welcome.data(), agreement.as_ref()).map_err(mistrusted)?;
-    sender.seal(agreement.as_ref().map(Agreement::up));
-    receiver.seal(agreement.as_ref().map(Agreement::down));
-    if challenge.clock() == ClockKind::Fast {
-        // Its time may stand still for as long as it likes; on the grid there is a pulse every 40 ms.
-        stream.unlimited().map_err(failed)?;
-    }
-    Ok(Connection { sender: Box::new(sender), receiver: Box::new(receiver), clock: challenge.clock() })
 }
 
-/// The next frame, if it is not the last.
-fn receive(receiver: &mut dyn Inlet) -> Result<Frame, PeerError> {
-    let frame = receiver.receive().map_err(|error| match error {
-        FrameError::Stream(error) if is_timeout(&error) => PeerError::Silent,
-        FrameError::Stream(error) if is_end(&error) => PeerError::Closed,
-        error => error.into(),
-    })?;
-    if frame.address() == LAST_WORDS { Err(last_words(&frame)) } else { Ok(frame) }
+fn broken(address: &Address) -> impl FnOnce(SessionError) -> PeerError {
+    move |error| match error {
+        SessionError::Reason(reason) => PeerError::Disconnected(reason),
+        SessionError::Silent(limit) | SessionError::NoHello(limit) => PeerError::Silent(limit),
+        source => PeerError::Session { address: address.clone(), source },
+    }
 }
 
-/// The other side has closed the connection, with or without what was still on its way.
+/// The other side has closed the connection, with or without what was still under way.
 fn is_end(error: &io::Error) -> bool {
     use io::ErrorKind::{BrokenPipe, ConnectionReset, UnexpectedEof};
     matches!(error.kind(), BrokenPipe | ConnectionReset | UnexpectedEof)
-}
-
-/// The same reason, from a side that has not proved that it knows the secret.
-pub(super) fn unverified(error: PeerError) -> PeerError {
-    if let PeerError::LastWords(why) = error { PeerError::Unverified(why) } else { error }
-}
-
-/// Why the controller ends the connection.
-pub(super) fn last_words(frame: &Frame) -> PeerError {
-    let text = String::from_utf8_lossy(frame.data());
-    // They may end on a terminal, which obeys some characters.
-    PeerError::LastWords(text.replace(char::is_control, "?"))
 }

@@ -1,4 +1,4 @@
-//! Who a neighbour is, and which mailboxes are his.
+//! Which neighbours there are, and which mailboxes each has.
 
 use std::{fmt, str::FromStr};
 
@@ -57,7 +57,7 @@ impl Role {
             Self::Workstation => &[HWSC_STATUS, CELL_STATUS],
             Self::DataSystem => &[DATA_SYSTEM_COMMAND],
             Self::Pedestal => &[PEDESTAL_COMMAND, PEDESTAL_SENSORS],
-            // The picture first: who reads the request has it.
+            // The picture first: a neighbour that reads the request has it.
             Self::Vision => &[VISION_PICTURE, VISION_REQUEST],
         }
     }

@@ -1,7 +1,8 @@
 //! The controller's side of a pedestal in another process: the mailboxes of Subtask and Diagnostics (IX.3).
 //!
-//! Once a tick the command of Subtask goes out, and what the pedestal has written comes in, as an input of the next tick. The
-//! processes of the controller see common memory, and in it a pedestal that answers or one that is lost:
+//! Once a tick the command of Subtask goes out, and what the pedestal has written comes in, as an input of
+//! the next tick. The processes of the controller see common memory, and in it a pedestal that answers or
+//! one that is lost:
 //!
 //! | what happens                                       | common memory                                                   |
 //! |----------------------------------------------------|-----------------------------------------------------------------|
@@ -9,36 +10,38 @@
 //! | on the 40 ms grid its status is not there yet      | its last buffers, republished until the echo comes, 2 s at most |
 //! | it has gone, has not come, or writes what is none  | its last buffers with their old stamp: it is lost               |
 
-use rcs_core::{
-    interface::{OutsidePedestal, device::PedestalSensors, pedestal::PedestalCommand},
-    tick::Tick,
-};
+use interfaces::{OutsidePedestal, device::PedestalSensors, pedestal::PedestalCommand};
+use rcs_core::tick::Tick;
 
 use super::{
-    LayoutError, cell, command, gripper,
+    PedestalError,
+    cell::{OrdersLayout, SensorsLayout},
+    command::CommandLayout,
+    gripper::GripperLayout,
     status::{Status, Verdict},
-    table,
+    table::TableLayout,
 };
 use crate::{
     mailbox::{
         MailboxError, PEDESTAL_COMMAND, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_SENSORS,
         PEDESTAL_STATUS, PEDESTAL_TABLE_STATUS, Place,
     },
-    network::{Desk, News, hello::ClockKind},
+    network::{ClockKind, Endpoint, NetEvent},
 };
 
-/// Ticks in which a command must be echoed over a network on the 40 ms grid: 2 s. In fast clock nothing is late.
+/// Ticks in which a command must be echoed over a network on the 40 ms grid: 2 s. In fast clock nothing is
+/// late.
 const ECHO_TICKS: u64 = 50;
 
 /// What there is to say of the pedestal.
 #[derive(Debug)]
 pub enum Remark {
-    /// It has come or gone, or somebody was refused.
-    News(News),
+    /// It has connected or disconnected, or a connection was refused.
+    Network(NetEvent),
     /// It refuses what was sent to it.
     Refuses(String),
     /// What it wrote cannot be read: it counts as not answering.
-    Garbled(Place, LayoutError),
+    Garbled(Place, PedestalError),
     /// It is there and does not echo a command.
     Silent(u32),
     /// What is to be sent does not fit its mailbox.
@@ -48,7 +51,7 @@ pub enum Remark {
 impl std::fmt::Display for Remark {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::News(news) => news.fmt(f),
+            Self::Network(event) => event.fmt(f),
             Self::Refuses(why) => write!(f, "the Active Pedestal refuses what was sent to it: {why}"),
             Self::Garbled(place, why) => {
                 write!(f, "{place} cannot be read, the Active Pedestal counts as not answering: {why}")
@@ -63,7 +66,7 @@ impl std::fmt::Display for Remark {
 
 /// The controller's side. Does not allocate but for remarks.
 pub struct Agent {
-    desk: Desk,
+    endpoint: Endpoint,
     sent: OutsidePedestal,
     /// What it refuses: its verdict, and the mailgram number that it names.
     refused: (Verdict, u16),
@@ -77,11 +80,11 @@ pub struct Agent {
 }
 
 impl Agent {
-    /// Speaks at a desk.
+    /// Works with an endpoint.
     #[must_use]
-    pub fn new(desk: Desk) -> Self {
+    pub fn new(endpoint: Endpoint) -> Self {
         Self {
-            desk,
+            endpoint,
             sent: OutsidePedestal { elsewhere: true, ..OutsidePedestal::default() },
             refused: (Verdict::Taken, 0),
             garbled: None,
@@ -102,18 +105,18 @@ impl Agent {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Between two ticks: send the command that stands in common memory and the sensor words that the tick `next` reads, and
-    /// receive what it reads of the pedestal.
+    /// Between two ticks: send the command that stands in common memory and the sensor words that the tick
+    /// `next` reads, and receive what it reads of the pedestal.
     pub fn exchange(&mut self, next: Tick, command: &PedestalCommand, sensors: &PedestalSensors) {
-        self.put(PEDESTAL_COMMAND, &command::encode(command));
-        self.put(PEDESTAL_SENSORS, &cell::encode_sensors(sensors));
-        let presence = self.desk.exchange(next.0);
-        self.remarks.extend(std::iter::from_fn(|| self.desk.news()).map(Remark::News));
+        self.put(PEDESTAL_COMMAND, &CommandLayout::encode(command));
+        self.put(PEDESTAL_SENSORS, &SensorsLayout::encode(sensors));
+        let presence = self.endpoint.exchange(next.0);
+        self.remarks.extend(std::iter::from_fn(|| self.endpoint.event()).map(Remark::Network));
         if presence.new {
             (self.refused, self.garbled) = ((Verdict::Taken, 0), None);
             (self.waiting, self.silent) = (None, false);
         }
-        if !presence.here {
+        if !presence.connected {
             self.sent.answers = false;
             return;
         }
@@ -133,7 +136,7 @@ impl Agent {
     }
 
     fn put(&mut self, place: Place, data: &[u8]) {
-        let mailbox = self.desk.outgoing(place);
+        let mailbox = self.endpoint.outgoing(place);
         if mailbox.data() != data
             && let Err(error) = mailbox.write(data)
         {
@@ -141,14 +144,14 @@ impl Agent {
         }
     }
 
-    /// Take over what stands in its four mailboxes, all of it or nothing. False if it has not written a status yet; what it does not
-    /// write otherwise it has not.
-    fn receive(&mut self) -> Result<bool, (Place, LayoutError)> {
-        let desk = &self.desk;
-        let Some(status) = read(desk, PEDESTAL_STATUS, Status::decode)? else { return Ok(false) };
-        let of_gripper = read(desk, PEDESTAL_GRIPPER_STATUS, gripper::decode)?;
-        let of_table = read(desk, PEDESTAL_TABLE_STATUS, table::decode)?;
-        let orders = read(desk, PEDESTAL_ORDERS, cell::decode_orders)?;
+    /// Take over what stands in its four mailboxes, all of it or nothing. False if it has not written a
+    /// status yet; what it does not write otherwise it has not.
+    fn receive(&mut self) -> Result<bool, (Place, PedestalError)> {
+        let endpoint = &self.endpoint;
+        let Some(status) = read(endpoint, PEDESTAL_STATUS, Status::decode)? else { return Ok(false) };
+        let of_gripper = read(endpoint, PEDESTAL_GRIPPER_STATUS, GripperLayout::decode)?;
+        let of_table = read(endpoint, PEDESTAL_TABLE_STATUS, TableLayout::decode)?;
+        let orders = read(endpoint, PEDESTAL_ORDERS, OrdersLayout::decode)?;
         let refused = (status.verdict, status.mailgram_echo);
         if refused != self.refused && status.verdict != Verdict::Taken {
             self.remarks.push(Remark::Refuses(status.reason.to_owned()));
@@ -162,9 +165,11 @@ impl Agent {
         Ok(true)
     }
 
-    /// It echoes the last command, or there is still time for that. Until then its status belongs to another command.
+    /// It echoes the last command, or there is still time for that. Until then its status belongs to another
+    /// command.
     fn is_heard(&mut self, next: Tick, number: u32) -> bool {
-        if number == 0 || self.sent.pedestal.status.echo == number || self.desk.clock() == ClockKind::Fast {
+        if number == 0 || self.sent.pedestal.status.echo == number || self.endpoint.clock() == ClockKind::Fast
+        {
             (self.waiting, self.silent) = (None, false);
             return true;
         }
@@ -180,23 +185,21 @@ impl Agent {
 }
 
 /// What stands in a mailbox; nothing if nothing was written since it was initialized.
-fn read<'a, T>(
-    desk: &'a Desk,
+fn read<'a, T, E: Into<PedestalError>>(
+    endpoint: &'a Endpoint,
     place: Place,
-    decode: impl FnOnce(&'a [u8]) -> Result<T, LayoutError>,
-) -> Result<Option<T>, (Place, LayoutError)> {
-    let mailbox = desk.incoming(place);
+    decode: impl FnOnce(&'a [u8]) -> Result<T, E>,
+) -> Result<Option<T>, (Place, PedestalError)> {
+    let mailbox = endpoint.incoming(place);
     if mailbox.mailgram() == 0 {
         return Ok(None);
     }
-    decode(mailbox.data()).map(Some).map_err(|why| (place, why))
+    decode(mailbox.data()).map(Some).map_err(|why| (place, why.into()))
 }
 
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc;
-
-    use rcs_core::interface::{
+    use interfaces::{
         GripOutputs,
         device::{GripValves, MotorCommand},
         pedestal::{PedestalReport, PedestalStatus, PedestalVerb},
@@ -205,30 +208,28 @@ mod tests {
     use super::*;
     use crate::{
         mailbox::Mailbox,
-        network::{Parting, Role, frame::Frame, office::Counter},
+        network::{Disconnect, Role, endpoint::tests::TestSession},
     };
 
     /// The controller's side on the 40 ms grid, and a pedestal that writes what a test wants.
     struct Bench {
         agent: Agent,
-        counter: Counter,
+        session: TestSession,
         tick: u64,
         status_box: Mailbox,
-        _line: mpsc::Receiver<Frame>,
     }
 
     impl Bench {
         fn connected() -> Self {
-            let agent = Agent::new(Desk::new(Role::Pedestal, ClockKind::Real));
-            let counter = agent.desk.counter();
-            let line = counter.come();
+            let agent = Agent::new(Endpoint::new(Role::Pedestal, ClockKind::Real).unwrap());
+            let session = TestSession::begin(&agent.endpoint.handle());
             let status_box = Mailbox::initialized(PEDESTAL_STATUS);
-            Self { agent, counter, tick: 0, status_box, _line: line }
+            Self { agent, session, tick: 0, status_box }
         }
 
         fn write(&mut self, data: &[u8]) {
             self.status_box.write(data).unwrap();
-            self.counter.deliver(&Frame::of(&self.status_box)).unwrap();
+            self.session.deliver(&self.status_box);
         }
 
         fn report(&mut self, echo: u32, report: PedestalReport) {
@@ -247,7 +248,7 @@ mod tests {
 
         fn remarks(&mut self) -> Vec<String> {
             let remarks = self.agent.remarks().into_iter();
-            remarks.filter(|remark| !matches!(remark, Remark::News(_))).map(|r| r.to_string()).collect()
+            remarks.filter(|remark| !matches!(remark, Remark::Network(_))).map(|r| r.to_string()).collect()
         }
     }
 
@@ -276,15 +277,15 @@ mod tests {
         let hand = GripOutputs::default();
         let mut orders = Mailbox::initialized(PEDESTAL_ORDERS);
         let valves = GripValves { bits: 0x81 };
-        orders.write(&cell::encode_orders(valves, &MotorCommand::default())).unwrap();
+        orders.write(&OrdersLayout::encode(&(valves, MotorCommand::default()))).unwrap();
         let mut of_gripper = Mailbox::initialized(PEDESTAL_GRIPPER_STATUS);
-        of_gripper.write(&gripper::encode(&hand, &Default::default())).unwrap();
-        bench.counter.deliver(&Frame::of(&orders)).unwrap();
-        bench.counter.deliver(&Frame::of(&of_gripper)).unwrap();
+        of_gripper.write(&GripperLayout::encode(&(hand, Default::default()))).unwrap();
+        bench.session.deliver(&orders);
+        bench.session.deliver(&of_gripper);
         bench.report(4, PedestalReport::Executing);
         assert_eq!(bench.tick(4), (true, false));
         of_gripper.write(b"closed").unwrap();
-        bench.counter.deliver(&Frame::of(&of_gripper)).unwrap();
+        bench.session.deliver(&of_gripper);
         bench.report(4, PedestalReport::Done);
         assert!(!bench.tick(4).0 && !bench.tick(4).0);
         let sent = *bench.agent.sent();
@@ -296,8 +297,8 @@ mod tests {
               answering: a status of the gripper of 142 bytes was expected, found 6"
             ]
         );
-        of_gripper.write(&gripper::encode(&hand, &Default::default())).unwrap();
-        bench.counter.deliver(&Frame::of(&of_gripper)).unwrap();
+        of_gripper.write(&GripperLayout::encode(&(hand, Default::default()))).unwrap();
+        bench.session.deliver(&of_gripper);
         assert_eq!(bench.tick(4), (true, false));
         assert_eq!(bench.agent.sent().pedestal.status.report, PedestalReport::Done);
     }
@@ -319,7 +320,8 @@ mod tests {
         let mut bench = Bench::connected();
         bench.report(4, PedestalReport::Executing);
         assert_eq!(bench.tick(4), (true, false));
-        bench.counter.detach(Parting::Left("the cable was cut".to_owned()));
+        let handle = bench.agent.endpoint.handle();
+        handle.detach(Disconnect::Lost("the cable was cut".to_owned()));
         assert!(!bench.tick(4).0);
         assert_eq!(bench.agent.sent().pedestal.status.echo, 4);
         assert!(bench.agent.sent().elsewhere);

@@ -1,24 +1,23 @@
 //! Layouts to the byte, and the pedestal's system behind them.
 
-use proptest::prelude::*;
-use rcs_core::{
-    interface::{
-        Decided, GripOutputs, Header, Reason, TableOutputs,
-        device::{GripValves, MotorCommand, MotorOrder, PedestalSensors},
-        grip::{Calibration, Felt, GripCommand, GripReport, GripStatus, GripVerb, Scale},
-        pedestal::{
-            PedestalCommand, PedestalReport, PedestalStatus, PedestalVerb, TableCommand, TableStatus,
-            TableVerb,
-        },
+use interfaces::{
+    Decided, GripOutputs, Header, Reason, TableOutputs,
+    device::{GripValves, MotorCommand, MotorOrder, PedestalSensors},
+    grip::{Calibration, Felt, GripCommand, GripReport, GripStatus, GripVerb, Scale},
+    pedestal::{
+        PedestalCommand, PedestalReport, PedestalStatus, PedestalVerb, TableCommand, TableStatus, TableVerb,
     },
-    name::Name16,
-    tick::Tick,
 };
+use proptest::prelude::*;
+use rcs_core::{name::Name16, tick::Tick};
 
 use super::{
-    Station, cell, command, gripper,
-    status::{Status, Verdict},
-    table,
+    PedestalError, System,
+    cell::{OrdersLayout, SensorsLayout},
+    command::{self, CommandLayout},
+    gripper::GripperLayout,
+    status::{Status, StatusLayout, Verdict},
+    table::TableLayout,
 };
 use crate::mailbox::{
     HEAD, Mailbox, PEDESTAL_COMMAND, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_SENSORS,
@@ -50,8 +49,8 @@ fn a_command_stands_at_its_bytes() {
         b"\x3C\x00\x00\x00\x1E\x00\x00\x00\xD5\xF8\xFF\xFF",
     ]
     .concat();
-    assert_eq!(command::encode(&flip(7)), &expected[..]);
-    assert_eq!(command::decode(&expected), Ok(flip(7)));
+    assert_eq!(CommandLayout::encode(&flip(7)), &expected[..]);
+    assert_eq!(CommandLayout::decode(&expected), Ok(flip(7)));
     assert_eq!(command::number(&expected[..12]), Some(7));
     assert_eq!(command::number(&expected[..11]), None);
 }
@@ -126,8 +125,8 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
         b"\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\xC0",
     ]
     .concat();
-    assert_eq!(gripper::encode(&hand, &order), &expected[..]);
-    assert_eq!(gripper::decode(&expected), Ok((hand, order)));
+    assert_eq!(GripperLayout::encode(&(hand, order)), &expected[..]);
+    assert_eq!(GripperLayout::decode(&expected), Ok((hand, order)));
     let turned = TableOutputs {
         header: row(),
         status: TableStatus {
@@ -146,8 +145,8 @@ fn the_statuses_for_diagnostics_stand_at_their_bytes() {
         b"\x05\x00\x00\x00TURN      \x0D\xF8\xFF\xFF\x01\x00\x01\x00\x01\x0F",
     ]
     .concat();
-    assert_eq!(table::encode(&turned, &turn), &expected[..]);
-    assert_eq!(table::decode(&expected), Ok((turned, turn)));
+    assert_eq!(TableLayout::encode(&(turned, turn)), &expected[..]);
+    assert_eq!(TableLayout::decode(&expected), Ok((turned, turn)));
 }
 
 #[test]
@@ -165,24 +164,29 @@ fn the_words_of_the_devices_stand_at_their_bytes() {
     };
     let expected =
         b"\x02\x01\x03\x00\x04\x00\x05\x00\x01\x00\x00\x00\x06\x00\x00\x00\x01\x00\xF9\xFF\xFF\xFF";
-    assert_eq!(&cell::encode_sensors(&sensors), expected);
-    assert_eq!(cell::decode_sensors(expected), Ok(sensors));
+    assert_eq!(&SensorsLayout::encode(&sensors), expected);
+    assert_eq!(SensorsLayout::decode(expected), Ok(sensors));
     let (valves, motor) =
         (GripValves { bits: 0x42 }, MotorCommand { number: 6, order: MotorOrder::SetCounter, steps: -2000 });
     let expected = b"\x42\x00\x06\x00\x00\x00set-counter \x30\xF8\xFF\xFF";
-    assert_eq!(&cell::encode_orders(valves, &motor), expected);
-    assert_eq!(cell::decode_orders(expected), Ok((valves, motor)));
+    assert_eq!(&OrdersLayout::encode(&(valves, motor)), expected);
+    assert_eq!(OrdersLayout::decode(expected), Ok((valves, motor)));
 }
 
 #[test]
 fn what_is_no_layout_is_said() {
-    let said = |error: super::LayoutError| error.to_string();
-    assert_eq!(said(command::decode(&[0; 33]).unwrap_err()), "a command of 34 bytes was expected, found 33");
-    let mut bytes = command::encode(&flip(7));
+    let said = |error: PedestalError| error.to_string();
+    assert_eq!(
+        said(CommandLayout::decode(&[0; 33]).unwrap_err().into()),
+        "a command of 34 bytes was expected, found 33"
+    );
+    let mut bytes = CommandLayout::encode(&flip(7));
     bytes[12..16].copy_from_slice(b"FLOP");
-    assert_eq!(said(command::decode(&bytes).unwrap_err()), "FLOP is no word of command");
+    assert_eq!(said(CommandLayout::decode(&bytes).unwrap_err().into()), "FLOP is no word of command");
     bytes[13] = 0x9C;
-    assert!(said(command::decode(&bytes).unwrap_err()).ends_with("for command, found 9C at byte 13"));
+    assert!(
+        said(CommandLayout::decode(&bytes).unwrap_err().into()).ends_with("for command, found 9C at byte 13")
+    );
     let mut bytes = Status::default().encode();
     bytes[22..24].copy_from_slice(&[0xFF, 1]);
     assert_eq!(said(Status::decode(&bytes).unwrap_err()), "511 is no code of status-code");
@@ -192,20 +196,20 @@ fn what_is_no_layout_is_said() {
         said(Status::decode(&idle).unwrap_err()),
         "executing, done, can't-do or error was expected for the command 7, found idle"
     );
-    let mut bytes = cell::encode_sensors(&PedestalSensors::default());
+    let mut bytes = SensorsLayout::encode(&PedestalSensors::default());
     bytes[8] = 2;
-    assert_eq!(said(cell::decode_sensors(&bytes).unwrap_err()), "2 is no code of the + limit");
+    assert_eq!(said(SensorsLayout::decode(&bytes).unwrap_err().into()), "2 is no code of limit+");
 }
 
 #[test]
 fn every_layout_fits_its_mailbox() {
     let layouts = [
-        (PEDESTAL_COMMAND, command::COMMAND),
-        (PEDESTAL_STATUS, super::status::STATUS),
-        (PEDESTAL_GRIPPER_STATUS, gripper::STATUS),
-        (PEDESTAL_TABLE_STATUS, table::STATUS),
-        (PEDESTAL_SENSORS, cell::SENSORS),
-        (PEDESTAL_ORDERS, cell::ORDERS),
+        (PEDESTAL_COMMAND, CommandLayout::BYTES),
+        (PEDESTAL_STATUS, StatusLayout::BYTES),
+        (PEDESTAL_GRIPPER_STATUS, GripperLayout::BYTES),
+        (PEDESTAL_TABLE_STATUS, TableLayout::BYTES),
+        (PEDESTAL_SENSORS, SensorsLayout::BYTES),
+        (PEDESTAL_ORDERS, OrdersLayout::BYTES),
     ];
     for (place, bytes) in layouts {
         assert!(HEAD + bytes <= place.size, "{place}");
@@ -215,29 +219,30 @@ fn every_layout_fits_its_mailbox() {
 proptest! {
     #[test]
     fn no_bytes_panic(bytes in prop::collection::vec(any::<u8>(), 0..260)) {
-        let _ = command::decode(&bytes);
+        let _ = CommandLayout::decode(&bytes);
         let _ = command::number(&bytes);
         let _ = Status::decode(&bytes);
-        let _ = gripper::decode(&bytes);
-        let _ = table::decode(&bytes);
-        let _ = cell::decode_sensors(&bytes);
-        let _ = cell::decode_orders(&bytes);
+        let _ = GripperLayout::decode(&bytes);
+        let _ = TableLayout::decode(&bytes);
+        let _ = SensorsLayout::decode(&bytes);
+        let _ = OrdersLayout::decode(&bytes);
     }
 
     /// Nearly right bytes: one of a good layout is another one. What is taken for good says what the bytes say.
     #[test]
     fn what_is_taken_is_what_stands_there(at in any::<prop::sample::Index>(), byte in any::<u8>()) {
-        let mut bytes = command::encode(&flip(7));
+        let mut bytes = CommandLayout::encode(&flip(7));
         let at = at.index(bytes.len());
         bytes[at] = byte;
-        if let Ok(taken) = command::decode(&bytes) {
+        if let Ok(taken) = CommandLayout::decode(&bytes) {
             // A zero behind a text does as well as a blank.
             let blank = bytes.map(|byte| if byte == 0 { b' ' } else { byte });
-            prop_assert_eq!(command::encode(&taken).map(|byte| if byte == 0 { b' ' } else { byte }), blank);
+            prop_assert_eq!(CommandLayout::encode(&taken).map(|byte| if byte == 0 { b' ' } else { byte }), blank);
         }
     }
 
-    /// Whatever is written into its mailboxes, and whoever joins when: the pedestal goes on, and what it sends can be read.
+    /// Whatever is written into its mailboxes, and whichever process joins when: the pedestal goes on, and what it
+    /// sends can be read.
     #[test]
     fn no_mailgram_stops_the_pedestal(
         events in prop::collection::vec((0_u8..6, prop::collection::vec(any::<u8>(), 0..40)), 1..60),
@@ -249,23 +254,23 @@ proptest! {
                 1 => bench.sensors_box.write(&bytes).unwrap(),
                 2 => bench.sense(&PedestalSensors::default()),
                 3 => bench.command(&flip(u32::from(bytes.len() as u8))),
-                4 => bench.station.join(),
+                4 => bench.system.join(),
                 _ => {}
             }
             bench.tick();
-            if bench.station.outgoing()[0].mailgram() != 0 {
-                prop_assert!(Status::decode(bench.station.outgoing()[0].data()).is_ok());
-                prop_assert!(gripper::decode(bench.station.outgoing()[1].data()).is_ok());
-                prop_assert!(table::decode(bench.station.outgoing()[2].data()).is_ok());
-                prop_assert!(cell::decode_orders(bench.station.outgoing()[3].data()).is_ok());
+            if bench.system.outgoing()[0].mailgram() != 0 {
+                prop_assert!(Status::decode(bench.system.outgoing()[0].data()).is_ok());
+                prop_assert!(GripperLayout::decode(bench.system.outgoing()[1].data()).is_ok());
+                prop_assert!(TableLayout::decode(bench.system.outgoing()[2].data()).is_ok());
+                prop_assert!(OrdersLayout::decode(bench.system.outgoing()[3].data()).is_ok());
             }
         }
     }
 }
 
-/// A pedestal, and somebody who writes its mailboxes.
+/// A pedestal, and the other side of its mailboxes.
 struct Bench {
-    station: Station,
+    system: System,
     command_box: Mailbox,
     sensors_box: Mailbox,
 }
@@ -273,7 +278,7 @@ struct Bench {
 impl Default for Bench {
     fn default() -> Self {
         Self {
-            station: Station::default(),
+            system: System::default(),
             command_box: Mailbox::initialized(PEDESTAL_COMMAND),
             sensors_box: Mailbox::initialized(PEDESTAL_SENSORS),
         }
@@ -290,24 +295,24 @@ impl Bench {
     }
 
     fn command(&mut self, command: &PedestalCommand) {
-        self.command_box.write(&command::encode(command)).unwrap();
+        self.command_box.write(&CommandLayout::encode(command)).unwrap();
     }
 
     fn sense(&mut self, sensors: &PedestalSensors) {
-        self.sensors_box.write(&cell::encode_sensors(sensors)).unwrap();
+        self.sensors_box.write(&SensorsLayout::encode(sensors)).unwrap();
     }
 
     fn tick(&mut self) {
-        self.station.step(&self.command_box, &self.sensors_box);
+        self.system.step(&self.command_box, &self.sensors_box);
     }
 
     fn status(&self) -> Status<'_> {
-        Status::decode(self.station.outgoing()[0].data()).unwrap()
+        Status::decode(self.system.outgoing()[0].data()).unwrap()
     }
 
     /// Bits to the valves, and the order to the motor.
     fn orders(&self) -> (GripValves, MotorCommand) {
-        cell::decode_orders(self.station.outgoing()[3].data()).unwrap()
+        OrdersLayout::decode(self.system.outgoing()[3].data()).unwrap()
     }
 }
 
@@ -348,7 +353,7 @@ fn what_stands_in_the_mailbox_when_a_line_is_mended_is_not_made_up_for() {
     let mut bench = Bench::joining(0);
     bench.tick();
     bench.command(&PedestalCommand { command: PedestalVerb::Release, grasp_size: 250, ..flip(5) });
-    bench.station.join();
+    bench.system.join();
     bench.tick();
     let PedestalStatus { echo, report, reason, .. } = bench.status().status;
     assert_eq!((echo, report, reason), (5, PedestalReport::Error, Reason::Restarted));
@@ -361,7 +366,7 @@ fn what_stands_in_the_mailbox_when_a_line_is_mended_is_not_made_up_for() {
 fn a_garbled_command_is_refused_by_its_number_and_the_next_one_is_taken() {
     let mut bench = Bench::joining(0);
     bench.tick();
-    let mut bytes = command::encode(&flip(5));
+    let mut bytes = CommandLayout::encode(&flip(5));
     bytes[12] = 0x07;
     bench.command_box.write(&bytes).unwrap();
     bench.tick();

@@ -1,28 +1,12 @@
-//! What vision writes, byte by byte (IX.4): the two ready words and the response. CHOSEN, Figure IX.3 is lost.
-//!
-//! ```text
-//!   at  bytes  variable              holds
-//!    0    2    vision-ready-input    2 ready: the response may be read; 1 not ready
-//!    2    2    vision-ready-output   2 ready: a request may be written; 1 not ready
-//!    4    2    response-byte-count   bytes of the response area behind it, 12
-//!    6    2    request-#-echo        request that is answered, 0 for none
-//!    8    2    status                0 none; 1 busy; 2 done: the values are valid; 3 nothing seen; 4 not recognised
-//!   10    2    y                     centroid from the optical axis along the tool's Y, 0.01 in, signed
-//!   12    2    z                     centroid along X x Y, where X is the optical axis away from the camera, 0.01 in, signed
-//!   14    2    angle                 right-hand roll about X that brings Y onto the dimension to grip across, 0.01 degree,
-//!                                    signed, -9000 to 9000
-//!   16    2    recognised            object-id of what was recognised, 0 for none
-//! ```
+//! What vision writes (IX.4): the two ready words and the response. CHOSEN, Figure IX.3 is lost.
 
-use rcs_core::interface::device::{VisionResponse, VisionStatus};
+use interfaces::device::{VisionResponse, VisionStatus};
 
 use super::VisionError;
-use crate::fields::{FieldError, Packer, RangeError, Unpacker, command_number};
-
-/// Bytes of the data of a response mailbox.
-pub const AREAS: usize = 18;
-/// `response-byte-count`.
-const AREA: usize = AREAS - 6;
+use crate::{
+    fields::{FieldError, RangeError},
+    layout::{At, Codec, Coded, Given, I16, Number, U16, Width},
+};
 
 /// A ready word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,12 +18,45 @@ pub enum Ready {
     Ready = 2,
 }
 
-impl Ready {
-    fn from_word(field: &'static str, found: u16) -> Result<Self, VisionError> {
-        [Self::NotReady, Self::Ready]
-            .into_iter()
-            .find(|&ready| ready as u16 == found)
-            .ok_or(VisionError::Ready { field, found })
+/// A ready word by its number.
+#[derive(Clone, Copy, Debug)]
+struct ReadyWord;
+
+impl Width for ReadyWord {
+    const BYTES: usize = 2;
+}
+
+impl Codec<'_, Ready> for ReadyWord {
+    fn put(value: &Ready, to: &mut [u8]) {
+        U16::put(&(*value as u16), to);
+    }
+
+    fn take(at: At, from: &[u8]) -> Result<Ready, FieldError> {
+        let found: u16 = U16::take(at, from)?;
+        let expected = "1 (not ready) or 2 (ready)";
+        let known = [Ready::NotReady, Ready::Ready].into_iter().find(|&ready| ready as u16 == found);
+        known.ok_or(FieldError::Expected { field: at.field, expected, found })
+    }
+}
+
+/// The byte-count of a request or response area: the 12 bytes behind it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ByteCount;
+
+impl Width for ByteCount {
+    const BYTES: usize = 2;
+}
+
+impl Codec<'_, ()> for ByteCount {
+    fn put((): &(), to: &mut [u8]) {
+        U16::put(&12_u16, to);
+    }
+
+    fn take(at: At, from: &[u8]) -> Result<(), FieldError> {
+        match U16::take(at, from)? {
+            12_u16 => Ok(()),
+            found => Err(FieldError::Expected { field: at.field, expected: "12", found }),
+        }
     }
 }
 
@@ -52,6 +69,31 @@ pub struct Areas {
     pub output: Ready,
     /// The response area.
     pub response: VisionResponse,
+}
+
+impl Default for Areas {
+    fn default() -> Self {
+        Self::INITIALIZED
+    }
+}
+
+crate::layout! {
+    /// What vision writes.
+    AreasLayout: Areas = "a response";
+    "vision-ready-input"   (input)   ReadyWord,  "2: the response may be read";
+    "vision-ready-output"  (output)  ReadyWord,  "2: a request may be written";
+    "response-byte-count"  ()        ByteCount,  "12";
+    "request-#-echo"  (response.echo)    Number,     "the request that is answered; 0 for none";
+    "status"          (response.status)  Coded<2>,
+        "0 none; 1 busy; 2 done; 3 nothing seen; 4 not recognised";
+    "y"               (response.y)       I16,
+        "centroid from the optical axis along the tool's Y, 0.01 in, signed";
+    "z"               (response.z)       I16,
+        "the same along Z = X x Y, where X is the optical axis away from the camera";
+    "angle"           (response.angle)   I16,
+        "right-hand roll about X that brings Y onto the dimension to grip across, 0.01 degree, -9000 to 9000";
+    "recognised"      (response.recognised)  Given<U16>,
+        "object-id of what was recognised, 0 for none; after a precise picture it must be the one asked for";
 }
 
 impl Areas {
@@ -73,19 +115,8 @@ impl Areas {
     ///
     /// # Errors
     /// [`RangeError`] if two bytes cannot hold a value.
-    pub fn encode(&self) -> Result<[u8; AREAS], RangeError> {
-        let response = &self.response;
-        let mut fields = Packer::<AREAS>::default();
-        fields.word(self.input as u16);
-        fields.word(self.output as u16);
-        fields.word(u16::try_from(AREA).unwrap_or_default());
-        fields.word(command_number(response.echo));
-        fields.word(u16::from(response.status.code()));
-        fields.integer("y", response.y)?;
-        fields.integer("z", response.z)?;
-        fields.integer("angle", response.angle)?;
-        fields.word(response.recognised.unwrap_or_default());
-        Ok(fields.finish())
+    pub fn encode(&self) -> Result<[u8; AreasLayout::BYTES], RangeError> {
+        AreasLayout::check(self).map(|()| AreasLayout::encode(self))
     }
 
     /// Read the bytes. Whether the values can be is for E-move to judge.
@@ -93,33 +124,7 @@ impl Areas {
     /// # Errors
     /// [`VisionError`] for the first thing that cannot be read.
     pub fn decode(bytes: &[u8]) -> Result<Self, VisionError> {
-        if bytes.len() != AREAS {
-            return Err(VisionError::Length { what: "a response", expected: AREAS, found: bytes.len() });
-        }
-        let mut fields = Unpacker::new(bytes);
-        let mut ready = |field| fields.word(field).map(|word| Ready::from_word(field, word));
-        let (input, output) = (ready("vision-ready-input")??, ready("vision-ready-output")??);
-        let count = fields.word("response-byte-count")?;
-        if usize::from(count) != AREA {
-            return Err(VisionError::ByteCount {
-                field: "response-byte-count",
-                expected: AREA,
-                found: count,
-            });
-        }
-        let (echo, status) = (fields.word("request-#-echo")?.into(), fields.word("status")?);
-        let response = VisionResponse {
-            echo,
-            status: u8::try_from(status)
-                .ok()
-                .and_then(VisionStatus::from_code)
-                .ok_or(FieldError::Code { field: "status", found: status })?,
-            y: fields.integer("y")?,
-            z: fields.integer("z")?,
-            angle: fields.integer("angle")?,
-            recognised: Some(fields.word("recognised")?).filter(|id| *id != 0),
-        };
-        Ok(Self { input, output, response })
+        Ok(AreasLayout::decode(bytes)?)
     }
 }
 
@@ -159,7 +164,7 @@ mod tests {
         };
         assert_eq!(said(0, 3), "1 (not ready) or 2 (ready) was expected for vision-ready-input, found 3");
         assert_eq!(said(2, 0), "1 (not ready) or 2 (ready) was expected for vision-ready-output, found 0");
-        assert_eq!(said(4, 14), "response-byte-count 12 was expected, found 14");
+        assert_eq!(said(4, 14), "12 was expected for response-byte-count, found 14");
         assert_eq!(said(8, 99), "99 is no code of status");
         let short = Areas::decode(&[2; 14]).unwrap_err().to_string();
         assert_eq!(short, "a response of 18 bytes was expected, found 14");

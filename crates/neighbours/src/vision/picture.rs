@@ -1,36 +1,122 @@
-//! What the camera of the simulated cell sees, byte by byte: an extension for a vision system that has no camera of its own. A real
-//! one does not read it. All numbers are those of the cell to the last bit, so that the answer is the same wherever it is worked out.
-//!
-//! ```text
-//!   at  bytes
-//!    0    2    request-# for which the picture was taken
-//!    2    2    parts of which something is seen, 0 to 38; the nearest to the optical axis if there are more
-//!    4    8    seed of the run, unsigned
-//!   12    8    fingerprint of camera and parts in the cell description of the run
-//!   20  107    each part: the face that looks at the camera, in camera axes (X along the optical axis, Y the tool's Y), inches, f64
-//!
-//!    0   24      its middle: X, Y, Z
-//!   24   32      its first edge: direction X, Y, Z and length
-//!   56   32      its second edge, likewise
-//!   88    8      share of the light that it throws back
-//!   96   11      what of it is seen: 9 points along the first edge by 9 along the second, the middles of equal fields, bit n % 8 of
-//!                byte n / 8 for the nth, those along the second edge first
-//! ```
+//! What the camera of the simulated cell sees: an extension for a vision system that has no camera of its
+//! own. A real one does not read it. All numbers are those of the cell to the last bit, so that the answer
+//! is the same wherever it is worked out.
 
 use super::VisionError;
 use crate::{
-    fields::{FieldError, Unpacker},
+    fields::FieldError,
+    layout::{At, Codec, U16, U64, Width, sized},
     mailbox::{HEAD as MAILBOX_HEAD, VISION_PICTURE},
 };
 
+crate::layout! {
+    /// What stands in front of the parts.
+    HeadLayout: Head = "the head of a picture";
+    "request-#"    (number)  U16,  "request for which the picture was taken";
+    "parts"        (parts)   U16,
+        "parts of which something is seen, 0 to 38, the nearest to the optical axis if there are more";
+    "seed"         (seed)    U64,  "seed of the run";
+    "fingerprint"  (cell)    U64,  "of camera and parts in the cell description of the run";
+}
+
+crate::layout! {
+    /// A part.
+    PartLayout: Part = "a part";
+    "middle"       (centre)       Vector,  "of the face that looks at the camera: X, Y, Z";
+    "edge 1"       (edges[0].0)   Vector,  "direction of its first edge: X, Y, Z";
+    "length 1"     (edges[0].1)   Number,  "of that edge";
+    "edge 2"       (edges[1].0)   Vector,  "direction of its second edge";
+    "length 2"     (edges[1].1)   Number,  "of that edge";
+    "reflectance"  (reflectance)  Number,  "share of the light that it throws back";
+    "points"       (seen)         Points,
+        "which of 9 by 9 points of it, the middles of equal fields, are seen: bit n % 8 of byte n / 8 for the nth, \
+         those along the second edge first";
+}
+
 /// Bytes in front of the parts.
-pub const HEAD: usize = 20;
+pub const HEAD: usize = HeadLayout::BYTES;
 /// Bytes of a part.
-pub const PART: usize = 107;
+pub const PART: usize = PartLayout::BYTES;
 /// Parts that the mailbox holds.
 pub const MAX_PARTS: usize = (VISION_PICTURE.size - MAILBOX_HEAD - HEAD) / PART;
 /// Points of a face.
 const POINTS: u32 = 81;
+
+/// What stands in front of the parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Head {
+    number: u16,
+    parts: u16,
+    seed: u64,
+    cell: u64,
+}
+
+/// A finite 64-bit floating-point number.
+#[derive(Clone, Copy, Debug)]
+struct Number;
+
+/// Three of them.
+#[derive(Clone, Copy, Debug)]
+struct Vector;
+
+/// A bit for each point of a face.
+#[derive(Clone, Copy, Debug)]
+struct Points;
+
+impl Width for Number {
+    const BYTES: usize = 8;
+}
+
+impl Width for Vector {
+    const BYTES: usize = 3 * Number::BYTES;
+}
+
+impl Width for Points {
+    const BYTES: usize = POINTS.div_ceil(u8::BITS) as usize;
+}
+
+impl Codec<'_, f64> for Number {
+    fn put(value: &f64, to: &mut [u8]) {
+        U64::put(value, to);
+    }
+
+    fn take(at: At, from: &[u8]) -> Result<f64, FieldError> {
+        let found: f64 = U64::take(at, from)?;
+        if found.is_finite() { Ok(found) } else { Err(FieldError::Infinite { field: at.field }) }
+    }
+}
+
+impl Codec<'_, [f64; 3]> for Vector {
+    fn put(value: &[f64; 3], to: &mut [u8]) {
+        for (number, to) in value.iter().zip(to.chunks_mut(Number::BYTES)) {
+            Number::put(number, to);
+        }
+    }
+
+    fn take(at: At, from: &[u8]) -> Result<[f64; 3], FieldError> {
+        let mut read = [0.0; 3];
+        for (number, from) in read.iter_mut().zip(from.chunks(Number::BYTES)) {
+            *number = Number::take(at, from)?;
+        }
+        Ok(read)
+    }
+}
+
+impl Codec<'_, u128> for Points {
+    fn put(value: &u128, to: &mut [u8]) {
+        to.copy_from_slice(&value.to_le_bytes()[..Self::BYTES]);
+    }
+
+    fn take(at: At, from: &[u8]) -> Result<u128, FieldError> {
+        let mut bytes = [0; 16];
+        bytes[..Self::BYTES].copy_from_slice(from);
+        let seen = u128::from_le_bytes(bytes);
+        if seen >> POINTS == 0 {
+            return Ok(seen);
+        }
+        Err(FieldError::Code { field: at.field, found: u16::from(bytes[Self::BYTES - 1]) })
+    }
+}
 
 /// A picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -59,7 +145,8 @@ pub struct Part {
 }
 
 impl Picture {
-    /// Leave out the parts farthest from the optical axis, if there are more than the mailbox holds; how many.
+    /// Leave out the parts farthest from the optical axis, if there are more than the mailbox holds; how
+    /// many.
     pub fn crop(&mut self) -> usize {
         let Some(excess) = self.parts.len().checked_sub(MAX_PARTS).filter(|excess| *excess > 0) else {
             return 0;
@@ -77,17 +164,11 @@ impl Picture {
     #[must_use]
     pub fn encode(&self) -> Vec<u8> {
         let parts = &self.parts[..self.parts.len().min(MAX_PARTS)];
+        let count = u16::try_from(parts.len()).unwrap_or_default();
+        let head = Head { number: self.number, parts: count, seed: self.seed, cell: self.cell };
         let mut bytes = Vec::with_capacity(HEAD + PART * parts.len());
-        bytes.extend(self.number.to_le_bytes());
-        bytes.extend(u16::try_from(parts.len()).unwrap_or_default().to_le_bytes());
-        bytes.extend(self.seed.to_le_bytes());
-        bytes.extend(self.cell.to_le_bytes());
-        for part in parts {
-            let edges = part.edges.iter().flat_map(|(direction, length)| direction.iter().chain([length]));
-            let numbers = part.centre.iter().chain(edges).chain([&part.reflectance]);
-            bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
-            bytes.extend(&part.seen.to_le_bytes()[..PART - 96]);
-        }
+        bytes.extend(HeadLayout::encode(&head));
+        bytes.extend(parts.iter().flat_map(PartLayout::encode));
         bytes
     }
 
@@ -96,45 +177,19 @@ impl Picture {
     /// # Errors
     /// [`VisionError`] for the first thing that cannot be.
     pub fn decode(bytes: &[u8]) -> Result<Self, VisionError> {
-        let mut fields = Unpacker::new(bytes);
-        let (number, count) = (fields.word("request-#")?, fields.word("parts")?);
-        let expected = HEAD + PART * usize::from(count);
-        let (seed, cell) = (long(&mut fields, "seed")?, long(&mut fields, "fingerprint")?);
-        if bytes.len() != expected || usize::from(count) > MAX_PARTS {
-            return Err(VisionError::Length { what: "a picture", expected, found: bytes.len() });
+        let (head, rest) = bytes.split_at(bytes.len().min(HEAD));
+        let Head { number, parts, seed, cell } = HeadLayout::decode(head)?;
+        let count = usize::from(parts);
+        sized("a picture", HEAD + PART * count.min(MAX_PARTS), bytes)?;
+        if count > MAX_PARTS {
+            return Err(VisionError::Parts { most: MAX_PARTS, found: count });
         }
-        let parts = (1..=usize::from(count)).map(|part| read_part(&mut fields, part));
+        let part = |(at, bytes): (usize, &[u8])| {
+            PartLayout::decode(bytes).map_err(|source| VisionError::Part { part: at + 1, source })
+        };
+        let parts = rest.chunks(PART).enumerate().map(part);
         Ok(Self { number, seed, cell, parts: parts.collect::<Result<_, _>>()? })
     }
-}
-
-fn long(fields: &mut Unpacker<'_>, field: &'static str) -> Result<u64, FieldError> {
-    let bytes = fields.raw(field, 8)?;
-    bytes.try_into().map(u64::from_le_bytes).map_err(|_| FieldError::End { field })
-}
-
-fn read_part(fields: &mut Unpacker<'_>, part: usize) -> Result<Part, VisionError> {
-    let mut number = |field| {
-        let found = f64::from_bits(long(fields, field)?);
-        if found.is_finite() { Ok(found) } else { Err(VisionError::Number { field, part, found }) }
-    };
-    let mut three = |field| Ok::<_, VisionError>([number(field)?, number(field)?, number(field)?]);
-    let centre = three("the middle")?;
-    let first = three("the first edge")?;
-    let length = number("the first edge")?;
-    let mut three = |field| Ok::<_, VisionError>([number(field)?, number(field)?, number(field)?]);
-    let second = three("the second edge")?;
-    let edges = [(first, length), (second, number("the second edge")?)];
-    let reflectance = number("the light")?;
-    let mut seen = [0; 16];
-    let raster = fields.raw("the points", PART - 96)?;
-    seen[..raster.len()].copy_from_slice(raster);
-    let seen = u128::from_le_bytes(seen);
-    if seen >> POINTS != 0 {
-        let found = u16::from(raster.last().copied().unwrap_or_default());
-        return Err(FieldError::Code { field: "the points", found }.into());
-    }
-    Ok(Part { centre, edges, reflectance, seen })
 }
 
 #[cfg(test)]
@@ -190,11 +245,19 @@ mod tests {
             Picture::decode(&bytes).unwrap_err().to_string()
         };
         assert_eq!(said(|bytes| bytes.truncate(200)), "a picture of 234 bytes was expected, found 200");
-        assert_eq!(said(|bytes| bytes.truncate(10)), "the data end before seed does");
-        assert_eq!(said(|bytes| bytes[3] = 9), "a picture of 246762 bytes was expected, found 234");
+        assert_eq!(
+            said(|bytes| bytes.truncate(10)),
+            "the head of a picture of 20 bytes was expected, found 10"
+        );
+        assert_eq!(said(|bytes| bytes[3] = 9), "a picture of 4086 bytes was expected, found 234");
+        let many = said(|bytes| {
+            bytes[2..4].copy_from_slice(&[39, 0]);
+            bytes.resize(HEAD + PART * MAX_PARTS, 0);
+        });
+        assert_eq!(many, "at most 38 parts were expected in a picture, found 39");
         let endless = said(|bytes| bytes[28..36].copy_from_slice(&f64::INFINITY.to_le_bytes()));
-        assert_eq!(endless, "a finite number was expected for the middle of part 1, found inf");
-        assert_eq!(said(|bytes| bytes[233] = 3), "3 is no code of the points");
+        assert_eq!(endless, "part 1: a finite number was expected for middle");
+        assert_eq!(said(|bytes| bytes[233] = 3), "part 2: 3 is no code of points");
     }
 
     proptest! {

@@ -3,31 +3,31 @@
 //! | what comes                                      | what becomes of it                                                        |
 //! |-------------------------------------------------|---------------------------------------------------------------------------|
 //! | E-move has a new request                        | written if `vision-ready-output` is 2, else as soon as it is              |
-//! | nobody is connected, or a new vision system is  | "not ready" until it writes; the request is written again if it is unanswered |
+//! | none is connected, or a new vision system is    | "not ready" until it writes; the request is written again if it is unanswered |
 //! | a response while `vision-ready-input` is 2      | E-move reads it if it echoes the present request                          |
 //! | a response to another request                   | not read: E-move would take it for the present one's                      |
 //! | a response while `vision-ready-input` is 1      | not read                                                                  |
 //! | what is no response                             | not read; the ready words stay as they were                               |
 //!
-//! What E-move does not read leaves it with what it had: at worst it waits until vision counts as silent. A mailbox that is read is
-//! read every cycle (IX), and what is not to be understood is said once.
+//! What E-move does not read leaves it with what it had: at worst it waits until vision counts as silent. A
+//! mailbox that is read is read every cycle (IX), and what is not to be understood is said once.
 
 use std::fmt;
 
-use rcs_core::interface::device::{Picture as Kind, VisionRequest, VisionResponse, VisionStatus};
+use interfaces::device::{Picture as Kind, VisionRequest, VisionResponse, VisionStatus};
 
 use super::{Areas, Picture, Ready, VisionError, picture::Part, request};
 use crate::{
     fields::command_number,
     mailbox::{MailboxError, VISION_PICTURE, VISION_REQUEST, VISION_RESPONSE},
-    network::{Desk, News},
+    network::{Endpoint, NetEvent},
 };
 
 /// What is worth a word in the log.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Remark {
     /// Vision has come, or gone.
-    News(News),
+    Network(NetEvent),
     /// What it wrote cannot be read.
     Refused(VisionError),
     /// It has answered another request than the present one.
@@ -58,7 +58,7 @@ pub enum Remark {
 impl fmt::Display for Remark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::News(news) => news.fmt(f),
+            Self::Network(event) => event.fmt(f),
             Self::Refused(error) => write!(f, "what vision has written is refused: {error}"),
             Self::Stranger { echo, expected: 0 } => {
                 write!(
@@ -90,7 +90,7 @@ impl fmt::Display for Remark {
 
 /// E-move's end of the interface to a vision system in another process.
 pub struct Port {
-    desk: Desk,
+    endpoint: Endpoint,
     /// Seed of the run, and fingerprint of what in its cell description vision depends on.
     run: (u64, u64),
     /// E-move's present request; number 0 for none.
@@ -111,11 +111,11 @@ pub struct Port {
 }
 
 impl Port {
-    /// At a desk, in a run with a seed and a fingerprint of what its vision depends on.
+    /// Works with an endpoint, in a run with a seed and a fingerprint of what its vision depends on.
     #[must_use]
-    pub const fn new(desk: Desk, seed: u64, cell: u64) -> Self {
+    pub const fn new(endpoint: Endpoint, seed: u64, cell: u64) -> Self {
         Self {
-            desk,
+            endpoint,
             run: (seed, cell),
             wanted: VisionRequest {
                 number: 0,
@@ -146,8 +146,8 @@ impl Port {
         std::mem::take(&mut self.remarks)
     }
 
-    /// Once a tick, after E-move and the cell: `wanted` is what E-move asks for, `picture` what the camera of the simulated cell sees
-    /// in the tick in which the request is written.
+    /// Once a tick, after E-move and the cell: `wanted` is what E-move asks for, `picture` what the camera of
+    /// the simulated cell sees in the tick in which the request is written.
     pub fn step(&mut self, tick: u64, wanted: &VisionRequest, picture: impl FnOnce() -> Vec<Part>) {
         if wanted.number != self.wanted.number {
             (self.wanted, self.written, self.waits) = (*wanted, false, false);
@@ -155,27 +155,27 @@ impl Port {
         if self.is_open() && self.output == Ready::Ready {
             self.write(picture());
         }
-        let presence = self.desk.exchange(tick);
-        let news = std::iter::from_fn(|| self.desk.news());
-        self.remarks.extend(news.map(Remark::News));
-        if presence.new || !presence.here {
+        let presence = self.endpoint.exchange(tick);
+        let events = std::iter::from_fn(|| self.endpoint.event());
+        self.remarks.extend(events.map(Remark::Network));
+        if presence.new || !presence.connected {
             self.initialize();
         }
-        if presence.here {
+        if presence.connected {
             self.read();
         } else {
-            // Who comes next finds no request that was meant for somebody else.
-            self.desk.outgoing(VISION_PICTURE).initialize();
-            self.desk.outgoing(VISION_REQUEST).initialize();
+            // The next vision system finds no request that was meant for the one before.
+            self.endpoint.outgoing(VISION_PICTURE).initialize();
+            self.endpoint.outgoing(VISION_REQUEST).initialize();
         }
         if self.is_open() && self.output == Ready::NotReady && !self.waits {
             self.waits = true;
             let number = command_number(self.wanted.number);
-            self.remarks.push(Remark::Waits { number, connected: presence.here });
+            self.remarks.push(Remark::Waits { number, connected: presence.connected });
         }
     }
 
-    /// There is a request that was not written, and not answered by somebody who has gone since.
+    /// There is a request that was not written, and not answered by one that has disconnected since.
     fn is_open(&self) -> bool {
         let answered = self.response.echo == self.wanted.number && is_final(&self.response);
         self.wanted.number != 0 && self.wanted.picture != Kind::None && !self.written && !answered
@@ -195,14 +195,14 @@ impl Port {
         if cropped > 0 {
             self.remarks.push(Remark::Cropped(cropped));
         }
-        let picture = self.desk.outgoing(VISION_PICTURE).write(&picture.encode());
-        let request = self.desk.outgoing(VISION_REQUEST).write(&request::encode(&self.wanted));
+        let picture = self.endpoint.outgoing(VISION_PICTURE).write(&picture.encode());
+        let request = self.endpoint.outgoing(VISION_REQUEST).write(&request::encode(&self.wanted));
         self.remarks.extend([picture, request].into_iter().filter_map(Result::err).map(Remark::Mailbox));
         self.written = true;
     }
 
     fn read(&mut self) {
-        let mailbox = self.desk.incoming(VISION_RESPONSE);
+        let mailbox = self.endpoint.incoming(VISION_RESPONSE);
         if mailbox.data().is_empty() {
             return;
         }
@@ -245,20 +245,16 @@ fn is_final(response: &VisionResponse) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc;
-
     use super::*;
     use crate::{
         mailbox::{Mailbox, Place},
-        network::{Parting, Role, frame::Frame, hello::ClockKind, office::Counter},
+        network::{ClockKind, Disconnect, Role, endpoint::tests::TestSession},
     };
 
     /// A port, and the other end of its line.
     struct Bench {
         port: Port,
-        counter: Counter,
-        /// Keeps the line open.
-        line: Option<mpsc::Receiver<Frame>>,
+        session: Option<TestSession>,
         response_box: Mailbox,
         tick: u64,
         wanted: VisionRequest,
@@ -266,10 +262,9 @@ mod tests {
 
     impl Bench {
         fn new() -> Self {
-            let port = Port::new(Desk::new(Role::Vision, ClockKind::Real), 7, 9);
-            let counter = port.desk.counter();
+            let port = Port::new(Endpoint::new(Role::Vision, ClockKind::Real).unwrap(), 7, 9);
             let response_box = Mailbox::initialized(VISION_RESPONSE);
-            Self { port, counter, line: None, response_box, tick: 0, wanted: VisionRequest::default() }
+            Self { port, session: None, response_box, tick: 0, wanted: VisionRequest::default() }
         }
 
         /// One at which vision has established communications.
@@ -283,12 +278,12 @@ mod tests {
         }
 
         fn come(&mut self) {
-            self.line = Some(self.counter.come());
+            self.session = Some(TestSession::begin(&self.port.endpoint.handle()));
         }
 
         fn go(&mut self) {
-            self.counter.detach(Parting::Left("the cable was cut".to_owned()));
-            self.line = None;
+            let session = self.session.take().expect("it is connected");
+            session.end(Disconnect::Lost("the cable was cut".to_owned()));
         }
 
         fn step(&mut self) {
@@ -305,7 +300,7 @@ mod tests {
 
         fn write(&mut self, data: &[u8]) {
             self.response_box.write(data).unwrap();
-            self.counter.deliver(&Frame::of(&self.response_box)).unwrap();
+            self.session.as_ref().expect("it is connected").deliver(&self.response_box);
         }
 
         fn say(&mut self, areas: &Areas) {
@@ -313,7 +308,7 @@ mod tests {
         }
 
         fn outgoing(&mut self, place: Place) -> Vec<u8> {
-            self.port.desk.outgoing(place).data().to_vec()
+            self.port.endpoint.outgoing(place).data().to_vec()
         }
 
         fn said(&mut self) -> Vec<String> {
@@ -339,9 +334,9 @@ mod tests {
         bench.step();
         assert_eq!(*bench.port.response(), VisionResponse { echo: 65_539, ..answer(4).response });
         assert!(bench.said().is_empty());
-        let mailgram = bench.port.desk.outgoing(VISION_REQUEST).mailgram();
+        let mailgram = bench.port.endpoint.outgoing(VISION_REQUEST).mailgram();
         bench.step();
-        assert_eq!(bench.port.desk.outgoing(VISION_REQUEST).mailgram(), mailgram, "written once");
+        assert_eq!(bench.port.endpoint.outgoing(VISION_REQUEST).mailgram(), mailgram, "written once");
     }
 
     #[test]
@@ -422,7 +417,7 @@ mod tests {
         bench.ask(4);
         bench.go();
         bench.step();
-        assert_eq!(bench.outgoing(VISION_REQUEST), b"", "nobody finds what was meant for another");
+        assert_eq!(bench.outgoing(VISION_REQUEST), b"", "none finds what was meant for another");
         bench.come();
         bench.say(&Areas { output: Ready::Ready, ..Areas::INITIALIZED });
         bench.step();

@@ -1,38 +1,33 @@
-//! The request to vision, byte by byte (IX.4, V.2.1, VII.7.6). CHOSEN, Figure IX.3 is lost.
-//!
-//! ```text
-//!   at  bytes  variable             holds
-//!    0    2    request-byte-count   bytes of the request area behind it, 12
-//!    2    2    request-#            another one than the last is a new request; 1 to 65535, then 1 again
-//!    4    2    picture              1 fast flood: approximate centroid; 2 precise: centroid, angle, recognition
-//!    6    2    object-id            of VISION-PARA: what is to be recognised
-//!    8    2    grip-#               1 across the widest dimension, 2 across the shortest
-//!   10    2    range                expected, from the image plane to the object, mm
-//!   12    2    variation            parameters to be used: 0 first, another one for each picture that is taken again
-//! ```
+//! The request to vision (IX.4, V.2.1, VII.7.6). CHOSEN, Figure IX.3 is lost.
 
-use rcs_core::interface::device::{Picture, VisionRequest};
+use interfaces::device::{Picture, VisionRequest};
 
-use super::VisionError;
-use crate::fields::{FieldError, Packer, Unpacker, command_number};
+use super::{VisionError, areas::ByteCount};
+use crate::{
+    fields::FieldError,
+    layout::{Coded, I16, Number, U16},
+};
 
-/// Bytes of the data of a request mailbox.
-pub const REQUEST: usize = 14;
-/// `request-byte-count`.
-const AREA: usize = REQUEST - 2;
+crate::layout! {
+    /// The request to vision.
+    RequestLayout: VisionRequest = "a request";
+    "request-byte-count"  ()           ByteCount,  "12";
+    "request-#"           (number)     Number,
+        "another one than the last is a new request; 1 to 65535, then 1 again";
+    "picture"             (picture)    Coded<2>,
+        "1 fast flood: approximate centroid; 2 precise: centroid, angle, recognition";
+    "object-id"           (object_id)  U16,        "what is to be recognised (VII.7.6)";
+    "grip-#"              (grip)       I16,
+        "signed; 1 across the widest dimension, 2 across the shortest";
+    "range"               (range_mm)   U16,        "expected, mm";
+    "variation"           (variation)  U16,
+        "of the system's parameters: 0 first, another for each picture that is taken again";
+}
 
-/// The bytes of a request. Its number is that of the mailbox ([`command_number`]).
+/// The bytes of a request. Its number is that of the mailbox.
 #[must_use]
-pub fn encode(request: &VisionRequest) -> [u8; REQUEST] {
-    let mut fields = Packer::<REQUEST>::default();
-    fields.word(u16::try_from(AREA).unwrap_or_default());
-    fields.word(command_number(request.number));
-    fields.word(u16::from(request.picture.code()));
-    fields.word(request.object_id);
-    fields.saturated(request.grip.into());
-    fields.word(request.range_mm);
-    fields.word(request.variation.into());
-    fields.finish()
+pub fn encode(request: &VisionRequest) -> [u8; RequestLayout::BYTES] {
+    RequestLayout::encode(request)
 }
 
 /// Read the bytes of a request.
@@ -40,28 +35,11 @@ pub fn encode(request: &VisionRequest) -> [u8; REQUEST] {
 /// # Errors
 /// [`VisionError`] for the first thing that cannot be.
 pub fn decode(bytes: &[u8]) -> Result<VisionRequest, VisionError> {
-    if bytes.len() != REQUEST {
-        return Err(VisionError::Length { what: "a request", expected: REQUEST, found: bytes.len() });
+    let request = RequestLayout::decode(bytes)?;
+    if request.picture == Picture::None {
+        return Err(VisionError::Field(FieldError::Code { field: "picture", found: 0 }));
     }
-    let mut fields = Unpacker::new(bytes);
-    let count = fields.word("request-byte-count")?;
-    if usize::from(count) != AREA {
-        return Err(VisionError::ByteCount { field: "request-byte-count", expected: AREA, found: count });
-    }
-    let (number, picture) = (fields.word("request-#")?, fields.word("picture")?);
-    let (object_id, grip) = (fields.word("object-id")?, fields.integer("grip-#")?);
-    let (range_mm, variation) = (fields.word("range")?, fields.word("variation")?);
-    let picture = u8::try_from(picture).ok().and_then(Picture::from_code);
-    let picture = picture.filter(|picture| *picture != Picture::None);
-    let code = |field, found| VisionError::Field(FieldError::Code { field, found });
-    Ok(VisionRequest {
-        number: number.into(),
-        picture: picture.ok_or_else(|| code("picture", u16::from_le_bytes([bytes[4], bytes[5]])))?,
-        object_id,
-        grip: i16::try_from(grip).unwrap_or_default(),
-        range_mm,
-        variation: u8::try_from(variation).map_err(|_| code("variation", variation))?,
-    })
+    Ok(request)
 }
 
 #[cfg(test)]
@@ -97,7 +75,7 @@ mod tests {
             bytes[at] = byte;
             decode(&bytes).unwrap_err().to_string()
         };
-        assert_eq!(said(0, 11), "request-byte-count 12 was expected, found 11");
+        assert_eq!(said(0, 11), "12 was expected for request-byte-count, found 11");
         assert_eq!(said(4, 0), "0 is no code of picture");
         assert_eq!(said(4, 7), "7 is no code of picture");
         assert_eq!(said(13, 1), "257 is no code of variation");

@@ -1,25 +1,13 @@
-//! What the workstation does itself, in a simulated cell (an extension: the manual's workstation has its own lines to vise, trays
-//! and machine).
-//!
-//! ```text
-//!   command   at  bytes  holds
-//!              0    2    number, 1 to 65535: another one than the last is a new line
-//!              2  240    the line, as in a job without its asterisks: vise close PFIXTURE
-//!
-//!   status     0    2    number of the line that was begun last, or refused
-//!              2    2    1 while the cell is busy with a line
-//!              4    2    0 all is well; 1 the line was refused; 2 the cell has a fault; 3 an emergency has stopped the robot
-//!              6  240    what is wrong, in a sentence
-//! ```
+//! What the workstation does itself, in a simulated cell (an extension: the manual's workstation has its own
+//! lines to vise, trays and machine).
 
 use rcs_core::Plain;
 
-use crate::fields::{FieldError, Packer, Unpacker};
+use crate::{
+    fields::FieldError,
+    layout::{At, Codec as _, Coded, Flag, LayoutError, Text, U16, Width as _},
+};
 
-/// Bytes of a command.
-pub const COMMAND: usize = 242;
-/// Bytes of a status.
-pub const STATUS: usize = 246;
 /// Bytes of a text.
 pub const TEXT: usize = 240;
 
@@ -50,13 +38,33 @@ pub struct CellStatus<'a> {
     pub text: &'a str,
 }
 
+/// A line for the cell.
+pub type NumberedLine<'a> = (u16, &'a str);
+
+crate::layout! {
+    /// A line for the cell.
+    LineLayout: NumberedLine<'_> = "a line";
+    "number"  (0)  U16,
+        "1 to 65535: another one than the last is a new line, the last one again changes nothing. 0 is refused";
+    "line"    (1)  Text<TEXT>, "as in a job without its asterisks: `vise close PFIXTURE`";
+}
+
+crate::layout! {
+    /// The status of the cell.
+    CellStatusLayout: CellStatus<'_> = "a status of the cell";
+    "echo"     (echo)     U16,
+        "number of the line that was begun last, or refused; a mailgram of less than 2 bytes has none, and is \
+         refused without one";
+    "busy"     (busy)     Flag,        "1 while the cell is busy with a line";
+    "trouble"  (trouble)  Coded<2>,
+        "0 all is well; 1 the line was refused; 2 the cell has a fault; 3 an emergency has stopped the robot";
+    "text"     (text)     Text<TEXT>,  "what is wrong";
+}
+
 /// The bytes of a line; what is longer than [`TEXT`] is cut off.
 #[must_use]
-pub fn encode_line(number: u16, line: &str) -> [u8; COMMAND] {
-    let mut fields = Packer::<COMMAND>::default();
-    fields.word(number);
-    fields.text(TEXT, &line);
-    fields.finish()
+pub fn encode_line(number: u16, line: &str) -> [u8; LineLayout::BYTES] {
+    LineLayout::encode(&(number, line))
 }
 
 /// A line with its number, which is known even if the rest cannot be read.
@@ -65,7 +73,7 @@ pub struct CellLine<'a> {
     /// The number.
     pub number: u16,
     /// The line, or why it cannot be read.
-    pub text: Result<&'a str, FieldError>,
+    pub text: Result<&'a str, LayoutError>,
 }
 
 /// Read a line.
@@ -73,38 +81,24 @@ pub struct CellLine<'a> {
 /// # Errors
 /// [`FieldError`] if it has no number.
 pub fn decode_line(bytes: &[u8]) -> Result<CellLine<'_>, FieldError> {
-    let mut fields = Unpacker::new(bytes);
-    Ok(CellLine { number: fields.word("number")?, text: fields.text("line", TEXT) })
+    let number = bytes.get(..U16::BYTES).ok_or(FieldError::End { field: "number" })?;
+    let number = U16::take(At { field: "number", byte: 0 }, number)?;
+    Ok(CellLine { number, text: LineLayout::decode(bytes).map(|(_, line)| line) })
 }
 
 impl<'a> CellStatus<'a> {
     /// The bytes.
     #[must_use]
-    pub fn encode(&self) -> [u8; STATUS] {
-        let mut fields = Packer::<STATUS>::default();
-        fields.word(self.echo);
-        fields.word(u16::from(self.busy));
-        fields.word(u16::from(self.trouble.code()));
-        fields.text(TEXT, &self.text);
-        fields.finish()
+    pub fn encode(&self) -> [u8; CellStatusLayout::BYTES] {
+        CellStatusLayout::encode(self)
     }
 
     /// Read the bytes.
     ///
     /// # Errors
-    /// [`FieldError`] for the first field that cannot be.
-    pub fn decode(bytes: &'a [u8]) -> Result<Self, FieldError> {
-        let mut fields = Unpacker::new(bytes);
-        let (echo, busy, trouble) = (fields.word("echo")?, fields.word("busy")?, fields.word("trouble")?);
-        Ok(Self {
-            echo,
-            busy: busy != 0,
-            trouble: u8::try_from(trouble)
-                .ok()
-                .and_then(Trouble::from_code)
-                .ok_or(FieldError::Code { field: "trouble", found: trouble })?,
-            text: fields.text("text", TEXT)?,
-        })
+    /// [`LayoutError`] for the first field that cannot be.
+    pub fn decode(bytes: &'a [u8]) -> Result<Self, LayoutError> {
+        CellStatusLayout::decode(bytes)
     }
 }
 
@@ -117,7 +111,8 @@ mod tests {
         let bytes = encode_line(7, "vise close PFIXTURE");
         assert_eq!(&bytes[..24], b"\x07\x00vise close PFIXTURE   ");
         assert_eq!(decode_line(&bytes), Ok(CellLine { number: 7, text: Ok("vise close PFIXTURE") }));
-        let short = CellLine { number: 7, text: Err(FieldError::End { field: "line" }) };
+        let size = LayoutError::Size { what: "a line", expected: 242, found: 100 };
+        let short = CellLine { number: 7, text: Err(size) };
         assert_eq!(decode_line(&bytes[..100]), Ok(short));
         assert_eq!(decode_line(&bytes[..1]), Err(FieldError::End { field: "number" }));
         let status =
@@ -125,6 +120,7 @@ mod tests {
         let bytes = status.encode();
         assert_eq!(&bytes[..18], b"\x07\x00\x01\x00\x01\x00there is no ");
         assert_eq!(CellStatus::decode(&bytes), Ok(status));
-        assert_eq!(CellStatus::decode(&bytes[..245]), Err(FieldError::End { field: "text" }));
+        let size = LayoutError::Size { what: "a status of the cell", expected: 246, found: 245 };
+        assert_eq!(CellStatus::decode(&bytes[..245]), Err(size));
     }
 }

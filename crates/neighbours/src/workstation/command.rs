@@ -1,46 +1,62 @@
-//! The command of the workstation controller, byte by byte (V.4.2).
-//!
-//! ```text
-//!   at  bytes  variable              holds
-//!    0    4    cmdf<w                of the network; not read
-//!    4    2    cmd-length<w          not used by the manual. CHOSEN: 0, or the bytes of the command, 126
-//!    6    2    command-#-in          1 to 65535, then 1 again
-//!    8   12    time-stamp-status<w   not read
-//!   20   16    "command-16"          TRANSFER, MOVE, ...
-//!   36   16    "obj"                 blank for none
-//!   52   16    "obj-serial-#"        blank for none
-//!   68    2    source-grip-#
-//!   70   16    "src-loc-16"          blank for none
-//!   86    2    src-sector#           0 for none
-//!   88    2    dest-grip-#
-//!   90   16    "dest-loc-16"         blank for none
-//!  106    2    dest-sector#          0 for none
-//!  108   16    "end-at-16"           blank for none
-//!  124    2    endatsector#          0 for none
-//! ```
-//!
-//! Integers are signed, of two bytes, low byte first, as those of Figure IX.2; behind a text stand blanks. CHOSEN: zeros do as
-//! well behind a text.
+//! The command of the workstation controller (V.4.2). Texts have blanks behind them; CHOSEN: zeros do as
+//! well.
 
-use rcs_core::interface::HwsCommand;
+use interfaces::HwsCommand;
 
-use crate::fields::{FieldError, Packer, RangeError, Unpacker, command_number};
+use crate::{
+    fields::{FieldError, RangeError},
+    layout::{At, Chars, Codec, Given, I16, LayoutError, Number, U16, Unused, Width},
+};
 
-/// Bytes of a command.
-pub const COMMAND: usize = 126;
+crate::layout! {
+    /// The command of the workstation controller.
+    CommandLayout: HwsCommand = "a command";
+    "cmdf<w"             ()               Unused<4>,         "not read";
+    "cmd-length<w"       ()               Length,            "126, or 0 (CHOSEN; the manual does not use it)";
+    "command-#-in"       (number)         Number,            "1 to 65535, then 1 again";
+    "time-stamp-status<w"  ()             Unused<12>,        "not read";
+    "command-16"         (command)        Chars<16>,
+        "TRANSFER, MOVE, POSITION, ACQUIRE, REFIXTURE, PAUSE, ...";
+    "obj"                (object)         Given<Chars<16>>,  "blank for none, as all names";
+    "obj-serial-#"       (serial)         Chars<16>,         "";
+    "source-grip-#"      (source_grip)    I16,               "";
+    "src-loc-16"         (source)         Given<Chars<16>>,  "";
+    "src-sector#"        (source_sector)  Given<I16>,        "0 for none, as all sectors";
+    "dest-grip-#"        (destination_grip)  I16,            "";
+    "dest-loc-16"        (destination)    Given<Chars<16>>,  "";
+    "dest-sector#"       (destination_sector)  Given<I16>,   "";
+    "end-at-16"          (end_at)         Given<Chars<16>>,  "";
+    "endatsector#"       (end_at_sector)  Given<I16>,        "";
+}
+
+/// `cmd-length<w`.
+#[derive(Clone, Copy, Debug)]
+struct Length;
+
+impl Width for Length {
+    const BYTES: usize = 2;
+}
+
+impl Codec<'_, ()> for Length {
+    fn put((): &(), to: &mut [u8]) {
+        U16::put(&u16::try_from(CommandLayout::BYTES).unwrap_or_default(), to);
+    }
+
+    fn take(at: At, from: &[u8]) -> Result<(), FieldError> {
+        let found: u16 = U16::take(at, from)?;
+        if found == 0 || usize::from(found) == CommandLayout::BYTES {
+            return Ok(());
+        }
+        Err(FieldError::Expected { field: at.field, expected: "0 or 126", found })
+    }
+}
 
 /// Why bytes are no command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CommandError {
-    /// Another number of bytes.
-    #[error("a command of {COMMAND} bytes was expected, found {0}")]
-    Size(usize),
-    /// Another length in `cmd-length<w`.
-    #[error("0 or {COMMAND} was expected for cmd-length<w, found {0}")]
-    Length(u16),
-    /// A field that cannot be.
+    /// Size or fields cannot be.
     #[error(transparent)]
-    Field(#[from] FieldError),
+    Layout(#[from] LayoutError),
     /// 0 stands for no command.
     #[error("a number from 1 on was expected for command-#-in, found 0")]
     NoNumber,
@@ -53,29 +69,8 @@ pub enum CommandError {
 ///
 /// # Errors
 /// [`RangeError`] for a grip or a sector that two bytes cannot hold.
-pub fn encode(command: &HwsCommand) -> Result<[u8; COMMAND], RangeError> {
-    let mut fields = Packer::<COMMAND>::default();
-    fields.text(4, &"");
-    fields.word(u16::try_from(COMMAND).unwrap_or_default());
-    fields.word(command_number(command.number));
-    fields.text(12, &"");
-    for name in [command.command, command.object.unwrap_or_default(), command.serial] {
-        fields.text(16, &name);
-    }
-    fields.integer("source-grip-#", command.source_grip)?;
-    fields.text(16, &command.source.unwrap_or_default());
-    fields.integer("src-sector#", command.source_sector.unwrap_or_default())?;
-    fields.integer("dest-grip-#", command.destination_grip)?;
-    fields.text(16, &command.destination.unwrap_or_default());
-    fields.integer("dest-sector#", command.destination_sector.unwrap_or_default())?;
-    fields.text(16, &command.end_at.unwrap_or_default());
-    fields.integer("endatsector#", command.end_at_sector.unwrap_or_default())?;
-    Ok(fields.finish())
-}
-
-/// A field; `None` if it is blank or 0.
-fn given<T: Default + PartialEq>(field: T) -> Option<T> {
-    Some(field).filter(|field| *field != T::default())
+pub fn encode(command: &HwsCommand) -> Result<[u8; CommandLayout::BYTES], RangeError> {
+    CommandLayout::check(command).map(|()| CommandLayout::encode(command))
 }
 
 /// Read the bytes of a command. What its words mean is for Task to say.
@@ -83,32 +78,8 @@ fn given<T: Default + PartialEq>(field: T) -> Option<T> {
 /// # Errors
 /// [`CommandError`] for the first thing that cannot be.
 pub fn decode(bytes: &[u8]) -> Result<HwsCommand, CommandError> {
-    if bytes.len() != COMMAND {
-        return Err(CommandError::Size(bytes.len()));
-    }
-    let mut fields = Unpacker::new(bytes);
-    fields.raw("cmdf<w", 4)?;
-    let length = fields.word("cmd-length<w")?;
-    if length != 0 && usize::from(length) != COMMAND {
-        return Err(CommandError::Length(length));
-    }
-    let number = fields.word("command-#-in")?;
-    fields.raw("time-stamp-status<w", 12)?;
-    let command = HwsCommand {
-        number: u32::from(number),
-        command: fields.name("command-16")?,
-        object: given(fields.name("obj")?),
-        serial: fields.name("obj-serial-#")?,
-        source_grip: fields.integer("source-grip-#")?,
-        source: given(fields.name("src-loc-16")?),
-        source_sector: given(fields.integer("src-sector#")?),
-        destination_grip: fields.integer("dest-grip-#")?,
-        destination: given(fields.name("dest-loc-16")?),
-        destination_sector: given(fields.integer("dest-sector#")?),
-        end_at: given(fields.name("end-at-16")?),
-        end_at_sector: given(fields.integer("endatsector#")?),
-    };
-    if number == 0 {
+    let command = CommandLayout::decode(bytes)?;
+    if command.number == 0 {
         return Err(CommandError::NoNumber);
     }
     if command.command.is_empty() {
@@ -189,7 +160,7 @@ pub(super) mod tests {
 
     proptest! {
         #[test]
-        fn no_bytes_panic_and_what_is_read_can_be_written(bytes in prop::collection::vec(any::<u8>(), COMMAND)) {
+        fn no_bytes_panic_and_what_is_read_can_be_written(bytes in prop::collection::vec(any::<u8>(), CommandLayout::BYTES)) {
             let mut bytes = bytes;
             (bytes[4], bytes[5]) = (0, 0);
             if let Ok(command) = decode(&bytes) {
@@ -198,7 +169,7 @@ pub(super) mod tests {
         }
 
         #[test]
-        fn one_wrong_byte_is_noticed_or_reaches_a_field(at in 20_usize..COMMAND, byte in any::<u8>()) {
+        fn one_wrong_byte_is_noticed_or_reaches_a_field(at in 20_usize..CommandLayout::BYTES, byte in any::<u8>()) {
             let good = encode(&transfer(7)).unwrap();
             let mut bytes = good;
             bytes[at] = byte;

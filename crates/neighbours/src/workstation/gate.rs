@@ -1,5 +1,5 @@
-//! What Task reads of the mailbox, and what it answers: READ-HWS-COMMAND, WRITE-HWS-STATUS and UPDATE-MAILGRAM? (Figure IV.1,
-//! IX.1).
+//! What Task reads of the mailbox, and what it answers: READ-HWS-COMMAND, WRITE-HWS-STATUS and
+//! UPDATE-MAILGRAM? (Figure IV.1, IX.1).
 //!
 //! A command is executed once. Its number says so:
 //!
@@ -14,7 +14,7 @@
 
 use std::fmt;
 
-use rcs_core::interface::{HwsCommand, TaskOutputs};
+use interfaces::{HwsCommand, TaskOutputs};
 
 use super::{
     command::{self, CommandError},
@@ -111,8 +111,8 @@ impl Gate {
         &self.status_box
     }
 
-    /// The mailboxes are initialized (block 641, IX.1): the next command may have any number but the last. The command that Task
-    /// has stays.
+    /// The mailboxes are initialized (block 641, IX.1): the next command may have any number but the last.
+    /// The command that Task has stays.
     pub fn initialize(&mut self) {
         (self.read, self.refused, self.fresh) = (0, None, true);
         self.status_box.initialize();
@@ -147,8 +147,8 @@ impl Gate {
         Ok(())
     }
 
-    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, once a tick: what Task has written goes into the mailbox if it is news. True if it
-    /// is.
+    /// WRITE-HWS-STATUS and UPDATE-MAILGRAM?, once a tick: what Task has written goes into the mailbox if it
+    /// is news. True if it is.
     pub fn write(&mut self, task: &TaskOutputs, state: TaskState) -> bool {
         let bytes = status::encode(&task.status, state, self.read, self.refused.as_ref());
         if self.status_box.data() == bytes {
@@ -165,7 +165,7 @@ fn word(number: u32) -> u16 {
 
 #[cfg(test)]
 mod tests {
-    use rcs_core::interface::hws::{HwsReport, HwsStatus};
+    use interfaces::hws::{HwsReport, HwsStatus};
 
     use super::{super::command::tests::transfer, *};
 

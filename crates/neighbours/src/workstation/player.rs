@@ -3,10 +3,11 @@
 //! A job is a list of steps: commands for Task, and actions of the workstation itself (vise, machining)
 //! between them. The emulator first sends PAUSE, as the startup sequence does (V.4.1), and then one step
 //! after the other: a command is over when Task answers its number with `finished`, an action when the
-//! workstation is no longer busy. A command that is not answered is sent once more, as it was. An error, a lost Task, a fault of
-//! the workstation or a step that takes too long end the job with a [`JobFailure`]. With [`Hwsc::with_retries`] the emulator does what
-//! an operator does after an error: it sends PAUSE and the same command again. While the workstation does something, the operator may have the
-//! robot: a joystick box that is on ends only a command.
+//! workstation is no longer busy. A command that is not answered is sent once more, as it was. An error, a
+//! lost Task, a fault of the workstation or a step that takes too long end the job with a [`JobFailure`].
+//! With [`Hwsc::with_retries`] the emulator does what an operator does after an error: it sends PAUSE and the
+//! same command again. While the workstation does something, the operator may have the robot: a joystick box
+//! that is on ends only a command.
 //!
 //! ```text
 //!           PAUSE           command finished, or workstation idle
@@ -17,9 +18,9 @@
 //!                     +---- error, a retry is left ----> PAUSE ----> Sent
 //! ```
 //!
-//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the job itself resets it further down, by a line with
-//! `** panel fault-reset`: then a command that comes to nothing meanwhile is noted as failed, and the job goes on. It must
-//! finish when the job sends it again, or the job has failed.
+//! An emergency ([`Workstation::emergency`]) ends the job at once, unless the job itself resets it further
+//! down, by a line with `** panel fault-reset`: then a command that comes to nothing meanwhile is noted as
+//! failed, and the job goes on. It must finish when the job sends it again, or the job has failed.
 //!
 //! A command whose line ends with `expect error` must fail: the job goes on when it has, and ends when it finishes.
 //!
@@ -27,14 +28,15 @@
 //! are kept until it is sent, and begun when their time comes, whatever step is going on then. A job is not
 //! over before they are.
 //!
-//! The emulator knows Task by its mailboxes only: it reads a [`Status`], and writes a command ([`Hwsc::mailgram`]). So it can run in
-//! the controller's process or in one of its own, and whoever speaks the same mailboxes can take its place.
+//! The emulator knows Task by its mailboxes only: it reads a [`Status`], and writes a command
+//! ([`Hwsc::mailgram`]). So it can run in the controller's process or in one of its own, and the program that speaks
+//! the same mailboxes can take its place.
 
 mod outcome;
 
+use interfaces::{Header, HwsCommand, Reason, hws::HwsReport};
 use rcs_core::{
     handshake::{Commander, ECHO_LIMIT, Lower},
-    interface::{Header, HwsCommand, Reason, hws::HwsReport},
     name::Name16,
     tick::{TICK_MS, Tick},
 };
@@ -67,8 +69,8 @@ pub trait Workstation {
 /// Ticks that a step may take: five minutes, three times the longest step of the linkbar.
 pub const TIME_LIMIT: u64 = 5 * 60 * 1000 / TICK_MS;
 
-/// Ticks from the PAUSE after an error to the command that is sent again: what has disturbed it may pass meanwhile. An operator
-/// is not faster. CHOSEN: 1 s.
+/// Ticks from the PAUSE after an error to the command that is sent again: what has disturbed it may pass
+/// meanwhile. An operator is not faster. CHOSEN: 1 s.
 pub const RETRY_TICKS: u64 = 1000 / TICK_MS;
 
 /// The emulator of the workstation controller.
@@ -154,8 +156,8 @@ impl Hwsc {
         }
     }
 
-    /// After a command that has failed send PAUSE and the same command again, so many times a line, unless a person has to do
-    /// something first ([`Reason::remedy`]).
+    /// After a command that has failed send PAUSE and the same command again, so many times a line, unless a
+    /// person has to do something first ([`Reason::remedy`]).
     #[must_use]
     pub const fn with_retries(mut self, retries: u32) -> Self {
         self.retries = retries;
@@ -168,8 +170,8 @@ impl Hwsc {
         &self.retried
     }
 
-    /// Wait so many ticks for the echo of a command before it is sent again, instead of the three of a neighbour in the same
-    /// process: a network takes its time.
+    /// Wait so many ticks for the echo of a command before it is sent again, instead of the three of a
+    /// neighbour in the same process: a network takes its time.
     #[must_use]
     pub const fn with_answer_ticks(mut self, ticks: u64) -> Self {
         self.answer_ticks = ticks;
@@ -296,7 +298,10 @@ impl Hwsc {
 
     /// The command that is going on has to fail.
     fn expects_error(&self) -> bool {
-        !self.pausing && self.step_at(self.current).is_some_and(|line| line.expects_error)
+        !self.pausing
+            && self
+                .step_at(self.current)
+                .is_some_and(|line| line.expects_error && matches!(line.step, Step::Command(_)))
     }
 
     /// How the step that is going on ended; `None` while it goes on.
@@ -394,8 +399,8 @@ impl Hwsc {
         self.steps.get(position.checked_sub(1)?)
     }
 
-    /// The workstation controller commands in place of the job, whose line `** workstation` has begun. The emulator is not to be
-    /// stepped until [`Self::take_back`] or [`Self::refuse`].
+    /// The workstation controller commands in place of the job, whose line `** workstation` has begun. The
+    /// emulator is not to be stepped until [`Self::take_back`] or [`Self::refuse`].
     #[must_use]
     pub fn is_handed_over(&self) -> bool {
         let hands_over = |line: &JobLine| line.step == Step::Workstation(Action::HandOver);
@@ -403,8 +408,8 @@ impl Hwsc {
         is_begun && self.step_at(self.current).is_some_and(hands_over)
     }
 
-    /// The workstation controller has gone: the job sends PAUSE, and goes on with its next line. `commands` are those that were sent
-    /// meanwhile, `last` is the number of the last one.
+    /// The workstation controller has gone: the job sends PAUSE, and goes on with its next line. `commands`
+    /// are those that were sent meanwhile, `last` is the number of the last one.
     pub fn take_back(&mut self, tick: Tick, last: u32, commands: Vec<BegunStep>) {
         self.took(tick);
         self.finish(Outcome::Finished);

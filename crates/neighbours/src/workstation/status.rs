@@ -1,59 +1,35 @@
-//! The status to the workstation controller, byte by byte (V.4.2).
-//!
-//! ```text
-//!   at  bytes  variable              holds
-//!    0    4    fdbf>w                not used: blanks
-//!    4   16    echo>w                not used: blanks
-//!   20    2    status-length>w       bytes of the status, 236
-//!   22   12    time-stamp-status>w   not used: blanks
-//!   34   16    "command-echo"        the command that Task has
-//!   50   16    "status"              executing, finished; extensions: idle, error, joystick-on
-//!   66    2    command-#-echo        extension: the number that "status" belongs to
-//!   68    2    mailgram-echo         extension: mailgram number of the command mailbox that was read last
-//!   70    2    verdict               extension: 0 that mailgram was taken, else it was refused: see below
-//!   72    2    status-code           extension: code of why the command failed, 0 if it did not
-//!   74    2    task-state            extension: 0 Task runs, 1 its switch on the joystick box holds it, 2 it is lost
-//!   76  160    reason                extension: why the mailgram was refused, or else why the command failed
-//! ```
-//!
-//! The extensions are CHOSEN: the manual's status has neither an echo of the number nor a word for failure. A refused mailgram
-//! changes nothing in the fields before it: they go on telling of the command that Task has.
+//! The status to the workstation controller (V.4.2). Fields that the manual does not have are CHOSEN: its
+//! status has neither an echo of the number nor a word for failure. A refused mailgram changes nothing in
+//! the fields before `verdict`: they go on telling of the command that Task has.
 
-use rcs_core::{
-    interface::{
-        Reason,
-        hws::{HwsReport, HwsStatus},
-    },
-    name::Name16,
+use interfaces::{
+    Reason,
+    hws::{HwsReport, HwsStatus},
 };
+use rcs_core::{Plain, name::Name16};
 
 use super::Refusal;
-use crate::fields::{FieldError, Packer, Unpacker, command_number};
+use crate::{
+    fields::{FieldError, command_number},
+    layout::{At, Chars, Codec, Coded, LayoutError, Sentence, Spelled, Text, U16, Unused, Width},
+};
 
-/// Bytes of a status.
-pub const STATUS: usize = 236;
 /// Bytes of `reason`.
 pub const REASON: usize = 160;
 
 /// `task-state`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(u16)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum TaskState {
     /// Task runs.
-    #[default]
-    Runs = 0,
+    Runs,
     /// Its switch on the joystick box holds it (III.3.3): it does not read its commands.
-    Held = 1,
+    Held,
     /// It has not run in the last tick.
-    Lost = 2,
-}
-
-impl TaskState {
-    const ALL: [Self; 3] = [Self::Runs, Self::Held, Self::Lost];
+    Lost,
 }
 
 /// A status as it is read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Status<'a> {
     /// `"command-echo"`.
     pub command: Name16,
@@ -73,6 +49,48 @@ pub struct Status<'a> {
     pub reason: &'a str,
 }
 
+crate::layout! {
+    /// The status to the workstation controller.
+    StatusLayout: Status<'_> = "a status";
+    "fdbf>w"               ()               Unused<4>,     "blanks";
+    "echo>w"               ()               Unused<16>,    "blanks";
+    "status-length>w"      ()               Length,        "236";
+    "time-stamp-status>w"  ()               Unused<12>,    "blanks";
+    "command-echo"         (command)        Chars<16>,     "the command that Task has";
+    "status"               (report)         Spelled<16>,
+        "executing, finished; CHOSEN: also idle, error, joystick-on";
+    "command-#-echo"       (echo)           U16,           "CHOSEN: the number that `status` belongs to";
+    "mailgram-echo"        (mailgram_echo)  U16,
+        "CHOSEN: mailgram number of the command mailbox that was read last";
+    "verdict"              (verdict)        U16,
+        "CHOSEN: 0 it was taken; 1 no command, 2 the number was given to another command, 3 another number comes \
+         next";
+    "status-code"          (code)           Coded<2>,
+        "CHOSEN: why the command failed, 0 if it did not: [its code](reasons.md)";
+    "task-state"           (task)           Coded<2>,
+        "CHOSEN: 0 Task runs, 1 its switch on the joystick box holds it (III.3.3), 2 it is lost";
+    "reason"               (reason)         Text<REASON>,
+        "CHOSEN: why the mailgram was refused, or else why the command failed";
+}
+
+/// `status-length>w`, which is not read.
+#[derive(Clone, Copy, Debug)]
+struct Length;
+
+impl Width for Length {
+    const BYTES: usize = 2;
+}
+
+impl Codec<'_, ()> for Length {
+    fn put((): &(), to: &mut [u8]) {
+        U16::put(&u16::try_from(StatusLayout::BYTES).unwrap_or_default(), to);
+    }
+
+    fn take(_: At, _: &[u8]) -> Result<(), FieldError> {
+        Ok(())
+    }
+}
+
 /// The bytes of a status.
 #[must_use]
 pub fn encode(
@@ -80,56 +98,26 @@ pub fn encode(
     task: TaskState,
     mailgram_echo: u16,
     refused: Option<&Refusal>,
-) -> [u8; STATUS] {
-    let mut fields = Packer::<STATUS>::default();
-    fields.text(4, &"");
-    fields.text(16, &"");
-    fields.word(u16::try_from(STATUS).unwrap_or_default());
-    fields.text(12, &"");
-    fields.text(16, &status.command);
-    fields.text(16, &status.report.text());
-    fields.word(command_number(status.echo));
-    fields.word(mailgram_echo);
-    fields.word(refused.map_or(0, Refusal::code));
-    fields.word(u16::from(status.reason.code()));
-    fields.word(task as u16);
-    match refused {
-        Some(refused) => fields.text(REASON, refused),
-        None => fields.text(REASON, &status.reason.text()),
-    }
-    fields.finish()
+) -> [u8; StatusLayout::BYTES] {
+    let refusal = refused.map(|refused| Sentence::<REASON>::of(refused));
+    StatusLayout::encode(&Status {
+        command: status.command,
+        report: status.report,
+        echo: command_number(status.echo),
+        mailgram_echo,
+        verdict: refused.map_or(0, Refusal::code),
+        code: status.reason,
+        task,
+        reason: refusal.as_ref().map_or(status.reason.text(), Sentence::as_str),
+    })
 }
 
 /// Read the bytes of a status.
 ///
 /// # Errors
-/// [`FieldError`] for the first field that cannot be.
-pub fn decode(bytes: &[u8]) -> Result<Status<'_>, FieldError> {
-    let mut fields = Unpacker::new(bytes);
-    fields.raw("fdbf>w, echo>w, status-length>w, time-stamp-status>w", 34)?;
-    let command = fields.name("command-echo")?;
-    let report = fields.name::<16>("status")?;
-    let report =
-        HwsReport::from_text(report.as_str()).ok_or(FieldError::Word { field: "status", found: report })?;
-    let (echo, mailgram_echo) = (fields.word("command-#-echo")?, fields.word("mailgram-echo")?);
-    let verdict = fields.word("verdict")?;
-    let (code, task) = (fields.word("status-code")?, fields.word("task-state")?);
-    Ok(Status {
-        command,
-        report,
-        echo,
-        mailgram_echo,
-        verdict,
-        code: u8::try_from(code)
-            .ok()
-            .and_then(Reason::from_code)
-            .ok_or(FieldError::Code { field: "status-code", found: code })?,
-        task: TaskState::ALL
-            .into_iter()
-            .find(|&state| state as u16 == task)
-            .ok_or(FieldError::Code { field: "task-state", found: task })?,
-        reason: fields.text("reason", REASON)?,
-    })
+/// [`LayoutError`] for the first field that cannot be.
+pub fn decode(bytes: &[u8]) -> Result<Status<'_>, LayoutError> {
+    StatusLayout::decode(bytes)
 }
 
 #[cfg(test)]

@@ -1,21 +1,22 @@
 //! What vision makes of a picture (V.2.1 LOCATE-OBJ): centroid, and with the second picture angle and recognition.
 //!
-//! It works on what is seen of each part ([`Subject`]), and on nothing else of the cell: so it can be done in the cell or in
-//! another process, with the same bits. From the points that are seen it takes centroid and lengths, so that a part which is cut by
-//! the edge of the picture, or half hidden, is found beside its middle and is not recognised; parts that touch in the
-//! picture are one blob.
+//! It works on what is seen of each part ([`Subject`]), and on nothing else of the cell: so it can be done in
+//! the cell or in another process, with the same bits. From the points that are seen it takes centroid and
+//! lengths, so that a part which is cut by the edge of the picture, or half hidden, is found beside its
+//! middle and is not recognised; parts that touch in the picture are one blob.
 //!
-//! Positions are what a pinhole camera makes of them: a part that is nearer than the expected range looks larger and farther
-//! from the axis. The second picture also measures the outline, and by that recognises the part. `variation` chooses the
-//! exposure: a part that throws back too little light for it is not in the picture at all, one that throws back too much
-//! blooms, and its outline grows. LOCATE-OBJ tries one after the other.
+//! Positions are what a pinhole camera makes of them: a part that is nearer than the expected range looks
+//! larger and farther from the axis. The second picture also measures the outline, and by that recognises the
+//! part. `variation` chooses the exposure: a part that throws back too little light for it is not in the
+//! picture at all, one that throws back too much blooms, and its outline grows. LOCATE-OBJ tries one after
+//! the other.
 
-use rcs_core::{
-    digest::Digest,
+use geometry::{
     frame::Vector,
-    interface::device::{Picture, VisionRequest, VisionResponse, VisionStatus},
     units::{hundredths, hundredths_of_degree},
 };
+use interfaces::device::{Picture, VisionRequest, VisionResponse, VisionStatus};
+use rcs_core::digest::Digest;
 use serde::{Deserialize, Serialize};
 
 use super::Subject;
@@ -59,8 +60,8 @@ impl Analysis {
         }
     }
 
-    /// What of a cell the answers depend on, besides seed and pictures: camera and parts that vision knows. Two analyses of equal
-    /// fingerprint answer the same.
+    /// What of a cell the answers depend on, besides seed and pictures: camera and parts that vision knows.
+    /// Two analyses of equal fingerprint answer the same.
     ///
     /// # Panics
     /// If a description refuses to be serialised, which is a fault of this crate.
@@ -214,9 +215,9 @@ fn looks_like(part: &PartType, measured: [f64; 2], tolerance: f64) -> bool {
 mod tests {
     use super::*;
     use crate::camera::{Face, Optics};
-    use rcs_core::{
+    use geometry::{
         frame::{Frame, rotation_by},
-        movetable::{Line, Movetable, System, straight_down},
+        movetable::{Movetable, MovetableLine, System, straight_down},
     };
 
     fn cell() -> CellDescription {
@@ -229,7 +230,7 @@ mod tests {
 
     /// GR-PIC of the cell proposal.
     fn gr_pic() -> Movetable {
-        let line = |system, values| Line { system, values };
+        let line = |system, values| MovetableLine { system, values };
         Movetable::from_lines(&[line(System::Tool, [-1468, 0, -252]), line(System::ToolOrigin, [-300, 0, 0])])
             .unwrap()
     }

@@ -1,6 +1,6 @@
 //! Where the camera looks, and how far.
 
-use rcs_core::frame::{Frame, Rotation, Vector};
+use geometry::frame::{Frame, Rotation, Vector};
 use serde::{Deserialize, Serialize};
 
 use crate::{convert::inches, description::Camera as Description};

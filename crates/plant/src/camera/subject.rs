@@ -1,6 +1,6 @@
 //! What stands before the camera: of each part the face that looks at it, as a raster of points that are seen or not.
 
-use rcs_core::frame::{Frame, Vector};
+use geometry::frame::{Frame, Vector};
 
 /// Points of the raster along an edge of a face: odd, so that one is in the middle.
 pub const RASTER: usize = 9;

@@ -1,14 +1,13 @@
 //! Which gripper is where: on the robot, in a holster, on the floor; and how it changes.
 //!
-//! The ring decides, not the controller ([`crate::quick_change`]). A gripper that the ring has is led by the arm. One that it
-//! lets go lands on the holster under it, or falls. On its holster it is led by that, and slides with an A plate whose
-//! elements are in its own. A gripper is *mated* while its pins touch, locked or not: only then it has air and its sensors are
-//! connected. The bodies of one that hangs still in its holster take no part in the simulation.
+//! The ring decides, not the controller ([`crate::quick_change`]). A gripper that the ring has is led by the
+//! arm. One that it lets go lands on the holster under it, or falls. On its holster it is led by that, and
+//! slides with an A plate whose elements are in its own. A gripper is *mated* while its pins touch, locked or
+//! not: only then it has air and its sensors are connected. The bodies of one that hangs still in its holster
+//! take no part in the simulation.
 
-use rcs_core::{
-    frame::Frame,
-    interface::device::{HolsterSensors, QuickChangeSensors, QuickChangeValves},
-};
+use geometry::frame::Frame;
+use interfaces::device::{HolsterSensors, QuickChangeSensors, QuickChangeValves};
 use serde::{Deserialize, Serialize};
 
 use super::{Cell, CellEvent, handling::Hand};
@@ -142,8 +141,8 @@ impl Changer {
         None
     }
 
-    /// A step of a gripper on its holster: it falls as far as there is room, slides with an engaged A plate, and is caught if
-    /// the ring has just locked.
+    /// A step of a gripper on its holster: it falls as far as there is room, slides with an engaged A plate,
+    /// and is caught if the ring has just locked.
     fn step_on_holster(&mut self, hand: Hand, which: usize, mut perch: Perch, step: &Step) -> GripperPlace {
         let holster = &self.holsters[which];
         perch.fall(step.dt);

@@ -41,9 +41,9 @@ impl Cell {
         devices
     }
 
-    /// What of the robot touches what at the end of the last tick, and what is nearer to it than [`Cell::watch_clearance`] asks
-    /// for: each pair of names once, where it is deepest, but for pairs that may always touch. The truth: a T3 has no sensor
-    /// for it.
+    /// What of the robot touches what at the end of the last tick, and what is nearer to it than
+    /// [`Cell::watch_clearance`] asks for: each pair of names once, where it is deepest, but for pairs that
+    /// may always touch. The truth: a T3 has no sensor for it.
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {
         self.clearance.contacts()

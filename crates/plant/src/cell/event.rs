@@ -25,8 +25,9 @@ pub enum CellError {
 /// Something that should not happen, or that a person wants to know.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum CellEvent {
-    /// The robot, or what it carries, has begun to touch something that it may never touch, or deeper than it ever may. What it
-    /// may touch during some commands is for him to judge who knows them: [`Cell::contacts`].
+    /// The robot, or what it carries, has begun to touch something that it may never touch, or deeper than it
+    /// ever may. What it may touch during some commands is judged where they are known:
+    /// [`Cell::contacts`](super::Cell::contacts).
     Contact(Contact),
     /// A part slides in a hand: more was asked of it than its force and friction give.
     Slipped {

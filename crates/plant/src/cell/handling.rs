@@ -303,8 +303,8 @@ impl Cell {
         }
     }
 
-    /// The part between the clamping faces that stops the jaw first, and the step that it stands in: the one whose faces it
-    /// covers most. A bar that is pressed into the back of its step is not in the next one.
+    /// The part between the clamping faces that stops the jaw first, and the step that it stands in: the one
+    /// whose faces it covers most. A bar that is pressed into the back of its step is not in the next one.
     fn between_jaws(&self) -> Option<(usize, usize, Squeeze)> {
         let standing = (0..self.parts.len()).filter_map(|index| {
             let offers =
@@ -397,7 +397,8 @@ impl Cell {
         let (gripper, world) = self.hand_at_work(hand);
         let Some((index, hold)) = &mut gripper.hold else { return };
         if clamped == Some(*index) {
-            // The vise is the stronger: the fingers keep their force, but where the part lies in them is the vise's affair.
+            // The vise is the stronger: the fingers keep their force, but where the part lies in them is the
+            // vise's affair.
             hold.relax(world);
             return;
         }

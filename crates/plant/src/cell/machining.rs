@@ -1,6 +1,6 @@
 //! Machining: a part that is where it belongs, clamped in the vise or standing in a nest, becomes the next one.
 
-use rcs_core::frame::{Frame, Vector as Inches, rotation_vector};
+use geometry::frame::{Frame, Vector as Inches, rotation_vector};
 
 use super::{Cell, WorkstationError, order::Machine};
 use crate::{
@@ -110,8 +110,8 @@ fn check_seat(
     Err(WorkstationError::NotSeated { part: part.kind.name.clone(), distance, degrees, allowed })
 }
 
-/// By how much a part is turned from the nearest of the attitudes that are as good as its seat's, radians: a box has its
-/// faces, a cylinder its axis.
+/// By how much a part is turned from the nearest of the attitudes that are as good as its seat's, radians: a
+/// box has its faces, a cylinder its axis.
 fn askew(here: &Frame, shape: Shape) -> f64 {
     let off = |axis: Inches, own: Inches| libm::acos(axis.dot(&own).abs().min(1.0));
     match shape {
@@ -146,7 +146,7 @@ mod tests {
     #[test]
     fn a_part_that_is_turned_round_shows_its_other_side() {
         let at = |along_x: f64| {
-            let rotation = rcs_core::frame::rotation_from_x_y(&Inches::new(along_x, 0.03, 0.0), &Inches::z());
+            let rotation = geometry::frame::rotation_from_x_y(&Inches::new(along_x, 0.03, 0.0), &Inches::z());
             front(&Frame { position: Inches::zeros(), rotation: rotation.unwrap() })
         };
         assert_eq!((at(1.0), at(-1.0)), ([-1, 0, 0], [1, 0, 0]));
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn a_cylinder_may_be_turned_about_its_axis_and_upside_down() {
-        use rcs_core::frame::rotation_by;
+        use geometry::frame::rotation_by;
         let at = |turn: Inches| Frame { position: Inches::zeros(), rotation: rotation_by(&turn) };
         assert!(askew(&at(Inches::new(0.0, 0.0, 1.0)), Shape::CylinderZ) < 1e-7);
         assert!(askew(&at(Inches::new(core::f64::consts::PI, 0.0, 0.0)), Shape::CylinderZ) < 1e-7);

@@ -16,13 +16,10 @@ mod sensing;
 mod workstation;
 
 use depc::{Limits, Plate, controller::ControllerState};
+use geometry::{frame::Frame, kinematics::Joints};
+use interfaces::device::{DeviceInputs, DeviceOutputs, LinkBytes};
 use rapier3d_f64::prelude::*;
-use rcs_core::{
-    frame::Frame,
-    interface::device::{DeviceInputs, DeviceOutputs, LinkBytes},
-    kinematics::Joints,
-    tick::TICK_S,
-};
+use rcs_core::tick::TICK_S;
 use serde::{Deserialize, Serialize};
 
 use changing::Changer;
@@ -200,13 +197,13 @@ impl Cell {
         self.inputs
     }
 
-    /// Like [`Cell::step`], while a robot elsewhere is commanded: the simulated arm, and with it all else in the cell, follows
-    /// `position`, the one that the robot has acknowledged; `None` while none is known. The simulated T3 controller is
-    /// not asked: `outputs.link_tx` goes to the robot, and what it answers is the caller's to fill in (`link_rx` and
-    /// `link_ready` are returned empty).
+    /// Like [`Cell::step`], while a robot elsewhere is commanded: the simulated arm, and with it all else in
+    /// the cell, follows `position`, the one that the robot has acknowledged; `None` while none is known. The
+    /// simulated T3 controller is not asked: `outputs.link_tx` goes to the robot, and what it answers is the
+    /// caller's to fill in (`link_rx` and `link_ready` are returned empty).
     ///
-    /// The arm comes from where it is as fast as its servos can, so a first position far away is a motion, not a jump. A
-    /// position that it cannot take leaves it where it is and is a [`CellEvent::CannotFollow`].
+    /// The arm comes from where it is as fast as its servos can, so a first position far away is a motion,
+    /// not a jump. A position that it cannot take leaves it where it is and is a [`CellEvent::CannotFollow`].
     pub fn step_following(&mut self, position: Option<&Plate>, outputs: &DeviceOutputs) -> DeviceInputs {
         let outputs = &self.begin_tick(outputs);
         let followed = position.map_or(Ok(()), |plate| self.t3.follow(plate));
@@ -221,7 +218,8 @@ impl Cell {
         self.inputs
     }
 
-    /// A tick begins, and with it the faults that do: what the controller's commands have become by the time they arrive.
+    /// A tick begins, and with it the faults that do: what the controller's commands have become by the time
+    /// they arrive.
     fn begin_tick(&mut self, outputs: &DeviceOutputs) -> DeviceOutputs {
         let before = self.faults.hydraulics_lost();
         let changes = self.faults.next();
@@ -313,8 +311,8 @@ impl Cell {
         *self.t3.arm().joints()
     }
 
-    /// The tool frame as the loaded arm and the fingers have it, inches: the middle between the fingertips; of a bare robot
-    /// where they would be.
+    /// The tool frame as the loaded arm and the fingers have it, inches: the middle between the fingertips;
+    /// of a bare robot where they would be.
     #[must_use]
     pub fn tool(&self) -> Frame {
         match self.changer.carried() {
@@ -323,8 +321,8 @@ impl Cell {
         }
     }
 
-    /// Finger opening, in, and force of a finger, lb, of the gripper that is mated: the truth behind the sensors. Zeros of a bare
-    /// robot.
+    /// Finger opening, in, and force of a finger, lb, of the gripper that is mated: the truth behind the
+    /// sensors. Zeros of a bare robot.
     #[must_use]
     pub fn fingers(&self) -> (f64, f64) {
         let gripper = self.changer.mated().map(|hand| self.hand(hand));
@@ -405,7 +403,8 @@ impl Cell {
         self.t3.depc().state()
     }
 
-    /// Lead the arm to an end-plate frame (inches) by the end of the next tick, as the teach pendant does: past the line.
+    /// Lead the arm to an end-plate frame (inches) by the end of the next tick, as the teach pendant does:
+    /// past the line.
     ///
     /// # Errors
     /// [`DriveError`] if the arm cannot take the position; then it stays.

@@ -1,8 +1,8 @@
 //! What of an order to the workstation the description alone can judge: whether the names in it are those of the cell.
 //!
-//! The cell asks this before it does anything; whoever reads a job can ask it before the first tick.
+//! The cell asks this before it does anything; a reader of jobs can ask it before the first tick.
 
-use rcs_core::frame::Frame;
+use geometry::frame::Frame;
 
 use super::{WorkstationAction, WorkstationError};
 use crate::description::{CellDescription, Nest, PartType, nearest};

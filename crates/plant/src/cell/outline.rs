@@ -1,6 +1,6 @@
 //! The grippers as the picture sees them: worn, and in their holsters; and the boxes of which they consist.
 
-use rcs_core::{
+use geometry::{
     frame::{Frame, Rotation, Vector as Inches},
     kinematics::T3,
 };
@@ -85,8 +85,8 @@ impl Cell {
         links
     }
 
-    /// Names and values of the joints of the pedestal: the table in radians from where its fingers move across the radial
-    /// line, the fingers in metres.
+    /// Names and values of the joints of the pedestal: the table in radians from where its fingers move
+    /// across the radial line, the fingers in metres.
     pub(super) fn pedestal_states(&self) -> Vec<(&'static str, f64)> {
         let table = self.pedestal.table.angle() - self.description.pedestal.table.square;
         let half = metres(body_opening(&self.world, &self.pedestal.hand) / 2.0);

@@ -1,15 +1,15 @@
 //! The cell as viewers see it: links with poses, and a URDF made of boxes and cylinders.
 //!
-//! Every link hangs in the URDF by the same parent that its pose is given in, so that a stream of transforms, a stream of
-//! joint angles and the URDF agree.
+//! Every link hangs in the URDF by the same parent that its pose is given in, so that a stream of transforms,
+//! a stream of joint angles and the URDF agree.
 
 use std::fmt::Write as _;
 
-use rapier3d_f64::prelude::*;
-use rcs_core::{
+use geometry::{
     frame::{Frame, Rotation, Vector as Inches},
     kinematics::{JOINT_NAMES, T3},
 };
+use rapier3d_f64::prelude::*;
 
 use super::Cell;
 use crate::{
@@ -98,8 +98,9 @@ impl Cell {
         self.urdf_with(&[])
     }
 
-    /// A URDF of the whole cell with the parts that will be put down later, by their names in the description and in the order in which
-    /// that will happen: a log is told of geometry before its first tick. Names that the description does not have are left out.
+    /// A URDF of the whole cell with the parts that will be put down later, by their names in the description
+    /// and in the order in which that will happen: a log is told of geometry before its first tick. Names
+    /// that the description does not have are left out.
     #[must_use]
     pub fn urdf_with(&self, coming: &[&str]) -> String {
         let mut urdf = Urdf::new(&self.description.name);

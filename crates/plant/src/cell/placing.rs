@@ -1,7 +1,7 @@
 //! Where parts are: where they are put down, and what is said of where they lie.
 
+use geometry::frame::{Frame, Vector as Inches, rotation_by};
 use rapier3d_f64::{parry::query, prelude::*};
-use rcs_core::frame::{Frame, Vector as Inches, rotation_by};
 
 use super::{Cell, Hand, Placement, WorkstationError, order::Spot};
 use crate::{
@@ -23,8 +23,8 @@ const IN_NEST: f64 = 1.0;
 const DROP: f64 = 0.002;
 
 impl CellDescription {
-    /// Where a part lies that is delivered into a sector of a unit: `x` and `y` in from its place there, turned by `angle` degrees.
-    /// A part that has nests goes only there. World, in.
+    /// Where a part lies that is delivered into a sector of a unit: `x` and `y` in from its place there,
+    /// turned by `angle` degrees. A part that has nests goes only there. World, in.
     ///
     /// # Errors
     /// [`WorkstationError`] if the unit has no such place.

@@ -1,12 +1,12 @@
 //! The arm without pressure: what weighs on it, what it comes to lie on, and what is said of it.
 //!
-//! A powered arm is led on its path whatever it meets; one that sags is not. What its rigid parts run into pushes back with the
-//! stiffness of the arm, and so do the springs on which fingers and held part hang: those know from the simulation what they
-//! touch. The depths that are reported are those by which the arm leads its outline into things: with 2000 lb/in a tenth of
-//! an inch is two hundred pounds.
+//! A powered arm is led on its path whatever it meets; one that sags is not. What its rigid parts run into
+//! pushes back with the stiffness of the arm, and so do the springs on which fingers and held part hang:
+//! those know from the simulation what they touch. The depths that are reported are those by which the arm
+//! leads its outline into things: with 2000 lb/in a tenth of an inch is two hundred pounds.
 
+use geometry::frame::Vector as Inches;
 use rapier3d_f64::{parry::query, prelude::*};
-use rcs_core::frame::Vector as Inches;
 use serde::{Deserialize, Serialize};
 
 use super::{Cell, CellEvent};
@@ -83,7 +83,7 @@ impl Cell {
         self.droop.as_ref()
     }
 
-    /// The hydraulics fail: the pressure is gone at once, without anybody having pressed anything.
+    /// The hydraulics fail: the pressure is gone at once, without a switch being pressed.
     pub fn fail_hydraulics(&mut self) {
         self.t3.lose_pressure();
         self.hear_t3();

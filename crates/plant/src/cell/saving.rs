@@ -1,7 +1,7 @@
 //! A cell as bytes, and its fingerprint.
 //!
 //! What is saved is everything that the next tick depends on: all bodies, joints and contacts with what the solver
-//! remembers of them, all devices, the noise of the sensors, and the events that nobody has asked for. A cell that was
+//! remembers of them, all devices, the noise of the sensors, and the events that were not taken yet. A cell that was
 //! restored goes on bit for bit as the one that was saved would have. What stands still is built anew from the
 //! description, which must be the same.
 //!
@@ -96,8 +96,8 @@ impl Cell {
         Ok(cell)
     }
 
-    /// Fingerprint of where everything in the cell is, how it moves, and what all devices are at: the same in two runs as
-    /// long as they are the same.
+    /// Fingerprint of where everything in the cell is, how it moves, and what all devices are at: the same in
+    /// two runs as long as they are the same.
     ///
     /// # Panics
     /// If a device refuses to be serialised, which is a fault of this crate.

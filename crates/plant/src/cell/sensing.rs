@@ -1,12 +1,10 @@
 //! What the sensors of the cell show: the camera's pictures, and once a tick everything else.
 
-use rapier3d_f64::prelude::*;
-use rcs_core::{
-    frame::{Frame, Vector as Inches},
-    interface::device::{
-        DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, LinkBytes, Resolvers, VisionResponse,
-    },
+use geometry::frame::{Frame, Vector as Inches};
+use interfaces::device::{
+    DeviceInputs, DeviceOutputs, ForceSensor, GripSensors, LinkBytes, Resolvers, VisionResponse,
 };
+use rapier3d_f64::prelude::*;
 
 use super::{Cell, handling::Hand};
 use crate::{

@@ -1,6 +1,6 @@
 //! What the workstation does beside the robot: parts are put down and taken away, the vise is worked, parts are machined.
 
-use rcs_core::frame::Frame;
+use geometry::frame::Frame;
 
 use super::Cell;
 use crate::{

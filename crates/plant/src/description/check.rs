@@ -4,10 +4,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rcs_core::{
-    kinematics::{JOINT_NAMES, T3},
-    name::Name16,
-};
+use geometry::kinematics::{JOINT_NAMES, T3};
+use rcs_core::name::Name16;
 
 use super::{
     CellDescription, DescriptionError, Gripper, Kind, Nest, PartType, Pattern, Points, Shape, ViseProgram,
@@ -26,13 +24,13 @@ impl CellDescription {
     /// # Errors
     /// [`DescriptionError::Faults`] with all faults, without their places.
     pub fn validate(&self) -> Result<(), DescriptionError> {
-        let faults = self.faults(&BTreeSet::new());
+        let (faults, _) = self.faults(&BTreeSet::new());
         if faults.is_empty() { Ok(()) } else { Err(DescriptionError::Faults(Faults(faults))) }
     }
 
-    /// All faults of the entries that have no stand-ins.
-    pub(super) fn faults(&self, stand_ins: &BTreeSet<Path>) -> Vec<Fault> {
-        let mut check = Check { faults: Vec::new(), stand_ins };
+    /// All faults of the entries that have no stand-ins, and the entries that must be more than 0.
+    pub(super) fn faults(&self, stand_ins: &BTreeSet<Path>) -> (Vec<Fault>, BTreeSet<Path>) {
+        let mut check = Check { faults: Vec::new(), positive: BTreeSet::new(), stand_ins };
         self.check_physics_and_robot(&mut check);
         self.check_hydraulics(&mut check);
         self.check_sensors(&mut check);
@@ -47,7 +45,7 @@ impl CellDescription {
         self.check_parts_and_boxes(&mut check);
         self.check_nests(&mut check);
         self.check_contacts(&mut check);
-        check.faults
+        (check.faults, check.positive)
     }
 
     fn check_physics_and_robot(&self, check: &mut Check<'_>) {
@@ -495,6 +493,8 @@ fn check_gripper(name: &str, gripper: &Gripper, check: &mut Check<'_>) {
 /// Collects faults.
 struct Check<'s> {
     faults: Vec<Fault>,
+    /// Entries that must be more than 0: radii, lengths, weights.
+    positive: BTreeSet<Path>,
     stand_ins: &'s BTreeSet<Path>,
 }
 
@@ -545,15 +545,20 @@ impl Check<'_> {
     /// Some keys of a table.
     fn positive(&mut self, table: &str, values: &[(&str, f64)]) {
         for (key, value) in values {
-            self.that(*value > 0.0, &join(table, key), "more than 0", || value.to_string());
+            self.above_zero(join(table, key), *value);
         }
     }
 
     /// All elements of an array.
     fn all_positive(&mut self, array: &str, values: &[f64]) {
         for (number, value) in values.iter().enumerate() {
-            self.that(*value > 0.0, &element(array, number), "more than 0", || value.to_string());
+            self.above_zero(element(array, number), *value);
         }
+    }
+
+    fn above_zero(&mut self, path: Path, value: f64) {
+        self.that(value > 0.0, &path, "more than 0", || value.to_string());
+        self.positive.insert(path);
     }
 
     /// A name is one of those that are known. A known name that could not be read may be the one that is meant.

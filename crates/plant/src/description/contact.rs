@@ -1,11 +1,12 @@
 //! What may touch what, and while the robot does which command: the entries `[[contact]]` of a cell description.
 //!
-//! Whatever can collide has a name and a [`Kind`]. An entry names movers and obstacles by names, by the groups of their kinds,
-//! or by patterns with one `*`; `*` alone is anything. What no entry permits is a collision.
+//! Whatever can collide has a name and a [`Kind`]. An entry names movers and obstacles by names, by the
+//! groups of their kinds, or by patterns with one `*`; `*` alone is anything. What no entry permits is a
+//! collision.
 
 use std::fmt;
 
-use rcs_core::interface::{emove::EmoveVerb, subtask::SubtaskVerb};
+use interfaces::{emove::EmoveVerb, subtask::SubtaskVerb};
 use serde::{Deserialize, Serialize};
 
 use super::CellDescription;
@@ -178,7 +179,8 @@ impl Permits {
         self.0.iter().map(|permit| permit.always(mover, obstacle)).fold(0.0, f64::max)
     }
 
-    /// How deep, in, a mover may be in an obstacle while E-move and Subtask have these commands; 0 if they may not touch.
+    /// How deep, in, a mover may be in an obstacle while E-move and Subtask have these commands; 0 if they
+    /// may not touch.
     #[must_use]
     pub fn during(&self, mover: (&str, Kind), obstacle: (&str, Kind), commands: [&str; 2]) -> f64 {
         let now = self.0.iter().filter(|permit| {
@@ -187,15 +189,15 @@ impl Permits {
         now.filter(|permit| permit.covers(mover, obstacle)).map(Permit::limit).fold(0.0, f64::max)
     }
 
-    /// How deep, in, a mover may be in an obstacle at the most, while the robot does what is best for that; 0 if they may never
-    /// touch.
+    /// How deep, in, a mover may be in an obstacle at the most, while the robot does what is best for that; 0
+    /// if they may never touch.
     #[must_use]
     pub fn at_most(&self, mover: (&str, Kind), obstacle: (&str, Kind)) -> f64 {
         let covering = self.0.iter().filter(|permit| permit.covers(mover, obstacle));
         covering.map(Permit::limit).fold(0.0, f64::max)
     }
 
-    /// True if all of one kind may touch all of another at any time and as deep as it likes: nobody need look at them.
+    /// True if all of one kind may touch all of another at any time and as deep as it likes: they need no check.
     #[must_use]
     pub fn ignores(&self, mover: Kind, obstacle: Kind) -> bool {
         self.0.iter().any(|permit| {

@@ -1,10 +1,11 @@
 //! Reads TOML text into the structures of a description, and finds at once everything in it that does not fit.
 //!
-//! The structures derive serde's `Deserialize`, which gives up at the first value that does not fit. This deserializer does
-//! not let it: a value of another kind is noted with its place and replaced by one that fits, a *stand-in*, and an unknown key is
-//! noted and left out. That a key is missing is known only when the structure says so, since it may have a default; then
-//! reading begins anew with a stand-in for that key. What was read with stand-ins is never used; it only lets the numbers of
-//! all other entries be checked in the same go.
+//! The structures derive serde's `Deserialize`, which gives up at the first value that does not fit. This
+//! deserializer does not let it: a value of another kind is noted with its place and replaced by one that
+//! fits, a *stand-in*, and an unknown key is noted and left out. That a key is missing is known only when the
+//! structure says so, since it may have a default; then reading begins anew with a stand-in for that key.
+//! What was read with stand-ins is never used; it only lets the numbers of all other entries be checked in
+//! the same go.
 
 use std::{cell::RefCell, collections::BTreeSet, fmt, fmt::Display, ops::Range};
 
@@ -62,8 +63,8 @@ impl<'a> Document<'a> {
         (Self { root }, faults.collect())
     }
 
-    /// The bytes of an entry: of its value if that stands on one place, else of its key, else those of the nearest table around
-    /// it.
+    /// The bytes of an entry: of its value if that stands on one place, else of its key, else those of the
+    /// nearest table around it.
     pub fn place(&self, path: &str) -> Range<usize> {
         let mut at = 0..0;
         let mut table = Some(self.root.get_ref());
@@ -137,7 +138,7 @@ fn is_in_one_place(value: &DeValue<'_>) -> bool {
 /// Why a structure could not be built.
 #[derive(Debug)]
 enum Stop {
-    /// A key is missing; somebody has yet to say of which table.
+    /// A key is missing; the caller adds of which table.
     Field(&'static str),
     /// A key is missing, by its whole way.
     Missing(Path),
@@ -261,10 +262,7 @@ impl<'n, 'a> Reader<'n, 'a> {
         if number == 0.0 || (SMALLEST..=LARGEST).contains(&number.abs()) {
             return number;
         }
-        self.unfit(
-            format_args!("0, or a number from {SMALLEST} to {LARGEST} or from -{LARGEST} to -{SMALLEST}"),
-            &[],
-        );
+        self.unfit(any_number(), &[]);
         1.0
     }
 
@@ -332,6 +330,22 @@ impl<'n, 'a> Reader<'n, 'a> {
 const LARGEST: f64 = 1e5;
 /// Smallest magnitude of a number that is not 0.
 const SMALLEST: f64 = 1e-6;
+/// What is expected of a number of either sign.
+fn any_number() -> String {
+    format!("0, or a number from {SMALLEST} to {LARGEST} or from -{LARGEST} to -{SMALLEST}")
+}
+
+/// The fault of a number of a wrong magnitude with the range of an entry that must be more than 0; any other as it is.
+pub(super) fn above_zero(fault: Fault) -> Fault {
+    match (&fault.expected, &fault.found) {
+        (Some(expected), Some(found)) if *expected == any_number() => {
+            let expected = format!("a number from {SMALLEST} to {LARGEST}");
+            Fault::unlike(fault.code, &fault.entry, expected, found)
+        }
+        _ => fault,
+    }
+}
+
 /// The text of a stand-in.
 const STAND_IN: &str = "?";
 

@@ -1,6 +1,6 @@
 //! What the robot changes and where it keeps it: quick change, holsters, tool drum.
 
-use rcs_core::{frame::Frame, pose::Pose};
+use geometry::{frame::Frame, pose::Pose};
 use serde::{Deserialize, Serialize};
 
 /// A place as a pose form gives it: three points, 0.01 in (VII.1).

@@ -3,10 +3,8 @@
 //! Each fault has its own stream of numbers, so that what happens to one device does not depend on the others. All of it is
 //! plain data: a saved cell goes on with its faults where they were.
 
-use rcs_core::{
-    interface::device::{DeviceInputs, DeviceOutputs},
-    tick::TICK_S,
-};
+use interfaces::device::{DeviceInputs, DeviceOutputs};
+use rcs_core::tick::TICK_S;
 use serde::{Deserialize, Serialize};
 
 use super::{

@@ -28,8 +28,8 @@
 //! part = "LCLEVIS_BH"
 //! ```
 //!
-//! Others: `stuck` with `device = "lock-ring"` or `"vise-jaw"`, `air-lost`, `hydraulics-lost`, `camera-blind`, `pedestal-moved`. A fault that
-//! does not say when is there all the time.
+//! Others: `stuck` with `device = "lock-ring"` or `"vise-jaw"`, `air-lost`, `hydraulics-lost`,
+//! `camera-blind`, `pedestal-moved`. A fault that does not say when is there all the time.
 
 use std::path::Path;
 

@@ -1,6 +1,6 @@
 //! Air valves by name, and what becomes of a command that they do not follow.
 
-use rcs_core::interface::device::{DeviceOutputs, valve};
+use interfaces::device::{DeviceOutputs, valve};
 use serde::{Deserialize, Serialize};
 
 /// A valve: its place in the list of all.

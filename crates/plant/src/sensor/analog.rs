@@ -1,6 +1,6 @@
 //! A sensor with a voltage on a 12-bit converter: offset, scale, noise, and the steps and ends of the converter.
 
-use rcs_core::interface::device::ADC_FULL_SCALE;
+use interfaces::device::ADC_FULL_SCALE;
 
 use crate::noise::Noise;
 

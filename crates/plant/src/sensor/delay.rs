@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use rcs_core::interface::device::DeviceInputs;
+use interfaces::device::DeviceInputs;
 use serde::{Deserialize, Serialize};
 
 use super::{Group, Sensor};

@@ -6,9 +6,7 @@
 
 use core::ops::RangeInclusive;
 
-use rcs_core::interface::device::{
-    ADC_FULL_SCALE, DeviceInputs, HolsterSensors, RESOLVER_COUNTS, VisionResponse,
-};
+use interfaces::device::{ADC_FULL_SCALE, DeviceInputs, HolsterSensors, RESOLVER_COUNTS, VisionResponse};
 use serde::{Deserialize, Serialize};
 
 /// A sensor: its place in the list of all.

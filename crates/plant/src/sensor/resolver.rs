@@ -1,6 +1,6 @@
 //! A joint resolver: 17 bits a turn, 0 at 0 (III.3.2).
 
-use rcs_core::interface::device::RESOLVER_COUNTS;
+use interfaces::device::RESOLVER_COUNTS;
 
 use crate::noise::Noise;
 

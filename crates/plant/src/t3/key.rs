@@ -142,7 +142,7 @@ pub enum Cut {
 }
 
 impl Cut {
-    /// Nobody wanted it as a part of the day's work: an emergency stop, or a failure.
+    /// It is no part of the work: an emergency stop, or a failure.
     #[must_use]
     pub const fn is_emergency(self) -> bool {
         matches!(self, Self::EStop(_) | Self::PressureLost)

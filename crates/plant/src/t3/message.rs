@@ -6,7 +6,7 @@
 use std::fmt;
 
 use depc::{Plate, controller::Warning};
-use rcs_core::pose::WireFrame;
+use geometry::pose::WireFrame;
 use serde::{Deserialize, Serialize};
 
 /// HOME as the manual prints it (IV.3.3 step 11).
@@ -97,6 +97,7 @@ pub fn explained(warning: Warning) -> String {
         Warning::OtherJoint => "a joint is at its limit",
         Warning::Wrist => "the wrist is in a singular position",
         Warning::Terminated => "the DEPC function has ended and must be started again",
+        Warning::OffPath => "the robot has left its path and comes to rest",
     };
     format!("{} ({meaning})", screen(warning).0)
 }
@@ -116,6 +117,7 @@ fn screen(warning: Warning) -> (&'static str, &'static str) {
         Warning::OtherJoint => ("P0B", "Joint limit reached"),
         Warning::Wrist => ("P9P", "Wrist singularity problem"),
         Warning::Terminated => ("P-IG", "DEPC link terminated (unrecoverable)"),
+        Warning::OffPath => ("OFF-PATH", "Path interrupted"),
     }
 }
 

@@ -1,5 +1,5 @@
-//! The T3 controller with its arm: the start-up of IV.3.3, the emergency stops of III.6 and the DEPC function of appendix A
-//! as one state machine, without I/O and without a clock.
+//! The T3 controller with its arm: the start-up of IV.3.3, the emergency stops of III.6 and the DEPC function
+//! of appendix A as one state machine, without I/O and without a clock.
 //!
 //! ```text
 //!   keys (console, pendant, E-stops) ──► stage: start-up, program, DEPC ──► arm: servos, hydraulics
@@ -7,12 +7,14 @@
 //!                                        bytes to and from the host, once a period
 //! ```
 //!
-//! [`T3Controller::step`] is a period of the controller, [`T3Controller::advance`] lets time pass for the arm; whoever runs it decides
-//! how finely. `rcs-cell` puts a pseudo-terminal and a console around it, the simulated cell ([`crate::cell`]) everything else.
+//! [`T3Controller::step`] is a period of the controller, [`T3Controller::advance`] lets time pass for the
+//! arm; the caller decides how finely. `rcs-cell` puts a pseudo-terminal and a console around it, the
+//! simulated cell ([`crate::cell`]) everything else.
 //!
-//! The DEPC function is a part of the program, and the program runs only under pressure: with it end the answers and the
-//! controller's DTR (A 2.3; ASSUMED: the manual does not say what the host sees of an emergency stop). It comes back as IV.3.3 has it:
-//! fault reset, hydraulics, manual, align, AUTO, cycle start.
+//! The DEPC function is a part of the program, and the program runs only under pressure: with it end the
+//! answers and the controller's DTR (A 2.3; ASSUMED: the manual does not say what the host sees of an
+//! emergency stop). It comes back as IV.3.3 has it: fault reset, hydraulics, manual, align, AUTO, cycle
+//! start.
 
 mod key;
 mod keys;
@@ -25,14 +27,14 @@ mod tests;
 
 use depc::{
     Limits, Plate,
-    controller::{Controller, ControllerInputs, JointProblem, Robot, joints_for},
+    controller::{Controller, ControllerInputs, JointProblem, Refusal as Refused, Robot, joints_for},
 };
-use rcs_core::{
+use geometry::{
     frame::Frame,
-    interface::device::LinkBytes,
     kinematics::{HOME_JOINTS, Joints, T3},
     pose::WireFrame,
 };
+use interfaces::device::LinkBytes;
 use serde::{Deserialize, Serialize};
 
 pub use self::{
@@ -112,17 +114,21 @@ impl SetPoint {
             .map_err(|_| DriveError::OutOfRange)?;
         Ok(Self { plate, joints: *joints })
     }
+
+    fn take(&mut self, plate: &Plate) -> Result<(), JointProblem> {
+        self.joints = joints_for(&T3, plate, &self.joints)?;
+        self.plate = *plate;
+        Ok(())
+    }
 }
 
 impl Robot for SetPoint {
-    fn present(&self) -> Plate {
+    fn present(&mut self) -> Plate {
         self.plate
     }
 
-    fn move_to(&mut self, goal: &Plate) -> Result<(), JointProblem> {
-        self.joints = joints_for(&T3, goal, &self.joints)?;
-        self.plate = *goal;
-        Ok(())
+    fn accept(&mut self, goal: &Plate) -> Result<(), Refused> {
+        Ok(self.take(goal)?)
     }
 }
 
@@ -175,8 +181,8 @@ impl T3Controller {
         Self::of(limits, actuators, Arm::sunk_from(actuators, left), set_point, noise)
     }
 
-    /// A controller after its start-up: the axes are aligned, the arm stands at `start` (radians), and with the first step the
-    /// program comes to the DEPC function.
+    /// A controller after its start-up: the axes are aligned, the arm stands at `start` (radians), and with
+    /// the first step the program comes to the DEPC function.
     ///
     /// # Errors
     /// [`DriveError::OutOfRange`] if the end plate is beyond the words of the line.
@@ -270,8 +276,8 @@ impl T3Controller {
         self.arm.settled()
     }
 
-    /// The controller does something that a key has begun and that ends by itself: pressure comes, axes are aligned, the
-    /// arm moves to HOME, the program makes its two motions.
+    /// The controller does something that a key has begun and that ends by itself: pressure comes, axes are
+    /// aligned, the arm moves to HOME, the program makes its two motions.
     #[must_use]
     pub fn busy(&self) -> bool {
         match self.stage {
@@ -321,8 +327,8 @@ impl T3Controller {
         StepOutputs::default()
     }
 
-    /// Lead the arm to an end-plate frame (inches, world) within a period as the teach pendant does: past the line and its
-    /// limits of speed.
+    /// Lead the arm to an end-plate frame (inches, world) within a period as the teach pendant does: past the
+    /// line and its limits of speed.
     ///
     /// # Errors
     /// [`DriveError`]; the command stays as it was.
@@ -331,19 +337,19 @@ impl T3Controller {
             return Err(DriveError::NoPressure);
         }
         let words = Plate::from_frame(plate, &self.set_point.plate).map_err(|_| DriveError::OutOfRange)?;
-        self.set_point.move_to(&words).map_err(DriveError::Joints)?;
+        self.set_point.take(&words).map_err(DriveError::Joints)?;
         self.reach_set_point();
         Ok(())
     }
 
-    /// Take over the position of another controller that has the robot, within a period. An arm without pressure stays where
-    /// it is.
+    /// Take over the position of another controller that has the robot, within a period. An arm without
+    /// pressure stays where it is.
     ///
     /// # Errors
     /// [`JointProblem`] if this arm cannot take the position; the command stays as it was.
     pub fn follow(&mut self, plate: &Plate) -> Result<(), JointProblem> {
         if self.arm.has_pressure() && *plate != self.set_point.plate {
-            self.set_point.move_to(plate)?;
+            self.set_point.take(plate)?;
             self.reach_set_point();
         }
         Ok(())

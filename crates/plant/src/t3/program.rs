@@ -4,7 +4,7 @@ use depc::{
     controller::{Controller, ControllerInputs, ControllerState, Warning},
     wire::{NO_FUNCTION, Response},
 };
-use rcs_core::{
+use geometry::{
     frame::Vector,
     kinematics::{HOME_JOINTS, Joints, T3},
 };

@@ -4,14 +4,14 @@
 pub mod scenes;
 pub mod tape;
 
-use plant::{Cell, CellDescription, CellEvent, PartState, Placement, WorkstationAction, fault::FaultPlan};
-use rcs_core::{
+use geometry::{
     frame::{Frame, INCHES_PER_RADIAN, Vector, rotation_by, rotation_vector},
-    interface::device::{DeviceInputs, DeviceOutputs, MotorCommand, MotorOrder, valve},
     kinematics::T3,
-    movetable::{Line, Movetable, System},
+    movetable::{Movetable, MovetableLine, System},
     pose::Pose,
 };
+use interfaces::device::{DeviceInputs, DeviceOutputs, MotorCommand, MotorOrder, valve};
+use plant::{Cell, CellDescription, CellEvent, PartState, Placement, WorkstationAction, fault::FaultPlan};
 use tape::{Beat, Tape};
 
 pub const CELL: &str = include_str!("../../../../data/cell.toml");
@@ -51,7 +51,8 @@ pub fn description() -> CellDescription {
 }
 
 pub fn table(lines: &[(System, [i32; 3])]) -> Movetable {
-    let lines: Vec<Line> = lines.iter().map(|&(system, values)| Line { system, values }).collect();
+    let lines: Vec<MovetableLine> =
+        lines.iter().map(|&(system, values)| MovetableLine { system, values }).collect();
     Movetable::from_lines(&lines).unwrap()
 }
 

@@ -1,13 +1,13 @@
 //! Scenes full of contacts, on tape: what determinism is tested and speed is measured with.
 
+use geometry::{
+    frame::{Frame, Vector},
+    pose::Pose,
+};
+use interfaces::device::JawValves;
 use plant::{
     CellDescription, Placement,
     WorkstationAction::{self, DrumGrip, DrumRelease, DrumTool, ViseClose, ViseOpen, VisePartial},
-};
-use rcs_core::{
-    frame::{Frame, Vector},
-    interface::device::JawValves,
-    pose::Pose,
 };
 
 use super::{CELL, FIX_V1, FX1, HOLD, Rig, SEAT, description};

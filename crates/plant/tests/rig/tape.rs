@@ -1,7 +1,8 @@
 //! What a cell was given in each tick and what became of it, so that a cell that was restored can be given the same.
 
+use geometry::frame::Frame;
+use interfaces::device::DeviceOutputs;
 use plant::{Cell, WorkstationAction};
-use rcs_core::{frame::Frame, interface::device::DeviceOutputs};
 
 /// What the cell was given for a tick.
 #[derive(Clone, Debug, Default)]

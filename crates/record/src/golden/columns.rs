@@ -122,8 +122,9 @@ fn change(column: &Column, due: &mut Option<u64>, rest: &mut &[u8], image: &mut 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use interfaces::ExternalInputs;
     use proptest::prelude::*;
-    use rcs_core::{Plain, interface::ExternalInputs};
+    use rcs_core::Plain;
 
     proptest! {
         #[test]

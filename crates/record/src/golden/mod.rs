@@ -21,13 +21,13 @@ use std::{
     time::{Duration, Instant},
 };
 
+use interfaces::{CommonMemory, ExternalInputs};
 use levels::ladder::Ladder;
 use os_io::files;
 use prost::Message as _;
 use rcs_core::{
     Plain as _,
     digest::Digest,
-    interface::{CommonMemory, ExternalInputs},
     plain::from_bytes,
     tick::{TICK_MS, Tick},
 };

@@ -6,10 +6,10 @@
 
 use std::{collections::BTreeMap, fmt::Write as _};
 
+use interfaces::{CommonMemory, Decided, ExternalInputs, hws::HwsReport};
 use rcs_core::{
     Plain as _,
     digest::Digest,
-    interface::{CommonMemory, Decided, ExternalInputs, hws::HwsReport},
     plain::Writer,
     tick::{TICK_S, Tick},
 };
@@ -150,7 +150,8 @@ impl Summary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::{interface::Reason, name::Name16};
+    use interfaces::Reason;
+    use rcs_core::name::Name16;
 
     #[test]
     fn a_run_of_one_command_that_fails() {

@@ -263,11 +263,8 @@ pub fn identifiers<'a>(variants: impl Iterator<Item = (u8, &'a str)>) -> Vec<(i3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rcs_core::{
-        Plain,
-        interface::{CommonMemory, ExternalInputs, emove::EmoveCommand},
-        plain::VariantSchema,
-    };
+    use interfaces::{CommonMemory, ExternalInputs, emove::EmoveCommand};
+    use rcs_core::{Plain, plain::VariantSchema};
     use std::collections::BTreeMap;
 
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]

@@ -1,6 +1,7 @@
 //! All files together, by record number and by name.
 
-use rcs_core::{frame::Frame, movetable::Movetable, name::Name};
+use geometry::{frame::Frame, movetable::Movetable};
+use rcs_core::name::Name;
 
 use super::{
     ids::{
@@ -17,8 +18,8 @@ use super::{
 
 /// The task data of a run: a view of the files and their indexes, as cheap to copy as a few pointers.
 ///
-/// It is built outside the tick (by `load::Store`), and nothing in it changes: blocks that are loaded while the robot runs make
-/// a new generation (docs/design/ownership.md "Reload").
+/// It is built outside the tick (by `load::Store`), and nothing in it changes: blocks that are loaded while
+/// the robot runs make a new generation (docs/design/ownership.md "Reload").
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TaskData<'a> {
     /// POSE.

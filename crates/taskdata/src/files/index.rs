@@ -1,29 +1,31 @@
 //! Indexes: every look-up that is not by record number reads one pilot and one slot, however many records there are.
 //!
-//! A key is three integers: most often a name, and a grip and a location packed side by side. The name of the object is part of
-//! the key of all that belongs to it, so nothing has to be looked up first. The index is a perfect hash table, made once by the
-//! loader: a hash puts the key into one of many small buckets, the *pilot* of the bucket, one byte,
-//! is mixed into the hash, and the result is the slot. The loader has chosen the pilots so that no two keys share a slot, so
-//! there is nothing to search: the pilots of 100,000 keys (33 kB) stay in the processor's cache, and what is not in it is
-//! read once, half a cache line. A slot holds the record number and, where look-ups ask for just one thing of the record (the
-//! movetable of a grip, the path of an approach), that too, so that the record itself need not be read.
+//! A key is three integers: most often a name, and a grip and a location packed side by side. The name of the
+//! object is part of the key of all that belongs to it, so nothing has to be looked up first. The index is a
+//! perfect hash table, made once by the loader: a hash puts the key into one of many small buckets, the
+//! *pilot* of the bucket, one byte, is mixed into the hash, and the result is the slot. The loader has chosen
+//! the pilots so that no two keys share a slot, so there is nothing to search: the pilots of 100,000 keys (33
+//! kB) stay in the processor's cache, and what is not in it is read once, half a cache line. A slot holds the
+//! record number and, where look-ups ask for just one thing of the record (the movetable of a grip, the path
+//! of an approach), that too, so that the record itself need not be read.
 //!
-//! What is valid at a location is looked up at several in turn: the location point, the array on it, the owners, the wild card.
-//! Such entries stand together, those of one name and grip in one slot of a [`PlaceIndex`]: a cache line tells which of the
-//! locations there is an entry for.
+//! What is valid at a location is looked up at several in turn: the location point, the array on it, the
+//! owners, the wild card. Such entries stand together, those of one name and grip in one slot of a
+//! [`PlaceIndex`]: a cache line tells which of the locations there is an entry for.
 
 use rcs_core::name::Name;
 
 use super::{
     ids::ObjectId,
-    records::{Direction, RefType, Reference},
+    records::Direction,
+    reference::{RefType, Reference},
 };
 
 /// What records are looked up by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Key {
-    /// A name, or one or two references. Not one integer of 128 bits: that would be aligned to 16 bytes, and a [`Slot`] would
-    /// be as long as two.
+    /// A name, or one or two references. Not one integer of 128 bits: that would be aligned to 16 bytes, and
+    /// a [`Slot`] would be as long as two.
     pub(crate) main: [u64; 2],
     /// What else there is: a grip, a location, a direction; 0 if nothing.
     pub(crate) rest: u64,
@@ -37,8 +39,8 @@ pub struct Slot {
     pub(crate) key: Key,
     /// Record number of the first record that has it; 0 for a slot without a key.
     pub(crate) number: u32,
-    /// What look-ups ask of that record; 0 if they take the record. Of a key that several records have: the position from 1
-    /// in [`Index::numbers`].
+    /// What look-ups ask of that record; 0 if they take the record. Of a key that several records have: the
+    /// position from 1 in [`Index::numbers`].
     pub(crate) answer: u32,
 }
 
@@ -119,7 +121,8 @@ impl<'a> Index<'a> {
         self.slot(key).map(|slot| slot.answer)
     }
 
-    /// The record numbers of all records with a key, in the order in which they were entered; for an index without answers.
+    /// The record numbers of all records with a key, in the order in which they were entered; for an index
+    /// without answers.
     #[must_use]
     pub fn all(&self, key: Key) -> &'a [u32] {
         match self.slot(key) {
@@ -206,8 +209,8 @@ pub struct PlaceIndex<'a> {
 }
 
 impl<'a> PlaceIndex<'a> {
-    /// The entry for the first location that has one: of the `exact` ones in turn, of the `owners`, of the wild card. The key may
-    /// name any location.
+    /// The entry for the first location that has one: of the `exact` ones in turn, of the `owners`, of the
+    /// wild card. The key may name any location.
     pub(crate) fn first(
         &self,
         key: Key,
@@ -273,8 +276,8 @@ pub(crate) fn run_at(numbers: &[u32], position: u32) -> Option<&[u32]> {
     numbers.get(position..)?.get(..usize::try_from(count).ok()?)
 }
 
-/// A name in 128 bits. The same text has the same bits in every width, so that a 16-character field of a command finds a
-/// 10-character name.
+/// A name in 128 bits. The same text has the same bits in every width, so that a 16-character field of a
+/// command finds a 10-character name.
 fn name_bits<const N: usize>(name: &Name<N>) -> [u64; 2] {
     let mut bytes = [[0_u8; 8]; 2];
     for (slot, byte) in bytes.as_flattened_mut().iter_mut().zip(name.bytes()) {

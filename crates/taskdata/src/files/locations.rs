@@ -1,15 +1,16 @@
 //! From the location and the sector of a command to a frame (VII.3 to VII.5, V.4.2).
 //!
-//! A name can be a location point, an owner, an array, or a location point and an owner at once (UNIT_1: the corner of a
-//! tray, and the owner of the ways in which that tray is divided). Without a sector the location point is meant; a sector counts through
-//! the array that is assigned to the object at that owner, left to right and top to bottom as the robot sees it (VII.4).
+//! A name can be a location point, an owner, an array, or a location point and an owner at once (UNIT_1: the
+//! corner of a tray, and the owner of the ways in which that tray is divided). Without a sector the location
+//! point is meant; a sector counts through the array that is assigned to the object at that owner, left to
+//! right and top to bottom as the robot sees it (VII.4).
 
 use core::fmt;
 
+use geometry::frame::Frame;
+use interfaces::subtask::LocationKind;
 use rcs_core::{
     Plain,
-    frame::Frame,
-    interface::subtask::LocationKind,
     name::{Name, Name10, Name16},
 };
 
@@ -17,7 +18,8 @@ use super::{
     data::TaskData,
     ids::{ArrayId, LocptId, MovtabId, ObjLocId, ObjectId, OwnerId},
     index::{object_key, reference_key},
-    records::{Array, RefType, Reference},
+    records::Array,
+    reference::{RefType, Reference},
 };
 
 /// What decides which grips, approaches and trajectories apply: the location point, and the array on it.
@@ -173,7 +175,8 @@ impl<'a> TaskData<'a> {
         Ok(Location { name: locpt.name, place, sector: None, frame: locpt.frame })
     }
 
-    /// The member that is assigned to the object: a sector of an array at the owner's location point, or a location point.
+    /// The member that is assigned to the object: a sector of an array at the owner's location point, or a
+    /// location point.
     fn at_owner<const N: usize, const M: usize>(
         &self,
         owner: OwnerId,
@@ -269,8 +272,8 @@ impl<'a> TaskData<'a> {
         })
     }
 
-    /// The frame of a sector: the base, the offset of the first sector, then the column step and the row step as often as
-    /// needed. `None` if the array has no such sector.
+    /// The frame of a sector: the base, the offset of the first sector, then the column step and the row step
+    /// as often as needed. `None` if the array has no such sector.
     #[must_use]
     pub fn sector_frame(&self, array: &Array, base: &Frame, sector: i32) -> Option<Frame> {
         if sector < 1 || sector > array.sectors() {
@@ -288,8 +291,8 @@ impl<'a> TaskData<'a> {
     /// The place that a location and an object mean together, for a process that is told both but not the sector: below
     /// Task the sector is only a goal pose (V.3.2, V.2.2).
     ///
-    /// An object that an object location form assigns to an array there brings the array in; any other is at the location
-    /// point. `None` if nothing has the name.
+    /// An object that an object location form assigns to an array there brings the array in; any other is at
+    /// the location point. `None` if nothing has the name.
     #[must_use]
     pub fn place_named<const N: usize, const M: usize>(
         &self,

@@ -1,8 +1,9 @@
 //! The files of chapter VII and how the control processes look into them.
 //!
-//! A file is a slice of records; a record number counts from 1, and 0 is the null pointer of the manual's `…-^`
-//! variables. Beside the files stand perfect hash tables ([`index::Index`], [`index::PlaceIndex`]), so that a look-up by name, or
-//! by object, grip and location, reads one or two cache lines, however many records there are.
+//! A file is a slice of records; a record number counts from 1, and 0 is the null pointer of the manual's
+//! `…-^` variables. Beside the files stand perfect hash tables ([`index::Index`], [`index::PlaceIndex`]), so
+//! that a look-up by name, or by object, grip and location, reads one or two cache lines, however many
+//! records there are.
 //!
 //! * [`ids`], [`records`], [`index`]: numbers, records, indexes;
 //! * [`data`]: [`TaskData`], by number and by name;
@@ -17,6 +18,7 @@ pub mod index;
 pub mod locations;
 pub mod paths;
 pub mod records;
+pub mod reference;
 
 pub use data::TaskData;
 pub use ids::{
@@ -27,6 +29,7 @@ pub use index::{Index, PlaceIndex};
 pub use locations::{Location, LookupError, Place};
 pub use records::{
     ApprDept, Array, Direction, EndEffPara, GripLoc, Locpt, Member, MovtabRecord, ObjGrips, ObjLoc, Object,
-    Owner, Path, PathPoint, PedPara, PoseRecord, RefType, Reference, RelativeMove, SensorPara, SensorSource,
-    Target, Traj, TrajPara, VisionPara,
+    Owner, Path, PathPoint, PedPara, PoseRecord, RelativeMove, SensorPara, SensorSource, Target, Traj,
+    TrajPara, VisionPara,
 };
+pub use reference::{RefType, Reference};

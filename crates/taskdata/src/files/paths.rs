@@ -1,20 +1,19 @@
 //! Grips, views, approaches, departs and trajectories at a place (VII.6, VII.7).
 //!
-//! One rule serves all: the entry for the exact location point wins, then the one for the array on it, then the one for an
-//! owner, then the wild card `$$$` (VII.7.5). A trajectory needs an entry for both of its ends and has no wild card; it is
-//! flown as it is written, from start to end.
+//! One rule serves all: the entry for the exact location point wins, then the one for the array on it, then
+//! the one for an owner, then the wild card `$$$` (VII.7.5). A trajectory needs an entry for both of its ends
+//! and has no wild card; it is flown as it is written, from start to end.
 
-use rcs_core::{
-    frame::Frame,
-    name::{Name, Name16},
-};
+use geometry::frame::Frame;
+use rcs_core::name::{Name, Name16};
 
 use super::{
     data::TaskData,
     ids::{GripLocId, MovtabId, ObjectId, PathId, RelativeMoveId, TrajId, VisionId},
     index::{EntryAt, Key, PlaceIndex, approach_key, grip_at_key, name_at_key, pair_key, plain_key},
     locations::{Location, LookupError, Place},
-    records::{Direction, PathPoint, RefType, Reference, RelativeMove, Target, VisionPara},
+    records::{Direction, PathPoint, RelativeMove, Target, VisionPara},
+    reference::{RefType, Reference},
 };
 
 impl<'a> TaskData<'a> {

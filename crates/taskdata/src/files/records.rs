@@ -1,101 +1,15 @@
 //! The record of each file. The manual names the files and their variables but not their layouts (SPECNOTES).
 
+use geometry::{frame::Frame, movetable::Movetable, pose::Pose};
 use rcs_core::{
     Plain,
-    frame::Frame,
-    movetable::Movetable,
     name::{Name10, Name16},
-    pose::Pose,
 };
 
-use super::ids::{
-    ArrayId, EndEffId, LocptId, MovtabId, ObjectId, OwnerId, PathId, PedParaId, PoseId, TrajParaId,
+use super::{
+    ids::{EndEffId, LocptId, MovtabId, ObjectId, OwnerId, PathId, PedParaId, PoseId, TrajParaId},
+    reference::{RefType, Reference},
 };
-
-/// What a name in a form refers to: the words of the "type" columns (VII.4 to VII.7). The manual passes them as
-/// integers (`locpt-type`, `pose-type`) and gives no values; these codes are ASSUMED.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum RefType {
-    /// Nothing.
-    #[text = ""]
-    None,
-    /// `lpt`: a location point.
-    #[text = "lpt"]
-    LocationPoint,
-    /// `arr`: an array.
-    #[text = "arr"]
-    Array,
-    /// `own`: an owner.
-    #[text = "own"]
-    Owner,
-    /// `pos`: a pose.
-    #[text = "pos"]
-    Pose,
-    /// `mtb`: a movetable.
-    #[text = "mtb"]
-    Movetable,
-    /// `obj`: an object.
-    #[text = "obj"]
-    Object,
-    /// `vu`: the view location of an object.
-    #[text = "vu"]
-    View,
-    /// `$$$`: every location that no other entry names (VII.7.5).
-    #[text = "$$$"]
-    Any,
-}
-
-/// A type and a name of a form, resolved: the record `number` of the file that `kind` means.
-#[derive(Clone, Copy, Debug, PartialEq, Plain)]
-pub struct Reference {
-    /// Which file.
-    pub kind: RefType,
-    /// Record number in it; 0 for [`RefType::Any`] and [`RefType::None`].
-    pub number: u32,
-}
-
-impl Reference {
-    /// No reference.
-    pub const NONE: Self = Self { kind: RefType::None, number: 0 };
-    /// The wild card `$$$`.
-    pub const ANY: Self = Self { kind: RefType::Any, number: 0 };
-
-    /// A location point.
-    #[must_use]
-    pub const fn location_point(id: LocptId) -> Self {
-        Self { kind: RefType::LocationPoint, number: id.number() }
-    }
-
-    /// An array.
-    #[must_use]
-    pub const fn array(id: ArrayId) -> Self {
-        Self { kind: RefType::Array, number: id.number() }
-    }
-
-    /// An owner.
-    #[must_use]
-    pub const fn owner(id: OwnerId) -> Self {
-        Self { kind: RefType::Owner, number: id.number() }
-    }
-
-    /// A pose.
-    #[must_use]
-    pub const fn pose(id: PoseId) -> Self {
-        Self { kind: RefType::Pose, number: id.number() }
-    }
-
-    /// An object.
-    #[must_use]
-    pub const fn object(id: ObjectId) -> Self {
-        Self { kind: RefType::Object, number: id.number() }
-    }
-
-    /// The view of an object.
-    #[must_use]
-    pub const fn view(id: ObjectId) -> Self {
-        Self { kind: RefType::View, number: id.number() }
-    }
-}
 
 /// POSE: a pose form entry (VII.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -392,7 +306,8 @@ impl SensorSource {
     }
 }
 
-/// SENSOR-PARA: a sensor that Prim can watch by name (V.1.2 `"sensor"`). An extension: the manual keeps thresholds in code.
+/// SENSOR-PARA: a sensor that Prim can watch by name (V.1.2 `"sensor"`). An extension: the manual keeps
+/// thresholds in code.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct SensorPara {
     /// Name of the sensor.
@@ -401,12 +316,13 @@ pub struct SensorPara {
     pub source: SensorSource,
     /// Which holster, 1 right, 2 left, 3 centre; which beam, 1 to 8, 0 for any; 0 for forces.
     pub which: i32,
-    /// Forces only: the condition holds at this value or beyond it, away from 0; lb or in lb on the tool, sign included.
+    /// Forces only: the condition holds at this value or beyond it, away from 0; lb or in lb on the tool,
+    /// sign included.
     pub threshold: i32,
 }
 
-/// REL-MOVES: a relative motion of a command at a location, and the sensor that guards it. An extension: the manual keeps
-/// those of holsters and tool drum in code.
+/// REL-MOVES: a relative motion of a command at a location, and the sensor that guards it. An extension: the
+/// manual keeps those of holsters and tool drum in code.
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct RelativeMove {
     /// What the motion is for: a name that a command of E-move looks for.

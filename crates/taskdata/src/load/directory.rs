@@ -119,12 +119,15 @@ fn note(fault: BlockFault, at: At, problems: &mut Problems) {
             problems.error("block.character", at, "a block has printable ASCII characters and blanks only");
         }
         BlockFault::Tab(lines) => {
-            let more = if lines == 1 { "" } else { ", the first of this file" };
+            let (more, count) = match lines {
+                1 => ("", "1 line has one".to_owned()),
+                _ => (", the first of this file", format!("{lines} lines have some")),
+            };
             problems.error_help(
                 "block.tab",
                 at,
                 format!("a block has blanks, this line has a tab{more}"),
-                format!("replace the tabs, {lines} lines have some: `expand FILE`"),
+                format!("replace the tabs, {count}: `expand FILE`"),
             );
         }
     }

@@ -1,6 +1,7 @@
 //! What a form says, before its names are looked up: one entry for each record or group of records that it makes.
 
-use rcs_core::{movetable::Line, name::Name};
+use geometry::movetable::MovetableLine;
+use rcs_core::name::Name;
 
 use crate::files::{Direction, RefType, SensorSource, TrajPara};
 
@@ -52,7 +53,7 @@ pub struct PoseEntry {
 #[derive(Clone, Debug)]
 pub struct MovetableEntry {
     /// Its lines, at most eight.
-    pub lines: Vec<Line>,
+    pub lines: Vec<MovetableLine>,
     /// Name.
     pub name: Named<10>,
 }

@@ -4,18 +4,18 @@
 
 use std::ops::RangeInclusive;
 
-use rcs_core::movetable::{Line, MAX_LINES, System};
+use geometry::movetable::{MAX_LINES, MovetableLine, System};
 
 use crate::files::{Direction, RefType, TrajPara};
 
 use super::{
     entries::{
         ApprDeptEntry, ArrayEntry, Entry, FileEntry, GripEntry, MovetableEntry, ObjLocEntry, ObjectEntry,
-        OwnerEntry, PointAt, PointEntry, PoseEntry, ShowEntry, TrajEntry, ViewEntry,
+        OwnerEntry, PointAt, PointEntry, PoseEntry, TrajEntry, ViewEntry,
     },
     lex::Word,
     names::nearest,
-    parse::{Parser, Skip, is_integer},
+    parser::{Parser, Skip, is_integer},
     source::At,
     store::{FILE_NAMES, FILE_RECORDS},
 };
@@ -25,11 +25,11 @@ const COORDINATE: RangeInclusive<i32> = -20_000..=20_000;
 /// A rotation, 0.01 degree.
 const ANGLE: RangeInclusive<i32> = -18_000..=18_000;
 /// A grip number.
-const GRIP: RangeInclusive<i32> = -99..=99;
+pub(super) const GRIP: RangeInclusive<i32> = -99..=99;
 /// An opening of a gripper: the parts gripper opens to 5.00 in.
-const OPENING: RangeInclusive<i32> = 0..=500;
+pub(super) const OPENING: RangeInclusive<i32> = 0..=500;
 /// A grasp force, lb.
-const FORCE: RangeInclusive<i32> = 0..=200;
+pub(super) const FORCE: RangeInclusive<i32> = 0..=200;
 /// Elements of a dimension of an array.
 const ELEMENTS: RangeInclusive<i32> = 1..=100;
 /// `vel-max`: 140 counts are the 14 in/s of the link (A 2.3).
@@ -49,8 +49,8 @@ const OFFSET_FROM: &[RefType] = &[RefType::LocationPoint, RefType::Array, RefTyp
 const SUBJECTS: &[RefType] =
     &[RefType::Object, RefType::View, RefType::LocationPoint, RefType::Array, RefType::Owner, RefType::Any];
 
-/// `-file- name records`: the declaration of a file (VII, blocks 100-199). The manual tells what declarations are for but
-/// prints none; the form is ours.
+/// `-file- name records`: the declaration of a file (VII, blocks 100-199). The manual tells what declarations
+/// are for but prints none; the form is ours.
 pub fn file(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     let word = p.peek();
     let Some((word, file)) = word.and_then(|w| Some((w, *FILE_NAMES.iter().find(|f| **f == w.text)?))) else {
@@ -140,7 +140,7 @@ fn movetable_entry(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
 }
 
 /// A coordinate system and its one to three values (Table VII.1).
-fn movetable_line(p: &mut Parser<'_, '_>) -> Result<Line, Skip> {
+fn movetable_line(p: &mut Parser<'_, '_>) -> Result<MovetableLine, Skip> {
     let word = p.peek().map_or("", |w| w.text);
     let Some(system) = System::from_text(word).filter(|s| *s != System::None) else {
         return Err(p.expected("a coordinate system (rw, t, to, wo, ro)"));
@@ -161,7 +161,7 @@ fn movetable_line(p: &mut Parser<'_, '_>) -> Result<Line, Skip> {
             p.integer(format_args!("unused column of {system}"), 0..=0)?;
         }
     }
-    Ok(Line { system, values })
+    Ok(MovetableLine { system, values })
 }
 
 /// `-pt-` and `-ar-`: name, pose, movetable (VII.3, VII.4).
@@ -320,92 +320,4 @@ fn check_stop(p: &mut Parser<'_, '_>, direction: Direction, at: At, points: &[Po
             p.flaw("path.stop", at, "an approach ends with a stop point, this one does not", Some(help));
         }
     }
-}
-
-/// Variables of OBJ-GRIPS (VII.7.2).
-pub(super) const OBJ_GRIPS: &[(&str, RangeInclusive<i32>)] = &[("endeff-id#", 1..=3), ("tray-grip#", GRIP)];
-/// Variables of PED-PARA (VII.7.4).
-pub(super) const PED_PARA: &[(&str, RangeInclusive<i32>)] = &[
-    ("ped-appr", OPENING),
-    ("ped-grasp-size", OPENING),
-    ("ped-force", FORCE),
-    ("ped-release-size", OPENING),
-    ("ped-table-pos", -3600..=3600),
-    ("ped-flip-angle", -3600..=3600),
-];
-
-/// `:S variable <= value … :R >FILE name` (VII.7.2, VII.7.4).
-pub fn show(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
-    let mut settings: Vec<(Word<'_>, Word<'_>)> = Vec::new();
-    while p.take_if(":R").is_none() {
-        let Some(variable) = p.peek().filter(|w| !w.text.starts_with([':', '>', '<', '-'])) else {
-            return Err(p.expected("a variable or :R"));
-        };
-        p.take();
-        if p.take_if("<=").is_none() {
-            return Err(p.expected(&format!("<= after {}", variable.text)));
-        }
-        let Some(value) = p.peek() else { return Err(p.expected("a value")) };
-        p.take();
-        settings.push((variable, value));
-    }
-    if p.take_if(">FILE").is_none() {
-        return Err(p.expected(">FILE after :R"));
-    }
-    let Some(file) = p.peek() else { return Err(p.expected("OBJ-GRIPS or PED-PARA")) };
-    match file.text {
-        "OBJ-GRIPS" => {
-            p.take();
-            let (object, values) = settings_of::<2>(p, &settings, file, "\"object\"", OBJ_GRIPS)?;
-            Ok(Entry::ObjGrips(ShowEntry { object, values }))
-        }
-        "PED-PARA" => {
-            p.take();
-            let (object, values) = settings_of::<6>(p, &settings, file, "\"p-object\"", PED_PARA)?;
-            Ok(Entry::PedPara(ShowEntry { object, values }))
-        }
-        _ => Err(p.expected("OBJ-GRIPS or PED-PARA")),
-    }
-}
-
-/// Put the settings into the order of a record; each variable is set once.
-fn settings_of<const N: usize>(
-    p: &mut Parser<'_, '_>,
-    settings: &[(Word<'_>, Word<'_>)],
-    file: Word<'_>,
-    name_variable: &str,
-    variables: &[(&str, RangeInclusive<i32>)],
-) -> Result<(super::entries::Named<16>, [i32; N]), Skip> {
-    let known = || std::iter::once(name_variable).chain(variables.iter().map(|v| v.0));
-    let mut misspelt = false;
-    for (i, (variable, _)) in settings.iter().enumerate() {
-        if !known().any(|k| k == variable.text) {
-            let message = format!("{} has no variable {}", file.text, variable.text);
-            p.flaw("show.variable", variable.at, message, None);
-            if let Some(near) = nearest(variable.text, known()) {
-                p.nearest("variable", near);
-            }
-            misspelt = true;
-        } else if settings.iter().take(i).any(|(v, _)| v.text == variable.text) {
-            p.flaw("show.twice", variable.at, format!("{} is set twice", variable.text), None);
-            misspelt = true;
-        }
-    }
-    let value_of = |name: &str| settings.iter().find(|(v, _)| v.text == name).map(|(_, value)| *value);
-    let missing: Vec<&str> = known().filter(|k| value_of(k).is_none()).collect();
-    let Some(object) = value_of(name_variable).filter(|_| missing.is_empty()) else {
-        // A variable that is misspelt, or another in its place, is missing too; one message will do.
-        if !misspelt {
-            p.flaw("show.missing", file.at, format!("{} needs {}", file.text, missing.join(", ")), None);
-        }
-        return Err(Skip);
-    };
-    let object = p.at_word(object, |q| q.name("object"))?;
-    let mut values = [0; N];
-    for (slot, (name, range)) in values.iter_mut().zip(variables) {
-        if let Some(word) = value_of(name) {
-            *slot = p.at_word(word, |q| q.integer(name, range.clone()))?;
-        }
-    }
-    Ok((object, values))
 }

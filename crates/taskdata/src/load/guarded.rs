@@ -19,7 +19,7 @@ use super::{
     entries::{Entry, RelativeEntry, SensorEntry},
     forms::{PLACES, parameters},
     names::nearest,
-    parse::{BEGINNINGS, Parser, Skip, is_compiling_word, is_integer},
+    parser::{BEGINNINGS, Parser, Skip, is_compiling_word, is_integer},
 };
 
 /// From where a relative move leads.
@@ -121,7 +121,8 @@ pub(super) fn relative_move(p: &mut Parser<'_, '_>) -> Result<Entry, Skip> {
     Ok(Entry::Relative(RelativeEntry { name, place, para, movetable, sensor, at }))
 }
 
-/// True if the next word can be a sensor's name: neither the beginning of another entry, misspelt or not, nor a heading.
+/// True if the next word can be a sensor's name: neither the beginning of another entry, misspelt or not, nor
+/// a heading.
 fn sensor_follows(p: &Parser<'_, '_>) -> bool {
     p.peek().is_some_and(|word| {
         let text = word.text;

@@ -12,6 +12,7 @@
 //!
 //! [`mod@print`] writes entries as forms again. [`job`] reads the job files, which stand beside the blocks.
 
+pub mod alike;
 mod check;
 mod collected;
 pub mod directory;
@@ -27,13 +28,15 @@ pub mod origins;
 mod orphans;
 mod parallel;
 pub mod parse;
+pub mod parser;
 pub mod places;
 pub mod print;
 pub mod report;
+pub mod show;
 pub mod source;
 pub mod store;
 
-use std::path::Path;
+use std::{collections::HashSet, path::Path};
 
 pub use job::{Job, Step, ViseOpening, Workstation};
 pub use origins::Origins;
@@ -49,6 +52,14 @@ impl Store {
     /// # Errors
     /// The report, if it holds an error; every error of the data is in it.
     pub fn load(directory: &Path) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
+        Self::load_part(directory).map_err(|(_, report)| report)
+    }
+
+    /// The same, but from data with errors comes what could be read of them, for checks of jobs.
+    ///
+    /// # Errors
+    /// That part, and the report.
+    pub fn load_part(directory: &Path) -> Result<(Self, Diagnostics), (Box<Part>, Box<Diagnostics>)> {
         let (sources, unreadable) = source::read_blocks_under(directory);
         let mut problems = Problems::default();
         unreadable.iter().for_each(|(path, error)| problems.unreadable(path, error));
@@ -66,18 +77,20 @@ impl Store {
     /// The next generation of the data: these data with more blocks loaded, while these stay as they are
     /// (docs/design/ownership.md "Reload").
     ///
-    /// An entry that says again what an entry of these data says (a pose of the same name, the same grip of the same object
-    /// at the same location …) replaces it and keeps its record number; other entries are appended. Nothing is removed, but
-    /// for the locations of an object, which its newer object location entries replace together. Numbers of paths, their
-    /// points and their parameters, which nobody knows by name, are given anew, and so are those of object locations.
+    /// An entry that says again what an entry of these data says (a pose of the same name, the same grip of
+    /// the same object at the same location …) replaces it and keeps its record number; other entries are
+    /// appended. Nothing is removed, but for the locations of an object, which its newer object location
+    /// entries replace together. Numbers of paths, their points and their parameters, which have no
+    /// name, are given anew, and so are those of object locations.
     ///
-    /// All blocks of the texts are loaded, as by `load` at a terminal, unless the texts have a root directory block; a
-    /// directory may also name blocks that these data have. The whole of the new generation is checked, not only the new part.
+    /// All blocks of the texts are loaded, as by `load` at a terminal, unless the texts have a root directory
+    /// block; a directory may also name blocks that these data have. The whole of the new generation is
+    /// checked, not only the new part.
     ///
     /// # Errors
     /// The report, if it holds an error; then there is no new generation.
     pub fn with_blocks(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
-        self.loaded_with(texts, Problems::default())
+        self.loaded_with(texts, Problems::default()).map_err(|(_, report)| report)
     }
 
     /// The next generation; errors are those of files that could not be read.
@@ -85,12 +98,12 @@ impl Store {
         &self,
         texts: Vec<Source>,
         problems: Problems,
-    ) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
-        let (store, mut problems, blocks) = self.linked(texts, problems);
-        if !problems.has_errors() {
-            check::reach(&store.view(), &store.origins, &mut problems);
+    ) -> Result<(Self, Diagnostics), (Box<Part>, Box<Diagnostics>)> {
+        let mut linked = self.linked(texts, problems);
+        if !linked.problems.has_errors() {
+            check::reach(&linked.store.view(), &linked.store.origins, &mut linked.problems);
         }
-        store.reported(self.sources.len(), problems, blocks)
+        linked.reported(self.sources.len())
     }
 
     /// The same as [`Store::with_blocks`], but the targets are not tried against the arm.
@@ -98,12 +111,12 @@ impl Store {
     /// # Errors
     /// The report, if it holds an error; then there is no new generation.
     pub fn with_blocks_untried(&self, texts: Vec<Source>) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
-        let (store, problems, blocks) = self.linked(texts, Problems::default());
-        store.reported(self.sources.len(), problems, blocks)
+        let linked = self.linked(texts, Problems::default());
+        linked.reported(self.sources.len()).map_err(|(_, report)| report)
     }
 
-    /// Read, link and check all but the reach; gives the number of blocks that were read too.
-    fn linked(&self, texts: Vec<Source>, mut problems: Problems) -> (Self, Problems, usize) {
+    /// Read, link and check all but the reach.
+    fn linked(&self, texts: Vec<Source>, mut problems: Problems) -> Linked {
         let incomplete = problems.has_errors();
         let first = self.sources.len();
         let mut sources = self.sources.clone();
@@ -111,29 +124,53 @@ impl Store {
         let mut read = directory::read(&sources, first, &self.blocks, &mut problems);
         read.orphans.incomplete |= incomplete;
         let entries = self.entries.with(read.entries);
-        let (files, indexes, origins) = link::link(&entries, read.broken, &mut read.orphans, &mut problems);
+        let (files, indexes, origins, unknown) =
+            link::link(&entries, &read.broken, &mut read.orphans, &mut problems);
+        let unread = read.orphans.words().cloned().chain(read.broken).chain(unknown).collect();
         read.orphans.report(&mut problems);
         let count = read.blocks.len();
         let blocks = self.blocks.union(&read.blocks).copied().collect();
         let store = Self { files, indexes, sources, entries, blocks, origins };
-        // Records that name nothing are no use in further checks; the names come first.
-        if !problems.has_errors() {
-            check::check(&store.view(), &store.origins, &mut problems);
-        }
-        (store, problems, count)
+        // Records that name nothing are no use in checks of several entries; the names come first.
+        let whole = !problems.has_errors();
+        check::check(&store.view(), &store.origins, whole, &mut problems);
+        Linked { store, problems, blocks: count, unread }
     }
+}
 
-    /// The store and its report, or the report alone if it holds an error; `before` texts were there before.
-    fn reported(
-        self,
-        before: usize,
-        problems: Problems,
-        blocks: usize,
-    ) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
+/// What came of the texts of a load.
+struct Linked {
+    store: Store,
+    problems: Problems,
+    /// Blocks that were read.
+    blocks: usize,
+    unread: HashSet<String>,
+}
+
+impl Linked {
+    /// The store and its report, or what there is of it if the report holds an error; `before` texts were there before.
+    fn reported(self, before: usize) -> Result<(Store, Diagnostics), (Box<Part>, Box<Diagnostics>)> {
+        let Self { store, problems, blocks, unread } = self;
         let failed = problems.has_errors();
-        let loaded = if failed { Vec::new() } else { self.loaded() };
-        let mut report = Diagnostics::new(problems, Places::in_blocks(&self.sources), blocks, loaded);
-        report.files = self.sources.len() - before;
-        if failed { Err(Box::new(report)) } else { Ok((self, report)) }
+        let loaded = if failed { Vec::new() } else { store.loaded() };
+        let mut report = Diagnostics::new(problems, Places::in_blocks(&store.sources), blocks, loaded);
+        report.files = store.sources.len() - before;
+        if failed { Err((Box::new(Part { store, unread }), Box::new(report))) } else { Ok((store, report)) }
+    }
+}
+
+/// What could be read of task data with errors. No run uses it.
+#[derive(Clone, Debug)]
+pub struct Part {
+    store: Store,
+    /// Words of entries that could not be read or are not loaded, and names that the data ask for in vain.
+    unread: HashSet<String>,
+}
+
+impl Part {
+    /// True if a name that is not known, with the nearest one that is, is likely a slip of the pen. Any other may
+    /// stand in what could not be read, also behind a name that is too long.
+    fn is_slip(&self, name: &str, near: Option<&str>) -> bool {
+        near.is_some() && !self.unread.iter().any(|word| word.starts_with(name))
     }
 }

@@ -1,4 +1,4 @@
-//! Where each record was entered: for messages, and for whoever wants to know why the robot goes where it goes.
+//! Where each record was entered: for messages, and to explain why the robot goes where it goes.
 
 use super::source::At;
 

@@ -7,7 +7,7 @@ use super::{
     entries::LoadLine,
     parse::Parsed,
     print,
-    report::{Problems, Severity},
+    report::{Problems, Severity, amount},
     source::{At, BlockNumber, LAST_BLOCK},
 };
 
@@ -40,7 +40,8 @@ pub(super) struct Orphans {
     pub(super) again: Vec<LoadLine>,
     /// Loaded directory blocks, and what they name.
     pub(super) directories: BTreeMap<BlockNumber, Vec<BlockNumber>>,
-    /// A file could not be read: any name and any block may stand in it.
+    /// A file could not be read: any name and any block may stand in it. A name that is not known is told only if a
+    /// known one is so near to it that it is likely a slip of the pen.
     pub(super) incomplete: bool,
 }
 
@@ -59,9 +60,15 @@ impl Orphans {
         self.list.push(orphan);
     }
 
-    /// True if a file or a block is missing: names that are not known may stand there, and are asked for once it is back.
+    /// True if a block is missing though all files were read: names that are not known may stand there, and are
+    /// asked for once it is back.
     pub(super) fn lack_blocks(&self) -> bool {
-        self.incomplete || !self.missing.is_empty()
+        !self.incomplete && !self.missing.is_empty()
+    }
+
+    /// Words of the entries that are not loaded.
+    pub(super) fn words(&self) -> impl Iterator<Item = &String> {
+        self.words.keys()
     }
 
     /// True if a block that is not loaded has a name that is asked for.
@@ -100,8 +107,8 @@ impl Orphans {
                 [] => {}
                 [name] => message += &format!("; {name} is asked for and stands there"),
                 [name, others @ ..] => {
-                    let others = others.len();
-                    message += &format!("; {name} and {others} more names that are asked for stand there");
+                    let others = amount(others.len(), "more name");
+                    message += &format!("; {name} and {others} that are asked for stand there");
                 }
             }
             let severity = if orphan.needed.is_empty() { Severity::Warning } else { Severity::Error };

@@ -1,8 +1,8 @@
 //! Entries as forms again: what a person would type to get the entry.
 //!
-//! The form is the manual's, with one line for each part that has a compiling word of its own (`-ppt`, `-m-`, `----`). A form
-//! that would need more lines than a block has is set solid, which always fits if the entry came from a block: an entry
-//! cannot be spread over two.
+//! The form is the manual's, with one line for each part that has a compiling word of its own (`-ppt`, `-m-`,
+//! `----`). A form that would need more lines than a block has is set solid, which always fits if the entry
+//! came from a block: an entry cannot be spread over two.
 
 use super::{
     entries::{
@@ -10,11 +10,11 @@ use super::{
         OwnerEntry, PointAt, PointEntry, PoseEntry, RelativeEntry, SensorEntry, ShowEntry, TrajEntry, Typed,
         ViewEntry,
     },
-    forms::{OBJ_GRIPS, PED_PARA},
+    show::{OBJ_GRIPS, PED_PARA},
     source::{BLOCK_COLUMNS, BLOCK_LINES, LAST_BLOCK},
 };
 use crate::files::{RefType, TrajPara};
-use rcs_core::movetable::{Line, System};
+use geometry::movetable::{MovetableLine, System};
 
 /// Blanks before the first word of a line; without them a form might be taken for a listing with line numbers.
 const INDENT: &str = "  ";
@@ -27,8 +27,9 @@ pub fn form(entry: &Entry) -> Vec<String> {
     if lines.len() <= BLOCK_LINES { lines } else { filled(&parts.concat()) }
 }
 
-/// Blocks that hold the forms of all entries, from block `first` at `offset` on; after block 999 the next is 0 at the next
-/// offset. An entry whose form has more lines than a block has stands in a block of its own, which cannot be loaded.
+/// Blocks that hold the forms of all entries, from block `first` at `offset` on; after block 999 the next is
+/// 0 at the next offset. An entry whose form has more lines than a block has stands in a block of its own,
+/// which cannot be loaded.
 #[must_use]
 pub fn blocks<'e>(entries: impl IntoIterator<Item = &'e Entry>, offset: u32, first: u32) -> String {
     let (mut offset, mut number) = (offset, first);
@@ -131,7 +132,7 @@ fn movetable(e: &MovetableEntry) -> Vec<Vec<String>> {
 }
 
 /// The values that the coordinate system has (Table VII.1).
-fn values(line: &Line) -> &[i32] {
+fn values(line: &MovetableLine) -> &[i32] {
     let count = match line.system {
         System::None | System::World | System::Tool => 3,
         System::ToolOrigin | System::WristOrigin => 2,

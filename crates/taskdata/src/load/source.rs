@@ -1,9 +1,10 @@
 //! Text files with blocks in them: the "disk" (IV.2.7).
 //!
-//! A file holds blocks one after the other, each under a header `BLOCK# 619 OFFSET 21000`, each of at most 16 lines of 64
-//! columns. Two liberties are taken with the disk of the manual. A line that begins with `%%` is a remark on the file: it is
-//! no line of a block and may be as long as it likes, so that a datum can be explained where it stands without disturbing
-//! its block. And a block that was copied from a listing, with the line numbers 0 to 15 in front, is read without them.
+//! A file holds blocks one after the other, each under a header `BLOCK# 619 OFFSET 21000`, each of at most 16
+//! lines of 64 columns. Two liberties are taken with the disk of the manual. A line that begins with `%%` is
+//! a remark on the file: it is no line of a block and may be as long as it likes, so that a datum can be
+//! explained where it stands without disturbing its block. And a block that was copied from a listing, with
+//! the line numbers 0 to 15 in front, is read without them.
 
 use std::{collections::BTreeSet, fs, io, os::unix::fs::MetadataExt as _, path::Path, sync::Arc};
 
@@ -29,8 +30,8 @@ pub struct Source {
     pub text: Arc<str>,
 }
 
-/// A piece of a source: what a diagnostic underlines. Every word of a load has one, so it is small; `Places` knows its block,
-/// line and column.
+/// A piece of a source: what a diagnostic underlines. Every word of a load has one, so it is small; `Places`
+/// knows its block, line and column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct At {
     /// Position of the source in the list of sources.
@@ -120,8 +121,8 @@ pub fn read(path: &Path, shown: &str) -> io::Result<Source> {
 /// What cannot be read: a path, and why.
 pub type Unreadable = (String, io::Error);
 
-/// All files `*.blk` under a directory, in the order of their paths, which are shown relative to the directory, and what of
-/// them cannot be read.
+/// All files `*.blk` under a directory, in the order of their paths, which are shown relative to the
+/// directory, and what of them cannot be read.
 #[must_use]
 pub fn read_blocks_under(directory: &Path) -> (Vec<Source>, Vec<Unreadable>) {
     let (mut paths, mut unreadable) = (Vec::new(), Vec::new());
@@ -280,8 +281,8 @@ fn settle(block: &mut Block<'_>, faults: &mut Vec<(At, BlockFault)>) {
 /// Width of ` 4 ` in front of a line.
 const LISTING_WIDTH: usize = 3;
 
-/// True if every line begins with its own number in two columns, as in the listings of the manual. No form can look so: the
-/// numbers of a movetable's lines begin at 1.
+/// True if every line begins with its own number in two columns, as in the listings of the manual. No form
+/// can look so: the numbers of a movetable's lines begin at 1.
 fn is_listing(lines: &[SourceLine<'_>]) -> bool {
     if lines.first().is_none_or(|line| !line.text.starts_with(" 0")) {
         return false;

@@ -20,8 +20,8 @@ use super::{
 /// Records that a file can hold (SPECNOTES.md, Task data); one more is the manual's FILE FULL.
 pub const FILE_RECORDS: usize = 100_000;
 
-/// The files, by the names that a declaration may give. Those of the object location form and of the approach/depart form are
-/// ours, as the manual names none, and so are the last two.
+/// The files, by the names that a declaration may give. Those of the object location form and of the
+/// approach/depart form are ours, as the manual names none, and so are the last two.
 pub const FILE_NAMES: [&str; 18] = [
     "POSE",
     "MOVTAB",
@@ -179,7 +179,7 @@ impl Store {
         }
     }
 
-    /// The files of blocks that were read, for whoever keeps them with a log: those of the first load, then those of each
+    /// The files of blocks that were read, to be kept with a log: those of the first load, then those of each
     /// [`Store::with_blocks`] in turn.
     #[must_use]
     pub fn sources(&self) -> &[Source] {

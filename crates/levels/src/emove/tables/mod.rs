@@ -25,10 +25,10 @@ pub mod search;
 mod variables;
 pub mod withdraw;
 
+use interfaces::{Reason, emove::EmoveVerb, prim::JoystickGrip};
 use rcs_core::{
     Actions, Variables, commands,
     handshake::{Arrival, Lower},
-    interface::{Reason, emove::EmoveVerb, prim::JoystickGrip},
     table::Choice,
 };
 

@@ -361,7 +361,7 @@ pub enum Sight {
     Missing,
     /// It sees something else.
     Unrecognised,
-    /// It says what cannot be.
+    /// It says what cannot be, or the robot is not where it was sent.
     Implausible,
 }
 

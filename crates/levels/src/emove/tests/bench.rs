@@ -2,21 +2,16 @@
 
 use std::{cell::RefCell, sync::OnceLock};
 
-use rcs_core::{
-    frame::Frame,
-    handshake::successor,
-    interface::{
-        CommonMemory, ExternalInputs, Reason, Report,
-        emove::{EmoveCommand, EmoveVerb},
-        pose_range,
-        prim::JoystickGrip,
-        subtask::LocationKind,
-    },
-    name::Name16,
-    pose::Pose,
+use geometry::{frame::Frame, pose::Pose};
+use interfaces::{
+    CommonMemory, ExternalInputs, Reason, StatusReport,
+    emove::{EmoveCommand, EmoveVerb},
+    pose_range,
+    prim::JoystickGrip,
     process::{Inputs, Process},
-    tick::Tick,
+    subtask::LocationKind,
 };
+use rcs_core::{handshake::successor, name::Name16, tick::Tick};
 use taskdata::{
     files::TaskData,
     load::{Source, Store},
@@ -240,11 +235,11 @@ impl Bench {
     }
 
     /// Run until the command has ended.
-    pub fn finish(&mut self) -> (Report, Reason) {
+    pub fn finish(&mut self) -> (StatusReport, Reason) {
         for _ in 0..1000 {
             self.step();
             let status = self.memory.emove.status;
-            if status.echo == self.memory.subtask.emove.number && status.report != Report::Executing {
+            if status.echo == self.memory.subtask.emove.number && status.report != StatusReport::Executing {
                 return (status.report, status.reason);
             }
         }
@@ -259,13 +254,13 @@ impl Bench {
         grip: i32,
         location: &str,
         gripper: u8,
-    ) -> (Report, Reason) {
+    ) -> (StatusReport, Reason) {
         self.world.log.clear();
         self.command(verb, object, grip, location, gripper);
         self.finish()
     }
 
-    pub fn pause(&mut self) -> (Report, Reason) {
+    pub fn pause(&mut self) -> (StatusReport, Reason) {
         self.run(EmoveVerb::Pause, "", 0, "", 0)
     }
 
@@ -288,7 +283,7 @@ impl Bench {
             self.step();
             attempt(&mut self.clone());
             let status = self.memory.emove.status;
-            if status.echo == self.memory.subtask.emove.number && status.report != Report::Executing {
+            if status.echo == self.memory.subtask.emove.number && status.report != StatusReport::Executing {
                 return;
             }
         }
@@ -318,8 +313,8 @@ impl Bench {
     }
 }
 
-pub const DONE: (Report, Reason) = (Report::Done, Reason::None);
+pub const DONE: (StatusReport, Reason) = (StatusReport::Done, Reason::None);
 
-pub const fn error(reason: Reason) -> (Report, Reason) {
-    (Report::Error, reason)
+pub const fn error(reason: Reason) -> (StatusReport, Reason) {
+    (StatusReport::Error, reason)
 }

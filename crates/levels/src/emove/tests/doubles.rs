@@ -1,20 +1,21 @@
 //! Test doubles of E-move's neighbours, each a dozen lines that do what the manual's chapter says of the
 //! process, and the little world that they share.
 
-use rcs_core::{
-    frame::{Frame, rotation_by, rotation_vector},
-    handshake::{Arrival, Receiver},
-    interface::{
-        CommonMemory, ExternalInputs, GripOutputs, Header, JawsOutputs, PrimOutputs, QuickChangeOutputs,
-        Reason,
-        device::{Picture, VisionStatus},
-        grip::{Felt, GripReport, GripVerb},
-        jaws::{JawsCommand, JawsReport, JawsVerb},
-        pose_range,
-        prim::{JoystickGrip, PrimReport, PrimVerb},
-        quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
-    },
+use geometry::{
+    frame::{Frame, Vector, rotation_by, rotation_vector},
     pose::Pose,
+};
+use interfaces::{
+    CommonMemory, ExternalInputs, GripOutputs, Header, JawsOutputs, PrimOutputs, QuickChangeOutputs, Reason,
+    device::{Picture, VisionStatus},
+    grip::{Felt, GripReport, GripVerb},
+    jaws::{JawsCommand, JawsReport, JawsVerb},
+    pose_range,
+    prim::{JoystickGrip, PrimReport, PrimVerb},
+    quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
+};
+use rcs_core::{
+    handshake::{Arrival, Receiver},
     tick::Tick,
 };
 use taskdata::files::{MovtabId, TaskData};
@@ -180,6 +181,8 @@ impl Receiving {
 pub struct Prim {
     /// It goes by steps.
     pub by_steps: bool,
+    /// The arm hangs so far from where it was sent.
+    pub sag: Vector,
     receiving: Receiving,
     pub report: PrimReport,
     pub reason: Reason,
@@ -288,6 +291,8 @@ impl Prim {
             self.poses = pose_range::next(pose_range::PRIM, self.poses);
             (record.number, record.pose) = (Some(self.poses), Pose::from_frame(&world.frame));
         }
+        outputs.poses[1].pose =
+            Pose::from_frame(&Frame { position: world.frame.position - self.sag, ..world.frame });
         let status = &mut outputs.status;
         status.echo = self.receiving.receiver.echo;
         (status.report, status.reason) = (self.report, self.reason);

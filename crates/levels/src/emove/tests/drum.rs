@@ -1,16 +1,12 @@
 //! INSERT-TOOL, RELEASE-TOOL, ACQUIRE-TOOL and REMOVE-TOOL.
 
-use rcs_core::{
-    frame::{Frame, Vector},
-    interface::{
-        Reason, Report,
-        emove::EmoveVerb::{
-            self, AcquireTool, InsertTool, MovToLoc, Pause, Release, ReleaseTool, RemoveTool,
-        },
-        grip::Felt,
-        jaws::JawsReport,
-        prim::PrimReport,
-    },
+use geometry::frame::{Frame, Vector};
+use interfaces::{
+    Reason, StatusReport,
+    emove::EmoveVerb::{self, AcquireTool, InsertTool, MovToLoc, Pause, Release, ReleaseTool, RemoveTool},
+    grip::Felt,
+    jaws::JawsReport,
+    prim::PrimReport,
     process::Process,
 };
 
@@ -50,7 +46,7 @@ pub const SCENARIOS: &[fn()] = &[
 /// Size of the tool, 0.01 in.
 const SIZE: i32 = 248;
 
-fn run(bench: &mut Bench, verb: EmoveVerb) -> (Report, Reason) {
+fn run(bench: &mut Bench, verb: EmoveVerb) -> (StatusReport, Reason) {
     bench.run(verb, "CUTTER", 1, "TOOL-TRNS", 3)
 }
 
@@ -76,7 +72,7 @@ fn empty() -> Bench {
 }
 
 /// ACQUIRE-TOOL with a tool that comes between the fingers by the slide.
-fn acquire(bench: &mut Bench) -> (Report, Reason) {
+fn acquire(bench: &mut Bench) -> (StatusReport, Reason) {
     bench.world.log.clear();
     bench.command(AcquireTool, "CUTTER", 1, "TOOL-TRNS", 3);
     while !bench.log().contains(&"GO-UNTIL ACQ-SLIDE ACQ-MY") {
@@ -375,7 +371,7 @@ fn an_interrupted_acquisition_goes_on() {
 }
 
 /// ACQUIRE-TOOL sent again; the tool is between the fingers before they close.
-fn acquire_from(bench: &mut Bench) -> (Report, Reason) {
+fn acquire_from(bench: &mut Bench) -> (StatusReport, Reason) {
     bench.world.log.clear();
     bench.command(AcquireTool, "CUTTER", 1, "TOOL-TRNS", 3);
     while !bench.log().contains(&"GRASP 250") {

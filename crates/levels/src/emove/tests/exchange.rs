@@ -1,7 +1,7 @@
 //! MOV-TO-HOL, QC-DETACH and QC-ATTACH.
 
-use rcs_core::interface::{
-    Reason, Report,
+use interfaces::{
+    Reason, StatusReport,
     emove::EmoveVerb::{MovToHol, MovToLoc, MovToObj, Pause, QcAttach, QcDetach, Release},
     jaws::JawsReport,
     prim::PrimReport,
@@ -48,12 +48,12 @@ fn bare(gripper: u8) -> Bench {
     bench
 }
 
-fn detach(bench: &mut Bench, gripper: u8) -> (Report, Reason) {
+fn detach(bench: &mut Bench, gripper: u8) -> (StatusReport, Reason) {
     let (_, object, holster) = GRIPPERS[usize::from(gripper) - 1];
     bench.run(QcDetach, object, 1, holster, gripper)
 }
 
-fn attach(bench: &mut Bench, gripper: u8) -> (Report, Reason) {
+fn attach(bench: &mut Bench, gripper: u8) -> (StatusReport, Reason) {
     let (_, object, holster) = GRIPPERS[usize::from(gripper) - 1];
     bench.run(QcAttach, object, 2, holster, gripper)
 }

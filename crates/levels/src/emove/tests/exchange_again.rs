@@ -1,7 +1,7 @@
 //! QC-ATTACH, QC-DETACH and GRASP-OBJ that are interrupted and sent again (docs/design/recovery.md
 //! "Exchange", "Held").
 
-use rcs_core::interface::{
+use interfaces::{
     Reason,
     emove::{
         EmoveVerb::{
@@ -38,6 +38,7 @@ pub const SCENARIOS: &[fn()] = &[
     what_is_not_known_is_held,
     a_bare_robot_leaves_a_holster_without_a_gripper,
     id_pins_that_fail_change_nothing,
+    a_gripper_that_has_come_off_a_locked_ring_is_taken_again,
 ];
 
 /// How a command ends before it is sent again.
@@ -476,7 +477,7 @@ fn what_is_not_known_is_held() {
         assert_eq!(bench.memory.emove.status.held, Holding::NotKnown);
         bench
     };
-    // Felt, and nobody knows what it is.
+    // Felt, and it is not known what it is.
     let felt = |location: &str| {
         let mut bench = Bench::new(location, 1);
         (bench.grip.opening, bench.world.object) = (75, Some(75));
@@ -553,6 +554,31 @@ fn a_bare_robot_leaves_a_holster_without_a_gripper() {
 }
 
 #[test]
+fn a_gripper_that_has_come_off_a_locked_ring_is_taken_again() {
+    for gripper in 1..=3 {
+        let (object, holster) = holster(gripper);
+        let fetch = (MovToHol, object, 2, holster, gripper);
+        let mut bench = with(gripper);
+        bench.world.mated = 0;
+        bench.steps(4);
+        assert_eq!(send(&mut bench, fetch), error(Reason::PinsFail));
+        // A person opens the ring and puts the gripper into its holster …
+        let mut opened = bench.clone();
+        opened.real.as_mut().unwrap().open_ring();
+        opened.world.resident[usize::from(gripper) - 1] = gripper;
+        opened.steps(10);
+        assert_eq!(send(&mut opened, fetch), DONE);
+        assert_eq!(send(&mut opened, (QcAttach, object, 2, holster, gripper)), DONE);
+        assert_eq!((opened.world.mated, opened.world.locked), (gripper, true));
+        // … or back onto the robot.
+        bench.world.mated = gripper;
+        bench.steps(10);
+        assert_eq!(send(&mut bench, (QcDetach, object, 1, holster, gripper)), DONE);
+        assert_eq!(bench.world.resident[usize::from(gripper) - 1], gripper);
+    }
+}
+
+#[test]
 fn id_pins_that_fail_change_nothing() {
     for (gripper, object, size) in [(1, "BLOCK", 75), (2, "SHAFT", 200), (3, "CUTTER", 250)] {
         let mut bench = Bench::ready("HOME", gripper);
@@ -561,6 +587,7 @@ fn id_pins_that_fail_change_nothing() {
         bench.world.mated = 0;
         bench.steps(4);
         assert_eq!(bench.memory.emove.status.held, Holding::NotKnown);
+        assert_eq!(bench.memory.emove.status.end_effector_id, Some(gripper));
         for (verb, location) in [
             (MovToObj, "BENCH"),
             (MovToHol, "HOLSTER-R"),

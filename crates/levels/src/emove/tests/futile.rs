@@ -1,7 +1,8 @@
 //! The tables of a gripper change against a world in which no order has an effect (docs/design/recovery.md
 //! "Exchange").
 
-use rcs_core::{handshake::Lower, interface::prim::JoystickGrip, table::Decision};
+use interfaces::prim::JoystickGrip;
+use rcs_core::{handshake::Lower, table::Decision};
 
 use crate::{
     emove::{

@@ -1,19 +1,17 @@
 //! MOV-…, GRASP-OBJ, RELEASE, LOCATE-OBJ and WITHDRAW with each gripper.
 
-use rcs_core::{
-    interface::{
-        Reason, Report,
-        device::VisionStatus,
-        emove::EmoveVerb::{
-            GraspObj, InsertTool, LocateObj, MovObjTo, MovToHol, MovToLoc, MovToObj, MovToVu, Release,
-            RemoveTool, Withdraw,
-        },
-        jaws::JawsReport,
-        pose_range,
-        prim::PrimReport,
+use interfaces::{
+    Reason, StatusReport,
+    device::VisionStatus,
+    emove::EmoveVerb::{
+        GraspObj, InsertTool, LocateObj, MovObjTo, MovToHol, MovToLoc, MovToObj, MovToVu, Release,
+        RemoveTool, Withdraw,
     },
-    name::Name16,
+    jaws::JawsReport,
+    pose_range,
+    prim::PrimReport,
 };
+use rcs_core::name::Name16;
 use taskdata::files::{LocptId, PathPoint, Target};
 
 use super::{
@@ -217,7 +215,7 @@ fn what_prim_reports_goes_up() {
     assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), error(Reason::NeighbourLost));
     let mut bench = Bench::ready("HOME", 0);
     bench.spoil("GOTO-PT", Mishap::Joystick);
-    assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), (Report::JoystickOn, Reason::JoystickOn));
+    assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), (StatusReport::JoystickOn, Reason::JoystickOn));
 }
 
 #[test]
@@ -370,6 +368,28 @@ fn vision_that_fails_is_asked_again_and_given_up() {
 }
 
 #[test]
+fn a_picture_from_an_arm_that_sinks_says_nothing() {
+    let mut bench = Bench::ready("HOME", 1);
+    assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
+    bench.prim.sag.z = 0.3;
+    assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), error(Reason::VisionImplausible));
+    assert!(bench.memory.emove.beliefs.located.is_none());
+    bench.prim.sag.z = 0.0;
+    assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), DONE);
+}
+
+#[test]
+fn pictures_do_not_outlive_a_controller_that_was_off() {
+    let mut bench = Bench::ready("HOME", 1);
+    assert_eq!(bench.run(MovToVu, "BLOCK", 1, "BENCH", 1), DONE);
+    assert_eq!(bench.run(LocateObj, "BLOCK", 1, "BENCH", 1), DONE);
+    assert!(bench.memory.emove.beliefs.located.is_some());
+    (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkOff, Reason::LinkOff);
+    bench.steps(3);
+    assert!(bench.memory.emove.beliefs.located.is_none());
+}
+
+#[test]
 fn what_no_picture_can_show_moves_nothing() {
     // BLOCK is looked at from 590 mm: the picture ends before 11.61 in.
     const TRUTH: (i32, i32, i32, u16) = (20, -10, 1000, 17);
@@ -425,10 +445,7 @@ fn missing_data_are_named() {
     bench.command(MovToLoc, "", 0, "BENCH", 0);
     bench.memory.subtask.emove.pose = Some(pose_range::next(pose_range::SUBTASK, 4_000_000));
     assert_eq!(bench.finish(), error(Reason::NoDestination), "no such changing record");
-    assert_eq!(
-        bench.run(rcs_core::interface::emove::EmoveVerb::None, "", 0, "", 0),
-        error(Reason::UnknownCommand)
-    );
+    assert_eq!(bench.run(interfaces::emove::EmoveVerb::None, "", 0, "", 0), error(Reason::UnknownCommand));
     bench.world.frame = moved(frame_of("HOME"), &["300ty"]);
     bench.steps(2);
     assert_eq!(bench.run(MovToLoc, "", 0, "BENCH", 0), error(Reason::UnknownStart));

@@ -1,19 +1,16 @@
 //! Whatever the neighbours say and whatever is commanded.
 
-use proptest::prelude::*;
-use rcs_core::{
-    Plain,
-    interface::{
-        EmoveOutputs, Header, Reason,
-        emove::EmoveVerb,
-        grip::GripReport,
-        jaws::JawsReport,
-        prim::{JoystickGrip, PrimReport},
-        quick_change::{QuickChangeReport, RingPosition},
-    },
-    plain::to_bytes,
+use interfaces::{
+    EmoveOutputs, Header, Reason,
+    emove::EmoveVerb,
+    grip::GripReport,
+    jaws::JawsReport,
+    prim::{JoystickGrip, PrimReport},
     process::{Inputs, Process},
+    quick_change::{QuickChangeReport, RingPosition},
 };
+use proptest::prelude::*;
+use rcs_core::{Plain, plain::to_bytes};
 
 use super::bench::{Bench, frame_of, given, moved};
 use crate::emove::{Emove, gripper::Gripper};

@@ -1,18 +1,16 @@
 //! E-PAUSE: the start, the dormancy of the gripper processes, and the joystick box.
 
-use rcs_core::{
-    interface::{
-        Reason, Report,
-        emove::{
-            Dormancy,
-            EmoveVerb::{GraspObj, MovToLoc, Pause},
-        },
-        jaws::JawsReport,
-        prim::{JoystickGrip, PrimReport},
-        quick_change::{QuickChangeReport, RingPosition},
+use interfaces::{
+    Reason, StatusReport,
+    emove::{
+        Dormancy,
+        EmoveVerb::{GraspObj, MovToLoc, Pause},
     },
-    table::Verdict,
+    jaws::JawsReport,
+    prim::{JoystickGrip, PrimReport},
+    quick_change::{QuickChangeReport, RingPosition},
 };
+use rcs_core::table::Verdict;
 
 use super::{
     bench::{Bench, DONE, error, frame_of, given, moved},
@@ -53,7 +51,7 @@ fn a_link_that_fails_in_a_pause_is_initialized_again_or_reported() {
     let before = bench.log().len();
     bench.steps(40);
     assert_eq!(bench.log()[before..before + 2], ["ROBOT-INIT", "PAUSE"]);
-    assert_eq!(bench.memory.emove.status.report, Report::Executing);
+    assert_eq!(bench.memory.emove.status.report, StatusReport::Executing);
     bench.dead.push("Prim");
     assert_eq!(bench.finish(), error(Reason::NeighbourLost));
     // The pause is done and stands.
@@ -62,7 +60,11 @@ fn a_link_that_fails_in_a_pause_is_initialized_again_or_reported() {
     (bench.prim.report, bench.prim.reason) = (PrimReport::T3LinkErr, Reason::LinkError);
     bench.steps(3);
     let status = &bench.memory.emove.status;
-    assert_eq!((status.report, status.reason), (Report::Done, Reason::LinkError), "no failure of E-PAUSE");
+    assert_eq!(
+        (status.report, status.reason),
+        (StatusReport::Done, Reason::LinkError),
+        "no failure of E-PAUSE"
+    );
     assert_eq!(bench.pause(), DONE);
 }
 
@@ -93,7 +95,7 @@ fn a_pause_waits_for_the_calibration() {
     bench.command(Pause, "", 0, "", 0);
     bench.steps(200);
     assert_eq!(bench.memory.prim.status.report, PrimReport::Done);
-    assert_eq!(bench.memory.emove.status.report, Report::Executing, "Grip's PAUSE is not done before");
+    assert_eq!(bench.memory.emove.status.report, StatusReport::Executing, "Grip's PAUSE is not done before");
 }
 
 #[test]
@@ -237,7 +239,7 @@ fn the_operator_moves_the_robot_and_the_fingers() {
         bench.world.joystick = true;
         bench.steps(3);
         let status = bench.memory.emove.status;
-        assert_eq!((status.report, status.reason), (Report::JoystickOn, Reason::JoystickOn));
+        assert_eq!((status.report, status.reason), (StatusReport::JoystickOn, Reason::JoystickOn));
         bench.world.log.clear();
         bench.world.button = JoystickGrip::Open;
         bench.steps(20);
@@ -257,19 +259,19 @@ fn the_operator_moves_the_robot_and_the_fingers() {
         let status = bench.memory.emove.status;
         assert_eq!(
             (status.report, status.reason, status.at.unwrap_or_default().location.as_str()),
-            (Report::Done, Reason::None, "VISE")
+            (StatusReport::Done, Reason::None, "VISE")
         );
     }
     // Without frame switches the buttons work as well, and a robot that is switched over while it pauses is
     // the operator's.
     let mut bench = Bench::ready("HOME", 1);
     bench.world.joystick = true;
-    assert_eq!(bench.pause(), (Report::JoystickOn, Reason::JoystickOn));
+    assert_eq!(bench.pause(), (StatusReport::JoystickOn, Reason::JoystickOn));
     bench.world.joystick = false;
     bench.steps(5);
     bench.dead.push("Prim");
     bench.steps(5);
-    assert_eq!(bench.memory.emove.status.report, Report::Done, "done stays");
+    assert_eq!(bench.memory.emove.status.report, StatusReport::Done, "done stays");
 }
 
 #[test]
@@ -278,15 +280,15 @@ fn the_operator_interrupts_a_command() {
     bench.command(MovToLoc, "", 0, "VISE", 0);
     bench.steps(7);
     bench.world.joystick = true;
-    assert_eq!(bench.finish(), (Report::JoystickOn, Reason::JoystickOn));
-    assert_eq!(bench.pause(), (Report::JoystickOn, Reason::JoystickOn));
+    assert_eq!(bench.finish(), (StatusReport::JoystickOn, Reason::JoystickOn));
+    assert_eq!(bench.pause(), (StatusReport::JoystickOn, Reason::JoystickOn));
     bench.world.joystick = false;
     bench.steps(5);
-    assert_eq!(bench.memory.emove.status.report, Report::Done);
+    assert_eq!(bench.memory.emove.status.report, StatusReport::Done);
     // A command that was interrupted and not followed by a pause ends in an error when the box is let go.
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("GO-THRU", Mishap::Joystick);
-    assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), (Report::JoystickOn, Reason::JoystickOn));
+    assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), (StatusReport::JoystickOn, Reason::JoystickOn));
     bench.memory.prim.status.report = PrimReport::Done;
     bench.dead.push("Prim");
     bench.steps(2);

@@ -1,16 +1,14 @@
 //! Motions that are interrupted and sent again, or followed by another command (docs/design/recovery.md
 //! "On the way", "Halt", "Beliefs").
 
-use rcs_core::{
-    frame::{Frame, Vector},
-    interface::{
-        Reason, Report,
-        emove::{
-            Beliefs,
-            EmoveVerb::{self, LocateObj, MovObjTo, MovToLoc, MovToObj, MovToVu, Pause, QcAttach, Release},
-        },
-        prim::{PrimReport, PrimVerb},
+use geometry::frame::{Frame, Vector};
+use interfaces::{
+    Reason, StatusReport,
+    emove::{
+        Beliefs,
+        EmoveVerb::{self, LocateObj, MovObjTo, MovToLoc, MovToObj, MovToVu, Pause, QcAttach, Release},
     },
+    prim::{PrimReport, PrimVerb},
 };
 
 use super::{
@@ -48,7 +46,10 @@ pub fn paused(bench: &mut Bench) -> usize {
     told
 }
 
-pub fn send(bench: &mut Bench, (verb, object, grip, location, gripper): Command<'_>) -> (Report, Reason) {
+pub fn send(
+    bench: &mut Bench,
+    (verb, object, grip, location, gripper): Command<'_>,
+) -> (StatusReport, Reason) {
     bench.run(verb, object, grip, location, gripper)
 }
 
@@ -80,7 +81,7 @@ fn nearest(bench: &mut Bench, (verb, object, grip, location, gripper): Command<'
         nearest = nearest.min(bench.world.frame.distance(frame).inches);
         bench.step();
         let status = bench.memory.emove.status;
-        if status.echo == bench.memory.subtask.emove.number && status.report != Report::Executing {
+        if status.echo == bench.memory.subtask.emove.number && status.report != StatusReport::Executing {
             assert_eq!((status.report, status.reason), DONE, "{:?}", bench.world.log);
             return nearest;
         }
@@ -198,7 +199,7 @@ fn a_way_between_two_poses_at_an_object_leads_only_on() {
     let further = |bench: &mut Bench| {
         bench.write(to_pin.0, to_pin.1, 1, to_pin.3, 1);
         let record = &mut bench.memory.subtask.poses[0];
-        record.pose = rcs_core::pose::Pose::from_frame(&moved(frame_of("BENCH"), &["300ty"]));
+        record.pose = geometry::pose::Pose::from_frame(&moved(frame_of("BENCH"), &["300ty"]));
     };
     further(&mut bench);
     bench.steps(8);
@@ -268,7 +269,7 @@ fn a_restarted_e_move_stops_what_it_had_ordered() {
     // The operator who has the robot keeps it.
     let mut bench = Bench::ready("HOME", 1);
     bench.spoil("GO-THRU", Mishap::Joystick);
-    assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), (Report::JoystickOn, Reason::JoystickOn));
+    assert_eq!(bench.run(MovToLoc, "", 0, "VISE", 0), (StatusReport::JoystickOn, Reason::JoystickOn));
     let sent = bench.memory.emove.prim.number;
     bench.process = Emove::default();
     bench.steps(5);

@@ -1,16 +1,14 @@
 //! E-move with the real Quick Change, Grip, V-Grip and Tool-Grip, their devices simulated: what one sends is
 //! what the other takes, sleeping and waking included. Prim and vision are doubles.
 
-use rcs_core::{
-    interface::{
-        CommonMemory, ExternalInputs, Header, Reason, Report,
-        device::valve,
-        emove::EmoveVerb::{GraspObj, MovObjTo, MovToHol, MovToLoc, MovToObj, QcAttach, QcDetach, Release},
-        prim::JoystickGrip,
-    },
+use interfaces::{
+    CommonMemory, ExternalInputs, Header, Reason, StatusReport,
+    device::valve,
+    emove::EmoveVerb::{GraspObj, MovObjTo, MovToHol, MovToLoc, MovToObj, QcAttach, QcDetach, Release},
+    prim::JoystickGrip,
     process::{Inputs, Process},
-    tick::{TICK_S, Tick},
 };
+use rcs_core::tick::{TICK_S, Tick};
 use taskdata::files::TaskData;
 
 use super::{
@@ -86,6 +84,11 @@ impl Real {
         step(&mut self.tool_grip, dormant.tool_grip, &inputs, &mut after.tool_grip, |o| &mut o.header);
     }
 
+    /// A person opens the ring.
+    pub const fn open_ring(&mut self) {
+        self.ring = 0.0;
+    }
+
     /// What the valves of the tick before have done, and what the sensors see of it.
     fn devices(&mut self, before: &CommonMemory, external: &mut ExternalInputs, world: &mut World) {
         if !self.started {
@@ -113,7 +116,7 @@ impl Real {
         (grip.strain_left, grip.strain_right) = (strain, strain);
     }
 
-    fn move_fingers(&mut self, outputs: &rcs_core::interface::DeviceOutputs, world: &World) {
+    fn move_fingers(&mut self, outputs: &interfaces::DeviceOutputs, world: &World) {
         let Some(at) = usize::from(world.mated).checked_sub(1) else { return };
         let (closed, open) = WAYS[at];
         let object = world.object.map_or(closed, |size| f64::from(size) / 100.0);
@@ -229,7 +232,7 @@ fn the_operator_opens_and_closes_any_gripper() {
         let mut bench = ready("HOME", gripper);
         bench.world.joystick = true;
         bench.steps(5);
-        assert_eq!(bench.memory.emove.status.report, Report::JoystickOn);
+        assert_eq!(bench.memory.emove.status.report, StatusReport::JoystickOn);
         for (button, opened) in [(JoystickGrip::Open, true), (JoystickGrip::Close, false)] {
             bench.world.button = button;
             bench.steps(150);
@@ -240,7 +243,7 @@ fn the_operator_opens_and_closes_any_gripper() {
         }
         (bench.world.joystick, bench.world.button) = (false, JoystickGrip::None);
         bench.steps(5);
-        assert_eq!(bench.memory.emove.status.report, Report::Done);
+        assert_eq!(bench.memory.emove.status.report, StatusReport::Done);
         assert_eq!(bench.pause(), DONE);
     }
 }

@@ -8,17 +8,13 @@ pub mod position;
 pub mod servo;
 pub mod up_init;
 
-use rcs_core::{
-    Actions, Plain, Variables, commands,
-    handshake::Arrival,
-    interface::{
-        Reason,
-        grip::{Felt, GripVerb},
-    },
+use interfaces::{
+    Reason,
+    grip::{Felt, GripVerb},
 };
+use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
-use super::goal::{Goal, OPEN_END};
-use crate::execution::{Asked, Course, EXECUTE};
+use crate::execution::{Asked, EXECUTE};
 
 /// Step of all commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -97,24 +93,6 @@ pub enum Command {
     Motion,
     /// OPEN-GRIP to the open end of travel.
     OpenWide,
-}
-
-impl Command {
-    /// What EXECUTE and ACCEPT leave of a command.
-    #[must_use]
-    pub fn of(course: Course, accepted: bool, goal: &Goal) -> Self {
-        match course {
-            Course::Rest => Self::Nothing,
-            Course::Begin | Course::Continue if accepted => match goal.verb {
-                GripVerb::OpenGrip if goal.opening >= OPEN_END => Self::OpenWide,
-                GripVerb::None => Self::Refused,
-                GripVerb::Pause => Self::Pause,
-                GripVerb::UpInit => Self::UpInit,
-                GripVerb::Position | GripVerb::OpenGrip | GripVerb::CloseGrip => Self::Motion,
-            },
-            Course::Refuse | Course::Begin | Course::Continue => Self::Refused,
-        }
-    }
 }
 
 /// What the sensors read while calibrating.

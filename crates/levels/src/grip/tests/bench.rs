@@ -1,15 +1,13 @@
 //! The Grip process and a simulated gripper, tick by tick.
 
-use rcs_core::{
-    interface::{
-        CommonMemory, ExternalInputs, GripOutputs,
-        device::{QuickChangeSensors, valve},
-        grip::{GripCommand, GripReport, GripVerb},
-    },
+use geometry::units::hundredths;
+use interfaces::{
+    CommonMemory, ExternalInputs, GripOutputs,
+    device::{QuickChangeSensors, valve},
+    grip::{GripCommand, GripReport, GripVerb},
     process::{Inputs, Process},
-    tick::Tick,
-    units::hundredths,
 };
+use rcs_core::tick::Tick;
 
 use super::{Grip, gripper::Gripper};
 use crate::coverage::Coverage;

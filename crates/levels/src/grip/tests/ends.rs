@@ -1,10 +1,8 @@
 //! Every command ends, from whatever state and in whatever world it begins.
 
-use rcs_core::{
-    interface::{
-        Reason,
-        grip::{Felt, GripReport, GripVerb},
-    },
+use interfaces::{
+    Reason,
+    grip::{Felt, GripReport, GripVerb},
     process::Process,
 };
 
@@ -15,8 +13,7 @@ use super::{
     gripper::{Gripper, Object},
 };
 use crate::grip::{
-    felt::Touch,
-    state::State,
+    state::{State, Touch},
     tables::{Phase, Step},
 };
 

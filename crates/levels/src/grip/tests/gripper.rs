@@ -1,9 +1,7 @@
 //! A small simulated gripper: what the valves of `interface::device::valve` do to opening, force and counts.
 
-use rcs_core::{
-    interface::device::{ADC_FULL_SCALE, GripSensors, valve},
-    tick::TICK_S,
-};
+use interfaces::device::{ADC_FULL_SCALE, GripSensors, valve};
+use rcs_core::tick::TICK_S;
 
 /// Speeds of the flow valves, in/s, opening positive.
 const FLOWS: [(u8, f64); 6] = [

@@ -4,17 +4,14 @@ mod bench;
 mod ends;
 pub mod gripper;
 
-use proptest::prelude::*;
-use rcs_core::{
-    Plain,
-    interface::{
-        GripOutputs, Reason,
-        device::valve,
-        grip::{Felt, GripReport, GripVerb},
-    },
-    plain::to_bytes,
+use interfaces::{
+    GripOutputs, Reason,
+    device::valve,
+    grip::{Felt, GripReport, GripVerb},
     process::Process,
 };
+use proptest::prelude::*;
+use rcs_core::{Plain, plain::to_bytes};
 
 use self::{
     bench::{Bench, CLOSE},
@@ -57,7 +54,7 @@ fn positions_are_reached_without_hunting() {
     {
         let (ticks, outputs) = bench.done(GripVerb::Position, opening, 0);
         assert!((bench.gripper.opening - opening).abs() <= 0.02, "{opening}: {}", bench.gripper.opening);
-        assert!((rcs_core::units::inches(outputs.status.position) - opening).abs() <= 0.02);
+        assert!((geometry::units::inches(outputs.status.position) - opening).abs() <= 0.02);
         assert!(ticks <= most_ticks, "{opening} took {ticks} ticks");
         let one_way = bench.patterns.iter().filter(|bits| **bits != 0).collect::<Vec<_>>();
         assert!(one_way.len() <= 3, "{opening}: coarse, medium, fine and no more: {one_way:?}");
@@ -107,7 +104,7 @@ fn a_grasp_of_nothing_is_done_at_or_below_the_grasp_size() {
         bench.done(GripVerb::CloseGrip, grasp_size, 30);
         for _ in 0..100 {
             let position = bench.step().status.position;
-            assert!(position <= rcs_core::units::hundredths(grasp_size), "{grasp_size}: {position}");
+            assert!(position <= geometry::units::hundredths(grasp_size), "{grasp_size}: {position}");
         }
     }
 }

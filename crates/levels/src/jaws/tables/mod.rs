@@ -7,16 +7,12 @@ pub mod grasp;
 pub mod pause;
 pub mod release;
 
-use rcs_core::{
-    Actions, Plain, Variables, commands,
-    handshake::Arrival,
-    interface::{
-        Reason,
-        grip::Felt,
-        jaws::{JawsReport, JawsVerb},
-    },
-    table::Choice,
+use interfaces::{
+    Reason,
+    grip::Felt,
+    jaws::{JawsReport, JawsVerb},
 };
+use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival, table::Choice};
 
 use self::accept::accept;
 use crate::execution::{Asked, EXECUTE};

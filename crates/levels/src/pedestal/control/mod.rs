@@ -34,11 +34,11 @@ pub mod tables;
 #[cfg(test)]
 mod tests;
 
-use rcs_core::{
-    interface::PedestalOutputs,
+use interfaces::{
+    PedestalOutputs,
     process::{Inputs, Process},
-    table::Table,
 };
+use rcs_core::table::Table;
 
 use self::{
     state::State,

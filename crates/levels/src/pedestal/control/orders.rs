@@ -1,6 +1,6 @@
 //! What a command asks of hand and table.
 
-use rcs_core::interface::{
+use interfaces::{
     grip::{GripCommand, GripVerb},
     pedestal::{PedestalCommand, PedestalVerb, TableStatus},
 };

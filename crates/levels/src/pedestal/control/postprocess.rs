@@ -1,16 +1,13 @@
 //! Postprocess of the pedestal process: commands to hand and table, and the status to Subtask.
 
-use rcs_core::{
-    handshake::Lower,
-    interface::{
-        PedestalOutputs, Reason,
-        grip::{GripCommand, GripVerb},
-        pedestal::{PedestalStatus, TableCommand, TableVerb},
-    },
+use geometry::units::rounded;
+use interfaces::{
+    PedestalOutputs, Reason,
+    grip::{GripCommand, GripVerb},
+    pedestal::{PedestalStatus, TableCommand, TableVerb},
     process::Inputs,
-    tick::Tick,
-    units::rounded,
 };
+use rcs_core::{handshake::Lower, tick::Tick};
 
 use super::{
     orders::{hand_command, table_angle},

@@ -1,16 +1,13 @@
 //! Preprocess of the pedestal process: its state variables, from the command and the statuses of hand and
 //! table.
 
-use rcs_core::{
-    handshake::Lower,
-    interface::{
-        CommonMemory, PedestalOutputs,
-        grip::Felt,
-        pedestal::{PedestalVerb, TableVerb},
-    },
+use interfaces::{
+    CommonMemory, PedestalOutputs,
+    grip::Felt,
+    pedestal::{PedestalVerb, TableVerb},
     process::Inputs,
-    tick::Tick,
 };
+use rcs_core::{handshake::Lower, tick::Tick};
 
 use super::{
     orders::{angle, opening},

@@ -1,6 +1,7 @@
 //! What the pedestal process remembers from tick to tick.
 
-use rcs_core::{Plain, handshake::Commander, interface::pedestal::PedestalCommand, tick::Tick};
+use interfaces::pedestal::PedestalCommand;
+use rcs_core::{Plain, handshake::Commander, tick::Tick};
 
 use super::tables::{Ordered, Step};
 use crate::execution::Execution;

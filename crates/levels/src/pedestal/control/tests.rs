@@ -1,18 +1,14 @@
 //! Scenarios of the pedestal process: against statuses by hand, and together with hand and table and their
 //! devices.
 
-use proptest::prelude::*;
-use rcs_core::{
-    Plain,
-    interface::{
-        CommonMemory, ExternalInputs, Header, PedestalOutputs, Reason,
-        grip::{Felt, GripReport, GripVerb},
-        pedestal::{PedestalCommand, PedestalReport, PedestalVerb, TableVerb},
-    },
-    plain::to_bytes,
+use interfaces::{
+    CommonMemory, ExternalInputs, Header, PedestalOutputs, Reason,
+    grip::{Felt, GripReport, GripVerb},
+    pedestal::{PedestalCommand, PedestalReport, PedestalVerb, TableVerb},
     process::{Inputs, Process},
-    tick::Tick,
 };
+use proptest::prelude::*;
+use rcs_core::{Plain, plain::to_bytes, tick::Tick};
 
 use super::{Pedestal, state::State, tables::TABLES};
 use crate::{

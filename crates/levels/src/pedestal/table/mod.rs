@@ -54,11 +54,11 @@ pub use self::{
     state::State,
 };
 
-use rcs_core::{
-    interface::TableOutputs,
+use interfaces::{
+    TableOutputs,
     process::{Inputs, Process},
-    table::{Table as DecisionTable, Verdict},
 };
+use rcs_core::table::{Table as DecisionTable, Verdict};
 
 use self::tables::{
     Action, Command, Duty, Seen, Situation, Step, accept::accept, calibrate::calibrate, number, of_command,

@@ -1,13 +1,11 @@
 //! Postprocess of the table process: orders to the motor, and the status to the pedestal process.
 
-use rcs_core::{
-    interface::{
-        Reason, TableOutputs,
-        device::{MotorCommand, MotorOrder, PedestalSensors},
-        pedestal::{PedestalReport, TableStatus},
-    },
-    tick::Tick,
+use interfaces::{
+    Reason, TableOutputs,
+    device::{MotorCommand, MotorOrder, PedestalSensors},
+    pedestal::{PedestalReport, TableStatus},
 };
+use rcs_core::tick::Tick;
 
 use super::{
     preprocess::{AT_LIMIT, LIMIT_MINUS, LIMIT_PLUS, steps},

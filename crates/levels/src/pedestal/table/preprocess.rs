@@ -1,20 +1,20 @@
 //! Preprocess of the table process: its state variables, from the command and the sensors.
 
+use geometry::units::rounded;
+use interfaces::{
+    TableOutputs,
+    device::{MotorCommand, PedestalSensors, TABLE_STEPS_PER_TENTH},
+    pedestal::{TableCommand, TableVerb},
+    process::Inputs,
+};
 use rcs_core::{
     handshake::{Arrival, Commander},
-    interface::{
-        TableOutputs,
-        device::{MotorCommand, PedestalSensors, TABLE_STEPS_PER_TENTH},
-        pedestal::{TableCommand, TableVerb},
-    },
-    process::Inputs,
     tick::Tick,
-    units::rounded,
 };
 
 use super::{
     state::State,
-    tables::{Angle, Clock, Command, Counter, Motor, Phase, Place, Request, Seen, Situation},
+    tables::{Angle, Clock, Command, Counter, Motor, Phase, Request, Seen, Situation, Turned},
 };
 use crate::execution::Asked;
 
@@ -67,7 +67,7 @@ impl State {
                 command: Command::Nothing,
                 motor,
                 counter,
-                place: if self.is_there(sensors) { Place::There } else { Place::Elsewhere },
+                place: if self.is_there(sensors) { Turned::There } else { Turned::Elsewhere },
                 clock: if late { Clock::Expired } else { Clock::Running },
             },
             angle: known

@@ -1,11 +1,7 @@
 //! What the table process remembers from tick to tick.
 
-use rcs_core::{
-    Plain,
-    handshake::Commander,
-    interface::{device::MotorCommand, pedestal::TableCommand},
-    tick::Tick,
-};
+use interfaces::{device::MotorCommand, pedestal::TableCommand};
+use rcs_core::{Plain, handshake::Commander, tick::Tick};
 
 use super::tables::{Phase, Step};
 use crate::execution::Execution;

@@ -1,17 +1,13 @@
 //! Scenarios of the table process with a simulated rotary table.
 
-use proptest::prelude::*;
-use rcs_core::{
-    Plain,
-    interface::{
-        CommonMemory, ExternalInputs, Reason, TableOutputs,
-        device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH},
-        pedestal::{PedestalReport, TableCommand, TableVerb},
-    },
-    plain::to_bytes,
+use interfaces::{
+    CommonMemory, ExternalInputs, Reason, TableOutputs,
+    device::{MotorCommand, MotorOrder, PedestalSensors, TABLE_STEPS_PER_TENTH},
+    pedestal::{PedestalReport, TableCommand, TableVerb},
     process::{Inputs, Process},
-    tick::Tick,
 };
+use proptest::prelude::*;
+use rcs_core::{Plain, plain::to_bytes, tick::Tick};
 
 use super::{
     LIMIT_MINUS, LIMIT_PLUS, State, Table,

@@ -3,7 +3,8 @@
 //! The manual names the columns of a trajectory form (VII.6) but gives no units, so the three units are
 //! ASSUMED; they stand here and nowhere else.
 
-use rcs_core::{Plain, interface::device::KNOB_FULL, tick::TICK_S};
+use interfaces::device::KNOB_FULL;
+use rcs_core::{Plain, tick::TICK_S};
 
 /// in/s in a count of `vel-max`. ASSUMED.
 const VELOCITY_COUNT: f64 = 0.1;
@@ -15,7 +16,7 @@ const JERK_COUNT: f64 = ACCELERATION_COUNT / TICK_S;
 /// in/s that the DEPC link takes (A 2.3).
 pub const LINK_VELOCITY: f64 = 14.0;
 
-/// Limits along a path, whose inches are those of [`rcs_core::frame::Distance::path`].
+/// Limits along a path, whose inches are those of [`geometry::frame::Distance::path`].
 #[derive(Clone, Copy, Debug, PartialEq, Plain)]
 pub struct Limits {
     /// in/s.

@@ -36,7 +36,8 @@ pub mod segment;
 #[cfg(test)]
 mod tests;
 
-use rcs_core::{Plain, frame::Frame, tick::TICK_S};
+use geometry::frame::Frame;
+use rcs_core::{Plain, tick::TICK_S};
 
 use self::{
     limits::Limits,
@@ -75,7 +76,7 @@ impl Motion {
         self.at.frame()
     }
 
-    /// [`rcs_core::frame::Distance::path`] from the commanded frame to the goal of the last order, inches.
+    /// [`geometry::frame::Distance::path`] from the commanded frame to the goal of the last order, inches.
     #[must_use]
     pub fn distance(&self) -> f64 {
         self.frame().distance(&self.goal.frame()).path()

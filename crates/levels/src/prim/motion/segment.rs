@@ -1,10 +1,8 @@
 //! A straight line from one frame to another, with the rotation about one axis in step.
 
+use geometry::frame::{Distance, Frame, Rotation, Vector, norm, rotation_by, rotation_vector};
 use nalgebra::Matrix3;
-use rcs_core::{
-    Plain,
-    frame::{Distance, Frame, Rotation, Vector, norm, rotation_by, rotation_vector},
-};
+use rcs_core::Plain;
 
 use super::{
     limits::Limits,

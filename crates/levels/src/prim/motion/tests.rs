@@ -2,12 +2,12 @@
 
 use std::collections::VecDeque;
 
-use proptest::prelude::*;
-use rcs_core::{
+use geometry::{
     frame::{Frame, INCHES_PER_RADIAN, Rotation, Vector, norm, rotation_by, rotation_vector},
     movetable::straight_down,
-    tick::TICK_S,
 };
+use proptest::prelude::*;
+use rcs_core::tick::TICK_S;
 
 use super::{Motion, limits::Limits};
 
@@ -47,7 +47,7 @@ impl Random {
         let turn = if self.below(4) == 0 { Vector::zeros() } else { self.vector() * (size / 8.0) };
         let rotation = rotation_by(&turn) * from.rotation;
         // Orthonormal to the bit, as poses from forms are.
-        let rotation = rcs_core::frame::rotation_from_x_y(
+        let rotation = geometry::frame::rotation_from_x_y(
             &rotation.matrix().column(0).into_owned(),
             &rotation.matrix().column(1).into_owned(),
         );

@@ -14,11 +14,11 @@ pub mod pause;
 pub mod record_pose;
 pub mod robot_init;
 
+use geometry::frame::Frame;
+use interfaces::{Reason, prim::PrimVerb, t3i::ReportCheck};
 use rcs_core::{
     Actions, Plain, Variables, commands,
-    frame::Frame,
     handshake::Arrival,
-    interface::{Reason, prim::PrimVerb, t3i::ReportCheck},
     table::{Choice, Decision, Verdict},
 };
 

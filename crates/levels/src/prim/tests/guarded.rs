@@ -1,9 +1,7 @@
 //! Guarded moves, DELTA-MOVE and CAL-SENSOR.
 
-use rcs_core::{
-    interface::device::{FORCE_COUNTS_PER_LB, ForceSensor},
-    tick::TICK_S,
-};
+use interfaces::device::{FORCE_COUNTS_PER_LB, ForceSensor};
+use rcs_core::tick::TICK_S;
 
 use super::*;
 

@@ -1,14 +1,14 @@
 //! PAUSE with the joystick box, the record button, and what becomes of a Prim that was held.
 
-use rcs_core::{
+use geometry::{
     frame::{Rotation, rotation_vector},
-    interface::{
-        device::{joystick_frame, single_step},
-        prim::JoystickGrip,
-    },
     pose::POINT_DISTANCE,
-    tick::TICK_S,
 };
+use interfaces::{
+    device::{joystick_frame, single_step},
+    prim::JoystickGrip,
+};
+use rcs_core::tick::TICK_S;
 
 use super::*;
 use crate::prim::manual::{ACCELERATION, SPEED};

@@ -7,18 +7,17 @@ use depc::{
     Limits, Plate,
     controller::{Controller, ControllerInputs},
 };
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector, norm, rotation_by},
-    handshake::successor,
-    interface::{
-        CommonMemory, ExternalInputs, Reason,
-        device::{LinkBytes, RESOLVER_COUNTS, single_step},
-        prim::{PrimReport, PrimVerb},
-    },
     kinematics::{HOME_JOINTS, T3},
-    process::{Inputs, Process},
-    tick::Tick,
 };
+use interfaces::{
+    CommonMemory, ExternalInputs, Reason,
+    device::{LinkBytes, RESOLVER_COUNTS, single_step},
+    prim::{PrimReport, PrimVerb},
+    process::{Inputs, Process},
+};
+use rcs_core::{handshake::successor, tick::Tick};
 use taskdata::files::{TaskData, TrajPara};
 
 use super::pose_record;

@@ -10,19 +10,20 @@ mod rows;
 
 use std::{collections::VecDeque, sync::LazyLock};
 
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector, norm},
-    handshake::{Arrival, FIRST_STEP, Receiver, successor},
-    interface::{
-        ChangingPose, CommonMemory, Decided, ExternalInputs, Header, PrimOutputs, Reason, T3iOutputs,
-        pose_range,
-        prim::{PrimReport, PrimVerb},
-        t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
-    },
-    movetable::{Line, Movetable, System, straight_down},
-    name::Name10,
+    movetable::{Movetable, MovetableLine, System, straight_down},
     pose::{Pose, WireFrame},
+};
+use interfaces::{
+    ChangingPose, CommonMemory, Decided, ExternalInputs, Header, PrimOutputs, Reason, T3iOutputs, pose_range,
+    prim::{PrimReport, PrimVerb},
     process::{Inputs, Process},
+    t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
+};
+use rcs_core::{
+    handshake::{Arrival, FIRST_STEP, Receiver, successor},
+    name::Name10,
     tick::Tick,
 };
 use taskdata::{
@@ -192,7 +193,7 @@ struct Files {
 
 impl Files {
     fn new() -> Self {
-        let up = Line { system: System::World, values: [0, 0, 300] };
+        let up = MovetableLine { system: System::World, values: [0, 0, 300] };
         Self {
             poses: vec![
                 pose_record("VIA", shifted(10.0, 0.0)),

@@ -1,10 +1,8 @@
 //! Random commands, sensors and operators: whatever they do, the points stay within the limits.
 
-use rcs_core::{
-    frame::{INCHES_PER_RADIAN, Rotation, rotation_vector},
-    interface::device::ForceSensor,
-    tick::TICK_S,
-};
+use geometry::frame::{INCHES_PER_RADIAN, Rotation, rotation_vector};
+use interfaces::device::ForceSensor;
+use rcs_core::tick::TICK_S;
 
 use super::{guarded::stopping_path, *};
 use crate::prim::{manual::ACCELERATION, tables::TABLES};

@@ -1,6 +1,6 @@
 //! What becomes of a command when the link fails: Prim restarts it, and goes on.
 
-use rcs_core::interface::device::ForceSensor;
+use interfaces::device::ForceSensor;
 
 use super::*;
 use crate::prim::state::{MOST_RESTARTS, RESTART_TICKS};

@@ -1,6 +1,6 @@
 //! Every row of every table fires.
 
-use rcs_core::interface::device::{ForceSensor, joystick_frame};
+use interfaces::device::{ForceSensor, joystick_frame};
 
 use super::*;
 use crate::prim::tables::TABLES;

@@ -5,14 +5,11 @@ pub mod qc_lock;
 pub mod qc_pause;
 pub mod qc_unlock;
 
-use rcs_core::{
-    Actions, Plain, Variables, commands,
-    handshake::Arrival,
-    interface::{
-        Reason,
-        quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
-    },
+use interfaces::{
+    Reason,
+    quick_change::{QuickChangeReport, QuickChangeVerb, RingPosition},
 };
+use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
 use crate::execution::{Asked, EXECUTE};
 

@@ -20,7 +20,7 @@ decision_table! {
         }
         /// Nothing ordered yet.
         Start {
-            8:  part: Nobody                                                => Fail(NothingHeld);
+            8:  part: Neither                                               => Fail(NothingHeld);
             9:  part: Robot, robot: Safe | Away                             => PedPreGrip     -> Preparing;
         }
         /// The pedestal opens its hand and turns its table to receive the object.
@@ -37,7 +37,7 @@ decision_table! {
             13: part: Hand | Touched                                        => Fail(GraspMissed);
         }
         any {
-            14: part: Nobody                                                => Fail(ObjectLost);
+            14: part: Neither                                               => Fail(ObjectLost);
             // The robot has the part.
             15: part: Robot, robot: First, table: Receive, hand: Open       => PedGrip        -> Gripping;
             16: part: Robot, robot: Third, table: Receive, hand: Open       => MovObjToPed    -> Bringing;

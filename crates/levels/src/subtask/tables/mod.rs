@@ -19,10 +19,10 @@ pub mod remove_tool;
 pub mod s_pause;
 pub mod variables;
 
+use interfaces::{Reason, subtask::SubtaskVerb};
 use rcs_core::{
     Actions, Variables, commands,
     handshake::{Arrival, Lower},
-    interface::{Reason, subtask::SubtaskVerb},
     table::Choice,
 };
 

@@ -105,7 +105,7 @@ pub enum Part {
     /// The pedestal.
     Hand,
     /// Neither of them.
-    Nobody,
+    Neither,
     /// The pedestal has another object.
     Other,
     /// The pedestal has nothing, and the robot something unknown.

@@ -1,18 +1,18 @@
 //! Subtask with doubles of the processes below it: an E-move and an Active Pedestal that do at once what they
 //! are told, or fail as a test wants.
 
+use geometry::pose::Pose;
+use interfaces::{
+    CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, StatusReport,
+    emove::{EmoveCommand, EmoveVerb, Holding, ObjectGrip, PlacedObject, Standing},
+    grip::Felt,
+    pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
+    process::{Inputs, Process},
+    subtask::{SubtaskCommand, SubtaskStatus, SubtaskVerb},
+};
 use rcs_core::{
     handshake::{Arrival, Receiver},
-    interface::{
-        CommonMemory, EmoveOutputs, ExternalInputs, Header, PedestalOutputs, Reason, Report,
-        emove::{EmoveCommand, EmoveVerb, Holding, ObjectGrip, PlacedObject, Standing},
-        grip::Felt,
-        pedestal::{PedestalCommand, PedestalReport, PedestalVerb},
-        subtask::{SubtaskCommand, SubtaskStatus, SubtaskVerb},
-    },
     name::Name16,
-    pose::Pose,
-    process::{Inputs, Process},
     tick::Tick,
 };
 use taskdata::files::TaskData;
@@ -66,7 +66,7 @@ impl EmoveDouble {
             Arrival::New => {
                 self.received.push(*command);
                 self.left = WORK;
-                self.outputs.status.report = Report::Executing;
+                self.outputs.status.report = StatusReport::Executing;
                 self.outputs.status.reason = Reason::None;
             }
             Arrival::Same if self.left > 0 => {
@@ -83,13 +83,15 @@ impl EmoveDouble {
     fn end(&mut self, command: &EmoveCommand) {
         let mishap = self.mishap.filter(|(verb, _)| *verb == command.command).map(|(_, mishap)| mishap);
         let status = &mut self.outputs.status;
-        status.report = Report::Done;
+        status.report = StatusReport::Done;
         match mishap {
             _ if self.ignores => {}
             None => self.effect(command),
-            Some(Mishap::Error(reason)) => (status.report, status.reason) = (Report::Error, reason),
-            Some(Mishap::Special(reason)) => (status.report, status.reason) = (Report::JoystickOn, reason),
-            Some(Mishap::Hang | Mishap::Silence) => status.report = Report::Executing,
+            Some(Mishap::Error(reason)) => (status.report, status.reason) = (StatusReport::Error, reason),
+            Some(Mishap::Special(reason)) => {
+                (status.report, status.reason) = (StatusReport::JoystickOn, reason)
+            }
+            Some(Mishap::Hang | Mishap::Silence) => status.report = StatusReport::Executing,
             Some(Mishap::NoEffect) => {}
             Some(Mishap::Loss) => {
                 self.effect(command);
@@ -306,11 +308,11 @@ impl<'d> Bench<'d> {
     }
 
     /// Ticks until the command has ended, and how.
-    pub fn finish(&mut self) -> (Report, Reason) {
+    pub fn finish(&mut self) -> (StatusReport, Reason) {
         for _ in 0..300 {
             let status = self.step();
             assert_eq!(status.echo, self.memory.task.subtask.number);
-            if status.report != Report::Executing {
+            if status.report != StatusReport::Executing {
                 return (status.report, status.reason);
             }
         }
@@ -324,7 +326,7 @@ impl<'d> Bench<'d> {
         object: &str,
         grips: (i32, i32),
         location: &str,
-    ) -> (Report, Reason) {
+    ) -> (StatusReport, Reason) {
         self.emove.received.clear();
         self.pedestal.received.clear();
         self.command(verb, object, grips, location);
@@ -357,4 +359,4 @@ impl<'d> Bench<'d> {
 }
 
 /// How a command ends that succeeds.
-pub const DONE: (Report, Reason) = (Report::Done, Reason::None);
+pub const DONE: (StatusReport, Reason) = (StatusReport::Done, Reason::None);

@@ -1,16 +1,14 @@
 //! Subtask after an interruption: what was under way is stopped, and the same command goes on
 //! (docs/design/recovery.md).
 
-use rcs_core::{
-    interface::{
-        Reason, Report,
-        emove::{EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Standing},
-        grip::Felt,
-        pedestal::{PedestalReport, PedestalVerb},
-        subtask::{Regrip, SubtaskVerb},
-    },
-    name::{Name10, Name16},
+use interfaces::{
+    Reason, StatusReport,
+    emove::{EmoveVerb, Holding, LocatedObject, ObjectGrip, PlacedObject, Standing},
+    grip::Felt,
+    pedestal::{PedestalReport, PedestalVerb},
+    subtask::{Regrip, SubtaskVerb},
 };
+use rcs_core::name::{Name10, Name16};
 
 use super::{
     bench::{Bench, DONE, Mishap},
@@ -19,7 +17,7 @@ use super::{
 use crate::{coverage::Coverage, subtask::Subtask};
 
 /// FIX-GRIP of the part from grip 1 to grip -1.
-fn fix(bench: &mut Bench<'_>) -> (Report, Reason) {
+fn fix(bench: &mut Bench<'_>) -> (StatusReport, Reason) {
     bench.run(SubtaskVerb::FixGrip, "PART", (1, -1), "")
 }
 
@@ -27,7 +25,7 @@ fn fix(bench: &mut Bench<'_>) -> (Report, Reason) {
 fn is_under_way(bench: &Bench<'_>) -> bool {
     let (subtask, emove, pedestal) =
         (&bench.memory.subtask, &bench.memory.emove.status, &bench.memory.pedestal.status);
-    let robot = emove.report == Report::Executing || emove.echo != subtask.emove.number;
+    let robot = emove.report == StatusReport::Executing || emove.echo != subtask.emove.number;
     let part = pedestal.report == PedestalReport::Executing || pedestal.echo != subtask.pedestal.number;
     (robot && subtask.emove.command != EmoveVerb::Pause)
         || (part && subtask.pedestal.command != PedestalVerb::Pause)
@@ -238,7 +236,7 @@ fn regrips(ignores: (bool, bool), rows: &mut Coverage) -> (usize, usize) {
                         {
                             assert_eq!(end, DONE, "the pedestal has the part: {table_position:?}, {at:?}");
                         }
-                        assert_ne!(end.0, Report::Executing);
+                        assert_ne!(end.0, StatusReport::Executing);
                         done += usize::from(end == DONE);
                         worlds += 1;
                         rows.append(&mut bench.rows);
@@ -319,6 +317,9 @@ fn handling(ignores: bool, rows: &mut Coverage) {
                     let there = at == Some(("PFIXTURE", Some(1)));
                     assert_eq!(end, if there { DONE } else { error(Reason::UnknownHeld) }, "{at:?}");
                     assert_eq!(bench.sent(), if there { vec!["GRASP-OBJ"] } else { vec![] });
+                }
+                if held == "neither" {
+                    assert_eq!(end, error(Reason::RegripNeeded), "{verb}");
                 }
                 if held == "not known" {
                     assert_eq!(end, error(Reason::HeldNotKnown), "{verb}");

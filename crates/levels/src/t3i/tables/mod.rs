@@ -9,11 +9,8 @@ pub mod restart;
 pub mod trouble;
 
 use depc::step::Step as Advance;
-use rcs_core::{
-    Actions, Plain, Variables, commands,
-    handshake::Arrival,
-    interface::t3i::{T3iCommand, T3iReport, T3iVerb},
-};
+use interfaces::t3i::{T3iCommand, T3iReport, T3iVerb};
+use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
 /// What a new POINT is worth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
@@ -70,7 +67,7 @@ pub enum Words {
 
 /// The position of the last report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Place {
+pub enum Reported {
     /// No word is more than 2 counts beside the way from the words before to the last ones.
     Near,
     /// A word is.
@@ -162,7 +159,7 @@ pub struct Answer {
     /// What a report is compared with.
     pub words: Words,
     /// The report.
-    pub place: Place,
+    pub place: Reported,
     /// What was sent in the tick before.
     pub before: Before,
 }

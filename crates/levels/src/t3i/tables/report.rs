@@ -16,7 +16,7 @@ decision_table! {
     /// last words, or not, or be between them. A robot that is elsewhere was moved by other means, and so may
     /// have been one whose controller was off: a person decides. The first point that is sent then, which is
     /// after ROBOT-INIT, ends the doubt.
-    pub REPORT: fn report(rcs_core::interface::t3i::ReportCheck, super::Answer) -> Comparison {
+    pub REPORT: fn report(interfaces::t3i::ReportCheck, super::Answer) -> Comparison {
         any {
             1: dtr: Off, words: Sent                            => Keep            -> Elsewhere;
         }

@@ -10,18 +10,18 @@ use depc::{
     step::Position,
     wire::DataCommand,
 };
-use rcs_core::{
+use geometry::{
     frame::{Frame, Vector},
-    interface::{
-        CommonMemory, Decided, ExternalInputs, Header, T3iOutputs,
-        device::{LinkBytes, RESOLVER_COUNTS},
-        t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
-    },
     kinematics::{HOME_JOINTS, Joints, T3},
     pose::WireFrame,
-    process::{Inputs, Process},
-    tick::Tick,
 };
+use interfaces::{
+    CommonMemory, Decided, ExternalInputs, Header, T3iOutputs,
+    device::{LinkBytes, RESOLVER_COUNTS},
+    process::{Inputs, Process},
+    t3i::{LinkFault, ReportCheck, T3iReport, T3iVerb},
+};
+use rcs_core::tick::Tick;
 
 use super::{T3i, tables};
 use crate::{coverage::Coverage, exact_robot::Exact};

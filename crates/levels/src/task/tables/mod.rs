@@ -18,10 +18,10 @@ pub mod startup;
 pub mod transfer;
 pub mod variables;
 
+use interfaces::Reason;
 use rcs_core::{
     Actions, Plain, Variables, commands,
     handshake::{Arrival, Lower},
-    interface::Reason,
     table::Choice,
 };
 
@@ -32,8 +32,8 @@ use super::{
     plan::{Grip, Gripper, Grips, Handling, Named, Near, PedestalData, Plan, Resumed, TaskVerb, ToolData},
 };
 use crate::{
-    execution::{Asked, EXECUTE, Orders as Commander, Outcome, Work},
-    halt::{EFFECT, HALT, Replaced},
+    execution::{Asked, EXECUTE, Outcome, Work},
+    halt::{HALT, Replaced},
     held::Held,
     places::Missing,
 };
@@ -229,39 +229,10 @@ pub enum Action {
     PassUp,
 }
 
-impl Commander for Action {
-    const STOP: Self = Self::Pause;
-    const WAIT: Self = Self::Wait;
-
-    fn fail(reason: Reason) -> Self {
-        Self::Fail(reason)
-    }
-
-    fn is_order(&self) -> bool {
-        matches!(
-            self,
-            Self::GetEndeff
-                | Self::GetObject
-                | Self::FixGrip
-                | Self::PlaceObj
-                | Self::MoveObjToDest
-                | Self::GotoDest
-                | Self::GotoEndpt
-                | Self::Position(_)
-                | Self::Return
-                | Self::Release
-                | Self::InsertTool
-                | Self::ReleaseTool
-                | Self::AcquireTool
-                | Self::RemoveTool
-        )
-    }
-}
-
 commands! {
     /// Consult the table of a command.
     pub fn of_command(TaskVerb, enum Step, Situation) -> Action {
-        others: EXECUTE, accept::ACCEPT, HALT, EFFECT, joystick::JOYSTICK, ordered::ORDERED;
+        others: EXECUTE, accept::ACCEPT, HALT, joystick::JOYSTICK, ordered::ORDERED;
         None | Pause    => pause::pause;
         Transfer        => transfer::transfer;
         Move            => mov::r#move;

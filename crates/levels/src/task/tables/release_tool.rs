@@ -5,7 +5,8 @@ use rcs_core::decision_table;
 decision_table! {
     /// RELEASE-TOOL (V.4.1): let go of a tool in the transfer location, then go to the end-at location; done
     /// at once if the tool gripper is free and there. Sent again after an interruption it goes on: fingers
-    /// that have let go are led out of the drum.
+    /// that have let go are led out of the drum. Without an end-at location the robot stays there, and one
+    /// that has been sent away since cannot be finished.
     pub RELEASE_TOOL: fn release_tool(enum ReleaseToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                                => Wait;
@@ -19,18 +20,21 @@ decision_table! {
             6:  tool: Unsure                                              => Fail(UnknownHeld);
             7:  tool: Free, station: Unplaced, resumed: AtTool            => ReleaseTool  -> Releasing;
             8:  tool: Free, ends: There                                   => Finish;
-            9:  tool: Free, resumed: AtTool | Leaving, ends: Here         => Finish;
+            9:  tool: Free, station: Transfer, ends: Here,
+                resumed: AtTool | Leaving                                 => Finish;
             10: tool: Free, resumed: AtTool | Leaving, ends: Elsewhere    => GotoEndpt    -> Leaving;
-            11: tool: Free, resumed: Not | Begun, ends: Here | Elsewhere  => Fail(NotPrepared);
+            11: tool: Free, station: Safe | Elsewhere | Unplaced, ends: Here,
+                resumed: AtTool | Leaving                                 => Fail(SentAway);
+            12: tool: Free, resumed: Not | Begun, ends: Here | Elsewhere  => Fail(NotPrepared);
         }
         /// The tool is being let go.
         Releasing {
-            12: ends: There | Elsewhere                                   => GotoEndpt    -> Leaving;
-            13: ends: Here                                                => Finish;
+            13: ends: There | Elsewhere                                   => GotoEndpt    -> Leaving;
+            14: ends: Here                                                => Finish;
         }
         /// The robot is on its way to the end-at location.
         Leaving {
-            14: work: Over                                                => Finish;
+            15: work: Over                                                => Finish;
         }
     }
 }

@@ -4,7 +4,8 @@ use rcs_core::decision_table;
 
 decision_table! {
     /// REMOVE-TOOL (V.4.1): pull a tool that has been acquired out of the tool drum, then go to the end-at
-    /// location; done at once if the tool is there. Sent again after an interruption it goes on.
+    /// location; done at once if the tool is there. Sent again after an interruption it goes on. Without an
+    /// end-at location the robot stays at the drum, and one that has been sent away since cannot be finished.
     pub REMOVE_TOOL: fn remove_tool(enum RemoveToolStep, super::Situation) -> super::Action {
         any {
             1:  work: Busy                                                => Wait;
@@ -16,7 +17,7 @@ decision_table! {
             4:  station: Unplaced, resumed: Leaving                       => GotoEndpt   -> Leaving;
             5:  station: Transfer | Unplaced                              => RemoveTool  -> Removing;
             6:  ends: There                                               => Finish;
-            7:  resumed: AtTool | Leaving, ends: Here                     => Finish;
+            7:  station: Safe | Elsewhere, resumed: AtTool | Leaving, ends: Here => Fail(SentAway);
             8:  resumed: AtTool | Leaving, ends: Elsewhere                => GotoEndpt   -> Leaving;
             9:  resumed: Not | Begun, ends: Here | Elsewhere              => Fail(NotPrepared);
         }

@@ -1,17 +1,17 @@
 //! Task with doubles of its neighbours: a Subtask that does at once what it is told, and a Data System.
 
+use interfaces::{
+    CommonMemory, DataBaseCommand, DataBaseStatus, ExternalInputs, Header, HwsCommand, Reason, StatusReport,
+    SubtaskOutputs,
+    data_base::{DataBaseReport, DataBaseVerb},
+    emove::{Holding, ObjectGrip, PlacedObject, Standing},
+    hws::{HwsReport, HwsStatus},
+    process::{Inputs, Process},
+    subtask::{SubtaskCommand, SubtaskVerb},
+};
 use rcs_core::{
     handshake::{Arrival, Receiver},
-    interface::{
-        CommonMemory, DataBaseCommand, DataBaseStatus, ExternalInputs, Header, HwsCommand, Reason, Report,
-        SubtaskOutputs,
-        data_base::{DataBaseReport, DataBaseVerb},
-        emove::{Holding, ObjectGrip, PlacedObject, Standing},
-        hws::{HwsReport, HwsStatus},
-        subtask::{SubtaskCommand, SubtaskVerb},
-    },
     name::{Name10, Name16},
-    process::{Inputs, Process},
     tick::Tick,
 };
 use taskdata::files::TaskData;
@@ -63,14 +63,14 @@ impl SubtaskDouble {
                 if self.loses_place && !stands {
                     status.at = None;
                 }
-                (status.report, status.reason) = (Report::Executing, Reason::None);
+                (status.report, status.reason) = (StatusReport::Executing, Reason::None);
             }
             Arrival::Same if self.left > 0 => {
                 self.left -= 1;
                 if self.left == 0 {
                     (status.report, status.reason) = match mishap {
-                        Some(Mishap::Error(reason)) => (Report::Error, reason),
-                        _ => (Report::Done, Reason::None),
+                        Some(Mishap::Error(reason)) => (StatusReport::Error, reason),
+                        _ => (StatusReport::Done, Reason::None),
                     };
                     if mishap.is_none() {
                         self.effect(command);
@@ -83,9 +83,9 @@ impl SubtaskDouble {
         status.echo = self.receiver.echo;
         if self.joystick {
             self.left = 0;
-            (status.report, status.reason) = (Report::JoystickOn, Reason::JoystickOn);
-        } else if status.report == Report::JoystickOn {
-            status.report = Report::Error;
+            (status.report, status.reason) = (StatusReport::JoystickOn, Reason::JoystickOn);
+        } else if status.report == StatusReport::JoystickOn {
+            status.report = StatusReport::Error;
         }
     }
 

@@ -1,9 +1,7 @@
 //! Scenarios of Task and the Data System (IV.4.2, IX.2).
 
-use rcs_core::{
-    interface::{Reason, data_base::DataBaseVerb, hws::HwsReport},
-    name::Name16,
-};
+use interfaces::{Reason, data_base::DataBaseVerb, hws::HwsReport};
+use rcs_core::name::Name16;
 
 use super::{
     bench::{Answer, Bench, FINISHED},
@@ -117,7 +115,7 @@ fn a_late_answer_to_an_update_that_was_repeated_is_not_believed() {
     while bench.data_system.received.len() < 2 {
         assert_eq!(bench.step().report, HwsReport::Executing);
     }
-    bench.external.data_base.report = rcs_core::interface::data_base::DataBaseReport::Done;
+    bench.external.data_base.report = interfaces::data_base::DataBaseReport::Done;
     bench.external.data_base.echo = bench.data_system.received[0].number;
     bench.data_system.status = bench.external.data_base;
     (0..20).for_each(|_| assert_eq!(bench.step().report, HwsReport::Executing));
@@ -208,4 +206,60 @@ fn the_serial_number_of_the_command_goes_to_the_data_system() {
     bench.external.hws.serial = Name16::new("LB-0042").unwrap();
     assert_eq!(bench.finish(), FINISHED);
     assert_eq!(update(&bench).1, "LB-0042");
+}
+
+/// What the Data System was told by a line: the positions of its updates.
+fn told(bench: &mut Bench<'_>, line: &str) -> Vec<String> {
+    assert_eq!(bench.run(line), FINISHED, "{line}");
+    let updates = bench.data_system.received.iter().filter(|told| told.command == DataBaseVerb::Update);
+    updates.map(|told| told.position.to_string()).collect()
+}
+
+/// An ACQUIRE that finds its object in the hand tells what its predecessor has not told, and nothing else.
+#[test]
+fn an_object_that_was_taken_elsewhere_is_not_told_as_taken_from_the_mbd() {
+    const FROM_FIXTURE: &str = "ACQUIRE PART +1 PFIXTURE 0 0 -- 0 -- 0";
+    const FROM_SECTOR_2: &str = "ACQUIRE PART +1 UNIT_1 2 0 -- 0 -- 0";
+    const FROM_SECTOR_1: &str = "ACQUIRE PART +1 UNIT_1 1 0 -- 0 -- 0";
+    const PAUSE: &str = "PAUSE -- 0 -- 0 0 -- 0 -- 0";
+    // Taken elsewhere, by a command that has finished; by an ACQUIRE of another sector; and as often as it is sent.
+    for first in [FROM_FIXTURE, "MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0", FROM_SECTOR_1] {
+        let mut bench = Bench::connected();
+        told(&mut bench, first);
+        for _ in 0..2 {
+            assert!(told(&mut bench, FROM_SECTOR_2).is_empty(), "{first}");
+        }
+    }
+    // The same, interrupted at any tick of the second command.
+    for ticks in 1..30 {
+        let mut bench = Bench::connected();
+        told(&mut bench, FROM_FIXTURE);
+        bench.command(FROM_SECTOR_2);
+        bench.wait(ticks);
+        bench.run(PAUSE);
+        assert!(told(&mut bench, FROM_SECTOR_2).is_empty(), "tick {ticks}");
+    }
+    // Taken elsewhere by a command that was interrupted.
+    let mut bench = Bench::connected();
+    bench.command("MOVE PART +1 PFIXTURE 0 +1 SAFE 0 -- 0");
+    while bench.memory.subtask.status.held.object().is_none() {
+        bench.step();
+    }
+    assert_eq!(bench.run(PAUSE), FINISHED);
+    assert!(told(&mut bench, FROM_SECTOR_2).is_empty());
+    // Taken there, by the same command, by a MOVE, and before the Data System was connected.
+    for first in [FROM_SECTOR_2, "MOVE PART +1 UNIT_1 2 +1 PFIXTURE 0 -- 0"] {
+        let mut bench = Bench::connected();
+        bench.command(first);
+        while bench.memory.subtask.status.held.object().is_none() {
+            bench.step();
+        }
+        assert_eq!(bench.run(PAUSE), FINISHED);
+        assert_eq!(told(&mut bench, FROM_SECTOR_2), ["H_ROBOT"], "{first}");
+    }
+    let mut bench = Bench::default();
+    bench.data_system.answer = Answer::After(1);
+    assert!(told(&mut bench, FROM_SECTOR_2).is_empty());
+    assert_eq!(bench.run(STARTUP), FINISHED);
+    assert_eq!(told(&mut bench, FROM_SECTOR_2), ["H_ROBOT"]);
 }

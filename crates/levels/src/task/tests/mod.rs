@@ -5,10 +5,8 @@ mod coverage;
 mod data_system;
 mod recovery;
 
-use rcs_core::{
-    interface::{Reason, hws::HwsReport, subtask::SubtaskVerb},
-    name::Name16,
-};
+use interfaces::{Reason, hws::HwsReport, subtask::SubtaskVerb};
+use rcs_core::name::Name16;
 
 use self::bench::{Bench, FINISHED, Mishap};
 use super::{

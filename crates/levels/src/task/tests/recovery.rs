@@ -1,15 +1,13 @@
 //! A command that is interrupted, replaced or cut off by a restart, and sent again (docs/design/recovery.md).
 
-use rcs_core::{
-    interface::{
-        Reason, Report,
-        data_base::{Connection, DataBaseVerb},
-        emove::Holding,
-        hws::HwsReport,
-        subtask::SubtaskVerb,
-    },
-    name::Name16,
+use interfaces::{
+    Reason, StatusReport,
+    data_base::{Connection, DataBaseVerb},
+    emove::Holding,
+    hws::HwsReport,
+    subtask::SubtaskVerb,
 };
+use rcs_core::name::Name16;
 
 use super::{
     ACQUIRE, INSERT, RELEASE, REMOVE,
@@ -41,7 +39,7 @@ fn moving_bench() -> Bench<'static> {
 fn is_under_way(bench: &Bench<'_>) -> bool {
     let pausing = bench.memory.task.subtask.command == SubtaskVerb::Pause;
     let status = &bench.memory.subtask.status;
-    !pausing && (status.report == Report::Executing || status.echo != bench.memory.task.subtask.number)
+    !pausing && (status.report == StatusReport::Executing || status.echo != bench.memory.task.subtask.number)
 }
 
 #[test]
@@ -64,7 +62,7 @@ fn a_new_command_stops_what_is_under_way_before_it_is_answered() {
                 bench.step();
             }
             assert!(!is_under_way(&bench), "{line}, tick {ticks}: Subtask goes on");
-            assert_eq!(bench.memory.subtask.status.report, Report::Done);
+            assert_eq!(bench.memory.subtask.status.report, StatusReport::Done);
             if under_way && line == NOWHERE {
                 assert_eq!(bench.sent()[before..].last(), Some(&"S-PAUSE"));
                 assert_eq!(bench.memory.task.status.reason, Reason::UnknownLocation);
@@ -276,6 +274,39 @@ fn an_interrupted_tool_command_goes_on() {
     }
 }
 
+/// Tool commands without an end-at location, cut off when they have done all: what the robot holds then.
+const STAYING: [(&str, &str); 2] =
+    [("RELEASE-TOOL TOOL-1 +1 -- 0 0 -- 0 -- 0", ""), ("REMOVE-TOOL TOOL-1 +1 -- 0 0 -- 0 -- 0", "TOOL-1")];
+
+/// What becomes of a tool command without an end-at location that has been cut off when it had done all.
+fn staying(line: &str, holds: &str, at: &str) -> Bench<'static> {
+    let mut bench = moving_bench();
+    bench.set(3, "TOOL-1", "TOOL-TRNS");
+    bench.command(line);
+    while bench.memory.subtask.status.drum {
+        bench.step();
+    }
+    bench.process = Task::default();
+    bench.finish();
+    bench.set(3, holds, at);
+    bench.subtask.outputs.status.drum = false;
+    bench.step();
+    bench
+}
+
+#[test]
+fn a_tool_command_that_stays_is_finished_only_at_the_drum() {
+    for (line, holds) in STAYING {
+        let mut bench = staying(line, holds, "TOOL-TRNS");
+        assert_eq!(bench.run(line), FINISHED, "{line}");
+        for at in ["TOOL-SAFE", "HOME"] {
+            let mut bench = staying(line, holds, at);
+            assert_eq!(bench.run(line), error(Reason::SentAway), "{line}, {at}");
+            assert!(bench.sent().is_empty());
+        }
+    }
+}
+
 #[test]
 fn nothing_is_let_go_before_it_is_known_that_the_robot_can_leave() {
     for (at, reason) in [("", Reason::UnknownStart), ("HOME", Reason::NoTrajectory)] {
@@ -470,19 +501,20 @@ pub(super) fn all_rows(rows: &mut Coverage) {
     bench.run(TRANSFER_AND_STAY);
     play(&mut bench);
     // Interrupted when the tool command is done and not seen to be.
-    for (line, held, at) in [
-        (RELEASE, "", "HOME"),
-        (RELEASE, "", "TOOL-SAFE"),
-        (REMOVE, "TOOL-1", "HOME"),
-        ("RELEASE-TOOL TOOL-1 +1 -- 0 0 -- 0 -- 0", "", "HOME"),
-        ("REMOVE-TOOL TOOL-1 +1 -- 0 0 -- 0 -- 0", "TOOL-1", "HOME"),
-    ] {
+    for (line, held, at) in [(RELEASE, "", "HOME"), (RELEASE, "", "TOOL-SAFE"), (REMOVE, "TOOL-1", "HOME")] {
         let mut bench = Bench::default();
         bench.set(3, "TOOL-1", "TOOL-TRNS");
         interrupt(&mut bench, line, 3, Interruption::Command(PAUSE));
         bench.set(3, held, at);
         bench.run(line);
         play(&mut bench);
+    }
+    for (line, holds) in STAYING {
+        for at in ["TOOL-TRNS", "HOME"] {
+            let mut bench = staying(line, holds, at);
+            bench.run(line);
+            play(&mut bench);
+        }
     }
     for holding in [Holding::Something, Holding::NotKnown] {
         for line in [INSERT, RELEASE, ACQUIRE, REMOVE, "REFIXTURE PART +1 PFIXTURE 0 -1 PFIXTURE 0 -- 0"] {

@@ -1,7 +1,8 @@
 //! An agent and a Data System that does as a test wants, without a network between them.
 //!
-//! In fast clock an exchange is over when the server has answered its pulse: what it wrote before is there then. With a patience of
-//! nothing an agent looks once, and the clock of the machine has no part in what happens.
+//! In fast clock an exchange is over when the server has answered its pulse: what it wrote before is there
+//! then. With a patience of nothing an agent looks once, and the clock of the machine has no part in what
+//! happens.
 
 use std::{
     path::Path,
@@ -9,11 +10,11 @@ use std::{
     thread::JoinHandle,
 };
 
+use interfaces::{
+    DataBaseCommand,
+    data_base::{DataBaseReport, DataBaseVerb},
+};
 use rcs_core::{
-    interface::{
-        DataBaseCommand,
-        data_base::{DataBaseReport, DataBaseVerb},
-    },
     name::{Name10, Name16},
     tick::Tick,
 };
@@ -22,7 +23,10 @@ use super::*;
 use crate::{
     data_system::{DataSystem, Pace},
     mailbox::Mailbox,
-    network::{Parting, Role, frame::Frame, hello::ClockKind, office::Counter},
+    network::{
+        ClockKind, Disconnect, EndpointHandle, Role,
+        endpoint::tests::{Sent, TestSession},
+    },
 };
 
 /// What a server writes, one mailgram after the other.
@@ -30,39 +34,38 @@ type Written = Vec<Vec<u8>>;
 /// What becomes of a status.
 type Garble = fn(&mut Vec<u8>);
 
-/// A server on a thread, until the run is over or the connection ends; `answer` gets the number of the mailgram that it has read, from 1,
-/// and the command in it.
+/// A server on a thread, until the run is over or the connection ends; `answer` gets the number of the
+/// mailgram that it has read, from 1, and the command in it.
 fn serve(
-    counter: Counter,
+    handle: &EndpointHandle,
     mut answer: impl FnMut(usize, &[u8]) -> Written + Send + 'static,
 ) -> JoinHandle<()> {
-    let line = counter.come();
+    let mut session = TestSession::begin(handle);
     thread::spawn(move || {
         let (mut status_box, mut read) = (Mailbox::initialized(DATA_SYSTEM_STATUS), 0);
-        for frame in &line {
-            if frame.as_pulse().unwrap().is_some() {
-                counter.deliver(&frame).unwrap();
-            } else if frame.address() == DATA_SYSTEM_COMMAND.address {
-                read += 1;
-                for status in answer(read, frame.data()) {
-                    status_box.write(&status).unwrap();
-                    counter.deliver(&Frame::of(&status_box)).unwrap();
+        loop {
+            match session.next() {
+                Sent::Pulse(tick) => session.answer(tick),
+                Sent::Mailbox(command) => {
+                    read += 1;
+                    for status in answer(read, command.data()) {
+                        status_box.write(&status).unwrap();
+                        session.deliver(&status_box);
+                    }
                 }
-            } else {
-                // Last words.
-                return;
+                Sent::Over => return,
             }
         }
     })
 }
 
-fn agent(place: &Path, clock: ClockKind) -> (Agent, Counter) {
-    agent_at(place, Desk::new(Role::DataSystem, clock))
+fn agent(place: &Path, clock: ClockKind) -> (Agent, EndpointHandle) {
+    agent_at(place, Endpoint::new(Role::DataSystem, clock).unwrap())
 }
 
-fn agent_at(place: &Path, desk: Desk) -> (Agent, Counter) {
-    let counter = desk.counter();
-    (Agent::new(desk, Outbox::open(&place.join("outbox")).unwrap()).with_patience(Duration::ZERO), counter)
+fn agent_at(place: &Path, endpoint: Endpoint) -> (Agent, EndpointHandle) {
+    let handle = endpoint.handle();
+    (Agent::new(endpoint, Outbox::open(&place.join("outbox")).unwrap()).with_patience(Duration::ZERO), handle)
 }
 
 fn command(number: u32, command: DataBaseVerb, position: &str) -> DataBaseCommand {
@@ -98,7 +101,7 @@ fn done(bytes: &[u8]) -> Written {
 }
 
 fn is_done(answer: Option<Answer>, number: u16) {
-    let answer = answer.expect("somebody answers");
+    let answer = answer.expect("an answer");
     assert_eq!((answer.status.command_id, answer.status.summary), (number, Summary::Done), "{}", answer.why);
 }
 
@@ -109,15 +112,15 @@ fn pending(agent: &Agent) -> usize {
 #[test]
 fn a_command_that_is_lost_is_sent_again_under_its_number() {
     let place = tempfile::tempdir().unwrap();
-    let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
+    let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
     let (tell, heard) = mpsc::channel();
-    let server = serve(counter, move |read, bytes| {
+    let server = serve(&handle, move |read, bytes| {
         tell.send(bytes.to_vec()).unwrap();
         if read == 1 { Vec::new() } else { done(bytes) }
     });
     assert_eq!(agent.execute(&update(70, "UNIT_1")), None);
     let silent = Remark::Silent { command_id: 1, patience: Duration::ZERO };
-    assert_eq!(agent.remarks(), [Remark::News(News::Came(Role::DataSystem)), silent]);
+    assert_eq!(agent.remarks(), [Remark::Network(NetEvent::Connected(Role::DataSystem)), silent]);
     assert_eq!(pending(&agent), 1);
     is_done(agent.execute(&update(71, "UNIT_1")), 71);
     assert_eq!(pending(&agent), 0);
@@ -132,12 +135,12 @@ fn a_command_that_is_lost_is_sent_again_under_its_number() {
 #[test]
 fn a_late_answer_to_the_first_sending_counts_and_counts_once() {
     let place = tempfile::tempdir().unwrap();
-    let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
-    let server = serve(counter.clone(), |_, _| Vec::new());
+    let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
+    let server = serve(&handle, |_, _| Vec::new());
     assert_eq!(agent.execute(&update(1, "UNIT_1")), None);
     let mut status_box = Mailbox::initialized(DATA_SYSTEM_STATUS);
     status_box.write(&status(1, Summary::Done)).unwrap();
-    counter.deliver(&Frame::of(&status_box)).unwrap();
+    handle.deliver(DATA_SYSTEM_STATUS, status_box.used()).unwrap();
     agent.idle();
     is_done(agent.execute(&update(2, "UNIT_1")), 2);
     assert_eq!(agent.execute(&update(3, "UNIT_2")), None);
@@ -150,11 +153,11 @@ fn a_late_answer_to_the_first_sending_counts_and_counts_once() {
 #[test]
 fn an_answer_that_comes_twice_is_no_answer_to_what_follows() {
     let place = tempfile::tempdir().unwrap();
-    let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
+    let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
     let kept = update(1, "UNIT_1");
     agent.outbox.keep(kept[..].try_into().unwrap()).unwrap();
     let (mut answered, mut deaf) = (Vec::new(), true);
-    let server = serve(counter, move |_, bytes| {
+    let server = serve(&handle, move |_, bytes| {
         if bytes.len() == DML && std::mem::take(&mut deaf) {
             return answered.clone();
         }
@@ -178,10 +181,11 @@ fn answers_to_other_commands_and_half_answers_count_for_nothing() {
         (0, Summary::None),
     ] {
         let place = tempfile::tempdir().unwrap();
-        let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
-        let server = serve(counter, move |_, bytes| vec![status(id(bytes).wrapping_add(offset), summary)]);
+        let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
+        let server = serve(&handle, move |_, bytes| vec![status(id(bytes).wrapping_add(offset), summary)]);
         for number in 1..5 {
-            // The second half: another command each time, so that the number that was answered before its time comes up.
+            // The second half: another command each time, so that the number that was answered before its
+            // time comes up.
             let position = if number < 3 { "UNIT_1" } else { "UNIT_2" };
             assert_eq!(agent.execute(&update(number, position)), None);
         }
@@ -204,8 +208,8 @@ fn of_a_garbled_status_nothing_is_taken_and_it_is_told_what_was_found() {
     ];
     for (text, garble) in garbles {
         let place = tempfile::tempdir().unwrap();
-        let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
-        let server = serve(counter, move |read, bytes| {
+        let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
+        let server = serve(&handle, move |read, bytes| {
             let mut status = right(bytes);
             if read == 1 {
                 garble(&mut status);
@@ -228,47 +232,48 @@ fn of_a_garbled_status_nothing_is_taken_and_it_is_told_what_was_found() {
 #[test]
 fn a_garbled_status_is_told_once_and_the_wait_goes_on() {
     let place = tempfile::tempdir().unwrap();
-    let (agent, counter) = agent(place.path(), ClockKind::Fast);
+    let (agent, handle) = agent(place.path(), ClockKind::Fast);
     let mut agent = agent.with_patience(Duration::MAX);
-    let line = counter.come();
+    let mut session = TestSession::begin(&handle);
     let server = thread::spawn(move || {
-        let (mut status_box, mut pulses) = (Mailbox::initialized(DATA_SYSTEM_STATUS), 0);
-        for frame in line.iter().filter(|frame| frame.as_pulse().unwrap().is_some()).take(5) {
-            pulses += 1;
+        let mut status_box = Mailbox::initialized(DATA_SYSTEM_STATUS);
+        for pulses in 1..=5 {
+            let tick = session.pulse();
             let bytes = if pulses < 5 { vec![pulses] } else { status(1, Summary::Done) };
             status_box.write(&bytes).unwrap();
-            counter.deliver(&Frame::of(&status_box)).unwrap();
-            counter.deliver(&frame).unwrap();
+            session.deliver(&status_box);
+            session.answer(tick);
         }
+        session
     });
     is_done(agent.execute(&update(9, "UNIT_1")), 9);
     let garbled = Remark::Garbled(StatusError::Size(1));
-    assert_eq!(agent.remarks(), [Remark::News(News::Came(Role::DataSystem)), garbled]);
+    assert_eq!(agent.remarks(), [Remark::Network(NetEvent::Connected(Role::DataSystem)), garbled]);
     server.join().unwrap();
 }
 
 #[test]
 fn another_server_is_heard_though_it_counts_its_mailgrams_from_the_beginning() {
     let place = tempfile::tempdir().unwrap();
-    let (mut agent, counter) = agent(place.path(), ClockKind::Fast);
+    let (mut agent, handle) = agent(place.path(), ClockKind::Fast);
     for number in 1..4 {
         // Its statuses have the same mailgram numbers as those of the server before.
-        let server = serve(counter.clone(), |_, bytes| done(bytes));
+        let server = serve(&handle, |_, bytes| done(bytes));
         is_done(agent.execute(&update(number, "UNIT_1")), number.try_into().unwrap());
-        counter.detach(Parting::Left("it was killed".to_owned()));
+        handle.detach(Disconnect::Lost("it was killed".to_owned()));
         server.join().unwrap();
     }
 }
 
 #[test]
-fn whoever_waits_for_a_silent_server_stops_when_the_desk_is_closed() {
+fn whoever_waits_for_a_silent_server_stops_when_the_endpoint_is_stopped() {
     for clock in [ClockKind::Fast, ClockKind::Real] {
         let place = tempfile::tempdir().unwrap();
-        let (agent, counter) = agent(place.path(), clock);
+        let (agent, handle) = agent(place.path(), clock);
         let mut agent = agent.with_patience(Duration::MAX);
-        let closer = agent.closer();
-        let server = serve(counter, move |_, _| {
-            closer.close();
+        let stop_handle = agent.stop_handle();
+        let server = serve(&handle, move |_, _| {
+            stop_handle.stop();
             Vec::new()
         });
         assert_eq!(agent.execute(&update(1, "UNIT_1")), None);
@@ -285,9 +290,9 @@ fn a_run_that_is_interrupted_waits_for_no_silent_server() {
     for (clock, pace) in [(ClockKind::Fast, Pace::Wait), (ClockKind::Real, Pace::Poll)] {
         let place = tempfile::tempdir().unwrap();
         let flag = Arc::new(AtomicBool::new(false));
-        let desk = Desk::new(Role::DataSystem, clock).until(Arc::clone(&flag));
-        let ((agent, counter), (tell, heard)) = (agent_at(place.path(), desk), mpsc::channel());
-        let server = serve(counter, move |_, _| {
+        let endpoint = Endpoint::new(Role::DataSystem, clock).unwrap().until(Arc::clone(&flag));
+        let ((agent, handle), (tell, heard)) = (agent_at(place.path(), endpoint), mpsc::channel());
+        let server = serve(&handle, move |_, _| {
             flag.store(true, std::sync::atomic::Ordering::Relaxed);
             tell.send(()).unwrap();
             Vec::new()
@@ -310,8 +315,8 @@ fn a_run_that_is_interrupted_waits_for_no_silent_server() {
 #[test]
 fn task_hears_nothing_of_a_silent_server_and_is_heard_when_it_asks_again() {
     let place = tempfile::tempdir().unwrap();
-    let (agent, counter) = agent(place.path(), ClockKind::Fast);
-    let server = serve(counter, |read, bytes| if read == 1 { Vec::new() } else { done(bytes) });
+    let (agent, handle) = agent(place.path(), ClockKind::Fast);
+    let server = serve(&handle, |read, bytes| if read == 1 { Vec::new() } else { done(bytes) });
     let mut system = DataSystem::elsewhere(agent, Pace::Wait);
     system.step(Tick(1), &DataBaseCommand::default());
     let reports = [1, 2].map(|number| {

@@ -2,10 +2,8 @@
 
 use std::fmt;
 
-use rcs_core::{
-    interface::{Reason, hws::HwsReport},
-    tick::{TICK_MS, Tick},
-};
+use interfaces::{Reason, hws::HwsReport};
+use rcs_core::tick::{TICK_MS, Tick};
 
 /// How a step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,8 +126,8 @@ impl fmt::Display for Retry {
 }
 
 impl JobFailure {
-    /// What a person has to do before the job can go on, as far as it is known; `None` if PAUSE and the same command may be
-    /// enough, or if the failure says it itself.
+    /// What a person has to do before the job can go on, as far as it is known; `None` if PAUSE and the same
+    /// command may be enough, or if the failure says it itself.
     #[must_use]
     pub const fn remedy(&self) -> Option<&'static str> {
         match self {

@@ -1,10 +1,10 @@
 //! The emulator against a Task that answers as the test says.
 
 use super::*;
+use geometry::frame::Frame;
+use interfaces::{Reason, hws::HwsStatus};
 use rcs_core::{
-    frame::Frame,
     handshake::{Arrival, Receiver},
-    interface::{Reason, hws::HwsStatus},
     name::Name10,
 };
 use taskdata::{

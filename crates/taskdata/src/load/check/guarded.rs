@@ -1,6 +1,8 @@
 //! Relative moves: that a command looks for each, that guarded ones have a sensor, and that the robot can stop in time.
 
-use rcs_core::interface::device::{ADC_FULL_SCALE, FORCE_COUNTS_PER_LB, FORCE_ZERO, MOMENT_COUNTS_PER_IN_LB};
+use interfaces::device::{ADC_FULL_SCALE, FORCE_COUNTS_PER_LB, FORCE_ZERO, MOMENT_COUNTS_PER_IN_LB};
+
+use rcs_core::name::Name16;
 
 use crate::files::{RelativeMove, SensorSource, TaskData};
 
@@ -71,7 +73,26 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
             ),
             _ => {}
         }
+        holster(data, record, at, findings);
         speed(data, record, at, findings);
+    }
+}
+
+/// Note a holster sensor that belongs to another holster than that of the move: the one of gripper n has the number n.
+fn holster(data: &TaskData<'_>, record: &RelativeMove, at: super::At, findings: &mut Findings) {
+    let of_holster = |source| matches!(source, SensorSource::Near | SensorSource::Seated);
+    let Some(sensor) = data.sensor(&record.sensor).filter(|sensor| of_holster(sensor.source)) else { return };
+    let is_here = |number: &i32| {
+        let gripper = data.object_named(&Name16::clipped(&format!("GRIPPER-{number}")));
+        gripper.is_some_and(|gripper| data.object_locations(gripper).any(|place| place == record.at))
+    };
+    if let Some(number) = (1..=3).find(is_here).filter(|number| *number != sensor.which) {
+        findings.error(
+            "relative.holster",
+            at,
+            format!("{} watches holster {}, and goes to that of GRIPPER-{number}", sensor.name, sensor.which),
+            format!("name a sensor of holster {number}"),
+        );
     }
 }
 

@@ -1,16 +1,15 @@
-//! Checks of data whose names are all known: what a command would run into while the robot moves is found before the first
-//! tick.
+//! Checks of linked data: what a command would run into while the robot moves is found
+//! before the first tick.
 //!
 //! * [`trays`]: sectors within their trays;
-//! * [`objects`]: objects that only the camera can tell apart;
 //! * [`sizes`]: openings in order, tray grips, flips;
 //! * [`routes`]: trajectories that no command can reach;
 //! * [`guarded`]: sensors and speeds of relative moves;
 //! * [`reach`]: every target that a command can send the robot to, against the arm. This takes time in proportion to all
 //!   targets, so it runs on all processors, and can be left out.
 
+mod arm;
 mod guarded;
-mod objects;
 mod reach;
 mod routes;
 mod sizes;
@@ -21,7 +20,7 @@ use std::collections::HashMap;
 use crate::files::{
     ArrayId, Location, LocptId, ObjectId, OwnerId, Place, RefType, Reference, TaskData, index::reference_key,
 };
-use rcs_core::interface::subtask::LocationKind;
+use interfaces::subtask::LocationKind;
 
 use super::{
     origins::Origins,
@@ -31,14 +30,18 @@ use super::{
 
 pub(super) use reach::check as reach;
 
-/// All checks but that of the reach.
-pub(super) fn check(data: &TaskData<'_>, origins: &Origins, problems: &mut Problems) {
+/// All checks but that of the reach; of data in which names are missing only those that look at one object.
+pub(super) fn check(data: &TaskData<'_>, origins: &Origins, whole: bool, problems: &mut Problems) {
     let mut findings = Findings::default();
-    trays::check(data, origins, &mut findings);
-    objects::check(data, origins, &mut findings);
+    if whole {
+        trays::check(data, origins, &mut findings);
+    }
     sizes::check(data, origins, &mut findings);
-    routes::check(data, origins, &mut findings);
-    guarded::check(data, origins, &mut findings);
+    if whole {
+        sizes::tray_grips(data, origins, &mut findings);
+        routes::check(data, origins, &mut findings);
+        guarded::check(data, origins, &mut findings);
+    }
     findings.report(problems);
 }
 
@@ -54,7 +57,8 @@ struct Finding {
     more: Option<usize>,
 }
 
-/// Findings in the order in which they were made. An entry with the wild card can be wrong at every sector: it is listed once.
+/// Findings in the order in which they were made. An entry with the wild card can be wrong at every sector:
+/// it is listed once.
 #[derive(Debug, Default)]
 struct Findings {
     list: Vec<Finding>,
@@ -178,8 +182,8 @@ fn locations_of_member(data: &TaskData<'_>, owner: OwnerId, member: Reference) -
     }
 }
 
-/// The locations at which an object can be and an entry applies: the sectors and location points that are assigned to it, or
-/// what the entry names.
+/// The locations at which an object can be and an entry applies: the sectors and location points that are
+/// assigned to it, or what the entry names.
 fn locations_of(data: &TaskData<'_>, object: ObjectId, at: Reference) -> Vec<Location> {
     let mut found = Vec::new();
     for assigned in data.object_locations(object) {

@@ -1,8 +1,10 @@
-//! Every target that a command can send the robot to is tried against the arm: reach, joint limits, distance from vertical.
+//! Every target that a command can send the robot to is tried against the arm: reach, joint limits, distance
+//! from vertical.
 //!
-//! Targets are location points, what lies in their sectors gripped in each way, views, and the points of the approaches, departs,
-//! trajectories and relative moves there. A base pose is no target of its own: it is complained of where a target that
-//! is derived from it cannot be reached, and then in place of that target, since the mistake is in the pose.
+//! Targets are location points, what lies in their sectors gripped in each way, views, and the points of the
+//! approaches, departs, trajectories and relative moves there. A base pose is no target of its own: it is
+//! complained of where a target that is derived from it cannot be reached, and then in place of that target,
+//! since the mistake is in the pose.
 //!
 //! The gripper axis within 2 degrees of vertical is warned of: the Euler angles of the link are singular there (VIII
 //! introduction). The corners of trays are taught vertical and not driven to (VIII.3); they are left out.
@@ -11,11 +13,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use rcs_core::{
-    frame::Frame,
-    kinematics::{HOME_JOINTS, JOINT_NAMES, T3},
-    name::Name10,
-};
+use geometry::frame::Frame;
+use rcs_core::name::Name10;
 
 use crate::files::{
     Direction, Location, LocptId, MovtabId, OwnerId, PathId, PathPoint, PoseId, RefType, Reference,
@@ -29,11 +28,11 @@ use super::{
         report::Problems,
         source::At,
     },
-    Findings, Origins, at_point, locations, locations_of, origin, shown,
+    Findings, Origins,
+    arm::{fault, from_vertical, is_vertical},
+    at_point, locations, locations_of, origin, shown,
 };
 
-/// Nearer to vertical than this is warned of, degrees.
-const VERTICAL: f64 = 2.0;
 /// Entries that one processor tries at a time.
 const ENTRIES_AT_A_TIME: usize = 512;
 
@@ -66,49 +65,6 @@ fn spread(count: usize, entry: impl Fn(usize, &mut Findings) + Sync) -> Findings
     findings
 }
 
-/// Degrees of the gripper axis from vertical, up or down.
-fn from_vertical(frame: &Frame) -> f64 {
-    let axis = frame.x();
-    axis.x.hypot(axis.y).atan2(axis.z.abs()).to_degrees()
-}
-
-/// True if the gripper axis is so near to vertical that it is warned of.
-fn is_vertical(frame: &Frame) -> bool {
-    // Most frames are far from it: then no angle has to be worked out.
-    frame.x().z.abs() > 0.99 && from_vertical(frame) < VERTICAL
-}
-
-/// Why the arm cannot take a frame.
-struct Fault {
-    code: &'static str,
-    message: String,
-    help: String,
-}
-
-/// Try a frame: the joint that is beyond its limit and by how much, or how far out of reach it is.
-fn fault(frame: &Frame) -> Option<Fault> {
-    let joints = match T3.inverse(frame, &HOME_JOINTS) {
-        Ok(joints) => T3.within_limits(&joints),
-        Err(error) => {
-            let p = frame.position;
-            let help = format!("its tool point is at ({:.2}, {:.2}, {:.2}) in", p.x, p.y, p.z);
-            return Some(Fault { code: "reach", message: error.to_string(), help });
-        }
-    };
-    let margin = T3.margin(&joints);
-    if margin.radians >= 0.0 {
-        return None;
-    }
-    let name = JOINT_NAMES.get(margin.joint).copied().unwrap_or("joint");
-    let angle = joints.get(margin.joint).copied().unwrap_or_default().to_degrees();
-    let (low, high) = T3.limits.get(margin.joint).copied().unwrap_or_default();
-    let message =
-        format!("{name} at {angle:.1} degrees, {:.1} beyond its limit", -margin.radians.to_degrees());
-    let help =
-        format!("the limits of {name} are {:.0} and {:.0} degrees", low.to_degrees(), high.to_degrees());
-    Some(Fault { code: "limit", message, help })
-}
-
 /// The words for a target, put together only if something is wrong with it.
 type What<'a> = &'a dyn Fn() -> String;
 
@@ -117,7 +73,8 @@ struct Reach<'a> {
     origins: &'a Origins,
     /// Location points out of reach: what is derived from them is not complained of again.
     bad_points: HashSet<LocptId>,
-    /// Trajectories that begin with a movetable, by their start: where their points lie depends on what is departed from.
+    /// Trajectories that begin with a movetable, by their start: where their points lie depends on what is
+    /// departed from.
     relative_starts: HashMap<(u8, u32), Vec<TrajId>>,
 }
 
@@ -143,7 +100,8 @@ impl<'a> Reach<'a> {
         of_arrays.filter_map(|members| members.first()).map(|m| LocptId::new(m.member.number)).collect()
     }
 
-    /// Location points at which an object is gripped or looked at: what is there is driven to, and may be tilted, not the point.
+    /// Location points at which an object is gripped or looked at: what is there is driven to, and may be
+    /// tilted, not the point.
     fn bases(&self) -> HashSet<LocptId> {
         let grips = self.data.grip_locs.iter().map(|entry| entry.at);
         let named = grips.chain(self.data.visions.iter().map(|entry| entry.at));
@@ -320,8 +278,8 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// A view wherever it is valid, with its approach and depart. A view that refers to the object has no frame before the
-    /// object is found.
+    /// A view wherever it is valid, with its approach and depart. A view that refers to the object has no
+    /// frame before the object is found.
     fn view(&self, i: usize, findings: &mut Findings) {
         let data = self.data;
         let Some(record) = data.visions.get(i).filter(|r| r.offset_from != RefType::Object) else { return };

@@ -1,7 +1,7 @@
 //! Trajectories that no command can reach: another entry is always found before them, or both ends are one location (VII.6).
 
 use crate::files::{ArrayId, LocptId, OwnerId, Place, RefType, Reference, TaskData, TrajId};
-use rcs_core::interface::subtask::LocationKind;
+use interfaces::subtask::LocationKind;
 
 use super::{Findings, Origins, at_point, origin, owners_of};
 

@@ -12,7 +12,8 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
         let sizes = [("approach", record.appr_size), ("depart", record.depart_size)];
         in_order(&what, record.grasp_size, sizes, origin(&origins.end_effs, i), findings);
     }
-    for (i, record) in data.ped_paras.iter().enumerate() {
+    // An object that is not known is told by its name.
+    for (i, record) in data.ped_paras.iter().enumerate().filter(|(_, record)| !record.object.is_null()) {
         let what = format!("the pedestal with {}", data.object_name(record.object));
         let sizes = [("approach", record.appr), ("release", record.release_size)];
         let at = origin(&origins.ped_paras, i);
@@ -22,6 +23,10 @@ pub(super) fn check(data: &TaskData<'_>, origins: &Origins, findings: &mut Findi
             findings.error_once("pedestal.flip", at, format!("{what}: ped-flip-angle is 0"), help);
         }
     }
+}
+
+/// Note the tray grips that no object form has.
+pub(super) fn tray_grips(data: &TaskData<'_>, origins: &Origins, findings: &mut Findings) {
     for (i, record) in data.obj_grips.iter().enumerate() {
         let object = data.object_name(record.object);
         if data.object(&object, record.tray_grip).is_none() {

@@ -1,6 +1,6 @@
 //! Sectors of arrays lie within their trays (VII.4).
 
-use rcs_core::frame::Frame;
+use geometry::frame::Frame;
 
 use crate::files::{ArrayId, RefType, Reference, TaskData};
 

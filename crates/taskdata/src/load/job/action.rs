@@ -33,7 +33,7 @@ pub enum Drum {
     Grip,
     /// Its fingers open.
     Release,
-    /// Somebody puts a tool into it.
+    /// A tool is put into it.
     Tool(Name16),
 }
 

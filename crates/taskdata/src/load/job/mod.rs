@@ -1,11 +1,11 @@
 //! Job files: what the workstation controller sends, and what the workstation does in between.
 //!
-//! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the variables of
-//! V.4.2 without the serial number
-//! (SPECNOTES.md, contradiction 25): object, source grip, location and sector, destination grip, location
-//! and sector, end-at location and sector; `--` is a null field. A serial number may stand behind them: `#17` (ours), and
-//! `expect error` for a command that has to fail (ours). The manual's own forms of lines end there: vise, trays and
-//! machine belong to the HWSC, not to the robot. Lines that begin with `**` say what they do:
+//! A job is a text of lines. `==` begins a Task command with the nine fields of Figure VIII.4, which are the
+//! variables of V.4.2 without the serial number (SPECNOTES.md, contradiction 25): object, source grip,
+//! location and sector, destination grip, location and sector, end-at location and sector; `--` is a null
+//! field. A serial number may stand behind them: `#17` (ours), and `expect error` for a command that has to
+//! fail (ours). The manual's own forms of lines end there: vise, trays and machine belong to the HWSC, not to
+//! the robot. Lines that begin with `**` say what they do:
 //!
 //! ```text
 //! ** tray UNIT_1 4 LINKBAR1_BH            a part is delivered into a sector, somewhere (a seed decides)
@@ -32,10 +32,11 @@
 //! ** after 50 joystick hold PRIM           any of these, so many ticks after the next command was sent
 //! ```
 //!
-//! Commands are checked against the task data, and so is the way from each to the next: a job which cannot run is refused
-//! before the first tick.
+//! Commands are checked against the task data, and so is the way from each to the next: a job which cannot
+//! run is refused before the first tick.
 
 mod action;
+mod fields;
 mod needs;
 mod own_line;
 mod read;
@@ -45,7 +46,7 @@ mod workstation;
 
 use std::path::Path;
 
-use rcs_core::interface::hws::HwsCommand;
+use interfaces::hws::HwsCommand;
 
 pub use own_line::{OwnLineError, own_line};
 pub use reload::Reload;
@@ -55,7 +56,7 @@ pub use action::{
 };
 
 use super::{
-    Store,
+    Part, Store,
     places::Places,
     report::{Diagnostics, Problems},
     source::{At, Source, SourceLine, lines_of, read},
@@ -102,7 +103,8 @@ pub struct JobLine {
     pub text: String,
     /// SourceLine of the file from 1.
     pub line: u32,
-    /// The command has to end with an error: its line ends with `expect error`.
+    /// The line ends with `expect error`: its command has to end with an error, or the blocks that it loads do
+    /// not fit the cell.
     pub expects_error: bool,
 }
 
@@ -134,14 +136,33 @@ impl Job {
         }
     }
 
+    /// Check a job against task data with errors: its lines by themselves, and names that look like slips of the pen.
+    #[must_use]
+    pub fn check_part(path: &Path, part: &Part) -> Diagnostics {
+        let mut problems = Problems::default();
+        let source = match read(path, &path.display().to_string()) {
+            Ok(source) => source,
+            Err(error) => {
+                problems.unreadable(&path.display().to_string(), &error);
+                return Diagnostics::new(problems, Places::in_lines(&[]), 0, Vec::new());
+            }
+        };
+        let mut reader = read::Reader::new(part.store.view(), Vec::new(), &mut problems).among(part);
+        let steps = source_lines(&source).filter_map(|(number, line)| reader.line(number, &line)).count();
+        reader.end();
+        if steps == 0 && !problems.has_errors() {
+            empty(&mut problems);
+        }
+        Diagnostics::new(problems, Places::in_lines(std::slice::from_ref(&source)), 0, Vec::new())
+    }
+
     /// The job and its report, unless it has no line.
     fn with_a_line((job, report): (Self, Diagnostics)) -> Result<(Self, Diagnostics), Box<Diagnostics>> {
         if !job.steps.is_empty() {
             return Ok((job, report));
         }
         let mut problems = Problems::default();
-        let help = "a line with == sends a command, a line with ** says what the workstation does";
-        problems.error_help("job.empty", At::default(), "the job has no line", help);
+        empty(&mut problems);
         let sources = std::slice::from_ref(&job.source);
         Err(Box::new(report.with(Diagnostics::new(problems, Places::in_lines(sources), 0, Vec::new()))))
     }
@@ -167,11 +188,22 @@ impl Job {
         Ok((Self { name: file.unwrap_or_default(), steps, reloads, source }, report))
     }
 
+    /// A reload by its number, from 1.
+    #[must_use]
+    pub fn reload(&self, number: u32) -> Option<&Reload> {
+        self.reloads.get(usize::try_from(number).ok()?.checked_sub(1)?)
+    }
+
     /// The text that the job was read from.
     #[must_use]
     pub const fn source(&self) -> &Source {
         &self.source
     }
+}
+
+fn empty(problems: &mut Problems) {
+    let help = "a line with == sends a command, a line with ** says what the workstation does";
+    problems.error_help("job.empty", At::default(), "the job has no line", help);
 }
 
 /// The lines of a job, each with its number from 1.

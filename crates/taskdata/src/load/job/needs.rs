@@ -1,12 +1,12 @@
-//! What a command needs before anything moves: the fields that its verb uses, the grips of its object, what a regrip on the Active
-//! Pedestal implies, a tool in the gripper (V.4.1, V.3.1 FIX-GRIP). Task and Subtask refuse the command for the same reasons,
-//! but only once it is its turn.
+//! What a command needs before anything moves: the fields that its verb uses, the grips of its object, what a
+//! regrip on the Active Pedestal implies, a tool in the gripper (V.4.1, V.3.1 FIX-GRIP). Task and Subtask
+//! refuse the command for the same reasons, but only once it is its turn.
 
 use rcs_core::name::{Name10, Name16};
 
 use super::{
     super::{report::Problems, source::At},
-    read::{Field, Number},
+    fields::{Field, Number},
 };
 use crate::files::{ArrayId, Direction, LocptId, OwnerId, RefType, Reference, TaskData};
 
@@ -21,7 +21,7 @@ const TOOL_GRIPPER: i32 = 3;
 
 /// A location of a command with its sector, and the grip there.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct Endpoint {
     pub(super) name: Field,
     pub(super) sector: Number,
     pub(super) grip: Option<Number>,
@@ -33,9 +33,9 @@ pub(super) struct Command<'v> {
     pub(super) verb: &'v str,
     pub(super) at: At,
     pub(super) object: Field,
-    pub(super) source: Place,
-    pub(super) destination: Place,
-    pub(super) end_at: Place,
+    pub(super) source: Endpoint,
+    pub(super) destination: Endpoint,
+    pub(super) end_at: Endpoint,
 }
 
 /// What the robot holds between two commands, if all went well.
@@ -62,7 +62,7 @@ impl Command<'_> {
     }
 
     /// The places that the verb uses with a grip.
-    fn gripped(&self) -> Vec<&Place> {
+    fn gripped(&self) -> Vec<&Endpoint> {
         match self.verb {
             "POSITION" if self.source.name.given() => vec![&self.source],
             "POSITION" => vec![&self.destination],
@@ -165,7 +165,7 @@ impl Needs<'_, '_> {
     /// +0 is no grip.
     fn grips(&mut self) {
         let command = self.command;
-        let null = |place: &&Place| command.object.given() && place.name.given() && place.grip.is_some();
+        let null = |place: &&Endpoint| command.object.given() && place.name.given() && place.grip.is_some();
         for place in command.gripped().into_iter().filter(null) {
             let Some(grip) = place.grip.filter(|grip| grip.value == 0) else { continue };
             let name = command.object.name;

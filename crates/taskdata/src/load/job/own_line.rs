@@ -1,7 +1,7 @@
 //! A line of the workstation that stands in no job: another process says it while the robot runs.
 //!
-//! It is read from its words and the task data alone. No file is opened for it, since that could take any time, and would tell
-//! whoever is connected which files there are.
+//! It is read from its words and the task data alone. No file is opened for it, since that could take any
+//! time, and would tell the connected system which files there are.
 
 use std::fmt;
 
@@ -14,7 +14,8 @@ use super::{
         source::{At, Source, SourceLine},
     },
     Workstation,
-    read::{Fields, Reader},
+    fields::Fields,
+    read::Reader,
 };
 
 /// Why a line is refused.
@@ -24,7 +25,7 @@ pub enum OwnLineError {
     Nothing,
     /// A job's blocks are read and checked before its first tick.
     Load,
-    /// The ticks of a job are those of whoever plays it.
+    /// The ticks of a job are those of its player.
     Wait,
     /// So are those behind a command.
     After,

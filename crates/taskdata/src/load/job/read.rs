@@ -1,93 +1,30 @@
 //! The lines of a job, word by word.
 
-use rcs_core::{interface::hws::HwsCommand, name::Name16};
+use interfaces::hws::HwsCommand;
+use rcs_core::name::Name16;
 
 use crate::files::{Location, LookupError, TaskData};
 
 use super::{
     super::{
-        lex::{Word, words_of_line},
+        Part,
+        lex::words_of_line,
         names::nearest,
-        parse::is_integer,
+        parser::is_integer,
         report::{Problems, Severity},
         source::{At, SourceLine},
     },
-    JobLine, Step, TASK_COMMANDS,
-    needs::{Command, Held, Place, assigned_to, grips_of, places_of},
+    JobLine, Step, TASK_COMMANDS, Workstation,
+    fields::{Field, Fields, Number},
+    needs::{Command, Endpoint, Held, assigned_to, grips_of, places_of},
     walk::{Visit, Visits, Walk},
 };
-
-/// The words of one line, taken from left to right.
-pub(super) struct Fields<'a, 'w> {
-    words: &'w [Word<'a>],
-    next: usize,
-}
-
-impl<'a, 'w> Fields<'a, 'w> {
-    /// All words of a line.
-    pub(super) const fn new(words: &'w [Word<'a>]) -> Self {
-        Self { words, next: 0 }
-    }
-
-    /// True if a word is left.
-    pub(super) const fn more(&self) -> bool {
-        self.next < self.words.len()
-    }
-
-    pub(super) fn take(&mut self) -> Option<Word<'a>> {
-        let word = self.words.get(self.next).copied();
-        self.next += 1;
-        word
-    }
-
-    /// Take the next word if it is this one.
-    fn take_if(&mut self, text: &str) -> Option<Word<'a>> {
-        let word = self.words.get(self.next).copied().filter(|word| word.text == text)?;
-        self.next += 1;
-        Some(word)
-    }
-
-    /// Where the next word is, or the last one if there is no next.
-    pub(super) fn at(&self) -> At {
-        self.words.get(self.next).or_else(|| self.words.last()).map_or_else(At::default, |w| w.at)
-    }
-}
-
-/// A number and where it stands.
-#[derive(Clone, Copy)]
-pub(super) struct Number {
-    pub(super) value: i32,
-    pub(super) at: At,
-}
-
-/// A name field and where it stands; empty for `--`.
-#[derive(Clone, Copy)]
-pub(super) struct Field {
-    pub(super) name: Name16,
-    pub(super) at: At,
-}
-
-impl Field {
-    pub(super) fn given(&self) -> bool {
-        !self.name.is_empty()
-    }
-
-    /// The name, if there is one.
-    fn named(&self) -> Option<Name16> {
-        self.given().then_some(self.name)
-    }
-}
-
-impl Number {
-    /// The number, if it is not 0.
-    fn given(&self) -> Option<i32> {
-        Some(self.value).filter(|value| *value != 0)
-    }
-}
 
 /// Reads the lines of a job in their order.
 pub(super) struct Reader<'s, 'p> {
     data: TaskData<'s>,
+    /// The data have errors: what is not in them may be in what could not be read.
+    part: Option<&'s Part>,
     /// What the lines that load something change `data` to, in their order.
     reloads: std::vec::IntoIter<TaskData<'s>>,
     loaded: u32,
@@ -102,7 +39,12 @@ pub(super) struct Reader<'s, 'p> {
 impl<'s, 'p> Reader<'s, 'p> {
     pub(super) fn new(data: TaskData<'s>, reloads: Vec<TaskData<'s>>, problems: &'p mut Problems) -> Self {
         let (walk, held) = (Walk::default(), Held::default());
-        Self { data, reloads: reloads.into_iter(), loaded: 0, problems, walk, held, after: None }
+        Self { data, part: None, reloads: reloads.into_iter(), loaded: 0, problems, walk, held, after: None }
+    }
+
+    /// Only what is certain is told: `part` is all that there is of the data.
+    pub(super) fn among(self, part: &'s Part) -> Self {
+        Self { part: Some(part), ..self }
     }
 
     /// Something beside the commands moves the robot: where it is and what it holds are not known.
@@ -111,8 +53,8 @@ impl<'s, 'p> Reader<'s, 'p> {
         self.held = Held::Unknown;
     }
 
-    /// A line loads something: from here on names are looked up in what it loads. The number of the reload, from 1; `None` if it
-    /// could not be loaded, which was noted.
+    /// A line loads something: from here on names are looked up in what it loads. The number of the reload,
+    /// from 1; `None` if it could not be loaded, which was noted.
     pub(super) fn reload(&mut self) -> Option<u32> {
         self.data = self.reloads.next()?;
         self.loaded += 1;
@@ -151,7 +93,13 @@ impl Reader<'_, '_> {
                 None
             }
         }?;
-        let expects_error = matches!(step, Step::Command(_)) && self.expects_error(&mut fields)?;
+        let can_fail = matches!(
+            step,
+            Step::Command(_)
+                | Step::Workstation(Workstation::Load { .. })
+                | Step::After { action: Workstation::Load { .. }, .. }
+        );
+        let expects_error = can_fail && self.expects_error(&mut fields)?;
         self.end_of_line(&mut fields)?;
         let end = words.last().map_or(0, |w| w.at.start.saturating_add(w.at.length));
         let length = usize::try_from(end.saturating_sub(line.at.start)).unwrap_or(0);
@@ -159,7 +107,8 @@ impl Reader<'_, '_> {
         Some(JobLine { step, text: text.trim().to_owned(), line: number, expects_error })
     }
 
-    /// True if the line of a command ends with `expect error`; `None` if something else is expected, which is noted.
+    /// True if the line of a command, or one that loads blocks, ends with `expect error`; `None` if something
+    /// else is expected, which is noted.
     fn expects_error(&mut self, fields: &mut Fields<'_, '_>) -> Option<bool> {
         if fields.take_if("expect").is_none() {
             return Some(false);
@@ -249,8 +198,14 @@ impl Reader<'_, '_> {
             self.unknown("command of Task", shown(&verb), verb.at, TASK_COMMANDS);
         }
         let known = !object.given() || self.object(object);
-        if known && known_verb {
-            let place = |name, sector, grip| Place { name, sector, grip };
+        if self.part.is_some() {
+            for (place, sector) in
+                [(source, source_sector), (destination, destination_sector), (end_at, end_at_sector)]
+            {
+                self.place(place, sector, object.named(), None);
+            }
+        } else if known && known_verb {
+            let place = |name, sector, grip| Endpoint { name, sector, grip };
             let command = Command {
                 verb: verb.name.as_str(),
                 at: verb.at,
@@ -286,7 +241,8 @@ impl Reader<'_, '_> {
         })
     }
 
-    /// The serial number of the object, if the line has one behind its nine fields: `#17`. What stands there instead is noted.
+    /// The serial number of the object, if the line has one behind its nine fields: `#17`. What stands there
+    /// instead is noted.
     fn serial(&mut self, fields: &mut Fields<'_, '_>) -> Name16 {
         let word = fields.words.get(fields.next).filter(|word| word.text != "expect");
         let Some(word) = word.and_then(|_| fields.take()) else { return Name16::EMPTY };
@@ -328,6 +284,9 @@ impl Reader<'_, '_> {
         }
         let known: Vec<String> = self.data.objects.iter().map(|o| o.name.to_string()).collect();
         let near = nearest(field.name.as_str(), known.iter().map(String::as_str));
+        if self.part.is_some_and(|part| !part.is_slip(field.name.as_str(), near)) {
+            return false;
+        }
         let message = format!("no object is named {}", shown(&field));
         let help = near.map(|n| format!("the nearest known name is {n}"));
         self.problems.push(Severity::Error, "name.unknown", field.at, message, help);
@@ -365,6 +324,10 @@ impl Reader<'_, '_> {
                     matches!(error, LookupError::SectorRange { .. } | LookupError::NoSectors { .. });
                 let at = if wrong_sector { sector.at } else { field.at };
                 let near = if unknown { self.near_location(&field.name) } else { None };
+                let slip = |part: &Part| part.is_slip(field.name.as_str(), near.as_deref());
+                if self.part.is_some_and(|part| !slip(part)) {
+                    return None;
+                }
                 let help = match error {
                     LookupError::NotAssigned { object, .. } => Some(assigned_to(&self.data, &object)),
                     _ => near.map(|n| format!("the nearest known name is {n}")),
@@ -373,7 +336,7 @@ impl Reader<'_, '_> {
                 return None;
             }
         };
-        if let (Some(object), Some(grip)) = (object, grip.filter(|g| g.value != 0)) {
+        if let (Some(object), Some(grip)) = (object, grip.filter(|g| g.value != 0 && self.part.is_none())) {
             self.grip(grip, &object, &location);
         }
         Some(location)

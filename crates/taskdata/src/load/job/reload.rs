@@ -45,10 +45,14 @@ pub(super) fn reloads(job: &Source, store: &Store, problems: &mut Problems) -> V
             Ok((store, _)) => loaded.push(Reload { source, store }),
             Err(report) => {
                 let first = report.errors().next().map_or("", |error| error.message());
+                let errors = match report.errors().count() {
+                    1 => "an error".to_owned(),
+                    count => format!("{count} errors, the first"),
+                };
                 problems.error_help(
                     "job.load",
                     file.at,
-                    format!("{} has {} errors, the first: {first}", path.display(), report.errors().count()),
+                    format!("{} has {errors}: {first}", path.display()),
                     "load the file with the other task data (rcs-run check) to see all of them",
                 );
             }

@@ -6,7 +6,8 @@ use super::{
         Drum, EStop, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, ViseOpening,
         Workstation,
     },
-    read::{Fields, MOST, Reader},
+    fields::Fields,
+    read::{MOST, Reader},
 };
 
 /// The first words of a line, and of a line of the joystick box, with what reads the rest.
@@ -168,7 +169,8 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A line that stands in no job. Some have to do with the job in which they stand: its ticks, its files, its next command.
+    /// A line that stands in no job. Some have to do with the job in which they stand: its ticks, its files,
+    /// its next command.
     pub(super) fn own_line(&mut self, fields: &mut Fields<'_, '_>) -> Option<Workstation> {
         let of_job = |verb: &Verb| matches!(verb, Verb::Wait | Verb::Load | Verb::After | Verb::HandOver);
         let is_own = |(_, verb): &(&str, Verb)| !of_job(verb);

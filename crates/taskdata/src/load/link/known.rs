@@ -1,7 +1,7 @@
 //! Look-ups of names that are declared, without a note of those that are not: these can be made on all processors at once. Entries
 //! with a name that is not known are linked once more one by one, with notes.
 
-use rcs_core::frame::Frame;
+use geometry::frame::Frame;
 
 use crate::files::{
     ArrayId, GripLoc, Locpt, LocptId, MovtabId, ObjLoc, ObjectId, OwnerId, PoseId, RefType, Reference,

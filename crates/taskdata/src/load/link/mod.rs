@@ -10,7 +10,7 @@ mod places;
 
 use std::collections::{BTreeMap, HashSet};
 
-use rcs_core::frame::Frame;
+use geometry::frame::Frame;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::files::{
@@ -40,7 +40,7 @@ const NEAREST_FOR: usize = 200;
 
 /// What links the entries of a load.
 pub(super) struct Linker<'a> {
-    broken: HashSet<String>,
+    broken: &'a HashSet<String>,
     orphans: &'a mut Orphans,
     problems: &'a mut Problems,
     files: Files,
@@ -55,13 +55,13 @@ pub(super) struct Linker<'a> {
 }
 
 /// Make files and indexes of entries; problems are noted. `broken` are names in entries that could not be read, `orphans` have
-/// those in blocks that are not loaded.
+/// those in blocks that are not loaded. The last of the answer are the names that are not known.
 pub(super) fn link(
     entries: &Collected,
-    broken: HashSet<String>,
+    broken: &HashSet<String>,
     orphans: &mut Orphans,
     problems: &mut Problems,
-) -> (Files, OwnedIndexes, Origins) {
+) -> (Files, OwnedIndexes, Origins, Vec<String>) {
     let mut linker = Linker {
         broken,
         orphans,
@@ -79,8 +79,8 @@ pub(super) fn link(
     linker.guarded_moves(entries);
     linker.index_pairs();
     linker.check_full(entries);
-    linker.count_unknown();
-    (linker.files, linker.indexes, linker.origins)
+    let unknown = linker.count_unknown();
+    (linker.files, linker.indexes, linker.origins, unknown)
 }
 
 /// The keys of a file in the order of its records, and where these stand.
@@ -234,7 +234,12 @@ impl Linker<'_> {
         if near.is_some_and(|near| self.broken.contains(near)) {
             return None;
         }
-        self.problems.error("name.unknown", name.at, format!("no {what} is named {}", name.name));
+        let incomplete = self.orphans.incomplete;
+        if incomplete && near.is_none() {
+            return None;
+        }
+        let among = if incomplete { " in the files that can be read" } else { "" };
+        self.problems.error("name.unknown", name.at, format!("no {what} is named {}{among}", name.name));
         self.problems.expected(format!("the name of a {what}"));
         if let Some(near) = near {
             self.problems.nearest("known name", near);
@@ -242,13 +247,18 @@ impl Linker<'_> {
         None
     }
 
-    /// Say of each unknown name how many more entries ask for it.
-    fn count_unknown(&mut self) {
-        for (at, times) in std::mem::take(&mut self.asked).into_values().filter(|(_, times)| *times > 1) {
-            let entries =
-                if times == 2 { "1 more entry asks".to_owned() } else { format!("{} more ask", times - 1) };
-            self.problems.add_help("name.unknown", at, &format!("{entries} for it"));
+    /// Say of each unknown name how many more entries ask for it; all these names.
+    fn count_unknown(&mut self) -> Vec<String> {
+        let mut names = Vec::new();
+        for ((_, name), (at, times)) in std::mem::take(&mut self.asked) {
+            names.push(name);
+            match times {
+                1 => {}
+                2 => self.problems.add_help("name.unknown", at, "1 more entry asks for it"),
+                more => self.problems.add_help("name.unknown", at, &format!("{} more ask for it", more - 1)),
+            }
         }
+        names
     }
 
     /// True if a name stands in an entry that could not be read, or that is not loaded: that is told there.

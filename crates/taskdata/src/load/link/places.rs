@@ -1,6 +1,7 @@
 //! Poses, movetables, location points, arrays, owners, trajectories and their points (VII.1 to VII.6).
 
-use rcs_core::{frame::Frame, movetable::Movetable, name::Name, pose::Pose};
+use geometry::{frame::Frame, movetable::Movetable, pose::Pose};
+use rcs_core::name::Name;
 
 use crate::files::{
     Array, ArrayId, LocptId, Member, MovtabId, MovtabRecord, Owner, OwnerId, Path, PathId, PathPoint, PoseId,

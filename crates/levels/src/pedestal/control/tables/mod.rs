@@ -9,10 +9,10 @@ pub mod pause;
 pub mod pre_grip;
 pub mod release;
 
+use interfaces::{Reason, pedestal::PedestalVerb};
 use rcs_core::{
     Actions, Plain, Variables, commands,
     handshake::{Arrival, Lower},
-    interface::{Reason, pedestal::PedestalVerb},
     table::Choice,
 };
 

@@ -7,11 +7,8 @@ pub mod pause;
 pub mod rest;
 pub mod turn;
 
-use rcs_core::{
-    Actions, Plain, Variables, commands,
-    handshake::Arrival,
-    interface::{Reason, pedestal::TableVerb},
-};
+use interfaces::{Reason, pedestal::TableVerb};
+use rcs_core::{Actions, Plain, Variables, commands, handshake::Arrival};
 
 use crate::execution::{Asked, Course, EXECUTE};
 
@@ -114,7 +111,7 @@ pub enum Counter {
 
 /// Where the table is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
-pub enum Place {
+pub enum Turned {
     /// Where the step that is under way wants it: at the + limit, with the counter set, parked, at the angle.
     There,
     /// Anywhere else.
@@ -151,7 +148,7 @@ pub struct Situation {
     /// Do counter and potentiometer agree?
     pub counter: Counter,
     /// Is the table where it should be?
-    pub place: Place,
+    pub place: Turned,
     /// Time of the command.
     pub clock: Clock,
 }

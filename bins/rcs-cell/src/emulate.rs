@@ -1,0 +1,210 @@
+//! `--emulate egm:[ADDRESS:]PORT[,OPTION...]`: an EGM robot that sends to a host over UDP.
+//!
+//! One thread: it sleeps until the next cycle of 4.032 ms, or until a datagram comes. Its network may be a bad
+//! one, by seed. Buttons and programs are lines of standard input, as at the T3's console.
+
+use std::{
+    io::{self, BufRead as _},
+    net::{Ipv4Addr, SocketAddr, UdpSocket},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc::{self, Receiver},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+
+use egm::message::MOST_BYTES;
+use egm_robot::{
+    EgmOptions, Peer,
+    emulator::{CYCLE_NS, EgmRobot},
+    network::Network,
+};
+use os_io::stdout_line;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+use crate::cli::EgmTarget;
+
+/// Cycles of at most so long are made up for, ns.
+const MOST_BEHIND: u64 = 100_000_000;
+/// What can be typed.
+const HELP: &str = "estop      motors off, as by the emergency stop\n\
+                    motors     motors on\n\
+                    start      start the RAPID program: EGM begins where the robot is\n\
+                    stop       stop the RAPID program\n\
+                    status     where the robot is, and what it does\n\
+                    quit       end the program";
+
+/// The robot and its socket.
+pub struct Emulation {
+    robot: EgmRobot,
+    socket: UdpSocket,
+    host: SocketAddr,
+    to_host: Network,
+    to_robot: Network,
+    start: Instant,
+    received: u64,
+    refused: u64,
+    /// What was last said of its state.
+    said: Option<&'static str>,
+}
+
+impl Emulation {
+    /// A robot that will send to the host.
+    ///
+    /// # Errors
+    /// In words, if the robot's frames or a socket cannot be had.
+    pub fn new(target: &EgmTarget, data: &std::path::Path) -> Result<Self, String> {
+        let options: &EgmOptions = &target.0;
+        let Peer::Udp(host) = options.peer else { return Err("--emulate needs a port to send to".into()) };
+        let placement = options.placement(data).map_err(|error| error.to_string())?;
+        let any = if host.is_ipv4() {
+            SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0))
+        } else {
+            "[::]:0".parse().map_err(|_| "no address to send from")?
+        };
+        let socket = UdpSocket::bind(any).map_err(|error| format!("no socket to send from: {error}"))?;
+        socket.set_nonblocking(true).map_err(|error| format!("the socket cannot be used: {error}"))?;
+        let [to_host, to_robot] = options.networks();
+        Ok(Self {
+            robot: EgmRobot::new(options.tuning, placement),
+            socket,
+            host,
+            to_host,
+            to_robot,
+            start: Instant::now(),
+            received: 0,
+            refused: 0,
+            said: None,
+        })
+    }
+
+    /// Run until `quit` or a signal.
+    ///
+    /// # Errors
+    /// [`io::Error`] of the socket.
+    pub fn run(&mut self, stop: &Arc<AtomicBool>) -> io::Result<()> {
+        stdout_line!("[egm] sends to {}; help lists the commands", self.host);
+        let lines = typed();
+        let mut next = CYCLE_NS;
+        while !stop.load(Ordering::Relaxed) {
+            while let Ok(line) = lines.try_recv() {
+                if self.obey(line.trim()) {
+                    return Ok(());
+                }
+            }
+            let now = self.now();
+            while let Some((_, datagram)) = self.to_robot.arrived(now) {
+                self.received += 1;
+                if let Err(error) = self.robot.receive(&datagram) {
+                    self.refused += 1;
+                    stdout_line!("[egm] refused: {error}");
+                }
+            }
+            // Cycles that the system has slept through are made up for, as far as there is sense in it.
+            next = next.max(now.saturating_sub(MOST_BEHIND));
+            while now >= next {
+                next += CYCLE_NS;
+                self.cycle(now);
+            }
+            while let Some((_, datagram)) = self.to_host.arrived(now) {
+                self.send(&datagram)?;
+            }
+            self.wait(next)?;
+        }
+        Ok(())
+    }
+
+    fn now(&self) -> u64 {
+        u64::try_from(self.start.elapsed().as_nanos()).unwrap_or(u64::MAX)
+    }
+
+    fn cycle(&mut self, now: u64) {
+        let mut buffer = [0; MOST_BYTES];
+        // The buffer holds the longest message.
+        if let Ok(datagram) = self.robot.cycle().encode(&mut buffer) {
+            self.to_host.send(now, datagram);
+        }
+        let state = self.robot.stopped().map_or("EGM runs", |stopped| stopped.text());
+        if self.said.replace(state) != Some(state) {
+            stdout_line!("[egm] {state}");
+        }
+    }
+
+    /// A host that is not there yet is no error.
+    fn send(&self, datagram: &[u8]) -> io::Result<()> {
+        match self.socket.send_to(datagram, self.host) {
+            Ok(_) => Ok(()),
+            Err(error) if is_quiet(&error) => Ok(()),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Wait for a datagram, at most until the next cycle or until one is due.
+    fn wait(&mut self, next: u64) -> io::Result<()> {
+        let due = [self.to_host.next(), self.to_robot.next()].into_iter().flatten().fold(next, u64::min);
+        let left = Duration::from_nanos(due.saturating_sub(self.now()));
+        // The time-out of a socket is rounded to the ticks of the system, which may be longer than a cycle.
+        let timeout = Timespec::try_from(left).map_err(io::Error::other)?;
+        let mut fds = [PollFd::new(&self.socket, PollFlags::IN)];
+        match poll(&mut fds, Some(&timeout)) {
+            Ok(0) | Err(rustix::io::Errno::INTR) => return Ok(()),
+            Ok(_) => {}
+            Err(error) => return Err(error.into()),
+        }
+        let mut datagram = [0; 2048];
+        match self.socket.recv_from(&mut datagram) {
+            Ok((length, sender)) if sender == self.host => {
+                let now = self.now();
+                self.to_robot.send(now, datagram.get(..length).unwrap_or_default());
+                Ok(())
+            }
+            Ok(_) => Ok(()),
+            Err(error) if is_quiet(&error) => Ok(()),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Do as typed; true for `quit`.
+    fn obey(&mut self, line: &str) -> bool {
+        match line {
+            "" => {}
+            "estop" => self.robot.emergency_stop(),
+            "motors" => self.robot.motors_on(),
+            "start" => self.robot.start(),
+            "stop" => self.robot.stop(),
+            "status" => self.status(),
+            "help" => stdout_line!("{HELP}"),
+            "quit" => return true,
+            other => stdout_line!("error: {other} is no command; help lists them"),
+        }
+        false
+    }
+
+    fn status(&self) {
+        let [x, y, z] = self.robot.pose().position;
+        let joints = self.robot.joints().map(|joint| format!("{:.2}", joint.to_degrees())).join(" ");
+        let state = self.robot.stopped().map_or("EGM runs", |stopped| stopped.text());
+        stdout_line!("[status] {state}; {} messages, {} refused", self.received, self.refused);
+        stdout_line!("[status] tool at {x:.2} {y:.2} {z:.2} mm, joints {joints} degrees");
+    }
+}
+
+fn is_quiet(error: &io::Error) -> bool {
+    use io::ErrorKind::{ConnectionRefused, Interrupted, WouldBlock};
+    matches!(error.kind(), WouldBlock | Interrupted | ConnectionRefused)
+}
+
+/// Lines of standard input. Its end ends nothing: a robot may run without a person.
+fn typed() -> Receiver<String> {
+    let (sender, lines) = mpsc::channel();
+    thread::spawn(move || {
+        for line in io::stdin().lock().lines().map_while(Result::ok) {
+            if sender.send(line).is_err() {
+                return;
+            }
+        }
+    });
+    lines
+}

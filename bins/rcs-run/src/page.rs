@@ -1,0 +1,126 @@
+//! The result of a run as a page of text.
+
+use std::fmt;
+
+use rcs_core::tick::{TICK_MS, TICK_S};
+use runtime::{
+    Ending, RunOutcome,
+    result::{EmergencyResult, TickTimes},
+};
+
+/// Events that are printed; the rest is in the log.
+const EVENTS_SHOWN: usize = 10;
+
+/// The page of text: the result, all steps of the job, and remarks that have no place in JSON.
+pub struct Page<'a>(pub &'a RunOutcome);
+
+impl fmt::Display for Page<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(RunOutcome { ending, result, steps, log, slowest, .. }) = self;
+        let outcome = match ending {
+            Ending::Failed(_) => "failed",
+            Ending::Stopped => "stopped as asked for",
+            Ending::Finished => "finished",
+        };
+        writeln!(
+            f,
+            "{} {outcome}: {:.1} s simulated in {:.1} s, {:.0} x real time\n",
+            result.job, result.simulated_s, result.wall_s, result.realtime_factor
+        )?;
+        let width = steps.iter().map(|step| step.text.len()).max().unwrap_or(0);
+        for step in steps {
+            let seconds = step.ticks as f64 * TICK_S;
+            writeln!(f, "  {:width$}  {seconds:7.1} s  {}", step.text, step.outcome.text())?;
+        }
+        writeln!(f)?;
+        if let Some(simulated) = result.simulated {
+            writeln!(f, "simulated  {simulated}")?;
+        }
+        if let Some(last) = result.retries.last() {
+            writeln!(f, "retries    {}, the last one at tick {}", result.retries.len(), last.tick)?;
+        }
+        for part in &result.parts {
+            writeln!(f, "part       {part}")?;
+        }
+        for item in &result.data_base {
+            writeln!(f, "data base  {item}")?;
+        }
+        if let Some(nearest) = &result.clearance {
+            writeln!(f, "clearance  {nearest}")?;
+        }
+        for event in result.events.first.iter().take(EVENTS_SHOWN) {
+            writeln!(f, "event      {event}")?;
+        }
+        let more = result.events.count.saturating_sub(EVENTS_SHOWN);
+        if more > 0 {
+            writeln!(f, "           and {more} more, all in the log")?;
+        }
+        if let Some(EmergencyResult { tick, cause, touched, .. }) = &result.emergency_stop {
+            let into = match touched.len() {
+                0 => "the sagging arm touched nothing".to_owned(),
+                count => format!("the sagging arm ran into {count} things"),
+            };
+            writeln!(f, "stop       tick {tick}: {cause}; {into}")?;
+        }
+        let link = &result.link;
+        writeln!(
+            f,
+            "link       {} frames, {} NAKs, {} retries, {} checksum errors, {} points limited",
+            link.frames, link.naks, link.retries, link.checksum_errors, link.limited
+        )?;
+        if result.ramp_ticks > 0 {
+            let seconds = f64::from(result.ramp_ticks) * TICK_S;
+            writeln!(
+                f,
+                "ramp       the robot came to rest within {} ticks ({seconds:.1} s)",
+                result.ramp_ticks
+            )?;
+        }
+        if let Some(faults) = &result.faults {
+            writeln!(f, "faults     {faults}")?;
+        }
+        for fault in &result.cell_faults {
+            writeln!(f, "fault      {fault}")?;
+        }
+        if let Some(port) = &result.port {
+            let TickTimes { p50, p99, max } = port.deviation_us;
+            writeln!(
+                f,
+                "port       {} bytes sent, {} received, {} not taken, lost {} times; a frame every {TICK_MS} ms, \
+                 beside it by p50 {p50:.0} us, p99 {p99:.0} us, max {max:.0} us",
+                port.sent, port.received, port.unsent, port.losses
+            )?;
+        }
+        let times = &result.tick_us;
+        let allocations = result.allocations_after_start.map_or("not counted".to_owned(), |n| n.to_string());
+        writeln!(
+            f,
+            "controller {} ticks: p50 {:.1} us, p99 {:.1} us, max {:.1} us; {} slots skipped; \
+             allocations: {allocations}",
+            result.ticks, times.p50, times.p99, times.max, result.overruns
+        )?;
+        for board in result.boards.iter().flatten() {
+            let TickTimes { p50, p99, max } = board.tick_us;
+            writeln!(
+                f,
+                "board {}    p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us; allocations: {}; process {}: {}",
+                board.board, board.allocations, board.pid, board.processes
+            )?;
+        }
+        if result.boards.is_none() {
+            writeln!(f, "slowest    {slowest}")?;
+        }
+        if let Some(TickTimes { p50, p99, max }) = &result.late_us {
+            let mut blame = String::new();
+            for (part, slots) in &result.overruns_by {
+                blame += &format!("; {slots} slots skipped for {part}");
+            }
+            writeln!(
+                f,
+                "punctual   ticks begin late by p50 {p50:.1} us, p99 {p99:.1} us, max {max:.1} us{blame}"
+            )?;
+        }
+        writeln!(f, "digest     {}", result.digest)?;
+        writeln!(f, "log        {log}")
+    }
+}

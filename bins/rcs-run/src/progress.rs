@@ -1,0 +1,99 @@
+//! Progress on a terminal: the line of the job that is being executed, and what each level does.
+
+use std::{
+    io::{self, IsTerminal},
+    time::{Duration, Instant},
+};
+
+use executive::failure;
+use indicatif::{ProgressBar, ProgressStyle};
+use interfaces::{CommonMemory, HwsCommand};
+use levels::ladder::ProcessId;
+use runtime::{Observer, TickReport};
+
+/// Time between two pictures.
+const PERIOD: Duration = Duration::from_millis(100);
+/// Levels that are shown: Task, Subtask, E-move, Prim, in the order of common memory.
+const LEVELS: usize = 4;
+
+/// The progress line of a run; without a terminal on standard error only messages are shown.
+pub struct Progress {
+    bar: Option<ProgressBar>,
+    shown: Instant,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        let bar = io::stderr().is_terminal().then(|| {
+            let bar = ProgressBar::no_length();
+            if let Ok(style) =
+                ProgressStyle::with_template("{pos:>3}/{len} {elapsed:>4} {prefix}\n    {wide_msg}")
+            {
+                bar.set_style(style);
+            }
+            bar
+        });
+        Self { bar, shown: Instant::now() }
+    }
+}
+
+impl Observer for Progress {
+    /// A line that stays, above the progress line.
+    fn message(&mut self, text: &str) {
+        match &self.bar {
+            Some(bar) => bar.println(format!("rcs-run: {text}")),
+            None => os_io::stderr_line!("rcs-run: {text}"),
+        }
+    }
+
+    /// Show where the run is, at most ten times a second.
+    fn tick(&mut self, report: &TickReport<'_>) {
+        let Some(bar) = &self.bar else { return };
+        if self.shown.elapsed() < PERIOD {
+            return;
+        }
+        self.shown = Instant::now();
+        bar.set_length(report.lines as u64 + 1);
+        bar.set_position(report.steps.len() as u64);
+        bar.set_prefix(report.steps.last().map_or_else(String::new, |step| step.text.clone()));
+        bar.set_message(levels(report.hws, report.memory));
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// What Task, Subtask, E-move and Prim do.
+fn levels(hws: &HwsCommand, memory: &CommonMemory) -> String {
+    let doing = ProcessId::ALL.iter().take(LEVELS).filter_map(|process| {
+        // All of Task's command stands in the line of the job already.
+        let command = match process {
+            ProcessId::Task => hws.command.to_string(),
+            _ => failure::command(*process, hws, memory),
+        };
+        (!command.is_empty()).then(|| format!("{process}: {command}"))
+    });
+    doing.collect::<Vec<_>>().join(" | ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::{emove::EmoveVerb, prim::PrimVerb};
+    use rcs_core::name::{Name10, Name16};
+
+    #[test]
+    fn levels_without_a_command_are_left_out() {
+        let mut memory = CommonMemory::default();
+        let hws = HwsCommand { command: Name16::clipped("MOVE"), ..HwsCommand::default() };
+        memory.subtask.emove.command = EmoveVerb::MovToLoc;
+        memory.subtask.emove.location = Name10::clipped("HOME");
+        memory.emove.prim.command = PrimVerb::GoThru;
+        assert_eq!(levels(&hws, &memory), "Task: MOVE | E-move: MOV-TO-LOC at HOME | Prim: GO-THRU");
+    }
+}

@@ -1,0 +1,140 @@
+//! The frames behind the words: what Prim commands, before it is rounded to 0.01 in and 0.01 degree.
+//!
+//! The line carries words, and the robot is commanded by them. A robot that can use more finds here the frame
+//! that a position was rounded from: Prim's last frames are kept, each with the buffer that T3I got of it,
+//! and the one whose buffer gives the words on the line is the one. Where none does (a point that was scaled
+//! back, a position that a report brought) the words are all there is.
+
+use geometry::{
+    frame::{Frame, Vector},
+    kinematics::Arm,
+    pose::WireFrame,
+};
+
+use crate::Plate;
+
+/// Frames that are kept: the queue of T3I, one on its way to it, and one that is on the line.
+const MOST_FRAMES: usize = 8;
+
+/// A frame of Prim.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Kept {
+    /// As T3I got it.
+    wire: WireFrame,
+    /// As Prim meant it.
+    exact: Frame,
+    /// It was found for words already.
+    used: bool,
+}
+
+/// Prim's last frames.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExactFrames {
+    /// The newest first.
+    frames: [Option<Kept>; MOST_FRAMES],
+}
+
+impl Default for ExactFrames {
+    fn default() -> Self {
+        Self { frames: [None; MOST_FRAMES] }
+    }
+}
+
+impl ExactFrames {
+    /// Prim has commanded the tool frame `exact` (inches, world), which T3I got as `wire`. What is not rounded
+    /// from one another is not kept.
+    pub fn offer(&mut self, wire: &WireFrame, exact: &Frame) {
+        let newest = self.frames.iter().flatten().next();
+        let known = newest.is_some_and(|newest| newest.wire == *wire && newest.exact == *exact);
+        if WireFrame::from_frame(exact) == *wire && !known {
+            self.frames.rotate_right(1);
+            if let Some(newest) = self.frames.first_mut() {
+                *newest = Some(Kept { wire: *wire, exact: *exact, used: false });
+            }
+        }
+    }
+
+    /// The end-plate frame (inches, world) behind the words of a position, and the words' own frame if none
+    /// is kept. Positions come in the order of the frames: what was before the one that is found is forgotten,
+    /// and the same words again are the next frame, if that gives them too.
+    pub fn plate_frame(&mut self, words: &Plate, arm: &Arm) -> Frame {
+        let gives = |wire: &WireFrame| {
+            let tool = wire.to_frame().ok();
+            tool.and_then(|tool| Plate::from_tool(&tool, arm, words).ok())
+                .is_some_and(|plate| plate.same(words))
+        };
+        let fits = |kept: &Option<Kept>| kept.is_some_and(|kept| gives(&kept.wire));
+        let unused = |kept: &Option<Kept>| kept.is_some_and(|kept| !kept.used);
+        let at = self.frames.iter().rposition(|kept| unused(kept) && fits(kept));
+        let Some(at) = at.or_else(|| self.frames.iter().rposition(fits)) else { return words.to_frame() };
+        self.frames.iter_mut().skip(at.saturating_add(1)).for_each(|older| *older = None);
+        match self.frames.get_mut(at) {
+            Some(Some(kept)) => {
+                kept.used = true;
+                kept.exact.shifted(Vector::new(-arm.plate_to_tool, 0.0, 0.0))
+            }
+            _ => words.to_frame(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geometry::{
+        frame::rotation_by,
+        kinematics::{HOME_JOINTS, T3},
+    };
+
+    fn tool(part: f64) -> Frame {
+        let home = T3.forward(&HOME_JOINTS);
+        Frame {
+            position: home.position + Vector::new(0.123_456, -0.234_567, 0.345_678) * part,
+            rotation: rotation_by(&Vector::new(0.01, 0.02, -0.03)) * home.rotation,
+        }
+    }
+
+    fn words(tool: &Frame) -> Plate {
+        let home = Plate::from_frame(&T3.forward_plate(&HOME_JOINTS), &Plate::default()).unwrap();
+        Plate::from_tool(&WireFrame::from_frame(tool).to_frame().unwrap(), &T3, &home).unwrap()
+    }
+
+    #[test]
+    fn words_have_the_frame_that_they_were_rounded_from() {
+        let mut exact = ExactFrames::default();
+        for part in 1..=6 {
+            let tool = tool(f64::from(part));
+            exact.offer(&WireFrame::from_frame(&tool), &tool);
+        }
+        for part in 1..=6 {
+            let tool = tool(f64::from(part));
+            let found = exact.plate_frame(&words(&tool), &T3);
+            let off = found.shifted(Vector::new(T3.plate_to_tool, 0.0, 0.0)).distance(&tool);
+            assert!(off.inches < 1e-12 && off.radians < 1e-12, "{off:?}");
+        }
+    }
+
+    #[test]
+    fn equal_words_are_one_frame_after_the_other() {
+        let mut exact = ExactFrames::default();
+        let near = [tool(1.0), tool(1.000_1), tool(1.000_2)];
+        near.iter().for_each(|tool| exact.offer(&WireFrame::from_frame(tool), tool));
+        let words = words(&near[0]);
+        let mut next = || exact.plate_frame(&words, &T3).shifted(Vector::new(T3.plate_to_tool, 0.0, 0.0));
+        for tool in near.iter().chain([&near[2]]) {
+            assert!(next().distance(tool).inches < 1e-12);
+        }
+    }
+
+    #[test]
+    fn other_words_are_their_own_frame_and_what_does_not_fit_is_not_kept() {
+        let mut exact = ExactFrames::default();
+        exact.offer(&WireFrame::from_frame(&tool(1.0)), &tool(3.0));
+        let words = words(&tool(1.0));
+        assert_eq!(exact.plate_frame(&words, &T3), words.to_frame());
+        for part in 1..=20 {
+            exact.offer(&WireFrame::from_frame(&tool(f64::from(part))), &tool(f64::from(part)));
+        }
+        assert_eq!(exact.plate_frame(&words, &T3), words.to_frame(), "too long ago");
+    }
+}

@@ -1,0 +1,34 @@
+//! An EGM robot in the place of a T3: behind the controller's side of DEPC stands ABB's Externally Guided
+//! Motion.
+//!
+//! ```text
+//!   host (T3 Interface, or any other)
+//!     │ bytes, once a tick of 40 ms
+//!   bridge::Bridge: depc::Controller, which moves ...
+//!     │ orders, at most one a tick            ▲ samples
+//!   line::Line: egm::Host, in a thread of its own, or in simulated time
+//!     │ EgmSensor                              ▲ EgmRobot, every 4 ms
+//!   robot controller, or emulator::EgmRobot
+//! ```
+//!
+//! * [`options`] reads what is typed, `egm:[ADDRESS:]PORT[,OPTION...]`;
+//! * [`placement`]: where the T3's world lies in the robot's work object, from a file;
+//! * [`bridge`]: the robot's border;
+//! * [`mod@line`]: the host with a socket ([`udp`]) or with an emulated robot ([`simulated`]);
+//! * [`emulator`]: an EGM robot, with the arm of the T3; [`network`]: what UDP does to datagrams.
+
+pub mod bridge;
+pub mod emulator;
+pub mod line;
+pub mod network;
+pub mod options;
+pub mod placement;
+pub mod simulated;
+pub mod udp;
+
+pub use self::{
+    bridge::{Bridge, BridgeOutputs},
+    line::{Line, Order, Report},
+    options::{EgmOptions, Peer},
+    placement::Placement,
+};

@@ -1,0 +1,257 @@
+//! `egm:[ADDRESS:]PORT[,OPTION...]` and `egm:sim[,OPTION...]`, as a person types them.
+
+use std::{
+    net::{IpAddr, Ipv4Addr, SocketAddr},
+    path::{Path, PathBuf},
+    str::FromStr,
+    time::Duration,
+};
+
+use egm::host::Settings;
+
+use crate::{
+    Placement,
+    emulator::{EgmRobot, Tuning},
+    network::{Network, Quality},
+    placement::PlacementError,
+    simulated::SimulatedLine,
+};
+
+/// Directory of the robots' files in the data directory.
+const ROBOTS: &str = "robots";
+/// Least and greatest slack, ms.
+const SLACK_MS: std::ops::RangeInclusive<u64> = 0..=200;
+
+/// Where the robot is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Peer {
+    /// It sends to this address, or an emulator does.
+    Udp(SocketAddr),
+    /// An emulated one in this process, in simulated time.
+    Simulated,
+}
+
+/// A robot with EGM.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EgmOptions {
+    /// Where it is.
+    pub peer: Peer,
+    /// `robot=NAME|FILE`: its frames, a file or a name in `data/robots`.
+    pub robot: Option<String>,
+    /// `from=ADDRESS`: only datagrams from there count.
+    pub from: Option<IpAddr>,
+    /// `speed-ref=on|off`: give the speed of the target with it.
+    pub speed_ref: bool,
+    /// `slack=MS`: by how much a tick may be late.
+    pub slack_ms: u64,
+    /// Of an emulated robot: what its program sets.
+    pub tuning: Tuning,
+    /// Of an emulated robot: the network to it.
+    pub quality: Quality,
+    /// Of an emulated robot: seed of the network.
+    pub seed: u64,
+}
+
+impl EgmOptions {
+    /// A robot with nothing set.
+    #[must_use]
+    pub fn new(peer: Peer) -> Self {
+        Self {
+            peer,
+            robot: None,
+            from: None,
+            speed_ref: true,
+            slack_ms: 10,
+            tuning: Tuning::default(),
+            quality: Quality::default(),
+            seed: 1,
+        }
+    }
+
+    /// A robot to emulate, as it is typed after `egm:`; without an address it sends to this machine.
+    ///
+    /// # Errors
+    /// What was expected, and what was found.
+    pub fn to_emulate(text: &str) -> Result<Self, String> {
+        let (place, options) = text.split_once(',').unwrap_or((text, ""));
+        let mut emulated = Self::parse(place, Ipv4Addr::LOCALHOST)?;
+        for option in options.split(',').filter(|option| !option.is_empty()) {
+            match option.split_once('=') {
+                Some(("robot", value)) => emulated.robot = Some(value.to_owned()),
+                Some((name, value)) => emulated.emulate(name, value)?,
+                None => return Err(format!("an EGM option is NAME=VALUE, found {option}")),
+            }
+        }
+        Ok(emulated)
+    }
+
+    /// A robot, as it is typed after `egm:`. `address` stands for an address that is not named.
+    fn parse(text: &str, address: Ipv4Addr) -> Result<Self, String> {
+        let mut parts = text.split(',');
+        let place = parts.next().unwrap_or_default();
+        let peer = if place == "sim" {
+            Peer::Simulated
+        } else {
+            let port = place.parse().map(|port: u16| SocketAddr::from((address, port)));
+            let full = port.ok().or_else(|| place.parse().ok()).filter(|address| address.port() != 0);
+            Peer::Udp(full.ok_or_else(|| {
+                format!("egm:[ADDRESS:]PORT or egm:sim was expected, such as egm:6510; found egm:{place}")
+            })?)
+        };
+        let mut options = Self::new(peer);
+        parts.try_for_each(|option| options.set(option))?;
+        Ok(options)
+    }
+
+    fn set(&mut self, option: &str) -> Result<(), String> {
+        let Some((name, value)) = option.split_once('=') else {
+            return Err(format!("an EGM option is NAME=VALUE, found {option}"));
+        };
+        let emulated = self.peer == Peer::Simulated;
+        match name {
+            "robot" => self.robot = Some(value.to_owned()),
+            "from" => {
+                self.from = Some(value.parse().map_err(|_| format!("from is an address, found {value}"))?)
+            }
+            "speed-ref" => self.speed_ref = switch(name, value)?,
+            "slack" => {
+                let slack = value.parse().ok().filter(|slack| SLACK_MS.contains(slack));
+                self.slack_ms = slack.ok_or_else(|| format!("slack is 0 to 200 ms, found {value}"))?;
+            }
+            _ if emulated => self.emulate(name, value)?,
+            _ => return Err(format!("EGM has no option {name}; it has robot, from, speed-ref, slack")),
+        }
+        Ok(())
+    }
+
+    /// An option of the emulated robot.
+    fn emulate(&mut self, name: &str, value: &str) -> Result<(), String> {
+        let (tuning, quality) = (&mut self.tuning, &mut self.quality);
+        let (slot, range) = match name {
+            "gain" => (&mut tuning.gain, 0.0..=20.0),
+            "filter" => (&mut tuning.low_pass, 0.0..=100.0),
+            "ramp" => (&mut tuning.ramp_s, 0.005..=10.0),
+            "deviation" => (&mut tuning.max_speed_deviation, 0.0..=400.0),
+            "timeout" => (&mut tuning.comm_timeout_s, 0.01..=60.0),
+            "loss" => (&mut quality.loss, 0.0..=100.0),
+            "double" => (&mut quality.double, 0.0..=100.0),
+            "reorder" => (&mut quality.reorder, 0.0..=100.0),
+            "delay" => (&mut quality.delay_ms, 0.0..=1000.0),
+            "jitter" => (&mut quality.jitter_ms, 0.0..=1000.0),
+            "silent-at" => (&mut quality.silent_at_s, 0.0..=1e6),
+            "silent-for" => (&mut quality.silent_for_s, 0.0..=1e6),
+            "do-not-restart" => {
+                tuning.do_not_restart = switch(name, value)?;
+                return Ok(());
+            }
+            "seed" => {
+                self.seed = value.parse().map_err(|_| format!("seed is a number, found {value}"))?;
+                return Ok(());
+            }
+            _ => {
+                return Err(format!(
+                    "an emulated EGM robot has no option {name}; it has robot, gain, filter, ramp, deviation, \
+                     timeout, do-not-restart, loss, double, reorder, delay, jitter, silent-at, silent-for, seed"
+                ));
+            }
+        };
+        let (low, high) = (*range.start(), *range.end());
+        let number = value.parse().ok().filter(|number| range.contains(number));
+        *slot = number.ok_or_else(|| format!("{name} is a number from {low} to {high}, found {value}"))?;
+        Ok(())
+    }
+
+    /// The robot's frames.
+    ///
+    /// # Errors
+    /// [`PlacementError`].
+    pub fn placement(&self, data: &Path) -> Result<Placement, PlacementError> {
+        let Some(robot) = &self.robot else { return Ok(Placement::default()) };
+        let named = data.join(ROBOTS).join(robot).with_added_extension("toml");
+        let path = if named.is_file() { named } else { PathBuf::from(robot) };
+        Placement::load(&path)
+    }
+
+    /// How the host behaves.
+    #[must_use]
+    pub fn settings(&self, placement: &Placement) -> Settings {
+        let mut settings = Settings::new(placement.limits());
+        let slack = Duration::from_millis(self.slack_ms).as_nanos();
+        settings.times.slack = u64::try_from(slack).unwrap_or(settings.times.slack);
+        settings.speed_ref = self.speed_ref;
+        settings
+    }
+
+    /// An emulated robot, with the network to it.
+    #[must_use]
+    pub fn simulated(&self, placement: &Placement) -> SimulatedLine {
+        let robot = EgmRobot::new(self.tuning, *placement);
+        let [to_host, to_robot] = self.networks();
+        SimulatedLine::new(self.settings(placement), robot, to_host, to_robot)
+    }
+
+    /// The network to the host, and the one to the robot.
+    #[must_use]
+    pub fn networks(&self) -> [Network; 2] {
+        [0, 1].map(|direction| Network::new(self.quality, self.seed.wrapping_mul(2).wrapping_add(direction)))
+    }
+}
+
+fn switch(name: &str, value: &str) -> Result<bool, String> {
+    match value {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(format!("{name} is on or off, found {value}")),
+    }
+}
+
+impl FromStr for EgmOptions {
+    type Err = String;
+
+    /// To listen for a robot.
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::parse(text, Ipv4Addr::UNSPECIFIED)
+    }
+}
+
+impl std::fmt::Display for EgmOptions {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.peer {
+            Peer::Udp(address) => write!(f, "egm:{address}"),
+            Peer::Simulated => f.write_str("egm:sim"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_robot_is_at_a_port_or_simulated() {
+        let parse = |text: &str| text.parse::<EgmOptions>();
+        let at = |text: &str| parse(text).map(|options| options.peer);
+        assert_eq!(at("6510"), Ok(Peer::Udp("0.0.0.0:6510".parse().unwrap())));
+        assert_eq!(at("192.168.125.2:6510"), Ok(Peer::Udp("192.168.125.2:6510".parse().unwrap())));
+        assert_eq!(at("[::1]:6510"), Ok(Peer::Udp("[::1]:6510".parse().unwrap())));
+        assert_eq!(at("sim"), Ok(Peer::Simulated));
+        let options = parse("6510,robot=irb,from=192.168.125.1,speed-ref=off,slack=15").unwrap();
+        assert_eq!((options.robot.as_deref(), options.speed_ref, options.slack_ms), (Some("irb"), false, 15));
+        let options = parse("sim,gain=10,loss=20,jitter=20,seed=7,do-not-restart=off").unwrap();
+        assert_eq!((options.tuning.gain, options.quality.loss, options.seed), (10.0, 20.0, 7));
+        assert!(!options.tuning.do_not_restart);
+        for wrong in [
+            "",
+            "0",
+            "70000",
+            "host:x",
+            "6510,gain=5",
+            "6510,robot",
+            "sim,gain=21",
+            "sim,slack=x",
+            "sim,loss=-1",
+        ] {
+            assert!(parse(wrong).is_err(), "{wrong}");
+        }
+    }
+}

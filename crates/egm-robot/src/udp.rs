@@ -1,0 +1,202 @@
+//! The host behind a UDP socket, in a thread of its own: it answers each datagram as it comes. Orders and
+//! reports go through bounded rings, so that neither thread waits for the other.
+
+use std::{
+    io::ErrorKind,
+    net::{IpAddr, SocketAddr, UdpSocket},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    thread::{self, JoinHandle},
+    time::{Duration, Instant},
+};
+
+use egm::{Host, LinkState, Sample, host::Settings, message::MOST_BYTES};
+use rtrb::{Consumer, Producer, RingBuffer};
+
+use crate::line::{Order, Report};
+
+/// Orders under way: several ticks' worth.
+const MOST_ORDERS: usize = 16;
+/// Reports under way: a second's worth.
+const MOST_REPORTS: usize = 256;
+/// How long the thread waits for a datagram before it looks for orders and for the time.
+const WAIT: Duration = Duration::from_millis(4);
+/// No datagram of EGM is longer.
+const MOST_RECEIVED: usize = 2048;
+
+/// Why the line cannot be opened.
+#[derive(Debug, thiserror::Error)]
+#[error("EGM cannot listen at UDP {address}: {source}")]
+pub struct UdpError {
+    address: SocketAddr,
+    source: std::io::Error,
+}
+
+/// The line.
+pub struct UdpLine {
+    origin: Instant,
+    orders: Producer<Order>,
+    reports: Consumer<Report>,
+    sample: Sample,
+    /// Datagrams of others than the robot.
+    strangers: Arc<AtomicU64>,
+    stop: Arc<AtomicBool>,
+    address: SocketAddr,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl UdpLine {
+    /// Listen at `address`; with `peer` only datagrams from there count. `prepare` is called in the thread
+    /// before its first datagram, to ask for real-time scheduling.
+    ///
+    /// # Errors
+    /// [`UdpError`].
+    pub fn open(
+        address: SocketAddr,
+        peer: Option<IpAddr>,
+        settings: Settings,
+        prepare: impl FnOnce() + Send + 'static,
+    ) -> Result<Self, UdpError> {
+        let failed = |source| UdpError { address, source };
+        let socket = UdpSocket::bind(address).map_err(failed)?;
+        socket.set_read_timeout(Some(WAIT)).map_err(failed)?;
+        let address = socket.local_addr().map_err(failed)?;
+        let (orders, to_do) = RingBuffer::new(MOST_ORDERS);
+        let (done, reports) = RingBuffer::new(MOST_REPORTS);
+        let (stop, strangers) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
+        let origin = Instant::now();
+        let host = Host::new(settings);
+        let mut worker = Worker {
+            socket,
+            origin,
+            host,
+            orders: to_do,
+            reports: done,
+            allowed: peer,
+            robot: None,
+            strangers: Arc::clone(&strangers),
+            heard: None,
+            lost: false,
+        };
+        let ended = Arc::clone(&stop);
+        let thread = thread::Builder::new()
+            .name("egm".into())
+            .spawn(move || {
+                prepare();
+                while !ended.load(Ordering::Relaxed) {
+                    worker.step();
+                }
+            })
+            .map_err(failed)?;
+        let sample = Sample::default();
+        Ok(Self { origin, orders, reports, sample, strangers, stop, address, thread: Some(thread) })
+    }
+
+    /// Where the line listens.
+    #[must_use]
+    pub const fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Datagrams that came from elsewhere than the robot, and were not looked at.
+    #[must_use]
+    pub fn strangers(&self) -> u64 {
+        self.strangers.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn now(&self) -> u64 {
+        nanoseconds(self.origin)
+    }
+
+    pub(crate) const fn sample(&self) -> Sample {
+        self.sample
+    }
+
+    /// A full ring means that the thread stands still; the order is lost, and with it the path ends.
+    pub(crate) fn order(&mut self, order: &Order) {
+        let _ = self.orders.push(*order);
+    }
+
+    pub(crate) fn reports(&mut self, mut take: impl FnMut(&Report)) {
+        while let Ok(report) = self.reports.pop() {
+            self.sample = report.sample;
+            take(&report);
+        }
+    }
+}
+
+impl Drop for UdpLine {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has said so.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn nanoseconds(origin: Instant) -> u64 {
+    u64::try_from(origin.elapsed().as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// What the thread works with.
+struct Worker {
+    socket: UdpSocket,
+    origin: Instant,
+    host: Host,
+    orders: Consumer<Order>,
+    reports: Producer<Report>,
+    allowed: Option<IpAddr>,
+    /// The robot: the sender of the first datagram that is a message.
+    robot: Option<SocketAddr>,
+    strangers: Arc<AtomicU64>,
+    heard: Option<u64>,
+    /// The loss of the robot was reported.
+    lost: bool,
+}
+
+impl Worker {
+    fn step(&mut self) {
+        let mut datagram = [0; MOST_RECEIVED];
+        let received = self.socket.recv_from(&mut datagram);
+        let now = nanoseconds(self.origin);
+        while let Ok(order) = self.orders.pop() {
+            // What is refused shows in the samples.
+            let _ = order.carry_out(&mut self.host);
+        }
+        match received {
+            Ok((length, sender)) => self.answer(now, datagram.get(..length).unwrap_or_default(), sender),
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+            // An earlier answer found nobody: the robot has ended. The next datagram may come at any time.
+            Err(error) if error.kind() == ErrorKind::ConnectionRefused => {}
+            Err(_) => thread::sleep(WAIT),
+        }
+        self.host.poll(now);
+        let lost = self.host.sample().link == LinkState::Lost;
+        if lost && !self.lost {
+            self.robot = None;
+            let _ = self.reports.push(Report { sample: self.host.sample(), cycle: None, answered: 0 });
+        }
+        self.lost = lost;
+    }
+
+    fn answer(&mut self, now: u64, datagram: &[u8], sender: SocketAddr) {
+        let is_stranger = self.robot.is_some_and(|robot| robot != sender)
+            || self.allowed.is_some_and(|allowed| allowed != sender.ip());
+        if is_stranger {
+            self.strangers.fetch_add(1, Ordering::Relaxed);
+            return;
+        }
+        let mut buffer = [0; MOST_BYTES];
+        let Ok(Some(answer)) = self.host.receive(now, datagram, &mut buffer) else { return };
+        self.robot = Some(sender);
+        // An answer that cannot be sent is one that is lost.
+        let _ = self.socket.send_to(answer, sender);
+        let answered = nanoseconds(self.origin).saturating_sub(now);
+        let cycle = self.heard.replace(now).map(|before| now.saturating_sub(before));
+        // Without room the newest report is left out; the next tick brings newer ones.
+        let _ = self.reports.push(Report { sample: self.host.sample(), cycle, answered });
+    }
+}

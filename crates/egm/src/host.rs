@@ -1,0 +1,278 @@
+//! The host: answers each message of the robot with a target.
+
+use crate::{
+    Error, Limits, LinkState, Pose, Twist,
+    message::{Robot, Sensor},
+    path::{Motion, Path, Times},
+    session::{Arrival, Session},
+};
+
+/// How the host behaves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// What targets are checked against.
+    pub limits: Limits,
+    /// Times of the path.
+    pub times: Times,
+    /// Without a message for so long the robot is lost, ns.
+    pub silence: u64,
+    /// After a gap of so long between two messages the path comes to rest, ns.
+    pub gap: u64,
+    /// Give the speed of the target with it.
+    pub speed_ref: bool,
+    /// A robot that is farther than so many mm from where it is to rest takes no path.
+    pub tolerance: f64,
+    /// The same for its rotation, rad.
+    pub turn_tolerance: f64,
+}
+
+impl Settings {
+    /// The usual ones: 120 ms of silence, gaps of 60 ms, 5 mm and 0.02 rad, speeds given.
+    #[must_use]
+    pub fn new(limits: Limits) -> Self {
+        Self {
+            limits,
+            times: Times::default(),
+            silence: 120_000_000,
+            gap: 60_000_000,
+            speed_ref: true,
+            tolerance: 5.0,
+            turn_tolerance: 0.02,
+        }
+    }
+}
+
+/// What was counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// New messages of the robot.
+    pub received: u64,
+    /// Messages that were old when they came.
+    pub old: u64,
+    /// Datagrams that were refused.
+    pub refused: u64,
+    /// Targets sent.
+    pub sent: u64,
+    /// Points taken.
+    pub points: u64,
+    /// Motions that were ended because no point, or no message, came in time.
+    pub interrupted: u64,
+    /// Targets that were not sent because they were beyond the limits.
+    pub beyond: u64,
+}
+
+/// What is known after a message, or after a time without one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// When the last message came, ns.
+    pub heard: u64,
+    /// State of the link.
+    pub link: LinkState,
+    /// Where the robot is.
+    pub feedback: Pose,
+    /// The last target.
+    pub target: Pose,
+    /// Its speed.
+    pub speed: Twist,
+    /// Points are taken: a path was begun and is not interrupted.
+    pub is_moving: bool,
+    /// Where a path may begin; `None` while the robot does not follow, has not come to rest, or is not where
+    /// it was sent.
+    pub start: Option<Pose>,
+    /// Percent of its ability that the motion takes of the robot, if it says so.
+    pub utilization: Option<f64>,
+    /// Counters.
+    pub counters: Counters,
+}
+
+/// A target that was sent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Sent {
+    at: u64,
+    pose: Pose,
+    speed: Twist,
+}
+
+/// The host's side of the link to one robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Host {
+    settings: Settings,
+    session: Session,
+    path: Path,
+    feedback: Pose,
+    utilization: Option<f64>,
+    /// The last target of the robot that follows.
+    sent: Option<Sent>,
+    seqno: u32,
+    counters: Counters,
+}
+
+impl Host {
+    /// A host that waits for a robot.
+    #[must_use]
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            path: Path::new(settings.times, Pose::IDENTITY),
+            settings,
+            session: Session::default(),
+            feedback: Pose::IDENTITY,
+            utilization: None,
+            sent: None,
+            seqno: 0,
+            counters: Counters::default(),
+        }
+    }
+
+    /// A datagram has come at `now`. What comes back, at the end of `buffer`, is to be sent at once to where
+    /// it came from; nothing is, if the message was old: the robot reads one answer a cycle.
+    ///
+    /// # Errors
+    /// [`Error`] if it is no message of a robot; then nothing has changed but a counter.
+    pub fn receive<'a>(
+        &mut self,
+        now: u64,
+        datagram: &[u8],
+        buffer: &'a mut [u8],
+    ) -> Result<Option<&'a [u8]>, Error> {
+        let read = Robot::decode(datagram).and_then(|message| Ok((message, message.essentials()?)));
+        let (message, (seqno, feedback)) =
+            read.inspect_err(|_| self.counters.refused = self.counters.refused.saturating_add(1))?;
+        self.poll(now);
+        let before = self.session.state();
+        if self.session.accept(now, seqno, &message) == Arrival::Old {
+            self.counters.old = self.counters.old.saturating_add(1);
+            return Ok(None);
+        }
+        self.counters.received = self.counters.received.saturating_add(1);
+        (self.feedback, self.utilization) = (feedback, message.utilization_rate);
+        if self.session.state() != LinkState::Running || before != LinkState::Running {
+            // A robot that does not follow is asked to stay where it is, and one that begins to follow too.
+            self.rest_at_feedback();
+        }
+        let target = self.target(now);
+        if self.session.state() == LinkState::Running {
+            self.sent = Some(target);
+        }
+        // Numbers and times of messages wrap around.
+        self.seqno = self.seqno.wrapping_add(1);
+        let tm = u32::try_from((now / 1_000_000) & u64::from(u32::MAX)).unwrap_or_default();
+        let speed = Some(&target.speed).filter(|_| self.settings.speed_ref);
+        let answer = Sensor::target(self.seqno, tm, &target.pose, speed).encode(buffer)?;
+        self.counters.sent = self.counters.sent.saturating_add(1);
+        Ok(Some(answer))
+    }
+
+    /// Time passes without a message.
+    pub fn poll(&mut self, now: u64) {
+        self.session.poll(now, self.settings.silence);
+        if self.session.state() == LinkState::Lost && self.sent.is_some() {
+            self.interrupt();
+            self.rest_at_feedback();
+        }
+    }
+
+    /// Begin a path at rest at `from`, which is where the last [`Sample`] had its start.
+    ///
+    /// # Errors
+    /// [`Error::NotReady`] if a path cannot begin there now.
+    pub fn begin(&mut self, at: u64, from: &Pose) -> Result<(), Error> {
+        let start = self.start().ok_or(Error::NotReady)?;
+        if !self.are_near(&start, from) {
+            return Err(Error::NotReady);
+        }
+        if self.path.motion() != Motion::Moving {
+            self.path.begin(at, start);
+        }
+        Ok(())
+    }
+
+    /// The next point, which came at `at`. What is refused ends the path.
+    ///
+    /// # Errors
+    /// [`Error`] if the point cannot be taken.
+    pub fn push(&mut self, at: u64, point: &Pose) -> Result<(), Error> {
+        let pushed = self.path.push(at, point, &self.settings.limits);
+        match pushed {
+            Ok(()) => self.counters.points = self.counters.points.saturating_add(1),
+            Err(_) => self.stop(at),
+        }
+        pushed
+    }
+
+    /// Come to rest along the path's tangent.
+    pub fn stop(&mut self, now: u64) {
+        if self.path.motion() != Motion::Moving {
+            return;
+        }
+        self.interrupt();
+        match self.sent {
+            Some(sent) => self.path.stop(now.max(sent.at), sent.pose, sent.speed),
+            None => self.rest_at_feedback(),
+        }
+    }
+
+    /// What is known.
+    #[must_use]
+    pub fn sample(&self) -> Sample {
+        let (target, speed) =
+            self.sent.map_or((self.feedback, Twist::default()), |sent| (sent.pose, sent.speed));
+        Sample {
+            heard: self.session.heard(),
+            link: self.session.state(),
+            feedback: self.feedback,
+            target,
+            speed,
+            is_moving: self.path.motion() == Motion::Moving,
+            start: self.start(),
+            utilization: self.utilization,
+            counters: self.counters,
+        }
+    }
+
+    /// The target at `now`, within the limits of the one before.
+    fn target(&mut self, now: u64) -> Sent {
+        if let Some(sent) = self.sent {
+            if now.saturating_sub(sent.at) > self.settings.gap {
+                self.stop(now);
+            }
+            let moving = self.path.motion() == Motion::Moving;
+            let (pose, speed) = self.path.target(now);
+            if moving && self.path.motion() != Motion::Moving {
+                self.interrupt();
+            }
+            let elapsed = core::time::Duration::from_nanos(now.saturating_sub(sent.at)).as_secs_f64();
+            if pose == sent.pose || self.settings.limits.check(&sent.pose, &pose, elapsed).is_ok() {
+                return Sent { at: now, pose, speed };
+            }
+            self.counters.beyond = self.counters.beyond.saturating_add(1);
+            self.path.hold(sent.pose);
+            return Sent { at: now, speed: Twist::default(), ..sent };
+        }
+        let (pose, speed) = self.path.target(now);
+        Sent { at: now, pose, speed }
+    }
+
+    fn rest_at_feedback(&mut self) {
+        self.sent = None;
+        self.path.hold(self.feedback);
+    }
+
+    const fn interrupt(&mut self) {
+        self.counters.interrupted = self.counters.interrupted.saturating_add(1);
+    }
+
+    /// Where a path may begin, or goes on: at its last point, or where the target stands if the robot does.
+    fn start(&self) -> Option<Pose> {
+        match self.path.motion() {
+            Motion::Moving => Some(self.path.last_point()),
+            Motion::Still(at) => Some(at)
+                .filter(|at| self.session.state() == LinkState::Running && self.are_near(at, &self.feedback)),
+            Motion::Stopping { .. } => None,
+        }
+    }
+
+    fn are_near(&self, a: &Pose, b: &Pose) -> bool {
+        let (way, turn) = a.distance(b);
+        way <= self.settings.tolerance && turn <= self.settings.turn_tolerance
+    }
+}

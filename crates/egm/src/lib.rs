@@ -1,0 +1,56 @@
+//! ABB Externally Guided Motion (EGM) in pose mode: the host's side of the UDP link over which an ABB robot
+//! controller asks for a Cartesian target every 4 ms.
+//!
+//! Nothing here does I/O, reads a clock or allocates. Who owns a socket gives each datagram to
+//! [`Host::receive`] together with the time, and sends back the datagram that comes out:
+//!
+//! ```text
+//!   points, one every 40 ms ──► Host ──► Sample: state, feedback, target
+//!                                │  ▲
+//!                      EgmSensor ▼  │ EgmRobot, every 4 ms
+//!                           robot controller
+//! ```
+//!
+//! * [`message`]: the messages of `egm.proto`, one a file; decoding checks what the schema requires;
+//! * [`wire`]: the protocol-buffer encoding under them;
+//! * [`pose`]: positions in mm, unit quaternions, and what is computed with them;
+//! * [`session`]: is the robot there, does it follow, which messages are new;
+//! * [`spline`], [`path`]: from points to a target at any time, smooth to the second derivative;
+//! * [`limits`]: what every target is checked against;
+//! * [`host`]: all of it together.
+//!
+//! Times are nanoseconds of one monotonic clock, positions millimetres, speeds mm/s and rad/s; degrees stand
+//! in messages only.
+
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::as_conversions,
+        clippy::arithmetic_side_effects,
+        clippy::indexing_slicing,
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic
+    )
+)]
+
+pub mod error;
+pub mod host;
+pub mod limits;
+pub mod message;
+pub mod path;
+pub mod pose;
+pub mod session;
+pub mod spline;
+pub mod wire;
+
+pub use self::{
+    error::Error,
+    host::{Host, Sample},
+    limits::Limits,
+    pose::{Pose, Twist},
+    session::{Hindrance, LinkState},
+};

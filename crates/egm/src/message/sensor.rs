@@ -1,0 +1,117 @@
+//! `EgmSensor`: what the host answers.
+
+use super::{Header, MessageType, Motion, Values, WirePose};
+use crate::{
+    Error, Pose, Twist,
+    wire::{Reader, Writer},
+};
+
+/// `EgmSensor`. Data to RAPID (field 4) are skipped.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sensor {
+    /// Number, time, type.
+    pub header: Option<Header>,
+    /// Where the robot is to be.
+    pub planned: Option<Motion>,
+    /// How fast it is to move there.
+    pub speed_ref: Option<SpeedRef>,
+}
+
+/// `EgmSpeedRef`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpeedRef {
+    /// Joints, degrees/s.
+    pub joints: Option<Values>,
+    /// Tool: mm/s along x, y, z, then degrees/s about x, y, z. ASSUMED order: `egm.proto` does not say it.
+    pub cartesians: Option<Values>,
+    /// External joints, degrees/s.
+    pub external: Option<Values>,
+}
+
+impl SpeedRef {
+    /// The speed of the tool.
+    #[must_use]
+    pub fn of(twist: &Twist) -> Self {
+        let ([x, y, z], [a, b, c]) = (twist.linear, twist.angular.map(f64::to_degrees));
+        Self { cartesians: Some(Values::of(&[x, y, z, a, b, c])), ..Self::default() }
+    }
+
+    /// The speed of the tool; zero without six values.
+    #[must_use]
+    pub fn twist(&self) -> Twist {
+        match self.cartesians.as_ref().map(Values::as_slice) {
+            Some(&[x, y, z, a, b, c]) => Twist { linear: [x, y, z], angular: [a, b, c].map(f64::to_radians) },
+            _ => Twist::default(),
+        }
+    }
+
+    fn merge(&mut self, mut fields: Reader<'_>) -> Result<(), Error> {
+        while let Some(field) = fields.next_field()? {
+            match field.number {
+                1 => self.joints.get_or_insert_default().merge(1, field.message()?)?,
+                2 => self.cartesians.get_or_insert_default().merge(1, field.message()?)?,
+                3 => self.external.get_or_insert_default().merge(1, field.message()?)?,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn write(&self, writer: &mut Writer<'_>) -> Result<(), Error> {
+        for (number, values) in [(3, &self.external), (2, &self.cartesians), (1, &self.joints)] {
+            if let Some(values) = values {
+                writer.message(number, |writer| values.write(1, writer))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Sensor {
+    /// A target for the tool, with its speed if it is to be given.
+    #[must_use]
+    pub fn target(seqno: u32, tm: u32, pose: &Pose, speed: Option<&Twist>) -> Self {
+        Self {
+            header: Some(Header::new(seqno, tm, MessageType::Correction)),
+            planned: Some(Motion::at(WirePose::of(pose))),
+            speed_ref: speed.map(SpeedRef::of),
+        }
+    }
+
+    /// Read a datagram.
+    ///
+    /// # Errors
+    /// [`Error`] if it is no message, or if a field is missing that the schema requires.
+    pub fn decode(datagram: &[u8]) -> Result<Self, Error> {
+        let mut message = Self::default();
+        let mut fields = Reader::new(datagram);
+        while let Some(field) = fields.next_field()? {
+            match field.number {
+                1 => message.header.get_or_insert_default().merge(field.message()?)?,
+                2 => message.planned.get_or_insert_default().merge(field.message()?)?,
+                3 => message.speed_ref.get_or_insert_default().merge(field.message()?)?,
+                _ => {}
+            }
+        }
+        message.planned.map_or(Ok(()), |planned| planned.check())?;
+        Ok(message)
+    }
+
+    /// Write the message to the end of `buffer`.
+    ///
+    /// # Errors
+    /// [`Error::NoRoom`]; [`super::MOST_BYTES`] are always enough.
+    pub fn encode<'a>(&self, buffer: &'a mut [u8]) -> Result<&'a [u8], Error> {
+        let mut writer = Writer::new(buffer);
+        if let Some(speed) = &self.speed_ref {
+            writer.message(3, |writer| speed.write(writer))?;
+        }
+        if let Some(planned) = &self.planned {
+            writer.message(2, |writer| planned.write(writer))?;
+        }
+        if let Some(header) = &self.header {
+            writer.message(1, |writer| header.write(writer))?;
+        }
+        Ok(writer.finish())
+    }
+}

@@ -1,0 +1,266 @@
+//! The target at any time: points come one a period, targets are asked for every 4 ms.
+//!
+//! Targets are a function of *time*, not of how many were asked for: there are 9.92 cycles of the robot in a
+//! period of 40 ms. The segment on which the target is needs the newest point, so that the target is one
+//! period behind a robot that would be at a point one period after it came, and `slack` more, by which points
+//! may come late.
+//!
+//! ```text
+//!            begin                   no point in time, or stop
+//!   Still ───────────► Moving ──────────────────────────────────► Stopping
+//!     ▲                                                               │
+//!     └───────────────────────────────────────────────────────────────┘ after `stop`
+//! ```
+//!
+//! Without a point in time the segment is finished; then the speed goes to zero along the tangent, within a
+//! fixed time, with an acceleration that begins and ends at zero. What comes after that begins at rest.
+
+use crate::{
+    Error, Limits,
+    pose::{Pose, Twist},
+    spline,
+};
+
+/// Points that may wait for their segment.
+const MOST_WAITING: usize = 4;
+
+/// Times of a path, nanoseconds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Times {
+    /// Between two points.
+    pub period: u64,
+    /// By which a point may come late.
+    pub slack: u64,
+    /// In which the speed goes to zero if no point comes.
+    pub stop: u64,
+}
+
+impl Default for Times {
+    /// A period of 40 ms, a slack of 10 ms and a stop in 100 ms.
+    fn default() -> Self {
+        Self { period: 40_000_000, slack: 10_000_000, stop: 100_000_000 }
+    }
+}
+
+/// What the path does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Motion {
+    /// The target stands.
+    Still(Pose),
+    /// Points come.
+    Moving,
+    /// The speed goes to zero along the tangent.
+    Stopping {
+        /// Where that began.
+        from: Pose,
+        /// With which speed.
+        speed: Twist,
+        /// When.
+        since: u64,
+    },
+}
+
+/// A path that is being made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Path {
+    times: Times,
+    motion: Motion,
+    /// The last four points, those of the segment.
+    window: [Pose; 4],
+    /// When the segment begins.
+    segment: u64,
+    /// When the path was begun.
+    begun: u64,
+    /// Points since.
+    count: u64,
+    /// Points of the segments to come; the first `waiting` count.
+    queue: [Pose; MOST_WAITING],
+    waiting: usize,
+}
+
+fn seconds(nanoseconds: u64) -> f64 {
+    core::time::Duration::from_nanos(nanoseconds).as_secs_f64()
+}
+
+impl Path {
+    /// A path that stands.
+    #[must_use]
+    pub const fn new(times: Times, at: Pose) -> Self {
+        let motion = Motion::Still(at);
+        Self { times, motion, window: [at; 4], segment: 0, begun: 0, count: 0, queue: [at; 4], waiting: 0 }
+    }
+
+    /// What the path does.
+    #[must_use]
+    pub const fn motion(&self) -> Motion {
+        self.motion
+    }
+
+    /// The last point that was taken.
+    #[must_use]
+    pub fn last_point(&self) -> Pose {
+        let [.., last] = self.window;
+        self.waiting.checked_sub(1).and_then(|at| self.queue.get(at)).copied().unwrap_or(last)
+    }
+
+    /// Stand at `at`, at once.
+    pub const fn hold(&mut self, at: Pose) {
+        *self = Self::new(self.times, at);
+    }
+
+    /// Begin at rest at `from`; the first point is due a period after `at`.
+    pub const fn begin(&mut self, at: u64, from: Pose) {
+        let segment = at.saturating_add(self.times.slack);
+        let still = Self::new(self.times, from);
+        *self = Self { motion: Motion::Moving, begun: at, segment, ..still };
+    }
+
+    /// The next point, which came at `at`.
+    ///
+    /// # Errors
+    /// [`Error::NotReady`] if the path does not move, or if the point came more than half a period before or
+    /// after its time; [`Error::Full`]; [`Error::TooFast`] or [`Error::Outside`] beyond the limits.
+    pub fn push(&mut self, at: u64, point: &Pose, limits: &Limits) -> Result<(), Error> {
+        if self.motion != Motion::Moving {
+            return Err(Error::NotReady);
+        }
+        let count = self.count.saturating_add(1);
+        let due = self.begun.saturating_add(count.saturating_mul(self.times.period));
+        if at.abs_diff(due) > self.times.period / 2 {
+            return Err(Error::NotReady);
+        }
+        limits.check(&self.last_point(), point, seconds(self.times.period))?;
+        let slot = self.queue.get_mut(self.waiting).ok_or(Error::Full)?;
+        (*slot, self.waiting, self.count) = (*point, self.waiting.saturating_add(1), count);
+        Ok(())
+    }
+
+    /// Target and speed at `now`; times may not go back.
+    pub fn target(&mut self, now: u64) -> (Pose, Twist) {
+        while self.motion == Motion::Moving && now >= self.segment.saturating_add(self.times.period) {
+            self.segment = self.segment.saturating_add(self.times.period);
+            if !self.next_segment() {
+                let (from, speed) = spline::evaluate(&self.window, 1.0, seconds(self.times.period));
+                self.stop(self.segment, from, speed);
+            }
+        }
+        match self.motion {
+            Motion::Still(at) => (at, Twist::default()),
+            Motion::Moving => {
+                let period = seconds(self.times.period);
+                let u = seconds(now.saturating_sub(self.segment)) / period;
+                spline::evaluate(&self.window, u, period)
+            }
+            Motion::Stopping { from, speed, since } => {
+                self.stopping(&from, &speed, now.saturating_sub(since))
+            }
+        }
+    }
+
+    /// Come to rest along the tangent, from a target that was given with a speed at `since`.
+    pub const fn stop(&mut self, since: u64, from: Pose, speed: Twist) {
+        self.hold(from);
+        self.motion = Motion::Stopping { from, speed, since };
+    }
+
+    fn next_segment(&mut self) -> bool {
+        let Some(rest) = self.waiting.checked_sub(1) else { return false };
+        let [_, second, third, fourth] = self.window;
+        let [next, ..] = self.queue;
+        self.window = [second, third, fourth, next];
+        self.queue.rotate_left(1);
+        self.waiting = rest;
+        true
+    }
+
+    /// The speed falls with the parts `s` of the time as (1 - s)^2 (1 + 2 s).
+    fn stopping(&mut self, from: &Pose, speed: &Twist, elapsed: u64) -> (Pose, Twist) {
+        let stop = seconds(self.times.stop);
+        let s = (seconds(elapsed) / stop).min(1.0);
+        let way = speed.scaled(stop * (s - s * s * s + s * s * s * s / 2.0));
+        let pose = from.moved(&way);
+        if s >= 1.0 {
+            self.hold(pose);
+            return (pose, Twist::default());
+        }
+        (pose, speed.scaled((1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pose::norm;
+
+    const MS: u64 = 1_000_000;
+    const LIMITS: Limits = Limits::of_speed(400.0, 1.2);
+
+    fn at(x: f64) -> Pose {
+        Pose { position: [x, 0.0, 0.0], ..Pose::IDENTITY }
+    }
+
+    /// A path along x, 10 mm a period, for so many points.
+    fn moving(points: u32) -> Path {
+        let mut path = Path::new(Times::default(), at(0.0));
+        path.begin(0, at(0.0));
+        for point in 1..=points {
+            let now = u64::from(point) * 40 * MS;
+            path.target(now);
+            path.push(now, &at(f64::from(point) * 10.0), &LIMITS).unwrap();
+        }
+        path
+    }
+
+    #[test]
+    fn a_steady_path_is_one_period_and_the_slack_behind() {
+        let mut path = moving(10);
+        // At 400 ms point 10 came, for 440 ms: 100 mm. The target is there 50 ms later.
+        let (pose, speed) = path.target(449 * MS);
+        assert!((pose.position[0] - 90.0 + 0.25).abs() < 1e-9, "{pose:?}");
+        assert!((speed.linear[0] - 250.0).abs() < 1e-9, "{speed:?}");
+    }
+
+    #[test]
+    fn points_that_repeat_are_ended_at_exactly() {
+        let mut path = moving(5);
+        for point in 6..12_u64 {
+            path.target(point * 40 * MS);
+            path.push(point * 40 * MS, &at(50.0), &LIMITS).unwrap();
+        }
+        assert_eq!(path.target(12 * 40 * MS), (at(50.0), Twist::default()));
+    }
+
+    #[test]
+    fn a_late_point_ends_the_motion_along_its_tangent_and_without_a_jump() {
+        let mut path = moving(10);
+        let mut last = path.target(440 * MS);
+        for now in (440 * MS..700 * MS).step_by(4_032_000) {
+            let (pose, speed) = path.target(now);
+            let way = norm(&crate::pose::subtract(&pose.position, &last.0.position));
+            assert!(way <= 250.0 * 0.00404 && pose.position[0] >= last.0.position[0], "{way} mm at {now}");
+            let braked = last.1.linear[0] - speed.linear[0];
+            assert!((-1e-9..=250.0 * 1.5 / 0.1 * 0.00404).contains(&braked), "{braked} mm/s at {now}");
+            last = (pose, speed);
+        }
+        assert_eq!(path.motion(), Motion::Still(last.0));
+        // The segment ended at 90 mm; 250 mm/s for half of 100 ms are 12.5 mm more.
+        assert!((last.0.position[0] - 102.5).abs() < 1e-9, "{last:?}");
+        assert_eq!(
+            path.push(700 * MS, &at(110.0), &LIMITS),
+            Err(Error::NotReady),
+            "nothing goes on by itself"
+        );
+    }
+
+    #[test]
+    fn points_off_their_time_beyond_limits_or_beyond_room_are_refused() {
+        let mut path = moving(3);
+        assert_eq!(path.push(200 * MS, &at(40.0), &LIMITS), Err(Error::NotReady), "a period late");
+        assert_eq!(path.push(130 * MS, &at(40.0), &LIMITS), Err(Error::NotReady), "a period early");
+        assert!(matches!(path.push(160 * MS, &at(60.0), &LIMITS), Err(Error::TooFast { .. })));
+        for (point, room) in (4..8_u64).zip([true, true, true, false]) {
+            let pushed = path.push(point * 40 * MS, &at(30.0), &LIMITS);
+            assert_eq!(pushed, if room { Ok(()) } else { Err(Error::Full) });
+        }
+    }
+}

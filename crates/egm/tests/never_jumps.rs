@@ -1,0 +1,254 @@
+//! Whatever comes, and whenever: no target is farther from the one before than the limits allow, or it is the
+//! place where the robot itself is.
+
+use egm::{
+    Hindrance, Host, Limits, LinkState, Pose, Twist,
+    host::Settings,
+    message::{
+        Header, MOST_BYTES, MciState, MessageType, Motion, MotorState, RapidState, Robot, Sensor, WirePose,
+    },
+    pose::norm,
+};
+use proptest::{collection::vec, prelude::*};
+
+const LIMITS: Limits = Limits::of_speed(400.0, 1.2);
+const MS: u64 = 1_000_000;
+const CYCLE: u64 = 4_032_000;
+
+/// What happens next.
+#[derive(Clone, Debug)]
+enum Event {
+    /// So many cycles pass; of each that many in a hundred messages are lost.
+    Cycles { count: u16, lost: u8 },
+    /// Time passes without a message, ms.
+    Silence(u16),
+    /// The last message comes again.
+    Double,
+    /// The robot is pushed elsewhere.
+    Pushed([f64; 3]),
+    /// The robot's states change.
+    States(u8),
+    /// A path begins where the sample says, or somewhere.
+    Begin { astray: bool },
+    /// The next point is this much further than the one before, mm and rad.
+    Point([f64; 3], [f64; 3]),
+    /// The path is stopped.
+    Stop,
+    /// Bytes that are no message.
+    Garbage(Vec<u8>),
+}
+
+fn event() -> impl Strategy<Value = Event> {
+    let way = |most: f64| prop::array::uniform3(-most..most);
+    prop_oneof![
+        4 => (1..30_u16, 0..60_u8).prop_map(|(count, lost)| Event::Cycles { count, lost }),
+        1 => (0..300_u16).prop_map(Event::Silence),
+        1 => Just(Event::Double),
+        1 => way(40.0).prop_map(Event::Pushed),
+        1 => (0..6_u8).prop_map(Event::States),
+        3 => any::<bool>().prop_map(|astray| Event::Begin { astray }),
+        12 => (way(9.0), way(0.03)).prop_map(|(way, turn)| Event::Point(way, turn)),
+        1 => (way(100.0), way(1.0)).prop_map(|(way, turn)| Event::Point(way, turn)),
+        1 => Just(Event::Stop),
+        1 => vec(any::<u8>(), 0..40).prop_map(Event::Garbage),
+    ]
+}
+
+/// A host with a robot that is exactly where its target was, one message ago.
+struct Bench {
+    host: Host,
+    now: u64,
+    seqno: u32,
+    states: u8,
+    at: Pose,
+    before: Option<(u64, Pose)>,
+    point: Pose,
+    datagram: Vec<u8>,
+    dice: u64,
+}
+
+impl Bench {
+    fn new(seed: u64) -> Self {
+        Self {
+            host: Host::new(Settings::new(LIMITS)),
+            now: 0,
+            seqno: 0,
+            states: 0,
+            at: Pose::IDENTITY,
+            before: None,
+            point: Pose::IDENTITY,
+            datagram: Vec::new(),
+            dice: seed | 1,
+        }
+    }
+
+    fn roll(&mut self) -> u64 {
+        self.dice = self.dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.dice >> 33) % 100
+    }
+
+    fn message(&mut self) {
+        self.seqno += 2;
+        let states = match self.states {
+            0..=2 => (MotorState::On, MciState::Running, RapidState::Running),
+            3 => (MotorState::Off, MciState::Stopped, RapidState::Stopped),
+            4 => (MotorState::On, MciState::Error, RapidState::Running),
+            _ => (MotorState::On, MciState::Running, RapidState::Stopped),
+        };
+        let message = Robot {
+            header: Some(Header::new(self.seqno, 0, MessageType::Data)),
+            feedback: Some(Motion::at(WirePose::of(&self.at))),
+            motor_state: Some(states.0),
+            mci_state: Some(states.1),
+            rapid_state: Some(states.2),
+            ..Robot::default()
+        };
+        let mut buffer = [0; MOST_BYTES];
+        self.datagram = message.encode(&mut buffer).unwrap().to_vec();
+        self.receive();
+    }
+
+    fn receive(&mut self) {
+        let mut buffer = [0; MOST_BYTES];
+        let feedback = Robot::decode(&self.datagram).unwrap().essentials().unwrap().1;
+        let Ok(Some(answer)) = self.host.receive(self.now, &self.datagram, &mut buffer) else { return };
+        let answer = Sensor::decode(answer).unwrap();
+        let target = answer.planned.unwrap().cartesian.unwrap().pose().unwrap();
+        let speed = answer.speed_ref.unwrap().twist();
+        assert!(norm(&speed.linear) <= 400.001 && norm(&speed.angular) <= 1.2001, "{speed:?}");
+        let (way, turn) = target.distance(&feedback);
+        let is_at_robot = way < 1e-6 && turn < 1e-6;
+        if let Some((then, before)) = self.before.filter(|_| !is_at_robot) {
+            let seconds = (self.now - then).max(1) as f64 / 1e9;
+            let (way, turn) = before.distance(&target);
+            assert!(way <= 400.01 * seconds + 1e-6, "{way} mm in {seconds} s");
+            assert!(turn <= 1.201 * seconds + 1e-6, "{turn} rad in {seconds} s");
+            assert!(way <= 400.01 * 0.0605, "{way} mm after a gap");
+        }
+        if self.host.sample().link == LinkState::Running {
+            self.at = target;
+        } else {
+            assert!(is_at_robot, "a robot that does not follow is asked to stay");
+        }
+        self.before = Some((self.now, target));
+    }
+
+    fn happen(&mut self, event: &Event) {
+        match event {
+            Event::Cycles { count, lost } => {
+                for _ in 0..*count {
+                    self.now += CYCLE;
+                    if self.roll() >= u64::from(*lost) {
+                        self.message();
+                    } else {
+                        self.seqno += 2;
+                        self.host.poll(self.now);
+                    }
+                }
+            }
+            Event::Silence(ms) => {
+                self.now += u64::from(*ms) * MS;
+                self.host.poll(self.now);
+            }
+            Event::Double => self.receive(),
+            Event::Pushed(way) => self.at = self.at.moved(&Twist { linear: *way, angular: [0.0; 3] }),
+            Event::States(states) => self.states = *states,
+            Event::Begin { astray } => {
+                let start = self.host.sample().start;
+                let from = start.unwrap_or(self.at);
+                let from = if *astray {
+                    from.moved(&Twist { linear: [50.0; 3], ..Default::default() })
+                } else {
+                    from
+                };
+                let begun = self.host.begin(self.now, &from);
+                assert_eq!(begun.is_ok(), start.is_some() && !astray);
+                self.point = from;
+            }
+            Event::Point(way, turn) => {
+                // A period between two points, as a ladder has it.
+                for _ in 0..10 {
+                    self.now += 4 * MS;
+                    self.message();
+                }
+                let point = self.point.moved(&Twist { linear: *way, angular: *turn });
+                if self.host.push(self.now, &point).is_ok() {
+                    self.point = point;
+                }
+            }
+            Event::Stop => self.host.stop(self.now),
+            Event::Garbage(bytes) => {
+                let before = self.host.sample();
+                if self.host.receive(self.now, bytes, &mut [0; MOST_BYTES]).is_err() {
+                    let after = self.host.sample();
+                    assert_eq!((before.target, before.link), (after.target, after.link));
+                }
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn whatever_arrives_when(seed in any::<u64>(), events in vec(event(), 1..80)) {
+        let mut bench = Bench::new(seed);
+        bench.message();
+        for event in &events {
+            bench.happen(event);
+        }
+    }
+}
+
+/// The property above would hold for a host that never moves.
+#[test]
+fn a_robot_that_follows_is_moved() {
+    let mut bench = Bench::new(1);
+    bench.message();
+    bench.happen(&Event::Begin { astray: false });
+    for _ in 0..50 {
+        bench.happen(&Event::Point([8.0, 0.0, 0.0], [0.0, 0.0, 0.02]));
+    }
+    assert!(bench.at.position[0] > 370.0, "{:?}", bench.at);
+    assert_eq!(bench.host.sample().counters.points, 50);
+}
+
+#[test]
+fn after_an_interruption_nothing_goes_on_by_itself() {
+    let mut bench = Bench::new(1);
+    bench.message();
+    bench.happen(&Event::Begin { astray: false });
+    for _ in 0..10 {
+        bench.happen(&Event::Point([8.0, 0.0, 0.0], [0.0; 3]));
+    }
+    bench.happen(&Event::Silence(100));
+    bench.message();
+    let stopped = bench.at;
+    bench.happen(&Event::Point([8.0, 0.0, 0.0], [0.0; 3]));
+    bench.happen(&Event::Cycles { count: 60, lost: 0 });
+    let sample = bench.host.sample();
+    assert!(!sample.is_moving && sample.counters.interrupted == 1, "{sample:?}");
+    let (way, _) = stopped.distance(&bench.at);
+    assert!(way <= 200.0 * 0.05 + 0.01, "it came to rest within {way} mm");
+    assert_eq!(sample.start, Some(sample.target));
+}
+
+#[test]
+fn a_robot_that_stops_following_is_begun_with_where_it_is() {
+    let mut bench = Bench::new(1);
+    bench.message();
+    bench.happen(&Event::Begin { astray: false });
+    for _ in 0..10 {
+        bench.happen(&Event::Point([8.0, 0.0, 0.0], [0.0; 3]));
+    }
+    bench.states = 3;
+    bench.message();
+    let sample = bench.host.sample();
+    assert_eq!(sample.link, LinkState::Standby(Hindrance::MotorsOff));
+    assert_eq!((sample.start, sample.is_moving), (None, false));
+    bench.happen(&Event::Pushed([0.0, 0.0, -30.0]));
+    bench.states = 0;
+    bench.message();
+    assert_eq!(bench.host.sample().start.map(|start| start.position[2]), Some(-30.0));
+}

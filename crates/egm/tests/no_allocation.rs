@@ -1,0 +1,62 @@
+//! A message costs no heap: an allocator counts.
+
+use std::{
+    alloc::{GlobalAlloc, Layout, System},
+    cell::Cell,
+};
+
+use egm::{
+    Host, Limits, Pose,
+    host::Settings,
+    message::{Header, MOST_BYTES, MciState, MessageType, Motion, MotorState, RapidState, Robot, WirePose},
+};
+
+struct Counting;
+
+thread_local! {
+    // Of this thread only: the test's harness has others.
+    static COUNT: Cell<u64> = const { Cell::new(0) };
+}
+
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.set(COUNT.get() + 1);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(at, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn ten_thousand_messages_allocate_nothing() {
+    let mut host = Host::new(Settings::new(Limits::of_speed(400.0, 1.2)));
+    let (mut buffer, mut answer) = ([0; MOST_BYTES], [0; MOST_BYTES]);
+    let before = COUNT.get();
+    let mut answered = 0;
+    for cycle in 0..10_000_u32 {
+        let now = u64::from(cycle) * 4_000_000;
+        let message = Robot {
+            header: Some(Header::new(cycle, 0, MessageType::Data)),
+            feedback: Some(Motion::at(WirePose::of(&Pose::IDENTITY))),
+            motor_state: Some(MotorState::On),
+            mci_state: Some(MciState::Running),
+            rapid_state: Some(RapidState::Running),
+            ..Robot::default()
+        };
+        let datagram = message.encode(&mut buffer).unwrap();
+        answered += u32::from(host.receive(now, datagram, &mut answer).unwrap().is_some());
+        if cycle == 10 {
+            host.begin(now, &Pose::IDENTITY).unwrap();
+        }
+        if cycle > 10 && cycle % 10 == 0 {
+            let _ = host.push(now, &Pose::IDENTITY);
+        }
+    }
+    let _ = host.receive(0, &[1, 2, 3], &mut answer);
+    assert_eq!((COUNT.get() - before, answered), (0, 10_000));
+}

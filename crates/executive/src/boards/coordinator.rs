@@ -1,0 +1,540 @@
+//! Board 0's side of `--boards split`: gives the pulse, waits for the stamps, gathers common memory.
+//!
+//! To the run the boards are a ladder like any other ([`Levels`]): what stands in common memory after a tick
+//! is the same, to the bit. What can go wrong is new: a board that does not stamp. Then there are no more
+//! pulses, so that no process anywhere takes another step and no further point goes to the robot; valves and
+//! fingers stay as they are.
+
+use std::{
+    fmt,
+    process::{Child, ExitStatus},
+    sync::atomic::{AtomicBool, Ordering},
+    time::{Duration, Instant},
+};
+
+use interfaces::{CommonMemory, ExternalInputs, HwsCommand};
+use levels::ladder::LadderState;
+use rcs_core::{
+    Plain,
+    plain::DecodeError,
+    tick::{TICK_MS, Tick},
+};
+use taskdata::files::TaskData;
+
+use super::{
+    BOARDS, Board,
+    exchange::Readers,
+    pulse::{BoardReport, Epochs, Fingerprint, PulseGiver, ReportReader, RunCard, SystemPulse, sleep},
+};
+use crate::{
+    failure,
+    histogram::Histogram,
+    memory::{
+        self, RunName, SharedMemoryError,
+        publish::FIRST_EPOCH,
+        runs::{self, RunNode},
+    },
+    runner::Levels,
+};
+
+/// Name of board 0 among the nodes of a run.
+pub const BOARD_0: &str = "board-0";
+/// Slots without a stamp after which a board is lost
+/// (docs/design/handshake.md "Lost board"); in fast clock the same time.
+pub const LOST_AFTER: Duration = Duration::from_millis(25 * TICK_MS);
+/// How long board 0 waits before it looks for itself.
+const LOOK: Duration = Duration::from_millis(10);
+/// Time between two looks for boards that are not there yet.
+const GATHER: Duration = Duration::from_millis(20);
+/// Looks after which it is asked whether a board that was there still lives.
+const LIFE: u32 = 25;
+/// How long boards have to end by themselves when the run is over.
+const FAREWELL: Duration = Duration::from_secs(2);
+
+/// Why the boards did not come together.
+#[derive(Debug, thiserror::Error)]
+pub enum SplitError {
+    /// Boards need shared memory.
+    #[error("boards exchange their data in shared memory, and it cannot be had: {0}")]
+    SharedMemory(#[from] SharedMemoryError),
+    /// A board's process could not be started.
+    #[error("{board} cannot be started: {source}")]
+    Start {
+        /// Which.
+        board: Board,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A board's process ended before the first tick.
+    #[error("{board} ended before the first tick ({status}); its reason stands above")]
+    Ended {
+        /// Which.
+        board: Board,
+        /// How.
+        status: ExitStatus,
+    },
+    /// A board runs with something else.
+    #[error("{board} (process {pid}) cannot take part: {difference}")]
+    Different {
+        /// Which.
+        board: Board,
+        /// Its process.
+        pid: u32,
+        /// In what it differs.
+        difference: &'static str,
+    },
+    /// Boards did not come.
+    #[error("{} did not come within {} s", list(.missing), .patience.as_secs())]
+    Missing {
+        /// Which.
+        missing: Vec<Board>,
+        /// How long they were waited for.
+        patience: Duration,
+    },
+    /// The operator gave up.
+    #[error("interrupted while waiting for {}", list(.0))]
+    Interrupted(Vec<Board>),
+}
+
+/// `board 2, board 8`.
+fn list(boards: &[Board]) -> String {
+    boards.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+}
+
+/// How a board was lost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum How {
+    /// Its process ended.
+    Ended(ExitStatus),
+    /// It said that it leaves.
+    Left,
+    /// It does not answer.
+    Silent,
+    /// It wrote what no process writes.
+    Garbled(DecodeError),
+    /// It stamped a tick without having written its outputs.
+    Unwritten,
+}
+
+/// A board that was lost. Small and without heap, since it comes up within a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub struct Lost {
+    /// The board.
+    pub board: Board,
+    /// Its process.
+    pub pid: u32,
+    /// The tick that it did not finish.
+    pub tick: Tick,
+    /// How.
+    pub how: How,
+}
+
+impl fmt::Display for Lost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { board, pid, tick, how } = self;
+        write!(f, "{board} ({}; process {pid}) ", board.process_names())?;
+        match how {
+            How::Ended(status) => write!(f, "ended ({status})")?,
+            How::Left => f.write_str("left the run")?,
+            How::Silent => write!(f, "has not answered for {:.1} s", LOST_AFTER.as_secs_f64())?,
+            How::Garbled(error) => write!(f, "wrote what no process writes ({error})")?,
+            How::Unwritten => f.write_str("stamped what it had not written")?,
+        }
+        write!(f, " in tick {tick}")
+    }
+}
+
+impl Lost {
+    /// The whole in a sentence: what the board's processes were about, and what follows. `hws` and `memory`
+    /// are those that the tick began with.
+    #[must_use]
+    pub fn explain(&self, hws: &HwsCommand, memory: &CommonMemory) -> String {
+        let doing = failure::unfinished_commands(self.board.processes(), hws, memory);
+        let doing = if doing.is_empty() {
+            "without a command in progress".to_owned()
+        } else {
+            format!("while {doing}")
+        };
+        format!(
+            "{self}, {doing}; there is no pulse without it: the robot gets no further point, what is held stays held"
+        )
+    }
+}
+
+/// A change among the boards while they come together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoardEvent {
+    /// One has come.
+    Came {
+        /// Which.
+        board: Board,
+        /// Its process.
+        pid: u32,
+    },
+    /// One that had come is gone.
+    Left {
+        /// Which.
+        board: Board,
+        /// Its process.
+        pid: u32,
+    },
+}
+
+/// What board 0 knows of another board.
+struct Seat {
+    board: Board,
+    /// Its process, if it was started from here.
+    child: Option<Child>,
+    /// Its services, once it has come.
+    ports: Option<(Readers, ReportReader)>,
+    /// Those of boards that had the place before.
+    former: Vec<(Readers, ReportReader)>,
+    report: BoardReport,
+    /// Allocations of those who had the place before.
+    former_allocations: u64,
+    times: Box<Histogram>,
+}
+
+impl Seat {
+    fn new(board: Board) -> Self {
+        Self {
+            board,
+            child: None,
+            ports: None,
+            former: Vec::new(),
+            report: BoardReport::ZERO,
+            former_allocations: 0,
+            times: Box::default(),
+        }
+    }
+
+    /// A process has the place.
+    const fn has_come(&self) -> bool {
+        self.report.pid != 0
+    }
+
+    const fn allocations(&self) -> u64 {
+        self.former_allocations + self.report.allocations
+    }
+
+    /// How the process ended, if it was started from here and has.
+    fn ended(&mut self) -> Option<ExitStatus> {
+        self.child.as_mut().and_then(|child| child.try_wait().ok().flatten())
+    }
+
+    const fn lost(&self, tick: Tick, how: How) -> Lost {
+        Lost { board: self.board, pid: self.report.pid, tick, how }
+    }
+
+    /// True if the board has stamped `tick`.
+    fn has_stamped(&mut self, tick: Tick) -> Result<bool, Lost> {
+        let Some((_, reports)) = &self.ports else { return Ok(false) };
+        let (stamp, report) = reports.read().map_err(|error| self.lost(tick, How::Garbled(error)))?;
+        if stamp != tick && !report.ready {
+            return Err(self.lost(tick, How::Left));
+        }
+        self.report = report;
+        Ok(stamp == tick)
+    }
+}
+
+/// What a board did, for the result of the run.
+#[derive(Clone, Copy)]
+pub struct BoardFigures<'a> {
+    /// The board.
+    pub board: Board,
+    /// Its process.
+    pub pid: u32,
+    /// Heap allocations in its ticks.
+    pub allocations: u64,
+    /// From wake-up to stamp.
+    pub times: &'a Histogram,
+    /// It got everything that it asked of the system for real time.
+    pub punctual: bool,
+}
+
+/// Board 0. Dropping it ends the run for all boards, reaps those that were started from here, and removes
+/// what was shared.
+pub struct Coordinator {
+    name: RunName,
+    // Taken out before the files are removed: iceoryx2 must have let go of them by then.
+    ports: Option<(PulseGiver, RunNode)>,
+    seats: Vec<Seat>,
+    pulse: SystemPulse,
+    fingerprint: Fingerprint,
+    states: LadderState,
+}
+
+impl Coordinator {
+    /// Set up the pulse of a run. What killed runs left behind is removed first.
+    ///
+    /// # Errors
+    /// [`SharedMemoryError`] if this machine does not give the memory or the name is taken.
+    pub fn create(name: &RunName, card: &RunCard) -> Result<Self, SharedMemoryError> {
+        runs::clean()?;
+        memory::have_room()?;
+        let node = runs::enter(name, BOARD_0)?;
+        let pulse = SystemPulse { epochs: [FIRST_EPOCH; BOARDS], ..SystemPulse::ZERO };
+        let giver = PulseGiver::create(&node, card, &pulse)?;
+        memory::reserve(name)?;
+        Ok(Self {
+            name: name.clone(),
+            ports: Some((giver, node)),
+            seats: Board::ALL.iter().map(|&board| Seat::new(board)).collect(),
+            pulse,
+            fingerprint: card.fingerprint,
+            states: LadderState::ZERO,
+        })
+    }
+
+    /// The run.
+    #[must_use]
+    pub const fn name(&self) -> &RunName {
+        &self.name
+    }
+
+    /// Take charge of a board's process that was started from here.
+    pub fn adopt(&mut self, board: Board, child: Child) {
+        self.seats[board.index()].child = Some(child);
+    }
+
+    /// Wait until all boards are there and read each other. `heard` is told of each that comes or leaves
+    /// again, and which are missing then.
+    ///
+    /// # Errors
+    /// [`SplitError`] if one does not come, or comes with other data.
+    pub fn gather(
+        &mut self,
+        patience: Duration,
+        stop: &AtomicBool,
+        mut heard: impl FnMut(BoardEvent, &[Board]),
+    ) -> Result<(), SplitError> {
+        let deadline = Instant::now() + patience;
+        for look in 1_u32.. {
+            for at in 0..self.seats.len() {
+                if self.look_for(at)? {
+                    let Seat { board, report: BoardReport { pid, .. }, .. } = self.seats[at];
+                    heard(BoardEvent::Came { board, pid }, &self.boards_that(|seat| !seat.has_come()));
+                }
+                if look.is_multiple_of(LIFE)
+                    && let Some(event) = self.give_up_the_dead(at)
+                {
+                    heard(event, &self.boards_that(|seat| !seat.has_come()));
+                }
+            }
+            let unready = self.boards_that(|seat| !seat.report.ready);
+            if unready.is_empty() {
+                break;
+            }
+            // A board that has come is ready as soon as all others have.
+            let absent = self.boards_that(|seat| !seat.has_come());
+            let missing = if absent.is_empty() { unready } else { absent };
+            if stop.load(Ordering::Relaxed) {
+                return Err(SplitError::Interrupted(missing));
+            }
+            if Instant::now() > deadline {
+                return Err(SplitError::Missing { missing, patience });
+            }
+            if let Some((giver, _)) = &self.ports {
+                sleep(&giver.done, GATHER);
+            }
+        }
+        self.seats.iter_mut().for_each(|seat| seat.former.clear());
+        // The first call after a listener has come connects to it, and allocates: not in a tick.
+        if let Some((giver, _)) = &self.ports {
+            giver.wake();
+        }
+        Ok(())
+    }
+
+    fn boards_that(&self, are_so: impl Fn(&Seat) -> bool) -> Vec<Board> {
+        self.seats.iter().filter(|seat| are_so(seat)).map(|seat| seat.board).collect()
+    }
+
+    /// Look for a board; true if it has come since the last look.
+    fn look_for(&mut self, at: usize) -> Result<bool, SplitError> {
+        let (Some((_, node)), Some(seat)) = (&self.ports, self.seats.get_mut(at)) else { return Ok(false) };
+        let board = seat.board;
+        if let Some(status) = seat.ended() {
+            return Err(SplitError::Ended { board, status });
+        }
+        if seat.ports.is_none() {
+            let epoch = self.pulse.epochs[board.index()];
+            // Services that are not there are those of a board that has not come yet.
+            let Ok(reports) = ReportReader::open(node, board, epoch) else { return Ok(false) };
+            let Ok(readers) = Readers::open(node, board, epoch) else { return Ok(false) };
+            seat.ports = Some((readers, reports));
+        }
+        let Some((_, reports)) = &seat.ports else { return Ok(false) };
+        let had_come = seat.has_come();
+        let Ok((_, report)) = reports.read() else { return Ok(false) };
+        seat.report = report;
+        if seat.has_come()
+            && let Some(difference) = report.fingerprint.difference(&self.fingerprint)
+        {
+            return Err(SplitError::Different { board, pid: report.pid, difference });
+        }
+        Ok(seat.has_come() && !had_come)
+    }
+
+    /// A board that was there and lives no more, before all have come together, leaves its place to the next one.
+    fn give_up_the_dead(&mut self, at: usize) -> Option<BoardEvent> {
+        let seat = self.seats.get(at)?;
+        let came = seat.child.is_none() && seat.ports.is_some();
+        if !came || runs::has_living(&self.name, seat.board.name()) {
+            return None;
+        }
+        let event = BoardEvent::Left { board: seat.board, pid: seat.report.pid };
+        self.vacate(at);
+        Some(event)
+    }
+
+    /// Wait for a process that takes the place of a lost board. It comes under the next epoch: whatever the
+    /// lost one still does, it is not read. Afterwards the tick is to be run again on the same inputs;
+    /// boards that have stamped it already take no further step, and the new one starts its processes anew
+    /// upon the outputs that the lost one left.
+    ///
+    /// # Errors
+    /// [`SplitError`] if none comes, or one with other data.
+    pub fn await_successor(
+        &mut self,
+        lost: &Lost,
+        patience: Duration,
+        stop: &AtomicBool,
+        heard: impl FnMut(BoardEvent, &[Board]),
+    ) -> Result<(), SplitError> {
+        self.vacate(lost.board.index());
+        self.gather(patience, stop, heard)
+    }
+
+    /// Give a board's place to the next process that joins.
+    fn vacate(&mut self, at: usize) {
+        let (Some((giver, _)), Some(seat)) = (&self.ports, self.seats.get_mut(at)) else { return };
+        // Kept until the successor has read from them what stands on the devices.
+        seat.former.extend(seat.ports.take());
+        seat.former_allocations += seat.report.allocations;
+        seat.report = BoardReport::ZERO;
+        self.pulse.epochs[seat.board.index()] += 1;
+        giver.give(&self.pulse);
+    }
+
+    /// What the processes remember after the last tick.
+    #[must_use]
+    pub const fn states(&self) -> &LadderState {
+        &self.states
+    }
+
+    /// What the boards did.
+    pub fn figures(&self) -> impl Iterator<Item = BoardFigures<'_>> {
+        self.seats.iter().map(|seat| BoardFigures {
+            board: seat.board,
+            pid: seat.report.pid,
+            allocations: seat.allocations(),
+            times: &seat.times,
+            punctual: seat.report.punctual,
+        })
+    }
+
+    /// The epochs under which the boards run.
+    #[must_use]
+    pub const fn epochs(&self) -> &Epochs {
+        &self.pulse.epochs
+    }
+
+    /// Wait until all boards have stamped the tick, or one is lost.
+    fn await_stamps(&mut self, tick: Tick) -> Result<(), Lost> {
+        let Some((giver, _)) = &self.ports else { return Ok(()) };
+        let mut waited = Duration::ZERO;
+        loop {
+            let mut late = None;
+            for (at, seat) in self.seats.iter_mut().enumerate() {
+                if !seat.has_stamped(tick)? {
+                    late = Some(at);
+                }
+            }
+            let Some(seat) = late.and_then(|at| self.seats.get_mut(at)) else { return Ok(()) };
+            let started = Instant::now();
+            sleep(&giver.done, LOOK);
+            // Time in which this process itself was stopped is not the board's.
+            waited += started.elapsed().min(2 * LOOK);
+            if started.elapsed() < LOOK {
+                continue;
+            }
+            if let Some(status) = seat.ended() {
+                return Err(seat.lost(tick, How::Ended(status)));
+            }
+            if waited >= LOST_AFTER {
+                return Err(seat.lost(tick, How::Silent));
+            }
+            giver.wake();
+        }
+    }
+
+    /// Common memory of a tick, and what the processes remember after it.
+    fn collect(&mut self, tick: Tick, after: &mut CommonMemory) -> Result<(), Lost> {
+        for seat in &mut self.seats {
+            seat.times.add(seat.report.step_ns);
+            let Some((readers, _)) = &seat.ports else { continue };
+            let garbled = |error| seat.lost(tick, How::Garbled(error));
+            if !readers.outputs(tick, after).map_err(garbled)? {
+                return Err(seat.lost(tick, How::Unwritten));
+            }
+            readers.states(tick, &mut self.states).map_err(garbled)?;
+        }
+        // Every board has seen the same buttons.
+        self.states.buttons = self.pulse.external.devices.joystick.single_step;
+        Ok(())
+    }
+
+    /// Wait for the processes that were started from here, and end those that do not.
+    fn reap(&mut self) {
+        let deadline = Instant::now() + FAREWELL;
+        for child in self.seats.iter_mut().filter_map(|seat| seat.child.as_mut()) {
+            while Instant::now() < deadline && matches!(child.try_wait(), Ok(None)) {
+                std::thread::sleep(Duration::from_millis(2));
+            }
+            // Neither can fail for a child that has not been waited for; one that has is gone.
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+impl Levels<TaskData<'_>> for Coordinator {
+    type Error = Lost;
+
+    /// The task data are those of the boards; they switch generations with the pulse that names a new one.
+    fn step(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        _: &TaskData<'_>,
+        after: &mut CommonMemory,
+    ) -> Result<(), Lost> {
+        *after = *before;
+        self.pulse = SystemPulse { tick, external: *external, ..self.pulse };
+        if let Some((giver, _)) = &self.ports {
+            giver.give(&self.pulse);
+        }
+        self.await_stamps(tick)?;
+        self.collect(tick, after)
+    }
+
+    fn allocations(&self) -> u64 {
+        self.seats.iter().map(Seat::allocations).sum()
+    }
+}
+
+impl Drop for Coordinator {
+    fn drop(&mut self) {
+        if let Some((giver, _)) = &self.ports {
+            giver.give(&SystemPulse { over: true, ..self.pulse });
+        }
+        self.reap();
+        self.seats.clear();
+        drop(self.ports.take());
+        // Boards that were started by hand keep the files until they have left; the last one out removes them.
+        let _ = runs::remove_if_deserted(&self.name, &memory::layout());
+    }
+}

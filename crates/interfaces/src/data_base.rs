@@ -1,0 +1,121 @@
+//! Task and the Data System (IV.4.2, IX.2): what is asked of it, apart from how it travels.
+
+use rcs_core::{
+    Plain,
+    handshake::Lower,
+    name::{Name10, Name16},
+};
+
+/// What Task asks of the Data System.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
+pub enum DataBaseVerb {
+    /// Nothing yet.
+    #[text = ""]
+    None,
+    /// End whatever transaction is open (reconfiguration command).
+    Abort,
+    /// Make this client known (reconfiguration command).
+    Initiate,
+    /// Begin to take commands (reconfiguration command).
+    Startup,
+    /// UPDATE EQUIP_ITEM_ACTION: where an item now is.
+    Update,
+}
+
+/// Command from Task to the Data System: the fields of the DML string that Task stuffs (IX.2).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct DataBaseCommand {
+    /// Command number.
+    pub number: u32,
+    /// What to do.
+    pub command: DataBaseVerb,
+    /// `ITEM-NAME`: the object.
+    pub item: Name16,
+    /// `ITEM#`: its serial number.
+    pub serial: Name16,
+    /// `STORAGE-POS`: the location where the item now is; `H_ROBOT` while the robot has it.
+    pub position: Name10,
+    /// `SECTOR#`: sector there, if it has one.
+    pub sector: Option<i32>,
+}
+
+/// What the Data System makes of the last command: server status and summary status (IX.2), read together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum DataBaseReport {
+    /// Nothing was asked yet (extension).
+    Idle,
+    /// The command is executing.
+    Executing,
+    /// It is done.
+    Done,
+    /// It was refused.
+    Refused,
+}
+
+/// Is the Data System told of moves (IV.4.2)?
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Connection {
+    /// No: there was no STARTUP, or a SHUTDOWN.
+    Closed,
+    /// Not yet: STARTUP is executing.
+    Opening,
+    /// Yes.
+    Open,
+    /// No: STARTUP was interrupted.
+    Interrupted,
+}
+
+/// Updates that Task keeps until they are taken: one of an object that is taken, and one of where it is let
+/// go.
+pub const KEPT_UPDATES: usize = 2;
+
+/// An item that the robot holds: what the data base is told when it is let go.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Carried {
+    /// The object.
+    pub item: Name16,
+    /// Its serial number.
+    pub serial: Name16,
+    /// Where it was taken, or to where it was brought.
+    pub location: Name10,
+    /// Sector there, if it has one.
+    pub sector: Option<i32>,
+    /// The data base knows it as the robot's.
+    pub told: bool,
+}
+
+/// What Task believes of the Data System. It is an output, so that a Task that is restarted has it
+/// (docs/design/recovery.md "Data base"; extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct DataBaseBeliefs {
+    /// A STARTUP has succeeded, and no SHUTDOWN came since.
+    pub connected: bool,
+    /// A STARTUP has begun, and neither succeeded nor was followed by a SHUTDOWN.
+    pub connecting: bool,
+    /// The updates that have not been taken, the oldest first.
+    pub owed: [Option<DataBaseCommand>; KEPT_UPDATES],
+    /// What the robot holds after a MOVE or an ACQUIRE.
+    pub carried: Option<Carried>,
+}
+
+impl DataBaseReport {
+    /// The report as a state variable of Task.
+    #[must_use]
+    pub const fn lower(self) -> Lower {
+        match self {
+            Self::Idle | Self::Done => Lower::Done,
+            Self::Executing => Lower::Executing,
+            Self::Refused => Lower::Error,
+        }
+    }
+}
+
+/// Status from the Data System to Task.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct DataBaseStatus {
+    /// Number of the command that is answered.
+    pub echo: u32,
+    /// What became of it.
+    pub report: DataBaseReport,
+}

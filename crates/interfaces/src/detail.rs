@@ -1,0 +1,127 @@
+//! What the buffers say about a failure beside its reason: names and distances (docs/design/failures.md
+//! "Detail").
+
+use core::fmt;
+
+use rcs_core::name::{Name10, Name16};
+
+use crate::{CommonMemory, Fault, HwsCommand, ProcessId, Reason, emove::NearPlace};
+
+/// What goes with a reason.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Detail {
+    /// Nothing.
+    None,
+    /// No trajectory leads from the one to the other.
+    Pair(Name10, Name16),
+    /// The known places that are nearest to the robot.
+    Near([Option<NearPlace>; 2]),
+}
+
+impl Detail {
+    /// What goes with the fault that a process reports. `memory` is common memory after the tick in which it
+    /// began to report it, `hws` the command of the workstation controller.
+    #[must_use]
+    pub fn of(process: ProcessId, fault: Fault, hws: &HwsCommand, memory: &CommonMemory) -> Self {
+        match (process, fault) {
+            (ProcessId::Emove | ProcessId::Task, Fault::Reason(Reason::UnknownStart)) => {
+                Self::Near(memory.emove.nearest)
+            }
+            (ProcessId::Emove, Fault::Reason(Reason::NoTrajectory)) => {
+                let believed = &memory.emove.beliefs;
+                let from = believed.place.or(believed.way.map(|way| way.from));
+                from.map_or(Self::None, |from| {
+                    Self::Pair(from.location, Name16::clipped(memory.subtask.emove.location.as_str()))
+                })
+            }
+            // The POSITION of Task refuses by itself: V.4.1.
+            (ProcessId::Task, Fault::Reason(Reason::NoTrajectory)) => {
+                let ends = memory.subtask.status.at.zip(hws.source.or(hws.destination));
+                ends.map_or(Self::None, |(at, to)| Self::Pair(at.location, to))
+            }
+            _ => Self::None,
+        }
+    }
+}
+
+/// `: none leads from BENCH to VISE. ...`: to be written behind the reason.
+impl fmt::Display for Detail {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => Ok(()),
+            Self::Pair(from, to) => write!(
+                f,
+                ": none leads from {from} to {to} (go by way of another location, or write the trajectory \
+                 {from}-{to} and reload the task data)"
+            ),
+            Self::Near(places) => {
+                let mut separator = ": ";
+                for place in places.iter().flatten() {
+                    write!(f, "{separator}{place}")?;
+                    separator = ", ";
+                }
+                f.write_str(
+                    " (move it with the joystick box to within 0.5 in and 2 degrees of a known location, then \
+                     send PAUSE)",
+                )
+            }
+        }
+    }
+}
+
+impl fmt::Display for NearPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { location, inches, degrees } = self;
+        write!(f, "{location} is {inches:.2} in and {degrees:.1} degrees away")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emove::{RobotPlace, Standing};
+    use std::string::ToString as _;
+
+    fn said(
+        process: ProcessId,
+        reason: Reason,
+        hws: &HwsCommand,
+        memory: &CommonMemory,
+    ) -> std::string::String {
+        Detail::of(process, Fault::Reason(reason), hws, memory).to_string()
+    }
+
+    #[test]
+    fn a_trajectory_that_is_missing_is_named_by_its_ends() {
+        let mut memory = CommonMemory::default();
+        let from = RobotPlace { location: Name10::clipped("BENCH"), ..RobotPlace::default() };
+        memory.emove.beliefs.place = Some(from);
+        memory.subtask.emove.location = Name10::clipped("VISE");
+        let mut hws = HwsCommand { destination: Some(Name16::clipped("TRAY")), ..HwsCommand::default() };
+        let text = said(ProcessId::Emove, Reason::NoTrajectory, &hws, &memory);
+        assert!(text.starts_with(": none leads from BENCH to VISE ("), "{text}");
+        assert!(text.contains("trajectory BENCH-VISE"), "{text}");
+        assert_eq!(said(ProcessId::Task, Reason::NoTrajectory, &hws, &memory), "");
+        let at = Standing { location: Name10::clipped("SAFE"), ..Standing::default() };
+        memory.subtask.status.at = Some(at);
+        let text = said(ProcessId::Task, Reason::NoTrajectory, &hws, &memory);
+        assert!(text.starts_with(": none leads from SAFE to TRAY ("), "{text}");
+        hws.source = Some(Name16::clipped("HOME"));
+        assert!(said(ProcessId::Task, Reason::NoTrajectory, &hws, &memory).contains("from SAFE to HOME"));
+        assert_eq!(said(ProcessId::Emove, Reason::NoApproach, &hws, &memory), "");
+    }
+
+    #[test]
+    fn a_robot_that_is_nowhere_is_told_what_is_near() {
+        let (mut memory, hws) = (CommonMemory::default(), HwsCommand::default());
+        assert!(
+            said(ProcessId::Emove, Reason::UnknownStart, &hws, &memory).starts_with(" (move it with the")
+        );
+        let near =
+            |name, inches, degrees| Some(NearPlace { location: Name10::clipped(name), inches, degrees });
+        memory.emove.nearest = [near("HOME", 1.234, 0.5), near("SAFE", 20.0, 90.0)];
+        assert!(said(ProcessId::Task, Reason::UnknownStart, &hws, &memory).starts_with(
+            ": HOME is 1.23 in and 0.5 degrees away, SAFE is 20.00 in and 90.0 degrees away (move it with"
+        ));
+    }
+}

@@ -1,0 +1,396 @@
+//! Subtask and E-move (V.2.2).
+
+use core::fmt;
+
+use geometry::pose::Pose;
+use rcs_core::{
+    Plain,
+    name::{Name10, Name16},
+};
+
+use super::words::{location, name};
+use crate::{
+    ChangingPose, Header, Reason, StatusReport, grip::GripCommand, jaws::JawsCommand, location::LocationKind,
+    prim::PrimCommand, quick_change::QuickChangeCommand, vision::VisionRequest,
+};
+
+/// Commands of E-move (V.2.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
+pub enum EmoveVerb {
+    /// None yet.
+    #[text = ""]
+    None,
+    /// Do nothing.
+    #[text = "E-PAUSE"]
+    Pause,
+    /// Move to a location.
+    MovToLoc,
+    /// Move to an object at a location, fingers open for it.
+    MovToObj,
+    /// Move the held object to a location.
+    MovObjTo,
+    /// Move to where pictures are taken.
+    MovToVu,
+    /// Find the object with the vision system.
+    LocateObj,
+    /// Close the fingers on the object.
+    GraspObj,
+    /// Open the fingers.
+    Release,
+    /// Move to a holster, fingers closed for it.
+    MovToHol,
+    /// Put the attached gripper into the holster and leave it there.
+    QcDetach,
+    /// Take the gripper out of the holster.
+    QcAttach,
+    /// A DELTA-MOVE from above.
+    Withdraw,
+    /// Insert a tool into the tool drum.
+    InsertTool,
+    /// Let go of a tool in the drum.
+    ReleaseTool,
+    /// Move to a tool in the drum and grasp it.
+    AcquireTool,
+    /// Pull a tool out of the drum.
+    RemoveTool,
+}
+
+/// Command from Subtask to E-move.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct EmoveCommand {
+    /// `command-#-in`.
+    pub number: u32,
+    /// `"command-in"`.
+    pub command: EmoveVerb,
+    /// `"obj"`, if one is named.
+    pub object: Option<Name16>,
+    /// Grip number of the object (extension: the manual has it only in the records that `obj-para-^` names).
+    pub grip: i32,
+    /// `obj-para-^`: record of END-EFF-PARA, if the object has that grip.
+    pub object_parameters: Option<u32>,
+    /// `obj-grip-loc-^`: record of OBJ-GRIPS, if an object is named.
+    pub object_grips: Option<u32>,
+    /// `obj-vision-para-^`: record of VISION-PARA, if vision is used.
+    pub object_vision: Option<u32>,
+    /// `locpt-name`.
+    pub location: Name10,
+    /// `locpt-type`.
+    pub location_kind: LocationKind,
+    /// `locpt-^-in`: record of LOCPT; a static array has none.
+    pub location_record: Option<u32>,
+    /// Record of ARRAY-TABLE if the location is a sector (extension).
+    pub location_array: Option<u32>,
+    /// `pose-^-in`: the goal pose, if a location is named.
+    pub pose: Option<u32>,
+    /// `endeff-id#-in`; none if any gripper will do.
+    pub end_effector_id: Option<u8>,
+}
+
+/// An object and how it is gripped: approach and depart points belong to both.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ObjectGrip {
+    /// The object.
+    pub object: Name16,
+    /// Its grip number.
+    pub grip: i32,
+}
+
+/// What the attached gripper holds, by its sensors (docs/design/recovery.md "Held"; extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub enum Holding {
+    /// Nothing.
+    Nothing,
+    /// Something is felt, and the last grasp that named an object was made here.
+    Object(ObjectGrip),
+    /// Something is felt, and nothing says what it is.
+    Something,
+    /// The gripper is not calibrated or not at rest: counts as held.
+    NotKnown,
+}
+
+impl Holding {
+    /// The object, if it is known.
+    #[must_use]
+    pub const fn object(&self) -> Option<Name16> {
+        match self {
+            Self::Object(held) => Some(held.object),
+            Self::Nothing | Self::Something | Self::NotKnown => None,
+        }
+    }
+
+    /// False only if the gripper is known to hold nothing.
+    #[must_use]
+    pub const fn is_held(&self) -> bool {
+        !matches!(self, Self::Nothing)
+    }
+}
+
+/// An object that has been let go at its place (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PlacedObject {
+    /// The object.
+    pub object: Name16,
+    /// Grip number with which it was held.
+    pub grip: i32,
+    /// Name of the location.
+    pub location: Name10,
+    /// Its record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Its record of ARRAY-TABLE if it is a sector.
+    pub array: Option<u32>,
+}
+
+/// An object that vision has found (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct LocatedObject {
+    /// The object.
+    pub object: Name16,
+    /// Record of LOCPT where it is; a static array has none.
+    pub record: Option<u32>,
+    /// Record of ARRAY-TABLE where it is, if it lies in a sector.
+    pub array: Option<u32>,
+}
+
+/// Where the robot stands: the end of its last completed move (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Standing {
+    /// Name of the location.
+    pub location: Name10,
+    /// Its record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Its record of ARRAY-TABLE if it is a sector.
+    pub array: Option<u32>,
+    /// Grip of the object that was gone to, for MOV-TO-OBJ, MOV-OBJ-TO and MOV-TO-HOL.
+    pub grip: Option<i32>,
+}
+
+/// Status from E-move to Subtask.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct EmoveStatus {
+    /// `command-#-echo-out`.
+    pub echo: u32,
+    /// `status-report`.
+    pub report: StatusReport,
+    /// `status-para-out`.
+    pub reason: Reason,
+    /// `ref-pose-^`: the feedback pose, if the resolvers can be believed.
+    pub reference_pose: Option<u32>,
+    /// `obj-held-status-out`: what is held (more than yes or no is an extension).
+    pub held: Holding,
+    /// The object that the last RELEASE has let go; none as soon as anything is grasped or held (extension).
+    pub placed: Option<PlacedObject>,
+    /// What vision has found and nothing has made invalid since (extension).
+    pub located: Option<LocatedObject>,
+    /// `pres-endeff-id#-out`, if a gripper is on.
+    pub end_effector_id: Option<u8>,
+    /// Where the robot stands, if that is known (extension).
+    pub at: Option<Standing>,
+    /// Number of the gripper in whose holster the robot stands in the middle of an exchange: between the
+    /// first and the last point of QC-ATTACH or QC-DETACH; or of the one that hangs on a ring that is not
+    /// locked (extension).
+    pub exchange: Option<u8>,
+    /// The fingers are around a tool in the tool drum (extension).
+    pub drum: bool,
+}
+
+/// What a move goes to. It decides which data lead there, and away from there.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub enum GoneTo {
+    /// A location as such.
+    Location,
+    /// An object at a location, or a held object's destination.
+    Object(ObjectGrip),
+    /// The place from which pictures of an object are taken.
+    View(ObjectGrip),
+    /// The tool drum, with the fingers around a tool in it: only the tool commands lead away from there.
+    Drum,
+}
+
+/// A place of the robot: where a move ended, or where one leads.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct RobotPlace {
+    /// What is gone to.
+    pub gone_to: GoneTo,
+    /// Name of the location.
+    pub location: Name10,
+    /// What the location is.
+    pub kind: LocationKind,
+    /// Its record of LOCPT; a static array has none.
+    pub record: Option<u32>,
+    /// Its record of ARRAY-TABLE if it is a sector.
+    pub array: Option<u32>,
+    /// Where the tool is there.
+    pub pose: Pose,
+}
+
+/// Part of a way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Leg {
+    /// The depart points of the place left.
+    Depart,
+    /// The points of the intermediate trajectory.
+    Trajectory,
+    /// The approach points of the goal, and the goal.
+    Approach,
+}
+
+/// Which way the robot goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Direction {
+    /// To the goal.
+    Forward,
+    /// Back to the end of the depart leg.
+    Back,
+}
+
+/// The way that the robot is on: published so that an interrupted move can go on (docs/design/recovery.md).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Way {
+    /// The place left.
+    pub from: RobotPlace,
+    /// The goal.
+    pub to: RobotPlace,
+    /// The next point in the direction of the goal, from 0, through all legs; the goal is the last.
+    pub next: u16,
+    /// The leg of that point.
+    pub leg: Leg,
+    /// It leads straight from one pose to the other, without points, as that of the camera over a part.
+    pub straight: bool,
+    /// Which way the robot went last.
+    pub direction: Direction,
+    /// Where the robot was commanded to be last.
+    pub rest: Pose,
+    /// The joystick box has moved the robot since.
+    pub by_hand: bool,
+    /// The link has failed since: the robot has stopped short of where it was commanded to be.
+    pub cut_off: bool,
+}
+
+/// What the gripper holds, or has tried to grasp.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Grasped {
+    /// The object and its grip.
+    pub object: ObjectGrip,
+    /// Its record of END-EFF-PARA.
+    pub parameters: Option<u32>,
+    /// `endeff-id#` of the gripper that holds it.
+    pub gripper: Option<u8>,
+    /// Grasp size of the object, 0.01 in.
+    pub grasp_size: i32,
+    /// Opening when it was grasped, 0.01 in.
+    pub opening: i32,
+    /// Where the robot stood.
+    pub pose: Pose,
+}
+
+/// An object that vision has located and that nothing has moved since.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Located {
+    /// The object.
+    pub object: Name16,
+    /// Record of LOCPT where it is; a static array has none.
+    pub record: Option<u32>,
+    /// Record of ARRAY-TABLE where it is, if it lies in a sector.
+    pub array: Option<u32>,
+    /// Its part frame.
+    pub pose: Pose,
+}
+
+/// A holster in which the robot changes a gripper.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Exchange {
+    /// `endeff-id#` of its gripper.
+    pub gripper: u8,
+    /// Its place.
+    pub place: RobotPlace,
+}
+
+/// What E-move believes of the world and cannot read from a sensor alone. It is an output, so that E-move has
+/// it again after a restart; each belief counts only as long as the sensors do not contradict it.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Beliefs {
+    /// Where the robot stands.
+    pub place: Option<RobotPlace>,
+    /// The way that it is on.
+    pub way: Option<Way>,
+    /// What the gripper holds.
+    pub held: Option<Grasped>,
+    /// What it was told last to grasp.
+    pub grasping: Option<Grasped>,
+    /// The fingers were empty, and have not been told to close since.
+    pub empty: bool,
+    /// The object that the gripper has let go, and where.
+    pub placed: Option<PlacedObject>,
+    /// What vision has located.
+    pub located: Option<Located>,
+    /// The holster in which the robot changes a gripper.
+    pub exchange: Option<Exchange>,
+    /// The tool drum at which the robot is half way, between the first and the last point of a tool command.
+    /// Its pose is that of the location.
+    pub drum: Option<RobotPlace>,
+}
+
+/// A known place, and how far the robot is from it (extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct NearPlace {
+    /// Name of the location.
+    pub location: Name10,
+    /// Distance, inches.
+    pub inches: f64,
+    /// Angle between the orientations, degrees.
+    pub degrees: f64,
+}
+
+/// Dormancy flags of the gripper processes (II.2.3): a dormant process is not stepped.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Dormancy {
+    /// Grip.
+    pub grip: bool,
+    /// V-Grip.
+    pub v_grip: bool,
+    /// Tool-Grip.
+    pub tool_grip: bool,
+}
+
+/// Changing poses of E-move: the pose departed from, the goal, a point between, and the located object.
+pub const EMOVE_POSES: usize = 4;
+
+/// Output buffers of E-move.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct EmoveOutputs {
+    /// Stamp and row.
+    pub header: Header,
+    /// To Subtask.
+    pub status: EmoveStatus,
+    /// To Prim.
+    pub prim: PrimCommand,
+    /// To Quick Change.
+    pub quick_change: QuickChangeCommand,
+    /// To Grip.
+    pub grip: GripCommand,
+    /// To V-Grip.
+    pub v_grip: JawsCommand,
+    /// To Tool-Grip.
+    pub tool_grip: JawsCommand,
+    /// Which gripper processes are dormant (II.2.3): all but that of the attached gripper.
+    pub dormant: Dormancy,
+    /// To the vision system.
+    pub vision: VisionRequest,
+    /// What E-move believes (extension).
+    pub beliefs: Beliefs,
+    /// The known places that are nearest, the nearest first, while it is not known where the robot is
+    /// (extension).
+    pub nearest: [Option<NearPlace>; 2],
+    /// Departure, goal, point between, located object.
+    pub poses: [ChangingPose; EMOVE_POSES],
+}
+
+/// `MOV-TO-OBJ LINKBAR1 at TRAY`.
+impl fmt::Display for EmoveCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.command.text())?;
+        name(f, self.object.as_ref())?;
+        location(f, "at", Some(&self.location).filter(|name| !name.is_empty()), None)
+    }
+}

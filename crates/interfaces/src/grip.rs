@@ -1,0 +1,156 @@
+//! E-move and Grip, the parts gripper (VI.3.2).
+
+use core::fmt;
+
+use rcs_core::{Plain, handshake::Lower};
+
+use super::words::Inches;
+use crate::{Header, Reason, device::GripValves};
+
+/// Commands of Grip (VI.3.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
+pub enum GripVerb {
+    /// None yet.
+    #[text = ""]
+    None,
+    /// Leave the valves as they are.
+    Pause,
+    /// Open or close to an opening.
+    Position,
+    /// The same, where "open" says better what is meant.
+    OpenGrip,
+    /// Close with a commanded force.
+    CloseGrip,
+    /// Calibrate position and force sensors.
+    UpInit,
+}
+
+/// Command from E-move to Grip.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct GripCommand {
+    /// `sincr-cmnd#`.
+    pub number: u32,
+    /// `scommand`.
+    pub command: GripVerb,
+    /// `sforce`: lb.
+    pub force: i32,
+    /// `sposition`: opening, 0.01 in (SPECNOTES.md, contradiction 27).
+    pub position: i32,
+    /// `svelocity`: 0.01 in/s; 0 means full speed.
+    pub velocity: i32,
+    /// `send-effector`; none if any gripper is meant.
+    pub end_effector_id: Option<u8>,
+}
+
+/// `status` of Grip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum GripReport {
+    /// Nothing was commanded yet (extension).
+    Idle,
+    /// The command is executing.
+    Executing,
+    /// The command is finished: desired force or position attained.
+    Done,
+    /// Waiting for both fingers to touch.
+    Paused,
+    /// An unattainable command has been sent.
+    Serror,
+}
+
+impl GripReport {
+    /// The report as a state variable of E-move.
+    #[must_use]
+    pub const fn lower(self) -> Lower {
+        match self {
+            Self::Idle | Self::Done => Lower::Done,
+            Self::Executing | Self::Paused => Lower::Executing,
+            Self::Serror => Lower::Error,
+        }
+    }
+}
+
+/// What a gripper has between its fingers, as its sensors tell it, whatever was commanded
+/// (docs/design/ownership.md "Felt"; extension).
+///
+/// While a process is dormant it stays what it was, and the header says that the outputs were republished: it
+/// counts only for the gripper that is on the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum Felt {
+    /// The sensors cannot tell: they are not calibrated, implausible, or have not settled. Counts as held.
+    NotKnown,
+    /// Nothing.
+    Nothing,
+    /// Something: a part, or whatever else keeps the fingers apart.
+    Something,
+}
+
+/// Status from Grip to E-move.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct GripStatus {
+    /// `incr-cmnd#-echo`.
+    pub echo: u32,
+    /// `status`.
+    pub report: GripReport,
+    /// Why it failed (extension).
+    pub reason: Reason,
+    /// `initialized-?`.
+    pub initialized: bool,
+    /// `pos`: opening, 0.01 in.
+    pub position: i32,
+    /// `l-force`: lb.
+    pub left_force: i32,
+    /// `r-force`: lb.
+    pub right_force: i32,
+    /// `vel`: 0.01 in/s.
+    pub velocity: i32,
+    /// `finger-hgt`: 0.01 in.
+    pub finger_height: i32,
+    /// What is between the fingers, by strain gages and potentiometer (extension).
+    pub felt: Felt,
+    /// `grip`: command bits to the air valves.
+    pub valves: u8,
+}
+
+/// A sensor that is linear: `value = (counts - zero) * gain`.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Scale {
+    /// Counts at value 0.
+    pub zero: f64,
+    /// Inches or pounds a count.
+    pub gain: f64,
+}
+
+/// Scale and offset of each sensor (VI.3.1 UP-INIT).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Calibration {
+    /// Potentiometer: inches.
+    pub potentiometer: Scale,
+    /// Left strain gage: pounds.
+    pub left: Scale,
+    /// Right strain gage: pounds.
+    pub right: Scale,
+}
+
+/// Output buffers of Grip.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct GripOutputs {
+    /// Stamp and row.
+    pub header: Header,
+    /// To E-move.
+    pub status: GripStatus,
+    /// What UP-INIT has found: a process that is restarted adopts it if the sensors agree (extension).
+    pub calibration: Option<Calibration>,
+    /// To the valves.
+    pub valves: GripValves,
+}
+
+/// `CLOSE-GRIP (opening 1.20 in, force 30 lb)`.
+impl fmt::Display for GripCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.command {
+            GripVerb::None => Ok(()),
+            verb => write!(f, "{verb} (opening {}, force {} lb)", Inches(self.position), self.force),
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Task and the workstation controller, HWSC (V.4.2).
+
+use core::fmt;
+
+use rcs_core::{Plain, handshake::Lower, name::Name16};
+
+use super::words::{location, name};
+use crate::{
+    ChangingPose, Header, Reason,
+    data_base::{Connection, DataBaseBeliefs, DataBaseCommand},
+    subtask::{SubtaskCommand, SubtaskVerb},
+};
+
+/// Command from the HWSC to Task. Words are text, since they come from outside; Task checks them.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct HwsCommand {
+    /// `command-#-in`; 0 before the first command.
+    pub number: u32,
+    /// `"command-16"`.
+    pub command: Name16,
+    /// `"obj"`, if one is named.
+    pub object: Option<Name16>,
+    /// `"obj-serial-#"`.
+    pub serial: Name16,
+    /// `source-grip-#`.
+    pub source_grip: i32,
+    /// `"src-loc-16"`, if one is named.
+    pub source: Option<Name16>,
+    /// `src-sector#`, from 1, if one is named.
+    pub source_sector: Option<i32>,
+    /// `dest-grip-#`.
+    pub destination_grip: i32,
+    /// `"dest-loc-16"`, if one is named.
+    pub destination: Option<Name16>,
+    /// `dest-sector#`, from 1, if one is named.
+    pub destination_sector: Option<i32>,
+    /// `"end-at-16"`, if one is named.
+    pub end_at: Option<Name16>,
+    /// `endatsector#`, from 1, if one is named.
+    pub end_at_sector: Option<i32>,
+}
+
+/// `"status"` to the HWSC. The manual has `executing` and `finished`; the others are extensions
+/// (docs/design/failures.md "Task").
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum HwsReport {
+    /// Nothing was commanded yet (extension).
+    Idle,
+    /// The command is executing.
+    Executing,
+    /// The command is finished.
+    Finished,
+    /// The command failed (extension).
+    Error,
+    /// The operator has the robot (extension).
+    JoystickOn,
+}
+
+/// Status from Task to the HWSC.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct HwsStatus {
+    /// Echo of the command number.
+    pub echo: u32,
+    /// `"command-echo"`.
+    pub command: Name16,
+    /// `"status"`.
+    pub report: HwsReport,
+    /// Why it failed (extension).
+    pub reason: Reason,
+}
+
+/// The last command about an object or a tool that Task has accepted and not finished. It is an output, so
+/// that a Task that is restarted knows it (docs/design/recovery.md "Ledger"; extension).
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Ledger {
+    /// The command, without its number.
+    pub command: HwsCommand,
+    /// What it ordered of Subtask last, pauses apart.
+    pub last: SubtaskVerb,
+    /// The Data System has been told of its move, or is not to be told of it.
+    pub told: bool,
+}
+
+/// T-POSE-1 to T-POSE-3 (VII.1).
+pub const TASK_POSES: usize = 3;
+
+/// Output buffers of Task.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct TaskOutputs {
+    /// Stamp and row.
+    pub header: Header,
+    /// To the HWSC.
+    pub status: HwsStatus,
+    /// To Subtask.
+    pub subtask: SubtaskCommand,
+    /// To the Data System.
+    pub data_base: DataBaseCommand,
+    /// Is the Data System told of moves (extension)?
+    pub connection: Connection,
+    /// What Task believes of the Data System (extension).
+    pub beliefs: DataBaseBeliefs,
+    /// The last command about an object or a tool that is not finished (extension).
+    pub ledger: Option<Ledger>,
+    /// T-POSE-1 …: poses that the commands name.
+    pub poses: [ChangingPose; TASK_POSES],
+}
+
+/// `TRANSFER LINKBAR1 at TRAY sector 3 to PFIXTURE`.
+impl fmt::Display for HwsCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.command.as_str())?;
+        name(f, self.object.as_ref())?;
+        location(f, "at", self.source.as_ref(), self.source_sector)?;
+        location(f, "to", self.destination.as_ref(), self.destination_sector)
+    }
+}
+
+impl HwsReport {
+    /// The report as a state variable of a process above.
+    #[must_use]
+    pub const fn lower(self) -> Lower {
+        match self {
+            Self::Idle | Self::Finished => Lower::Done,
+            Self::Executing => Lower::Executing,
+            Self::Error => Lower::Error,
+            Self::JoystickOn => Lower::Joystick,
+        }
+    }
+}

@@ -1,0 +1,342 @@
+//! The buffers between processes, and between the controller and its devices: chapters V and VI.
+//!
+//! Each process owns one record of output buffers; together they are [`CommonMemory`]. Every buffer record
+//! starts with a [`Header`] and is written only by its owner. Variables have the manual's names in Rust's
+//! spelling: `command-#-in` is `number`, its echo is `echo`, `^-pose` is `pose` and holds a record number. What
+//! the manual does not have is marked *extension*.
+
+#![cfg_attr(not(test), no_std)]
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::as_conversions,
+        clippy::arithmetic_side_effects,
+        clippy::indexing_slicing,
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic
+    )
+)]
+
+pub mod data_base;
+pub mod detail;
+pub mod device;
+pub mod emove;
+pub mod grip;
+pub mod hws;
+pub mod jaws;
+pub mod location;
+pub mod pedestal;
+pub mod prim;
+pub mod process;
+pub mod processes;
+pub mod quick_change;
+mod remedy;
+pub mod subtask;
+pub mod t3i;
+pub mod vision;
+mod words;
+
+use geometry::pose::Pose;
+use rcs_core::{Plain, handshake::Lower};
+
+pub use self::{
+    data_base::{DataBaseCommand, DataBaseStatus},
+    detail::Detail,
+    device::{DeviceInputs, DeviceOutputs},
+    emove::EmoveOutputs,
+    grip::GripOutputs,
+    hws::{HwsCommand, TaskOutputs},
+    jaws::JawsOutputs,
+    pedestal::{OutsidePedestal, PedestalOutputs, TableOutputs},
+    prim::PrimOutputs,
+    processes::{CommonMemory, Fault, PROCESS_COUNT, ProcessId, Said},
+    quick_change::QuickChangeOutputs,
+    subtask::SubtaskOutputs,
+    t3i::T3iOutputs,
+};
+pub use rcs_core::header::{Decided, Header};
+
+/// `status-report` of Subtask and E-move (V.2.2, V.3.2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum StatusReport {
+    /// Nothing was commanded yet (extension).
+    Idle,
+    /// The current command is executing.
+    Executing,
+    /// The current command is finished.
+    Done,
+    /// An error has occurred in executing the command.
+    #[text = "error-state"]
+    Error,
+    /// The joystick box is active.
+    JoystickOn,
+}
+
+impl StatusReport {
+    /// The report as a state variable of the process above.
+    #[must_use]
+    pub const fn lower(self) -> Lower {
+        match self {
+            Self::Idle | Self::Done => Lower::Done,
+            Self::Executing => Lower::Executing,
+            Self::Error => Lower::Error,
+            Self::JoystickOn => Lower::Joystick,
+        }
+    }
+}
+
+/// Why a command failed: `status-para-out`, passed up the ladder unchanged
+/// (extension, docs/design/failures.md "Reason").
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(doc)]
+pub enum Reason {
+    /// It did not fail.
+    #[text = ""]
+    None,
+    /// The process was restarted and does not know how far the command had come.
+    Restarted,
+    /// A process below does not answer.
+    NeighbourLost,
+    /// The command is not known.
+    UnknownCommand,
+    /// The joystick box is on.
+    JoystickOn,
+    /// The object is not in the task data.
+    UnknownObject,
+    /// The location is not in the task data.
+    UnknownLocation,
+    /// The sector is not in the array.
+    SectorOutOfRange,
+    /// The object has no array at the location.
+    NoArrayForObject,
+    /// The object has no such grip.
+    UnknownGrip,
+    /// No grip movetable for the object at the location.
+    NoGripMovetable,
+    /// No trajectory from the present location to the destination.
+    NoTrajectory,
+    /// The robot is at no known location.
+    UnknownStart,
+    /// No approach trajectory for the object at the location.
+    NoApproach,
+    /// A record number is in no file.
+    BadRecord,
+    /// The command names no location.
+    NoDestination,
+    /// The command names no object.
+    NoObjectNamed,
+    /// Another object is held already.
+    AlreadyHolding,
+    /// No object is held.
+    NothingHeld,
+    /// The fingers closed on nothing.
+    GraspMissed,
+    /// The object was lost on the way.
+    ObjectLost,
+    /// The attached gripper is not the one for the object.
+    WrongGripper,
+    /// The object is held with another grip than the destination needs.
+    RegripNeeded,
+    /// Vision sees no object.
+    NothingSeen,
+    /// Vision does not recognise the object.
+    NotRecognised,
+    /// Vision does not answer.
+    VisionSilent,
+    /// The gripper cannot reach the commanded opening or force.
+    GripUnattainable,
+    /// The gripper does not finish.
+    GripTimeout,
+    /// The gripper is not calibrated.
+    GripNotCalibrated,
+    /// The quick change is not locked or its sensors fail.
+    QuickChangeFault,
+    /// The link to the robot controller is off.
+    LinkOff,
+    /// The link to the robot controller reports an error.
+    LinkError,
+    /// The T3 interface does not answer.
+    InterfaceSilent,
+    /// The T3 interface refused a command.
+    InterfaceRefused,
+    /// The robot did not come to rest at the goal.
+    NotAtGoal,
+    /// A sensor is overloaded or fails.
+    SensorError,
+    /// The data base does not accept the update.
+    DataBase,
+    /// The trajectory parameters allow no motion.
+    BadParameters,
+    /// The locking ring of the quick change is stuck.
+    QuickChangeStuck,
+    /// The gripper did not come off in the holster.
+    NotDetached,
+    /// No gripper was attached in the holster.
+    NotAttached,
+    /// The gripper in the holster is not the one expected.
+    WrongGripperId,
+    /// The holster is not empty.
+    HolsterOccupied,
+    /// No gripper is seated in the holster.
+    HolsterEmpty,
+    /// The task data have no holster for the gripper.
+    NoHolster,
+    /// The task data lack a relative move of the command.
+    NoRelativeMove,
+    /// The sensor of the guarded move is not in the task data.
+    UnknownSensor,
+    /// The sensor condition did not come on the way to the goal.
+    NotDetected,
+    /// The sensor condition came before the goal was reached.
+    Detected,
+    /// The fingers of the gripper are stuck.
+    JawsStuck,
+    /// The Active Pedestal cannot do what it is asked.
+    PedestalCannot,
+    /// The Active Pedestal reports an error.
+    PedestalError,
+    /// The Active Pedestal does not answer.
+    PedestalSilent,
+    /// The task data do not say how the pedestal takes the object.
+    NoPedestalData,
+    /// What must precede the command has not been done.
+    NotPrepared,
+    /// The Data System does not answer.
+    DataBaseSilent,
+    /// The rotary table of the pedestal does not reach its angle.
+    TableStuck,
+    /// The angle is beyond a limit of the rotary table.
+    TableLimit,
+    /// The gripper with the object is off the robot, or its id pins or the sensors of the ring say so.
+    GripperGone,
+    /// Vision answers what its camera cannot have seen.
+    VisionImplausible,
+    /// It is not known whether the gripper holds something: calibrate it, or open it by RELEASE.
+    HeldNotKnown,
+    /// The robot changes a gripper in a holster: send the command that does so again.
+    InHolster,
+    /// A gripper is mated and the locking ring is not locked: send the gripper change again.
+    RingNotLocked,
+    /// A holster is gone to only in order to change the gripper.
+    HolsterOnly,
+    /// The robot was stopped where it can only go on: send the interrupted command again.
+    ForwardOnly,
+    /// An order has changed nothing: see what hinders it, then send the command again.
+    NoEffect,
+    /// The gripper holds something unknown: take it out, or let it go with POSITION.
+    UnknownHeld,
+    /// The part is in the pedestal's hand: send the command that regrips it again, or open the hand at the
+    /// pedestal.
+    PartInPedestal,
+    /// What is in the pedestal's hand is not the object of the command: open the hand at the pedestal.
+    PedestalHoldsOther,
+    /// The source and destination grips are equal: nothing is to be regripped.
+    EqualGrips,
+    /// A tool is acquired from TOOL-SAFE: name that as the destination.
+    NotNearDrum,
+    /// The pedestal's hand closed on nothing.
+    HandMissed,
+    /// The pedestal's hand has lost the object.
+    HandLost,
+    /// The pedestal's hand is not calibrated.
+    HandNotCalibrated,
+    /// The pedestal's hand does not finish.
+    HandTimeout,
+    /// The pedestal's hand cannot reach the commanded opening or force.
+    HandUnattainable,
+    /// The sensors of the pedestal's hand do not tell whether it holds the object.
+    HandUncertain,
+    /// The angle of the pedestal's rotary table is not known.
+    TableAngleUnknown,
+    /// The robot is not where it was sent. Look where it is; PAUSE takes its position over.
+    RobotElsewhere,
+    /// The robot is half way at the tool drum: send the tool command again.
+    InDrum,
+    /// The id pins of the quick change name another gripper, or none, at a locked ring: see to their contact, or
+    /// put the gripper back on; send the command again.
+    PinsFail,
+    /// All is done, and the robot has been sent away from where the command leaves it: send the next command.
+    SentAway,
+}
+
+/// Which process a changing pose record belongs to: part of its record number.
+pub mod pose_range {
+    /// Record numbers from here on are changing records.
+    pub const CHANGING: u32 = 0x8000_0000;
+    /// T-POSE records of Task.
+    pub const TASK: u32 = 0x8100_0000;
+    /// Records of E-move: goals, located objects.
+    pub const EMOVE: u32 = 0x8200_0000;
+    /// Records of Prim: present, sensor and detected poses.
+    pub const PRIM: u32 = 0x8300_0000;
+    /// Records of Subtask: locations that it names itself.
+    pub const SUBTASK: u32 = 0x8400_0000;
+    /// Bits of a record number that name the writer.
+    pub const WRITER: u32 = 0xFF00_0000;
+
+    /// The record number after `number` in the same range; generations start again after 2^24.
+    #[must_use]
+    pub const fn next(writer: u32, number: u32) -> u32 {
+        let generation = (number & !WRITER).wrapping_add(1) & !WRITER;
+        if generation == 0 { writer | 1 } else { writer | generation }
+    }
+}
+
+/// A pose record that changes while running (T-POSE-1 …, VII.1): it has a new number whenever it changes.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ChangingPose {
+    /// Record number; `None` while empty.
+    pub number: Option<u32>,
+    /// The pose.
+    pub pose: Pose,
+}
+
+impl CommonMemory {
+    /// A changing pose by its record number, from whichever process owns it.
+    #[must_use]
+    pub fn changing_pose(&self, number: u32) -> Option<&Pose> {
+        let records: &[ChangingPose] = match number & pose_range::WRITER {
+            pose_range::TASK => &self.task.poses,
+            pose_range::SUBTASK => &self.subtask.poses,
+            pose_range::EMOVE => &self.emove.poses,
+            pose_range::PRIM => &self.prim.poses,
+            _ => return None,
+        };
+        records.iter().find(|record| record.number == Some(number)).map(|record| &record.pose)
+    }
+
+    /// What the controller writes to its devices, gathered from the processes that own them.
+    #[must_use]
+    pub fn device_outputs(&self) -> DeviceOutputs {
+        DeviceOutputs {
+            link_tx: self.t3i.link_tx,
+            grip: self.grip.valves,
+            quick_change: self.quick_change.valves,
+            vision: self.emove.vision,
+            v_grip: self.v_grip.valves,
+            tool_grip: self.tool_grip.valves,
+            joystick_leds: self.prim.joystick_leds,
+            pedestal_hand: self.hand.valves,
+            pedestal_table: self.table.motor,
+        }
+    }
+}
+
+/// Everything that comes from outside in a tick: the only inputs that a replay needs.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct ExternalInputs {
+    /// From the workstation controller.
+    pub hws: HwsCommand,
+    /// From the devices.
+    pub devices: DeviceInputs,
+    /// From the Data System.
+    pub data_base: DataBaseStatus,
+    /// Generation of the task data that the tick uses: 0 as loaded before the first tick, one more after each
+    /// reload.
+    pub generation: u32,
+    /// From an Active Pedestal that is a system of its own.
+    pub pedestal: OutsidePedestal,
+}

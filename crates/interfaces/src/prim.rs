@@ -1,0 +1,185 @@
+//! E-move and Prim (V.1.2).
+
+use core::fmt;
+
+use rcs_core::{Plain, handshake::Lower, name::Name10};
+
+use super::words::name;
+use crate::{ChangingPose, Header, Reason, t3i::T3iCommand};
+
+/// Commands of Prim (V.1.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
+pub enum PrimVerb {
+    /// None yet.
+    #[text = ""]
+    None,
+    /// Do nothing: hold position.
+    Pause,
+    /// Initialize the DEPC link.
+    RobotInit,
+    /// Move near a point on the way to the next.
+    GoThru,
+    /// Move to a point and stop.
+    GotoPt,
+    /// Guarded move: move until a sensor condition comes.
+    GoUntil,
+    /// Move unless a sensor condition comes.
+    GoWhile,
+    /// Move relative to a pose.
+    DeltaMove,
+    /// Take the force sensor's reading as no force.
+    CalSensor,
+}
+
+/// Command from E-move to Prim.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PrimCommand {
+    /// `command-#-in`.
+    pub number: u32,
+    /// `"command"`.
+    pub command: PrimVerb,
+    /// `"sensor"` of a guarded move.
+    pub sensor: Option<Name10>,
+    /// `^-pose`: record of POSE, or a changing record.
+    pub pose: u32,
+    /// `^-movtab`: record of MOVTAB applied to the pose, if there is one.
+    pub movetable: Option<u32>,
+    /// `^-traj-para`: record of TRAJ-PARA.
+    pub trajectory_parameters: u32,
+    /// `endeff-id#-in`, if a gripper is on.
+    pub end_effector_id: Option<u8>,
+}
+
+/// `status-report` of Prim.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum PrimReport {
+    /// Nothing was commanded yet (extension).
+    Idle,
+    /// The current command is executing.
+    Executing,
+    /// The current command is finished.
+    Done,
+    /// The condition of a GO-UNTIL was not achieved.
+    NotDetected,
+    /// The joystick box is active.
+    JoystickOn,
+    /// The DEPC link is off.
+    T3LinkOff,
+    /// The DEPC link reports an error.
+    T3LinkErr,
+    /// T3I does not answer.
+    NoRespT3i,
+    /// T3I refused a command.
+    #[text = "t3-X-command"]
+    T3BadCommand,
+    /// A sensor overload or malfunction has been identified.
+    SensorError,
+    /// The condition of a GO-WHILE was detected on the way.
+    DetectedErr,
+    /// The command names records that do not exist, or the robot does not come to rest (extension).
+    Error,
+}
+
+impl PrimReport {
+    /// The report as a state variable of E-move.
+    #[must_use]
+    pub const fn lower(self) -> Lower {
+        match self {
+            Self::Idle | Self::Done => Lower::Done,
+            Self::Executing | Self::NotDetected => Lower::Executing,
+            Self::JoystickOn => Lower::Joystick,
+            Self::T3LinkOff
+            | Self::T3LinkErr
+            | Self::NoRespT3i
+            | Self::T3BadCommand
+            | Self::SensorError
+            | Self::DetectedErr
+            | Self::Error => Lower::Error,
+        }
+    }
+}
+
+/// `joy-grip-status`: the gripper buttons of the joystick box. The codes are ASSUMED.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+pub enum JoystickGrip {
+    /// Neither button is pressed.
+    None,
+    /// Open.
+    Open,
+    /// Close.
+    Close,
+}
+
+/// Status from Prim to E-move.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PrimStatus {
+    /// `command-#-echo`.
+    pub echo: u32,
+    /// `status-report`.
+    pub report: PrimReport,
+    /// Why it failed (extension).
+    pub reason: Reason,
+    /// `restart-status`: a RESTART is being sent to T3I.
+    pub restarting: bool,
+    /// The DEPC link runs and Prim commands the robot (extension).
+    pub link_running: bool,
+    /// `pres-pose-^-out`: the position commanded to T3I, if Prim commands the robot.
+    pub present_pose: Option<u32>,
+    /// `sensor-pose-^-out`: where the resolvers say that the robot is, if they can be believed; the command
+    /// from T3I to DEPC is `frame-feedback` of T3I.
+    pub sensor_pose: Option<u32>,
+    /// `detected-pose-^-out`: where the condition of the last GO-UNTIL was detected, if it was.
+    pub detected_pose: Option<u32>,
+    /// `hol-R-status`.
+    pub holster_right: u8,
+    /// `hol-L-status`.
+    pub holster_left: u8,
+    /// `hol-C-status`.
+    pub holster_centre: u8,
+    /// `joy-grip-status`.
+    pub joystick_grip: JoystickGrip,
+    /// `pres-pose-^-out` when the record button of the joystick box was pressed last, if it ever was
+    /// (extension).
+    pub recorded_pose: Option<u32>,
+    /// A pose has been recorded: Prim and E-move are suspended until the operator goes on (III.3.3;
+    /// extension).
+    pub recording: bool,
+    /// What the sensor of the guarded move reads: lb, in lb, or 1 while a switch is on (extension).
+    pub sensed: i32,
+    /// Distance to the goal, 0.01 in of path (extension).
+    pub distance: i32,
+}
+
+/// Changing poses of Prim: present, sensor, detected, recorded.
+pub const PRIM_POSES: usize = 4;
+
+/// Axes of the force sensor that are connected: forces along tool X, Y, Z, and the moment about tool Y
+/// (III.3.8).
+pub const FORCE_AXES: usize = 4;
+
+/// Output buffers of Prim.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct PrimOutputs {
+    /// Stamp and row.
+    pub header: Header,
+    /// To E-move.
+    pub status: PrimStatus,
+    /// To T3I.
+    pub t3i: T3iCommand,
+    /// LEDs b, c, d, e of the joystick box.
+    pub joystick_leds: u8,
+    /// Present, sensor, detected and recorded pose.
+    pub poses: [ChangingPose; PRIM_POSES],
+    /// What the force sensor reads without a force of interest, if that was taken: counts off the middle of
+    /// the converters as tool Fx, Fy, Fz, My (III.3.8; extension).
+    pub bias: Option<[f64; FORCE_AXES]>,
+}
+
+/// `GO-UNTIL SEAT-F`.
+impl fmt::Display for PrimCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.command.text())?;
+        name(f, self.sensor.as_ref())
+    }
+}

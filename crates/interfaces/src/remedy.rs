@@ -1,0 +1,122 @@
+//! What a failure asks for: the same command again after a PAUSE, or a person first (docs/reasons.md).
+
+use super::Reason;
+
+impl Reason {
+    /// What a person has to do before the same command can succeed; `None` if PAUSE and the same command may
+    /// be enough.
+    ///
+    /// A person is needed where the job or the task data are wrong, where something lies or stands where the
+    /// controller does not know it, and where a device or a program has to be switched on (extension: the
+    /// manual has no reasons).
+    #[must_use]
+    pub const fn remedy(self) -> Option<&'static str> {
+        Some(match self {
+            Self::None
+            | Self::Restarted
+            | Self::NothingHeld
+            | Self::GraspMissed
+            | Self::WrongGripper
+            | Self::NothingSeen
+            | Self::NotRecognised
+            | Self::VisionSilent
+            | Self::VisionImplausible
+            | Self::GripUnattainable
+            | Self::GripTimeout
+            | Self::GripNotCalibrated
+            | Self::QuickChangeFault
+            | Self::QuickChangeStuck
+            | Self::NotDetached
+            | Self::NotAttached
+            | Self::WrongGripperId
+            | Self::LinkError
+            | Self::NotAtGoal
+            | Self::SensorError
+            | Self::DataBase
+            | Self::DataBaseSilent
+            | Self::JawsStuck
+            | Self::PedestalError
+            | Self::PedestalSilent
+            | Self::TableStuck
+            | Self::HandMissed
+            | Self::HandTimeout
+            | Self::HandUnattainable
+            | Self::PinsFail
+            | Self::NoEffect => return None,
+            Self::UnknownCommand
+            | Self::NoDestination
+            | Self::NoObjectNamed
+            | Self::NotPrepared
+            | Self::EqualGrips
+            | Self::NotNearDrum
+            | Self::HolsterOnly
+            | Self::RegripNeeded => "correct the command in the job",
+            Self::UnknownObject
+            | Self::UnknownLocation
+            | Self::SectorOutOfRange
+            | Self::NoArrayForObject
+            | Self::UnknownGrip
+            | Self::NoGripMovetable
+            | Self::NoTrajectory
+            | Self::NoApproach
+            | Self::BadRecord
+            | Self::BadParameters
+            | Self::NoHolster
+            | Self::NoRelativeMove
+            | Self::UnknownSensor
+            | Self::NoPedestalData
+            | Self::PedestalCannot
+            | Self::TableLimit
+            | Self::InterfaceRefused => "correct the command in the job, or the task data",
+            Self::NeighbourLost | Self::InterfaceSilent => "start the process that is lost again",
+            Self::JoystickOn => "switch the frame at the joystick box off",
+            Self::UnknownStart => "move the robot to one of the known places with the joystick box",
+            Self::RobotElsewhere => "look where the robot is; PAUSE takes its position over",
+            Self::LinkOff => {
+                "press Hold again or cycle start at the robot controller's panel, if it shows HOLD; \
+                 else start it up there"
+            }
+            Self::AlreadyHolding => "send the command that places the held object",
+            Self::ObjectLost => "take the object away, and put it back to where the command takes it from",
+            Self::UnknownHeld => "take out what the gripper holds, or let it go with POSITION",
+            Self::HeldNotKnown => "take out what the gripper may hold, and send POSITION",
+            Self::GripperGone => "put the gripper into its holster, and the object back to its place",
+            Self::HolsterOccupied => "empty the holster",
+            Self::HolsterEmpty => "put the gripper into its holster",
+            Self::InHolster | Self::RingNotLocked => "send the command that changes the gripper again",
+            Self::InDrum => "send the interrupted tool command again",
+            Self::SentAway => "send the next command",
+            Self::ForwardOnly => "send the interrupted command again",
+            Self::NotDetected | Self::Detected => {
+                "look at what the sensor meets on the way, and put it right"
+            }
+            Self::PartInPedestal => {
+                "send the command that regrips the part again, or open the hand at the pedestal"
+            }
+            Self::PedestalHoldsOther | Self::HandUncertain => {
+                "look what is in the pedestal's hand, and open it at the pedestal"
+            }
+            Self::HandLost => "take the object out of the pedestal, and put it back to its place",
+            Self::HandNotCalibrated | Self::TableAngleUnknown => "calibrate the Active Pedestal",
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_remedy_is_the_end_of_a_sentence() {
+        let mut needed = 0;
+        for reason in Reason::ALL {
+            let Some(remedy) = reason.remedy() else { continue };
+            needed += 1;
+            let first = remedy.chars().next().unwrap_or(' ');
+            assert!(first.is_ascii_lowercase() && !remedy.ends_with('.'), "{reason:?}: {remedy}");
+        }
+        assert!((1..Reason::ALL.len()).contains(&needed), "{needed}");
+        assert_eq!((Reason::None.remedy(), Reason::GraspMissed.remedy()), (None, None));
+        assert!(Reason::UnknownLocation.remedy().is_some());
+    }
+}

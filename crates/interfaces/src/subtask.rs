@@ -1,0 +1,148 @@
+//! Task and Subtask (V.3.2).
+
+use core::fmt;
+
+use rcs_core::{
+    Plain,
+    name::{Name10, Name16},
+};
+
+pub use super::location::LocationKind;
+
+use super::words::{location, name};
+use crate::{
+    ChangingPose, Header, Reason, StatusReport,
+    emove::{EmoveCommand, Holding, PlacedObject, Standing},
+    pedestal::PedestalCommand,
+};
+
+/// Commands of Subtask (V.3.1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
+#[text(upper)]
+pub enum SubtaskVerb {
+    /// None yet.
+    #[text = ""]
+    None,
+    /// Do nothing.
+    #[text = "S-PAUSE"]
+    Pause,
+    /// Connect the proper gripper.
+    GetEndeff,
+    /// Move to an object and grasp it.
+    GetObject,
+    /// Move an object to a location and release it.
+    PlaceObj,
+    /// Move to the end-at location.
+    GotoEndpt,
+    /// Move to the destination.
+    GotoDest,
+    /// Move an object to the destination and hold it there.
+    #[text = "MOVE-OBJ>D"]
+    MoveObjToDest,
+    /// Move to a position with the parameters of an object.
+    #[text = ">POSITION"]
+    Position,
+    /// Open the gripper.
+    Release,
+    /// Regrip the object with the Active Pedestal.
+    FixGrip,
+    /// Insert a tool into the tool drum.
+    InsertTool,
+    /// Let go of a tool in the drum.
+    ReleaseTool,
+    /// Move to a tool in the drum and grasp it.
+    AcquireTool,
+    /// Pull a tool out of the drum.
+    RemoveTool,
+}
+
+/// Command from Task to Subtask.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct SubtaskCommand {
+    /// `command-#-in`.
+    pub number: u32,
+    /// `"command-in"`.
+    pub command: SubtaskVerb,
+    /// `"obj"`, if one is named.
+    pub object: Option<Name16>,
+    /// `obj-endeff-id#`; none if any gripper will do.
+    pub end_effector_id: Option<u8>,
+    /// `src-grip-#-in`.
+    pub source_grip: i32,
+    /// `dst-grip-#-in`.
+    pub destination_grip: i32,
+    /// `obj-para-^`: record of END-EFF-PARA, if the object has that grip.
+    pub object_parameters: Option<u32>,
+    /// `locpt-name-in`.
+    pub location: Name10,
+    /// `locpt-type-in`.
+    pub location_kind: LocationKind,
+    /// `locpt-^-in`: record of LOCPT; a static array has none.
+    pub location_record: Option<u32>,
+    /// Record of ARRAY-TABLE if the location is a sector (extension).
+    pub location_array: Option<u32>,
+    /// `pose-^-in`: the goal, a T-POSE of Task, if a location is named.
+    pub pose: Option<u32>,
+}
+
+/// Status from Subtask to Task.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct SubtaskStatus {
+    /// `command-#-echo`.
+    pub echo: u32,
+    /// `status-report`.
+    pub report: StatusReport,
+    /// `status-para-out`.
+    pub reason: Reason,
+    /// `ref-pose-^-out`: the feedback pose, as E-move reports it.
+    pub reference_pose: Option<u32>,
+    /// `obj-held-status-out`: what is held, as E-move reports it (more than yes or no is an extension).
+    pub held: Holding,
+    /// The object that the last RELEASE has let go, as E-move reports it (extension).
+    pub placed: Option<PlacedObject>,
+    /// `pres-endeff-id#-out`, if a gripper is on.
+    pub end_effector_id: Option<u8>,
+    /// Where the robot stands, if E-move knows it (extension).
+    pub at: Option<Standing>,
+    /// The fingers are around a tool in the tool drum, as E-move reports it (extension).
+    pub drum: bool,
+    /// The part is in the pedestal's hand, alone or together with the robot (extension).
+    pub pedestal_part: bool,
+}
+
+/// The part that Subtask has given to the pedestal's hand. It is an output, so that a Subtask that is
+/// restarted knows it (docs/design/recovery.md "Beliefs"); it counts as long as the hand feels something.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Regrip {
+    /// The object.
+    pub object: Name16,
+}
+
+/// Changing poses of Subtask: the location that it names itself (holster, pedestal), one after the other.
+pub const SUBTASK_POSES: usize = 2;
+
+/// Output buffers of Subtask.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct SubtaskOutputs {
+    /// Stamp and row.
+    pub header: Header,
+    /// To Task.
+    pub status: SubtaskStatus,
+    /// To E-move.
+    pub emove: EmoveCommand,
+    /// To the Active Pedestal.
+    pub pedestal: PedestalCommand,
+    /// The part in the pedestal's hand (extension).
+    pub regrip: Option<Regrip>,
+    /// Poses of locations that no Task command names.
+    pub poses: [ChangingPose; SUBTASK_POSES],
+}
+
+/// `GET-OBJECT LINKBAR1 at TRAY`.
+impl fmt::Display for SubtaskCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.command.text())?;
+        name(f, self.object.as_ref())?;
+        location(f, "at", Some(&self.location).filter(|name| !name.is_empty()), None)
+    }
+}

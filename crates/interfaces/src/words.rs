@@ -1,0 +1,42 @@
+//! Commands and quantities as one says them.
+
+use core::fmt;
+
+use rcs_core::name::Name;
+
+/// The object or the sensor of a command behind its verb, if it has one.
+pub(super) fn name<const N: usize>(f: &mut fmt::Formatter<'_>, name: Option<&Name<N>>) -> fmt::Result {
+    name.map_or(Ok(()), |name| write!(f, " {name}"))
+}
+
+/// A location of a command with the word before it and its sector, if the command has them.
+pub(super) fn location<const N: usize>(
+    f: &mut fmt::Formatter<'_>,
+    word: &str,
+    name: Option<&Name<N>>,
+    sector: Option<i32>,
+) -> fmt::Result {
+    match (name, sector) {
+        (None, _) => Ok(()),
+        (Some(name), None) => write!(f, " {word} {name}"),
+        (Some(name), Some(sector)) => write!(f, " {word} {name} sector {sector}"),
+    }
+}
+
+/// Hundredths of an inch as inches.
+pub(super) struct Inches(pub i32);
+
+impl fmt::Display for Inches {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.2} in", geometry::units::inches(self.0))
+    }
+}
+
+/// Tenths of a degree as degrees.
+pub(super) struct Degrees(pub i32);
+
+impl fmt::Display for Degrees {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.1} degrees", f64::from(self.0) / 10.0)
+    }
+}

@@ -1,0 +1,216 @@
+//! The commands to the gripper processes (V.2: E-move coordinates the robot with "various gripper
+//! processes").
+//!
+//! The parts gripper servoes an opening or a force and takes five commands (VI.3.1); v-gripper and tool
+//! gripper open or close, no more, and take four (VI.4.1, VI.5). The tables of E-move see neither: they give
+//! a [`FingerVerb`] and read one [`Lower`]. Only the process of the gripper that is attached is stepped.
+//!
+//! | order     | Grip                  | V-Grip, Tool-Grip                                          |
+//! |-----------|-----------------------|------------------------------------------------------------|
+//! | Pause     | PAUSE                 | PAUSE, with the size commanded last                        |
+//! | Stand     | POSITION              | POSE; GRASP if the opening is nearer to the closed stop    |
+//! | Release   | OPEN-GRIP             | RELEASE                                                    |
+//! | Grasp     | CLOSE-GRIP            | GRASP                                                      |
+//! | Calibrate | UP-INIT               | PAUSE: there is nothing to calibrate                       |
+//!
+//! Fingers that stop at the wrong end report `opened` or `closed` as well (VI.4.2): that is an error here.
+
+use interfaces::{
+    CommonMemory, EmoveOutputs, Reason,
+    grip::{GripCommand, GripVerb},
+    jaws::{JawsCommand, JawsReport, JawsVerb},
+};
+use rcs_core::{
+    Plain,
+    handshake::{Commander, Lower},
+    tick::Tick,
+};
+
+use super::{
+    gripper::Gripper,
+    order::{FingerOrder, FingerVerb},
+};
+
+/// E-move's side of the interfaces to the three gripper processes, and the order that was given last.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Grippers {
+    /// Commands to Grip.
+    pub parts: Commander,
+    /// Commands to V-Grip.
+    pub v: Commander,
+    /// Commands to Tool-Grip.
+    pub tool: Commander,
+    /// The gripper that has the last order.
+    pub to: Gripper,
+    /// The last order.
+    pub order: FingerVerb,
+    /// Size commanded last to jaws, 0.01 in.
+    pub size: i32,
+    /// Jaws were told to close by it.
+    pub closing: bool,
+}
+
+impl Grippers {
+    /// Before anything else in a tick: follow the echoes until the first command.
+    pub fn start(&mut self, tick: Tick, memory: &CommonMemory) {
+        let written = &memory.emove;
+        self.parts.start_from(tick, written.grip.number, memory.grip.status.echo);
+        self.v.start_from(tick, written.v_grip.number, memory.v_grip.status.echo);
+        self.tool.start_from(tick, written.tool_grip.number, memory.tool_grip.status.echo);
+    }
+
+    /// In the first tick after a restart: the attached gripper may still be busy with what it was told
+    /// before.
+    pub fn adopt(&mut self, memory: &CommonMemory) {
+        let (attached, written) = (Gripper::attached(memory), &memory.emove);
+        self.order = match attached {
+            Gripper::None => return,
+            Gripper::Parts => match written.grip.command {
+                GripVerb::None => return,
+                GripVerb::Pause => FingerVerb::Pause,
+                GripVerb::Position => FingerVerb::Stand,
+                GripVerb::OpenGrip => FingerVerb::Release,
+                GripVerb::CloseGrip => FingerVerb::Grasp,
+                GripVerb::UpInit => FingerVerb::Calibrate,
+            },
+            Gripper::V | Gripper::Tool => {
+                let jaws = if attached == Gripper::V { &written.v_grip } else { &written.tool_grip };
+                self.size = jaws.size;
+                match jaws.command {
+                    JawsVerb::None => return,
+                    JawsVerb::Pause => FingerVerb::Pause,
+                    JawsVerb::Pose => FingerVerb::Stand,
+                    JawsVerb::Release => FingerVerb::Release,
+                    JawsVerb::Grasp => FingerVerb::Grasp,
+                }
+            }
+        };
+        (self.to, self.closing) = (attached, self.order == FingerVerb::Grasp);
+    }
+
+    /// Are the fingers busy with an order that moves them?
+    #[must_use]
+    pub fn are_moving(&self, tick: Tick, memory: &CommonMemory) -> bool {
+        let busy = matches!(self.status(tick, memory), Lower::Pending | Lower::Executing);
+        busy && !matches!(self.order, FingerVerb::None | FingerVerb::Pause)
+    }
+
+    /// Give the attached gripper an order; without a gripper, or while it sleeps, it only counts as given.
+    pub fn send(
+        &mut self,
+        request: FingerOrder,
+        tick: Tick,
+        memory: &CommonMemory,
+        outputs: &mut EmoveOutputs,
+    ) {
+        let attached = Gripper::attached(memory);
+        self.to = if attached.is_asleep(memory) { Gripper::None } else { attached };
+        self.order = request.order;
+        match self.to {
+            Gripper::None => {}
+            Gripper::Parts => {
+                outputs.grip = GripCommand {
+                    number: self.parts.send(tick),
+                    command: match request.order {
+                        FingerVerb::None | FingerVerb::Pause => GripVerb::Pause,
+                        FingerVerb::Stand => GripVerb::Position,
+                        FingerVerb::Release => GripVerb::OpenGrip,
+                        FingerVerb::Grasp => GripVerb::CloseGrip,
+                        FingerVerb::Calibrate => GripVerb::UpInit,
+                    },
+                    force: request.force,
+                    position: request.opening,
+                    velocity: 0,
+                    end_effector_id: self.to.id(),
+                };
+            }
+            Gripper::V => outputs.v_grip = self.jaws_command(request, tick),
+            Gripper::Tool => outputs.tool_grip = self.jaws_command(request, tick),
+        }
+    }
+
+    /// The order as a command of the gripper with jaws that it goes to.
+    fn jaws_command(&mut self, request: FingerOrder, tick: Tick) -> JawsCommand {
+        let (closed, open) = self.to.stops().unwrap_or_default();
+        let command = match request.order {
+            FingerVerb::None | FingerVerb::Pause | FingerVerb::Calibrate => JawsVerb::Pause,
+            FingerVerb::Stand if self.to.closes_for(request.opening) => JawsVerb::Grasp,
+            FingerVerb::Stand => JawsVerb::Pose,
+            FingerVerb::Release => JawsVerb::Release,
+            FingerVerb::Grasp => JawsVerb::Grasp,
+        };
+        if command != JawsVerb::Pause {
+            self.size = request.opening.clamp(closed, open);
+            self.closing = command == JawsVerb::Grasp;
+        }
+        let commander = if self.to == Gripper::V { &mut self.v } else { &mut self.tool };
+        JawsCommand {
+            number: commander.send(tick),
+            command,
+            force: request.force,
+            size: self.size,
+            velocity: 0,
+            end_effector_id: self.to.id(),
+        }
+    }
+
+    /// How far the last order has come. `Lost` if the gripper that has it is no longer the attached one.
+    #[must_use]
+    pub fn status(&self, tick: Tick, memory: &CommonMemory) -> Lower {
+        let attached = Gripper::attached(memory);
+        if attached != self.to {
+            return Lower::Lost;
+        }
+        let grip = &memory.grip;
+        let (commander, jaws) = match attached {
+            Gripper::None => return Lower::Done,
+            Gripper::Parts => {
+                return self.parts.read(tick, &grip.header, grip.status.echo, grip.status.report.lower());
+            }
+            Gripper::V => (&self.v, &memory.v_grip),
+            Gripper::Tool => (&self.tool, &memory.tool_grip),
+        };
+        let report = jaws.status.report;
+        match commander.read(tick, &jaws.header, jaws.status.echo, report.lower()) {
+            // Fingers that are to be left alone may stand anywhere: on an object of another size, or moved by
+            // hand.
+            Lower::Error if self.order == FingerVerb::Pause && report == JawsReport::Stuck => Lower::Done,
+            Lower::Done if self.moves_fingers() && report == self.wrong_end() => Lower::Error,
+            lower => lower,
+        }
+    }
+
+    const fn moves_fingers(&self) -> bool {
+        matches!(self.order, FingerVerb::Stand | FingerVerb::Release | FingerVerb::Grasp)
+    }
+
+    /// The report of jaws that went nowhere.
+    const fn wrong_end(&self) -> JawsReport {
+        if self.closing { JawsReport::Opened } else { JawsReport::Closed }
+    }
+
+    /// Why the last order failed: what the process says, or what can be seen from here.
+    #[must_use]
+    pub fn fault(&self, tick: Tick, memory: &CommonMemory) -> Reason {
+        let attached = Gripper::attached(memory);
+        let said = attached.jaws(memory).map_or(memory.grip.status.reason, |jaws| jaws.status.reason);
+        if attached != self.to || attached == Gripper::None {
+            Reason::WrongGripper
+        } else if self.status(tick, memory) == Lower::Lost {
+            Reason::NeighbourLost
+        } else if said != Reason::None {
+            said
+        } else if attached == Gripper::Parts {
+            Reason::GripUnattainable
+        } else {
+            Reason::JawsStuck
+        }
+    }
+
+    /// True when the attached gripper has done what [`FingerVerb::Release`] asks for: nothing is held any
+    /// more.
+    #[must_use]
+    pub fn has_let_go(&self, tick: Tick, memory: &CommonMemory) -> bool {
+        self.order == FingerVerb::Release && self.status(tick, memory) == Lower::Done
+    }
+}

@@ -1,0 +1,60 @@
+//! The known places around a robot that is at none.
+
+use geometry::frame::Frame;
+use interfaces::{emove::NearPlace, subtask::LocationKind};
+use rcs_core::{Plain, name::Name10};
+use taskdata::files::{LocptId, Place, TaskData};
+
+use super::relative::Relative;
+use crate::places::{named, place_of};
+
+/// Location points that are looked at in a tick for the nearest ones.
+const NEAREST_PER_TICK: u32 = 16;
+
+/// The known places around a robot that is at none: the location points are looked through again and again.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Surroundings {
+    /// Location points that have been looked at in this round.
+    looked: u32,
+    /// The nearest of them, the nearest first.
+    found: [Option<NearPlace>; 2],
+    /// Those of the last complete round.
+    pub nearest: [Option<NearPlace>; 2],
+}
+
+impl Surroundings {
+    /// Look at some more location points.
+    pub(super) fn look(&mut self, present: &Frame, data: &TaskData<'_>) {
+        for _ in 0..NEAREST_PER_TICK {
+            let next = LocptId::new(self.looked.saturating_add(1));
+            let Some(locpt) = data.locpt(next) else {
+                *self = Self { nearest: self.found, ..Self::default() };
+                return;
+            };
+            self.looked = next.number();
+            if is_plain(&locpt.name, &place_of(LocationKind::Point, next.to_option(), None), data) {
+                let distance = locpt.frame.distance(present);
+                let (inches, degrees) = (distance.inches, distance.radians.to_degrees());
+                self.insert(NearPlace { location: locpt.name, inches, degrees });
+            }
+        }
+    }
+
+    /// Keep a place if it is one of the two nearest.
+    fn insert(&mut self, place: NearPlace) {
+        let nearer = |than: Option<NearPlace>| than.is_none_or(|than| place.inches < than.inches);
+        let [first, second] = self.found;
+        if nearer(first) {
+            self.found = [Some(place), first];
+        } else if nearer(second) {
+            self.found = [first, Some(place)];
+        }
+    }
+}
+
+/// Can a robot that stands at a location point be there as such? Not in a holster, at the tool drum, or at
+/// the pedestal: there it depends on gripper, tool and part how it may leave.
+pub(super) fn is_plain(name: &Name10, place: &Place, data: &TaskData<'_>) -> bool {
+    let has = |relative: Relative| data.relative_move(&Name10::clipped(relative.text()), place).is_some();
+    !has(Relative::QcaBack) && !has(Relative::InsIn) && name.as_str() != named::PEDESTAL
+}

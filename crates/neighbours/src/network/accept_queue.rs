@@ -1,0 +1,128 @@
+//! The accept queue: connections that have not said yet which neighbour they are.
+//!
+//! It is short, so that strangers cost the run little. A connection that has been in it for a while without
+//! a hello makes room for the next: clients that send nothing, or a byte now and then, keep no other client
+//! out. One that was refused keeps its slot for the same while, so that no client can guess quickly or fill
+//! the log.
+
+use std::{
+    io,
+    sync::Mutex,
+    time::{Duration, Instant},
+};
+
+use super::{shared::locked, socket::Socket};
+
+/// Connections without a hello, at most.
+pub(super) const SLOTS: usize = 8;
+/// A slot is safe for so long: enough for TLS and a hello, and the penalty for a wrong one.
+pub(super) const SAFE: Duration = Duration::from_secs(1);
+
+/// The queue.
+#[derive(Default)]
+pub(super) struct AcceptQueue {
+    inner: Mutex<Inner>,
+}
+
+#[derive(Default)]
+struct Inner {
+    last: u64,
+    slots: [Option<Waiting>; SLOTS],
+}
+
+/// A connection in a slot.
+struct Waiting {
+    ticket: u64,
+    since: Instant,
+    socket: Socket,
+}
+
+/// A slot; free again when this is dropped, if no other connection has it by then.
+pub(super) struct Slot<'a> {
+    queue: &'a AcceptQueue,
+    ticket: u64,
+}
+
+impl AcceptQueue {
+    /// Give a connection a slot, if need be that of the one which has waited longest; its ticket. `None` if
+    /// there is none.
+    ///
+    /// # Errors
+    /// If the system has no descriptor left.
+    pub fn enter(&self, socket: &Socket) -> io::Result<Option<u64>> {
+        let socket = socket.try_clone()?;
+        let mut inner = locked(&self.inner);
+        let now = Instant::now();
+        let waited = |slot: &Option<Waiting>| slot.as_ref().map_or(Duration::MAX, |other| now - other.since);
+        let Some(longest) = inner.slots.iter().map(waited).max().filter(|longest| *longest >= SAFE) else {
+            return Ok(None);
+        };
+        inner.last += 1;
+        let ticket = inner.last;
+        let slot = inner.slots.iter_mut().find(|slot| waited(slot) == longest);
+        if let Some(before) = slot.and_then(|slot| slot.replace(Waiting { ticket, since: now, socket })) {
+            before.socket.shut_down();
+        }
+        Ok(Some(ticket))
+    }
+
+    /// The slot of a ticket.
+    pub const fn slot(&self, ticket: u64) -> Slot<'_> {
+        Slot { queue: self, ticket }
+    }
+}
+
+impl Drop for Slot<'_> {
+    fn drop(&mut self) {
+        let mut inner = locked(&self.queue.inner);
+        for slot in &mut inner.slots {
+            slot.take_if(|waiting| waiting.ticket == self.ticket);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{io::Read as _, os::unix::net::UnixStream};
+
+    use super::*;
+
+    fn connection() -> (Socket, UnixStream) {
+        let (ours, theirs) = UnixStream::pair().unwrap();
+        (Socket::Unix(ours), theirs)
+    }
+
+    /// Let all have been there for so much longer.
+    fn wait(queue: &AcceptQueue, time: Duration) {
+        locked(&queue.inner).slots.iter_mut().flatten().for_each(|waiting| waiting.since -= time);
+    }
+
+    #[test]
+    fn the_connection_that_has_waited_longest_makes_room() {
+        let queue = AcceptQueue::default();
+        let mut silent: Vec<_> = (0..SLOTS)
+            .map(|_| {
+                wait(&queue, Duration::from_millis(1));
+                let (ours, theirs) = connection();
+                assert!(queue.enter(&ours).unwrap().is_some());
+                (ours, theirs)
+            })
+            .collect();
+        assert_eq!(queue.enter(&connection().0).unwrap(), None, "all slots are safe");
+        wait(&queue, SAFE);
+        assert!(queue.enter(&connection().0).unwrap().is_some());
+        assert_eq!(silent[0].1.read(&mut [0]).unwrap(), 0, "the first was closed");
+        silent[1].1.set_nonblocking(true).unwrap();
+        assert_eq!(silent[1].1.read(&mut [0]).unwrap_err().kind(), io::ErrorKind::WouldBlock);
+    }
+
+    #[test]
+    fn a_slot_is_freed_by_its_own_ticket() {
+        let queue = AcceptQueue::default();
+        let tickets: Vec<_> = (0..SLOTS).filter_map(|_| queue.enter(&connection().0).unwrap()).collect();
+        drop(queue.slot(tickets[3]));
+        assert!(queue.enter(&connection().0).unwrap().is_some());
+        drop(queue.slot(tickets[3]));
+        assert_eq!(queue.enter(&connection().0).unwrap(), None, "another connection has it now");
+    }
+}

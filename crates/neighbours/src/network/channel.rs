@@ -1,0 +1,173 @@
+//! Bytes of a session over a socket, with TLS between them or without. Nothing here blocks but
+//! [`Channel::wait`].
+
+use std::{
+    io::{self, Read as _, Write as _},
+    os::fd::{AsFd as _, BorrowedFd},
+    time::{Duration, Instant},
+};
+
+use rustix::{
+    event::{PollFd, PollFlags, Timespec, poll},
+    io::Errno,
+};
+use rustls::{Connection, pki_types::CertificateDer};
+
+use super::{session::Session, socket::Socket};
+
+/// Bytes that are read at once.
+const CHUNK: usize = 8192;
+
+/// A socket, and TLS if there is to be some.
+pub(super) struct Channel {
+    socket: Socket,
+    tls: Option<Connection>,
+    /// What the system has not taken yet.
+    pending: Vec<u8>,
+}
+
+impl Channel {
+    pub fn new(socket: Socket, tls: Option<Connection>) -> io::Result<Self> {
+        socket.prepare()?;
+        Ok(Self { socket, tls, pending: Vec::new() })
+    }
+
+    /// The certificate of the other side, once the handshake is over.
+    pub fn certificate(&self) -> Option<&CertificateDer<'static>> {
+        self.tls.as_ref().and_then(|tls| tls.peer_certificates()).and_then(<[_]>::first)
+    }
+
+    /// Refuse a socket in the file system whose other end belongs to another user.
+    pub fn check_user(&self) -> io::Result<()> {
+        self.socket.check_user()
+    }
+
+    /// All that was to be sent is with the system.
+    pub const fn is_flushed(&self) -> bool {
+        self.pending.is_empty()
+    }
+
+    /// Send what a session wants to be sent, as far as the system takes it; what it does not take waits for
+    /// the next call.
+    pub fn send(&mut self, session: &mut Session) -> io::Result<()> {
+        let plain = session.output();
+        match &mut self.tls {
+            None => self.pending.append(plain),
+            Some(tls) => {
+                tls.writer().write_all(plain)?;
+                plain.clear();
+            }
+        }
+        self.flush()
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        while let Some(tls) = self.tls.as_mut().filter(|tls| tls.wants_write()) {
+            tls.write_tls(&mut self.pending)?;
+        }
+        while !self.pending.is_empty() {
+            match (&self.socket).write(&self.pending) {
+                Ok(0) => return Err(io::ErrorKind::WriteZero.into()),
+                Ok(count) => drop(self.pending.drain(..count)),
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return Ok(()),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Give a session what has come; false if the other side has closed the connection.
+    ///
+    /// # Errors
+    /// What the system says; [`io::ErrorKind::InvalidData`] for TLS, after the other side was sent the alert;
+    /// [`io::ErrorKind::UnexpectedEof`] if TLS was cut off.
+    pub fn receive(&mut self, session: &mut Session, now: Instant) -> io::Result<bool> {
+        let mut buffer = [0; CHUNK];
+        let Some(tls) = &mut self.tls else {
+            let read = (&self.socket).read(&mut buffer);
+            return or_later(read.map(|count| {
+                session.receive(&buffer[..count], now);
+                count > 0
+            }));
+        };
+        let cut = || io::Error::new(io::ErrorKind::UnexpectedEof, "the connection was cut");
+        let more = or_later(tls.read_tls(&mut &self.socket).map(|count| count > 0))?;
+        if let Err(error) = tls.process_new_packets() {
+            // The alert may find the other side gone.
+            let _ = self.flush();
+            return Err(io::Error::new(io::ErrorKind::InvalidData, error));
+        }
+        loop {
+            match tls.reader().read(&mut buffer) {
+                Ok(0) => return Ok(false),
+                Ok(count) => session.receive(&buffer[..count], now),
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => break,
+                Err(_) => return Err(cut()),
+            }
+        }
+        if more { Ok(true) } else { Err(cut()) }
+    }
+
+    /// Wait until something can be read (true), or what is pending can be written, or `wake` is readable, or
+    /// until a time.
+    pub fn wait(&self, wake: Option<BorrowedFd<'_>>, until: Option<Instant>) -> io::Result<bool> {
+        let write = if self.is_flushed() { PollFlags::empty() } else { PollFlags::OUT };
+        let socket = self.socket.as_fd();
+        let mut ready = [
+            PollFd::from_borrowed_fd(socket, PollFlags::IN | write),
+            PollFd::from_borrowed_fd(wake.unwrap_or(socket), PollFlags::IN),
+        ];
+        let count = if wake.is_some() { 2 } else { 1 };
+        // Rounded up: a wait that ends in front of the time would be followed by many short ones.
+        let left =
+            until.map(|until| until.saturating_duration_since(Instant::now()) + Duration::from_millis(1));
+        let left = left.and_then(|left| Timespec::try_from(left).ok());
+        match poll(&mut ready[..count], left.as_ref()) {
+            Ok(_) => Ok(ready[0].revents().intersects(PollFlags::IN | PollFlags::HUP | PollFlags::ERR)),
+            Err(Errno::INTR) => Ok(false),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    /// Send what is left, with a TLS close_notify behind it, and close this direction; it may take until a
+    /// time.
+    pub fn finish(&mut self, session: &mut Session, until: Instant) {
+        let mut sent = self.send(session);
+        if let Some(tls) = &mut self.tls {
+            tls.send_close_notify();
+            sent = sent.and_then(|()| self.flush());
+        }
+        while sent.is_ok() && !self.is_flushed() && Instant::now() < until {
+            sent = self.wait(None, Some(until)).and_then(|_| self.flush());
+        }
+        self.socket.finish();
+    }
+
+    /// Read on after [`Channel::finish`] until the other side has closed, or until a time: a socket that is
+    /// closed with bytes unread takes back what it has sent.
+    pub fn drain(&self, until: Instant) {
+        let mut buffer = [0; CHUNK];
+        while Instant::now() < until {
+            match self.wait(None, Some(until)).and_then(|ready| {
+                if ready {
+                    or_later((&self.socket).read(&mut buffer).map(|count| count > 0))
+                } else {
+                    Ok(true)
+                }
+            }) {
+                Ok(true) => {}
+                Ok(false) | Err(_) => return,
+            }
+        }
+    }
+}
+
+/// Nothing has come yet: that is no error.
+fn or_later(read: io::Result<bool>) -> io::Result<bool> {
+    use io::ErrorKind::{Interrupted, WouldBlock};
+    match read {
+        Err(error) if matches!(error.kind(), WouldBlock | Interrupted) => Ok(true),
+        other => other,
+    }
+}

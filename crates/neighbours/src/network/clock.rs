@@ -1,0 +1,23 @@
+//! The clock of a run, as its neighbours see it.
+
+use std::time::Duration;
+
+/// Which clock the controller has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u16)]
+pub enum ClockKind {
+    /// A tick every 40 ms: it waits for no neighbour.
+    Real = 0,
+    /// Ticks at once: each waits for all neighbours that are connected.
+    Fast = 1,
+}
+
+/// How long the controller waits for the answer to a pulse: 10 s on the 40 ms grid, where the robot goes on
+/// meanwhile; 60 s in fast clock, since the machine may be busy.
+#[must_use]
+pub const fn answer_limit(clock: ClockKind) -> Duration {
+    match clock {
+        ClockKind::Real => Duration::from_secs(10),
+        ClockKind::Fast => Duration::from_secs(60),
+    }
+}

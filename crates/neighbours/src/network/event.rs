@@ -1,0 +1,57 @@
+//! What happens on the network: neighbours connect, disconnect, or are refused.
+
+use std::{fmt, time::Duration};
+
+use super::Role;
+
+/// Why a session has ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Disconnect {
+    /// The neighbour has closed the connection.
+    Closed,
+    /// The connection broke, and how.
+    Lost(String),
+    /// The controller has closed the connection: no pulse was answered for so long.
+    Silent(Duration),
+    /// The controller has closed the connection: what the neighbour sent breaks the protocol, and how.
+    Violation(String),
+}
+
+impl Disconnect {
+    /// The controller has ended the session, not the neighbour or the line.
+    #[must_use]
+    pub const fn is_by_controller(&self) -> bool {
+        matches!(self, Self::Silent(_) | Self::Violation(_))
+    }
+}
+
+impl fmt::Display for Disconnect {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Closed => f.write_str("the connection was closed"),
+            Self::Lost(why) | Self::Violation(why) => f.write_str(why),
+            Self::Silent(limit) => write!(f, "no answer for {} s", limit.as_secs()),
+        }
+    }
+}
+
+/// What happened on the network.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NetEvent {
+    /// A neighbour has connected.
+    Connected(Role),
+    /// A neighbour has disconnected, and why.
+    Disconnected(Role, Disconnect),
+    /// A connection was refused, and why.
+    Refused(String),
+}
+
+impl fmt::Display for NetEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Connected(role) => write!(f, "{role} has connected"),
+            Self::Disconnected(role, why) => write!(f, "{role} has disconnected: {why}"),
+            Self::Refused(why) => write!(f, "a connection was refused: {why}"),
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! The pedestal's own system (II.2, IV.5): its three processes, their common memory, and its ends of the
+//! mailboxes.
+//!
+//! ```text
+//!   command, sensor words --> | pedestal |
+//!                             |  /    \  | --> statuses of pedestal, gripper and table, orders to the devices
+//!                             | hand table
+//! ```
+//!
+//! A step is a tick of the controller: the pedestal runs on the pulses that it gets, with a cycle count of
+//! its own.
+//!
+//! Whenever it joins a controller, the command that stands in the mailbox then is adopted and not executed
+//! (IX.1: numbers are synchronized): it reports *restarted* for it, and the next number is executed. What
+//! was given up while the line was cut is thus not made up for afterwards. One that was switched on just now
+//! takes the number for more than that:
+//!
+//! | command number | what it means                             | hand and table                                            |
+//! |----------------|-------------------------------------------|-----------------------------------------------------------|
+//! | 0              | the system is booted                      | calibrate at once (IV.5.1 steps 7 and 10)                 |
+//! | another        | this one replaces one that was killed     | stay as they are, since a part may be held, and calibrate |
+//! |                |                                           | before the first command that moves them                  |
+
+use interfaces::{
+    CommonMemory, ExternalInputs,
+    grip::GripCommand,
+    pedestal::{PedestalCommand, TableCommand},
+    process::{Inputs, Process},
+};
+use levels::pedestal::{Hand, Pedestal, Table};
+use rcs_core::tick::Tick;
+
+use super::{
+    cell::{OrdersLayout, SensorsLayout},
+    command::{self, CommandLayout},
+    gripper::GripperLayout,
+    status::{Status, Verdict},
+    table::TableLayout,
+};
+use crate::{
+    layout::LayoutError,
+    mailbox::{Mailbox, PEDESTAL_GRIPPER_STATUS, PEDESTAL_ORDERS, PEDESTAL_STATUS, PEDESTAL_TABLE_STATUS},
+};
+
+/// Number of the command that hand and table of a pedestal find which replaces another one: they did not
+/// execute it.
+const OF_THE_LAST_ONE: u32 = 1;
+
+/// The pedestal's system.
+pub struct System {
+    pedestal: Pedestal,
+    hand: Hand,
+    table: Table,
+    memory: Box<CommonMemory>,
+    external: Box<ExternalInputs>,
+    tick: Tick,
+    /// Mailgram number of the command mailbox that was read last.
+    read: u16,
+    refused: Option<(Verdict, LayoutError)>,
+    /// The number in the command mailbox is to be adopted.
+    joining: bool,
+    outgoing: [Mailbox; 4],
+}
+
+impl Default for System {
+    fn default() -> Self {
+        let places = [PEDESTAL_STATUS, PEDESTAL_GRIPPER_STATUS, PEDESTAL_TABLE_STATUS, PEDESTAL_ORDERS];
+        Self {
+            pedestal: Pedestal::default(),
+            hand: Hand::default(),
+            table: Table::default(),
+            memory: Box::default(),
+            external: Box::default(),
+            tick: Tick::BEFORE_START,
+            read: 0,
+            refused: None,
+            joining: true,
+            outgoing: places.map(Mailbox::initialized),
+        }
+    }
+}
+
+impl System {
+    /// A connection to a controller begins: what stands in its command mailbox is not to be executed.
+    pub const fn join(&mut self) {
+        (self.read, self.joining) = (0, true);
+    }
+
+    /// One tick on what stands in the mailboxes. Without a command mailbox and sensor words that can be read
+    /// nothing is stepped, and the status says why.
+    pub fn step(&mut self, command_box: &Mailbox, sensors_box: &Mailbox) {
+        if command_box.mailgram() == 0 || sensors_box.mailgram() == 0 {
+            return;
+        }
+        self.read_command(command_box);
+        if self.read_sensors(sensors_box) && !self.joining {
+            self.run();
+        }
+        self.write();
+    }
+
+    /// What it writes: the mailboxes of its statuses, and that of the orders to its devices.
+    #[must_use]
+    pub const fn outgoing(&self) -> &[Mailbox; 4] {
+        &self.outgoing
+    }
+
+    /// What its processes have written.
+    #[must_use]
+    pub const fn memory(&self) -> &CommonMemory {
+        &self.memory
+    }
+
+    /// The command that its pedestal process has.
+    #[must_use]
+    pub const fn command(&self) -> &PedestalCommand {
+        &self.memory.subtask.pedestal
+    }
+
+    /// Why what was read last was refused, if so.
+    #[must_use]
+    pub fn refusal(&self) -> Option<&LayoutError> {
+        self.refused.as_ref().map(|(_, why)| why)
+    }
+
+    fn read_command(&mut self, mailbox: &Mailbox) {
+        if mailbox.mailgram() == self.read {
+            return;
+        }
+        self.read = mailbox.mailgram();
+        self.refused = None;
+        let (number, command) = match CommandLayout::decode(mailbox.data()) {
+            Ok(command) => (Some(command.number), command),
+            Err(error) => {
+                self.refused = Some((Verdict::NoCommand, error));
+                // The pedestal process refuses a command without a word for it, and echoes its number.
+                let number = command::number(mailbox.data());
+                (number, PedestalCommand { number: number.unwrap_or_default(), ..Default::default() })
+            }
+        };
+        if let Some(number) = number {
+            self.memory.subtask.pedestal = command;
+            if self.joining {
+                self.adopt(number);
+            }
+        }
+    }
+
+    /// Take the number that stands in the mailbox for one that is over.
+    fn adopt(&mut self, number: u32) {
+        self.joining = false;
+        let mut state = *Process::<()>::state(&self.pedestal);
+        state.execution.wake();
+        Process::<()>::restore(&mut self.pedestal, state);
+        if number != 0 && self.tick == Tick::BEFORE_START {
+            self.memory.pedestal.hand = GripCommand { number: OF_THE_LAST_ONE, ..GripCommand::default() };
+            self.memory.pedestal.table = TableCommand { number: OF_THE_LAST_ONE, ..TableCommand::default() };
+        }
+    }
+
+    /// True if they can be read.
+    fn read_sensors(&mut self, mailbox: &Mailbox) -> bool {
+        let sensors = SensorsLayout::decode(mailbox.data());
+        if matches!(self.refused, Some((Verdict::NoSensors, _))) {
+            self.refused = None;
+        }
+        match sensors {
+            Ok(sensors) => self.external.devices.pedestal = sensors,
+            Err(error) => self.refused = Some((Verdict::NoSensors, error)),
+        }
+        sensors.is_ok()
+    }
+
+    /// A tick of the three processes: each reads what the tick before left.
+    fn run(&mut self) {
+        self.tick = self.tick.next();
+        let before = *self.memory;
+        let inputs = Inputs { tick: self.tick, memory: &before, external: &self.external, data: &() };
+        self.pedestal.step(&inputs, &mut self.memory.pedestal);
+        self.hand.step(&inputs, &mut self.memory.hand);
+        self.table.step(&inputs, &mut self.memory.table);
+    }
+
+    fn write(&mut self) {
+        let CommonMemory { pedestal, hand, table, .. } = &*self.memory;
+        let refused = self.refused.as_ref();
+        let why = refused.map(|(_, why)| why.to_string()).unwrap_or_default();
+        let status = Status {
+            status: pedestal.status,
+            header: pedestal.header,
+            mailgram_echo: self.read,
+            verdict: refused.map_or(Verdict::Taken, |(verdict, _)| *verdict),
+            reason: &why,
+        };
+        let [to_subtask, of_gripper, of_table, orders] = &mut self.outgoing;
+        put(to_subtask, &status.encode());
+        put(of_gripper, &GripperLayout::encode(&(*hand, pedestal.hand)));
+        put(of_table, &TableLayout::encode(&(*table, pedestal.table)));
+        put(orders, &OrdersLayout::encode(&(hand.valves, table.motor)));
+    }
+}
+
+/// Write what is new.
+fn put(mailbox: &mut Mailbox, data: &[u8]) {
+    if mailbox.data() != data {
+        // The layouts are shorter than the mailboxes, as a test holds.
+        let _ = mailbox.write(data);
+    }
+}

@@ -1,0 +1,101 @@
+//! What has to be where before the robot makes a step: a part for the fingers, jaws and drum open for what it
+//! carries away, a place for what it lets go.
+
+use interfaces::emove::EmoveVerb;
+use plant::{
+    description::Kind,
+    room::{Layout, Placed},
+};
+
+use crate::{finding::Finding, state::State, steps::Step};
+
+/// A part that is let go falls no farther than this, in (ASSUMED; depart and release points of the shipped data leave
+/// 0.15 at most).
+const DROP: f64 = 0.5;
+
+impl State<'_> {
+    /// What keeps a step from being made although its way is free.
+    pub(crate) fn hindrance(&self, step: &Step) -> Option<Finding> {
+        match *step {
+            Step::Go { .. } => self.in_jaws(),
+            Step::Relative { name: "REM-OUT", .. } => self.in_drum(),
+            Step::Fingers { verb: EmoveVerb::GraspObj, object: Some(object), .. } => {
+                let there =
+                    self.nearest(&object, &self.robot.tool()).is_some() || self.lacking.contains(&object);
+                (!there).then(|| {
+                    finding(
+                        format!("GRASP-OBJ {object}: no {object} is there"),
+                        "a line `** tray LOCATION SECTOR OBJECT` brings a part, `** machine BLANK PART LOCATION` makes it \
+                         another",
+                    )
+                })
+            }
+            Step::Fingers { verb: EmoveVerb::Release, .. } => self.in_the_air(),
+            Step::GraspTool => self.tool_in_drum().is_none().then(|| {
+                finding(
+                    "the fingers close on a tool in the drum: no tool is there".to_owned(),
+                    "a line `** drum tool TOOL` puts one there",
+                )
+            }),
+            _ => None,
+        }
+    }
+
+    /// What the robot carries, in the world.
+    fn carried(&self) -> Option<Placed> {
+        let held = self.layout.held.as_ref()?;
+        Some(Placed { frame: self.robot.tool().compose(&held.frame), ..held.clone() })
+    }
+
+    /// It carries away what the closed jaws of the vise hold.
+    fn in_jaws(&self) -> Option<Finding> {
+        let part = self.carried()?;
+        let (_, closed) = self.room.vise_seat(self.layout.program, &part)?;
+        let name = part.kind.name.clone();
+        let layout = Layout { parts: vec![part], ..self.layout.clone() };
+        (self.layout.jaws <= closed && self.room.in_vise(&layout).is_some()).then(|| {
+            finding(
+                format!("the closed jaws of the vise hold {name}, which the robot carries away"),
+                "a line `** vise open LOCATION` before it",
+            )
+        })
+    }
+
+    /// It pulls a tool that the drum grips.
+    fn in_drum(&self) -> Option<Finding> {
+        self.drum_grips.then(|| {
+            finding(
+                "the drum grips the tool that the robot takes out".to_owned(),
+                "a line `** drum release` before it",
+            )
+        })
+    }
+
+    /// It lets go of a part that nothing is under or around.
+    fn in_the_air(&self) -> Option<Finding> {
+        let part = self.carried().filter(|part| self.room.nest_seat(part).is_none())?;
+        let mut movers = self.room.movers(&self.layout, self.robot.joints());
+        movers.retain(|body| body.kind == Kind::HeldPart);
+        let near = self.room.look(&movers, &self.room.devices(&self.layout), DROP);
+        near.is_empty().then(|| {
+            let name = &part.kind.name;
+            finding(
+                format!("RELEASE {name}: nothing is within {DROP} in of {name}, which falls"),
+                "send it to a tray, a vise, a nest or the pedestal",
+            )
+        })
+    }
+}
+
+fn finding(message: String, help: &str) -> Finding {
+    let key = format!("path.place {message}");
+    Finding {
+        code: "path.place",
+        error: true,
+        line: 0,
+        message,
+        help: Some(help.to_owned()),
+        key,
+        depth: 0.0,
+    }
+}

@@ -1,0 +1,31 @@
+//! Where bodies have come by.
+
+use rapier3d_f64::prelude::{Aabb, BoundingVolume};
+
+use crate::{clearance::Body, convert::metres};
+
+/// The surroundings of bodies over a motion, one box for each body and leg.
+#[derive(Clone, Debug, Default)]
+pub struct Swept(Vec<Aabb>);
+
+impl Swept {
+    /// The bodies begin a leg.
+    pub fn begin(&mut self, bodies: &[Body]) {
+        self.0.extend(bodies.iter().map(|body| body.aabb));
+    }
+
+    /// The same bodies have come on.
+    pub fn add(&mut self, bodies: &[Body]) {
+        let first = self.0.len().saturating_sub(bodies.len());
+        for (swept, body) in self.0.iter_mut().skip(first).zip(bodies) {
+            swept.merge(&body.aabb);
+        }
+    }
+
+    /// True if a body may have been nearer to them than `margin` inches.
+    #[must_use]
+    pub fn passes(&self, body: &Body, margin: f64) -> bool {
+        let around = body.aabb.loosened(metres(margin));
+        self.0.iter().any(|swept| swept.intersects(&around))
+    }
+}

@@ -1,0 +1,85 @@
+//! Task data and cell description side by side: what stands in both, with the places of both.
+
+use plant::CellDescription;
+use rcs_core::name::Name16;
+use taskdata::{
+    files::{Location, TaskData},
+    load::{Diagnostics, Source, Store, places::Places, report::Problems, source::At},
+};
+
+use super::report::at;
+
+/// Both, and what was found wrong with either.
+pub struct Both<'a> {
+    pub cell: &'a CellDescription,
+    pub store: &'a Store,
+    pub data: TaskData<'a>,
+    text: &'a str,
+    in_data: Problems,
+    in_cell: Problems,
+}
+
+impl<'a> Both<'a> {
+    pub fn new(source: &'a Source, cell: &'a CellDescription, store: &'a Store) -> Self {
+        let (in_data, in_cell) = Default::default();
+        Self { cell, store, data: store.view(), text: &source.text, in_data, in_cell }
+    }
+
+    /// The findings.
+    pub fn report(self, source: &Source) -> Diagnostics {
+        let in_data = Diagnostics::new(self.in_data, Places::in_blocks(self.store.sources()), 0, Vec::new());
+        in_data.with(Diagnostics::new(
+            self.in_cell,
+            Places::in_lines(std::slice::from_ref(source)),
+            0,
+            Vec::new(),
+        ))
+    }
+
+    /// True if no body stands beside its place.
+    pub fn places_agree(&self) -> bool {
+        !self.in_cell.has_errors()
+    }
+
+    /// An error of a form, with the entry of the cell description that it does not fit.
+    pub fn form(&mut self, origin: &[At], index: Option<usize>, message: String, entry: &str) {
+        let place = index.and_then(|index| origin.get(index)).copied().unwrap_or_default();
+        let other = at(&CellDescription::place(self.text, entry));
+        let line = self.text.bytes().take(usize::try_from(other.start).unwrap_or(0)).filter(|b| *b == b'\n');
+        let help = format!("{entry} stands in cell.toml, line {}: one of the two is wrong", line.count() + 1);
+        self.in_data.error_help("cell.form", place, message, help);
+    }
+
+    /// A warning of a form.
+    pub fn warn(&mut self, code: &'static str, origin: Option<&At>, message: String, help: &str) {
+        self.in_data.warning(code, origin.copied().unwrap_or_default(), message, Some(help.to_owned()));
+    }
+
+    /// An error of an entry of the cell description, with the form that it does not fit.
+    pub fn entry(&mut self, entry: &str, message: String, form: At) {
+        let place = at(&CellDescription::place(self.text, entry));
+        let form = Places::in_blocks(self.store.sources()).words(form);
+        let help = format!("the form stands in {form}: one of the two is wrong");
+        self.in_cell.error_help("cell.place", place, format!("{entry}: {message}"), help);
+    }
+
+    /// A location of the task data by its name.
+    pub fn location(&self, name: &str, sector: u16, object: Option<&str>) -> Option<Location> {
+        let object = object.and_then(|object| Name16::new(object).ok());
+        self.data
+            .resolve_location(
+                &Name16::new(name).ok()?,
+                (sector != 0).then(|| i32::from(sector)),
+                object.as_ref(),
+            )
+            .ok()
+    }
+
+    /// Where the frame of a location was entered: its pose, or the array's name.
+    pub fn origin(&self, location: &Location) -> At {
+        let origins = self.store.origins();
+        let pose = self.data.locpt(location.place.locpt).and_then(|point| point.pose.index());
+        let array = location.place.array.index().and_then(|index| origins.arrays.get(index));
+        pose.and_then(|index| origins.poses.get(index)).or(array).copied().unwrap_or_default()
+    }
+}

@@ -1,0 +1,257 @@
+//! Board 0's side of `--boards`: the ladder of this process, or boards in processes of their own.
+
+use std::{
+    process::{Child, Command, Stdio},
+    sync::atomic::Ordering,
+    time::Duration,
+};
+
+use executive::{
+    boards::{Board, Coordinator, Fingerprint, Lost, SplitError, coordinator::BoardEvent, pulse::RunCard},
+    memory::{RunName, SET_UP_LIMIT, within_limit},
+    runner::Levels,
+};
+use interfaces::{CommonMemory, ExternalInputs};
+use levels::ladder::{Ladder, LadderState, ProcessId};
+use rcs_core::tick::Tick;
+use taskdata::{
+    files::TaskData,
+    load::{Job, Store},
+};
+
+use crate::result::BoardResult;
+use crate::{
+    config::{Boards, ClockKind, RunConfig},
+    error::StartError,
+    observer::Observer,
+};
+
+/// How long boards that are started from here may take: they load the task data first.
+const STARTING: Duration = Duration::from_secs(60);
+
+/// Who steps the control processes.
+pub enum Controller {
+    /// This process, all of them.
+    One(Box<Ladder>),
+    /// Boards.
+    Split(Box<Coordinator>),
+}
+
+impl Levels<TaskData<'_>> for Controller {
+    type Error = Lost;
+
+    fn step(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &TaskData<'_>,
+        after: &mut CommonMemory,
+    ) -> Result<(), Lost> {
+        match self {
+            Self::One(ladder) => {
+                ladder.step(tick, before, external, data, after);
+                Ok(())
+            }
+            Self::Split(coordinator) => coordinator.step(tick, before, external, data, after),
+        }
+    }
+
+    fn step_observed(
+        &mut self,
+        tick: Tick,
+        before: &CommonMemory,
+        external: &ExternalInputs,
+        data: &TaskData<'_>,
+        after: &mut CommonMemory,
+        observe: &mut dyn FnMut(Option<ProcessId>),
+    ) -> Result<(), Lost> {
+        match self {
+            Self::One(ladder) => {
+                let all = ProcessId::ALL;
+                ladder.step_observed(all, tick, before, external, data, after, observe);
+                Ok(())
+            }
+            Self::Split(coordinator) => coordinator.step(tick, before, external, data, after),
+        }
+    }
+
+    /// Board 0 has no processes to warm up; the other boards wake with the pulse and not before it.
+    fn shadow(&self) -> Option<Box<Self>> {
+        match self {
+            Self::One(ladder) => Some(Box::new(Self::One(ladder.clone()))),
+            Self::Split(_) => None,
+        }
+    }
+
+    fn copy_to(&self, shadow: &mut Self) {
+        if let (Self::One(ladder), Self::One(shadow)) = (self, shadow) {
+            shadow.as_mut().clone_from(ladder);
+        }
+    }
+
+    fn allocations(&self) -> u64 {
+        match self {
+            Self::One(_) => 0,
+            Self::Split(coordinator) => Levels::allocations(&**coordinator),
+        }
+    }
+}
+
+impl Controller {
+    /// As the configuration has it; boards are there when this returns.
+    ///
+    /// # Errors
+    /// [`StartError::Interrupted`] if the run is interrupted before the boards are there, [`StartError::Boards`] if they do not
+    /// come together.
+    pub fn start(
+        config: &RunConfig,
+        name: &RunName,
+        store: &Store,
+        job: &Job,
+        observer: &mut dyn Observer,
+    ) -> Result<Self, StartError> {
+        if config.boards == Boards::One {
+            return Ok(Self::One(Box::default()));
+        }
+        let card =
+            RunCard { fingerprint: fingerprint(store, job), real_time: config.clock == ClockKind::Real };
+        let mut coordinator =
+            within_limit(SET_UP_LIMIT, config.on_stuck, || Coordinator::create(name, &card))
+                .map_err(SplitError::from)?;
+        if config.boards == Boards::Split {
+            for &board in Board::ALL {
+                let child =
+                    spawn(config, name, board).map_err(|source| SplitError::Start { board, source })?;
+                coordinator.adopt(board, child);
+            }
+            // The signal may have ended a board before it ignored signals.
+            let gather = || coordinator.gather(STARTING, &config.stop, |_, _| ());
+            within_limit(STARTING + SET_UP_LIMIT, config.on_stuck, gather)
+                .map_err(|error| refused(error, config, job))?;
+        } else {
+            observer.message(&format!("{name} waits for its boards; start each with the same data and job:"));
+            for board in Board::ALL {
+                observer.message(&format!("  {}", command_line(config, name, *board)));
+            }
+            let gathered = within_limit(patience(config) + SET_UP_LIMIT, config.on_stuck, || {
+                coordinator.gather(patience(config), &config.stop, |event, missing| {
+                    announce(event, missing, observer);
+                })
+            });
+            gathered.map_err(|error| refused(error, config, job))?;
+        }
+        Ok(Self::Split(Box::new(coordinator)))
+    }
+
+    /// Boards that are started by hand can be replaced by hand: wait for one that takes the place of a lost
+    /// one. False if the run has to end.
+    pub fn replace(&mut self, lost: &Lost, config: &RunConfig, observer: &mut dyn Observer) -> bool {
+        let Self::Split(coordinator) = self else { return false };
+        if config.boards != Boards::Manual {
+            return false;
+        }
+        observer.message(&format!("{lost}; the robot waits for another to take its place:"));
+        observer.message(&format!("  {}", command_line(config, coordinator.name(), lost.board)));
+        let came = coordinator.await_successor(lost, patience(config), &config.stop, |event, missing| {
+            announce(event, missing, observer);
+        });
+        if let Err(error) = &came {
+            observer.message(&error.to_string());
+        }
+        came.is_ok()
+    }
+
+    /// What all processes remember.
+    #[must_use]
+    pub fn state(&self) -> LadderState {
+        match self {
+            Self::One(ladder) => ladder.state(),
+            Self::Split(coordinator) => *coordinator.states(),
+        }
+    }
+
+    /// What each board did; `None` on one board.
+    #[must_use]
+    pub fn results(&self) -> Option<Vec<BoardResult>> {
+        match self {
+            Self::One(_) => None,
+            Self::Split(coordinator) => Some(coordinator.figures().map(BoardResult::from).collect()),
+        }
+    }
+
+    /// Boards that did not get everything that real time needs.
+    #[must_use]
+    pub fn unpunctual(&self) -> Vec<Board> {
+        match self {
+            Self::One(_) => Vec::new(),
+            Self::Split(coordinator) => coordinator
+                .figures()
+                .filter(|figures| !figures.punctual)
+                .map(|figures| figures.board)
+                .collect(),
+        }
+    }
+}
+
+/// Why the run does not begin.
+fn refused(error: SplitError, config: &RunConfig, job: &Job) -> StartError {
+    let interrupted = config.stop.load(Ordering::Relaxed);
+    if interrupted { StartError::Interrupted(job.name.clone()) } else { error.into() }
+}
+
+/// How long to wait for boards that are started by hand.
+fn patience(config: &RunConfig) -> Duration {
+    Duration::from_secs(config.wait.into())
+}
+
+/// Say who has come, who has left, and who is missing.
+fn announce(event: BoardEvent, missing: &[Board], observer: &mut dyn Observer) {
+    let missing: Vec<String> = missing.iter().map(|board| board.number().to_string()).collect();
+    let rest = match missing.as_slice() {
+        [] => "all are there".to_owned(),
+        some => format!("missing: {}", some.join(", ")),
+    };
+    match event {
+        BoardEvent::Came { board, pid } => {
+            observer.message(&format!("{board} is there (process {pid}); {rest}"));
+        }
+        BoardEvent::Left { board, pid } => {
+            observer.message(&format!("{board} is gone (process {pid}); {rest}"));
+        }
+    }
+}
+
+/// What a board must have in common with the run.
+#[must_use]
+pub fn fingerprint(store: &Store, job: &Job) -> Fingerprint {
+    let reloads = job.reloads.iter().map(|reload| &reload.source);
+    Fingerprint::of(crate::COMMIT, store.sources(), std::iter::once(job.source()).chain(reloads))
+}
+
+/// A board's process. Its words go to standard error like those of this one; standard output belongs to the result.
+fn spawn(config: &RunConfig, name: &RunName, board: Board) -> std::io::Result<Child> {
+    let mut command = Command::new(&config.program);
+    command.args(["board", &board.number().to_string(), "--run", name.as_str()]);
+    if let Some(cpu) = config.cpu {
+        command.args(["--cpu", &cpu.to_string()]);
+    }
+    command
+        .args(["--parent", &std::process::id().to_string()])
+        .arg("--data")
+        .arg(&config.data)
+        .arg(config.played().unwrap_or("--commanded"))
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .spawn()
+}
+
+/// The same for a person to type.
+fn command_line(config: &RunConfig, name: &RunName, board: Board) -> String {
+    let data = config.data.display();
+    format!(
+        "rcs-run board {} --run {name} --data {data} {}",
+        board.number(),
+        config.played().unwrap_or("--commanded")
+    )
+}

@@ -1,0 +1,291 @@
+//! What to run.
+
+use std::{fmt, path::PathBuf, str::FromStr, sync::Arc, sync::atomic::AtomicBool};
+
+use depc::host::RESTART_TICKS;
+use egm_robot::{EgmOptions, Peer};
+use executive::{
+    memory::{OnStuck, RunName},
+    overrun::Policy,
+    serial::SerialSettings,
+};
+use neighbours::network::{Address, Role};
+
+/// What to run. [`RunConfig::new`] gives what `rcs-run` takes without options; every field may be changed.
+#[derive(Clone, Debug)]
+pub struct RunConfig {
+    /// Directory of task data, jobs and cell description.
+    pub data: PathBuf,
+    /// Name of a job in the data directory, or a path. Not played if another process commands.
+    pub job: String,
+    /// Ticks at once, or one every 40 ms.
+    pub clock: ClockKind,
+    /// What to do about slots of the 40 ms grid that are skipped.
+    pub overrun: Policy,
+    /// The core to run on with the real clock; the highest that is allowed without it.
+    pub cpu: Option<usize>,
+    /// The robot to command.
+    pub robot: RobotConfig,
+    /// File of faults of the cell and of the line to the simulated robot.
+    pub faults: Option<PathBuf>,
+    /// How the control processes are spread over boards.
+    pub boards: Boards,
+    /// The program that runs a board: it takes the arguments of `rcs-run board`.
+    pub program: PathBuf,
+    /// Name of the run in shared memory; job and process number without it.
+    pub name: Option<RunName>,
+    /// How many seconds to wait for boards that are started by hand, for neighbours in other processes, and for
+    /// a robot controller at a port.
+    pub wait: u32,
+    /// Seed of the cell's noise and of where parts are delivered.
+    pub seed: u64,
+    /// Where to write the log.
+    pub log: LogTarget,
+    /// SQLite file of the Data System's items; they are forgotten without it.
+    pub data_base: Option<PathBuf>,
+    /// Where neighbours in other processes connect.
+    pub network: Option<Address>,
+    /// Neighbours that are other processes.
+    pub outside: Vec<Role>,
+    /// Begin under stand-alone command, with the job, although the workstation controller is another process
+    /// (IV.4.1).
+    pub stand_alone: bool,
+    /// File in which updates wait for a Data System in another process.
+    pub outbox: PathBuf,
+    /// Directory with keys and certificates for neighbours on other machines.
+    pub keys: Option<PathBuf>,
+    /// File with Zenoh's own configuration.
+    pub zenoh_config: Option<PathBuf>,
+    /// Stop after so many ticks if the job is not over before.
+    pub ticks: Option<u64>,
+    /// After a command that ends with an error send PAUSE and the same command again, at most so many times a
+    /// line of the job.
+    pub retry: u32,
+    /// Show the buffers to other programs.
+    pub shared_memory: bool,
+    /// Ends the process if shared memory cannot be set up in time (`executive::memory::limit`), before anything
+    /// moves; without it there is no limit.
+    pub on_stuck: Option<OnStuck>,
+    /// Ends the run as soon as it is set; the robot is brought to rest first.
+    pub stop: Arc<AtomicBool>,
+}
+
+impl RunConfig {
+    /// A job of a data directory in the simulated cell, as fast as that can be simulated.
+    #[must_use]
+    pub fn new(data: impl Into<PathBuf>, job: impl Into<String>) -> Self {
+        Self {
+            data: data.into(),
+            job: job.into(),
+            clock: ClockKind::Fast,
+            overrun: Policy::Count,
+            cpu: None,
+            robot: RobotConfig { kind: RobotKind::Sim, silence: None },
+            faults: None,
+            boards: Boards::One,
+            program: "rcs-run".into(),
+            name: None,
+            wait: 300,
+            seed: 1,
+            log: LogTarget::Default,
+            data_base: None,
+            network: None,
+            outside: Vec::new(),
+            stand_alone: false,
+            outbox: "runs/data-system.outbox".into(),
+            keys: None,
+            zenoh_config: None,
+            ticks: None,
+            retry: 0,
+            shared_memory: true,
+            on_stuck: None,
+            stop: Arc::default(),
+        }
+    }
+
+    /// The job that is played; `None` if another process commands.
+    #[must_use]
+    pub fn played(&self) -> Option<&str> {
+        (self.stand_alone || !self.outside.contains(&Role::Workstation)).then_some(self.job.as_str())
+    }
+}
+
+/// When ticks are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum ClockKind {
+    /// As fast as the cell can be simulated
+    Fast,
+    /// On a 40 ms grid
+    Real,
+}
+
+impl ClockKind {
+    /// The word on the command line.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Fast => "fast",
+            Self::Real => "real",
+        }
+    }
+}
+
+/// Which robot is commanded.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RobotKind {
+    /// The one of the simulated cell.
+    Sim,
+    /// One at a serial port.
+    Serial(SerialSettings),
+    /// One with EGM.
+    Egm(Box<EgmOptions>),
+}
+
+impl RobotKind {
+    /// The robot does not wait for simulated time.
+    #[must_use]
+    pub fn lives_in_real_time(&self) -> bool {
+        match self {
+            Self::Sim => false,
+            Self::Serial(_) => true,
+            Self::Egm(options) => options.peer != Peer::Simulated,
+        }
+    }
+}
+
+/// The robot, and how long to wait for its answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobotConfig {
+    /// Which.
+    pub kind: RobotKind,
+    /// Seconds that a controller may be silent while its DTR is on, if they were named.
+    pub silence: Option<u16>,
+}
+
+/// The longest silence that can be waited for, seconds.
+const LONGEST_SILENCE: u16 = 2600;
+
+impl RobotConfig {
+    /// Ticks that a controller may be silent, if they were named.
+    #[must_use]
+    pub fn patience(&self) -> Option<u16> {
+        self.silence.map(|seconds| seconds * RESTART_TICKS)
+    }
+}
+
+impl fmt::Display for RobotConfig {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.kind {
+            RobotKind::Sim => f.write_str("sim"),
+            RobotKind::Serial(settings) => write!(f, "serial:{}", settings.path.display()),
+            RobotKind::Egm(options) => options.fmt(f),
+        }
+    }
+}
+
+impl FromStr for RobotConfig {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let is_silence = |part: &&str| part.starts_with("silence=");
+        let silence = text.split(',').find(is_silence).map(silence).transpose()?;
+        let rest: Vec<&str> = text.split(',').filter(|part| !is_silence(part)).collect();
+        let rest = rest.join(",");
+        let kind = match rest.split_once(':') {
+            None if rest == "sim" => RobotKind::Sim,
+            Some(("serial", port)) => RobotKind::Serial(port.parse()?),
+            Some(("egm", robot)) => RobotKind::Egm(Box::new(robot.parse()?)),
+            _ => {
+                let expected =
+                    "sim[,silence=SECONDS], serial:PATH[,OPTION...] or egm:[ADDRESS:]PORT[,OPTION...]";
+                return Err(format!("{expected} was expected"));
+            }
+        };
+        Ok(Self { kind, silence })
+    }
+}
+
+/// `silence=SECONDS`.
+fn silence(part: &str) -> Result<u16, String> {
+    let seconds = part.trim_start_matches("silence=");
+    seconds.parse().ok().filter(|seconds| (1..=LONGEST_SILENCE).contains(seconds)).ok_or_else(|| {
+        format!("silence is a number of seconds from 1 to {LONGEST_SILENCE}, such as 60; found {seconds}")
+    })
+}
+
+/// How processes are spread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum Boards {
+    /// All in one thread
+    One,
+    /// One operating system process a board: 0 (this one), 2, 4, 6, 8
+    Split,
+    /// The same, but the boards are started by hand, with rcs-run board
+    Manual,
+}
+
+impl Boards {
+    /// The word on the command line.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::One => "one",
+            Self::Split => "split",
+            Self::Manual => "manual",
+        }
+    }
+}
+
+/// Where the log goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LogTarget {
+    /// Into `runs/JOB.mcap`, or the next name that is free.
+    Default,
+    /// Nowhere.
+    None,
+    /// Into a file.
+    File(PathBuf),
+}
+
+impl FromStr for LogTarget {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "" => Err("a file name or none was expected".into()),
+            "none" | "/dev/null" => Ok(Self::None),
+            path => Ok(Self::File(path.into())),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_robot_is_simulated_or_at_a_port() {
+        let robot = |text: &str| text.parse::<RobotConfig>();
+        assert_eq!(robot("sim").ok(), Some(RobotConfig { kind: RobotKind::Sim, silence: None }));
+        let kind = RobotKind::Serial(SerialSettings::new("/dev/ttyS0"));
+        let port = RobotConfig { kind, silence: None };
+        assert_eq!((robot("serial:/dev/ttyS0").ok(), port.patience()), (Some(port.clone()), None));
+        let patient = RobotConfig { silence: Some(90), ..port };
+        assert_eq!(robot("serial:/dev/ttyS0,silence=90,stop=1").ok(), Some(patient.clone()));
+        assert_eq!(patient.patience(), Some(90 * 25));
+        assert_eq!(robot("sim,silence=5").ok().and_then(|robot| robot.patience()), Some(125));
+        for wrong in [
+            "serial",
+            "serial:",
+            "serial:/dev/x,stop=3",
+            "/dev/ttyS0",
+            "sim,stop=1",
+            "sim,silence=0",
+            "sim,silence=2601",
+        ] {
+            assert!(robot(wrong).is_err(), "{wrong}");
+        }
+    }
+}

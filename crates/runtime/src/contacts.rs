@@ -1,0 +1,459 @@
+//! Checks what the robot touches: the cell says what touches, common memory which command is executed, and
+//! the list of the cell description what may touch then.
+//!
+//! A contact that is not permitted does not end the run at once: no sensor of the cell would notice it, and
+//! what the controller does next belongs into the log. But a job that has had one is not finished. Only when
+//! the arm has been led deeper than [`DEEPEST`] into something is the run over: a real arm would have stalled
+//! long before, so that nothing which the simulation does from there on means anything.
+//!
+//! What has been permitted goes on being permitted as long as it gets no deeper: the next command begins
+//! where the last one has ended, and has to lead away from it.
+
+use std::{collections::BTreeMap, fmt};
+
+use executive::failure::Failure;
+use interfaces::{CommonMemory, StatusReport, emove::EmoveVerb, subtask::SubtaskVerb};
+use plant::{clearance::Contact, description::Permits};
+use rcs_core::tick::Tick;
+use serde::Serialize;
+
+/// Arm, gripper or fingers that are this deep in something, in, end the run.
+pub const DEEPEST: f64 = 1.0;
+/// Distances greater than this are no near miss, in.
+const MARGIN: f64 = 2.0;
+/// What was permitted to touch and is this far apart has come free, in.
+const FREE: f64 = 0.05;
+/// By so much deeper than before is deeper, in.
+const DEEPER: f64 = 0.001;
+
+/// The commands that E-move and Subtask execute.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Commands {
+    /// Of E-move; empty for none.
+    pub emove: &'static str,
+    /// Of Subtask; empty for none.
+    pub subtask: &'static str,
+}
+
+impl From<&CommonMemory> for Commands {
+    fn from(memory: &CommonMemory) -> Self {
+        let (emove, subtask): (EmoveVerb, SubtaskVerb) =
+            (memory.subtask.emove.command, memory.task.subtask.command);
+        Self { emove: emove.text(), subtask: subtask.text() }
+    }
+}
+
+impl Commands {
+    /// After another tick. What E-move has not taken yet, or has failed at, moves nothing: what it did before
+    /// counts.
+    fn after(self, memory: &CommonMemory) -> Self {
+        let (told, status) = (&memory.subtask.emove, &memory.emove.status);
+        let taken = status.echo == told.number && status.report != StatusReport::Error;
+        if taken { Self::from(memory) } else { self }
+    }
+}
+
+impl fmt::Display for Commands {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.emove, self.subtask) {
+            ("", "") => f.write_str("no command"),
+            (one, "") | ("", one) => f.write_str(one),
+            (emove, subtask) => write!(f, "{emove} of {subtask}"),
+        }
+    }
+}
+
+/// A contact that was not permitted. The names of the fields are those of the JSON object.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Collision {
+    /// What of the robot, or the part that it carried.
+    pub mover: String,
+    /// What it ran into.
+    pub obstacle: String,
+    /// How deep at the most, inches.
+    pub depth_in: f64,
+    /// Where it was deepest, world, inches.
+    pub position_in: [f64; 3],
+    /// The tick in which it began.
+    pub tick: u64,
+    /// How many ticks it went on.
+    pub ticks: u64,
+    /// What was executed when it began.
+    #[serde(rename = "command")]
+    pub commands: Commands,
+    /// It is the robot itself, not a part.
+    #[serde(skip)]
+    is_robot: bool,
+}
+
+impl Collision {
+    /// It is the robot itself that has run into something, not a part that it carries.
+    #[must_use]
+    pub const fn is_of_robot(&self) -> bool {
+        self.is_robot
+    }
+}
+
+impl fmt::Display for Collision {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { mover, obstacle, depth_in, position_in: [x, y, z], commands, .. } = self;
+        write!(
+            f,
+            "{mover} runs into {obstacle}, {depth_in:.3} in deep, at ({x:.2}, {y:.2}, {z:.2}), during {commands}"
+        )
+    }
+}
+
+/// The least distance to what may not be touched.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NearMiss {
+    /// What of the robot, or the part that it carried.
+    pub mover: String,
+    /// What it came near to.
+    pub obstacle: String,
+    /// How near, inches.
+    pub distance_in: f64,
+    /// Where, world, inches.
+    pub position_in: [f64; 3],
+    /// The tick.
+    pub tick: u64,
+    /// What was executed.
+    #[serde(rename = "command")]
+    pub commands: Commands,
+}
+
+impl fmt::Display for NearMiss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { mover, obstacle, distance_in, tick, commands, .. } = self;
+        write!(f, "{mover} passes {obstacle} by {distance_in:.3} in at tick {tick}, during {commands}")
+    }
+}
+
+/// What is known of two things that were permitted to touch.
+#[derive(Clone, Copy, Debug)]
+struct Allowance {
+    /// How deep they have been while it was permitted, in.
+    depth: f64,
+    /// They have come free since.
+    free: bool,
+}
+
+/// Watches a run.
+#[derive(Clone, Debug)]
+pub struct ContactCheck {
+    permits: Permits,
+    allowed: BTreeMap<(String, String), Allowance>,
+    /// Collisions that go on: index in `collisions`.
+    open: BTreeMap<(String, String), usize>,
+    collisions: Vec<Collision>,
+    nearest: Option<NearMiss>,
+    /// What moves the robot, or has moved it last.
+    commands: Commands,
+}
+
+impl ContactCheck {
+    /// A check against this list.
+    #[must_use]
+    pub fn new(permits: Permits) -> Self {
+        Self {
+            permits,
+            allowed: BTreeMap::new(),
+            open: BTreeMap::new(),
+            collisions: Vec::new(),
+            nearest: None,
+            commands: Commands::default(),
+        }
+    }
+
+    /// The commands that count for a tick, by common memory after it.
+    pub fn commands(&mut self, memory: &CommonMemory) -> Commands {
+        self.commands = self.commands.after(memory);
+        self.commands
+    }
+
+    /// How near something must be to be of interest, in. What is nearer than the nearest miss so far is cheap
+    /// to look for; that something has come free must be seen too.
+    #[must_use]
+    pub fn margin(&self) -> f64 {
+        self.least().max(FREE)
+    }
+
+    /// What is nearer than this is the nearest miss, in.
+    fn least(&self) -> f64 {
+        self.nearest.as_ref().map_or(MARGIN, |nearest| nearest.distance_in)
+    }
+
+    /// Look at what touches or is near after a tick. Returns lines for the log: collisions that have begun or ended.
+    pub fn look(&mut self, tick: Tick, contacts: &[Contact], commands: Commands) -> Vec<String> {
+        let mut lines = Vec::new();
+        for contact in contacts {
+            if contact.touches() {
+                lines.extend(self.touch(tick, contact, commands));
+            } else {
+                self.near(tick, contact, commands);
+            }
+        }
+        let is = |one: &Contact, pair: &(String, String)| one.mover == pair.0 && one.obstacle == pair.1;
+        let near = |pair: &(String, String)| contacts.iter().any(|one| is(one, pair));
+        let together =
+            |pair: &(String, String)| contacts.iter().any(|one| is(one, pair) && one.depth > -FREE);
+        self.allowed.retain(|pair, _| near(pair));
+        let over: Vec<_> = self.open.keys().filter(|pair| !together(pair)).cloned().collect();
+        for pair in over {
+            let Some(collision) = self.open.remove(&pair).and_then(|at| self.collisions.get(at)) else {
+                continue;
+            };
+            lines.push(format!(
+                "{} comes free of {} after {} ticks; it was {:.3} in deep",
+                collision.mover, collision.obstacle, collision.ticks, collision.depth_in
+            ));
+        }
+        lines
+    }
+
+    /// Everything that was run into.
+    #[must_use]
+    pub fn collisions(&self) -> &[Collision] {
+        &self.collisions
+    }
+
+    /// The nearest miss.
+    #[must_use]
+    pub const fn nearest(&self) -> Option<&NearMiss> {
+        self.nearest.as_ref()
+    }
+
+    /// A collision that is so deep that nothing which follows means anything.
+    #[must_use]
+    pub fn is_stuck(&self) -> bool {
+        self.open
+            .values()
+            .any(|at| self.collisions.get(*at).is_some_and(|one| one.is_robot && one.depth_in > DEEPEST))
+    }
+
+    /// Why a job that has come to its end has not finished: the first collision, since what follows may be
+    /// its consequence; `None` if nothing was run into.
+    #[must_use]
+    pub fn verdict(&self) -> Option<Failure> {
+        let (first, rest) = self.collisions.split_first()?;
+        let deepest = rest.iter().map(|one| one.depth_in).fold(0.0, f64::max);
+        let more = match rest.len() {
+            0 => String::new(),
+            1 => format!("; and one contact more, {deepest:.3} in deep"),
+            more => format!("; and {more} contacts more, up to {deepest:.3} in deep"),
+        };
+        let Collision { mover, obstacle, depth_in, position_in: [x, y, z], tick, commands, .. } = first;
+        let text = format!(
+            "the robot ran into {obstacle}: {mover} was {depth_in:.3} in deep at ({x:.2}, {y:.2}, {z:.2}), from tick \
+             {tick} on, during {commands}{more}"
+        );
+        let process = "cell".to_owned();
+        Some(Failure { tick: Tick(*tick), process, table: None, row: None, text, stopped: false })
+    }
+
+    /// Two things touch. Returns a line if that is a collision that begins.
+    fn touch(&mut self, tick: Tick, contact: &Contact, commands: Commands) -> Option<String> {
+        let pair = contact.pair();
+        let limit =
+            self.permits.during(contact.mover(), contact.obstacle(), [commands.emove, commands.subtask]);
+        if let Some(index) = self.open.get(&pair) {
+            let collision = &mut self.collisions[*index];
+            collision.ticks += 1;
+            if contact.depth > collision.depth_in {
+                collision.depth_in = contact.depth;
+                collision.position_in = contact.at;
+            }
+            return None;
+        }
+        if contact.depth <= limit {
+            let known = self.allowed.get(&pair).filter(|known| !known.free);
+            let depth = known.map_or(contact.depth, |known| known.depth.max(contact.depth));
+            self.allowed.insert(pair, Allowance { depth, free: false });
+            return None;
+        }
+        let known = self.allowed.get(&pair).filter(|known| !known.free);
+        if known.is_some_and(|known| contact.depth <= known.depth + DEEPER) {
+            return None;
+        }
+        let collision = Collision {
+            mover: contact.mover.clone(),
+            obstacle: contact.obstacle.clone(),
+            depth_in: contact.depth,
+            position_in: contact.at,
+            tick: tick.0,
+            ticks: 1,
+            commands,
+            is_robot: contact.mover_kind.is_robot(),
+        };
+        let line = collision.to_string();
+        self.open.insert(pair, self.collisions.len());
+        self.collisions.push(collision);
+        Some(line)
+    }
+
+    /// Two things are near each other.
+    fn near(&mut self, tick: Tick, contact: &Contact, commands: Commands) {
+        let distance = (-contact.depth).max(0.0);
+        if let Some(known) = self.allowed.get_mut(&contact.pair()) {
+            known.free |= distance > FREE;
+            return;
+        }
+        if distance >= self.least() || self.permits.at_most(contact.mover(), contact.obstacle()) > 0.0 {
+            return;
+        }
+        self.nearest = Some(NearMiss {
+            mover: contact.mover.clone(),
+            obstacle: contact.obstacle.clone(),
+            distance_in: distance,
+            position_in: contact.at,
+            tick: tick.0,
+            commands,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use plant::description::{Kind, Pattern, Permit};
+
+    const MOVE: Commands = Commands { emove: "MOV-TO-LOC", subtask: "GOTO-DEST" };
+    const GRASP: Commands = Commands { emove: "GRASP-OBJ", subtask: "GET-OBJECT" };
+
+    /// Fingers may touch parts, 0.1 in deep, while they grasp.
+    fn new_check() -> ContactCheck {
+        let pattern = |text: &str| vec![Pattern(text.into())];
+        ContactCheck::new(Permits(vec![Permit {
+            mover: pattern("fingers"),
+            obstacle: pattern("parts"),
+            during: vec!["GRASP-OBJ".into()],
+            depth: Some(0.1),
+            why: "a test".into(),
+        }]))
+    }
+
+    fn contact(mover: &str, mover_kind: Kind, depth: f64) -> Contact {
+        Contact {
+            mover: mover.into(),
+            mover_kind,
+            obstacle: "BAR".into(),
+            obstacle_kind: Kind::Part,
+            depth,
+            at: [1.0, 2.0, 3.0],
+            away: [0.0, 0.0, 1.0],
+        }
+    }
+
+    fn finger(depth: f64) -> [Contact; 1] {
+        [contact("left_finger", Kind::Finger, depth)]
+    }
+
+    /// Show the check a finger at these depths, tick by tick; gives the lines of the log.
+    fn play(check: &mut ContactCheck, ticks: &[(f64, Commands)]) -> Vec<String> {
+        let ticks = (1..).zip(ticks);
+        ticks
+            .flat_map(|(tick, (depth, commands))| check.look(Tick(tick), &finger(*depth), *commands))
+            .collect()
+    }
+
+    #[test]
+    fn a_collision_is_told_when_it_begins_and_when_it_ends_with_its_greatest_depth() {
+        let mut check = new_check();
+        let lines = play(&mut check, &[(-0.2, MOVE), (0.3, MOVE), (0.7, MOVE), (0.2, GRASP), (-0.2, MOVE)]);
+        assert_eq!(
+            lines,
+            [
+                "left_finger runs into BAR, 0.300 in deep, at (1.00, 2.00, 3.00), during MOV-TO-LOC of GOTO-DEST",
+                "left_finger comes free of BAR after 3 ticks; it was 0.700 in deep",
+            ]
+        );
+        let [one] = check.collisions() else { panic!("{:?}", check.collisions()) };
+        assert_eq!((one.tick, one.ticks, one.depth_in, one.commands), (2, 3, 0.7, MOVE));
+        let verdict = check.verdict().unwrap();
+        assert_eq!(verdict.tick, Tick(2));
+        assert_eq!(
+            verdict.text,
+            "the robot ran into BAR: left_finger was 0.700 in deep at (1.00, 2.00, 3.00), from tick 2 on, during \
+             MOV-TO-LOC of GOTO-DEST"
+        );
+    }
+
+    #[test]
+    fn a_command_that_is_refused_moves_nothing() {
+        let mut memory = CommonMemory::default();
+        memory.task.subtask.command = SubtaskVerb::Position;
+        (memory.subtask.emove.command, memory.subtask.emove.number) = (EmoveVerb::MovToObj, 7);
+        (memory.emove.status.echo, memory.emove.status.report) = (7, StatusReport::Done);
+        let mut check = new_check();
+        let seat = check.commands(&memory);
+        assert_eq!((seat.emove, seat.subtask), ("MOV-TO-OBJ", ">POSITION"));
+        memory.task.subtask.command = SubtaskVerb::GotoDest;
+        (memory.subtask.emove.command, memory.subtask.emove.number) = (EmoveVerb::MovToLoc, 8);
+        assert_eq!(check.commands(&memory), seat, "E-move has not read it");
+        (memory.emove.status.echo, memory.emove.status.report) = (8, StatusReport::Error);
+        assert_eq!(check.commands(&memory), seat, "it is refused");
+        (memory.subtask.emove.number, memory.emove.status.echo) = (9, 9);
+        memory.emove.status.report = StatusReport::Executing;
+        assert_eq!(check.commands(&memory), MOVE);
+    }
+
+    #[test]
+    fn a_contact_that_trembles_is_one() {
+        let mut check = new_check();
+        play(&mut check, &[(0.01, MOVE), (-0.01, MOVE), (0.01, MOVE), (-0.06, MOVE), (0.01, MOVE)]);
+        assert_eq!(check.collisions().len(), 2);
+        assert!(check.verdict().unwrap().text.ends_with("; and one contact more, 0.010 in deep"));
+    }
+
+    #[test]
+    fn what_is_permitted_is_no_collision_and_what_is_too_deep_is_one() {
+        let mut permitted = new_check();
+        assert!(play(&mut permitted, &[(0.05, GRASP), (0.1, GRASP), (-0.5, GRASP)]).is_empty());
+        assert_eq!(permitted.verdict(), None);
+        let mut deep = new_check();
+        assert_eq!(play(&mut deep, &[(0.05, GRASP), (0.11, GRASP)]).len(), 1);
+        let mut other = new_check();
+        other.look(Tick(1), &[contact("wrist", Kind::Arm, 0.05)], GRASP);
+        assert!(other.verdict().is_some(), "the wrist is no finger");
+    }
+
+    #[test]
+    fn the_next_command_may_lead_away_from_what_the_last_one_touched() {
+        let mut leaving = new_check();
+        assert!(play(&mut leaving, &[(0.08, GRASP), (0.08, MOVE), (0.03, MOVE), (-0.5, MOVE)]).is_empty());
+        let mut going_on = new_check();
+        assert_eq!(play(&mut going_on, &[(0.03, GRASP), (0.08, MOVE)]).len(), 1, "deeper is not away");
+        let mut coming_back = new_check();
+        let again = play(&mut coming_back, &[(0.08, GRASP), (-0.06, MOVE), (0.03, MOVE)]);
+        assert_eq!(again.len(), 1, "it had come free");
+    }
+
+    #[test]
+    fn the_nearest_miss_is_of_what_may_never_be_touched() {
+        let mut check = new_check();
+        assert_eq!(check.margin(), MARGIN);
+        let mut pass = |tick: u64, distance: f64| {
+            check.look(Tick(tick), &[contact("wrist", Kind::Arm, -distance)], MOVE);
+            let nearest = check.nearest().map(|nearest| (nearest.distance_in, nearest.tick));
+            (nearest, check.margin())
+        };
+        assert_eq!(pass(1, 0.5), (Some((0.5, 1)), 0.5));
+        assert_eq!(pass(2, 0.3), (Some((0.3, 2)), 0.3));
+        assert_eq!(pass(3, 0.4), (Some((0.3, 2)), 0.3));
+        assert_eq!(pass(4, 0.01), (Some((0.01, 4)), FREE), "that something comes free is still seen");
+        assert_eq!(check.verdict(), None);
+        play(&mut check, &[(-0.001, MOVE)]);
+        assert_eq!(check.nearest().map(|nearest| nearest.tick), Some(4), "fingers touch parts now and then");
+    }
+
+    #[test]
+    fn a_robot_that_is_led_through_something_is_stuck() {
+        let mut check = new_check();
+        check.look(Tick(1), &[contact("BLANK", Kind::HeldPart, 2.0)], MOVE);
+        assert!(!check.is_stuck(), "a part gives way");
+        check.look(Tick(2), &[contact("wrist", Kind::Arm, 0.9)], MOVE);
+        assert!(!check.is_stuck());
+        check.look(Tick(3), &[contact("wrist", Kind::Arm, 1.1)], MOVE);
+        assert!(check.is_stuck());
+    }
+}

@@ -1,0 +1,233 @@
+//! A robot with EGM, as the run sees it: the line to it, the DEPC function in front of it, and what is measured.
+
+use std::{
+    sync::atomic::Ordering,
+    thread,
+    time::{Duration, Instant},
+};
+
+use ::egm::{LinkState, Pose, Sample, host::Counters};
+use depc::{Limits, Plate, link::LinkBytes};
+use egm_robot::{Bridge, BridgeOutputs, EgmOptions, Line, Peer, udp::UdpLine};
+use executive::{
+    histogram::{Histogram, Summary},
+    realtime,
+};
+use geometry::{frame::Frame, kinematics::T3, pose::WireFrame};
+use interfaces::device::{DeviceInputs, RESOLVER_COUNTS, Resolvers};
+
+use crate::{
+    config::{ClockKind, RunConfig},
+    error::StartError,
+    observer::Observer,
+};
+
+/// Names of the frames in the log: where the robot is, and where it was last sent.
+pub const FRAMES: [&str; 2] = ["egm_feedback", "egm_target"];
+
+/// The robot.
+pub struct EgmPort {
+    options: EgmOptions,
+    line: Line,
+    bridge: Bridge,
+    outputs: BridgeOutputs,
+    resolvers: Resolvers,
+    /// Joints of a T3 at the robot's place, for the turn of base and roll of the next.
+    joints: [f64; 6],
+    figures: Box<Figures>,
+}
+
+/// What is measured.
+#[derive(Default)]
+struct Figures {
+    cycles: Histogram,
+    answers: Histogram,
+    /// Sum of the squares, mm², greatest, mm, and count of the distances from feedback to target.
+    squares: f64,
+    greatest: f64,
+    count: u64,
+}
+
+impl EgmPort {
+    /// Open the line. A simulated robot begins at once.
+    ///
+    /// # Errors
+    /// [`StartError`] if the robot's frames or the port cannot be used.
+    pub fn open(
+        options: &EgmOptions,
+        config: &RunConfig,
+        observer: &mut dyn Observer,
+    ) -> Result<Self, StartError> {
+        let placement = options.placement(&config.data)?;
+        let line = match options.peer {
+            Peer::Simulated => Line::Simulated(Box::new(options.simulated(&placement))),
+            Peer::Udp(address) => {
+                let real = config.clock == ClockKind::Real;
+                let prepare = move || {
+                    if real {
+                        // The run says for its own thread what was not granted; this one gets no more.
+                        let _ = realtime::raise_priority();
+                    }
+                };
+                let line = UdpLine::open(address, options.from, options.settings(&placement), prepare)?;
+                observer.message(&format!("EGM: a robot can send to UDP {}", line.address()));
+                if options.robot.is_none() {
+                    observer.message(
+                        "EGM: no robot=FILE: the robot's work object is taken for the T3's world, its tool for \
+                         the end plate",
+                    );
+                }
+                Line::Udp(Box::new(line))
+            }
+        };
+        Ok(Self {
+            options: options.clone(),
+            line,
+            bridge: Bridge::new(Limits::NBS, placement),
+            outputs: BridgeOutputs::default(),
+            resolvers: Resolvers::default(),
+            joints: geometry::kinematics::HOME_JOINTS,
+            figures: Box::default(),
+        })
+    }
+
+    /// Wait until the robot follows: for so many seconds at most, and not beyond an interruption. Without it
+    /// the run begins all the same, and fails by name.
+    pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
+        let started = Instant::now();
+        let limit = Duration::from_secs(config.wait.into());
+        let mut said = None;
+        while self.options.peer != Peer::Simulated && !config.stop.load(Ordering::Relaxed) {
+            self.read();
+            let sample = self.line.sample();
+            if sample.link == LinkState::Running {
+                observer.message("EGM: the robot follows");
+                return;
+            }
+            let trouble = trouble(&sample);
+            if started.elapsed() >= limit {
+                observer.message(&format!("EGM: after {} s: {trouble}", config.wait));
+                return;
+            }
+            if said != Some(trouble) {
+                observer.message(&format!("waiting for the EGM robot: {trouble}"));
+                said = Some(trouble);
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Before the controller's tick: what the function has answered, and where the robot is.
+    pub fn receive(&mut self, inputs: &mut DeviceInputs) {
+        self.read();
+        inputs.link_rx = self.outputs.tx;
+        inputs.link_ready = self.outputs.dtr;
+        inputs.link_unsent = false;
+        let sample = self.line.sample();
+        if sample.link != LinkState::Waiting {
+            self.resolvers = self.resolvers_at(&sample);
+        }
+        inputs.resolvers = self.resolvers;
+    }
+
+    /// After the controller's tick: the function takes the host's bytes. `exact`: what Prim has commanded, as
+    /// T3I gets it, and as Prim means it.
+    pub fn send(&mut self, tx: &LinkBytes, exact: Option<(WireFrame, Frame)>) {
+        if let Some((wire, exact)) = exact {
+            self.bridge.offer(&wire, &exact);
+        }
+        self.read();
+        self.outputs = self.bridge.step(&mut self.line, tx, true);
+    }
+
+    /// Simulated time passes.
+    pub fn advance(&mut self, by: Duration) {
+        self.line.advance(u64::try_from(by.as_nanos()).unwrap_or(u64::MAX));
+    }
+
+    /// Where the robot is, in words of the line, if it is where the line has words.
+    #[must_use]
+    pub fn feedback(&self) -> Option<Plate> {
+        self.bridge.feedback()
+    }
+
+    /// What keeps the robot from following, in words.
+    #[must_use]
+    pub fn trouble(&self) -> Option<&'static str> {
+        self.bridge.trouble()
+    }
+
+    /// Where robot and target are, as the T3's end plate in its world: [`FRAMES`].
+    #[must_use]
+    pub fn frames(&self) -> [Pose; 2] {
+        let sample = self.line.sample();
+        [sample.feedback, sample.target].map(|pose| self.bridge.placement().plate_pose(&pose))
+    }
+
+    /// What was counted.
+    #[must_use]
+    pub fn counters(&self) -> Counters {
+        self.line.sample().counters
+    }
+
+    /// Times between two messages of the robot.
+    #[must_use]
+    pub fn cycles(&self) -> Summary {
+        self.figures.cycles.summary()
+    }
+
+    /// Times from a message to its answer.
+    #[must_use]
+    pub fn answers(&self) -> Summary {
+        self.figures.answers.summary()
+    }
+
+    /// Root mean square and greatest distance from the robot to its target, mm.
+    #[must_use]
+    pub fn errors(&self) -> [f64; 2] {
+        let Figures { squares, greatest, count, .. } = *self.figures;
+        [(squares / count.max(1) as f64).sqrt(), greatest]
+    }
+
+    fn read(&mut self) {
+        let figures = &mut self.figures;
+        self.line.reports(|report| {
+            if let Some(cycle) = report.cycle {
+                figures.cycles.add(cycle);
+                figures.answers.add(report.answered);
+            }
+            let sample = &report.sample;
+            if sample.is_moving {
+                let (error, _) = sample.target.distance(&sample.feedback);
+                figures.squares += error * error;
+                figures.greatest = figures.greatest.max(error);
+                figures.count += 1;
+            }
+        });
+    }
+
+    /// What the resolvers of a T3 would read at the robot's place; none that are valid where it has no joints.
+    fn resolvers_at(&mut self, sample: &Sample) -> Resolvers {
+        let tool = self.bridge.placement().tool_frame(&sample.feedback);
+        let Ok(joints) = T3.inverse(&tool, &self.joints) else {
+            return Resolvers { valid: false, ..self.resolvers };
+        };
+        self.joints = joints;
+        let steps = f64::from(RESOLVER_COUNTS);
+        let count = |joint: f64| {
+            let turn = (joint / std::f64::consts::TAU * steps).round().rem_euclid(steps);
+            // Below 2^17, and not negative.
+            turn as u32 % RESOLVER_COUNTS
+        };
+        Resolvers { counts: joints.map(count), valid: true }
+    }
+}
+
+fn trouble(sample: &Sample) -> &'static str {
+    match sample.link {
+        LinkState::Waiting => "no message has come yet",
+        LinkState::Lost => "it has sent no message for 3 ticks",
+        LinkState::Standby(hindrance) => hindrance.text(),
+        LinkState::Running => "it follows",
+    }
+}

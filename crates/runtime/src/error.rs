@@ -1,0 +1,119 @@
+//! What keeps a run from beginning.
+
+use std::{io, path::PathBuf};
+
+use executive::{boards::SplitError, serial::OpenError};
+use neighbours::{
+    data_system::{OutboxError, StoreError},
+    network::{KeysError, address::AddressError, listener::ListenError},
+};
+use plant::{CellError, fault::text::FaultFileError};
+use record::RecordError;
+use taskdata::load::{Diagnostics, report::amount};
+
+/// Why a run cannot begin.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// The data directory is not there.
+    #[error("there is no task data directory {}; name one with --data", .0.display())]
+    NoData(PathBuf),
+    /// Task data or the job has errors.
+    #[error("{what} cannot be used: {}", amount(.report.errors().count(), "error"))]
+    Data {
+        /// Which.
+        what: String,
+        /// All that was found.
+        report: Box<Diagnostics>,
+    },
+    /// There is no such job.
+    #[error("there is no job {job}: {}", known_jobs(.known))]
+    NoJob {
+        /// As asked for.
+        job: String,
+        /// Jobs of the data directory.
+        known: Vec<String>,
+    },
+    /// A file that is needed cannot be read.
+    #[error("{} cannot be read: {source}", path.display())]
+    Read {
+        /// Which.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The cell cannot be built.
+    #[error("the cell cannot be built: {0}")]
+    Cell(#[from] CellError),
+    /// A robot at a port with a clock that does not wait for it.
+    #[error("a robot at a port lives in real time: add --clock real")]
+    NotInRealTime,
+    /// Faults for a line that has its own.
+    #[error(
+        "the file has faults of the line to the simulated robot; a robot elsewhere has faults of its own"
+    )]
+    FaultsAtPort,
+    /// The file of faults cannot be used.
+    #[error("the faults cannot be injected: {0}")]
+    Faults(#[from] FaultFileError),
+    /// The port cannot be opened.
+    #[error("the robot cannot be reached: {0}")]
+    Port(#[from] OpenError),
+    /// The port of EGM cannot be opened.
+    #[error("the robot cannot be reached: {0}")]
+    Egm(#[from] egm_robot::udp::UdpError),
+    /// The robot's frames cannot be used.
+    #[error(transparent)]
+    Placement(#[from] egm_robot::placement::PlacementError),
+    /// The data base of the Data System cannot be had.
+    #[error("the Data System cannot keep its items: {0}")]
+    DataBase(#[from] StoreError),
+    /// Another process keeps the items.
+    #[error("the Data System is another process: name the data base there, not here")]
+    DataBaseElsewhere,
+    /// Updates for the Data System cannot be kept.
+    #[error("{0}; --outbox names another file")]
+    Outbox(#[from] OutboxError),
+    /// Neighbours cannot connect.
+    #[error("neighbours cannot connect: {0}")]
+    Network(#[from] ListenError),
+    /// Options of the network do not fit together.
+    #[error("neighbours cannot connect: {0}")]
+    Address(#[from] AddressError),
+    /// The mailboxes of a neighbour cannot be made.
+    #[error("neighbours cannot connect: {0}")]
+    Endpoint(#[source] io::Error),
+    /// Keys or certificates cannot be used.
+    #[error(transparent)]
+    Keys(#[from] KeysError),
+    /// The workstation controller has not connected.
+    #[error("the workstation controller has not connected within {0} s; --wait gives it more")]
+    NoWorkstation(u32),
+    /// The log cannot be written.
+    #[error("the log cannot be written: {0}; --log names another file, --log none runs without")]
+    Log(#[from] RecordError),
+    /// A signal, before the first tick.
+    #[error("{0} failed at tick 0: interrupted")]
+    Interrupted(String),
+    /// The boards of a run did not come together.
+    #[error("the boards did not come together: {0}")]
+    Boards(#[from] SplitError),
+}
+
+impl StartError {
+    /// All that was found in the data: what is to be said before the error; empty, or lines that end.
+    #[must_use]
+    pub fn details(&self) -> String {
+        match self {
+            Self::Data { report, .. } => report.render_for_stderr(),
+            _ => String::new(),
+        }
+    }
+}
+
+fn known_jobs(known: &[String]) -> String {
+    match known {
+        [] => "the data directory has no jobs".to_owned(),
+        [only] => format!("the data directory has {only}"),
+        more => format!("the data directory has {}", more.join(", ")),
+    }
+}

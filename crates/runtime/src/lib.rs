@@ -1,0 +1,49 @@
+//! A run of the controller as a library.
+//!
+//! A [`RunConfig`] says what to run: task data, job, clock, robot, faults, boards, neighbours, log. [`Run::new`]
+//! reads and checks all of it and starts what the run needs; [`Run::step`] runs one tick; [`Run::finish`] ends
+//! the log and gives the [`RunOutcome`]. An [`Observer`] hears messages and sees each tick.
+//!
+//! ```no_run
+//! use runtime::{LogTarget, Run, RunConfig};
+//!
+//! let config = RunConfig { log: LogTarget::None, ..RunConfig::new("data", "linkbar") };
+//! let outcome = Run::new(config, Box::new(()))?.complete();
+//! assert!(outcome.is_finished());
+//! # Ok::<(), runtime::StartError>(())
+//! ```
+//!
+//! One tick is, in this order: what has come over a serial line, the controller (timed, and its allocations
+//! counted), what goes over the line, the hand-off to the log, the cell, the workstation controller. Physics
+//! allocates and takes its time; it is outside of what is counted as the controller's.
+
+pub mod agreement;
+pub mod boards;
+pub mod config;
+pub mod contacts;
+mod egm;
+pub mod error;
+mod log;
+pub mod neighbours;
+pub mod observer;
+mod outside;
+mod pace;
+mod placement;
+pub mod result;
+mod robot;
+mod run;
+pub mod setup;
+mod switched;
+mod verdict;
+pub mod workstation;
+
+pub use self::{
+    config::{Boards, ClockKind, LogTarget, RobotConfig, RobotKind, RunConfig},
+    error::StartError,
+    observer::{Observer, TickReport},
+    run::{Run, RunOutcome},
+    verdict::Ending,
+};
+
+/// Commit of the sources that this was built from.
+pub const COMMIT: &str = env!("RCS_COMMIT");

@@ -1,0 +1,206 @@
+//! What the run tells its log: set-up, one frame of the cell a tick, events, and the tick itself.
+
+use std::{collections::BTreeMap, path::Path};
+
+use ::egm::Pose;
+use depc::fault::{Counts, FaultKind};
+use executive::alloc::Section;
+use interfaces::{CommonMemory, ExternalInputs};
+use levels::ladder::LadderState;
+use plant::{Cell, part_link};
+use rcs_core::{digest::Digest, tick::Tick};
+use record::{
+    Attachment, CellFrame, CellModel, End, Epoch, Level, Link, LogFile, Pace, RecordError, Recorder, Summary,
+    Timing, Transform,
+};
+use taskdata::load::{
+    Source,
+    job::{Drum, Job, Step, Workstation},
+};
+
+use crate::{
+    config::{ClockKind, RobotKind, RunConfig},
+    egm::FRAMES,
+    setup::Setup,
+};
+
+/// Name of the fault plan among the attachments.
+const FAULTS: &str = "faults.toml";
+
+/// A log that is being written, with what is needed to draw the cell.
+pub struct Log {
+    recorder: Recorder,
+    /// Names of the links that move, in the order in which the log knows them.
+    links: Vec<String>,
+    /// Faults on the line so far, and their kinds in the last tick.
+    faults: Counts,
+    kinds: Vec<&'static str>,
+}
+
+impl Log {
+    /// Begin a log.
+    ///
+    /// # Errors
+    /// [`RecordError`] if the file cannot be written.
+    pub fn start(file: LogFile, config: &RunConfig, setup: &Setup) -> Result<Self, RecordError> {
+        let coming: Vec<&str> = setup.job.steps.iter().filter_map(|line| delivered(&line.step)).collect();
+        let later = (1..).take(coming.len()).map(|id| ("world", part_link(id)));
+        let here = setup.cell.links().into_iter().map(|link| (link.parent, link.name));
+        let is_egm = matches!(config.robot.kind, RobotKind::Egm(_));
+        let outside = FRAMES.into_iter().filter(|_| is_egm).map(|name| ("world", name.to_owned()));
+        let links = here.chain(later).chain(outside);
+        let links = links.map(|(parent, name)| Link { name, parent: parent.to_owned() });
+        let fixed = setup.cell.fixed_links().into_iter().map(|link| {
+            let place = transform(&link);
+            (Link { name: link.name, parent: link.parent.to_owned() }, place)
+        });
+        let joints = setup.cell.joint_states().into_iter().map(|(name, _)| name.to_owned());
+        let model = CellModel {
+            urdf: setup.cell.urdf_with(&coming),
+            links: links.collect(),
+            fixed: fixed.collect(),
+            joints: joints.collect(),
+        };
+        let links = model.links.iter().map(|link| link.name.clone()).collect();
+        let attachments = attachments(setup);
+        let (pace, epoch) = match config.clock {
+            ClockKind::Fast => (Pace::Wait, Epoch::Fixed),
+            ClockKind::Real => (Pace::Drop, Epoch::now()),
+        };
+        let run = metadata(config, &setup.job, &attachments);
+        let recorder =
+            Recorder::start_in(file, pace, record::Setup { epoch, run, attachments, cell: Some(model) })?;
+        Ok(Self { recorder, links, faults: Counts::default(), kinds: Vec::new() })
+    }
+
+    /// The cell as the controller will see it in `tick`, with the [`FRAMES`] of a robot with EGM; before
+    /// [`Log::tick`].
+    pub fn cell(&mut self, tick: Tick, cell: &Cell, frames: Option<[Pose; 2]>) {
+        let mut places = vec![Transform::IDENTITY; self.links.len()];
+        let mut put = |name: &str, place: Transform| {
+            if let Some(at) = self.links.iter().position(|known| known == name) {
+                places[at] = place;
+            }
+        };
+        cell.links().iter().for_each(|link| put(&link.name, transform(link)));
+        for (name, pose) in FRAMES.into_iter().zip(frames.into_iter().flatten()) {
+            let [w, x, y, z] = pose.orientation;
+            let position = pose.position.map(|mm| mm / 1000.0);
+            put(name, Transform { position, rotation: [x, y, z, w] });
+        }
+        let joints = cell.joint_states().into_iter().map(|(_, value)| value);
+        self.recorder.cell(&CellFrame::of(tick, places, joints).with_digest(cell.digest()));
+    }
+
+    /// Something worth a line; before [`Log::tick`] of the same tick.
+    pub fn note(&mut self, tick: Tick, level: Level, source: &str, text: &str) {
+        self.recorder.note(tick, level, source, text);
+    }
+
+    /// Faults that the plan has put on the line so far: told when others than in the tick before come up;
+    /// before [`Log::tick`] of the same tick.
+    pub fn faults(&mut self, tick: Tick, counts: Counts) {
+        let fresh = FaultKind::ALL.iter().filter(|kind| counts.of(**kind) > self.faults.of(**kind));
+        let kinds: Vec<&'static str> = fresh.map(|kind| kind.text()).collect();
+        if !kinds.is_empty() && kinds != self.kinds {
+            self.recorder.note(tick, Level::Warning, "fault", &format!("on the line: {}", kinds.join(", ")));
+        }
+        (self.faults, self.kinds) = (counts, kinds);
+    }
+
+    /// From `tick` on the task data are of another generation, with the blocks of `source`; before
+    /// [`Log::tick`] of that tick.
+    pub fn reload(&mut self, tick: Tick, generation: u32, source: &Source) {
+        for file in Attachment::reload(generation, std::slice::from_ref(source)) {
+            self.recorder.attach(tick, file);
+        }
+        let text = format!("task data, generation {generation}: {} is loaded", source.name);
+        self.recorder.note(tick, Level::Info, "executive", &text);
+    }
+
+    /// How punctual the tick is; before [`Log::tick`] of the same tick. Not for runs in fast clock: their
+    /// logs are the same bytes whenever they are written.
+    pub const fn timing(&mut self, controller_ns: u64, skipped: u64) {
+        self.recorder.timing(Timing { controller_ns, skipped });
+    }
+
+    /// Hand over a tick. This belongs to the tick itself: what it allocates is counted.
+    pub fn tick(
+        &mut self,
+        tick: Tick,
+        external: &ExternalInputs,
+        memory: &CommonMemory,
+        state: impl FnOnce() -> LadderState,
+    ) {
+        let _section = Section::enter();
+        self.recorder.tick(tick, external, memory, state);
+    }
+
+    /// End the log.
+    ///
+    /// # Errors
+    /// [`RecordError`] that ended the log before the run did.
+    pub fn finish(
+        self,
+        digest: Digest,
+        result: String,
+        facts: BTreeMap<String, String>,
+    ) -> Result<Summary, RecordError> {
+        self.recorder.finish(End { digest: Some(digest.value()), result, facts })
+    }
+}
+
+fn transform(link: &plant::Link) -> Transform {
+    Transform { position: link.position, rotation: link.rotation }
+}
+
+/// The part that a step puts into the cell.
+fn delivered(step: &Step) -> Option<&str> {
+    match step {
+        Step::Workstation(Workstation::Tray { object, .. } | Workstation::Drum(Drum::Tool(object))) => {
+            Some(object.as_str())
+        }
+        _ => None,
+    }
+}
+
+/// Everything that a replay needs, and everything that makes the run what it was: task data, job, cell
+/// description, fault plan.
+fn attachments(setup: &Setup) -> Vec<Attachment> {
+    let sources = setup.store.sources().iter();
+    let data = sources
+        .map(|source| Attachment::text(&format!("{}{}", Attachment::TASK_DATA, source.name), &source.text));
+    let mut all: Vec<Attachment> = data.collect();
+    all.push(Attachment::text(Attachment::JOB, &setup.job.source().text));
+    all.push(Attachment::text(Attachment::CELL, &setup.description_text));
+    if !setup.faults_text.is_empty() {
+        all.push(Attachment::text(FAULTS, &setup.faults_text));
+    }
+    all
+}
+
+/// What the log says of the run. Nothing here differs between two equal runs.
+fn metadata(config: &RunConfig, job: &Job, attachments: &[Attachment]) -> BTreeMap<String, String> {
+    let mut configuration = Digest::new();
+    for attachment in attachments {
+        configuration.add(attachment.name.as_bytes());
+        configuration.add(&attachment.data);
+    }
+    let faults = config.faults.as_deref().and_then(Path::file_name);
+    let faults = faults.map(|name| name.to_string_lossy().into_owned());
+    let command_line = std::env::args().collect::<Vec<_>>().join(" ");
+    let entries = [
+        ("program", "rcs-run".to_owned()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("commit", crate::COMMIT.to_owned()),
+        ("command_line", command_line),
+        ("job", job.name.clone()),
+        ("seed", config.seed.to_string()),
+        ("clock", config.clock.text().to_owned()),
+        ("robot", config.robot.to_string()),
+        ("boards", config.boards.text().to_owned()),
+        ("configuration_digest", configuration.to_string()),
+        ("faults", faults.unwrap_or_else(|| "none".to_owned())),
+    ];
+    entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}

@@ -1,0 +1,394 @@
+//! The neighbours of a run: who commands Task, the Data System, an Active Pedestal that is a system of its
+//! own, and vision if it is another process.
+//!
+//! A neighbour lives in this process, or in another one behind the network. Either way it is reached through
+//! its mailboxes, and a run cannot tell the difference: with the clock in lock step not a bit of it changes.
+
+use std::{
+    sync::atomic::Ordering,
+    thread,
+    time::{Duration, Instant},
+};
+
+use interfaces::{CommonMemory, DataBaseStatus, DeviceInputs, Header, HwsCommand, OutsidePedestal};
+use neighbours::{
+    data_system::{self, DataSystem, Item},
+    mailbox::{HWSC_COMMAND, Mailbox},
+    network::{Endpoint, EndpointHandle, Listener, NetEvent, Role},
+    pedestal,
+    vision::{self, picture::Part},
+    workstation::{
+        Gate, TaskState,
+        player::{BegunStep, Hwsc, JobFailure, Outcome, Progress, Retry},
+        status,
+    },
+};
+use plant::camera::Subject;
+use rcs_core::{Plain as _, tick::Tick};
+use record::Level;
+use taskdata::load::Store;
+
+use super::{
+    outside::OutsideWorkstation,
+    switched::{Around, Switched},
+    workstation::SimulatedWorkstation,
+};
+use crate::{
+    config::{ClockKind, RunConfig},
+    error::StartError,
+    observer::Observer,
+};
+
+/// A line for the log: how grave it is, who says it, and the words.
+pub type Note = (Level, &'static str, String);
+
+/// What is said of the network: that a neighbour connects is no warning.
+pub fn network_note(event: &NetEvent) -> Note {
+    let level = if matches!(event, NetEvent::Connected(_)) { Level::Info } else { Level::Warning };
+    (level, "network", event.to_string())
+}
+
+/// The workstation controller of a run: what commands Task.
+pub enum WorkstationSource {
+    /// The emulator, with a job.
+    Emulator(Box<Emulator>),
+    /// Another process.
+    Outside(Box<OutsideWorkstation>),
+    /// The emulator, whose job hands over to another process.
+    Switched(Box<Switched>),
+}
+
+/// The emulator of the workstation controller, with the mailbox that it writes.
+pub struct Emulator {
+    /// The emulator.
+    pub hwsc: Hwsc,
+    command_box: Mailbox,
+}
+
+impl WorkstationSource {
+    /// Another process commands.
+    #[must_use]
+    pub fn outside(endpoint: Endpoint) -> Self {
+        Self::Outside(Box::new(OutsideWorkstation::new(endpoint)))
+    }
+}
+
+/// Where neighbours of other processes connect.
+pub struct Network {
+    /// Who may come.
+    pub handles: Vec<EndpointHandle>,
+    /// Lets them in.
+    pub _listener: Listener,
+}
+
+/// The neighbours of a run.
+pub struct Neighbours {
+    gate: Gate,
+    workstation: WorkstationSource,
+    data_system: DataSystem,
+    /// None: the pedestal's processes are among the controller's.
+    pedestal: Option<Box<pedestal::Agent>>,
+    /// Vision; without it the cell analyses its pictures itself.
+    vision: Option<vision::Port>,
+    /// Accepts neighbours as long as the run lasts; none without it.
+    network: Option<Network>,
+    notes: Vec<Note>,
+    /// No command is given any more.
+    is_ending: bool,
+}
+
+impl Neighbours {
+    /// The source of commands, the Data System, and pedestal and vision if they are other processes.
+    #[must_use]
+    pub fn new(
+        workstation: WorkstationSource,
+        data_system: DataSystem,
+        pedestal: Option<Box<pedestal::Agent>>,
+        vision: Option<vision::Port>,
+        network: Option<Network>,
+    ) -> Self {
+        Self {
+            gate: Gate::default(),
+            workstation,
+            data_system,
+            pedestal,
+            vision,
+            network,
+            notes: Vec::new(),
+            is_ending: false,
+        }
+    }
+
+    /// Wait for those who are other processes: for so many seconds at most, and not beyond an interruption,
+    /// of which the run will see to it. On the 40 ms grid the workstation controller is waited for alone: the
+    /// others may come later. In fast clock a run is over when it has gone, also if that was before the first
+    /// tick.
+    ///
+    /// # Errors
+    /// [`StartError::NoWorkstation`].
+    pub fn gather(&self, config: &RunConfig, observer: &mut dyn Observer) -> Result<(), StartError> {
+        let Some(network) = &self.network else { return Ok(()) };
+        let (limit, started) = (Duration::from_secs(config.wait.into()), Instant::now());
+        let fast = config.clock == ClockKind::Fast;
+        let is_missing = |handle: &&EndpointHandle| match handle.role() {
+            Role::Workstation if self.can_switch() => false,
+            Role::Workstation if fast => !handle.was_connected(),
+            Role::Workstation => !handle.is_connected(),
+            Role::DataSystem | Role::Pedestal | Role::Vision => fast && !handle.is_connected(),
+        };
+        loop {
+            let missing: Vec<_> = network.handles.iter().filter(is_missing).collect();
+            if missing.is_empty() || config.stop.load(Ordering::Relaxed) {
+                return Ok(());
+            }
+            if started.elapsed() >= limit {
+                if missing.iter().any(|handle| handle.role() == Role::Workstation) {
+                    return Err(StartError::NoWorkstation(config.wait));
+                }
+                for handle in missing {
+                    let role = handle.role();
+                    observer.message(&format!("{role} has not come; the run begins without it"));
+                }
+                return Ok(());
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// The run is about to end: the commands of job or workstation controller are read no longer.
+    pub const fn stop_commanding(&mut self) {
+        self.is_ending = true;
+    }
+
+    /// Another process commands.
+    #[must_use]
+    pub fn are_commanding(&self) -> bool {
+        match &self.workstation {
+            WorkstationSource::Emulator(_) => false,
+            WorkstationSource::Outside(_) => true,
+            WorkstationSource::Switched(switched) => switched.is_handed_over(),
+        }
+    }
+
+    /// Another process may command for a time.
+    #[must_use]
+    pub const fn can_switch(&self) -> bool {
+        matches!(self.workstation, WorkstationSource::Switched(_))
+    }
+
+    /// What stands in Task's command buffer.
+    #[must_use]
+    pub const fn hws(&self) -> &HwsCommand {
+        self.gate.command()
+    }
+
+    /// What Task reads of the Data System.
+    #[must_use]
+    pub const fn data_base(&self) -> DataBaseStatus {
+        self.data_system.status()
+    }
+
+    /// What has come from a pedestal that is a system of its own.
+    #[must_use]
+    pub fn pedestal(&self) -> &OutsidePedestal {
+        self.pedestal.as_deref().map_or(&OutsidePedestal::ZERO, pedestal::Agent::sent)
+    }
+
+    /// Before the first tick: the pedestal steps with the controller from its first tick on.
+    pub fn begin(&mut self, memory: &CommonMemory, inputs: &DeviceInputs) {
+        self.step_pedestal(Tick::BEFORE_START, memory, inputs);
+    }
+
+    /// The pedestal reads what a tick has written, and what its devices read in the next one.
+    fn step_pedestal(&mut self, tick: Tick, memory: &CommonMemory, inputs: &DeviceInputs) {
+        let Some(agent) = &mut self.pedestal else { return };
+        agent.exchange(tick.next(), &memory.subtask.pedestal, &inputs.pedestal);
+        self.notes.extend(agent.remarks().into_iter().map(|remark| match remark {
+            pedestal::Remark::Network(event) => network_note(&event),
+            own => (Level::Warning, "Active Pedestal", own.to_string()),
+        }));
+    }
+
+    /// Vision reads what E-move asks for, with what the camera sees, and what it answers is among the devices
+    /// of the next tick.
+    fn step_vision(&mut self, tick: Tick, memory: &CommonMemory, workstation: &mut SimulatedWorkstation) {
+        let Some(port) = &mut self.vision else { return };
+        let cell = &mut workstation.cell;
+        port.step(tick.0, &memory.emove.vision, || cell.picture().iter().map(pictured).collect());
+        cell.hear_vision(port.response());
+        self.notes.extend(port.remarks().iter().map(|remark| match remark {
+            vision::Remark::Network(event) => network_note(event),
+            own => (Level::Warning, "vision", own.to_string()),
+        }));
+    }
+
+    /// Steps of the job so far, or commands of the workstation controller.
+    #[must_use]
+    pub fn begun_steps(&self) -> &[BegunStep] {
+        match &self.workstation {
+            WorkstationSource::Emulator(emulator) => emulator.hwsc.begun_steps(),
+            WorkstationSource::Outside(outside) => outside.begun_steps(),
+            WorkstationSource::Switched(switched) => switched.begun_steps(),
+        }
+    }
+
+    /// The same, and those of a workstation controller that the job has handed over to.
+    #[must_use]
+    pub fn all_steps(&self) -> Vec<BegunStep> {
+        match &self.workstation {
+            WorkstationSource::Switched(switched) => switched.all_steps(),
+            _ => self.begun_steps().to_vec(),
+        }
+    }
+
+    /// The commands of the job that were sent again after they had failed.
+    #[must_use]
+    pub fn retried(&self) -> &[Retry] {
+        match &self.workstation {
+            WorkstationSource::Emulator(emulator) => emulator.hwsc.retried(),
+            WorkstationSource::Outside(_) => &[],
+            WorkstationSource::Switched(switched) => switched.retried(),
+        }
+    }
+
+    /// The line that was under way in a tick; for what has failed at its start, the tick in which it was begun.
+    #[must_use]
+    pub fn line_at(&self, tick: Tick) -> Option<&str> {
+        let is_refused = |step: &BegunStep| step.outcome == Outcome::Failed && step.ticks == 0;
+        let goes_on = |step: &BegunStep| step.outcome == Outcome::Executing;
+        let is_meant = |step: &&BegunStep| {
+            let since = tick.since(step.began);
+            (tick > step.began || is_refused(step)) && (since <= step.ticks || goes_on(step))
+        };
+        self.begun_steps().iter().rev().find(is_meant).map(|step| step.text.as_str())
+    }
+
+    /// Once a tick, after controller and cell: all read what the tick has written. `inputs` are the device
+    /// words of the next tick.
+    pub fn step(
+        &mut self,
+        tick: Tick,
+        memory: &CommonMemory,
+        inputs: &DeviceInputs,
+        workstation: &mut SimulatedWorkstation,
+        store: &Store,
+    ) -> Progress {
+        self.data_system.step(tick, &memory.task.data_base);
+        for refusal in self.data_system.refusals() {
+            let text = format!("the Data System refuses: {refusal}");
+            self.notes.push((Level::Warning, "Data System", text));
+        }
+        self.notes.extend(self.data_system.remarks().iter().map(|remark| match remark {
+            data_system::Remark::Network(event) => network_note(event),
+            own => (Level::Warning, "Data System", own.to_string()),
+        }));
+        self.step_vision(tick, memory, workstation);
+        self.gate.write(&memory.task, task_state(&memory.task.header, tick));
+        let progress = match &mut self.workstation {
+            _ if self.is_ending => Progress::Running,
+            WorkstationSource::Emulator(emulator) => {
+                emulator.step(tick, &mut self.gate, workstation, &mut self.notes)
+            }
+            WorkstationSource::Outside(outside) => {
+                outside.step(tick, &mut self.gate, &memory.task, workstation, store, &mut self.notes)
+            }
+            WorkstationSource::Switched(switched) => {
+                let data_system = self.network.iter().flat_map(|network| &network.handles);
+                let mut data_system = data_system.filter(|handle| handle.role() == Role::DataSystem);
+                let around = Around {
+                    tick,
+                    memory,
+                    store,
+                    has_data_system: data_system.all(EndpointHandle::is_connected),
+                };
+                switched.step(&around, &mut self.gate, workstation, &mut self.notes)
+            }
+        };
+        self.step_pedestal(tick, memory, inputs);
+        progress
+    }
+
+    /// What is to be said, since the last call.
+    pub fn notes(&mut self) -> Vec<Note> {
+        std::mem::take(&mut self.notes)
+    }
+
+    /// The items that the Data System keeps.
+    ///
+    /// # Errors
+    /// Why it does not give them.
+    pub fn items(&mut self) -> Result<Vec<Item>, String> {
+        self.data_system.items()
+    }
+}
+
+impl Emulator {
+    /// The emulator plays a job.
+    #[must_use]
+    pub fn new(hwsc: Hwsc) -> Self {
+        Self { hwsc, command_box: Mailbox::initialized(HWSC_COMMAND) }
+    }
+
+    /// Once a tick: the emulator reads its status mailbox and writes its command mailbox.
+    pub fn step(
+        &mut self,
+        tick: Tick,
+        gate: &mut Gate,
+        workstation: &mut SimulatedWorkstation,
+        notes: &mut Vec<Note>,
+    ) -> Progress {
+        let before = self.hwsc.retried().len();
+        let progress = match status::decode(gate.status_box().data()) {
+            Ok(status) => self.hwsc.step(tick, &status, workstation).clone(),
+            Err(error) => return Progress::Failed(JobFailure::Refused(error.to_string())),
+        };
+        let retries = self.hwsc.retried().iter().skip(before);
+        notes.extend(retries.map(|retry| (Level::Warning, "HWSC", retry.to_string())));
+        self.post(gate).unwrap_or(progress)
+    }
+
+    /// The command that is to be sent goes through the mailbox. Returns the failure if it does not fit.
+    fn post(&mut self, gate: &mut Gate) -> Option<Progress> {
+        let mut failure = None;
+        if let Some(command) = self.hwsc.mailgram() {
+            let written = neighbours::workstation::command::encode(command)
+                .map_err(|error| error.to_string())
+                .and_then(|bytes| self.command_box.write(&bytes).map_err(|error| error.to_string()));
+            failure = written.err().map(|why| Progress::Failed(JobFailure::Refused(why)));
+        }
+        // What the gate refuses comes back to the emulator by its status.
+        gate.read(&self.command_box);
+        failure
+    }
+
+    /// The job commands again: its mailbox is initialized as all mailboxes are when one connects (IX.1).
+    pub fn take_back(&mut self, tick: Tick, gate: &mut Gate, commands: Vec<BegunStep>) -> Progress {
+        self.command_box.initialize();
+        gate.initialize();
+        self.hwsc.take_back(tick, gate.command().number, commands);
+        self.post(gate).unwrap_or(Progress::Running)
+    }
+}
+
+/// What the camera sees of a part, as its mailbox has it.
+fn pictured(subject: &Subject) -> Part {
+    let face = subject.face();
+    Part {
+        centre: face.centre.into(),
+        edges: face.edges.map(|(direction, length)| (direction.into(), length)),
+        reflectance: subject.reflectance(),
+        seen: subject.raster(),
+    }
+}
+
+/// Whether Task has run in a tick.
+#[must_use]
+pub fn task_state(header: &Header, tick: Tick) -> TaskState {
+    if header.stamp != tick {
+        TaskState::Lost
+    } else if header.republished {
+        TaskState::Held
+    } else {
+        TaskState::Runs
+    }
+}

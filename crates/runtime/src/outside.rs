@@ -1,0 +1,260 @@
+//! A workstation controller in another process: its mailboxes, and what of its commands a run remembers.
+//!
+//! Besides Task it commands the simulated cell: what a workstation does itself are lines of a job, in a
+//! mailbox of their own. A run in fast clock is over when its workstation controller has gone, and has failed
+//! if that was in the middle of a command; on the 40 ms grid the robot waits for it to come back.
+
+use interfaces::{HwsCommand, TaskOutputs, hws::HwsReport};
+use neighbours::{
+    mailbox::{CELL_COMMAND, CELL_STATUS, HWSC_COMMAND, HWSC_STATUS},
+    network::{ClockKind, Disconnect, Endpoint, NetEvent, Presence},
+    workstation::{
+        Gate,
+        cell::{self, CellLine, CellStatus, Trouble},
+        player::{BegunStep, JobFailure, Outcome, Progress, Workstation as _},
+    },
+};
+use rcs_core::{name::Name16, tick::Tick};
+use record::Level;
+use taskdata::load::{Store, job};
+
+use crate::{
+    neighbours::{Note, network_note},
+    workstation::SimulatedWorkstation,
+};
+
+/// Commands that a run remembers; a run of a year must not fill the memory.
+const REMEMBERED: usize = 10_000;
+
+/// A workstation controller in another process.
+pub struct OutsideWorkstation {
+    endpoint: Endpoint,
+    /// Mailgram number of the last line for the cell.
+    line_read: u16,
+    /// Number of that line.
+    line: u16,
+    /// Why it was refused.
+    refused: Option<String>,
+    begun_steps: Vec<BegunStep>,
+    began: Tick,
+    /// It has been there in a tick.
+    came: bool,
+    /// It is there.
+    here: bool,
+    /// Why the last one that was there is there no longer.
+    disconnect: Option<Disconnect>,
+}
+
+impl OutsideWorkstation {
+    /// Its mailboxes.
+    #[must_use]
+    pub const fn new(endpoint: Endpoint) -> Self {
+        Self {
+            endpoint,
+            line_read: 0,
+            line: 0,
+            refused: None,
+            begun_steps: Vec::new(),
+            began: Tick::BEFORE_START,
+            came: false,
+            here: false,
+            disconnect: None,
+        }
+    }
+
+    /// The commands that were taken, as far as they are remembered.
+    #[must_use]
+    pub fn begun_steps(&self) -> &[BegunStep] {
+        &self.begun_steps
+    }
+
+    /// It is there.
+    #[must_use]
+    pub const fn is_here(&self) -> bool {
+        self.here
+    }
+
+    /// It can connect.
+    #[must_use]
+    pub const fn endpoint(&self) -> &Endpoint {
+        &self.endpoint
+    }
+
+    /// The commands that were taken since the last call.
+    pub fn take_steps(&mut self) -> Vec<BegunStep> {
+        std::mem::take(&mut self.begun_steps)
+    }
+
+    /// Once a tick while another one commands: it may come and go, reads no status, and what it writes is not read.
+    pub fn attend(&mut self, tick: Tick, notes: &mut Vec<Note>) {
+        for place in [HWSC_STATUS, CELL_STATUS] {
+            self.endpoint.outgoing(place).initialize();
+        }
+        self.exchange(tick, notes);
+    }
+
+    /// The mailboxes of a tick go out and come in.
+    fn exchange(&mut self, tick: Tick, notes: &mut Vec<Note>) -> Presence {
+        let presence = self.endpoint.exchange(tick.0);
+        while let Some(event) = self.endpoint.event() {
+            notes.push(network_note(&event));
+            if let NetEvent::Disconnected(_, reason) = event {
+                self.disconnect = Some(reason);
+            }
+        }
+        if presence.new {
+            (self.line_read, self.line, self.refused) = (0, 0, None);
+        }
+        self.here = presence.connected;
+        presence
+    }
+
+    /// Once a tick, after controller and cell.
+    pub fn step(
+        &mut self,
+        tick: Tick,
+        gate: &mut Gate,
+        task: &TaskOutputs,
+        workstation: &mut SimulatedWorkstation,
+        store: &Store,
+        notes: &mut Vec<Note>,
+    ) -> Progress {
+        self.follow(tick, gate.command(), task);
+        self.endpoint.outgoing(HWSC_STATUS).clone_from(gate.status_box());
+        self.write_cell(workstation, notes);
+        let presence = self.exchange(tick, notes);
+        let gone = self.has_gone(presence);
+        if presence.new {
+            gate.initialize();
+        }
+        let before = gate.command().number;
+        if let Some(refusal) = gate.read(self.endpoint.incoming(HWSC_COMMAND)) {
+            notes.push((Level::Warning, "HWSC", format!("a command is refused: {refusal}")));
+        }
+        if gate.command().number != before {
+            self.begin(tick, gate.command());
+        }
+        self.read_cell(workstation, store, notes);
+        if gone { self.end(gate.command(), task, workstation) } else { Progress::Running }
+    }
+
+    /// The workstation controller has disconnected, and the run is over. Another one in its place is too late.
+    fn has_gone(&mut self, presence: Presence) -> bool {
+        let gone = presence.was_connected && (!presence.connected || presence.new && self.came);
+        self.came |= presence.connected;
+        gone && self.endpoint.clock() == ClockKind::Fast
+    }
+
+    /// How a run ends whose workstation controller has gone.
+    fn end(&self, command: &HwsCommand, task: &TaskOutputs, workstation: &SimulatedWorkstation) -> Progress {
+        if let Some(emergency) = workstation.emergency() {
+            return Progress::Failed(JobFailure::Emergency(emergency));
+        }
+        let status = &task.status;
+        let executes = status.echo != command.number || status.report == HwsReport::Executing;
+        let amid =
+            if executes { format!(" while {} was not finished", command.command) } else { String::new() };
+        let what = match &self.disconnect {
+            Some(why) if why.is_by_controller() => {
+                format!("the workstation controller was disconnected{amid}: {why}")
+            }
+            Some(why) if executes => {
+                format!("the workstation controller has gone{amid}: {why}")
+            }
+            None if executes => format!("the workstation controller has gone{amid}"),
+            Some(_) | None => return Progress::Over,
+        };
+        Progress::Failed(JobFailure::Commander(what))
+    }
+
+    fn begin(&mut self, tick: Tick, command: &HwsCommand) {
+        self.began = tick;
+        if self.begun_steps.len() < REMEMBERED {
+            self.begun_steps.push(BegunStep {
+                text: spelled(command),
+                is_command: true,
+                began: tick,
+                outcome: Outcome::Executing,
+                ticks: 0,
+            });
+        }
+    }
+
+    /// What has become of the last command.
+    fn follow(&mut self, tick: Tick, command: &HwsCommand, task: &TaskOutputs) {
+        let Some(step) = self.begun_steps.last_mut() else { return };
+        if step.outcome != Outcome::Executing || task.status.echo != command.number {
+            return;
+        }
+        step.ticks = tick.since(self.began);
+        step.outcome = match task.status.report {
+            HwsReport::Finished => Outcome::Finished,
+            HwsReport::Error | HwsReport::JoystickOn => Outcome::Failed,
+            HwsReport::Idle | HwsReport::Executing => Outcome::Executing,
+        };
+    }
+
+    fn write_cell(&mut self, workstation: &SimulatedWorkstation, notes: &mut Vec<Note>) {
+        let (emergency, fault) = (workstation.emergency(), workstation.fault());
+        let (trouble, text) = match (&emergency, &fault, &self.refused) {
+            (Some(text), _, _) => (Trouble::Emergency, text.as_str()),
+            (None, Some(text), _) => (Trouble::Fault, text.as_str()),
+            (None, None, Some(text)) => (Trouble::Refused, text.as_str()),
+            (None, None, None) => (Trouble::None, ""),
+        };
+        let status = CellStatus { echo: self.line, busy: workstation.busy(), trouble, text }.encode();
+        let mailbox = self.endpoint.outgoing(CELL_STATUS);
+        if mailbox.data() != status
+            && let Err(error) = mailbox.write(&status)
+        {
+            notes.push((Level::Error, "cell", error.to_string()));
+        }
+    }
+
+    /// Begin what the workstation controller wants of the cell.
+    fn read_cell(&mut self, workstation: &mut SimulatedWorkstation, store: &Store, notes: &mut Vec<Note>) {
+        let mailbox = self.endpoint.incoming(CELL_COMMAND);
+        if mailbox.mailgram() == self.line_read {
+            return;
+        }
+        self.line_read = mailbox.mailgram();
+        let begun = match cell::decode_line(mailbox.data()) {
+            Err(error) => Err(error.to_string()),
+            Ok(CellLine { number: 0, .. }) => Err("a number from 1 on was expected, found 0".to_owned()),
+            Ok(CellLine { number, text: Ok(_) }) if number == self.line => return,
+            Ok(CellLine { number, text }) => {
+                self.line = number;
+                text.map_err(|error| error.to_string()).and_then(|line| {
+                    let action = job::own_line(line, store).map_err(|error| error.to_string())?;
+                    workstation.begin(&action, line)
+                })
+            }
+        };
+        self.refused = begun.err();
+        if let Some(why) = &self.refused {
+            notes.push((Level::Warning, "cell", format!("a line of the workstation is refused: {why}")));
+        }
+    }
+}
+
+/// A command as a job has it.
+fn spelled(command: &HwsCommand) -> String {
+    let name = |name: Option<Name16>| name.map_or("--".to_owned(), |name| name.to_string());
+    let mut text = format!(
+        "== {} {} {:+} {} {} {:+} {} {} {} {}",
+        command.command,
+        name(command.object),
+        command.source_grip,
+        name(command.source),
+        command.source_sector.unwrap_or(0),
+        command.destination_grip,
+        name(command.destination),
+        command.destination_sector.unwrap_or(0),
+        name(command.end_at),
+        command.end_at_sector.unwrap_or(0),
+    );
+    if !command.serial.is_empty() {
+        text += &format!(" #{}", command.serial);
+    }
+    text
+}

@@ -1,0 +1,166 @@
+//! Keeps the ticks of a run on their grid, and says how well that went.
+
+use std::{collections::BTreeMap, fmt::Write as _};
+
+use executive::{
+    clock::Clock,
+    histogram::Histogram,
+    machine::Machine,
+    overrun::{Overrun, Overruns, PUNCTUAL, Policy},
+    realtime::{self, RealTime},
+    timing::{Stage, StageTimes},
+};
+use interfaces::{CommonMemory, DeviceInputs};
+use record::Level;
+
+use crate::result::TickTimes;
+
+/// Processes on the page of text: those with the longest times.
+const PROCESSES_SHOWN: usize = 3;
+
+/// The clock of a run, with what it measured.
+pub struct Pace {
+    clock: Clock,
+    policy: Policy,
+    overruns: Overruns,
+    late: Box<Histogram>,
+    granted: Option<RealTime>,
+    verdict: Option<String>,
+    was_holding: bool,
+}
+
+/// What the clock has to say for the log: how grave it is, and the words.
+pub type Remark = (Level, String);
+
+impl Pace {
+    /// One tick after the other.
+    #[must_use]
+    pub fn fast(policy: Policy) -> Self {
+        Self {
+            clock: Clock::Fast,
+            policy,
+            overruns: Overruns::new(policy),
+            late: Box::default(),
+            granted: None,
+            verdict: None,
+            was_holding: false,
+        }
+    }
+
+    /// From now on a tick every 40 ms. The threads of log and progress must run already: they keep their
+    /// ordinary priority.
+    pub fn ask_for_real_time(&mut self, core: Option<usize>) -> Remark {
+        let granted = realtime::acquire(core);
+        let text = format!("real time: {}; {}", granted.verdict, Machine::look());
+        let level = if granted.verdict.complete() { Level::Info } else { Level::Warning };
+        self.granted = Some(granted);
+        self.verdict = Some(text.clone());
+        self.clock = Clock::real();
+        (level, text)
+    }
+
+    /// Sleep until shortly before the next tick; true if there is time for a warm-up.
+    pub fn wake_early(&mut self) -> bool {
+        self.clock.wake_early()
+    }
+
+    /// Wait until the tick is due. Returns what was skipped on the way, and what is done about it.
+    pub fn wait(&mut self, stage_times: &StageTimes) -> Vec<Remark> {
+        let slots = self.clock.wait();
+        let late = self.clock.late();
+        self.late.add(u64::try_from(late.as_nanos()).unwrap_or(u64::MAX));
+        let overrun = self.overruns.observe(slots, stage_times, late);
+        let holding = self.overruns.is_holding();
+        let (stops, changed) = (matches!(self.policy, Policy::Stop(_)), holding != self.was_holding);
+        self.was_holding = holding;
+        // An empty vector does not allocate.
+        let mut remarks = Vec::new();
+        if let Some(overrun) = overrun {
+            remarks.push((Level::Warning, overrun.to_string()));
+        }
+        match (changed, holding) {
+            (true, true) if stops => {
+                remarks.push((Level::Error, "the robot is brought to rest, and the run ends".to_owned()));
+            }
+            (true, true) => remarks.push((
+                Level::Warning,
+                format!("the robot holds until {PUNCTUAL} ticks in a row were punctual"),
+            )),
+            (true, false) => remarks.push((Level::Info, "punctual again: the robot goes on".to_owned())),
+            (false, _) => {}
+        }
+        remarks
+    }
+
+    /// The inputs as the controller is to see them: a robot that holds has its velocity knob at zero.
+    #[must_use]
+    pub const fn inputs(&self, mut inputs: DeviceInputs) -> DeviceInputs {
+        inputs.joystick.velocity = self.overruns.knob(inputs.joystick.velocity);
+        inputs
+    }
+
+    /// After a tick: the overrun for which the run ends now.
+    pub fn ends(&mut self, memory: &CommonMemory) -> Option<Overrun> {
+        self.overruns.ends(memory)
+    }
+
+    /// What is done about skipped slots.
+    #[must_use]
+    pub const fn policy(&self) -> Policy {
+        self.policy
+    }
+
+    /// A tick every 40 ms, not one after the other.
+    #[must_use]
+    pub const fn is_real(&self) -> bool {
+        matches!(self.clock, Clock::Real(_))
+    }
+
+    /// Slots skipped so far.
+    #[must_use]
+    pub const fn skipped(&self) -> u64 {
+        self.clock.skipped()
+    }
+
+    /// What the system granted; `None` if ticks follow each other at once.
+    #[must_use]
+    pub fn verdict(&self) -> Option<String> {
+        self.verdict.clone()
+    }
+
+    /// How late ticks began; `None` if they follow each other at once.
+    #[must_use]
+    pub fn late(&self) -> Option<TickTimes> {
+        self.verdict.is_some().then(|| self.late.summary().into())
+    }
+
+    /// Skipped slots by what is to blame: a part of a tick, or `waking`.
+    #[must_use]
+    pub fn overruns(&self) -> BTreeMap<String, u64> {
+        let name = |part: Option<Stage>| part.map_or_else(|| "waking".to_owned(), |part| part.to_string());
+        self.overruns.by_part().map(|(part, slots)| (name(part), slots)).collect()
+    }
+}
+
+/// Times of all parts of a tick.
+#[must_use]
+pub fn times(stage_times: &StageTimes) -> BTreeMap<String, TickTimes> {
+    Stage::all().map(|part| (part.to_string(), stage_times.summary(part).into())).collect()
+}
+
+/// The processes that take longest, in a line.
+#[must_use]
+pub fn slowest(stage_times: &StageTimes) -> String {
+    let mut processes: Vec<_> = Stage::all()
+        .filter(|part| matches!(part, Stage::Process(_)))
+        .map(|part| (stage_times.summary(part).p99, part))
+        .collect();
+    processes.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    let mut text = String::new();
+    for (p99, part) in processes.into_iter().take(PROCESSES_SHOWN) {
+        let separator = if text.is_empty() { "" } else { ", " };
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{separator}{part} p99 {p99:.1} us");
+    }
+    text
+}

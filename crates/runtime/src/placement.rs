@@ -1,0 +1,255 @@
+//! Checks where the parts are: each must be where the last command that moved it was to leave it.
+//!
+//! A part is moved by a command if the gripper has had it while the command was executed. When the command
+//! finishes, its verb says where the part has to be (V.4.1): TRANSFER puts it down at the destination,
+//! RELEASE-TOOL leaves it in the drum, POSITION lets it go where the robot stands or keeps it, all others
+//! keep it. A command that fails says nothing; sent again, it goes on.
+//!
+//! From then on the part is looked at each tick until another command moves it, so that the tick is known in
+//! which it went astray: the one in which the hand let go of it, or the one in which it left its place. What
+//! counts is where it is at the end of the run, since a part that lies askew for a while may be pushed to its
+//! place.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use executive::failure::Failure;
+use interfaces::{
+    HwsCommand,
+    hws::{HwsReport, HwsStatus},
+};
+use plant::{CellDescription, PartState, description::Nest};
+use rcs_core::{name::Name16, tick::Tick};
+use record::remarks::hws_text;
+
+use crate::result::PartResult;
+
+/// A location and its sector, 0 for none.
+type Place = (String, u16);
+
+/// Where a command has to leave a part.
+#[derive(Clone, Debug, PartialEq)]
+enum Goal {
+    /// In the robot's gripper.
+    Gripper,
+    /// At a place; `None` if it is not known where the robot stood when it let go.
+    At(Option<Place>),
+}
+
+/// A part that a command has moved.
+#[derive(Clone, Debug)]
+struct Moved {
+    goal: Goal,
+    /// The command, in words.
+    command: String,
+    /// Where the hand had it last, world, in.
+    let_go: [f64; 3],
+    /// The tick in which it went astray, as long as it is.
+    astray: Option<Tick>,
+}
+
+/// The hand has a part, or has had it.
+#[derive(Clone, Copy, Debug)]
+struct InHand {
+    /// Where, world, in.
+    at: [f64; 3],
+    /// The tick in which it was seen there last.
+    last: Tick,
+}
+
+/// A command that moves parts, with the attempts at it that failed.
+#[derive(Clone, Debug, Default)]
+struct Attempt {
+    command: HwsCommand,
+    /// Numbers of the parts that the gripper has had since it was sent.
+    moved: BTreeSet<u32>,
+    is_over: bool,
+}
+
+/// The check of a run.
+#[derive(Clone, Debug)]
+pub struct PlacementCheck {
+    /// A part that is so near to its place is there, in.
+    tolerance: f64,
+    number: u32,
+    attempt: Attempt,
+    /// Where the robot was sent last.
+    stands_at: Option<Place>,
+    moved: BTreeMap<u32, Moved>,
+    in_hand: BTreeMap<u32, InHand>,
+    /// The first command that has finished without the part that it is about.
+    empty: Option<(Tick, String)>,
+}
+
+impl PlacementCheck {
+    /// A check of what happens in a cell.
+    #[must_use]
+    pub fn new(cell: &CellDescription) -> Self {
+        Self {
+            tolerance: cell.placing_tolerance,
+            number: 0,
+            attempt: Attempt { is_over: true, ..Attempt::default() },
+            stands_at: None,
+            moved: BTreeMap::new(),
+            in_hand: BTreeMap::new(),
+            empty: None,
+        }
+    }
+
+    /// Look at a tick that is over: the command that Task had, what it made of it, and where the parts are now.
+    pub fn look(
+        &mut self,
+        tick: Tick,
+        hws: &HwsCommand,
+        task: &HwsStatus,
+        cell: &CellDescription,
+        parts: &[PartState],
+    ) {
+        if hws.number != self.number {
+            self.number = hws.number;
+            self.begin(hws);
+        }
+        for part in parts.iter().filter(|part| part.held) {
+            self.in_hand.insert(part.id, InHand { at: part.position, last: tick });
+            if !self.attempt.is_over {
+                self.attempt.moved.insert(part.id);
+            }
+        }
+        if !self.attempt.is_over
+            && (task.echo, task.report) == (self.attempt.command.number, HwsReport::Finished)
+        {
+            self.conclude(tick, cell, parts);
+        }
+        let open = if self.attempt.is_over { None } else { Some(&self.attempt.moved) };
+        for part in parts.iter().filter(|part| open.is_none_or(|moved| !moved.contains(&part.id))) {
+            let Some(moved) = self.moved.get_mut(&part.id) else { continue };
+            if is_there(&moved.goal, moved.let_go, self.tolerance, cell, part) {
+                moved.astray = None;
+            } else if moved.astray.is_none() {
+                moved.astray = Some(tick);
+            }
+        }
+    }
+
+    /// A command comes. PAUSE and its like move nothing, and a command that is sent again goes on.
+    fn begin(&mut self, hws: &HwsCommand) {
+        if matches!(hws.command.as_str(), "PAUSE" | "STARTUP" | "SHUTDOWN") {
+            return;
+        }
+        let again = HwsCommand { number: self.attempt.command.number, ..*hws } == self.attempt.command;
+        if again && !self.attempt.is_over {
+            self.attempt.command.number = hws.number;
+            return;
+        }
+        if !self.attempt.is_over {
+            // Nothing is known of what it moved.
+            self.moved.retain(|id, _| !self.attempt.moved.contains(id));
+        }
+        self.attempt = Attempt { command: *hws, ..Attempt::default() };
+    }
+
+    /// The command has finished: what it has moved has to be where it leaves it.
+    fn conclude(&mut self, tick: Tick, cell: &CellDescription, parts: &[PartState]) {
+        let attempt = std::mem::take(&mut self.attempt);
+        let command = hws_text(&attempt.command);
+        if attempt.moved.is_empty() && takes_object(&attempt.command) && self.empty.is_none() {
+            self.empty = Some((tick, command.clone()));
+        }
+        let destination = place(attempt.command.destination, attempt.command.destination_sector);
+        for part in parts.iter().filter(|part| attempt.moved.contains(&part.id)) {
+            let goal = match attempt.command.command.as_str() {
+                "TRANSFER" => Goal::At(destination.clone()),
+                "RELEASE-TOOL" => Goal::At(
+                    Some((cell.drum.location.clone(), 0)).filter(|(location, _)| !location.is_empty()),
+                ),
+                "POSITION" if !part.held => Goal::At(self.stands_at.clone()),
+                _ => Goal::Gripper,
+            };
+            let InHand { at, last } =
+                self.in_hand.get(&part.id).copied().unwrap_or(InHand { at: part.position, last: tick });
+            let astray = (!is_there(&goal, at, self.tolerance, cell, part)).then_some(last);
+            self.moved.insert(part.id, Moved { goal, command: command.clone(), let_go: at, astray });
+        }
+        let source = place(attempt.command.source, attempt.command.source_sector);
+        if attempt.command.command.as_str() == "POSITION" {
+            // What lies there may be pushed, on purpose.
+            for (id, moved) in
+                self.moved.iter_mut().filter(|(_, moved)| moved.goal == Goal::At(source.clone()))
+            {
+                moved.let_go =
+                    parts.iter().find(|part| part.id == *id).map_or(moved.let_go, |part| part.position);
+            }
+        }
+        self.stands_at = destination.or(source);
+        self.attempt.is_over = true;
+    }
+
+    /// Why a job that has come to its end has not finished: the part that went astray first; `None` if all
+    /// are where they should be.
+    #[must_use]
+    pub fn verdict(&self, parts: &[PartState]) -> Option<Failure> {
+        let astray = parts.iter().filter_map(|part| {
+            let moved = self.moved.get(&part.id)?;
+            let tick = moved.astray?;
+            let place = match &moved.goal {
+                Goal::Gripper => "in the gripper".to_owned(),
+                Goal::At(Some((location, 0))) => format!("at {location}, within {} in", self.tolerance),
+                Goal::At(Some((location, sector))) => {
+                    format!("at {location} sector {sector}, within {} in", self.tolerance)
+                }
+                Goal::At(None) => format!("within {} in of where the fingers opened", self.tolerance),
+            };
+            let text =
+                format!("{}; {} was to leave it {place}", PartResult::from(part.clone()), moved.command);
+            Some((tick, text))
+        });
+        let empty = self.empty.iter().map(|(tick, command)| {
+            (*tick, format!("{command} has finished, but the gripper has had no part meanwhile"))
+        });
+        let (tick, text) = astray.chain(empty).min_by_key(|(tick, _)| *tick)?;
+        let process = "cell".to_owned();
+        Some(Failure { tick, process, table: None, row: None, text, stopped: false })
+    }
+}
+
+/// The command is about an object that the gripper has to have.
+fn takes_object(command: &HwsCommand) -> bool {
+    command.object.is_some() && !matches!(command.command.as_str(), "POSITION" | "RELEASE-TOOL")
+}
+
+fn place(location: Option<Name16>, sector: Option<i32>) -> Option<Place> {
+    let sector = sector.and_then(|sector| u16::try_from(sector).ok()).unwrap_or(0);
+    Some((location?.to_string(), sector))
+}
+
+/// A part is where it has to be. At a place that the cell description has it must be there, and near the
+/// middle of it; elsewhere, and in trays, it must not have moved since the hand let it go. How it sits in the
+/// vise is a matter of the vise and of machining.
+fn is_there(goal: &Goal, let_go: [f64; 3], tolerance: f64, cell: &CellDescription, part: &PartState) -> bool {
+    let place = match goal {
+        Goal::Gripper => return part.held,
+        Goal::At(place) => place.as_ref().filter(|place| has_place(cell, place, &part.name)),
+    };
+    if part.held {
+        return false;
+    }
+    let moved = part.position.iter().zip(let_go).map(|(is, was)| (is - was).powi(2)).sum::<f64>().sqrt();
+    match place {
+        None => moved <= tolerance,
+        Some((location, sector)) => {
+            let near = part.error.is_none_or(|error| error <= tolerance) && moved <= tolerance;
+            (&part.location, part.sector) == (location, *sector) && (near || *location == cell.vise.location)
+        }
+    }
+}
+
+/// The cell has a place for a part there.
+fn has_place(cell: &CellDescription, (location, sector): &Place, part: &str) -> bool {
+    let in_tray =
+        |unit: &str, sectors: usize| unit == location && (1..=sectors).contains(&usize::from(*sector));
+    let in_nest = |nest: &Nest| {
+        (&nest.location, nest.sector) == (location, *sector) && nest.parts.iter().any(|kind| kind == part)
+    };
+    cell.tray.iter().any(|tray| in_tray(&tray.unit, tray.sectors.len()))
+        || cell.nest.iter().any(in_nest)
+        || [&cell.vise.location, &cell.drum.location, &cell.pedestal.location].contains(&location)
+}

@@ -1,0 +1,211 @@
+//! The other end of the DEPC line: the T3 controller of the simulated cell, a robot at a serial port, or a
+//! robot with EGM behind a DEPC function of its own.
+//!
+//! With the simulated one the bytes of a tick go through the fault injector, if there is a fault plan, and
+//! then through the cell. With a serial port they go to the port; the rest of the cell (gripper, camera,
+//! tray, vise, resolvers) is simulated all the same, and follows the position that the robot has
+//! acknowledged. A robot with EGM says where it is: that is what the cell follows, and what the resolvers read.
+
+use std::{
+    sync::atomic::Ordering,
+    thread,
+    time::{Duration, Instant},
+};
+
+use depc::{
+    Plate,
+    fault::{Counts, Direction, Injector},
+    wire::FRAME_BYTES,
+};
+use executive::{
+    alloc::Section,
+    histogram::{Histogram, Summary},
+    serial::{SerialCounts, SerialLine},
+};
+use geometry::{frame::Frame, pose::WireFrame};
+use interfaces::device::{DeviceInputs, DeviceOutputs, LinkBytes};
+use plant::Cell;
+use rcs_core::tick::{TICK_MS, Tick};
+
+use crate::{config::RunConfig, egm::EgmPort, observer::Observer};
+
+/// Length of a tick.
+const PERIOD: Duration = Duration::from_millis(TICK_MS);
+
+/// Who is at the other end of the line.
+pub enum Robot {
+    /// The simulated T3 controller, behind a line that may have faults.
+    Simulated(Option<Box<Injector>>),
+    /// A robot controller at a serial port.
+    Serial(Port),
+    /// A robot with EGM.
+    Egm(Box<EgmPort>),
+}
+
+/// A serial line, with what is measured on it.
+pub struct Port {
+    line: SerialLine,
+    /// When the last data command was handed to the port.
+    sent: Option<Instant>,
+    /// By how much the time between two data commands differs from a tick, ns.
+    deviations: Box<Histogram>,
+}
+
+impl Port {
+    /// The robot controller at this line.
+    #[must_use]
+    pub fn new(line: SerialLine) -> Self {
+        Self { line, sent: None, deviations: Box::default() }
+    }
+
+    fn send(&mut self, tx: &LinkBytes) {
+        let now = Instant::now();
+        // What the port does not take is counted by the line, makes it rest for a tick, and is told to T3I.
+        self.line.send(tx);
+        if tx.as_slice().len() != FRAME_BYTES {
+            return;
+        }
+        if let Some(before) = self.sent.replace(now) {
+            let deviation = now.saturating_duration_since(before).abs_diff(PERIOD);
+            self.deviations.add(u64::try_from(deviation.as_nanos()).unwrap_or(u64::MAX));
+        }
+    }
+
+    /// What is wrong with the port, in words; `None` while it is there.
+    #[must_use]
+    pub fn trouble(&self) -> Option<String> {
+        (!self.line.is_there()).then(|| format!("the port {} has disappeared", self.line.path().display()))
+    }
+
+    /// What went over the port.
+    #[must_use]
+    pub const fn counts(&self) -> SerialCounts {
+        self.line.counts()
+    }
+
+    /// By how much the time between two data commands differed from a tick.
+    #[must_use]
+    pub fn deviations(&self) -> Summary {
+        self.deviations.summary()
+    }
+}
+
+impl Robot {
+    /// Wait until the robot controller at a port has switched DTR on: for so many seconds at most, and not
+    /// beyond an interruption. Without it the run begins all the same, and fails by name.
+    pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
+        let port = match self {
+            Self::Simulated(_) => return,
+            Self::Serial(port) => port,
+            Self::Egm(egm) => return egm.gather(config, observer),
+        };
+        let (wait, interrupted) = (config.wait, &config.stop);
+        let (limit, started) = (Duration::from_secs(wait.into()), Instant::now());
+        let mut said = false;
+        while !port.line.is_ready() && !interrupted.load(Ordering::Relaxed) {
+            let path = port.line.path().display();
+            if started.elapsed() >= limit {
+                let text = format!("the robot controller at {path} has not switched DTR on within {wait} s");
+                observer.message(&text);
+                return;
+            }
+            if !said {
+                observer.message(&format!(
+                    "waiting for the robot controller at {path}: its DTR is off; power it up and start its \
+                     program (IV.3.3)"
+                ));
+                said = true;
+            }
+            thread::sleep(Duration::from_millis(10));
+        }
+    }
+
+    /// Before the controller's tick: what has come over the line. Counted as a part of the tick.
+    pub fn receive(&mut self, inputs: &mut DeviceInputs) {
+        let _section = Section::enter();
+        match self {
+            Self::Simulated(_) => {}
+            Self::Serial(port) => {
+                inputs.link_rx = LinkBytes::default();
+                inputs.link_ready = port.line.receive(&mut inputs.link_rx);
+                inputs.link_unsent = port.line.has_unsent();
+            }
+            Self::Egm(egm) => egm.receive(inputs),
+        }
+    }
+
+    /// After the controller's tick: what goes over the line. `exact` gives the tool frame that Prim has
+    /// commanded, and T3I got as the other; it is asked for a robot with EGM only. Counted as a part of the tick.
+    pub fn send(&mut self, outputs: &DeviceOutputs, exact: impl FnOnce() -> Option<(WireFrame, Frame)>) {
+        let _section = Section::enter();
+        match self {
+            Self::Simulated(_) => {}
+            Self::Serial(port) => port.send(&outputs.link_tx),
+            Self::Egm(egm) => egm.send(&outputs.link_tx, exact()),
+        }
+    }
+
+    /// The rest of the tick: the cell moves. `acknowledged` gives the position that the robot has
+    /// last acknowledged or reported, if any is known; it is asked for a robot at a port only.
+    pub fn advance(
+        &mut self,
+        tick: Tick,
+        cell: &mut Cell,
+        outputs: &DeviceOutputs,
+        acknowledged: impl FnOnce() -> Option<Plate>,
+    ) -> DeviceInputs {
+        match self {
+            Self::Serial(_) => cell.step_following(acknowledged().as_ref(), outputs),
+            Self::Egm(egm) => {
+                egm.advance(PERIOD);
+                cell.step_following(egm.feedback().as_ref(), outputs)
+            }
+            Self::Simulated(None) => cell.step(outputs),
+            Self::Simulated(Some(injector)) => {
+                let (rx, ready) = injector.carry(Direction::ToController, tick, &outputs.link_tx, true);
+                cell.set_host_ready(ready);
+                let mut inputs = cell.step(&DeviceOutputs { link_tx: rx, ..*outputs });
+                (inputs.link_rx, inputs.link_ready) =
+                    injector.carry(Direction::ToHost, tick, &inputs.link_rx, inputs.link_ready);
+                inputs
+            }
+        }
+    }
+
+    /// Faults that were injected, both directions together.
+    #[must_use]
+    pub fn faults(&self) -> Option<Counts> {
+        match self {
+            Self::Simulated(Some(injector)) => Some(injector.total()),
+            _ => None,
+        }
+    }
+
+    /// The robot is none of the simulated cell.
+    #[must_use]
+    pub const fn is_elsewhere(&self) -> bool {
+        !matches!(self, Self::Simulated(_))
+    }
+
+    /// What is wrong with the way to a robot elsewhere, in words; `None` while all is well.
+    #[must_use]
+    pub fn trouble(&self) -> Option<String> {
+        match self {
+            Self::Simulated(_) => None,
+            Self::Serial(port) => port.trouble(),
+            Self::Egm(egm) => egm.trouble().map(str::to_owned),
+        }
+    }
+
+    /// The serial port, if there is one.
+    #[must_use]
+    pub const fn port(&self) -> Option<&Port> {
+        if let Self::Serial(port) = self { Some(port) } else { None }
+    }
+
+    /// The robot with EGM, if it is one.
+    #[must_use]
+    pub const fn egm(&self) -> Option<&EgmPort> {
+        if let Self::Egm(egm) = self { Some(egm) } else { None }
+    }
+}

@@ -1,0 +1,285 @@
+//! Everything that must be there before the first tick.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use depc::fault::Injector;
+use executive::serial::SerialLine;
+use neighbours::{
+    data_system::{self, ANSWER_TICKS, Agent, DataSystem, Outbox, Pace},
+    network::{self, ControllerKeys, Endpoint, Listener, Role},
+    pedestal, vision,
+    workstation::player::{Hwsc, TIME_LIMIT},
+};
+use os_io::files;
+use plant::{
+    Cell, CellDescription,
+    camera::Analysis,
+    fault::text::{self, FaultFile},
+};
+use record::LogFile;
+use taskdata::load::{Diagnostics, Job, Source, Store};
+
+use crate::{
+    agreement,
+    config::{ClockKind, LogTarget, RobotKind, RunConfig},
+    egm::EgmPort,
+    error::StartError,
+    observer::Observer,
+};
+use crate::{
+    neighbours::{Emulator, Neighbours, Network, WorkstationSource},
+    robot::{Port, Robot},
+    switched::Switched,
+};
+
+/// Directory of the jobs in the data directory.
+pub const JOBS: &str = "jobs";
+/// Extension of job files.
+pub const EXTENSION: &str = "job";
+/// The cell description in the data directory.
+pub const CELL: &str = "cell.toml";
+
+/// What a run works with.
+pub struct Setup {
+    /// Task data.
+    pub store: Store,
+    /// The job.
+    pub job: Job,
+    /// The cell description as written.
+    pub description_text: String,
+    /// The cell description.
+    pub description: CellDescription,
+    /// The cell.
+    pub cell: Cell,
+    /// The file of faults as written; empty without one.
+    pub faults_text: String,
+    /// The other end of the line.
+    pub robot: Robot,
+    /// Who commands, and the Data System.
+    pub neighbours: Neighbours,
+    /// Where the log goes.
+    pub log: Option<LogFile>,
+}
+
+impl Setup {
+    /// Read, check and build everything.
+    ///
+    /// # Errors
+    /// [`StartError`], with all errors of the data.
+    pub fn load(config: &RunConfig, observer: &mut dyn Observer) -> Result<Self, StartError> {
+        if config.robot.kind.lives_in_real_time() && config.clock != ClockKind::Real {
+            return Err(StartError::NotInRealTime);
+        }
+        let data = &config.data;
+        let TaskFiles { store, job, job_path, warnings } = TaskFiles::load(data, config.played())?;
+        let CellFile { text: description_text, description, warning } =
+            CellFile::load(data, &store, &job, &job_path)?;
+        warnings.into_iter().chain(warning).for_each(|line| observer.message(&line));
+        let (faults, faults_text) = faults(config, &description)?;
+        let cell = Cell::with_faults(&description, config.seed, &faults.cell)?;
+        let sees_elsewhere = config.outside.contains(&Role::Vision);
+        let cell = if sees_elsewhere { cell.with_vision_elsewhere() } else { cell };
+        let log = match &config.log {
+            LogTarget::None => None,
+            LogTarget::File(path) => Some(LogFile::claim(path)?),
+            LogTarget::Default => Some(LogFile::claim_free(Path::new("runs"), &job.name)?),
+        };
+        let neighbours = neighbours(config, &job, &description, observer)?;
+        // The last of all: a robot hears nothing of a run that cannot begin.
+        let robot = match &config.robot.kind {
+            RobotKind::Sim => Robot::Simulated(faults.line.map(|plan| Box::new(Injector::new(&plan)))),
+            RobotKind::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
+            RobotKind::Egm(options) => Robot::Egm(Box::new(EgmPort::open(options, config, observer)?)),
+        };
+        Ok(Self { store, job, description_text, description, cell, faults_text, robot, neighbours, log })
+    }
+}
+
+/// What the control processes work with, on every board.
+pub struct TaskFiles {
+    /// Task data.
+    pub store: Store,
+    /// The job, with the task data that it loads on the way.
+    pub job: Job,
+    /// Its file; empty without one.
+    pub job_path: PathBuf,
+    /// Lines that say that there are warnings.
+    pub warnings: Vec<String>,
+}
+
+impl TaskFiles {
+    /// Read and check task data and job; without one it has no steps: another process commands.
+    ///
+    /// # Errors
+    /// [`StartError`], with all errors of the data.
+    pub fn load(data: &Path, job: Option<&str>) -> Result<Self, StartError> {
+        if !data.is_dir() {
+            return Err(StartError::NoData(data.to_owned()));
+        }
+        let unusable = |what: String| move |report| StartError::Data { what, report };
+        let (store, in_data) =
+            Store::load(data).map_err(unusable(format!("the task data under {}", data.display())))?;
+        let job_path = job.map(|job| job_path(job, data)).transpose()?.unwrap_or_default();
+        let read = match job {
+            Some(_) => Job::load(&job_path, &store),
+            None => {
+                let name = format!("{}.{EXTENSION}", Role::Workstation);
+                Job::from_source(Source { name, text: "".into() }, &store)
+            }
+        };
+        let (job, in_job) = read.map_err(unusable(format!("the job {}", job_path.display())))?;
+        let warnings = [warning(&in_data, "the task data"), warning(&in_job, "the job")];
+        Ok(Self { store, job, job_path, warnings: warnings.into_iter().flatten().collect() })
+    }
+}
+
+/// The cell description of a data directory.
+pub struct CellFile {
+    /// As written.
+    pub text: String,
+    /// As read.
+    pub description: CellDescription,
+    /// A line that says that there are warnings.
+    pub warning: Option<String>,
+}
+
+impl CellFile {
+    /// Read the description, and check that task data, job and description mean the same cell.
+    ///
+    /// # Errors
+    /// [`StartError`], with all errors of the data.
+    pub fn load(data: &Path, store: &Store, job: &Job, job_path: &Path) -> Result<Self, StartError> {
+        let path = data.join(CELL);
+        let text =
+            files::read_text(&path).map_err(|source| StartError::Read { path: path.clone(), source })?;
+        let description = CellDescription::from_toml(&text).map_err(|error| StartError::Data {
+            what: format!("the cell description {}", path.display()),
+            report: Box::new(agreement::cell_report(text.clone(), &error)),
+        })?;
+        let source = agreement::source(text.clone());
+        let report = agreement::of_cell(source.clone(), &description, store);
+        let report = report.with(agreement::of_job(job, &source, &description, store, &path));
+        if report.has_errors() {
+            let what = format!("the job {} in the cell of {}", job_path.display(), path.display());
+            return Err(StartError::Data { what, report: Box::new(report) });
+        }
+        let warning = warning(&report, "the cell description");
+        Ok(Self { text, description, warning })
+    }
+}
+
+/// Who is in this process, and where the others can connect.
+fn neighbours(
+    config: &RunConfig,
+    job: &Job,
+    description: &CellDescription,
+    observer: &mut dyn Observer,
+) -> Result<Neighbours, StartError> {
+    let (clock, pace) = match config.clock {
+        ClockKind::Fast => (network::ClockKind::Fast, Pace::Wait),
+        ClockKind::Real => (network::ClockKind::Real, Pace::Poll),
+    };
+    let endpoint = |role: Role| {
+        let endpoint = || Endpoint::new(role, clock).map(|new| new.until(Arc::clone(&config.stop)));
+        let endpoint = config.outside.contains(&role).then(endpoint).transpose();
+        endpoint.map_err(StartError::Endpoint)
+    };
+    let (commands, items) = (endpoint(Role::Workstation)?, endpoint(Role::DataSystem)?);
+    let (regrips, sees) = (endpoint(Role::Pedestal)?, endpoint(Role::Vision)?);
+    let keys = config.keys.as_deref().map(ControllerKeys::load).transpose()?;
+    let network = match &config.network {
+        Some(address) => {
+            let endpoints = || commands.iter().chain(&items).chain(&regrips).chain(&sees);
+            let address = address.clone().configured(config.zenoh_config.clone())?;
+            let listener = Listener::start(&address, keys, endpoints())?;
+            observer.message(&format!("neighbours can connect at {}", listener.address()));
+            Some(Network { handles: endpoints().map(Endpoint::handle).collect(), _listener: listener })
+        }
+        None => None,
+    };
+    let data_system = match items {
+        Some(endpoint) => DataSystem::elsewhere(Agent::new(endpoint, outbox(config)?), pace),
+        None => {
+            let file = config.data_base.as_deref();
+            let items = file.map_or_else(data_system::Store::in_memory, data_system::Store::open)?;
+            DataSystem::new(items, ANSWER_TICKS, pace)
+        }
+    };
+    let hwsc = Hwsc::new(job.steps.clone(), TIME_LIMIT).with_retries(config.retry);
+    let workstation = match commands {
+        Some(endpoint) if config.stand_alone => {
+            WorkstationSource::Switched(Box::new(Switched::new(hwsc, endpoint, config.wait)))
+        }
+        Some(endpoint) => WorkstationSource::outside(endpoint),
+        None => WorkstationSource::Emulator(Box::new(Emulator::new(hwsc))),
+    };
+    let pedestal = regrips.map(|endpoint| Box::new(pedestal::Agent::new(endpoint)));
+    let vision =
+        sees.map(|endpoint| vision::Port::new(endpoint, config.seed, Analysis::fingerprint(description)));
+    Ok(Neighbours::new(workstation, data_system, pedestal, vision, network))
+}
+
+/// Where updates wait for a Data System in another process.
+fn outbox(config: &RunConfig) -> Result<Outbox, StartError> {
+    if config.data_base.is_some() {
+        return Err(StartError::DataBaseElsewhere);
+    }
+    let file = &config.outbox;
+    if let Some(directory) = file.parent().filter(|path| !path.as_os_str().is_empty()) {
+        fs::create_dir_all(directory)
+            .map_err(|source| StartError::Read { path: directory.to_owned(), source })?;
+    }
+    Ok(Outbox::open(file)?)
+}
+
+/// The faults of `--faults`, none without it, with their text.
+fn faults(config: &RunConfig, cell: &CellDescription) -> Result<(FaultFile, String), StartError> {
+    let Some(path) = &config.faults else { return Ok(Default::default()) };
+    let text = files::read_text(path).map_err(|source| StartError::Read { path: path.clone(), source })?;
+    let faults = text::parse(&path.display().to_string(), &text, cell)?;
+    if config.robot.kind != RobotKind::Sim && faults.line.is_some() {
+        return Err(StartError::FaultsAtPort);
+    }
+    Ok((faults, text))
+}
+
+/// Warnings do not keep a run from beginning; one line says that there are some.
+fn warning(report: &Diagnostics, what: &str) -> Option<String> {
+    match report.warnings().count() {
+        0 => None,
+        1 => Some(format!("1 warning in {what}; rcs-run check shows it")),
+        count => Some(format!("{count} warnings in {what}; rcs-run check shows them")),
+    }
+}
+
+/// The file of a job: a path if it looks like one or is one, else a name in the data directory.
+pub fn job_path(job: &str, data: &Path) -> Result<PathBuf, StartError> {
+    let path = PathBuf::from(job);
+    let named = data.join(JOBS).join(job).with_added_extension(EXTENSION);
+    if named.is_file() {
+        return Ok(named);
+    }
+    if path.is_file() {
+        return Ok(path);
+    }
+    let known = jobs(data);
+    let known =
+        known.iter().filter_map(|path| path.file_stem()).map(|name| name.to_string_lossy().into_owned());
+    Err(StartError::NoJob { job: job.to_owned(), known: known.collect() })
+}
+
+/// All jobs of a data directory.
+#[must_use]
+pub fn jobs(data: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(data.join(JOBS)).into_iter().flatten().flatten();
+    let mut jobs: Vec<PathBuf> = entries
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|e| e == EXTENSION))
+        .collect();
+    jobs.sort();
+    jobs
+}

@@ -1,0 +1,135 @@
+//! How a run ended, and why: what becomes the last line on standard error, and the exit status.
+
+use ::neighbours::workstation::player::{JobFailure, Workstation as _};
+use executive::failure::{self, Failure};
+use interfaces::{ExternalInputs, t3i::LinkFault};
+use levels::ladder::Ladder;
+use rcs_core::tick::Tick;
+
+use crate::Run;
+
+/// How a run ended.
+pub enum Ending {
+    /// The job is over.
+    Finished,
+    /// `--ticks` were run.
+    Stopped,
+    /// Something went wrong.
+    Failed(Failure),
+}
+
+impl Ending {
+    /// A job in which something went wrong in the cell has not finished; one that failed may have failed because of it.
+    fn checked(self, verdict: Failure) -> Self {
+        match self {
+            Self::Finished | Self::Stopped => Self::Failed(verdict),
+            Self::Failed(failure) if failure.text == verdict.text => Self::Failed(failure),
+            Self::Failed(failure) => {
+                let when = if verdict.tick <= failure.tick { "before" } else { "later" };
+                let text = format!("{}; {when}, {}", failure.text, verdict.text);
+                Self::Failed(Failure { text, ..failure })
+            }
+        }
+    }
+}
+
+impl Run {
+    /// The end of a run, with what went wrong in the cell: what the robot ran into, and what is not where it should be.
+    pub(super) fn checked(&self, ending: Ending) -> Ending {
+        let parts = self.workstation.cell.parts();
+        let mut verdicts: Vec<Failure> =
+            self.check.verdict().into_iter().chain(self.placement.verdict(&parts)).collect();
+        verdicts.sort_by_key(|verdict| verdict.tick);
+        let simulated = |verdict: Failure| match self.robot.is_elsewhere() {
+            true => Failure { text: format!("in the simulated cell, {}", verdict.text), ..verdict },
+            false => verdict,
+        };
+        verdicts.into_iter().map(simulated).fold(ending, Ending::checked)
+    }
+
+    /// The end of a run that another process commands. It has no job that would fail because of it, so that
+    /// it counts how the robot is left.
+    pub(super) fn left(&self, ending: Ending) -> Ending {
+        let commanding = self.neighbours.are_commanding();
+        self.standing().filter(|_| commanding).map_or(ending, Ending::Failed)
+    }
+
+    /// What keeps the robot from moving now: an emergency, or a line that is lost.
+    fn standing(&self) -> Option<Failure> {
+        if let Some(what) = self.workstation.emergency() {
+            return self.stopped(&what);
+        }
+        let status = &self.runner.memory().t3i.status;
+        let lost = status.fault != LinkFault::None && !status.link_running;
+        lost.then(|| {
+            let text = match self.robot.trouble() {
+                Some(trouble) => format!("T3I: {}; {trouble}", status.fault.text()),
+                None => format!("T3I: the link to the robot is lost: {}", status.fault.text()),
+            };
+            Failure { stopped: true, ..outside(self.runner.tick(), "T3I", text) }
+        })
+    }
+
+    /// A lost link with the warning of the T3 controller that it follows from.
+    fn warned(&self, failure: Failure) -> Failure {
+        match &self.warning {
+            Some((tick, warning)) if failure.stopped && *tick <= failure.tick => {
+                Failure { text: format!("{warning} at tick {tick}; {}", failure.text), ..failure }
+            }
+            _ => failure,
+        }
+    }
+
+    /// The emergency that has stopped the robot, and what has become of the arm.
+    fn stopped(&self, what: &str) -> Option<Failure> {
+        let emergency = self.workstation.last_emergency()?;
+        let text = format!("{what}; the arm {}", emergency.droop.end());
+        Some(Failure { stopped: true, ..outside(emergency.tick, "T3", text) })
+    }
+
+    /// Why the job failed: the explanation of the process that knows, or what the workstation controller saw.
+    pub(super) fn explain(&self, failure: &JobFailure, external: &ExternalInputs) -> Failure {
+        match failure {
+            JobFailure::Emergency(what) => {
+                if let Some(stopped) = self.stopped(what) {
+                    return stopped;
+                }
+            }
+            JobFailure::Commander(what) => {
+                if let Some(standing) = self.standing() {
+                    return Failure { text: format!("{}; {what}", standing.text), ..standing };
+                }
+            }
+            _ => {}
+        }
+        let processes = Ladder::processes();
+        let known = match failure {
+            JobFailure::Command(_) => self.runner.watch().failure(processes),
+            _ => None,
+        };
+        let trouble = self.robot.trouble();
+        let known = known.map(|known| match trouble {
+            Some(trouble) if known.stopped => Failure { text: format!("{trouble}; {}", known.text), ..known },
+            _ => self.warned(known),
+        });
+        known.unwrap_or_else(|| {
+            let tick = match failure {
+                JobFailure::Unfinished { tick, .. } => *tick,
+                _ => self.runner.tick(),
+            };
+            let text = match failure {
+                JobFailure::TimeLimit(_) => {
+                    let doing = failure::present_commands(processes, &external.hws, self.runner.memory());
+                    format!("HWSC: {failure}; {doing}")
+                }
+                _ => format!("HWSC: {failure}"),
+            };
+            outside(tick, "HWSC", text)
+        })
+    }
+}
+
+/// A failure that no control process reports.
+pub fn outside(tick: Tick, process: &str, text: String) -> Failure {
+    Failure { tick, process: process.to_owned(), table: None, row: None, text, stopped: false }
+}

@@ -1,0 +1,440 @@
+//! The workstation of the simulated cell, as the workstation controller's emulator sees it.
+
+use interfaces::device::{joystick_frame, single_step};
+use neighbours::workstation::player::Workstation;
+use plant::{
+    BoxAction, BoxButton, Cell, CellDescription, CellEvent, Droop, EStop, Key, Placement, WorkstationAction,
+    WorkstationError, t3::Stage,
+};
+use rcs_core::tick::{TICK_MS, Tick};
+use taskdata::load::job::{
+    Drum, EStop as Site, Joystick, JoystickButton, JoystickFrame, Offset, Panel, Stepped, ViseOpening,
+    Workstation as Action,
+};
+
+/// Ticks that an arm without pressure is given to come to rest before the run ends: two minutes. From HOME it takes
+/// 40 s; one that slides off what it has fallen on, twice as long.
+const SETTLING_LIMIT: u64 = 120_000 / TICK_MS;
+
+/// A job that hands over needs a run in which a workstation controller can connect.
+const NO_HAND_OVER: &str = "no workstation controller can connect to this run; \
+                            --network ADDRESS --outside workstation --stand-alone lets one";
+
+/// An emergency that has stopped the robot.
+#[derive(Clone, Debug)]
+pub struct Emergency {
+    /// When the pressure went.
+    pub tick: Tick,
+    /// Why, where, and what has become of the arm.
+    pub droop: Droop,
+}
+
+/// The cell, with what went wrong in it.
+pub struct SimulatedWorkstation {
+    /// The cell.
+    pub cell: Cell,
+    state: WorkstationState,
+}
+
+/// What is known of a workstation beside its cell.
+#[derive(Clone, Debug, Default)]
+pub struct WorkstationState {
+    fault: Option<String>,
+    /// The robot is not the simulated one: its panel is out of reach.
+    robot_elsewhere: bool,
+    /// A workstation controller can connect, and the job hand over to it.
+    hands_over: bool,
+    emergency: Option<Emergency>,
+    /// The arm had no pressure after the last tick.
+    stopped: bool,
+    /// Numbers of the reloads that were asked for since the last look.
+    loads: Vec<u32>,
+}
+
+impl SimulatedWorkstation {
+    /// A workstation around a cell.
+    pub fn new(cell: Cell) -> Self {
+        Self::with_state(cell, WorkstationState::default())
+    }
+
+    /// A workstation around a cell that was restored, which goes on from the state that was kept with it.
+    pub const fn with_state(cell: Cell, state: WorkstationState) -> Self {
+        Self { cell, state }
+    }
+
+    /// What is to be kept with a cell that is saved.
+    pub const fn state(&self) -> &WorkstationState {
+        &self.state
+    }
+
+    /// The cell follows a robot elsewhere, whose controller no line of a job can reach.
+    #[must_use]
+    pub fn with_robot_elsewhere(mut self) -> Self {
+        self.state.robot_elsewhere = true;
+        self
+    }
+
+    /// The job can hand over to a workstation controller in another process.
+    #[must_use]
+    pub fn with_hand_over(mut self) -> Self {
+        self.state.hands_over = true;
+        self
+    }
+
+    /// What happened in the cell in `tick`, which is over. A simulation that has failed is a fault of the
+    /// workstation, and so is a vise that has.
+    pub fn events(&mut self, tick: Tick) -> Vec<CellEvent> {
+        let events = self.cell.events();
+        if let Some(droop) = self.cell.droop().filter(|droop| droop.cause.is_emergency()) {
+            let began = match &self.state.emergency {
+                Some(known) if self.state.stopped => known.tick,
+                _ => tick,
+            };
+            self.state.emergency = Some(Emergency { tick: began, droop: droop.clone() });
+        }
+        self.state.stopped = self.cell.droop().is_some();
+        let fatal = |event: &&CellEvent| matches!(event, CellEvent::Quarantined | CellEvent::ViseStuck);
+        if let Some(event) = events.iter().find(fatal) {
+            self.state.fault = Some(event.to_string());
+        }
+        events
+    }
+
+    /// The last emergency, also if the robot has been started again since.
+    #[must_use]
+    pub const fn last_emergency(&self) -> Option<&Emergency> {
+        self.state.emergency.as_ref()
+    }
+
+    /// The arm has lost its pressure in an emergency, has not come to rest, and may yet run into something.
+    #[must_use]
+    pub fn is_settling(&self, tick: Tick) -> bool {
+        let sinks =
+            |emergency: &Emergency| !emergency.droop.at_rest && tick.since(emergency.tick) < SETTLING_LIMIT;
+        self.state.stopped && self.state.emergency.as_ref().is_some_and(sinks)
+    }
+
+    /// Numbers of the reloads of task data that the job has asked for since the last call.
+    pub fn loads(&mut self) -> Vec<u32> {
+        std::mem::take(&mut self.state.loads)
+    }
+
+    /// What the cell has to do for an action, in this order.
+    fn translate(&self, action: &Action) -> Result<Vec<WorkstationAction>, String> {
+        let at_the_robot = matches!(action, Action::Press(_) | Action::Release(_) | Action::Panel(_));
+        if at_the_robot && self.state.robot_elsewhere {
+            return Err("the robot at the serial port has its own panel and emergency stops".to_owned());
+        }
+        orders(action, self.cell.description()).map_err(|error| error.to_string())
+    }
+}
+
+/// What an action asks of a cell, in this order.
+///
+/// # Errors
+/// [`WorkstationError`] if the cell has no such vise. Whether it has all else that is named the cell says.
+pub fn orders(action: &Action, cell: &CellDescription) -> Result<Vec<WorkstationAction>, WorkstationError> {
+    Ok(vec![match action {
+        Action::Tray { location, object, offset } => WorkstationAction::Place {
+            part: object.to_string(),
+            unit: location.name.to_string(),
+            // The task data have this sector, and none below 0; no cell has one beyond what fits.
+            sector: location.sector.map_or(0, |sector| u16::try_from(sector).unwrap_or(u16::MAX)),
+            placement: offset.as_ref().map_or(Placement::Random, placement),
+        },
+        Action::Vise { opening, location, program } => {
+            cell.has_vise_at(location.name.as_str())?;
+            let opening = match opening {
+                ViseOpening::Partial => WorkstationAction::VisePartial,
+                ViseOpening::Close => WorkstationAction::ViseClose,
+                ViseOpening::Open => WorkstationAction::ViseOpen,
+            };
+            let program = program.map(|name| WorkstationAction::ViseProgram { name: name.to_string() });
+            return Ok(program.into_iter().chain([opening]).collect());
+        }
+        Action::Machine { blank, part, location } => WorkstationAction::Machine {
+            from: blank.to_string(),
+            to: part.to_string(),
+            location: location.name.to_string(),
+        },
+        Action::Drum(Drum::Grip) => WorkstationAction::DrumGrip,
+        Action::Drum(Drum::Release) => WorkstationAction::DrumRelease,
+        Action::Drum(Drum::Tool(tool)) => WorkstationAction::DrumTool { part: tool.to_string() },
+        Action::Joystick(action) => WorkstationAction::Joystick(at_the_box(*action)),
+        Action::Press(site) => WorkstationAction::T3(Key::Press(estop(*site))),
+        Action::Release(site) => WorkstationAction::T3(Key::Release(estop(*site))),
+        Action::Panel(key) => WorkstationAction::T3(at_the_panel(*key)),
+        // These are not the cell's.
+        Action::Wait { .. } | Action::Load { .. } | Action::HandOver => return Ok(Vec::new()),
+    }])
+}
+
+const fn estop(site: Site) -> EStop {
+    match site {
+        Site::ControlPanel => EStop::ControlPanel,
+        Site::TeachPendant => EStop::TeachPendant,
+        Site::Terminals => EStop::Terminals,
+        Site::JoystickBox => EStop::JoystickBox,
+        Site::Pedestal => EStop::Pedestal,
+    }
+}
+
+const fn at_the_panel(key: Panel) -> Key {
+    match key {
+        Panel::Power(on) => Key::ControlPower(on),
+        Panel::FaultReset => Key::FaultReset,
+        Panel::Hydraulics(enable) => Key::Hydraulics(enable),
+        Panel::Manual(on) => Key::Manual(on),
+        Panel::Align(axis) => Key::Align(axis),
+        Panel::Auto => Key::Auto,
+        Panel::CycleStart => Key::CycleStart,
+        Panel::Interrupt => Key::Interrupt,
+        Panel::Cancel => Key::Cancel,
+        Panel::Enter => Key::Enter,
+        Panel::Hold(on) => Key::Hold(on),
+    }
+}
+
+/// The words of a job are those of a person, the box has switches.
+const fn at_the_box(action: Joystick) -> BoxAction {
+    match action {
+        Joystick::Frame(frame) => BoxAction::Frame(match frame {
+            JoystickFrame::World => joystick_frame::WORLD,
+            JoystickFrame::Tool => joystick_frame::TOOL,
+            JoystickFrame::ToolOrigin => joystick_frame::TOOL_ORIGIN,
+            JoystickFrame::WristOrigin => joystick_frame::WRIST_ORIGIN,
+            JoystickFrame::Off => 0,
+        }),
+        Joystick::Stick { x, y, ticks } => BoxAction::Stick { x, y, ticks },
+        Joystick::Press { button, ticks } => BoxAction::Press(
+            match button {
+                JoystickButton::Up => BoxButton::Up,
+                JoystickButton::Down => BoxButton::Down,
+                JoystickButton::RollPlus => BoxButton::RollPlus,
+                JoystickButton::RollMinus => BoxButton::RollMinus,
+                JoystickButton::Open => BoxButton::Open,
+                JoystickButton::Close => BoxButton::Close,
+            },
+            ticks,
+        ),
+        Joystick::Velocity(knob) => BoxAction::Velocity(knob),
+        Joystick::Record => BoxAction::Record,
+        Joystick::Resume => BoxAction::Resume,
+        Joystick::Hold(process) => BoxAction::Hold(switch(process)),
+        Joystick::Free(process) => BoxAction::Free(switch(process)),
+        Joystick::Step { process, count } => BoxAction::Step(switch(process), count),
+    }
+}
+
+const fn switch(process: Stepped) -> u8 {
+    match process {
+        Stepped::Task => single_step::TASK,
+        Stepped::Subtask => single_step::SUBTASK,
+        Stepped::Emove => single_step::EMOVE,
+        Stepped::Prim => single_step::PRIM,
+    }
+}
+
+/// Jobs are written in hundredths, the cell has inches and degrees.
+fn placement(offset: &Offset) -> Placement {
+    let hundredths = |value: i32| f64::from(value) / 100.0;
+    Placement::At { x: hundredths(offset.x), y: hundredths(offset.y), angle: hundredths(offset.angle) }
+}
+
+impl Workstation for SimulatedWorkstation {
+    fn begin(&mut self, action: &Action, _: &str) -> Result<(), String> {
+        match action {
+            Action::Load { number } => self.state.loads.push(*number),
+            Action::HandOver if !self.state.hands_over => return Err(NO_HAND_OVER.to_owned()),
+            _ => {}
+        }
+        for action in self.translate(action)? {
+            self.cell.workstation(&action).map_err(|error| error.to_string())?;
+        }
+        Ok(())
+    }
+
+    fn busy(&self) -> bool {
+        self.cell.workstation_busy()
+    }
+
+    fn fault(&self) -> Option<String> {
+        self.state.fault.clone()
+    }
+
+    /// From the loss of pressure to FAULT RESET.
+    fn emergency(&self) -> Option<String> {
+        let faulted = self.cell.t3().stage() == Stage::Faulted;
+        let droop = self.cell.droop().filter(|droop| faulted && droop.cause.is_emergency())?;
+        // Adding zero turns -0.0 into 0.0.
+        let [x, y, z] = droop.position.map(|inches| (inches * 10.0).round() / 10.0 + 0.0);
+        Some(format!("{}, with the hand at ({x:.1} {y:.1} {z:.1})", droop.cause))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::device::{DeviceInputs, DeviceOutputs, JoystickBox, KNOB_FULL};
+    use std::path::Path;
+    use taskdata::load::{Job, Source, Step, Store};
+
+    /// A workstation of the shipped cell, and the task data that its jobs are read with.
+    struct Bench {
+        workstation: SimulatedWorkstation,
+        store: Store,
+    }
+
+    impl Bench {
+        fn new() -> Self {
+            let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../data"));
+            let description = CellDescription::load(&data.join("cell.toml")).unwrap();
+            let cell = Cell::new(&description, 1).unwrap();
+            let Ok((store, _)) = Store::load(data) else { panic!("the shipped data do not load") };
+            Self { workstation: SimulatedWorkstation::new(cell), store }
+        }
+
+        /// Begin what a line says, and let the cell go on until it is over.
+        fn play(&mut self, line: &str) -> Result<Vec<DeviceInputs>, String> {
+            let source = Source { name: "try.job".into(), text: line.into() };
+            let (job, _) = Job::from_source(source, &self.store).map_err(|report| report.to_string())?;
+            let [line] = &job.steps[..] else { panic!("{line} is one line") };
+            let Step::Workstation(action) = line.step else { panic!("{line:?}") };
+            self.workstation.begin(&action, "")?;
+            let mut seen = Vec::new();
+            loop {
+                seen.push(self.workstation.cell.step(&DeviceOutputs::default()));
+                if !self.workstation.busy() {
+                    return Ok(seen);
+                }
+            }
+        }
+
+        fn at_box(&mut self, line: &str) -> Vec<JoystickBox> {
+            let inputs = self.play(&format!("** joystick {line}")).unwrap();
+            inputs.into_iter().map(|inputs| inputs.joystick).collect()
+        }
+    }
+
+    #[test]
+    fn tray_vise_and_machine_do_what_their_lines_say() {
+        let mut bench = Bench::new();
+        bench.play("** tray UNIT_1 4 LINKBAR1_BH 50 -20 1500").unwrap();
+        bench.play("** tray UNIT_2 7 SHAFT_BH").unwrap();
+        bench.play("** tray UNIT_2 2 DRILL-2").unwrap();
+        let parts = bench.workstation.cell.parts();
+        let places: Vec<_> = parts.iter().map(|part| (part.location.as_str(), part.sector)).collect();
+        assert_eq!(places, [("UNIT_1", 4), ("UNIT_2", 7), ("UNIT_2", 2)]);
+        bench.play("** vise partial PFIXTURE CLEVIS").unwrap();
+        assert!((bench.workstation.cell.vise_opening() - 2.64).abs() < 1e-6);
+        bench.play("** vise open PFIXTURE").unwrap();
+        assert!((bench.workstation.cell.vise_opening() - 2.76).abs() < 1e-6, "the program stays on");
+        bench.play("** vise close PFIXTURE LINKBAR").unwrap();
+        let refused = bench.play("** machine LINKBAR1_BH LINKBAR1 PFIXTURE").unwrap_err();
+        assert_eq!(refused, "LINKBAR1_BH is to be machined, but nothing is clamped in the vise");
+        let refused = bench.play("** machine SHAFT_BH SHAFT V-VFIXTURE").unwrap_err();
+        assert_eq!(refused, "SHAFT_BH is to be machined, but nothing is at V-VFIXTURE");
+        let refused = bench.play("** vise open TABLE").unwrap_err();
+        assert_eq!(refused, "there is no vise at TABLE; the cell description has one at PFIXTURE");
+        let refused = bench.play("** vise open PFIXTURE CLEVISS").unwrap_err();
+        assert_eq!(refused, "the vise has no program CLEVISS; the cell description has LINKBAR, CLEVIS");
+    }
+
+    #[test]
+    fn the_drum_gets_its_tool_and_works_its_fingers() {
+        let mut bench = Bench::new();
+        bench.play("** drum tool ENDMILL-1").unwrap();
+        assert!(bench.workstation.cell.drum_closed());
+        assert_eq!(bench.workstation.cell.parts().len(), 1);
+        bench.play("** drum release").unwrap();
+        assert!(!bench.workstation.cell.drum_closed());
+        bench.play("** drum grip").unwrap();
+        assert!(bench.workstation.cell.drum_closed());
+    }
+
+    /// What the panel has to be told after an emergency stop, and what each key leads to.
+    const RESTART: [(&str, Stage); 6] = [
+        ("fault-reset", Stage::Ready),
+        ("hydraulics enable", Stage::Enabled),
+        ("manual on", Stage::Manual),
+        ("align", Stage::Manual),
+        ("auto", Stage::Auto),
+        ("cycle-start", Stage::Depc),
+    ];
+
+    #[test]
+    fn an_emergency_stop_is_pressed_and_the_robot_started_again() {
+        let mut bench = Bench::new();
+        bench.play("** estop pedestal").unwrap();
+        let said = bench.workstation.emergency().unwrap();
+        assert_eq!(said, "the E-stop near the pedestal was pressed, with the hand at (0.0 -71.4 -14.8)");
+        let refused = bench.play("** panel fault-reset").unwrap_err();
+        assert_eq!(refused, "the E-stop near the pedestal is still in: release it first");
+        bench.play("** release pedestal").unwrap();
+        assert!(bench.workstation.emergency().is_some(), "nothing comes back by itself");
+        for (line, stage) in RESTART {
+            bench.play(&format!("** panel {line}")).unwrap();
+            assert_eq!(bench.workstation.cell.t3().stage(), stage, "{line}");
+            assert_eq!(bench.workstation.emergency(), None);
+        }
+        let refused = bench.play("** panel cycle-start").unwrap_err();
+        assert_eq!(refused, "the program runs: interrupt it first");
+    }
+
+    #[test]
+    fn a_robot_elsewhere_has_its_own_panel() {
+        let mut bench = Bench::new();
+        bench.workstation.state.robot_elsewhere = true;
+        for line in ["** estop pedestal", "** release pedestal", "** panel auto"] {
+            let refused = bench.play(line).unwrap_err();
+            assert!(refused.contains("has its own panel"), "{line}: {refused}");
+        }
+    }
+
+    #[test]
+    fn hands_at_the_joystick_box_are_seen_in_its_words() {
+        let mut bench = Bench::new();
+        let frames = [
+            ("WORLD", joystick_frame::WORLD),
+            ("TOOL", joystick_frame::TOOL),
+            ("TOOL-ORIGIN", joystick_frame::TOOL_ORIGIN),
+            ("WRIST-ORIGIN", joystick_frame::WRIST_ORIGIN),
+            ("OFF", 0),
+        ];
+        for (word, bits) in frames {
+            assert_eq!(bench.at_box(&format!("frame {word}"))[0].frame, bits, "{word}");
+        }
+        assert_eq!(bench.at_box("stick 700 -30 3").iter().filter(|s| (s.x, s.y) == (700, -30)).count(), 3);
+        type Line = fn(&JoystickBox) -> bool;
+        let buttons: [(&str, Line); 8] = [
+            ("up 2", |s| s.up),
+            ("down 2", |s| s.down),
+            ("roll+ 2", |s| s.roll_plus),
+            ("roll- 2", |s| s.roll_minus),
+            ("open 2", |s| s.open),
+            ("close 2", |s| s.close),
+            ("record", |s| s.record),
+            ("resume", |s| s.resume),
+        ];
+        for (line, button) in buttons {
+            let seen = bench.at_box(line);
+            assert_eq!(seen.iter().map(button).collect::<Vec<_>>(), [true, true], "{line}");
+        }
+        let processes = [
+            ("TASK", single_step::TASK),
+            ("SUBTASK", single_step::SUBTASK),
+            ("EMOVE", single_step::EMOVE),
+            ("PRIM", single_step::PRIM),
+        ];
+        for (word, bit) in processes {
+            assert_eq!(bench.at_box(&format!("hold {word}"))[0].hold, bit);
+            let stepped = bench.at_box(&format!("step {word} 3"));
+            let rises = stepped.iter().zip(stepped.iter().skip(1));
+            let presses = rises.filter(|(a, b)| a.single_step == 0 && b.single_step == bit).count();
+            assert_eq!((stepped[0].single_step, presses), (bit, 2), "three presses of {word}");
+            assert_eq!(bench.at_box(&format!("free {word}"))[0].hold, 0);
+        }
+        assert_eq!(bench.at_box("velocity 250")[0].velocity, 250);
+        assert_eq!(bench.at_box("velocity 1000")[0].velocity, KNOB_FULL);
+    }
+}

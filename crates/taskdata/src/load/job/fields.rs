@@ -1,0 +1,73 @@
+//! The words of a line of a job, and what its fields are read into.
+
+use rcs_core::name::Name16;
+
+use super::super::{lex::Word, source::At};
+
+/// The words of one line, taken from left to right.
+pub(super) struct Fields<'a, 'w> {
+    pub(super) words: &'w [Word<'a>],
+    pub(super) next: usize,
+}
+
+impl<'a, 'w> Fields<'a, 'w> {
+    /// All words of a line.
+    pub(super) const fn new(words: &'w [Word<'a>]) -> Self {
+        Self { words, next: 0 }
+    }
+
+    /// True if a word is left.
+    pub(super) const fn more(&self) -> bool {
+        self.next < self.words.len()
+    }
+
+    pub(super) fn take(&mut self) -> Option<Word<'a>> {
+        let word = self.words.get(self.next).copied();
+        self.next += 1;
+        word
+    }
+
+    /// Take the next word if it is this one.
+    pub(super) fn take_if(&mut self, text: &str) -> Option<Word<'a>> {
+        let word = self.words.get(self.next).copied().filter(|word| word.text == text)?;
+        self.next += 1;
+        Some(word)
+    }
+
+    /// Where the next word is, or the last one if there is no next.
+    pub(super) fn at(&self) -> At {
+        self.words.get(self.next).or_else(|| self.words.last()).map_or_else(At::default, |w| w.at)
+    }
+}
+
+/// A number and where it stands.
+#[derive(Clone, Copy)]
+pub(super) struct Number {
+    pub(super) value: i32,
+    pub(super) at: At,
+}
+
+/// A name field and where it stands; empty for `--`.
+#[derive(Clone, Copy)]
+pub(super) struct Field {
+    pub(super) name: Name16,
+    pub(super) at: At,
+}
+
+impl Field {
+    pub(super) fn given(&self) -> bool {
+        !self.name.is_empty()
+    }
+
+    /// The name, if there is one.
+    pub(super) fn named(&self) -> Option<Name16> {
+        self.given().then_some(self.name)
+    }
+}
+
+impl Number {
+    /// The number, if it is not 0.
+    pub(super) fn given(&self) -> Option<i32> {
+        Some(self.value).filter(|value| *value != 0)
+    }
+}

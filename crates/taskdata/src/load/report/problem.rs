@@ -1,0 +1,177 @@
+//! What was found, before it is tied to the text of its source.
+
+use super::super::source::At;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// The data cannot be used.
+    Error,
+    /// The data can be used, but look at it.
+    Warning,
+}
+
+impl Severity {
+    /// The word in a message.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+        }
+    }
+}
+
+/// Something found, before it is tied to the text of its source.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// How bad.
+    pub severity: Severity,
+    /// Stable short name of the kind of problem.
+    pub code: &'static str,
+    /// Where; `None` for a file that could not be read.
+    pub at: Option<At>,
+    /// One sentence: what was found and what was expected.
+    pub message: String,
+    /// What to do, or the nearest known name.
+    pub help: Option<String>,
+    /// Another place that belongs to it, with the words before it; it becomes the help.
+    pub elsewhere: Option<(String, At)>,
+    /// What was expected in its place, for programs; the message says it too.
+    pub expected: Option<String>,
+    /// The nearest known name, for programs; the help says it too.
+    pub nearest: Option<String>,
+    /// What findings have in common that are the same in several lines; the message if nothing is said.
+    pub same: Option<String>,
+}
+
+impl Problem {
+    const fn new(severity: Severity, code: &'static str, at: Option<At>, message: String) -> Self {
+        Self {
+            severity,
+            code,
+            at,
+            message,
+            help: None,
+            elsewhere: None,
+            expected: None,
+            nearest: None,
+            same: None,
+        }
+    }
+}
+
+/// A list of problems that is filled while forms are read and checked.
+#[derive(Clone, Debug, Default)]
+pub struct Problems {
+    pub(super) list: Vec<Problem>,
+}
+
+impl Problems {
+    /// Add an error.
+    pub fn error(&mut self, code: &'static str, at: At, message: impl Into<String>) {
+        self.push(Severity::Error, code, at, message.into(), None);
+    }
+
+    /// Add an error with help.
+    pub fn error_help(
+        &mut self,
+        code: &'static str,
+        at: At,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.push(Severity::Error, code, at, message.into(), Some(help.into()));
+    }
+
+    /// Add an error of something that is there already.
+    pub fn duplicate(&mut self, at: At, message: impl Into<String>, first: At) {
+        self.error("duplicate", at, message);
+        self.elsewhere("the first is in", first);
+    }
+
+    /// Name another place that belongs to the last problem; it becomes the help.
+    pub fn elsewhere(&mut self, before: impl Into<String>, at: At) {
+        if let Some(last) = self.list.last_mut() {
+            last.elsewhere = Some((before.into(), at));
+        }
+    }
+
+    /// Add a warning.
+    pub fn warning(&mut self, code: &'static str, at: At, message: impl Into<String>, help: Option<String>) {
+        self.push(Severity::Warning, code, at, message.into(), help);
+    }
+
+    /// Add an error with help where there is some.
+    pub fn push(
+        &mut self,
+        severity: Severity,
+        code: &'static str,
+        at: At,
+        message: String,
+        help: Option<String>,
+    ) {
+        self.list.push(Problem { help, ..Problem::new(severity, code, Some(at), message) });
+    }
+
+    /// Move all problems of another list behind these.
+    pub fn append(&mut self, others: &mut Self) {
+        self.list.append(&mut others.list);
+    }
+
+    /// Give the last problem a help line.
+    pub fn help(&mut self, help: String) {
+        if let Some(last) = self.list.last_mut() {
+            last.help = Some(help);
+        }
+    }
+
+    /// Add to the help of a problem that was noted at a place.
+    pub fn add_help(&mut self, code: &str, at: At, more: &str) {
+        let noted = self.list.iter_mut().find(|problem| problem.code == code && problem.at == Some(at));
+        if let Some(problem) = noted {
+            problem.help = Some(match problem.help.take() {
+                Some(help) => format!("{help}; {more}"),
+                None => more.to_owned(),
+            });
+        }
+    }
+
+    /// Say what the last problem has in common with others that are the same.
+    pub fn same_as(&mut self, key: String) {
+        if let Some(last) = self.list.last_mut() {
+            last.same = Some(key);
+        }
+    }
+
+    /// Note what was expected in the place of the last problem.
+    pub fn expected(&mut self, what: impl Into<String>) {
+        if let Some(last) = self.list.last_mut() {
+            last.expected = Some(what.into());
+        }
+    }
+
+    /// Note the nearest name, of the sort `what`, to the one of the last problem; it becomes the help too.
+    pub fn nearest(&mut self, what: &str, name: &str) {
+        if let Some(last) = self.list.last_mut() {
+            last.help = Some(format!("the nearest {what} is {name}"));
+            last.nearest = Some(name.to_owned());
+        }
+    }
+
+    /// Add an error that belongs to no piece of text.
+    pub fn general(&mut self, code: &'static str, message: String) {
+        self.list.push(Problem::new(Severity::Error, code, None, message));
+    }
+
+    /// Add what the operating system said about a file.
+    pub fn unreadable(&mut self, path: &str, error: &std::io::Error) {
+        self.general("file", format!("{path} cannot be read: {error}"));
+    }
+
+    /// True if an error is among them.
+    #[must_use]
+    pub fn has_errors(&self) -> bool {
+        self.list.iter().any(|p| p.severity == Severity::Error)
+    }
+}

@@ -1,0 +1,231 @@
+//! What the survival tests and the robustness campaign share: runs that are watched from outside, and what they leave.
+
+use std::{
+    os::unix::process::ExitStatusExt as _,
+    path::{Path, PathBuf},
+    process::{Child, Command, Output, Stdio},
+    sync::Mutex,
+    thread,
+    time::{Duration, Instant},
+};
+
+use executive::memory::{self, Attached, RunName};
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value;
+
+use crate::{rcs_run, root};
+
+/// Runs of these tests one after the other: several in real time would disturb each other.
+pub static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+/// How long something may take that takes milliseconds.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// `rcs-run` with arguments, in a directory.
+#[must_use]
+pub fn rcs(directory: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(rcs_run());
+    command.args(arguments).current_dir(directory).stdin(Stdio::null());
+    command
+}
+
+/// The arguments of a run of a job of the data directory.
+#[must_use]
+pub fn job(name: &str) -> Vec<String> {
+    let data = root().join("data").display().to_string();
+    ["run", name, "--json", "--data", data.as_str()].map(str::to_owned).to_vec()
+}
+
+/// A run that goes on.
+pub struct Running {
+    /// Its process: the controller, or board 0.
+    pub child: Child,
+    /// Its name in shared memory.
+    pub name: RunName,
+}
+
+impl Running {
+    /// Start a run, with more arguments.
+    ///
+    /// # Panics
+    /// If the program cannot be started.
+    #[must_use]
+    pub fn start(directory: &Path, name: &str, more: &[&str]) -> Self {
+        let arguments = job(name);
+        let all: Vec<&str> = arguments.iter().map(String::as_str).chain(more.iter().copied()).collect();
+        let child = rcs(directory, &all)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("rcs-run can be started");
+        let name = format!("{name}-{}", child.id()).parse().expect("the name of a run");
+        Self { child, name }
+    }
+
+    /// A reader, as soon as there is something to read.
+    ///
+    /// # Panics
+    /// If the run ends before.
+    pub fn attach(&mut self) -> Attached {
+        let mut reader = None;
+        wait_for("the run shows its buffers", || {
+            assert!(self.child.try_wait().expect("a child").is_none(), "{} ended at once", self.name);
+            reader = Attached::open(&self.name).ok();
+            reader.is_some()
+        });
+        reader.expect("it was there")
+    }
+
+    /// Wait until a tick was run; the tick that was run by then.
+    ///
+    /// # Panics
+    /// If the run is over before.
+    pub fn reach(&mut self, reader: &Attached, tick: u64) -> u64 {
+        let mut reached = 0;
+        wait_for("the run gets on", || {
+            if let Ok(pulse) = reader.pulse() {
+                assert!(!pulse.over, "{} was over before it reached tick {tick}", self.name);
+                reached = pulse.tick.0;
+            }
+            reached >= tick
+        });
+        reached
+    }
+
+    /// Send a signal to its process.
+    ///
+    /// # Panics
+    /// If there is no such process.
+    pub fn signal(&self, signal: Signal) {
+        let pid = Pid::from_child(&self.child);
+        kill_process(pid, signal).expect("the run can be sent a signal");
+    }
+
+    /// End it by SIGKILL.
+    ///
+    /// # Panics
+    /// If it cannot be sent the signal.
+    pub fn kill(&mut self) {
+        self.child.kill().expect("it can be killed");
+        self.child.wait().expect("it is dead");
+    }
+
+    /// Wait for its end.
+    ///
+    /// # Panics
+    /// If that is impossible.
+    #[must_use]
+    pub fn end(self) -> Ended {
+        Ended::of(&self.child.wait_with_output().expect("it ends"))
+    }
+}
+
+/// A run that is over.
+pub struct Ended {
+    /// Exit status; none if a signal ended it.
+    pub status: Option<i32>,
+    /// The signal that ended it.
+    pub signal: Option<i32>,
+    /// The object on standard output.
+    pub result: Value,
+    /// What stood on standard error.
+    pub said: String,
+}
+
+impl Ended {
+    /// A program that has ended.
+    #[must_use]
+    pub fn of(output: &Output) -> Self {
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let result = serde_json::from_slice(&output.stdout).unwrap_or(Value::Null);
+        Self { status: output.status.code(), signal: output.status.signal(), result, said }
+    }
+
+    /// Run to the end, with more arguments.
+    ///
+    /// # Panics
+    /// If the program cannot be started.
+    #[must_use]
+    pub fn run(directory: &Path, name: &str, more: &[&str]) -> Self {
+        Running::start(directory, name, more).end()
+    }
+
+    /// The digest of all output buffers of all ticks.
+    ///
+    /// # Panics
+    /// If there is none.
+    #[must_use]
+    pub fn digest(&self) -> &str {
+        self.result["digest"].as_str().unwrap_or_else(|| panic!("no digest: {}", self.said))
+    }
+
+    /// A number of the result.
+    ///
+    /// # Panics
+    /// If there is none of this name.
+    #[must_use]
+    pub fn number(&self, field: &str) -> u64 {
+        self.result[field].as_u64().unwrap_or_else(|| panic!("no {field} in {}", self.result))
+    }
+
+    /// It ended well, and its buffers were in shared memory.
+    ///
+    /// # Panics
+    /// If not.
+    pub fn assert_shared(&self) {
+        assert_eq!(self.status, Some(0), "{}", self.said);
+        for complaint in ["cannot be had", "not mirrored"] {
+            assert!(!self.said.contains(complaint), "{}", self.said);
+        }
+    }
+
+    /// The last line on standard error.
+    #[must_use]
+    pub fn last_words(&self) -> &str {
+        self.said.lines().last().unwrap_or_default()
+    }
+}
+
+/// Run the linkbar in a mount namespace of its own, after some commands of the shell; `None` if this user can
+/// have none.
+#[must_use]
+pub fn apart(directory: &Path, shell: &str, more: &[&str]) -> Option<Ended> {
+    let arguments = job("linkbar");
+    let output = Command::new("unshare")
+        .args(["--mount", "sh", "-c", &format!("{shell}; exec \"$@\""), "sh"])
+        .arg(rcs_run())
+        .args(arguments.iter().map(String::as_str).chain(more.iter().copied()))
+        .current_dir(directory)
+        .output();
+    let ended = Ended::of(&output.ok()?);
+    let refused = ["unshare: ", "mount: "].iter().any(|tool| ended.said.contains(tool));
+    (!refused).then_some(ended)
+}
+
+/// Files and objects in shared memory of a run.
+#[must_use]
+pub fn traces(run: &RunName) -> Vec<PathBuf> {
+    memory::traces(run)
+}
+
+/// Nothing is left after `rcs-run clean`.
+///
+/// # Panics
+/// If something is.
+pub fn assert_cleaned(directory: &Path, run: &RunName) {
+    let cleaned = rcs(directory, &["clean"]).output().expect("rcs-run can be started");
+    assert_eq!(cleaned.status.code(), Some(0), "{}", String::from_utf8_lossy(&cleaned.stderr));
+    assert_eq!(traces(run), Vec::<PathBuf>::new());
+}
+
+/// Wait for something that comes soon.
+///
+/// # Panics
+/// If it does not come.
+pub fn wait_for(what: &str, mut condition: impl FnMut() -> bool) {
+    let started = Instant::now();
+    while !condition() {
+        assert!(started.elapsed() < PATIENCE, "in vain waited for: {what}");
+        thread::sleep(Duration::from_millis(1));
+    }
+}

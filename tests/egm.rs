@@ -1,0 +1,113 @@
+//! Jobs with a robot that is driven by EGM: emulated in simulated time, and a small one in Python over UDP.
+
+use std::{net::UdpSocket, process::Command};
+
+use serde_json::Value;
+use whole_system_tests::{rcs_log, rcs_run, root};
+
+fn run(arguments: &[&str]) -> (i32, Value) {
+    let output = Command::new(rcs_run())
+        .current_dir(root())
+        .args(["--json", "--shared-memory", "off"])
+        .args(arguments)
+        .output()
+        .expect("rcs-run can be started");
+    let result = serde_json::from_slice(&output.stdout);
+    let text = String::from_utf8_lossy(&output.stderr);
+    (output.status.code().expect("an exit status"), result.unwrap_or_else(|error| panic!("{error}: {text}")))
+}
+
+fn finished(arguments: &[&str]) -> Value {
+    let (status, result) = run(arguments);
+    assert_eq!(status, 0, "{}", result["failure"]);
+    assert_eq!(result["allocations_after_start"], 0);
+    assert_eq!(result["egm"]["beyond"], 0);
+    result
+}
+
+fn error_mm(result: &Value) -> (f64, f64) {
+    let error = |name: &str| result["egm"][name].as_f64().expect("a number");
+    (error("error_rms_mm"), error("error_max_mm"))
+}
+
+#[test]
+fn linkbar_and_clevis_are_finished_and_the_speeds_take_the_lag_away() {
+    for job in ["linkbar", "clevis"] {
+        let (rms, most) = error_mm(&finished(&[job, "--robot", "egm:sim", "--log", "none"]));
+        assert!(rms < 0.2 && most < 1.0, "{job}: {rms} mm, {most} mm at most");
+    }
+    let result = finished(&["linkbar", "--robot", "egm:sim,speed-ref=off", "--log", "none"]);
+    let (rms, most) = error_mm(&result);
+    assert!(
+        rms > 5.0 && most > 30.0,
+        "without speeds a gain of 5 lags by 0.2 s: {rms} mm, {most} mm at most"
+    );
+}
+
+#[test]
+fn a_bad_network_costs_accuracy_and_no_job() {
+    for network in ["loss=20", "jitter=20", "loss=10,jitter=20,double=10,reorder=10,delay=5"] {
+        let robot = format!("egm:sim,{network}");
+        let (rms, most) = error_mm(&finished(&["linkbar", "--robot", &robot, "--log", "none"]));
+        assert!(rms < 6.0 && most < 20.0, "{network}: {rms} mm, {most} mm at most");
+    }
+}
+
+#[test]
+fn a_silence_stops_the_robot_where_it_was_last_sent() {
+    for silence in ["0.1", "0.5", "2"] {
+        let robot = format!("egm:sim,silent-at=60,silent-for={silence},timeout=10");
+        let (status, result) = run(&["linkbar", "--robot", &robot, "--log", "none"]);
+        assert!(status == 1 || status == 3, "{silence} s: {status}");
+        assert_eq!((&result["egm"]["interrupted"], &result["egm"]["beyond"]), (&1.into(), &0.into()));
+        let (_, most) = error_mm(&result);
+        assert!(most < 1.0, "the robot never was farther from its target than {most} mm");
+        let text = result["failure"]["text"].as_str().expect("a reason");
+        assert!(text.contains("not where it was sent") || text.contains("no EGM message"), "{text}");
+    }
+}
+
+#[test]
+fn the_same_seed_is_the_same_run_and_its_log_replays_to_the_bit() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = folder.path().join("egm.mcap");
+    let log = log.to_str().expect("a path in UTF-8");
+    let robot = "egm:sim,loss=10,jitter=10,seed=7";
+    let first = finished(&["linkbar", "--robot", robot, "--log", log]);
+    let second = finished(&["linkbar", "--robot", robot, "--log", "none", "--boards", "split"]);
+    assert_eq!(first["digest"], second["digest"]);
+    let replay = Command::new(rcs_log()).args(["replay", log]).output().expect("rcs-log can be started");
+    assert!(replay.status.success(), "{}", String::from_utf8_lossy(&replay.stdout));
+}
+
+/// A peer that shares no code with the project follows the first seconds of a job.
+#[test]
+fn a_robot_written_from_the_schema_alone_is_driven() {
+    let python = Command::new("python3").arg("--version").output();
+    if !python.is_ok_and(|output| output.status.success()) {
+        eprintln!("left out: python3 is not there");
+        return;
+    }
+    let port = UdpSocket::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();
+    // It is built before the peer begins to send.
+    let _ = rcs_run();
+    // The T3's end plate at HOME, mm, and its orientation.
+    let home = ["0", "-1598.4", "-161.6", "0.653281", "0.270598", "0.270598", "-0.653281"];
+    let peer = Command::new("python3")
+        .arg(root().join("tests/egm/peer.py"))
+        .args([&port.to_string(), "300"])
+        .args(home)
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .expect("python3 can be started");
+    let robot = format!("egm:127.0.0.1:{port}");
+    let (status, result) = run(&[
+        "linkbar", "--robot", &robot, "--clock", "real", "--ticks", "400", "--wait", "20", "--log", "none",
+    ]);
+    let output = peer.wait_with_output().expect("it ends");
+    assert!(output.status.success(), "the peer refuses what it got");
+    let peer: Value = serde_json::from_slice(&output.stdout).expect("one line of JSON");
+    assert_eq!((status, &result["egm"]["refused"]), (0, &Value::from(0)), "{}", result["failure"]);
+    assert!(peer["answered"].as_f64() > Some(1000.0), "{peer}");
+    assert!(peer["travelled_mm"].as_f64() > Some(100.0), "{peer}");
+}

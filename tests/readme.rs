@@ -1,0 +1,72 @@
+//! The samples of the README are what the programs print: each `console` block is run as it stands there.
+//!
+//! `...` stands for any lines, and at the end of a line for the rest of it. Numbers that depend on the machine count
+//! as equal.
+
+use std::{fs, os::unix::fs::symlink, process::Command};
+
+use whole_system_tests::{Scratch, rcs_log, rcs_run, root};
+
+/// What a line says on any machine: times of the controller and of the wall clock are left out.
+fn comparable(line: &str) -> String {
+    let depends = match line.split_once(';') {
+        Some((times, _)) if line.starts_with("controller ") => times.len(),
+        _ if line.contains(" x real time") => line.len(),
+        _ => 0,
+    };
+    let (times, same) = line.trim_end().split_at(depends.min(line.trim_end().len()));
+    times
+        .chars()
+        .filter(|character| !character.is_ascii_digit() && *character != '.')
+        .chain(same.chars())
+        .collect()
+}
+
+/// Do these lines stand in the output, in their order, and one behind the other but for `...`?
+fn assert_shown(command: &str, expected: &[&str], output: &str) {
+    let mut lines = output.lines().map(comparable);
+    let mut gap = false;
+    for sample in expected {
+        if *sample == "..." {
+            gap = true;
+            continue;
+        }
+        let (sample, is_begun) = sample.strip_suffix("...").map_or((*sample, false), |front| (front, true));
+        let sample = comparable(sample);
+        let is_it = |line: &String| if is_begun { line.starts_with(&sample) } else { *line == sample };
+        let found = if gap { lines.by_ref().find(is_it) } else { lines.next().filter(is_it) };
+        assert!(found.is_some(), "`{command}` does not print `{sample}` there, but\n{output}");
+        gap = false;
+    }
+    assert!(gap || lines.next().is_none(), "`{command}` prints more than the sample:\n{output}");
+}
+
+#[test]
+fn the_samples_of_the_readme_are_what_is_printed() {
+    let readme = fs::read_to_string(root().join("README.md")).expect("the README is there");
+    let scratch = Scratch::new("readme");
+    symlink(root().join("data"), scratch.file("data")).expect("there is room for a link");
+    let blocks = readme.split("```console\n").skip(1).filter_map(|rest| rest.split_once("```"));
+    let mut run = 0;
+    for (block, _) in blocks {
+        for sample in block.split("$ ").skip(1) {
+            let (command, expected) = sample.split_once('\n').expect("a command is a line");
+            let words = command.strip_prefix("cargo run --release").expect("samples run with cargo").trim();
+            let (program, arguments) = match words.split_once("-- ") {
+                Some(("-p rcs-log ", arguments)) => (rcs_log(), arguments),
+                Some(("", arguments)) => (rcs_run(), arguments),
+                _ => (rcs_run(), words),
+            };
+            let output = Command::new(program)
+                .args(arguments.split_whitespace())
+                .current_dir(scratch.file("."))
+                .output()
+                .expect("the program can be started");
+            let text = [output.stdout, output.stderr].concat();
+            let expected: Vec<&str> = expected.lines().collect();
+            assert_shown(command, &expected, &String::from_utf8_lossy(&text));
+            run += 1;
+        }
+    }
+    assert_eq!(run, 3, "the README shows a run, a failure and why");
+}

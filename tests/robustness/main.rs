@@ -1,0 +1,197 @@
+//! The robustness campaign: logs, shared memory, readers, signals and disks are treated badly, and each case is judged.
+//!
+//! ```text
+//! cargo run --release -p whole-system-tests --bin robustness -- --help
+//! cargo run --release -p whole-system-tests --bin robustness -- --markdown docs/robustness.md
+//! ```
+//!
+//! It prints how many cases there were and how they ended, and each finding on standard error; the exit
+//! status is 1 if there is one. The tests `survival::campaign` run a sample of it. Everything happens in a
+//! `/dev/shm` and a `TMPDIR` of its own.
+
+#![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program of the developers, at a terminal")]
+
+mod disks;
+mod logs;
+mod memory;
+mod processes;
+mod readers;
+mod runs;
+mod signals;
+mod table;
+
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::{Command, ExitCode},
+    sync::{Arc, atomic::AtomicBool},
+    time::Instant,
+};
+
+use clap::{Parser, ValueEnum};
+use signal_hook::{
+    consts::{SIGHUP, SIGINT, SIGQUIT},
+    flag,
+};
+use whole_system_tests::Scratch;
+
+use crate::{
+    processes::Process,
+    table::{Extent, Row},
+};
+
+/// Treat logs, shared memory, readers, signals and disks badly, and count how the programs take it
+#[derive(Parser)]
+struct Arguments {
+    /// What is tried; everything if nothing is named
+    #[arg(value_enum)]
+    parts: Vec<Part>,
+    /// Try a few cases of each row, as the ordinary tests do
+    #[arg(long)]
+    sample: bool,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N", default_value_t = 1988)]
+    seed: u64,
+    /// Write the page with the table to FILE
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+    /// Be one of the processes that attack a run
+    #[arg(long, hide = true, value_enum)]
+    process: Option<Process>,
+    /// The run that is attacked
+    #[arg(long, hide = true, default_value = "")]
+    run: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Part {
+    /// Damaged logs, within 1 GB of memory
+    Logs,
+    /// Garbage in the shared memory of runs
+    Memory,
+    /// Readers that are killed or stopped
+    Readers,
+    /// Signals in all phases of a run
+    Signals,
+    /// Disks and shared memory that fill, limits of files
+    Disks,
+}
+
+impl Part {
+    fn rows(self, extent: Extent) -> Vec<Row> {
+        match self {
+            Self::Logs => logs::rows(extent),
+            Self::Memory => memory::rows(extent),
+            Self::Readers => readers::rows(extent),
+            Self::Signals => signals::rows(extent),
+            Self::Disks => disks::rows(extent),
+        }
+    }
+
+    /// Other runs of this user would be harmed by it, or the machine.
+    const fn needs_private_memory(self) -> bool {
+        matches!(self, Self::Memory | Self::Readers | Self::Disks)
+    }
+}
+
+/// Set in a process that has a `/dev/shm` of its own.
+const PRIVATE: &str = "RCS_PRIVATE_MEMORY";
+/// The shell's commands that put a `/dev/shm` of its own before a program.
+const MOUNT: &str = "mount -t tmpfs -o size=512m,mode=1777 tmpfs /dev/shm && exec \"$@\"";
+
+/// Start a program with a `/dev/shm` of its own; `None` if this user can have none.
+fn private_memory(scratch: &Scratch) -> Option<Command> {
+    let command = |flags: &[&str], program: &Path| {
+        let mut command = Command::new("unshare");
+        command.args(flags).args(["sh", "-c", MOUNT, "sh"]).arg(program);
+        command
+    };
+    let ways: [&[&str]; 2] = [&["--mount"], &["--mount", "--map-root-user"]];
+    let works = |flags: &&[&str]| {
+        let tried = command(flags, Path::new("true")).output();
+        tried.is_ok_and(|output| output.status.success())
+    };
+    let flags = ways.into_iter().find(works)?;
+    let own = env::current_exe().expect("a program has a path");
+    let mut command = command(flags, &own);
+    command.args(env::args_os().skip(1)).env(PRIVATE, "1").env("TMPDIR", scratch.file(""));
+    Some(command)
+}
+
+/// A program started in the background or under `nohup` inherits signals that are ignored, and so would all that it
+/// starts. A signal with a handler is at its default in a new program; the handlers do what the default does.
+fn hear_signals() {
+    for signal in [SIGHUP, SIGINT, SIGQUIT] {
+        let always = Arc::new(AtomicBool::new(true));
+        flag::register_conditional_default(signal, always).expect("a handler can be installed");
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    hear_signals();
+    if let Some(process) = arguments.process {
+        return process.be(&arguments.run);
+    }
+    let private = env::var_os(PRIVATE).is_some();
+    if !private {
+        let scratch = Scratch::new("robustness");
+        if let Some(mut command) = private_memory(&scratch) {
+            let status = command.status().expect("it could be started before");
+            return if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+        }
+    }
+    let extent = Extent { sample: arguments.sample, seed: arguments.seed };
+    let asked = if arguments.parts.is_empty() { Part::value_variants() } else { &arguments.parts };
+    // What a judge has to say becomes a finding.
+    std::panic::set_hook(Box::new(|_| {}));
+    let (mut rows, began) = (Vec::new(), Instant::now());
+    for part in asked {
+        if part.needs_private_memory() && !private {
+            println!("{part:?}: skipped, this user can have no /dev/shm of its own (unshare --mount)");
+            continue;
+        }
+        eprintln!("{part:?} ... {} s", began.elapsed().as_secs());
+        rows.extend(part.rows(extent));
+    }
+    print!("{}", table::plain(&rows));
+    if let Some(file) = &arguments.markdown {
+        let page = format!(
+            "{HEAD}The table shows {}, with seed {}.\n\n{}{TAIL}",
+            if extent.sample { "a sample" } else { "all cases" },
+            extent.seed,
+            table::markdown(&rows)
+        );
+        if let Err(error) = fs::write(file, page) {
+            eprintln!("{}: {error}", file.display());
+            return ExitCode::from(2);
+        }
+    }
+    let findings: Vec<&String> = rows.iter().flat_map(|row| &row.findings).collect();
+    findings.iter().for_each(|finding| eprintln!("not held: {finding}"));
+    if findings.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// What stands before the table on the page.
+const HEAD: &str = "\
+# Robustness campaign
+
+After this page you know how often each attack was tried, and how the programs took it. [Security](security.md)
+says what is promised.
+
+    cargo run --release -p whole-system-tests --bin robustness -- --markdown docs/robustness.md
+
+makes this page; `--help` lists the parts. With `--sample` it tries a few cases of each row, as the tests do
+(`cargo test --release -p whole-system-tests --test survival campaign`). ";
+
+/// What stands behind it.
+const TAIL: &str = "
+- **went on**: to its end as without the attack; a tool gave its answer.
+- **ended in order**: the robot was brought to rest, the log is complete, exit status 1; a tool found a difference.
+- **ended with words**: the last line on standard error says why.
+- **ended by force**: by the signal that was sent, by one of the system, or by iceoryx2 whose memory was garbage.
+- **not held**: anything else, such as a panic, a hang, a wrong result, or what is named below.
+
+After each case on a run the next run starts with all its buffers in shared memory, `rcs-run clean` leaves nothing, no board lives on,
+and what there is of a log can be read.
+";

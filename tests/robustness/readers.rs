@@ -1,0 +1,58 @@
+//! Readers that are killed or stopped: the run does not notice.
+
+use std::{path::Path, process::Child, thread, time::Duration};
+
+use rustix::process::{Pid, Signal, kill_process};
+use whole_system_tests::{Scratch, bench::Ended};
+
+use crate::{
+    processes::Process,
+    runs::{BOARDS, assert_no_harm, end, judge, start},
+    table::{Chance, Extent, Outcome, Row},
+};
+
+/// Ticks of a run that is read.
+const TICKS: &str = "100";
+/// Readers that die in a run.
+const READERS: u64 = 6;
+
+fn kill(mut reader: Child) {
+    reader.kill().expect("it can be killed");
+    reader.wait().expect("it is dead");
+}
+
+/// Readers of one run are killed one after the other, and one is stopped until its end.
+fn die_and_hang(directory: &Path, boards: &str, expected: &str, chance: &mut Chance) -> Outcome {
+    let mut run = start(directory, boards, TICKS, "none");
+    drop(run.attach());
+    let name = run.name.clone();
+    let hangs = Process::Reader.start(&name);
+    kill_process(Pid::from_child(&hangs), Signal::STOP).expect("it can be stopped");
+    for _ in 0..READERS {
+        let reader = Process::Reader.start(&name);
+        thread::sleep(Duration::from_millis(chance.below(60)));
+        kill(reader);
+    }
+    let ended = end(run);
+    kill(hangs);
+    assert_eq!(ended.status, Some(0), "{}", ended.said);
+    assert_eq!(ended.number("allocations_after_start"), 0);
+    assert_eq!(ended.result["digest_before_ramp"], expected);
+    assert_no_harm(directory, &name);
+    judge(&ended)
+}
+
+/// All rows about readers.
+pub fn rows(extent: Extent) -> Vec<Row> {
+    let scratch = Scratch::new("readers");
+    let place = scratch.file("");
+    let alone = ["--ticks", TICKS, "--log", "none", "--shared-memory", "off"];
+    let expected = Ended::run(&place, "linkbar", &alone).digest().to_owned();
+    let attack = format!("{READERS} readers killed, one stopped");
+    let row = |(boards, on)| {
+        Row::of(extent, &attack, on, 0..extent.of(10, 1), |_, chance| {
+            die_and_hang(&place, boards, &expected, chance)
+        })
+    };
+    BOARDS.into_iter().map(row).collect()
+}

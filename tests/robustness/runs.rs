@@ -1,0 +1,76 @@
+//! Runs that are attacked, and what is looked at after each.
+
+use std::{fs, path::Path};
+
+use executive::memory::RunName;
+use whole_system_tests::bench::{Ended, Running, assert_cleaned, traces, wait_for};
+
+use crate::table::Outcome;
+
+/// The ways to run the control processes: the argument, and its name in the table.
+pub const BOARDS: [(&str, &str); 2] = [("one", "one process"), ("split", "five boards")];
+
+/// A run in real time that ends by itself after some ticks.
+pub fn start(directory: &Path, boards: &str, ticks: &str, log: &str) -> Running {
+    Running::start(
+        directory,
+        "linkbar",
+        &["--clock", "real", "--boards", boards, "--ticks", ticks, "--log", log],
+    )
+}
+
+/// Wait for the end of a run and of its boards.
+pub fn end(mut run: Running) -> Ended {
+    wait_for("the run ends", || run.child.try_wait().expect("a child").is_some());
+    wait_for("the boards end", || !lives(&run.name));
+    run.end()
+}
+
+/// A board of the run lives: `rcs-run board N --run NAME`.
+fn lives(run: &RunName) -> bool {
+    let is_board = |line: Vec<u8>| {
+        let words: Vec<&[u8]> = line.split(|byte| *byte == 0).collect();
+        words.get(1) == Some(&&b"board"[..]) && words.contains(&run.as_str().as_bytes())
+    };
+    let processes = fs::read_dir("/proc").expect("the system says what runs").flatten();
+    processes.filter_map(|entry| fs::read(entry.path().join("cmdline")).ok()).any(is_board)
+}
+
+/// How a run ended.
+pub fn judge(ended: &Ended) -> Outcome {
+    assert!(!ended.said.contains("panicked"), "{}", ended.said);
+    match ended.status {
+        Some(0) => Outcome::WentOn,
+        Some(1) if ended.last_words().ends_with("interrupted") => Outcome::InOrder,
+        Some(1..=3) if ended.last_words().starts_with("rcs-run: ") => Outcome::InWords,
+        None => Outcome::BySignal,
+        other => panic!("status {other:?}: {}", ended.said),
+    }
+}
+
+/// Panics of iceoryx2 0.10.0 over objects of its own that are garbage: the file, and how the message begins.
+const OF_GARBAGE: [(&str, &str); 1] =
+    [("iceoryx2-cal-0.10.0/src/event/event_state/counting_bit_set.rs", "attempt to add with overflow")];
+
+/// How a run ended whose objects of iceoryx2 became garbage: the library may then end the program by a panic that
+/// it is known for. Its destructors meet the same garbage while that panic unwinds, and may panic again.
+pub fn judge_damaged(ended: &Ended) -> Outcome {
+    let lines: Vec<&str> = ended.said.lines().collect();
+    let mut panicked = false;
+    for (at, line) in lines.iter().enumerate().filter(|(_, line)| line.contains("panicked at")) {
+        let message = lines.get(at + 1).copied().unwrap_or_default();
+        let known = |(file, begin): &(&str, &str)| line.contains(file) && message.starts_with(begin);
+        assert!(panicked || OF_GARBAGE.iter().any(known), "{}", ended.said);
+        panicked = true;
+    }
+    if panicked { Outcome::BySignal } else { judge(ended) }
+}
+
+/// The next run starts and is seen by readers. What the attacked run left is gone then, and `clean` has no more to do.
+pub fn assert_no_harm(directory: &Path, run: &RunName) {
+    let next = Ended::run(directory, "linkbar", &["--ticks", "30", "--log", "none"]);
+    assert_eq!((next.status, next.number("ticks")), (Some(0), 30), "the next run: {}", next.said);
+    next.assert_shared();
+    assert_eq!(traces(run), Vec::<std::path::PathBuf>::new(), "the next run removes what is left");
+    assert_cleaned(directory, run);
+}

@@ -1,0 +1,150 @@
+//! The table of the campaign: a row an attack, a column a way to take it.
+
+use std::{
+    fmt::Write as _,
+    panic::{self, AssertUnwindSafe},
+};
+
+/// How the attacked program took it. What is none of these is a panic of the judge, and a finding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It went on to its end as without the attack; a tool gave its answer.
+    WentOn,
+    /// A run brought the robot to rest and ended with status 1; a tool found a difference.
+    InOrder,
+    /// It ended, or refused to begin, and its last line says why.
+    InWords,
+    /// The signal that was sent ended it, or one of the system's, or iceoryx2 whose memory was garbage.
+    BySignal,
+}
+
+/// The columns, in the order of [`Outcome`].
+const COLUMNS: [&str; 4] = ["went on", "ended in order", "ended with words", "ended by force"];
+
+/// Random numbers: the same for the same seed.
+pub struct Chance(u64);
+
+impl Chance {
+    /// A stream of its own for each case of each row.
+    fn new(seed: u64, row: &str, case: u64) -> Self {
+        let mixed = row.bytes().fold(seed ^ 0xCBF2_9CE4_8422_2325, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3)
+        });
+        Self((mixed ^ case.wrapping_mul(0x9E37_79B9_7F4A_7C15)) | 1)
+    }
+
+    /// A number from 0 to below `limit`; 0 if that is 0.
+    pub fn below(&mut self, limit: u64) -> u64 {
+        // Xorshift: George Marsaglia, Xorshift RNGs, Journal of Statistical Software 8 (2003).
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) % limit.max(1)
+    }
+
+    /// The same for places in memory.
+    pub fn place(&mut self, limit: usize) -> usize {
+        usize::try_from(self.below(u64::try_from(limit).expect("64 bits"))).expect("it is below a usize")
+    }
+
+    /// A byte.
+    pub fn byte(&mut self) -> u8 {
+        u8::try_from(self.below(256)).expect("it is below 256")
+    }
+}
+
+/// How many cases are tried.
+#[derive(Clone, Copy)]
+pub struct Extent {
+    /// A few cases of each row.
+    pub sample: bool,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
+impl Extent {
+    /// The number of cases in a full campaign, or in a sample of it.
+    pub fn of(self, full: u64, sample: u64) -> u64 {
+        if self.sample { sample } else { full }
+    }
+}
+
+/// An attack, and how it was taken.
+pub struct Row {
+    attack: String,
+    on: &'static str,
+    counts: [u64; 4],
+    /// What did not hold: the case, and the judge's words.
+    pub findings: Vec<String>,
+}
+
+impl Row {
+    /// Try an attack on something in some cases.
+    pub fn of(
+        extent: Extent,
+        attack: &str,
+        on: &'static str,
+        cases: impl IntoIterator<Item = u64>,
+        mut attempt: impl FnMut(u64, &mut Chance) -> Outcome,
+    ) -> Self {
+        let mut row = Self { attack: attack.to_owned(), on, counts: [0; 4], findings: Vec::new() };
+        for case in cases {
+            let mut chance = Chance::new(extent.seed, attack, case);
+            match panic::catch_unwind(AssertUnwindSafe(|| attempt(case, &mut chance))) {
+                Ok(outcome) => row.counts[outcome as usize] += 1,
+                Err(words) => row.findings.push(format!("{attack}, {on}, case {case}: {}", text(&*words))),
+            }
+        }
+        row
+    }
+
+    fn cells(&self) -> Vec<String> {
+        let held: u64 = self.counts.iter().sum();
+        let findings = self.findings.len();
+        let cases = held + u64::try_from(findings).expect("64 bits");
+        let counts = self.counts.iter().map(u64::to_string);
+        [self.attack.clone(), self.on.to_owned(), cases.to_string()]
+            .into_iter()
+            .chain(counts)
+            .chain([findings.to_string()])
+            .collect()
+    }
+}
+
+/// The words of a panic.
+fn text(payload: &(dyn std::any::Any + Send)) -> String {
+    let words = payload.downcast_ref::<String>().map(String::as_str);
+    words.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("a panic without words").to_owned()
+}
+
+fn heads() -> Vec<String> {
+    let columns = ["attack", "on", "cases"].into_iter().chain(COLUMNS).chain(["not held"]);
+    columns.map(str::to_owned).collect()
+}
+
+/// The rows for a terminal.
+pub fn plain(rows: &[Row]) -> String {
+    let lines: Vec<Vec<String>> = std::iter::once(heads()).chain(rows.iter().map(Row::cells)).collect();
+    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..lines[0].len()).map(width).collect();
+    let mut text = String::new();
+    for line in &lines {
+        for (column, (cell, width)) in line.iter().zip(&widths).enumerate() {
+            let written =
+                if column < 2 { write!(text, "{cell:<width$}  ") } else { write!(text, "{cell:>width$}  ") };
+            written.expect("a string takes everything");
+        }
+        text.truncate(text.trim_end().len());
+        text.push('\n');
+    }
+    text
+}
+
+/// The rows as a table in Markdown.
+pub fn markdown(rows: &[Row]) -> String {
+    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let mut text = line(heads());
+    text.push_str("|---|---|---:|---:|---:|---:|---:|---:|\n");
+    rows.iter().for_each(|row| text.push_str(&line(row.cells())));
+    text
+}
