@@ -2,6 +2,7 @@
 
 use std::{fs, os::unix::process::CommandExt, process::Stdio};
 
+use executive::memory::{layout, prefix};
 use whole_system_tests::{
     NOBODY, Scratch,
     bench::{Ended, ONE_AT_A_TIME, Running, assert_cleaned, rcs, traces, wait_for},
@@ -85,7 +86,8 @@ fn a_run_is_seen_by_its_status() {
         rcs(&scratch.file(""), &["status", run.name.as_str(), "--directory"]).output().expect("a place");
     let place = String::from_utf8(place.stdout).expect("a path");
     let configuration = std::path::Path::new(place.trim()).join("config/iceoryx2.toml");
-    assert!(fs::read_to_string(configuration).expect("for iox2").contains(run.name.as_str()));
+    let prefix = prefix(&run.name, &layout());
+    assert!(fs::read_to_string(configuration).expect("for iox2").contains(&prefix), "{prefix}");
     run.kill();
     assert_cleaned(&scratch.file(""), &run.name);
     let none = rcs(&scratch.file(""), &["status", "no-such-run"]).output().expect("rcs-run can be started");

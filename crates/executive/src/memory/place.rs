@@ -1,6 +1,5 @@
-//! Where runs live: a directory that lists them by name, a prefix for the names of objects in shared memory, a
-//! directory
-//! among these for the files of iceoryx2, and the checks that all belong to this user alone.
+//! Where runs live: a directory that lists them by name, a prefix for the names of objects in shared memory,
+//! a directory among these for the files of iceoryx2, and the checks that all belong to this user alone.
 //!
 //! The files of iceoryx2 do not lie under `TMPDIR`: there are sockets among them, whose paths have 107 bytes at most,
 //! and it panics over paths of more than 255 bytes.
