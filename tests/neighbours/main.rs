@@ -9,6 +9,7 @@ mod data_system;
 mod ends;
 mod hung;
 mod pedestal;
+mod python;
 mod silent;
 mod strangers;
 mod switching;

@@ -20,7 +20,7 @@ use neighbours::{
 use rcs_core::name::Name16;
 use whole_system_tests::{Scratch, golden, rcs_log, rcs_neighbour, root};
 
-use crate::bench::{Controller, Ended, Workstation, bare, example};
+use crate::bench::{Controller, Ended, Workstation, bare};
 
 /// `rcs-neighbour vision`, which ends with the test.
 struct Vision(Child);
@@ -183,30 +183,6 @@ fn vision_with_another_cell_description_ends_and_says_why() {
     assert!(said.contains("the cell description of the run was expected"), "{said}");
     let ended = controller.end();
     assert!(ended.said.contains("vision does not answer"), "{}", ended.said);
-}
-
-/// The vision system in another language that the documentation shows: it has nothing but the bytes in common
-/// with the other one.
-#[test]
-fn the_python_example_locates_a_part() {
-    let python =
-        Command::new("python3").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
-    if !python.is_ok_and(|status| status.success()) {
-        eprintln!("no python3 here: its example is not tried");
-        return;
-    }
-    let controller = Controller::start("python-vision", "vision", &["linkbar", "--json", "--seed", "5"]);
-    let output = Command::new("python3")
-        .arg("-B")
-        .arg(example("vision.py"))
-        .arg(controller.address.to_string())
-        .output()
-        .expect("python3 can be started");
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.ends_with("the controller says: the run is over\n"), "{said}");
-    let ended = controller.end();
-    assert_eq!(ended.status, Some(0), "{}", ended.said);
-    assert_eq!(ended.result["parts"][0]["name"], "LINKBAR1", "{}", ended.said);
 }
 
 /// The log of a run that vision has failed says what it was, and replays.

@@ -1,6 +1,6 @@
 //! The workstation controller in another process (V.4.2, IX.1).
 
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use interfaces::HwsCommand;
 use neighbours::{
@@ -11,9 +11,9 @@ use neighbours::{
     },
 };
 use rustix::process::{Pid, Signal, kill_process};
-use whole_system_tests::{Scratch, rcs_neighbour, root};
+use whole_system_tests::{rcs_neighbour, root};
 
-use crate::bench::{Controller, Workstation, bare, example, make_keys, run_alone};
+use crate::bench::{Controller, Workstation, bare, run_alone};
 
 /// The job of the controller's own emulator and that of one in another process are the same to the bit.
 #[test]
@@ -51,31 +51,6 @@ fn boards_are_commanded_from_another_process() {
     drop(workstation);
     let ended = controller.end();
     assert_eq!(ended.status, Some(0), "{}", ended.said);
-}
-
-/// The client in another language that the documentation shows, with TLS and strict verification of certificates.
-#[test]
-fn the_python_example_transfers_a_part() {
-    let python =
-        Command::new("python3").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
-    if !python.is_ok_and(|status| status.success()) {
-        eprintln!("no python3 here: its example is not tried");
-        return;
-    }
-    let scratch = Scratch::new("python");
-    let keys = make_keys(&scratch, "keys", 1).display().to_string();
-    let more = ["--json", "--keys", keys.as_str()];
-    let controller = Controller::start_at(scratch, Some("tcp:127.0.0.1:0"), "workstation", &more);
-    let output = Command::new("python3")
-        .arg(example("hwsc.py"))
-        .args([&controller.address.to_string(), &keys])
-        .output()
-        .expect("python3 can be started");
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
-    assert!(said.ends_with("TRANSFER 2: executing\nTRANSFER 2: finished\n"), "{said}");
-    let ended = controller.end();
-    assert_eq!(ended.result["parts"][0]["location"], "PFIXTURE", "{}", ended.said);
 }
 
 /// A controller that gets `what` after a PAUSE, until tick 200; its digest.

@@ -48,22 +48,16 @@ pub fn judge(ended: &Ended) -> Outcome {
     }
 }
 
-/// Panics of iceoryx2 0.10.0 over objects of its own that are garbage: the file, and how the message begins.
-const OF_GARBAGE: [(&str, &str); 1] =
-    [("iceoryx2-cal-0.10.0/src/event/event_state/counting_bit_set.rs", "attempt to add with overflow")];
-
-/// How a run ended whose objects of iceoryx2 became garbage: the library may then end the program by a panic that
-/// it is known for. Its destructors meet the same garbage while that panic unwinds, and may panic again.
+/// How a run ended whose objects of iceoryx2 became garbage: the library may panic over them. While a run is set up
+/// that ends it with words, and later by the panic. Destructors meet the same garbage, and may panic again.
 pub fn judge_damaged(ended: &Ended) -> Outcome {
-    let lines: Vec<&str> = ended.said.lines().collect();
-    let mut panicked = false;
-    for (at, line) in lines.iter().enumerate().filter(|(_, line)| line.contains("panicked at")) {
-        let message = lines.get(at + 1).copied().unwrap_or_default();
-        let known = |(file, begin): &(&str, &str)| line.contains(file) && message.starts_with(begin);
-        assert!(panicked || OF_GARBAGE.iter().any(known), "{}", ended.said);
-        panicked = true;
+    let mut panics = ended.said.lines().filter(|line| line.contains("panicked at"));
+    let Some(first) = panics.next() else { return judge(ended) };
+    assert!(first.contains("/iceoryx2-"), "{}", ended.said);
+    match ended.status {
+        Some(1..=3) if ended.last_words().starts_with("rcs-run: ") => Outcome::InWords,
+        _ => Outcome::BySignal,
     }
-    if panicked { Outcome::BySignal } else { judge(ended) }
 }
 
 /// The next run starts and is seen by readers. What the attacked run left is gone then, and `clean` has no more to do.

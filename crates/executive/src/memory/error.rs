@@ -70,6 +70,12 @@ pub enum SharedMemoryError {
         /// How long.
         limit: Duration,
     },
+    /// iceoryx2 has panicked over its own objects.
+    #[error(
+        "the objects of iceoryx2 in /dev/shm are damaged, another program has written into them; the next run \
+         removes them"
+    )]
+    Damaged,
     /// A file could not be removed or a directory not be read.
     #[error("{path:?}: {source}")]
     Io {

@@ -1,9 +1,11 @@
-//! A limit for what iceoryx2 sets up or opens.
+//! Limits for what iceoryx2 sets up or opens.
 //!
 //! It follows indices and flags in shared memory. If another program damages these while a run is set up, iceoryx2
-//! 0.10.0 can wait for a flag that never comes. Such a call cannot be ended from outside: only the process can.
+//! 0.10.0 can panic, which becomes an error here, or wait for a flag that never comes. Such a call cannot be ended
+//! from outside: only the process can.
 
 use std::{
+    panic::{self, AssertUnwindSafe},
     sync::mpsc::{self, RecvTimeoutError},
     thread,
     time::Duration,
@@ -22,12 +24,16 @@ pub type OnStuck = fn(Duration);
 /// Set up or open something. If this takes longer than `limit`, `on_stuck` is called; without it there is no limit.
 ///
 /// # Errors
-/// Those of `work`, and [`SharedMemoryError::Io`] if there is no thread to watch it.
+/// Those of `work`, [`SharedMemoryError::Damaged`] if it panics, and [`SharedMemoryError::Io`] if there is no
+/// thread to watch it.
 pub fn within_limit<T, E: From<SharedMemoryError>>(
     limit: Duration,
     on_stuck: Option<OnStuck>,
     work: impl FnOnce() -> Result<T, E>,
 ) -> Result<T, E> {
+    // What a panic leaves half done belongs to `work`, and is dropped with it.
+    let work =
+        || panic::catch_unwind(AssertUnwindSafe(work)).unwrap_or(Err(SharedMemoryError::Damaged.into()));
     let Some(on_stuck) = on_stuck else { return work() };
     let (done, waits) = mpsc::channel::<()>();
     let watch = move || {
@@ -68,5 +74,11 @@ mod tests {
         };
         assert_eq!(within_limit(Duration::from_millis(1), Some(on_stuck), never).unwrap(), 7);
         assert_eq!(STUCK.load(Ordering::SeqCst), 1, "it is called once");
+    }
+
+    #[test]
+    fn a_set_up_that_panics_is_an_error() {
+        let damaged = || -> Result<(), SharedMemoryError> { panic!("an index of another program") };
+        assert!(matches!(within_limit(Duration::MAX, None, damaged), Err(SharedMemoryError::Damaged)));
     }
 }
