@@ -146,7 +146,11 @@ impl Controller {
     }
 
     /// One period. The robot is moved at most once.
-    pub fn step(&mut self, inputs: &ControllerInputs, robot: &mut impl Robot) -> ControllerOutputs {
+    pub fn step(
+        &mut self,
+        inputs: &ControllerInputs,
+        robot: &mut (impl Robot + ?Sized),
+    ) -> ControllerOutputs {
         let mut out = ControllerOutputs {
             function: core::mem::replace(&mut self.function, NO_FUNCTION),
             ..Default::default()
@@ -178,7 +182,12 @@ impl Controller {
     }
 
     /// The function begins, or begins again: the checks in their order, then the report.
-    fn begin(&mut self, inputs: &ControllerInputs, robot: &mut impl Robot, out: &mut ControllerOutputs) {
+    fn begin(
+        &mut self,
+        inputs: &ControllerInputs,
+        robot: &mut (impl Robot + ?Sized),
+        out: &mut ControllerOutputs,
+    ) {
         self.receiver.clear();
         if !inputs.board {
             self.warn(Warning::BoardMissing);
@@ -193,7 +202,12 @@ impl Controller {
         }
     }
 
-    fn run(&mut self, inputs: &ControllerInputs, robot: &mut impl Robot, out: &mut ControllerOutputs) {
+    fn run(
+        &mut self,
+        inputs: &ControllerInputs,
+        robot: &mut (impl Robot + ?Sized),
+        out: &mut ControllerOutputs,
+    ) {
         if inputs.interrupt {
             return self.warn(Warning::Interrupt);
         }
@@ -224,7 +238,7 @@ impl Controller {
         &mut self,
         inputs: &ControllerInputs,
         command: &DataCommand,
-        robot: &mut impl Robot,
+        robot: &mut (impl Robot + ?Sized),
         out: &mut ControllerOutputs,
     ) {
         self.send(inputs, &[Response::Ack.byte()], out);
@@ -249,7 +263,7 @@ impl Controller {
     fn wait_for_answer(
         &mut self,
         inputs: &ControllerInputs,
-        robot: &mut impl Robot,
+        robot: &mut (impl Robot + ?Sized),
         out: &mut ControllerOutputs,
     ) {
         let command = self.receiver.take();
@@ -263,7 +277,12 @@ impl Controller {
         }
     }
 
-    fn report(&mut self, inputs: &ControllerInputs, robot: &mut impl Robot, out: &mut ControllerOutputs) {
+    fn report(
+        &mut self,
+        inputs: &ControllerInputs,
+        robot: &mut (impl Robot + ?Sized),
+        out: &mut ControllerOutputs,
+    ) {
         self.commanded = robot.present();
         let mut frame = [0; FRAME_BYTES];
         Report { plate: self.commanded }.emit(&mut frame);

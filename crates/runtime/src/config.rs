@@ -140,6 +140,8 @@ pub enum RobotKind {
     Serial(SerialSettings),
     /// One with EGM.
     Egm(Box<EgmOptions>),
+    /// One that the caller of the library brings ([`Run::with_robot`](crate::Run::with_robot)).
+    Own,
 }
 
 impl RobotKind {
@@ -147,7 +149,7 @@ impl RobotKind {
     #[must_use]
     pub fn lives_in_real_time(&self) -> bool {
         match self {
-            Self::Sim => false,
+            Self::Sim | Self::Own => false,
             Self::Serial(_) => true,
             Self::Egm(options) => options.peer != Peer::Simulated,
         }
@@ -180,6 +182,7 @@ impl fmt::Display for RobotConfig {
             RobotKind::Sim => f.write_str("sim"),
             RobotKind::Serial(settings) => write!(f, "serial:{}", settings.path.display()),
             RobotKind::Egm(options) => options.fmt(f),
+            RobotKind::Own => f.write_str("own"),
         }
     }
 }

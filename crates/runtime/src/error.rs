@@ -47,6 +47,9 @@ pub enum StartError {
     /// A robot at a port with a clock that does not wait for it.
     #[error("a robot at a port lives in real time: add --clock real")]
     NotInRealTime,
+    /// A robot of the caller's own that the caller did not bring.
+    #[error("the configuration names a robot of the caller's own: start the run by Run::with_robot")]
+    NoOwnRobot,
     /// Faults for a line that has its own.
     #[error(
         "the file has faults of the line to the simulated robot; a robot elsewhere has faults of its own"

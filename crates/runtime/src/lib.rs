@@ -27,6 +27,7 @@ mod log;
 pub mod neighbours;
 pub mod observer;
 mod outside;
+mod own;
 mod pace;
 mod placement;
 pub mod result;
@@ -41,6 +42,7 @@ pub use self::{
     config::{Boards, ClockKind, LogTarget, RobotConfig, RobotKind, RunConfig},
     error::StartError,
     observer::{Observer, TickReport},
+    own::OwnRobot,
     run::{Run, RunOutcome},
     verdict::Ending,
 };

@@ -1,5 +1,5 @@
 //! The other end of the DEPC line: the T3 controller of the simulated cell, a robot at a serial port, or a
-//! robot with EGM behind a DEPC function of its own.
+//! robot with EGM, or of the caller's own, behind a DEPC function in this process.
 //!
 //! With the simulated one the bytes of a tick go through the fault injector, if there is a fault plan, and
 //! then through the cell. With a serial port they go to the port; the rest of the cell (gripper, camera,
@@ -27,7 +27,7 @@ use interfaces::device::{DeviceInputs, DeviceOutputs, LinkBytes};
 use plant::Cell;
 use rcs_core::tick::{TICK_MS, Tick};
 
-use crate::{config::RunConfig, egm::EgmPort, observer::Observer};
+use crate::{config::RunConfig, egm::EgmPort, observer::Observer, own::OwnPort};
 
 /// Length of a tick.
 const PERIOD: Duration = Duration::from_millis(TICK_MS);
@@ -40,6 +40,8 @@ pub enum Robot {
     Serial(Port),
     /// A robot with EGM.
     Egm(Box<EgmPort>),
+    /// A robot that the caller of the library brings.
+    Own(OwnPort),
 }
 
 /// A serial line, with what is measured on it.
@@ -95,7 +97,7 @@ impl Robot {
     /// beyond an interruption. Without it the run begins all the same, and fails by name.
     pub fn gather(&mut self, config: &RunConfig, observer: &mut dyn Observer) {
         let port = match self {
-            Self::Simulated(_) => return,
+            Self::Simulated(_) | Self::Own(_) => return,
             Self::Serial(port) => port,
             Self::Egm(egm) => return egm.gather(config, observer),
         };
@@ -131,6 +133,7 @@ impl Robot {
                 inputs.link_unsent = port.line.has_unsent();
             }
             Self::Egm(egm) => egm.receive(inputs),
+            Self::Own(own) => own.receive(inputs),
         }
     }
 
@@ -142,6 +145,7 @@ impl Robot {
             Self::Simulated(_) => {}
             Self::Serial(port) => port.send(&outputs.link_tx),
             Self::Egm(egm) => egm.send(&outputs.link_tx, exact()),
+            Self::Own(own) => own.send(&outputs.link_tx),
         }
     }
 
@@ -160,6 +164,7 @@ impl Robot {
                 egm.advance(PERIOD);
                 cell.step_following(egm.feedback().as_ref(), outputs)
             }
+            Self::Own(own) => cell.step_following(own.position().as_ref(), outputs),
             Self::Simulated(None) => cell.step(outputs),
             Self::Simulated(Some(injector)) => {
                 let (rx, ready) = injector.carry(Direction::ToController, tick, &outputs.link_tx, true);
@@ -194,6 +199,7 @@ impl Robot {
             Self::Simulated(_) => None,
             Self::Serial(port) => port.trouble(),
             Self::Egm(egm) => egm.trouble().map(str::to_owned),
+            Self::Own(own) => own.trouble(),
         }
     }
 

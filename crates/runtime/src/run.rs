@@ -38,6 +38,7 @@ use crate::{
     log::Log,
     neighbours::Neighbours,
     observer::{Observer, TickReport},
+    own::OwnRobot,
     pace::{self, Pace},
     placement::PlacementCheck,
     result::{
@@ -163,8 +164,29 @@ impl Run {
     ///
     /// # Errors
     /// [`StartError`] if the run cannot begin, with all errors of the data. Nothing has moved then.
-    pub fn new(config: RunConfig, mut observer: Box<dyn Observer>) -> Result<Self, StartError> {
-        let mut setup = Setup::load(&config, &mut *observer)?;
+    pub fn new(config: RunConfig, observer: Box<dyn Observer>) -> Result<Self, StartError> {
+        Self::start(config, None, observer)
+    }
+
+    /// Like [`Run::new`], with a robot of the caller's own in the place of that of the configuration.
+    ///
+    /// # Errors
+    /// As [`Run::new`].
+    pub fn with_robot(
+        mut config: RunConfig,
+        robot: Box<dyn OwnRobot>,
+        observer: Box<dyn Observer>,
+    ) -> Result<Self, StartError> {
+        config.robot.kind = RobotKind::Own;
+        Self::start(config, Some(robot), observer)
+    }
+
+    fn start(
+        config: RunConfig,
+        own: Option<Box<dyn OwnRobot>>,
+        mut observer: Box<dyn Observer>,
+    ) -> Result<Self, StartError> {
+        let mut setup = Setup::load(&config, own, &mut *observer)?;
         setup.neighbours.gather(&config, &mut *observer)?;
         setup.robot.gather(&config, &mut *observer);
         let name = config.name.clone().unwrap_or_else(|| RunName::unique(&setup.job.name));

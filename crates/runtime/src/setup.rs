@@ -28,10 +28,9 @@ use crate::{
     config::{ClockKind, LogTarget, RobotKind, RunConfig},
     egm::EgmPort,
     error::StartError,
-    observer::Observer,
-};
-use crate::{
     neighbours::{Emulator, Neighbours, Network, WorkstationSource},
+    observer::Observer,
+    own::{OwnPort, OwnRobot},
     robot::{Port, Robot},
     switched::Switched,
 };
@@ -70,7 +69,11 @@ impl Setup {
     ///
     /// # Errors
     /// [`StartError`], with all errors of the data.
-    pub fn load(config: &RunConfig, observer: &mut dyn Observer) -> Result<Self, StartError> {
+    pub fn load(
+        config: &RunConfig,
+        own: Option<Box<dyn OwnRobot>>,
+        observer: &mut dyn Observer,
+    ) -> Result<Self, StartError> {
         if config.robot.kind.lives_in_real_time() && config.clock != ClockKind::Real {
             return Err(StartError::NotInRealTime);
         }
@@ -94,6 +97,7 @@ impl Setup {
             RobotKind::Sim => Robot::Simulated(faults.line.map(|plan| Box::new(Injector::new(&plan)))),
             RobotKind::Serial(settings) => Robot::Serial(Port::new(SerialLine::open(settings.clone())?)),
             RobotKind::Egm(options) => Robot::Egm(Box::new(EgmPort::open(options, config, observer)?)),
+            RobotKind::Own => Robot::Own(OwnPort::new(own.ok_or(StartError::NoOwnRobot)?)),
         };
         Ok(Self { store, job, description_text, description, cell, faults_text, robot, neighbours, log })
     }

@@ -1,0 +1,67 @@
+//! A robot that the caller of the library brings, behind a DEPC function in this process.
+
+use depc::{
+    Limits, Plate,
+    controller::{Controller, ControllerInputs, ControllerOutputs, ControllerState, Robot},
+    link::LinkBytes,
+    warning::Warning,
+};
+use interfaces::device::DeviceInputs;
+use plant::t3::explained;
+
+/// A robot in the place of the T3, for [`Run::with_robot`](crate::Run::with_robot).
+///
+/// In a tick comes first [`advance`](Self::advance), then at most one point
+/// ([`Robot::accept`]) or request for the present position ([`Robot::present`]), then
+/// [`position`](Self::position).
+pub trait OwnRobot: Robot {
+    /// A tick of 40 ms begins: go towards the last point that was accepted.
+    fn advance(&mut self);
+
+    /// Where the end plate is: the arm of the simulated cell, and with it all else there, follows it. `None`
+    /// while that is not known.
+    fn position(&self) -> Option<Plate>;
+}
+
+/// The robot, and the DEPC function in front of it.
+pub struct OwnPort {
+    robot: Box<dyn OwnRobot>,
+    function: Controller,
+    outputs: ControllerOutputs,
+}
+
+impl OwnPort {
+    /// The function has not begun.
+    pub fn new(robot: Box<dyn OwnRobot>) -> Self {
+        Self { robot, function: Controller::new(Limits::NBS), outputs: ControllerOutputs::default() }
+    }
+
+    /// Before the controller's tick: what the function has answered.
+    pub const fn receive(&self, inputs: &mut DeviceInputs) {
+        inputs.link_rx = self.outputs.tx;
+        inputs.link_ready = self.outputs.dtr;
+        inputs.link_unsent = false;
+    }
+
+    /// After the controller's tick: the function takes the host's bytes. It begins whenever the robot has
+    /// nothing to complain of.
+    pub fn send(&mut self, tx: &LinkBytes) {
+        self.robot.advance();
+        let running = matches!(self.function.state(), ControllerState::Running | ControllerState::Warning);
+        let start = !running && self.robot.warning().is_none();
+        let inputs =
+            ControllerInputs { rx: *tx, cts: true, board: true, start, ..ControllerInputs::default() };
+        self.outputs = self.function.step(&inputs, &mut *self.robot);
+    }
+
+    /// Where the robot is.
+    pub fn position(&self) -> Option<Plate> {
+        self.robot.position()
+    }
+
+    /// The warning that keeps the robot from being commanded, in words.
+    pub fn trouble(&self) -> Option<String> {
+        let shown = Some(self.function.warning()).filter(|shown| *shown != Warning::None);
+        shown.or_else(|| self.robot.warning()).map(explained)
+    }
+}
