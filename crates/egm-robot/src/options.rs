@@ -2,6 +2,7 @@
 
 use std::{
     net::{IpAddr, Ipv4Addr, SocketAddr},
+    ops::RangeInclusive,
     path::{Path, PathBuf},
     str::FromStr,
     time::Duration,
@@ -20,7 +21,7 @@ use crate::{
 /// Directory of the robots' files in the data directory.
 const ROBOTS: &str = "robots";
 /// Least and greatest slack, ms.
-const SLACK_MS: std::ops::RangeInclusive<u64> = 0..=200;
+const SLACK_MS: RangeInclusive<u64> = 0..=200;
 
 /// Where the robot is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,41 +125,63 @@ impl EgmOptions {
         Ok(())
     }
 
+    /// The numbers of an emulated robot: name, place, range.
+    fn numbers(&mut self) -> [(&'static str, &mut f64, RangeInclusive<f64>); 12] {
+        let (tuning, quality) = (&mut self.tuning, &mut self.quality);
+        [
+            ("gain", &mut tuning.gain, 0.0..=20.0),
+            ("filter", &mut tuning.low_pass, 0.0..=100.0),
+            ("ramp", &mut tuning.ramp_s, 0.005..=10.0),
+            ("deviation", &mut tuning.max_speed_deviation, 0.0..=400.0),
+            ("timeout", &mut tuning.comm_timeout_s, 0.01..=60.0),
+            ("loss", &mut quality.loss, 0.0..=100.0),
+            ("double", &mut quality.double, 0.0..=100.0),
+            ("reorder", &mut quality.reorder, 0.0..=100.0),
+            ("delay", &mut quality.delay_ms, 0.0..=1000.0),
+            ("jitter", &mut quality.jitter_ms, 0.0..=1000.0),
+            ("silent-at", &mut quality.silent_at_s, 0.0..=1e6),
+            ("silent-for", &mut quality.silent_for_s, 0.0..=1e6),
+        ]
+    }
+
     /// An option of the emulated robot.
     fn emulate(&mut self, name: &str, value: &str) -> Result<(), String> {
-        let (tuning, quality) = (&mut self.tuning, &mut self.quality);
-        let (slot, range) = match name {
-            "gain" => (&mut tuning.gain, 0.0..=20.0),
-            "filter" => (&mut tuning.low_pass, 0.0..=100.0),
-            "ramp" => (&mut tuning.ramp_s, 0.005..=10.0),
-            "deviation" => (&mut tuning.max_speed_deviation, 0.0..=400.0),
-            "timeout" => (&mut tuning.comm_timeout_s, 0.01..=60.0),
-            "loss" => (&mut quality.loss, 0.0..=100.0),
-            "double" => (&mut quality.double, 0.0..=100.0),
-            "reorder" => (&mut quality.reorder, 0.0..=100.0),
-            "delay" => (&mut quality.delay_ms, 0.0..=1000.0),
-            "jitter" => (&mut quality.jitter_ms, 0.0..=1000.0),
-            "silent-at" => (&mut quality.silent_at_s, 0.0..=1e6),
-            "silent-for" => (&mut quality.silent_for_s, 0.0..=1e6),
-            "do-not-restart" => {
-                tuning.do_not_restart = switch(name, value)?;
-                return Ok(());
-            }
-            "seed" => {
-                self.seed = value.parse().map_err(|_| format!("seed is a number, found {value}"))?;
-                return Ok(());
-            }
+        match name {
+            "do-not-restart" => self.tuning.do_not_restart = switch(name, value)?,
+            "seed" => self.seed = value.parse().map_err(|_| format!("seed is a number, found {value}"))?,
             _ => {
-                return Err(format!(
-                    "an emulated EGM robot has no option {name}; it has robot, gain, filter, ramp, deviation, \
-                     timeout, do-not-restart, loss, double, reorder, delay, jitter, silent-at, silent-for, seed"
-                ));
+                let mut numbers = self.numbers();
+                let names = numbers.each_ref().map(|(name, ..)| *name).join(", ");
+                let Some((_, slot, range)) = numbers.iter_mut().find(|(known, ..)| *known == name) else {
+                    return Err(format!(
+                        "an emulated EGM robot has no option {name}; it has robot, do-not-restart, seed, {names}"
+                    ));
+                };
+                let (low, high) = (range.start(), range.end());
+                let number = value.parse().ok().filter(|number| range.contains(number));
+                **slot = number
+                    .ok_or_else(|| format!("{name} is a number from {low} to {high}, found {value}"))?;
             }
-        };
-        let (low, high) = (*range.start(), *range.end());
-        let number = value.parse().ok().filter(|number| range.contains(number));
-        *slot = number.ok_or_else(|| format!("{name} is a number from {low} to {high}, found {value}"))?;
+        }
         Ok(())
+    }
+
+    /// All options that are not as [`EgmOptions::new`] has them, with their values.
+    fn set_options(&self) -> Vec<(&'static str, String)> {
+        let word = |on: bool| if on { "on" } else { "off" }.to_owned();
+        let (mut own, mut new) = (self.clone(), Self::new(self.peer));
+        let mut set: Vec<_> = self.robot.clone().map(|robot| ("robot", robot)).into_iter().collect();
+        set.extend(self.from.map(|from| ("from", from.to_string())));
+        set.extend((self.speed_ref != new.speed_ref).then(|| ("speed-ref", word(self.speed_ref))));
+        set.extend((self.slack_ms != new.slack_ms).then(|| ("slack", self.slack_ms.to_string())));
+        let restart = self.tuning.do_not_restart;
+        set.extend((restart != new.tuning.do_not_restart).then(|| ("do-not-restart", word(restart))));
+        set.extend((self.seed != new.seed).then(|| ("seed", self.seed.to_string())));
+        let numbers = own.numbers().into_iter().zip(new.numbers());
+        set.extend(numbers.filter_map(|((name, value, _), (_, usual, _))| {
+            (*value != *usual).then(|| (name, value.to_string()))
+        }));
+        set
     }
 
     /// The robot's frames.
@@ -215,11 +238,13 @@ impl FromStr for EgmOptions {
 }
 
 impl std::fmt::Display for EgmOptions {
+    /// As a person would type it.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.peer {
             Peer::Udp(address) => write!(f, "egm:{address}"),
             Peer::Simulated => f.write_str("egm:sim"),
-        }
+        }?;
+        self.set_options().iter().try_for_each(|(name, value)| write!(f, ",{name}={value}"))
     }
 }
 
@@ -240,6 +265,14 @@ mod tests {
         let options = parse("sim,gain=10,loss=20,jitter=20,seed=7,do-not-restart=off").unwrap();
         assert_eq!((options.tuning.gain, options.quality.loss, options.seed), (10.0, 20.0, 7));
         assert!(!options.tuning.do_not_restart);
+        for text in [
+            "egm:sim",
+            "egm:[::1]:6510,robot=irb,from=192.168.125.1,speed-ref=off,slack=15",
+            "egm:sim,do-not-restart=off,seed=7,gain=10,loss=20,jitter=0.25",
+        ] {
+            let options = parse(text.trim_start_matches("egm:")).unwrap();
+            assert_eq!(options.to_string(), text);
+        }
         for wrong in [
             "",
             "0",

@@ -10,9 +10,16 @@ use executive::{
     serial::SerialSettings,
 };
 use neighbours::network::{Address, Role};
+use serde::{Deserialize, Serialize};
 
-/// What to run. [`RunConfig::new`] gives what `rcs-run` takes without options; every field may be changed.
-#[derive(Clone, Debug)]
+use crate::as_text;
+
+/// What to run. [`RunConfig::default`] is what `rcs-run` takes without options; every field may be changed.
+///
+/// By serde it is written and read with the words of the command line, such as `robot = "egm:6510,slack=15"` in
+/// TOML. What is left out is as in the default; an unknown field is an error.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct RunConfig {
     /// Directory of task data, jobs and cell description.
     pub data: PathBuf,
@@ -21,10 +28,12 @@ pub struct RunConfig {
     /// Ticks at once, or one every 40 ms.
     pub clock: ClockKind,
     /// What to do about slots of the 40 ms grid that are skipped.
+    #[serde(with = "as_text")]
     pub overrun: Policy,
     /// The core to run on with the real clock; the highest that is allowed without it.
     pub cpu: Option<usize>,
     /// The robot to command.
+    #[serde(with = "as_text")]
     pub robot: RobotConfig,
     /// File of faults of the cell and of the line to the simulated robot.
     pub faults: Option<PathBuf>,
@@ -33,6 +42,7 @@ pub struct RunConfig {
     /// The program that runs a board: it takes the arguments of `rcs-run board`.
     pub program: PathBuf,
     /// Name of the run in shared memory; job and process number without it.
+    #[serde(with = "as_text::option")]
     pub name: Option<RunName>,
     /// How many seconds to wait for boards that are started by hand, for neighbours in other processes, and for
     /// a robot controller at a port.
@@ -40,12 +50,15 @@ pub struct RunConfig {
     /// Seed of the cell's noise and of where parts are delivered.
     pub seed: u64,
     /// Where to write the log.
+    #[serde(with = "as_text")]
     pub log: LogTarget,
     /// SQLite file of the Data System's items; they are forgotten without it.
     pub data_base: Option<PathBuf>,
     /// Where neighbours in other processes connect.
+    #[serde(with = "as_text::option")]
     pub network: Option<Address>,
     /// Neighbours that are other processes.
+    #[serde(with = "as_text::list")]
     pub outside: Vec<Role>,
     /// Begin under stand-alone command, with the job, although the workstation controller is another process
     /// (IV.4.1).
@@ -65,8 +78,10 @@ pub struct RunConfig {
     pub shared_memory: bool,
     /// Ends the process if shared memory cannot be set up in time (`executive::memory::limit`), before anything
     /// moves; without it there is no limit.
+    #[serde(skip)]
     pub on_stuck: Option<OnStuck>,
     /// Ends the run as soon as it is set; the robot is brought to rest first.
+    #[serde(skip)]
     pub stop: Arc<AtomicBool>,
 }
 
@@ -110,8 +125,15 @@ impl RunConfig {
     }
 }
 
+impl Default for RunConfig {
+    fn default() -> Self {
+        Self::new("data", "linkbar")
+    }
+}
+
 /// When ticks are run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum ClockKind {
     /// As fast as the cell can be simulated
@@ -180,10 +202,11 @@ impl fmt::Display for RobotConfig {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.kind {
             RobotKind::Sim => f.write_str("sim"),
-            RobotKind::Serial(settings) => write!(f, "serial:{}", settings.path.display()),
+            RobotKind::Serial(settings) => write!(f, "serial:{settings}"),
             RobotKind::Egm(options) => options.fmt(f),
             RobotKind::Own => f.write_str("own"),
-        }
+        }?;
+        self.silence.map_or(Ok(()), |seconds| write!(f, ",silence={seconds}"))
     }
 }
 
@@ -218,7 +241,8 @@ fn silence(part: &str) -> Result<u16, String> {
 }
 
 /// How processes are spread.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Boards {
     /// All in one thread
@@ -252,12 +276,23 @@ pub enum LogTarget {
     File(PathBuf),
 }
 
+impl fmt::Display for LogTarget {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Default => f.write_str("default"),
+            Self::None => f.write_str("none"),
+            Self::File(path) => path.display().fmt(f),
+        }
+    }
+}
+
 impl FromStr for LogTarget {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         match text {
             "" => Err("a file name or none was expected".into()),
+            "default" => Ok(Self::Default),
             "none" | "/dev/null" => Ok(Self::None),
             path => Ok(Self::File(path.into())),
         }
@@ -290,5 +325,31 @@ mod tests {
         ] {
             assert!(robot(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn a_configuration_comes_back_and_what_is_left_out_is_as_without_options() {
+        let config = RunConfig {
+            overrun: Policy::Hold(3),
+            robot: "serial:/dev/ttyS0,parity=even,silence=90".parse().unwrap(),
+            boards: Boards::Split,
+            name: Some("cell-1".parse().unwrap()),
+            log: LogTarget::None,
+            network: Some("tcp:127.0.0.1:7400".parse().unwrap()),
+            outside: vec![Role::Workstation, Role::DataSystem],
+            ticks: Some(50),
+            ..RunConfig::new("cell", "clevis")
+        };
+        let text = toml::to_string(&config).unwrap();
+        let again: RunConfig = toml::from_str(&text).unwrap();
+        assert_eq!(format!("{config:?}"), format!("{again:?}"), "{text}");
+        let some: RunConfig = toml::from_str("job = \"clevis\"\nrobot = \"egm:sim,loss=20\"").unwrap();
+        let expected =
+            RunConfig { robot: "egm:sim,loss=20".parse().unwrap(), ..RunConfig::new("data", "clevis") };
+        assert_eq!(format!("{some:?}"), format!("{expected:?}"));
+        let wrong = |text: &str| toml::from_str::<RunConfig>(text).unwrap_err().to_string();
+        assert!(wrong("jobs = \"clevis\"").contains("unknown field `jobs`"));
+        assert!(wrong("overrun = \"hold:0\"").contains("SLOTS from 1"));
+        assert!(wrong("outside = [\"printer\"]").contains("printer"));
     }
 }

@@ -18,6 +18,7 @@
 //! allocates and takes its time; it is outside of what is counted as the controller's.
 
 pub mod agreement;
+mod as_text;
 pub mod boards;
 pub mod config;
 pub mod contacts;

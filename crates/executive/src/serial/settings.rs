@@ -1,6 +1,6 @@
 //! How a port is set up, and how a person writes it: `/dev/ttyUSB0,parity=even,stop=2`.
 
-use std::{path::PathBuf, str::FromStr, time::Duration};
+use std::{fmt, path::PathBuf, str::FromStr, time::Duration};
 
 use serialport::{DataBits, FlowControl, SerialPortBuilder, StopBits};
 
@@ -93,6 +93,25 @@ impl FromStr for SerialSettings {
     }
 }
 
+impl fmt::Display for SerialSettings {
+    /// As a person would type it: what is as [`SerialSettings::new`] has it is left out.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { path, baud, parity, two_stop_bits, clear_to_send } = self;
+        let usual = Self::new(path);
+        write!(f, "{}", path.display())?;
+        if *baud != usual.baud {
+            write!(f, ",baud={baud}")?;
+        }
+        f.write_str(match parity {
+            Parity::None => "",
+            Parity::Even => ",parity=even",
+            Parity::Odd => ",parity=odd",
+        })?;
+        f.write_str(if *two_stop_bits { ",stop=2" } else { "" })?;
+        f.write_str(if *clear_to_send { "" } else { ",cts=ignore" })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,6 +135,8 @@ mod tests {
             clear_to_send: false,
         };
         assert_eq!(settings, expected);
+        assert_eq!(expected.to_string().parse(), Ok(expected));
+        assert_eq!(SerialSettings::new("/dev/ttyS0").to_string(), "/dev/ttyS0");
     }
 
     #[test]
