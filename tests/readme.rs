@@ -1,4 +1,4 @@
-//! The samples of the README are what the programs print: each `console` block is run as it stands there.
+//! The samples of the README and of docs/fork.md are what the programs print: each `console` block is run as it stands there.
 //!
 //! `...` stands for any lines, and at the end of a line for the rest of it. Numbers that depend on the machine count
 //! as equal.
@@ -41,24 +41,39 @@ fn assert_shown(command: &str, expected: &[&str], output: &str) {
     assert!(gap || lines.next().is_none(), "`{command}` prints more than the sample:\n{output}");
 }
 
-#[test]
-fn the_samples_of_the_readme_are_what_is_printed() {
-    let readme = fs::read_to_string(root().join("README.md")).expect("the README is there");
-    let scratch = Scratch::new("readme");
+/// The words of a command; what stands between apostrophes is one.
+fn words(command: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut quoted = false;
+    for character in command.chars() {
+        match character {
+            '\'' => quoted = !quoted,
+            ' ' if !quoted => words.push(String::new()),
+            character => words.last_mut().expect("there is one").push(character),
+        }
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+/// Run the samples of a page in an empty directory with the shipped data; how many there are.
+fn run_samples(page: &str) -> usize {
+    let text = fs::read_to_string(root().join(page)).expect("the page is there");
+    let scratch = Scratch::new("samples");
     symlink(root().join("data"), scratch.file("data")).expect("there is room for a link");
-    let blocks = readme.split("```console\n").skip(1).filter_map(|rest| rest.split_once("```"));
+    let blocks = text.split("```console\n").skip(1).filter_map(|rest| rest.split_once("```"));
     let mut run = 0;
     for (block, _) in blocks {
         for sample in block.split("$ ").skip(1) {
             let (command, expected) = sample.split_once('\n').expect("a command is a line");
-            let words = command.strip_prefix("cargo run --release").expect("samples run with cargo").trim();
-            let (program, arguments) = match words.split_once("-- ") {
+            let rest = command.strip_prefix("cargo run --release").expect("samples run with cargo").trim();
+            let (program, arguments) = match rest.split_once("-- ") {
                 Some(("-p rcs-log ", arguments)) => (rcs_log(), arguments),
                 Some(("", arguments)) => (rcs_run(), arguments),
-                _ => (rcs_run(), words),
+                _ => (rcs_run(), rest),
             };
             let output = Command::new(program)
-                .args(arguments.split_whitespace())
+                .args(words(arguments))
                 .current_dir(scratch.file("."))
                 .output()
                 .expect("the program can be started");
@@ -68,5 +83,15 @@ fn the_samples_of_the_readme_are_what_is_printed() {
             run += 1;
         }
     }
-    assert_eq!(run, 3, "the README shows a run, a failure and why");
+    run
+}
+
+#[test]
+fn the_samples_of_the_readme_are_what_is_printed() {
+    assert_eq!(run_samples("README.md"), 3, "the README shows a run, a failure and why");
+}
+
+#[test]
+fn the_samples_of_the_page_about_forks_are_what_is_printed() {
+    assert_eq!(run_samples("docs/fork.md"), 6, "the page shows a run, four forks and a comparison");
 }

@@ -1,11 +1,9 @@
-//! `rcs-log diff`: where two runs differ: first which rows, motions and times changed ([`changes`]), then the
-//! first tick, and then by buffer and field. Runs with different task data are compared without record
+//! `rcs-log diff`: where two runs differ: first which rows, motions and times changed
+//! ([`Changes`]), then the first tick, and then by buffer and field. Runs with different task data are compared without record
 //! numbers.
 //!
 //! Ticks are aligned by their number, or by command: then the ticks of a command are counted from the one in which Task
 //! took it, so that a command which took longer in one run does not make all that follows it different.
-
-mod changes;
 
 use std::{
     collections::{BTreeMap, HashMap},
@@ -14,7 +12,6 @@ use std::{
     process::ExitCode,
 };
 
-use clap::ValueEnum;
 use interfaces::{CommonMemory, ExternalInputs};
 use rcs_core::{Plain, plain::Writer};
 use record::{
@@ -23,10 +20,11 @@ use record::{
 };
 use serde::Serialize;
 
-use self::changes::{Changes, Tally};
 use crate::{
-    Answer, DIFFERENT, Error, print,
-    story::{Chronicle, Moment, open, walk},
+    Answer, DIFFERENT, Error,
+    difference::{Align, Changes, Trace},
+    print,
+    story::{Moment, open, walk},
 };
 
 /// Fields that are listed.
@@ -45,18 +43,6 @@ pub struct Arguments {
     #[command(flatten)]
     answer: Answer,
 }
-
-/// Which ticks belong together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Align {
-    /// Those of the same number
-    Tick,
-    /// Those as far from the beginning of the same command
-    Command,
-}
-
-/// What belongs together: command and ticks since it began.
-type Key = (u32, u64);
 
 /// How two runs differ.
 #[derive(Debug, Serialize)]
@@ -105,8 +91,6 @@ pub fn diff(arguments: &Arguments) -> Result<ExitCode, Error> {
 /// What there is of a tick: inputs, output buffers, and the digest of the simulated cell.
 struct Images {
     tick: u64,
-    /// What the changes are found in.
-    tally: Tally,
     cell: Option<u64>,
     external: Box<[u8]>,
     memory: Box<[u8]>,
@@ -118,56 +102,29 @@ impl Images {
         moment.external.encode(&mut Writer::new(&mut external));
         let mut memory = vec![0; CommonMemory::SIZE].into_boxed_slice();
         moment.after.encode(&mut Writer::new(&mut memory));
-        Self { tick: moment.tick.0, tally: Tally::of(moment), cell: moment.world, external, memory }
-    }
-}
-
-/// Gives each tick its key.
-struct Keys {
-    align: Align,
-    command: u32,
-    since: u64,
-}
-
-impl Keys {
-    const fn new(align: Align) -> Self {
-        Self { align, command: 0, since: 0 }
-    }
-
-    fn of(&mut self, moment: &Moment) -> Key {
-        let echo = moment.after.task.status.echo;
-        match self.align {
-            Align::Tick => (0, moment.tick.0),
-            Align::Command if echo != self.command => {
-                (self.command, self.since) = (echo, moment.tick.0);
-                (echo, 0)
-            }
-            Align::Command => (echo, moment.tick.0 - self.since),
-        }
+        Self { tick: moment.tick.0, cell: moment.world, external, memory }
     }
 }
 
 fn compare(a: &Path, b: &Path, align: Align) -> Result<Differences, Error> {
     let (log_a, log_b) = (open(a)?, open(b)?);
-    let mut of_b = HashMap::new();
-    let mut keys = Keys::new(align);
-    let mut commands = [Chronicle::default(), Chronicle::default()];
-    let [of_log_a, of_log_b] = &mut commands;
+    let (mut trace_b, mut images_b) = (Trace::default(), Vec::new());
     walk(&log_b, b, |moment| {
-        of_log_b.note(moment);
-        of_b.insert(keys.of(moment), Images::of(moment));
+        trace_b.note(moment);
+        images_b.push(Images::of(moment));
         true
     })?;
+    let mut of_b: HashMap<_, _> = trace_b.keys(align).zip(images_b).collect();
+    // The images of one log are enough to hold at once.
+    let trace_a = Trace::of_log(&log_a, a)?;
+    let mut keys = trace_a.keys(align);
     let mut found = Comparison::new(task_data(&log_a) != task_data(&log_b));
-    let mut keys = Keys::new(align);
     walk(&log_a, a, |moment| {
-        of_log_a.note(moment);
-        let other = of_b.remove(&keys.of(moment));
+        let other = keys.next().and_then(|key| of_b.remove(&key));
         found.note(&Images::of(moment), other.as_ref());
         true
     })?;
-    found.changes.compare_times(&commands);
-    Ok(found.differences(of_b.len()))
+    Ok(found.differences(Changes::between(&trace_a, &trace_b, align), of_b.len()))
 }
 
 /// The task data of a log: names and texts.
@@ -180,7 +137,6 @@ struct Comparison {
     external: Vec<Leaf>,
     memory: Vec<Leaf>,
     fields: BTreeMap<String, FieldStory>,
-    changes: Changes,
     first: Option<First>,
     compared: u64,
     only_a: u64,
@@ -196,7 +152,6 @@ impl Comparison {
             external: layout::leaves(ExternalInputs::STRUCT),
             memory,
             fields: BTreeMap::new(),
-            changes: Changes::default(),
             first: None,
             compared: 0,
             only_a: 0,
@@ -210,7 +165,6 @@ impl Comparison {
             return;
         };
         self.compared += 1;
-        self.changes.note([a.tick, b.tick], &a.tally, &b.tally);
         // Stamps differ wherever ticks are aligned by command.
         let matters = |leaf: &&Leaf| a.tick == b.tick || !leaf.path.ends_with("stamp");
         let pairs = [
@@ -248,7 +202,7 @@ impl Comparison {
         }
     }
 
-    fn differences(self, only_b: usize) -> Differences {
+    fn differences(self, changes: Changes, only_b: usize) -> Differences {
         let mut fields: Vec<FieldStory> = self.fields.into_values().collect();
         fields.sort_by_key(|story| story.first_tick);
         let more_fields = fields.len().saturating_sub(LISTED);
@@ -258,7 +212,7 @@ impl Comparison {
             only_a: self.only_a,
             only_b: only_b as u64,
             different: self.different,
-            changes: self.changes,
+            changes,
             first: self.first,
             fields,
             more_fields,

@@ -6,12 +6,18 @@
 //! | [`why`] | what did each level do in a tick, by which row, and what failed first? |
 //! | [`replay`] | would the program of today do the same on the same inputs? |
 //! | [`diff`] | where do two runs differ? |
+//! | [`fork`] | what would have happened if? |
+//! | [`compare`] | what do other data change in the jobs? |
 //! | [`report`] | the run on one page |
 //! | [`golden`] | the run as a small file for tests |
 
+mod compare;
 mod diff;
+mod difference;
+mod fork;
 mod golden;
 mod info;
+mod parallel;
 mod replay;
 mod report;
 mod story;
@@ -40,6 +46,8 @@ Examples:
   rcs-log replay runs/*.mcap                compute every tick again and compare every bit
   rcs-log replay --data data runs/linkbar.mcap  with other task data: what would they have changed?
   rcs-log diff a.mcap b.mcap                where two runs differ
+  rcs-log fork runs/linkbar.mcap --tick 4600 --set 'line=** wait 50'   what if the next line came 2 s later?
+  rcs-log compare data ../new/data          what do other data change in the jobs?
   rcs-log report runs/linkbar.mcap          the run as a page, runs/linkbar.html
   rcs-log golden runs/*.mcap -o tests/goldens   small files for tests, with their texts
 
@@ -62,6 +70,23 @@ enum Command {
     Replay(replay::Arguments),
     /// Where two runs differ: first, and then by buffer and field
     Diff(diff::Arguments),
+    /// Run a log again up to a tick, change something, go on to the end, and say what is different
+    ///
+    /// The run begins at tick 0 with what stands in the log. Each tick up to the change is compared with the log: if
+    /// one differs, nothing is changed. Changes:
+    ///
+    ///   datum FILE:BLOCK:LINE[-LINE]:WORD=VALUE   a word of the task data; += and -= add to a number
+    ///   line=LINE             a line of the job, before its next one: line='** wait 50'
+    ///   command=COMMAND       another command in the place of the next one
+    ///   seed=N                other noise of the sensors, other places of parts
+    ///   fault=FILE.toml       the faults of a file can begin
+    ///   cell KEY=VALUE        another value in cell.toml, with --tick 0
+    ///
+    /// FILE, BLOCK and LINE are those that `rcs-log why` prints; words count from 1. Exit status 0 if the fork was run.
+    #[command(verbatim_doc_comment)]
+    Fork(fork::Arguments),
+    /// Run jobs with two data directories, and say what is different
+    Compare(compare::Arguments),
     /// Write the run as one page of HTML that needs nothing else
     Report(report::Arguments),
     /// Make the small files that tests replay, and their texts for review
@@ -135,6 +160,23 @@ enum Error {
         /// Last tick of the second.
         last: u64,
     },
+    /// A fork cannot be run.
+    #[error("{}: {source}", path.display())]
+    Fork {
+        /// The log.
+        path: PathBuf,
+        /// Why.
+        source: Box<fork::ForkError>,
+    },
+    /// A job cannot be run with some data.
+    #[error("{source}")]
+    Start {
+        /// Why.
+        source: Box<runtime::StartError>,
+    },
+    /// There is nothing to compare.
+    #[error("neither {} nor {} has a job: name directories with jobs/NAME.job", .0.display(), .1.display())]
+    NoJobs(PathBuf, PathBuf),
     /// The page cannot be written.
     #[error("{}: {source}", path.display())]
     Write {
@@ -154,6 +196,8 @@ fn main() -> ExitCode {
         Command::Why(arguments) => why::why(&arguments),
         Command::Replay(arguments) => replay::replay(&arguments),
         Command::Diff(arguments) => diff::diff(&arguments),
+        Command::Fork(arguments) => fork::fork(&arguments),
+        Command::Compare(arguments) => compare::compare(&arguments),
         Command::Report(arguments) => report::report(&arguments),
         Command::Golden(arguments) => golden::golden(&arguments),
     };

@@ -1,24 +1,14 @@
 //! `rcs-log replay`: computes the control processes again on the recorded inputs, and compares every output
 //! buffer of every tick, bit for bit. Several logs are replayed at once.
 
-use std::{
-    fmt,
-    num::NonZero,
-    path::PathBuf,
-    process::ExitCode,
-    sync::{
-        Mutex, PoisonError,
-        atomic::{AtomicUsize, Ordering},
-    },
-    thread,
-};
+use std::{fmt, path::PathBuf, process::ExitCode};
 
 use rcs_core::tick::Tick;
 use record::{Options, ReplayError, ReplayReport};
 use serde::Serialize;
 use taskdata::load::{Diagnostics, Store};
 
-use crate::{Answer, DIFFERENT, Error, UNUSABLE, print};
+use crate::{Answer, DIFFERENT, Error, UNUSABLE, parallel, print};
 
 /// Arguments of `replay`.
 #[derive(Clone, Debug, clap::Args)]
@@ -105,7 +95,9 @@ pub fn replay(arguments: &Arguments) -> Result<ExitCode, Error> {
     });
     let options =
         Options { data: data.transpose()?, from: arguments.from.map(Tick), until: arguments.until.map(Tick) };
-    let outcome = Outcome { logs: replay_all(&arguments.files, &options) };
+    let replay =
+        |path: &PathBuf| OneLog::new(path.display().to_string(), record::replay_with(path, &options));
+    let outcome = Outcome { logs: parallel::each(&arguments.files, replay) };
     print(&outcome, arguments.answer.json)?;
     let worst = |log: &OneLog| match (log.same, &log.error) {
         (_, Some(_)) => UNUSABLE,
@@ -118,31 +110,6 @@ pub fn replay(arguments: &Arguments) -> Result<ExitCode, Error> {
         os_io::stderr_line!("rcs-log: {failed} of {} logs did not replay", outcome.logs.len());
     }
     Ok(ExitCode::from(status))
-}
-
-/// As many at once as the machine has cores; the answers are in the order of the files.
-fn replay_all(files: &[PathBuf], options: &Options) -> Vec<OneLog> {
-    let workers = thread::available_parallelism().map_or(1, NonZero::get).min(files.len());
-    let next = AtomicUsize::new(0);
-    let done = Mutex::new(Vec::with_capacity(files.len()));
-    thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| {
-                while let Some((at, path)) = take(files, &next) {
-                    let log = OneLog::new(path.display().to_string(), record::replay_with(path, options));
-                    done.lock().unwrap_or_else(PoisonError::into_inner).push((at, log));
-                }
-            });
-        }
-    });
-    let mut logs = done.into_inner().unwrap_or_else(PoisonError::into_inner);
-    logs.sort_by_key(|(at, _)| *at);
-    logs.into_iter().map(|(_, log)| log).collect()
-}
-
-fn take<'a>(files: &'a [PathBuf], next: &AtomicUsize) -> Option<(usize, &'a PathBuf)> {
-    let at = next.fetch_add(1, Ordering::Relaxed);
-    Some((at, files.get(at)?))
 }
 
 impl fmt::Display for Outcome {

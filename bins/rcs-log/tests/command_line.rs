@@ -187,7 +187,7 @@ fn diff_begins_with_the_rows_motions_and_times_that_changed() {
     let scratch = Scratch::new();
     let (one, two) = (scratch.log("one.mcap", 1000), scratch.log_commanded_at("two.mcap", 70));
     let text = stdout(&rcs_log(&["diff"], &[&one, &two]));
-    let row = "row        Task, 20 ticks, first in tick 50:\n";
+    let row = "row        Task: the same rows, 20 ticks at other times, first in tick 50\n";
     let time = "time       TRANSFER NOBODY: error after 0 ticks (0.00 s); error after 0 ticks";
     assert!(text.contains(row) && !text.contains(time), "{text}");
     assert!(text.find(row) < text.find("first      tick 50"), "{text}");

@@ -43,6 +43,17 @@ impl Generations {
         self.waiting.push_back(store);
     }
 
+    /// Use other task data from the next tick on, also while a command is executed: for experiments with a run. The
+    /// records that a command has begun with must still be there. False, and nothing has changed, if others wait.
+    pub fn supersede(&mut self, store: Store) -> bool {
+        if !self.waiting.is_empty() {
+            return false;
+        }
+        self.current = store;
+        self.number = self.number.saturating_add(1);
+        true
+    }
+
     /// Between two ticks: use what waits, if `memory` says that no command is being executed. True if the
     /// generation is a new one.
     pub fn advance(&mut self, memory: &CommonMemory) -> bool {
@@ -83,5 +94,15 @@ mod tests {
         assert!(generations.advance(&memory));
         assert_eq!(generations.number(), 1);
         assert!(!generations.advance(&memory), "nothing waits any more");
+    }
+
+    #[test]
+    fn an_experiment_does_not_wait_for_a_command_but_for_a_reload() {
+        let mut generations = Generations::new(Store::default());
+        assert!(generations.supersede(Store::default()));
+        assert_eq!(generations.number(), 1);
+        generations.propose(Store::default());
+        assert!(!generations.supersede(Store::default()), "a reload waits");
+        assert_eq!(generations.number(), 1);
     }
 }

@@ -1,6 +1,6 @@
 //! What to run.
 
-use std::{fmt, path::PathBuf, str::FromStr, sync::Arc, sync::atomic::AtomicBool};
+use std::{collections::BTreeMap, fmt, path::PathBuf, str::FromStr, sync::Arc, sync::atomic::AtomicBool};
 
 use depc::host::RESTART_TICKS;
 use egm_robot::{EgmOptions, Peer};
@@ -74,6 +74,8 @@ pub struct RunConfig {
     /// After a command that ends with an error send PAUSE and the same command again, at most so many times a
     /// line of the job.
     pub retry: u32,
+    /// What the log is to say of the run beside what this configuration says.
+    pub remarks: BTreeMap<String, String>,
     /// Show the buffers to other programs.
     pub shared_memory: bool,
     /// Ends the process if shared memory cannot be set up in time (`executive::memory::limit`), before anything
@@ -112,6 +114,7 @@ impl RunConfig {
             zenoh_config: None,
             ticks: None,
             retry: 0,
+            remarks: BTreeMap::new(),
             shared_memory: true,
             on_stuck: None,
             stop: Arc::default(),

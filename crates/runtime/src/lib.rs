@@ -20,6 +20,7 @@
 pub mod agreement;
 mod as_text;
 pub mod boards;
+pub mod change;
 pub mod config;
 pub mod contacts;
 mod egm;
@@ -31,6 +32,7 @@ mod outside;
 mod own;
 mod pace;
 mod placement;
+pub mod repeat;
 pub mod result;
 mod robot;
 mod run;
@@ -40,10 +42,12 @@ mod verdict;
 pub mod workstation;
 
 pub use self::{
+    change::ChangeError,
     config::{Boards, ClockKind, LogTarget, RobotConfig, RobotKind, RunConfig},
     error::StartError,
     observer::{Observer, TickReport},
     own::OwnRobot,
+    repeat::RepeatError,
     run::{Run, RunOutcome},
     verdict::Ending,
 };

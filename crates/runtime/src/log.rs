@@ -25,7 +25,20 @@ use crate::{
 };
 
 /// Name of the fault plan among the attachments.
-const FAULTS: &str = "faults.toml";
+pub const FAULTS: &str = "faults.toml";
+/// Directory among the attachments of what the job can load while the robot runs.
+pub const LOADS: &str = "loads/";
+
+/// Key of the metadata: how often a command is sent again after an error.
+pub const RETRY: &str = "retry";
+/// Key: neighbours in other processes.
+pub const OUTSIDE: &str = "outside";
+/// Key: where the Data System keeps its items.
+pub const DATA_BASE: &str = "data_base_in";
+/// What stands there if they are forgotten at the end.
+pub const IN_MEMORY: &str = "memory";
+/// Key: after how many ticks the run was to stop.
+pub const TICKS: &str = "ticks";
 
 /// A log that is being written, with what is needed to draw the cell.
 pub struct Log {
@@ -173,6 +186,8 @@ fn attachments(setup: &Setup) -> Vec<Attachment> {
     let mut all: Vec<Attachment> = data.collect();
     all.push(Attachment::text(Attachment::JOB, &setup.job.source().text));
     all.push(Attachment::text(Attachment::CELL, &setup.description_text));
+    let loads = setup.job.reloads.iter().map(|reload| &reload.source);
+    all.extend(loads.map(|source| Attachment::text(&format!("{LOADS}{}", source.name), &source.text)));
     if !setup.faults_text.is_empty() {
         all.push(Attachment::text(FAULTS, &setup.faults_text));
     }
@@ -189,6 +204,8 @@ fn metadata(config: &RunConfig, job: &Job, attachments: &[Attachment]) -> BTreeM
     let faults = config.faults.as_deref().and_then(Path::file_name);
     let faults = faults.map(|name| name.to_string_lossy().into_owned());
     let command_line = std::env::args().collect::<Vec<_>>().join(" ");
+    let outside: Vec<String> = config.outside.iter().map(ToString::to_string).collect();
+    let items = if config.data_base.is_some() { "file" } else { IN_MEMORY };
     let entries = [
         ("program", "rcs-run".to_owned()),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
@@ -201,6 +218,11 @@ fn metadata(config: &RunConfig, job: &Job, attachments: &[Attachment]) -> BTreeM
         ("boards", config.boards.text().to_owned()),
         ("configuration_digest", configuration.to_string()),
         ("faults", faults.unwrap_or_else(|| "none".to_owned())),
+        (RETRY, config.retry.to_string()),
+        (OUTSIDE, outside.join(",")),
+        (DATA_BASE, items.to_owned()),
     ];
-    entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+    let own = entries.into_iter().map(|(key, value)| (key.to_owned(), value));
+    let limit = config.ticks.map(|ticks| (TICKS.to_owned(), ticks.to_string()));
+    own.chain(limit).chain(config.remarks.clone()).collect()
 }

@@ -170,6 +170,14 @@ impl Neighbours {
         }
     }
 
+    /// The emulator of the workstation controller that plays the job; `None` if another process commands, or may.
+    pub fn job_player(&mut self) -> Option<&mut Hwsc> {
+        match &mut self.workstation {
+            WorkstationSource::Emulator(emulator) => Some(&mut emulator.hwsc),
+            WorkstationSource::Outside(_) | WorkstationSource::Switched(_) => None,
+        }
+    }
+
     /// Another process may command for a time.
     #[must_use]
     pub const fn can_switch(&self) -> bool {

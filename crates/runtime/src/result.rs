@@ -543,6 +543,12 @@ impl RunResult {
             ("parts", list(self.parts.iter().map(ToString::to_string).collect())),
             ("data_base", list(self.data_base.iter().map(ToString::to_string).collect())),
         ];
+        if let Some(nearest) = &self.clearance {
+            facts.push(("clearance", nearest.to_string()));
+        }
+        if !self.contacts.is_empty() {
+            facts.push(("contacts", list(self.contacts.iter().map(ToString::to_string).collect())));
+        }
         if let Some(allocations) = self.allocations_after_start {
             facts.push(("allocations", allocations.to_string()));
         }

@@ -14,7 +14,7 @@ use std::{
 
 use depc::{
     Plate,
-    fault::{Counts, Direction, Injector},
+    fault::{Counts, Direction, Injector, Plan},
     wire::FRAME_BYTES,
 };
 use executive::{
@@ -201,6 +201,14 @@ impl Robot {
             Self::Egm(egm) => egm.trouble().map(str::to_owned),
             Self::Own(own) => own.trouble(),
         }
+    }
+
+    /// The line to the simulated robot suffers the faults of a plan from now on. False, and nothing has changed, if it has
+    /// a plan already, or the robot is elsewhere.
+    pub fn suffer(&mut self, plan: &Plan) -> bool {
+        let Self::Simulated(injector @ None) = self else { return false };
+        *injector = Some(Box::new(Injector::new(plan)));
+        true
     }
 
     /// The serial port, if there is one.

@@ -59,9 +59,13 @@ const SETTLING: usize = 50;
 pub struct Run {
     config: RunConfig,
     observer: Box<dyn Observer>,
-    job: Job,
+    pub(crate) job: Job,
     /// Task data, with what the job loads on the way.
-    generations: Generations,
+    pub(crate) generations: Generations,
+    /// Generations that came by a change, not by a line of the job.
+    pub(crate) changed: u32,
+    /// What came from outside for the last tick.
+    external: ExternalInputs,
     /// Mirrors the status; it ends before the publisher of `runner` does.
     mirror: Option<Mirror>,
     pub(crate) runner: Runner<Controller>,
@@ -69,7 +73,7 @@ pub struct Run {
     pub(crate) workstation: SimulatedWorkstation,
     inputs: DeviceInputs,
     pub(crate) robot: Robot,
-    log: Option<Log>,
+    pub(crate) log: Option<Log>,
     log_path: Option<PathBuf>,
     pace: Pace,
     /// When the first tick was due.
@@ -225,6 +229,8 @@ impl Run {
             trouble: None,
             remedy: None,
             generations: Generations::new(store),
+            changed: 0,
+            external: ExternalInputs::default(),
             job,
             observer,
             config,
@@ -259,6 +265,18 @@ impl Run {
     #[must_use]
     pub const fn memory(&self) -> &CommonMemory {
         self.runner.memory()
+    }
+
+    /// What came from outside for that tick.
+    #[must_use]
+    pub const fn external_inputs(&self) -> &ExternalInputs {
+        &self.external
+    }
+
+    /// Fingerprint of the simulated cell as it is now, as the log has it of every tick.
+    #[must_use]
+    pub fn cell_digest(&self) -> u64 {
+        self.workstation.cell.digest()
     }
 
     /// End the run and its log. A run that is not over counts as stopped.
@@ -354,6 +372,7 @@ impl Run {
         self.wait();
         self.robot.receive(&mut self.inputs);
         let external = self.external();
+        self.external = external;
         let tick = self.runner.tick().next();
         let data = self.generations.current().view();
         let memory = loop {
@@ -532,7 +551,8 @@ impl Run {
         let reloads = &self.job.reloads;
         let reload =
             |number: u32| usize::try_from(number).ok()?.checked_sub(1).and_then(|at| reloads.get(at));
-        for reload in self.workstation.loads().into_iter().filter_map(reload) {
+        let coming = self.workstation.loads().into_iter().map(|number| number + self.changed);
+        for reload in coming.filter_map(reload) {
             self.generations.propose(reload.store.clone());
         }
         if !self.generations.advance(self.runner.memory()) {
@@ -611,11 +631,7 @@ impl Run {
     /// End the log and say what became of it. A log that broke does not make a finished job a failed one.
     fn finish_log(&mut self, ending: &Ending, result: &mut RunResult) -> String {
         let Some(log) = self.log.take() else { return "none".to_owned() };
-        let outcome = match ending {
-            Ending::Finished => "finished".to_owned(),
-            Ending::Stopped => "stopped as asked for".to_owned(),
-            Ending::Failed(failure) => failure.text.clone(),
-        };
+        let outcome = ending.text().to_owned();
         result.log = self.log_path.take();
         match log.finish(self.runner.digest(), outcome, result.facts()) {
             Ok(summary) => {

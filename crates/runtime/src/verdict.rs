@@ -19,6 +19,16 @@ pub enum Ending {
 }
 
 impl Ending {
+    /// In words, as the log has it.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        match self {
+            Self::Finished => "finished",
+            Self::Stopped => "stopped as asked for",
+            Self::Failed(failure) => &failure.text,
+        }
+    }
+
     /// A job in which something went wrong in the cell has not finished; one that failed may have failed because of it.
     fn checked(self, verdict: Failure) -> Self {
         match self {

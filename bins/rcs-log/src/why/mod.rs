@@ -12,7 +12,11 @@ mod evidence;
 mod history;
 mod world;
 
-use std::{fmt, path::PathBuf, process::ExitCode};
+use std::{
+    fmt,
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
 
 use executive::failure::{self, Failure};
 use levels::ladder::{Ladder, ProcessId};
@@ -131,12 +135,7 @@ struct Rung {
 /// Explain a tick and print it.
 pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
     let log = open(&arguments.file)?;
-    let (mut chronicle, mut history) = (Chronicle::default(), History::default());
-    walk(&log, &arguments.file, |moment| {
-        chronicle.note(moment);
-        history.note(moment);
-        true
-    })?;
+    let (chronicle, history) = read(&log, &arguments.file)?;
     let failure = chronicle.failure.filter(|_| arguments.tick.is_none());
     let told = failure.and_then(|failure| tell(&log, &history, &failure));
     let failed_at = told.as_ref().map(|told| told.story.tick);
@@ -146,6 +145,30 @@ pub fn why(arguments: &Arguments) -> Result<ExitCode, Error> {
     let moment = find(&log, arguments, tick)?;
     print(&explain(&log, &history, &moment, world, told), arguments.answer.json)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The commands of a log, and what every process did.
+fn read(log: &Log, path: &Path) -> Result<(Chronicle, History), Error> {
+    let (mut chronicle, mut history) = (Chronicle::default(), History::default());
+    walk(log, path, |moment| {
+        chronicle.note(moment);
+        history.note(moment);
+        true
+    })?;
+    Ok((chronicle, history))
+}
+
+/// The last command that led to what went wrong first in a log: its tick and what it was; `None` if nothing did.
+///
+/// # Errors
+/// [`Error::Read`].
+pub fn last_command(log: &Log, path: &Path) -> Result<Option<Link>, Error> {
+    let (chronicle, history) = read(log, path)?;
+    let told = chronicle.failure.and_then(|failure| tell(log, &history, &failure));
+    let failed_at = told.as_ref().map(|told| told.story.tick);
+    let world = world::first(log, &history).filter(|world| failed_at.is_none_or(|tick| world.tick <= tick));
+    let commands = world.map(|world| world.commands).or(told.map(|told| told.story.commands));
+    Ok(commands.and_then(|mut commands| commands.pop()))
 }
 
 /// A failure that a process began to report in a tick, from its commands to its first cause.

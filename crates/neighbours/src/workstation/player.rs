@@ -178,6 +178,19 @@ impl Hwsc {
         self
     }
 
+    /// Put a line before the next one of the job.
+    pub fn insert(&mut self, line: JobLine) {
+        self.steps.insert(self.current.min(self.steps.len()), line);
+    }
+
+    /// Put a line in the place of the next command of the job. False, and nothing has changed, if none comes.
+    #[must_use]
+    pub fn replace_command(&mut self, line: JobLine) -> bool {
+        let coming = self.steps.iter_mut().skip(self.current);
+        let command = coming.into_iter().find(|line| matches!(line.step, Step::Command(_)));
+        command.map(|command| *command = line).is_some()
+    }
+
     /// The command that was sent last.
     #[must_use]
     pub const fn command(&self) -> &HwsCommand {

@@ -60,6 +60,11 @@ impl Analysis {
         }
     }
 
+    /// From now on the noise is that of another seed.
+    pub(crate) fn reseed(&mut self, seed: u64) {
+        self.noise = Noise::new(seed, Stream::Camera);
+    }
+
     /// What of a cell the answers depend on, besides seed and pictures: camera and parts that vision knows.
     /// Two analyses of equal fingerprint answer the same.
     ///

@@ -11,6 +11,7 @@ use crate::{
     camera::{Face, Subject},
     convert::{to_metres, to_pose},
     force,
+    noise::{Noise, Stream},
     part::Part,
     sensor::resolver,
 };
@@ -25,6 +26,16 @@ impl Cell {
     pub fn with_vision_elsewhere(mut self) -> Self {
         self.vision_elsewhere = true;
         self
+    }
+
+    /// From now on the noise of the sensors, and where parts are put down at random, are those of another seed.
+    pub fn reseed(&mut self, seed: u64) {
+        self.gripper_noise = Noise::new(seed, Stream::Gripper);
+        self.pedestal_noise = Noise::new(seed, Stream::Pedestal);
+        self.force_noise = Noise::new(seed, Stream::Force);
+        self.placement_noise = Noise::new(seed, Stream::Placement);
+        self.resolver_noise = Noise::new(seed, Stream::Resolvers);
+        self.analysis.reseed(seed);
     }
 
     /// Take a picture if one is asked for.

@@ -210,6 +210,28 @@ fn a_job_is_played_in_order_and_pause_comes_first() {
 }
 
 #[test]
+fn a_line_is_put_before_the_next_one_and_a_command_in_the_place_of_the_next() {
+    let (partial, close) = (ViseOpening::Partial, ViseOpening::Close);
+    let steps = vec![command("MOVE"), vise(partial), command("MOVE")];
+    let (mut hwsc, mut task, mut jaws) = (Hwsc::new(steps, 100), Task::default(), Vise::default());
+    let mut tick = 1;
+    while hwsc.begun_steps().len() < 2 {
+        let outputs = task.step(&mut hwsc);
+        hwsc.step(Tick(tick), &outputs, &mut jaws);
+        tick += 1;
+    }
+    hwsc.insert(vise(close));
+    assert!(hwsc.replace_command(command("ACQUIRE")));
+    let end = play_on(&mut hwsc, &mut task, &mut jaws, tick);
+    assert_eq!(*hwsc.progress(), Progress::Over);
+    assert_eq!(
+        (task.received.join(" ").as_str(), &jaws.told[..]),
+        ("PAUSE MOVE ACQUIRE", &[close, partial][..])
+    );
+    assert!(!hwsc.replace_command(command("MOVE")), "no command comes after tick {end}");
+}
+
+#[test]
 fn every_command_of_task_is_sent_as_the_job_has_it() {
     let steps: Vec<_> = TASK_COMMANDS.iter().map(|verb| command(verb)).collect();
     let (mut hwsc, mut task) = (Hwsc::new(steps, 100), Task::default());

@@ -1,0 +1,346 @@
+//! Changes of a run as a person writes them, and what becomes of them before anything runs.
+
+use std::{
+    fmt, io,
+    path::{Path, PathBuf},
+    str::FromStr,
+};
+
+use os_io::files;
+use plant::{
+    CellDescription,
+    fault::text::{self, FaultFile, FaultFileError},
+};
+use runtime::{ChangeError, Run, setup::CELL};
+use taskdata::load::{Job, Source, Step, Store, Workstation, job::JobLine};
+
+use super::datum::{Datum, DatumError, Words};
+
+/// A change.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// Another word in the task data.
+    Datum(Datum),
+    /// A line before the next one of the job.
+    Line(String),
+    /// A command in the place of the next one.
+    Command(String),
+    /// Another seed of the noise.
+    Seed(u64),
+    /// The faults of a file.
+    Fault(PathBuf),
+    /// Another value of the cell description.
+    Cell {
+        /// Its place in the file: `vise.friction`.
+        key: String,
+        /// As TOML.
+        value: String,
+    },
+}
+
+impl FromStr for Change {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Some(datum) = text.strip_prefix("datum ") {
+            return datum.trim().parse().map(Self::Datum);
+        }
+        let Some((what, value)) = text.split_once('=') else { return Err(unknown(text)) };
+        let (what, value) = (what.trim(), value.trim());
+        if let Some(key) = what.strip_prefix("cell ") {
+            return Ok(Self::Cell { key: key.trim().to_owned(), value: value.to_owned() });
+        }
+        match what {
+            "line" => Ok(Self::Line(value.to_owned())),
+            "command" if value.starts_with("==") => Ok(Self::Command(value.to_owned())),
+            "command" => Ok(Self::Command(format!("== {value}"))),
+            "seed" => {
+                value.parse().map(Self::Seed).map_err(|_| format!("seed=N was expected; found {value}"))
+            }
+            "fault" => Ok(Self::Fault(value.into())),
+            _ => Err(unknown(text)),
+        }
+    }
+}
+
+fn unknown(text: &str) -> String {
+    format!(
+        "`datum PLACE=VALUE`, line=LINE, command=COMMAND, seed=N, fault=FILE or `cell KEY=VALUE` was expected; found {text}"
+    )
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Datum(datum) => datum.fmt(f),
+            Self::Line(line) => write!(f, "before the next line of the job: {line}"),
+            Self::Command(command) => write!(f, "the next command: {command}"),
+            Self::Seed(seed) => write!(f, "seed {seed}"),
+            Self::Fault(path) => write!(f, "faults of {}", path.display()),
+            Self::Cell { key, value } => write!(f, "{CELL}, {key}: {value}"),
+        }
+    }
+}
+
+/// Why a change is refused.
+#[derive(Debug, thiserror::Error)]
+pub enum RefusedChange {
+    /// The task data have no such word.
+    #[error(transparent)]
+    Datum(#[from] DatumError),
+    /// The task data have errors with it.
+    #[error("the task data have errors with it:\n{0}")]
+    Data(String),
+    /// The line of the job cannot be read.
+    #[error("it is no line of a job:\n{0}")]
+    Line(String),
+    /// It is not one line of the kind.
+    #[error("one {0} was expected, which is no `** load`: `datum` changes task data")]
+    NotOne(&'static str),
+    /// The file of faults cannot be read.
+    #[error("{}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// Nor understood.
+    #[error(transparent)]
+    Faults(#[from] FaultFileError),
+    /// There is no such value in the cell description.
+    #[error("cell.toml has no value {key}: {known}")]
+    Key {
+        /// As asked for.
+        key: String,
+        /// What there is.
+        known: String,
+    },
+    /// The value is no TOML.
+    #[error("{0} is no value of TOML")]
+    Value(String),
+    /// The description cannot be used with it.
+    #[error("{0}")]
+    Description(String),
+}
+
+/// A change that is refused before anything runs.
+#[derive(Debug, thiserror::Error)]
+#[error("the change is refused ({what}): {why}")]
+pub struct Refusal {
+    /// The change.
+    what: String,
+    /// Why.
+    why: RefusedChange,
+}
+
+/// What is to be done to a run.
+pub enum Deed {
+    /// Load these blocks.
+    Data(Source),
+    /// Put a line before the next one.
+    Line(JobLine),
+    /// Put a command in the place of the next one.
+    Command(JobLine),
+    /// Use another seed.
+    Seed(u64),
+    /// Let these faults begin.
+    Faults(Box<FaultFile>),
+}
+
+impl Deed {
+    /// Do it.
+    ///
+    /// # Errors
+    /// [`ChangeError`].
+    pub fn apply(self, run: &mut Run, seed: u64) -> Result<(), ChangeError> {
+        match self {
+            Self::Data(source) => run.change_data(source),
+            Self::Line(line) => run.insert_line(line),
+            Self::Command(line) => run.replace_command(line),
+            Self::Seed(seed) => {
+                run.change_seed(seed);
+                Ok(())
+            }
+            Self::Faults(faults) => run.add_faults(&faults, seed),
+        }
+    }
+}
+
+impl Change {
+    fn refused(&self, why: impl Into<RefusedChange>) -> Box<Refusal> {
+        Box::new(Refusal { what: self.to_string(), why: why.into() })
+    }
+
+    /// The text of a cell description with this change in it.
+    ///
+    /// # Errors
+    /// [`Refusal`] if there is no such value, or the description cannot be used with it.
+    pub fn described(&self, text: &str) -> Result<String, Box<Refusal>> {
+        let Self::Cell { key, value } = self else { return Ok(text.to_owned()) };
+        with_value(text, key, value).map_err(|why| self.refused(why))
+    }
+}
+
+/// The cell description of a log.
+///
+/// # Errors
+/// [`Refusal`] if it cannot be used.
+pub fn description(text: &str) -> Result<CellDescription, Box<Refusal>> {
+    CellDescription::from_toml(text).map_err(|error| {
+        let why = RefusedChange::Description(error.to_string());
+        Box::new(Refusal { what: CELL.to_owned(), why })
+    })
+}
+
+/// What the changes come to, with the task data and the cell of the tick. Those of the cell description are not among
+/// them.
+///
+/// # Errors
+/// [`Refusal`].
+pub fn deeds(changes: &[Change], store: &Store, cell: &CellDescription) -> Result<Vec<Deed>, Box<Refusal>> {
+    let mut words = Words::default();
+    let mut deeds = Vec::new();
+    for change in changes {
+        let deed = match change {
+            Change::Cell { .. } => continue,
+            Change::Datum(datum) => {
+                words.change(store, datum).map_err(|why| change.refused(why))?;
+                continue;
+            }
+            Change::Seed(seed) => Ok(Deed::Seed(*seed)),
+            Change::Line(text) => line(text, store).map(Deed::Line),
+            Change::Command(text) => line(text, store).and_then(command).map(Deed::Command),
+            Change::Fault(path) => faults(path, cell),
+        };
+        deeds.push(deed.map_err(|why| change.refused(why))?);
+    }
+    // Words of one entry may be right only together.
+    if let Some(source) = words.source() {
+        if let Err(report) = store.with_blocks(vec![source.clone()]) {
+            let why = RefusedChange::Data(report.render(false));
+            return Err(Box::new(Refusal { what: "task data".to_owned(), why }));
+        }
+        deeds.push(Deed::Data(source));
+    }
+    Ok(deeds)
+}
+
+fn faults(path: &Path, cell: &CellDescription) -> Result<Deed, RefusedChange> {
+    let text =
+        files::read_text(path).map_err(|source| RefusedChange::Read { path: path.to_owned(), source })?;
+    Ok(Deed::Faults(Box::new(text::parse(&path.display().to_string(), &text, cell)?)))
+}
+
+/// The line of a job that a text is.
+fn line(text: &str, store: &Store) -> Result<JobLine, RefusedChange> {
+    let source = Source { name: "--set".to_owned(), text: text.into() };
+    let (job, _) =
+        Job::from_source(source, store).map_err(|report| RefusedChange::Line(report.render(false)))?;
+    let loads = |line: &JobLine| {
+        matches!(
+            line.step,
+            Step::Workstation(Workstation::Load { .. })
+                | Step::After { action: Workstation::Load { .. }, .. }
+        )
+    };
+    match <[JobLine; 1]>::try_from(job.steps) {
+        Ok([line]) if !loads(&line) => Ok(line),
+        _ => Err(RefusedChange::NotOne("line")),
+    }
+}
+
+fn command(line: JobLine) -> Result<JobLine, RefusedChange> {
+    if matches!(line.step, Step::Command(_)) { Ok(line) } else { Err(RefusedChange::NotOne("command")) }
+}
+
+/// The text of a cell description with another value in it.
+///
+/// # Errors
+/// [`RefusedChange`] if there is no such value, or the description cannot be used with it.
+pub fn with_value(text: &str, key: &str, value: &str) -> Result<String, RefusedChange> {
+    let wrong = |error: toml::de::Error| RefusedChange::Description(error.to_string());
+    let mut table: toml::Table = text.parse().map_err(wrong)?;
+    let new: toml::Table =
+        format!("value = {value}").parse().map_err(|_| RefusedChange::Value(value.to_owned()))?;
+    let new = new.get("value").filter(|_| new.len() == 1).cloned();
+    let new = new.ok_or_else(|| RefusedChange::Value(value.to_owned()))?;
+    let mut parts = key.split('.');
+    let first = parts.next().unwrap_or_default();
+    let mut place = table.get_mut(first).ok_or(());
+    for part in parts {
+        place = place.and_then(|at| match at {
+            toml::Value::Table(table) => table.get_mut(part).ok_or(()),
+            toml::Value::Array(all) => part.parse().ok().and_then(|at: usize| all.get_mut(at)).ok_or(()),
+            _ => Err(()),
+        });
+    }
+    let Ok(place) = place else { return Err(missing(&table, key)) };
+    *place = new;
+    let text = toml::to_string(&table).map_err(|error| RefusedChange::Description(error.to_string()))?;
+    CellDescription::from_toml(&text).map_err(|error| RefusedChange::Description(error.to_string()))?;
+    Ok(text)
+}
+
+/// The keys that stand where a key leads nowhere.
+fn missing(table: &toml::Table, key: &str) -> RefusedChange {
+    let mut known: Vec<String> = table.keys().cloned().collect();
+    let mut at: Option<&toml::Value> = None;
+    for part in key.split('.') {
+        let next = match at {
+            None => table.get(part),
+            Some(at) => at.get(part),
+        };
+        let Some(toml::Value::Table(inner)) = next else { break };
+        known = inner.keys().cloned().collect();
+        at = next;
+    }
+    RefusedChange::Key { key: key.to_owned(), known: format!("there are {}", known.join(", ")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cell() -> String {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/cell.toml");
+        std::fs::read_to_string(path).unwrap()
+    }
+
+    #[test]
+    fn changes_are_read_as_they_are_documented() {
+        let read = |text: &str| text.parse::<Change>();
+        assert_eq!(read("seed=7"), Ok(Change::Seed(7)));
+        assert_eq!(read("line=** wait 50"), Ok(Change::Line("** wait 50".to_owned())));
+        assert_eq!(read("command=PAUSE"), Ok(Change::Command("== PAUSE".to_owned())));
+        assert_eq!(read("command=== PAUSE"), Ok(Change::Command("== PAUSE".to_owned())));
+        let (key, value) = ("vise.friction".to_owned(), "0.15".to_owned());
+        assert_eq!(read("cell vise.friction=0.15"), Ok(Change::Cell { key, value }));
+        assert!(matches!(read("datum a.blk:1:2:3=4"), Ok(Change::Datum(_))));
+        for wrong in ["", "seed=x", "seed", "row=GRASP-OBJ 3", "datum a.blk=1"] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_value_of_the_cell_is_replaced() {
+        let changed = with_value(&cell(), "gripper.parts.friction", "0.15").unwrap();
+        let description = CellDescription::from_toml(&changed).unwrap();
+        assert!((description.gripper.parts.friction - 0.15).abs() < 1e-12);
+        let centre = CellDescription::from_toml(&with_value(&cell(), "tray.0.floor", "-17.5").unwrap());
+        assert!((centre.unwrap().tray[0].floor + 17.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_value_that_is_not_there_is_refused_with_those_that_are() {
+        let text = |key, value| with_value(&cell(), key, value).unwrap_err().to_string();
+        let error = text("vise.fricton", "0.1");
+        assert!(
+            error.starts_with("cell.toml has no value vise.fricton: there are ")
+                && error.contains("friction"),
+            "{error}"
+        );
+        assert_eq!(text("vise.friction", "a b"), "a b is no value of TOML");
+        assert!(text("vise.friction", "-3.0").contains("friction"));
+    }
+}

@@ -1,0 +1,292 @@
+//! A word of the task data that is another one: `poses.blk:612:4-6:3+=20`.
+//!
+//! File, block and line are those that `rcs-log why` names: the file as in the data directory, the line of a block from 0.
+//! Words count from 1.
+
+use std::{fmt, str::FromStr};
+
+use taskdata::load::{
+    Source, Store,
+    source::{BlockNumber, blocks},
+};
+
+/// Name of the blocks that were changed, among the task data.
+const NAME: &str = "fork.blk";
+
+/// How a word is written.
+const EXPECTED: &str = "FILE:BLOCK:LINE[-LINE]:WORD=VALUE was expected, such as poses.blk:612:4-6:3+=20";
+
+/// Another word in some lines of a block.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Datum {
+    file: String,
+    block: u32,
+    lines: [usize; 2],
+    word: usize,
+    edit: Edit,
+}
+
+/// What becomes of a word.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Edit {
+    /// This.
+    Set(String),
+    /// So much more than the number that it is.
+    Add(i64),
+}
+
+/// Why a datum cannot be changed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DatumError {
+    /// There is no such file.
+    #[error("the log has no file {file}: it has {known}")]
+    File {
+        /// As asked for.
+        file: String,
+        /// Files that there are.
+        known: String,
+    },
+    /// There is no such block in it.
+    #[error("{file} has no block {block}")]
+    Block {
+        /// The file.
+        file: String,
+        /// As asked for.
+        block: u32,
+    },
+    /// There is no such line in it.
+    #[error("{block} of {file} has no line {line}: its last is {last}")]
+    Line {
+        /// The file.
+        file: String,
+        /// The block.
+        block: BlockNumber,
+        /// As asked for.
+        line: usize,
+        /// The last there.
+        last: usize,
+    },
+    /// There is no such word in it.
+    #[error("line {line} has no word {word}: it is `{text}`")]
+    Word {
+        /// The line.
+        line: usize,
+        /// As asked for.
+        word: usize,
+        /// The line as it is.
+        text: String,
+    },
+    /// The word is no number.
+    #[error("word {word} of line {line} is {found}: only a whole number can be added to")]
+    NoNumber {
+        /// The line.
+        line: usize,
+        /// Which word.
+        word: usize,
+        /// What it is.
+        found: String,
+    },
+}
+
+impl FromStr for Datum {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("{EXPECTED}; found {text}");
+        let (place, value) = text.split_once('=').ok_or_else(wrong)?;
+        let (place, value) = (place.trim_end(), value.trim());
+        let number = || value.parse::<i64>().map_err(|_| format!("{EXPECTED}; {value} is no whole number"));
+        let (place, edit) = match (place.strip_suffix('+'), place.strip_suffix('-')) {
+            (Some(place), _) => (place, Edit::Add(number()?)),
+            (None, Some(place)) => (place, Edit::Add(-number()?)),
+            (None, None) => (place, Edit::Set(value.to_owned())),
+        };
+        if value.is_empty() || value.contains(char::is_whitespace) {
+            return Err(wrong());
+        }
+        let mut parts = place.rsplitn(4, ':');
+        let (Some(word), Some(lines), Some(block), Some(file)) =
+            (parts.next(), parts.next(), parts.next(), parts.next())
+        else {
+            return Err(wrong());
+        };
+        let (first, last) = lines.split_once('-').unwrap_or((lines, lines));
+        let whole = |text: &str| text.parse::<usize>().map_err(|_| wrong());
+        let (lines, word) = ([whole(first)?, whole(last)?], whole(word)?);
+        if word == 0 || lines[0] > lines[1] {
+            return Err(wrong());
+        }
+        let block = block.parse().map_err(|_| wrong())?;
+        Ok(Self { file: file.to_owned(), block, lines, word, edit })
+    }
+}
+
+/// A block that is changed.
+struct Changed {
+    file: String,
+    number: BlockNumber,
+    lines: Vec<String>,
+}
+
+/// Blocks of task data with other words in them.
+#[derive(Default)]
+pub struct Words(Vec<Changed>);
+
+impl Words {
+    /// Change a word, in task data with all changes so far.
+    ///
+    /// # Errors
+    /// [`DatumError`] if the data have no such word.
+    pub fn change(&mut self, store: &Store, datum: &Datum) -> Result<(), DatumError> {
+        let known = |changed: &Changed| changed.file == datum.file && changed.number.number == datum.block;
+        if let Some(block) = self.0.iter_mut().find(|changed| known(changed)) {
+            return datum.apply(block);
+        }
+        let mut block = find(store.sources(), datum)?;
+        datum.apply(&mut block)?;
+        self.0.push(block);
+        Ok(())
+    }
+
+    /// All blocks with a change in them, as one source; `None` without a change.
+    #[must_use]
+    pub fn source(&self) -> Option<Source> {
+        if self.0.is_empty() {
+            return None;
+        }
+        let text = self.0.iter().map(|Changed { number: BlockNumber { number, offset }, lines, .. }| {
+            format!("BLOCK# {number} OFFSET {offset}\n{}\n", lines.join("\n"))
+        });
+        Some(Source { name: NAME.to_owned(), text: text.collect::<String>().into() })
+    }
+}
+
+/// The block of a datum as it stands, the newest of its number.
+fn find(sources: &[Source], datum: &Datum) -> Result<Changed, DatumError> {
+    let Datum { file, block, .. } = datum;
+    let of_name: Vec<&Source> = sources.iter().filter(|source| source.name == *file).collect();
+    if of_name.is_empty() {
+        let known: Vec<&str> = sources.iter().map(|source| source.name.as_str()).collect();
+        return Err(DatumError::File { file: file.clone(), known: known.join(", ") });
+    }
+    let found = of_name.iter().rev().find_map(|source| {
+        let (found, _) = blocks(0, source);
+        found.into_iter().rev().find(|found| found.number.number == *block)
+    });
+    let found = found.ok_or_else(|| DatumError::Block { file: file.clone(), block: *block })?;
+    let lines = found.lines.iter().map(|line| line.text.to_owned()).collect();
+    Ok(Changed { file: file.clone(), number: found.number, lines })
+}
+
+impl Datum {
+    fn apply(&self, block: &mut Changed) -> Result<(), DatumError> {
+        let last = block.lines.len().saturating_sub(1);
+        for at in self.lines[0]..=self.lines[1] {
+            let Some(line) = block.lines.get_mut(at) else {
+                return Err(DatumError::Line {
+                    file: self.file.clone(),
+                    block: block.number,
+                    line: at,
+                    last,
+                });
+            };
+            *line = self.edited(at, line)?;
+        }
+        Ok(())
+    }
+
+    /// The line with another word, which takes the blanks before it where it is longer.
+    fn edited(&self, at: usize, line: &str) -> Result<String, DatumError> {
+        let missing = || DatumError::Word { line: at, word: self.word, text: line.trim().to_owned() };
+        let found = line.split_whitespace().nth(self.word - 1).ok_or_else(missing)?;
+        let start = found.as_ptr().addr() - line.as_ptr().addr();
+        let new = match &self.edit {
+            Edit::Set(value) => value.clone(),
+            Edit::Add(by) => {
+                let no_number =
+                    || DatumError::NoNumber { line: at, word: self.word, found: found.to_owned() };
+                let number: i64 = found.parse().map_err(|_| no_number())?;
+                let sum = number.checked_add(*by).ok_or_else(no_number)?;
+                let width = if found.starts_with('0') { found.len() } else { 0 };
+                format!("{sum:0width$}")
+            }
+        };
+        let (before, after) = (&line[..start], &line[start + found.len()..]);
+        let room = new.len().saturating_sub(found.len());
+        let blanks = before.len() - before.trim_end().len();
+        let before = &before[..before.len() - room.min(blanks.saturating_sub(1))];
+        let fill = " ".repeat(found.len().saturating_sub(new.len()));
+        Ok(format!("{before}{fill}{new}{after}"))
+    }
+}
+
+impl fmt::Display for Datum {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { file, block, lines: [first, last], word, edit } = self;
+        let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
+        write!(f, "{file}, block {block}, {lines}, word {word}: ")?;
+        match edit {
+            Edit::Set(value) => write!(f, "{value}"),
+            Edit::Add(by) => write!(f, "{by:+}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn edited(change: &str, line: &str) -> Result<String, DatumError> {
+        change.parse::<Datum>().unwrap().edited(4, line)
+    }
+
+    #[test]
+    fn a_word_keeps_its_column() {
+        let line = "   -6650     -550    -1400   -pose-   ...         UT-1-P";
+        assert_eq!(
+            edited("poses.blk:612:4:3+=20", line).unwrap(),
+            "   -6650     -550    -1380   -pose-   ...         UT-1-P"
+        );
+        assert_eq!(
+            edited("poses.blk:612:4:2-=9450", line).unwrap(),
+            "   -6650   -10000    -1400   -pose-   ...         UT-1-P"
+        );
+        assert_eq!(edited("o.blk:253:8:4=20", "-obj-  X  2  0300").unwrap(), "-obj-  X  2    20");
+        assert_eq!(edited("o.blk:253:8:4+=20", "-obj-  X  2  0300").unwrap(), "-obj-  X  2  0320");
+    }
+
+    #[test]
+    fn what_is_not_there_is_named() {
+        let line = "-obj-  X  2";
+        let text = |change| edited(change, line).unwrap_err().to_string();
+        assert_eq!(text("o.blk:253:4:4=1"), "line 4 has no word 4: it is `-obj-  X  2`");
+        assert_eq!(text("o.blk:253:4:2+=1"), "word 2 of line 4 is X: only a whole number can be added to");
+    }
+
+    #[test]
+    fn a_place_has_four_parts() {
+        for wrong in
+            ["poses.blk:612:4=1", "poses.blk:612:4:0=1", "p:1:3-2:1=1", "p:1:1:1", "p:1:1:1=", "p:1:1:1+=x"]
+        {
+            assert!(wrong.parse::<Datum>().is_err(), "{wrong}");
+        }
+        assert_eq!(
+            "a/b.blk:612:4-6:3-=20".parse::<Datum>().unwrap().to_string(),
+            "a/b.blk, block 612, lines 4 to 6, word 3: -20"
+        );
+    }
+
+    #[test]
+    fn all_changes_of_a_block_stand_in_it() {
+        let text = "BLOCK# 7 OFFSET 21000\n%% remark\n  1  2\n  3  4\nBLOCK# 8 OFFSET 21000\n  5\n";
+        let sources = [Source { name: "f.blk".to_owned(), text: text.into() }];
+        let datum: Datum = "f.blk:7:1:2=40".parse().unwrap();
+        let mut block = find(&sources, &datum).unwrap();
+        datum.apply(&mut block).unwrap();
+        assert_eq!(block.lines, ["  1  2", "  3 40"]);
+        let error = "f.blk:7:2:1=0".parse::<Datum>().unwrap().apply(&mut block).unwrap_err();
+        assert_eq!(error.to_string(), "block 7 (offset 21000) of f.blk has no line 2: its last is 1");
+        let error = find(&sources, &"f.blk:9:1:2=40".parse().unwrap()).err().unwrap();
+        assert_eq!(error.to_string(), "f.blk has no block 9");
+    }
+}

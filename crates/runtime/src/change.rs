@@ -1,0 +1,134 @@
+//! Changes of a run between two ticks: experiments with what was recorded ([`crate::repeat`]).
+//!
+//! A change takes effect in the next tick, and stands in the log. Changed task data are a new generation, so that a replay
+//! of the log finds them; unlike those of a line `** load` they do not wait for the end of a command.
+
+use plant::fault::{What, text::FaultFile};
+use record::Level;
+use taskdata::load::{
+    Diagnostics, Source, Store,
+    job::{JobLine, Reload},
+};
+
+use crate::Run;
+
+/// Source of a line of the log about a change.
+const SOURCE: &str = "change";
+
+/// Why a run cannot be changed.
+#[derive(Debug, thiserror::Error)]
+pub enum ChangeError {
+    /// The blocks have errors.
+    #[error("the task data have errors with it:\n{0}")]
+    Data(String),
+    /// A line `** load` waits for the end of a command.
+    #[error("a reload of the job waits for the end of a command: change the task data in another tick")]
+    Reload,
+    /// Another process commands.
+    #[error("another process commands this run: there is no job whose lines can be changed")]
+    NoJob,
+    /// The job is at its last line.
+    #[error("the job sends no command after tick {0}: name an earlier tick")]
+    NoCommand(u64),
+    /// The line to the robot has faults.
+    #[error("the line to the robot has faults already: leave those of the line out of the file")]
+    Line,
+    /// A fault that displaces something.
+    #[error(
+        "fault {0} displaces the pedestal, which is possible before the first tick only: run the job with this file instead"
+    )]
+    Displaced(usize),
+}
+
+impl From<Box<Diagnostics>> for ChangeError {
+    fn from(report: Box<Diagnostics>) -> Self {
+        Self::Data(report.render(false))
+    }
+}
+
+impl Run {
+    /// From the next tick on the task data have these blocks too. An entry that says again what another says takes its
+    /// place, in the middle of a command also.
+    ///
+    /// # Errors
+    /// [`ChangeError::Data`], [`ChangeError::Reload`]; then nothing has changed.
+    pub fn change_data(&mut self, source: Source) -> Result<(), ChangeError> {
+        let with = |store: &Store, source: &Source| store.with_blocks(vec![source.clone()]);
+        let (store, _) = with(self.generations.current(), &source)?;
+        let done = usize::try_from(self.generations.number()).unwrap_or(usize::MAX);
+        let mut reloads: Vec<Reload> = self.job.reloads.iter().take(done).cloned().collect();
+        reloads.push(Reload { source: source.clone(), store: store.clone() });
+        // What the job loads later is loaded upon the change.
+        let mut newest = store.clone();
+        for Reload { source, .. } in self.job.reloads.iter().skip(done) {
+            newest = with(&newest, source)?.0;
+            reloads.push(Reload { source: source.clone(), store: newest.clone() });
+        }
+        if !self.generations.supersede(store) {
+            return Err(ChangeError::Reload);
+        }
+        self.changed += 1;
+        self.job.reloads = reloads;
+        let (tick, number) = (self.last_tick().next(), self.generations.number());
+        if let Some(log) = &mut self.log {
+            log.reload(tick, number, &source);
+        }
+        Ok(())
+    }
+
+    /// From the next tick on the faults of a file can begin, those of the cell and those of the line.
+    ///
+    /// # Errors
+    /// [`ChangeError::Displaced`], [`ChangeError::Line`]; then nothing has changed.
+    pub fn add_faults(&mut self, faults: &FaultFile, seed: u64) -> Result<(), ChangeError> {
+        let moves = faults.cell.faults.iter().find(|fault| matches!(fault.what, What::PedestalMoved { .. }));
+        if let Some(fault) = moves {
+            return Err(ChangeError::Displaced(fault.number));
+        }
+        if let Some(plan) = &faults.line
+            && !self.robot.suffer(plan)
+        {
+            return Err(ChangeError::Line);
+        }
+        self.workstation.cell.add_faults(&faults.cell, seed);
+        self.note_change("faults of another file can begin");
+        Ok(())
+    }
+
+    /// From the next tick on the sensors have the noise of another seed, and parts lie where it says.
+    pub fn change_seed(&mut self, seed: u64) {
+        self.workstation.cell.reseed(seed);
+        self.note_change(&format!("the seed is {seed}"));
+    }
+
+    /// Put a line before the next one of the job.
+    ///
+    /// # Errors
+    /// [`ChangeError::NoJob`].
+    pub fn insert_line(&mut self, line: JobLine) -> Result<(), ChangeError> {
+        let text = format!("a line of the job more: {}", line.text);
+        self.neighbours.job_player().ok_or(ChangeError::NoJob)?.insert(line);
+        self.note_change(&text);
+        Ok(())
+    }
+
+    /// Put a line in the place of the next command of the job.
+    ///
+    /// # Errors
+    /// [`ChangeError::NoJob`], [`ChangeError::NoCommand`].
+    pub fn replace_command(&mut self, line: JobLine) -> Result<(), ChangeError> {
+        let text = format!("the next command of the job is another one: {}", line.text);
+        if !self.neighbours.job_player().ok_or(ChangeError::NoJob)?.replace_command(line) {
+            return Err(ChangeError::NoCommand(self.last_tick().0));
+        }
+        self.note_change(&text);
+        Ok(())
+    }
+
+    fn note_change(&mut self, text: &str) {
+        let tick = self.last_tick().next();
+        if let Some(log) = &mut self.log {
+            log.note(tick, Level::Info, SOURCE, text);
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! A recorded run again: what its log says of how to run it.
+//!
+//! A log has all that a run with the simulated robot depends on: task data, job and what the job loads, cell description,
+//! faults, and in its metadata seed, retries and limits. [`unpack`] writes the files into a directory and gives the
+//! configuration. The clock is the fast one, whatever it was: where the run was punctual, it comes to the same bits.
+
+use std::{
+    collections::BTreeMap,
+    fs, io,
+    path::{Component, Path, PathBuf},
+};
+
+use record::{Attachment, Log};
+
+use crate::{
+    config::{LogTarget, RobotConfig, RunConfig},
+    log::{DATA_BASE, FAULTS, IN_MEMORY, LOADS, OUTSIDE, RETRY, TICKS},
+    setup::{CELL, EXTENSION},
+};
+
+/// Key of the metadata: the tick up to which a fork is what its log was.
+pub const FORKED_AFTER: &str = "forked_after";
+/// Key: what was changed in a fork.
+pub const CHANGES: &str = "changes";
+
+/// Why a recorded run cannot be run again.
+#[derive(Debug, thiserror::Error)]
+pub enum RepeatError {
+    /// The log does not have something that a run needs.
+    #[error(
+        "the log has no {0}, which a run needs: rcs-run of this version writes it; run the job again to get such a log"
+    )]
+    Missing(&'static str),
+    /// Something took part that no log holds.
+    #[error(
+        "{0} took part in the run, and what it does stands in no log: a run with the simulated robot and without other processes can be repeated"
+    )]
+    Elsewhere(String),
+    /// The log of a fork.
+    #[error(
+        "the log is that of a fork, after tick {tick} with {changes}: fork the log that it came from, with all changes"
+    )]
+    Fork {
+        /// The tick.
+        tick: String,
+        /// What was changed.
+        changes: String,
+    },
+    /// A file of the log that would not stay in its directory.
+    #[error(
+        "the log holds a file named {0}, which leads out of its directory: a name without .. and / was expected"
+    )]
+    Name(String),
+    /// A file of the log cannot be written.
+    #[error("{} cannot be written: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+/// Write the files of a log into an empty directory, and say how to run them: without a log of its own, and not shown to
+/// other programs.
+///
+/// # Errors
+/// [`RepeatError`] if the log does not hold the whole run.
+pub fn unpack(log: &Log, directory: &Path) -> Result<RunConfig, RepeatError> {
+    let said = |key: &str| log.run.get(key).map(String::as_str);
+    if let Some(tick) = said(FORKED_AFTER) {
+        let changes = said(CHANGES).unwrap_or_default().to_owned();
+        return Err(RepeatError::Fork { tick: tick.to_owned(), changes });
+    }
+    if let Some(outside) = said(OUTSIDE).filter(|outside| !outside.is_empty()) {
+        return Err(RepeatError::Elsewhere(format!("{outside} in another process")));
+    }
+    if said(DATA_BASE).is_some_and(|place| place != IN_MEMORY) {
+        return Err(RepeatError::Elsewhere("a data base in a file".to_owned()));
+    }
+    let robot = said("robot").ok_or(RepeatError::Missing("robot"))?;
+    let robot: RobotConfig =
+        robot.parse().map_err(|_| RepeatError::Elsewhere(format!("the robot {robot}")))?;
+    if robot.kind.lives_in_real_time() {
+        return Err(RepeatError::Elsewhere(format!("the robot {robot}")));
+    }
+    let number = |key| said(key).and_then(|number| number.parse::<u64>().ok());
+    let name = said("job").ok_or(RepeatError::Missing("job"))?;
+    let (data, jobs) = (directory.join("data"), directory.join("job"));
+    for attachment in &log.attachments {
+        if let Some(name) = attachment.name.strip_prefix(Attachment::TASK_DATA) {
+            write(&data, name, attachment)?;
+        } else if let Some(name) = attachment.name.strip_prefix(LOADS) {
+            write(&jobs, name, attachment)?;
+        }
+    }
+    let cell = log.attachment(Attachment::CELL).ok_or(RepeatError::Missing("cell description"))?;
+    write(&data, CELL, cell)?;
+    let job = log.attachment(Attachment::JOB).ok_or(RepeatError::Missing("job"))?;
+    let job = write(&jobs, &format!("{name}.{EXTENSION}"), job)?;
+    let faults = log.attachment(FAULTS).map(|faults| write(directory, FAULTS, faults)).transpose()?;
+    Ok(RunConfig {
+        robot,
+        faults,
+        seed: number("seed").ok_or(RepeatError::Missing("seed"))?,
+        ticks: number(TICKS),
+        retry: number(RETRY).and_then(|retry| u32::try_from(retry).ok()).unwrap_or(0),
+        log: LogTarget::None,
+        shared_memory: false,
+        ..RunConfig::new(data, job.to_string_lossy())
+    })
+}
+
+/// What the log of a fork says of itself.
+#[must_use]
+pub fn fork_remarks(tick: u64, changes: &[String]) -> BTreeMap<String, String> {
+    let entries = [(FORKED_AFTER, tick.to_string()), (CHANGES, changes.join("; "))];
+    entries.into_iter().map(|(key, value)| (key.to_owned(), value)).collect()
+}
+
+/// Write a file of a log under a directory. Its name must lead nowhere else: a log may come from anywhere.
+fn write(under: &Path, name: &str, file: &Attachment) -> Result<PathBuf, RepeatError> {
+    let inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
+    if !inside || name.is_empty() {
+        return Err(RepeatError::Name(name.to_owned()));
+    }
+    let path = under.join(name);
+    let failed = |source| RepeatError::Write { path: path.clone(), source };
+    path.parent().map_or(Ok(()), fs::create_dir_all).map_err(failed)?;
+    fs::write(&path, &file.data).map_err(failed)?;
+    Ok(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_in_a_log_leads_nowhere_else() {
+        let file = Attachment::text("x", "text");
+        for name in ["", "..", "../x", "/etc/x", "a/../../x"] {
+            let refused = write(Path::new("/nowhere"), name, &file);
+            assert!(matches!(refused, Err(RepeatError::Name(_))), "{name}: {refused:?}");
+        }
+    }
+
+    #[test]
+    fn a_silence_is_a_part_of_the_robot_in_the_log() {
+        for text in ["sim", "sim,silence=60"] {
+            assert_eq!(text.parse::<RobotConfig>().map(|robot| robot.to_string()).as_deref(), Ok(text));
+        }
+    }
+}
