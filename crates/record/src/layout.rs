@@ -361,7 +361,9 @@ fn define(schema: &Schema, lines: &mut Vec<String>) {
     }
 }
 
-fn kind_name(schema: &Schema) -> String {
+/// The kind of a value in a word: `u16`, `option text 10`, the name of an enum.
+#[must_use]
+pub fn kind_name(schema: &Schema) -> String {
     match schema {
         Schema::U8 => "u8".into(),
         Schema::U16 => "u16".into(),

@@ -1,0 +1,90 @@
+//! The command line.
+
+use std::{env, path::PathBuf};
+
+use clap::{Parser, ValueEnum};
+use executive::memory::RunName;
+
+use crate::{model::Screen, view::Look};
+
+/// Shows what every control process of a run does and why, or of a log, back and forth in time. It only reads
+#[derive(Debug, Parser)]
+#[command(
+    name = "rcs-console",
+    version,
+    about,
+    after_help = "\
+Examples:
+  rcs-console                                  the run that goes on; waits for one if there is none
+  rcs-console --run linkbar-4711               one of several runs
+  rcs-console --log runs/linkbar.mcap          a log
+  rcs-console --log runs/linkbar.mcap --once ladder --tick 623   one screen as text
+
+Exit status: 0 quit; 2 usage, or what is to be shown cannot be read."
+)]
+pub struct Cli {
+    /// The run to look at [default: the only one that goes on]
+    #[arg(long, value_name = "NAME")]
+    pub run: Option<RunName>,
+    /// The log to look at; with --run the log of that run, for the key that opens it
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<PathBuf>,
+    /// Colours repeat what marks say; auto heeds NO_COLOR and TERM=dumb
+    #[arg(long, value_enum, default_value_t = Colour::Auto)]
+    pub colour: Colour,
+    /// Draw with ASCII only [default: if the locale is not UTF-8]
+    #[arg(long)]
+    pub ascii: bool,
+    /// Print one screen as text and end
+    #[arg(long, value_enum, value_name = "SCREEN")]
+    pub once: Option<Screen>,
+    /// Begin at this tick of a log
+    #[arg(long, value_name = "N", requires = "log")]
+    pub tick: Option<u64>,
+}
+
+/// When colours are used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Colour {
+    /// If the terminal has them and nothing forbids them
+    Auto,
+    /// Not at all
+    Never,
+}
+
+impl Cli {
+    /// How the terminal wants its text, by the options and by the environment.
+    #[must_use]
+    pub fn look(&self) -> Look {
+        let set = |name: &str| env::var(name).ok().filter(|value| !value.is_empty());
+        let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(set);
+        Look {
+            colour: self.colour == Colour::Auto
+                && set("NO_COLOR").is_none()
+                && set("TERM").is_none_or(|term| term != "dumb"),
+            ascii: self.ascii || !is_utf8(locale.as_deref()),
+        }
+    }
+}
+
+fn is_utf8(locale: Option<&str>) -> bool {
+    let locale = locale.unwrap_or_default().to_lowercase();
+    locale.contains("utf-8") || locale.contains("utf8")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definitions_are_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_locale_tells_its_signs() {
+        assert!(is_utf8(Some("en_GB.UTF-8")) && is_utf8(Some("C.utf8")));
+        assert!(!is_utf8(Some("C")) && !is_utf8(None));
+    }
+}

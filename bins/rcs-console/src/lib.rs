@@ -1,0 +1,28 @@
+//! The operator's console, view side (IV, VI.6): what every control process does and why.
+//!
+//! ```text
+//!  run ---> source::Live ----.
+//!                             >-- Picture, Story --> model --> view --> terminal
+//!  log ---> source::Recorded -'                        ^
+//!                                                     keys
+//! ```
+//!
+//! * [`source`]: gives a [`Picture`](picture::Picture) for a tick, and the [`Story`](story::Story) of all ticks;
+//! * [`model`]: what is shown, without a terminal: keys and pictures in, lines and choices out;
+//! * [`view`]: the model as a frame of text, on any terminal of at least 80 x 24;
+//! * [`terminal`]: keys, signals, and the terminal as it was before.
+//!
+//! The console only reads. A run never waits for it.
+
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+pub mod cli;
+pub mod error;
+pub mod model;
+pub mod once;
+pub mod picture;
+pub mod source;
+pub mod story;
+pub mod terminal;
+pub mod view;

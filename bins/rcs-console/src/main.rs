@@ -1,0 +1,24 @@
+//! `rcs-console`: shows what every control process of a run does and why, or of a log.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use rcs_console::{cli::Cli, once, terminal};
+
+/// Exit status of a usage or file error.
+const UNUSABLE: u8 = 2;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let ended = match cli.once {
+        Some(screen) => once::print(&cli, screen),
+        None => terminal::show(&cli),
+    };
+    match ended {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            os_io::stderr_line!("rcs-console: {error}");
+            ExitCode::from(UNUSABLE)
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! The cell as the controller senses it: joints with their margins, the hand, grippers, holsters, parts.
+
+use std::f64::consts::TAU;
+
+use geometry::kinematics::{JOINT_NAMES, Joints, T3};
+use interfaces::{
+    CommonMemory,
+    device::{DeviceInputs, RESOLVER_COUNTS},
+};
+
+use super::{Section, Text, Tone};
+use crate::{picture::Picture, source::Parts};
+
+/// Degrees to a limit below which a joint is marked.
+const NEAR: f64 = 10.0;
+/// Degrees of margin for a sign of the bar.
+const BAR: f64 = 10.0;
+/// Signs of the longest bar.
+const LONGEST: f64 = 12.0;
+
+/// The sections, from the top.
+#[must_use]
+pub fn sections(picture: &Picture, parts: &Parts) -> Vec<Section> {
+    let devices = &picture.external.devices;
+    vec![
+        joints(devices),
+        hand(&picture.memory, devices),
+        holsters(devices),
+        self::parts(parts),
+        Section::new(
+            "E-stops and clearances",
+            vec![Text::new(
+                Tone::Faint,
+                " neither a run nor a log tells them tick by tick; messages about both are on screen 3",
+            )],
+        ),
+    ]
+}
+
+/// The joint angles that the resolvers tell, radians, turned into the limits of the arm.
+fn angles(devices: &DeviceInputs) -> Joints {
+    let turn = TAU / f64::from(RESOLVER_COUNTS);
+    T3.within_limits(&devices.resolvers.counts.map(|counts| f64::from(counts) * turn))
+}
+
+fn joints(devices: &DeviceInputs) -> Section {
+    if !devices.resolvers.valid {
+        let text = " the resolver box has no power: the angles are not known";
+        return Section::new("joints", vec![Text::new(Tone::Faint, text)]);
+    }
+    let angles = angles(devices);
+    let line = |((name, angle), (low, high)): ((&str, &f64), (f64, f64))| {
+        let margin = (angle - low).min(high - angle).to_degrees();
+        let (mark, tone) = if margin < NEAR { ("!!", Tone::Trouble) } else { ("  ", Tone::Plain) };
+        let bar = "#".repeat((margin / BAR).clamp(0.0, LONGEST).round() as usize);
+        Text::new(
+            tone,
+            format!(
+                "{mark}{name:<9}{:>8.1} deg   {:>6.0} to {:>4.0}   {margin:>6.1} to the limit  {bar}",
+                angle.to_degrees(),
+                low.to_degrees(),
+                high.to_degrees()
+            )
+            .trim_end()
+            .to_owned(),
+        )
+    };
+    let lines = JOINT_NAMES.into_iter().zip(&angles).zip(T3.limits).map(line).collect();
+    let least = T3.margin(&angles);
+    let title = format!(
+        "joints, by the resolvers; nearest to a limit: {}, {:.1} deg",
+        JOINT_NAMES[least.joint],
+        least.radians.to_degrees()
+    );
+    Section::new(title, lines)
+}
+
+fn hand(memory: &CommonMemory, devices: &DeviceInputs) -> Section {
+    let inches = |hundredths: i32| f64::from(hundredths) / 100.0;
+    let tool = memory.t3i.status.resolver_frame.map_or_else(
+        || "the place of the tool point is not known".to_owned(),
+        |frame| {
+            let [x, y, z] = frame.tool.map(inches);
+            format!("tool point {x:.2} {y:.2} {z:.2} in, by the resolvers")
+        },
+    );
+    let on = match memory.quick_change.status.end_effector_id {
+        Some(1) => "parts gripper",
+        Some(2) => "v-gripper",
+        Some(3) => "tool gripper",
+        Some(_) => "a gripper whose id pins have a bad contact",
+        None => "no gripper",
+    };
+    let grip = &memory.grip.status;
+    let beams: String =
+        (0..8).map(|bit| if devices.grip.beams >> bit & 1 == 1 { '#' } else { '.' }).collect();
+    let held = memory.subtask.status.held;
+    let lines = vec![
+        Text::plain(format!(" {tool}")),
+        Text::plain(format!(" on the robot: {on}; locking ring {}", memory.quick_change.status.ring)),
+        Text::plain(format!(
+            " Grip {:.2} in, {} and {} lb, between the fingers: {}; beams {beams}",
+            inches(grip.position),
+            grip.left_force,
+            grip.right_force,
+            grip.felt
+        )),
+        Text::plain(format!(" Subtask holds: {}", holding(&held))),
+        Text::plain(format!(
+            " pedestal: table {}, hand {:.2} in, {} and {} lb",
+            memory.table.status.position.map_or_else(
+                || "not calibrated".to_owned(),
+                |tenths| format!("{:.1} deg", f64::from(tenths) / 10.0)
+            ),
+            inches(memory.hand.status.position),
+            memory.hand.status.left_force,
+            memory.hand.status.right_force
+        )),
+    ];
+    Section::new("hand", lines)
+}
+
+fn holding(held: &interfaces::emove::Holding) -> String {
+    use interfaces::emove::Holding;
+    match held {
+        Holding::Nothing => "nothing".to_owned(),
+        Holding::Something => "something unknown".to_owned(),
+        Holding::NotKnown => "not known".to_owned(),
+        Holding::Object(grip) => format!("{} with grip {}", grip.object, grip.grip),
+    }
+}
+
+/// The sensors of a holster (V.1.2): bits 0 and 1 see the ears at the rear, 2 and 3 at the seat.
+fn holster(bits: u8) -> &'static str {
+    match (bits & 0b0011, bits & 0b1100) {
+        (0, 0) => "empty",
+        (0b0011, 0b1100) => "seated",
+        _ => "between",
+    }
+}
+
+fn holsters(devices: &DeviceInputs) -> Section {
+    let sensors = &devices.holsters;
+    let text = format!(
+        " right {}   left {}   centre {}",
+        holster(sensors.right),
+        holster(sensors.left),
+        holster(sensors.centre)
+    );
+    Section::new("holsters, by their sensors", vec![Text::plain(text)])
+}
+
+fn parts(parts: &Parts) -> Section {
+    let lines = match parts {
+        Parts::NotPublished => {
+            vec![Text::new(Tone::Faint, " a live run does not publish them; its log has them")]
+        }
+        Parts::At(parts) if parts.is_empty() => vec![Text::new(Tone::Faint, " none has been delivered yet")],
+        Parts::At(parts) => parts
+            .iter()
+            .map(|(name, [x, y, z])| Text::plain(format!(" {name:<10} {x:>8.2} {y:>8.2} {z:>8.2} in")))
+            .collect(),
+    };
+    Section::new("parts, as the simulated cell has them", lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_are_turned_into_the_limits() {
+        let mut devices = DeviceInputs::default();
+        // 190 degrees back, as the resolver tells it.
+        devices.resolvers.counts[0] = RESOLVER_COUNTS * 170 / 360;
+        let base = angles(&devices)[0].to_degrees();
+        assert!((base + 190.0).abs() < 0.01, "{base}");
+    }
+
+    #[test]
+    fn a_joint_near_its_limit_is_marked() {
+        let mut devices = DeviceInputs::default();
+        devices.resolvers.valid = true;
+        devices.resolvers.counts[1] = RESOLVER_COUNTS * 45 / 360;
+        devices.resolvers.counts[2] = RESOLVER_COUNTS * 270 / 360;
+        let lines = joints(&devices).lines;
+        let marked = |lines: &[Text]| lines.iter().filter(|line| line.text.starts_with("!!")).count();
+        assert_eq!(marked(&lines), 0, "{lines:?}");
+        devices.resolvers.counts[1] = RESOLVER_COUNTS * 85 / 360;
+        assert_eq!(marked(&joints(&devices).lines), 1);
+        devices.resolvers.valid = false;
+        assert!(joints(&devices).lines[0].text.contains("no power"));
+    }
+
+    #[test]
+    fn a_holster_tells_where_its_gripper_is() {
+        assert_eq!([0b0000, 0b0011, 0b1111].map(holster), ["empty", "between", "seated"]);
+    }
+}

@@ -1,0 +1,219 @@
+//! What a key does.
+
+use interfaces::ProcessId;
+
+use super::{Model, Pane, Place, Prompt, Screen, ladder};
+use crate::source::{Source, State};
+
+/// Ticks of a second.
+const SECOND: u64 = 25;
+/// Lines of a page.
+const PAGE: usize = 8;
+
+/// A key, whatever the terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// A character.
+    Char(char),
+    /// Enter.
+    Enter,
+    /// Escape.
+    Esc,
+    /// Tab.
+    Tab,
+    /// Shift and Tab.
+    BackTab,
+    /// Arrow up.
+    Up,
+    /// Arrow down.
+    Down,
+    /// Page up.
+    PageUp,
+    /// Page down.
+    PageDown,
+    /// Home.
+    Home,
+    /// End.
+    End,
+    /// Backspace.
+    Backspace,
+    /// Control and C.
+    Interrupt,
+}
+
+/// What the terminal is to do after a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// Draw and go on.
+    Draw,
+    /// End.
+    Quit,
+    /// Open the log of this run at the first cause of its failure.
+    OpenLog,
+}
+
+impl Model {
+    /// Take a key.
+    pub fn key(&mut self, key: Key, source: &dyn Source) -> Effect {
+        self.answer = None;
+        if key == Key::Interrupt {
+            return Effect::Quit;
+        }
+        if let Some(prompt) = self.prompt.take() {
+            self.type_on(prompt, key, source);
+        } else if self.help {
+            self.help = false;
+        } else {
+            return self.command(key, source);
+        }
+        Effect::Draw
+    }
+
+    fn command(&mut self, key: Key, source: &dyn Source) -> Effect {
+        match key {
+            Key::Char('q') => return Effect::Quit,
+            Key::Char('o') => return Effect::OpenLog,
+            Key::Char('?') => self.help = true,
+            Key::Char(digit @ '1'..='4') => {
+                let at = digit.to_digit(10).and_then(|digit| usize::try_from(digit).ok());
+                self.turn_to(Screen::ALL[at.map_or(0, |at| at - 1)]);
+            }
+            Key::Char('/') => self.prompt = Some(Prompt::Filter(self.filter.clone())),
+            Key::Char('g') => self.prompt = Some(Prompt::Tick(String::new())),
+            Key::Char('a') => self.acknowledged = self.tick(),
+            Key::Char('p') => self.freeze(source),
+            Key::Char('[') => self.go(self.tick().saturating_sub(1), source),
+            Key::Char(']') => self.go(self.tick() + 1, source),
+            Key::Char('{') => self.go(self.tick().saturating_sub(SECOND), source),
+            Key::Char('}') => self.go(self.tick() + SECOND, source),
+            Key::Home => self.go(0, source),
+            Key::End => self.place = Place::Last,
+            Key::Char('n') => self.to_change(true, source),
+            Key::Char('N') => self.to_change(false, source),
+            Key::Char('t') => self.to_trouble(true, source),
+            Key::Char('T') => self.to_trouble(false, source),
+            Key::Char('c') => self.to_cause(source),
+            Key::Char('j') | Key::Down => self.down(1),
+            Key::Char('k') | Key::Up => self.up(1),
+            Key::PageDown => self.down(PAGE),
+            Key::PageUp => self.up(PAGE),
+            Key::Tab => self.pane(1),
+            Key::BackTab => self.pane(Pane::ALL.len() - 1),
+            Key::Enter if self.screen == Screen::Ladder => self.turn_to(Screen::Process),
+            Key::Esc if !self.filter.is_empty() => self.filter.clear(),
+            Key::Esc => self.turn_to(Screen::Ladder),
+            _ => self.answer = Some("this key does nothing here; ? lists the keys".to_owned()),
+        }
+        Effect::Draw
+    }
+
+    /// Keep the scrolling within what there is.
+    pub fn limit_scroll(&mut self, up: usize, down: usize) {
+        let least = 0_isize.saturating_sub_unsigned(up);
+        self.scroll = self.scroll.clamp(least, 0_isize.saturating_add_unsigned(down));
+    }
+
+    fn turn_to(&mut self, screen: Screen) {
+        (self.screen, self.scroll) = (screen, 0);
+    }
+
+    fn pane(&mut self, by: usize) {
+        let at = Pane::ALL.iter().position(|pane| *pane == self.pane).unwrap_or_default();
+        (self.pane, self.scroll) = (Pane::ALL[(at + by) % Pane::ALL.len()], 0);
+    }
+
+    fn down(&mut self, by: usize) {
+        match self.screen {
+            Screen::Ladder => self.process = ladder::neighbour(self.process, by, true),
+            _ => self.scroll = self.scroll.saturating_add_unsigned(by),
+        }
+    }
+
+    fn up(&mut self, by: usize) {
+        match self.screen {
+            Screen::Ladder => self.process = ladder::neighbour(self.process, by, false),
+            _ => self.scroll = self.scroll.saturating_sub_unsigned(by),
+        }
+    }
+
+    /// Freeze the picture, or let it go on. The run goes on in either case.
+    fn freeze(&mut self, source: &dyn Source) {
+        if source.about().state == State::Log {
+            self.answer = Some("a log stands still: [ ] goes a tick, { } a second".to_owned());
+        } else {
+            self.place = match self.place {
+                Place::Last => Place::At(self.tick()),
+                Place::At(_) => Place::Last,
+            };
+        }
+    }
+
+    /// Go to a tick, or to the nearest there is.
+    fn go(&mut self, tick: u64, source: &dyn Source) {
+        let Some((first, last)) = source.range() else { return };
+        self.answer = match tick {
+            tick if tick < first && self.tick() == first => Some(format!("tick {first} is the first one")),
+            tick if tick > last && self.tick() == last => Some(format!("tick {last} is the last one")),
+            _ => None,
+        };
+        self.place = Place::At(tick.clamp(first, last));
+    }
+
+    /// Go to the next or the previous change: on the process screen of this process, else of any.
+    fn to_change(&mut self, forward: bool, source: &dyn Source) {
+        let processes = match self.screen {
+            Screen::Process => std::slice::from_ref(&self.process),
+            _ => ProcessId::ALL,
+        };
+        match source.story().change(processes, self.tick(), forward) {
+            Some(tick) => self.go(tick, source),
+            None => self.answer = Some(nothing("change", forward)),
+        }
+    }
+
+    fn to_trouble(&mut self, forward: bool, source: &dyn Source) {
+        match source.story().trouble(self.tick(), forward) {
+            Some((tick, process)) => {
+                self.go(tick, source);
+                self.process = process.unwrap_or(self.process);
+            }
+            None => self.answer = Some(nothing("trouble", forward)),
+        }
+    }
+
+    /// Go to the first cause of the last failure, and to the process that knows it.
+    fn to_cause(&mut self, source: &dyn Source) {
+        match source.story().first_cause() {
+            Some(cause) => {
+                self.go(cause.tick, source);
+                self.process = cause.process.unwrap_or(self.process);
+            }
+            None => self.answer = Some("no process has reported a failure".to_owned()),
+        }
+    }
+
+    fn type_on(&mut self, mut prompt: Prompt, key: Key, source: &dyn Source) {
+        let (Prompt::Filter(text) | Prompt::Tick(text)) = &mut prompt;
+        match key {
+            Key::Char(typed) => text.push(typed),
+            Key::Backspace => drop(text.pop()),
+            Key::Enter => return self.typed(prompt, source),
+            _ => return,
+        }
+        self.prompt = Some(prompt);
+    }
+
+    fn typed(&mut self, prompt: Prompt, source: &dyn Source) {
+        match prompt {
+            Prompt::Filter(text) => (self.filter, self.scroll) = (text, 0),
+            Prompt::Tick(text) => match text.trim().parse() {
+                Ok(tick) => self.go(tick, source),
+                Err(_) => self.answer = Some(format!("a tick is a number such as 623; found {text:?}")),
+            },
+        }
+    }
+}
+
+fn nothing(what: &str, forward: bool) -> String {
+    format!("there is no {what} {}", if forward { "after this tick" } else { "before this tick" })
+}

@@ -1,0 +1,398 @@
+//! The ladder (VI.6): a line for each process and for each neighbour, with its command, status and row.
+
+use executive::failure;
+use interfaces::{CommonMemory, ProcessId, device::VisionStatus, for_each_process};
+use levels::ladder::Ladder;
+use rcs_core::{handshake::Lower, tick::TICK_S};
+
+use crate::{
+    picture::{Absence, Picture},
+    story::{self, Story},
+};
+
+/// What a line is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Item {
+    /// A control process.
+    Process(ProcessId),
+    /// The workstation controller: what it commands, and what it is told.
+    Workstation,
+    /// The Data System: what it is asked, and what it answers.
+    DataSystem,
+    /// The vision system, likewise.
+    Vision,
+    /// The robot controller behind the link.
+    Robot,
+}
+
+/// How a line hangs on the one above.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Branch {
+    /// A level of the hierarchy.
+    Level,
+    /// A process or neighbour beside it, with others after it.
+    Beside,
+    /// The last one.
+    Last,
+    /// Below one that has others after it.
+    Below,
+    /// The last one below.
+    LastBelow,
+}
+
+/// The lines, from the top.
+const LINES: [(Branch, Item); 16] = [
+    (Branch::Level, Item::Workstation),
+    (Branch::Level, Item::Process(ProcessId::Task)),
+    (Branch::Last, Item::DataSystem),
+    (Branch::Level, Item::Process(ProcessId::Subtask)),
+    (Branch::Last, Item::Process(ProcessId::Pedestal)),
+    (Branch::Below, Item::Process(ProcessId::Hand)),
+    (Branch::LastBelow, Item::Process(ProcessId::RotaryTable)),
+    (Branch::Level, Item::Process(ProcessId::Emove)),
+    (Branch::Beside, Item::Vision),
+    (Branch::Beside, Item::Process(ProcessId::QuickChange)),
+    (Branch::Beside, Item::Process(ProcessId::Grip)),
+    (Branch::Beside, Item::Process(ProcessId::VGrip)),
+    (Branch::Last, Item::Process(ProcessId::ToolGrip)),
+    (Branch::Level, Item::Process(ProcessId::Prim)),
+    (Branch::Level, Item::Process(ProcessId::T3i)),
+    (Branch::Level, Item::Robot),
+];
+
+/// What a mark in the first two columns says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Mark {
+    /// It reports a failure or an error.
+    pub trouble: bool,
+    /// It is the process that knows why Task fails.
+    pub cause: bool,
+    /// It was not stepped, or nothing came from it.
+    pub absent: bool,
+    /// It is the gripper that is on the robot.
+    pub on: bool,
+    /// It is not what it was in the picture before.
+    pub changed: bool,
+}
+
+/// A line of the ladder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// What it is about.
+    pub item: Item,
+    /// How it hangs on the one above.
+    pub branch: Branch,
+    /// What the first columns say.
+    pub mark: Mark,
+    /// Name.
+    pub name: &'static str,
+    /// Command, in the manual's words; empty for none.
+    pub command: String,
+    /// Number of the command; none for none.
+    pub number: Option<u32>,
+    /// Status.
+    pub status: String,
+    /// Number that the status is about.
+    pub echo: Option<u32>,
+    /// Table and row.
+    pub row: String,
+    /// What the row says, in the manual's words.
+    pub text: String,
+    /// Seconds since the row was chosen; none for one of this tick.
+    pub age: Option<f64>,
+}
+
+/// The ladder of a picture. `last` is the picture that was shown before it.
+#[must_use]
+pub fn lines(picture: &Picture, last: Option<&Picture>, story: &Story) -> Vec<Line> {
+    let line = |(branch, item)| {
+        let mut line = line(branch, item, picture, story);
+        line.mark.changed = last.is_some_and(|last| {
+            let was = self::line(branch, item, last, story);
+            let key = |line: &Line| (line.number, line.status.clone(), line.row.clone());
+            match item {
+                // It has a new command in every tick.
+                Item::Process(ProcessId::T3i) => {
+                    (was.status, was.row) != (line.status.clone(), line.row.clone())
+                }
+                Item::Robot => was.row != line.row,
+                _ => key(&was) != key(&line),
+            }
+        });
+        line
+    };
+    LINES.into_iter().map(line).collect()
+}
+
+fn line(branch: Branch, item: Item, picture: &Picture, story: &Story) -> Line {
+    match item {
+        Item::Process(process) => process_line(branch, process, picture, story),
+        Item::Workstation => workstation(branch, picture),
+        Item::DataSystem => data_system(branch, picture),
+        Item::Vision => vision(branch, picture),
+        Item::Robot => robot(branch, picture),
+    }
+}
+
+fn process_line(branch: Branch, process: ProcessId, picture: &Picture, story: &Story) -> Line {
+    let info = &Ladder::processes()[process.position()];
+    let (header, said) = (picture.memory.header(process), picture.memory.said(process));
+    let absence = picture.absence(process);
+    let row = header.decided.and_then(|decided| info.row(decided));
+    let command = picture.command(process);
+    let cause =
+        story.present_trouble(picture).and_then(|trouble| story::process_named(&trouble.failure.process));
+    let status = match absence {
+        None => said.report.to_owned(),
+        Some(absence @ Absence::Elsewhere) => format!("{} {}", said.report, absence.text()),
+        Some(absence) => absence.text().to_owned(),
+    };
+    Line {
+        item: Item::Process(process),
+        branch,
+        mark: Mark {
+            trouble: said.lower == Lower::Error || !said.fault.is_none(),
+            cause: cause == Some(process),
+            absent: absence.is_some(),
+            on: gripper_on(picture) == Some(process),
+            changed: false,
+        },
+        name: info.name,
+        number: (!command.is_empty()).then(|| picture.command_number(process)),
+        command,
+        status,
+        echo: Some(echo(&picture.memory, process)),
+        row: row.map_or_else(String::new, |(table, row)| format!("{} {}", table.name, row.number)),
+        text: row.map_or_else(String::new, |(_, row)| row.to_string()),
+        age: age(process, picture, story),
+    }
+}
+
+/// Seconds since a row was chosen; none if that was in this tick, or if no row was chosen yet.
+fn age(process: ProcessId, picture: &Picture, story: &Story) -> Option<f64> {
+    picture.memory.header(process).decided?;
+    let ticks = picture.tick.0.saturating_sub(story.rows(process, picture.tick.0).last()?.tick);
+    (ticks > 0).then(|| ticks as f64 * TICK_S)
+}
+
+/// The gripper that is on the robot, as the id pins say (VI.2).
+fn gripper_on(picture: &Picture) -> Option<ProcessId> {
+    match picture.memory.quick_change.status.end_effector_id? {
+        1 => Some(ProcessId::Grip),
+        2 => Some(ProcessId::VGrip),
+        3 => Some(ProcessId::ToolGrip),
+        _ => None,
+    }
+}
+
+/// A line of a neighbour: no row, no age.
+fn neighbour_line(branch: Branch, item: Item, name: &'static str) -> Line {
+    Line {
+        item,
+        branch,
+        mark: Mark::default(),
+        name,
+        command: String::new(),
+        number: None,
+        status: String::new(),
+        echo: None,
+        row: String::new(),
+        text: String::new(),
+        age: None,
+    }
+}
+
+fn workstation(branch: Branch, picture: &Picture) -> Line {
+    let (hws, status) = (&picture.external.hws, &picture.memory.task.status);
+    Line {
+        mark: Mark { trouble: status.report.lower() == Lower::Error, ..Mark::default() },
+        command: hws.to_string(),
+        number: Some(hws.number),
+        status: status.report.text().to_owned(),
+        echo: Some(status.echo),
+        ..neighbour_line(branch, Item::Workstation, "Workstation")
+    }
+}
+
+fn data_system(branch: Branch, picture: &Picture) -> Line {
+    let (asked, answer) = (&picture.memory.task.data_base, &picture.external.data_base);
+    let line = neighbour_line(branch, Item::DataSystem, "Data System");
+    if asked.number == 0 {
+        return Line { status: "not asked".to_owned(), ..line };
+    }
+    Line {
+        mark: Mark { trouble: answer.report.lower() == Lower::Error, ..Mark::default() },
+        command: format!("{} {}", asked.command, asked.item).trim_end().to_owned(),
+        number: Some(asked.number),
+        status: answer.report.text().to_owned(),
+        echo: Some(answer.echo),
+        ..line
+    }
+}
+
+fn vision(branch: Branch, picture: &Picture) -> Line {
+    let (asked, answer) = (&picture.memory.emove.vision, &picture.external.devices.vision);
+    let line = neighbour_line(branch, Item::Vision, "Vision");
+    if asked.number == 0 {
+        return Line { status: "not asked".to_owned(), ..line };
+    }
+    let failed = matches!(answer.status, VisionStatus::NothingSeen | VisionStatus::NotRecognised);
+    Line {
+        mark: Mark { trouble: failed, ..Mark::default() },
+        command: format!("{}, object {}", asked.picture, asked.object_id),
+        number: Some(asked.number),
+        status: answer.status.text().to_owned(),
+        echo: Some(answer.echo),
+        ..line
+    }
+}
+
+fn robot(branch: Branch, picture: &Picture) -> Line {
+    let status = &picture.memory.t3i.status;
+    let link = match (status.link_running, status.controller_ready) {
+        (true, _) => "link runs",
+        (false, true) => "link down",
+        (false, false) => "DTR off",
+    };
+    Line {
+        mark: Mark { trouble: status.trouble().is_some(), ..Mark::default() },
+        command: format!("{} sent, {} answered", status.counters.frames, status.counters.acknowledged),
+        status: link.to_owned(),
+        row: link.to_owned(),
+        text: status.trouble().unwrap_or_default().to_owned(),
+        ..neighbour_line(branch, Item::Robot, "Robot")
+    }
+}
+
+/// The process `by` lines below or above another one.
+#[must_use]
+pub fn neighbour(process: ProcessId, by: usize, down: bool) -> ProcessId {
+    let processes = || {
+        LINES.iter().filter_map(|(_, item)| match item {
+            Item::Process(process) => Some(*process),
+            _ => None,
+        })
+    };
+    let at = processes().position(|other| other == process).unwrap_or_default();
+    let wanted = if down { at + by } else { at.saturating_sub(by) };
+    processes().nth(wanted).or(processes().last()).unwrap_or(process)
+}
+
+/// What the process under the cursor does and why, in a sentence each.
+#[must_use]
+pub fn explanation(process: ProcessId, picture: &Picture, story: &Story) -> [String; 2] {
+    let line = process_line(Branch::Level, process, picture, story);
+    let row = match (line.row.as_str(), line.text.as_str()) {
+        ("", _) => "no row has decided yet".to_owned(),
+        (row, text) => format!("{row}: {text}"),
+    };
+    let first = format!("{}: {row}", line.name);
+    let second = match (story.present_trouble(picture), picture.fault(process)) {
+        (Some(trouble), _) => {
+            format!("TROUBLE since tick {}: {}", trouble.failure.tick, trouble.failure.text)
+        }
+        (None, Some(fault)) => format!("TROUBLE: {}", fault.text()),
+        (None, None) => match line.command.as_str() {
+            "" => "no command".to_owned(),
+            command => format!("command {}: {command}", picture.command_number(process)),
+        },
+    };
+    [first, second]
+}
+
+/// What a failure that no process reports may come from: the commands that are executed.
+#[must_use]
+pub fn present_commands(picture: &Picture) -> String {
+    failure::present_commands(Ladder::processes(), &picture.external.hws, &picture.memory)
+}
+
+macro_rules! echoes {
+    ($(
+        #[doc = $doc:literal]
+        $id:ident $text:literal {
+            buffers: $field:ident, $outputs:ty;
+            failure: $failure:ident;
+            board: $board:literal;
+            commander: $($commander:ident, $above:ident . $command:ident)?;
+            reads: $reads:expr;
+        }
+    )+) => {
+        /// Number of the command that the status of a process is about.
+        #[must_use]
+        pub const fn echo(memory: &CommonMemory, process: ProcessId) -> u32 {
+            match process { $( ProcessId::$id => memory.$field.status.echo, )+ }
+        }
+    };
+}
+for_each_process!(echoes);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::{ExternalInputs, Reason};
+    use rcs_core::tick::Tick;
+
+    fn picture() -> Picture {
+        let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
+        Picture { tick: Tick(0), external, memory, timing: None }
+    }
+
+    #[test]
+    fn every_process_has_one_line() {
+        for process in ProcessId::ALL {
+            let lines = LINES.iter().filter(|(_, item)| *item == Item::Process(*process));
+            assert_eq!(lines.count(), 1, "{process}");
+        }
+    }
+
+    #[test]
+    fn the_cursor_stops_at_both_ends() {
+        assert_eq!(neighbour(ProcessId::Task, 1, false), ProcessId::Task);
+        assert_eq!(neighbour(ProcessId::Task, 1, true), ProcessId::Subtask);
+        assert_eq!(neighbour(ProcessId::T3i, 3, true), ProcessId::T3i);
+    }
+
+    #[test]
+    fn the_cause_is_marked_and_those_above_are_in_trouble() {
+        let mut story = Story::new(usize::MAX);
+        let mut now = picture();
+        let changes: [fn(&mut CommonMemory); 3] = [
+            |memory| memory.emove.status.reason = Reason::NothingSeen,
+            |memory| memory.subtask.status.reason = Reason::NothingSeen,
+            |memory| memory.task.status.reason = Reason::NothingSeen,
+        ];
+        for change in changes {
+            let before = now.clone();
+            now.tick = before.tick.next();
+            change(&mut now.memory);
+            story.note(&before, &now);
+        }
+        let lines = lines(&now, None, &story);
+        let marks =
+            |wanted| lines.iter().find(|line| line.item == Item::Process(wanted)).map(|line| line.mark);
+        let cause = marks(ProcessId::Emove).expect("E-move has a line");
+        assert!(cause.trouble && cause.cause);
+        let above = marks(ProcessId::Subtask).expect("Subtask has a line");
+        assert!(above.trouble && !above.cause);
+        assert!(!marks(ProcessId::Grip).expect("Grip has a line").trouble);
+        assert!(
+            explanation(ProcessId::Prim, &now, &story)[1]
+                .contains("since tick 1: E-move: vision sees no object")
+        );
+    }
+
+    #[test]
+    fn what_changed_since_the_last_picture_is_marked() {
+        let (was, mut is) = (picture(), picture());
+        is.memory.task.subtask.number = 4;
+        is.memory.t3i.status.counters.frames = 9;
+        is.memory.prim.t3i.number = 9;
+        let lines = lines(&is, Some(&was), &Story::new(usize::MAX));
+        let changed: Vec<_> = lines.iter().filter(|line| line.mark.changed).map(|line| line.name).collect();
+        assert_eq!(changed, Vec::<&str>::new(), "a number without a command is no command");
+        is.memory.task.subtask.command = interfaces::subtask::SubtaskVerb::GetObject;
+        let lines = self::lines(&is, Some(&was), &Story::new(usize::MAX));
+        let changed: Vec<_> = lines.iter().filter(|line| line.mark.changed).map(|line| line.name).collect();
+        assert_eq!(changed, ["Subtask"]);
+    }
+}

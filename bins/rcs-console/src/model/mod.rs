@@ -1,0 +1,221 @@
+//! What is shown, without a terminal: keys and pictures in, a choice of screen, tick and process out.
+
+pub mod buffers;
+pub mod cell;
+pub mod frames;
+mod keys;
+pub mod ladder;
+pub mod link;
+pub mod process;
+pub mod units;
+
+use interfaces::ProcessId;
+
+pub use self::keys::{Effect, Key};
+use crate::{
+    picture::Picture,
+    source::{Source, State},
+};
+
+/// A screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Screen {
+    /// All processes with commands, status and rows (VI.6)
+    Ladder,
+    /// One process: its table, its last rows, its buffers
+    Process,
+    /// The link to the robot, and the times of the ticks
+    Link,
+    /// Joints, sensors and parts
+    Cell,
+}
+
+impl Screen {
+    /// All screens, in the order of their keys.
+    pub const ALL: [Self; 4] = [Self::Ladder, Self::Process, Self::Link, Self::Cell];
+
+    /// The name in the first line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ladder => "Ladder",
+            Self::Process => "Process",
+            Self::Link => "Link",
+            Self::Cell => "Cell",
+        }
+    }
+}
+
+/// A pane of the process screen. The one that has the keys has the most lines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pane {
+    /// The decision table.
+    #[default]
+    Table,
+    /// The rows that fired.
+    Rows,
+    /// The buffers.
+    Buffers,
+}
+
+impl Pane {
+    /// All panes, from the top.
+    pub const ALL: [Self; 3] = [Self::Table, Self::Rows, Self::Buffers];
+}
+
+/// The tick that is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The last one there is, as it goes on.
+    Last,
+    /// This one.
+    At(u64),
+}
+
+/// How a line of text is meant. The text says the same in words or marks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tone {
+    /// As any other.
+    #[default]
+    Plain,
+    /// Trouble.
+    Trouble,
+    /// The row that fired, or a value that is new.
+    Marked,
+    /// What stands for nothing now.
+    Faint,
+}
+
+/// A line of text.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Text {
+    /// How it is meant.
+    pub tone: Tone,
+    /// What it says.
+    pub text: String,
+}
+
+impl Text {
+    /// A line.
+    #[must_use]
+    pub fn new(tone: Tone, text: impl Into<String>) -> Self {
+        Self { tone, text: text.into() }
+    }
+
+    /// A line as any other.
+    #[must_use]
+    pub fn plain(text: impl Into<String>) -> Self {
+        Self::new(Tone::Plain, text)
+    }
+}
+
+/// Lines under a title.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Section {
+    /// The title.
+    pub title: String,
+    /// The lines.
+    pub lines: Vec<Text>,
+    /// The line that must be seen, if the section does not fit.
+    pub at: usize,
+}
+
+impl Section {
+    /// A section that is read from its first line.
+    #[must_use]
+    pub fn new(title: impl Into<String>, lines: Vec<Text>) -> Self {
+        Self { title: title.into(), lines, at: 0 }
+    }
+}
+
+/// What is being typed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Prompt {
+    /// Text that a line of the process screen must hold.
+    Filter(String),
+    /// A tick to go to.
+    Tick(String),
+}
+
+/// The state of the screen.
+pub struct Model {
+    /// The screen.
+    pub screen: Screen,
+    /// The page with the keys is shown over it.
+    pub help: bool,
+    /// The process under the cursor.
+    pub process: ProcessId,
+    /// The pane that has the keys.
+    pub pane: Pane,
+    /// First line of the pane that is shown, counted from where it stands by itself.
+    pub scroll: isize,
+    /// Text that a line of a table or buffer must hold; empty for all lines.
+    pub filter: String,
+    /// What is being typed.
+    pub prompt: Option<Prompt>,
+    /// The tick that is shown.
+    pub place: Place,
+    /// Messages up to this tick have been acknowledged.
+    pub acknowledged: u64,
+    /// The answer to the last key, where it did nothing else.
+    pub answer: Option<String>,
+    /// The picture.
+    pub picture: Option<Picture>,
+    /// The picture before it on the screen.
+    pub last: Option<Picture>,
+}
+
+impl Model {
+    /// The first screen.
+    #[must_use]
+    pub fn new(screen: Screen) -> Self {
+        Self {
+            screen,
+            help: false,
+            process: ProcessId::Task,
+            pane: Pane::default(),
+            scroll: 0,
+            filter: String::new(),
+            prompt: None,
+            place: Place::Last,
+            acknowledged: 0,
+            answer: None,
+            picture: None,
+            last: None,
+        }
+    }
+
+    /// Show a tick of another source: nothing of the one before stays on the screen.
+    pub fn show(&mut self, place: Place, process: Option<ProcessId>) {
+        *self = Self { place, process: process.unwrap_or(self.process), ..Self::new(self.screen) };
+    }
+
+    /// Take the picture that is to be shown from the source.
+    pub fn take(&mut self, source: &dyn Source) {
+        let Some((first, last)) = source.range() else { return };
+        let wanted = match self.place {
+            Place::Last => last,
+            Place::At(tick) => tick.clamp(first, last),
+        };
+        let known = self.picture.as_ref().map(|picture| picture.tick.0);
+        if known == Some(wanted) {
+            return;
+        }
+        let Some(picture) = source.picture(wanted) else { return };
+        if known != Some(picture.tick.0) {
+            self.last = self.picture.replace(picture);
+        }
+    }
+
+    /// The tick that is shown; 0 before there is one.
+    #[must_use]
+    pub fn tick(&self) -> u64 {
+        self.picture.as_ref().map_or(0, |picture| picture.tick.0)
+    }
+
+    /// The picture does not go on with the run.
+    #[must_use]
+    pub fn is_frozen(&self, source: &dyn Source) -> bool {
+        self.place != Place::Last && source.about().state != State::Log
+    }
+}

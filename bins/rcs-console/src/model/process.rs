@@ -1,0 +1,165 @@
+//! A process: the decision table that decided last, the rows that fired before, and what they mean.
+
+use interfaces::ProcessId;
+use levels::ladder::{Ladder, ProcessInfo};
+use rcs_core::{
+    plain::EnumSchema,
+    table::{Row, Table},
+    tick::TICK_S,
+};
+
+use super::{Section, Text, Tone};
+use crate::{
+    picture::Picture,
+    story::{Doing, Story},
+};
+
+/// The table that decided last, with the row that fired marked; a line about what the row asks for, one about what it
+/// does, then the rows. Lines without the text of the filter are left out.
+#[must_use]
+pub fn table(process: ProcessId, picture: &Picture, filter: &str) -> Section {
+    let info = &Ladder::processes()[process.position()];
+    let header = picture.memory.header(process);
+    let Some((table, fired)) = header.decided.and_then(|decided| info.row(decided)) else {
+        let tables: Vec<_> = info.tables.iter().map(|table| table.name).collect();
+        let text = format!("  no row has decided yet; tables: {}", tables.join(", "));
+        return Section::new("no table", vec![Text::new(Tone::Faint, text)]);
+    };
+    let number = header.decided.map_or(0, |decided| decided.table);
+    let step = header.step.unwrap_or_default();
+    let after = if step.is_empty() { String::new() } else { format!(", step after it: {step}") };
+    let mut lines: Vec<Text> = Vec::new();
+    let mut at = 0;
+    for row in table.rows {
+        if row.number == fired.number {
+            at = lines.len();
+            lines.push(Text::new(Tone::Marked, format!("> {:>3}  {row}", row.number)));
+            lines.extend(meaning(table, row).into_iter().map(|text| Text::plain(format!("       {text}"))));
+        } else {
+            lines.push(Text::plain(format!("  {:>3}  {row}", row.number)));
+        }
+    }
+    let filter = filter.to_lowercase();
+    let shown = |line: &Text| line.text.to_lowercase().contains(&filter);
+    let at = lines.iter().take(at).filter(|line| shown(line)).count();
+    lines.retain(shown);
+    let title = format!("table {number}, {}: row {} fired{after}", table.name, fired.number);
+    Section { title, lines, at }
+}
+
+/// What a row means, in the words of the source: each condition, the action, the next step.
+#[must_use]
+pub fn meaning(table: &Table, row: &Row) -> Vec<String> {
+    let mut lines = Vec::new();
+    let documented = |schema: &EnumSchema, name: &str| {
+        schema.variants.iter().find(|variant| variant.name == name).map_or("", |variant| variant.doc)
+    };
+    for condition in row.when {
+        let Some(variable) = table.variables.iter().find(|variable| variable.name == condition.variable)
+        else {
+            continue;
+        };
+        for value in condition.values {
+            lines.push(sentence("because", condition.variable, value, documented(variable.values, value)));
+        }
+    }
+    if let Some(action) = table.actions.iter().find(|action| action.name == row.action) {
+        lines.push(sentence("does", action.name, "", action.doc));
+        if let (Some(schema), Some(argument)) = (action.argument, row.argument) {
+            lines.push(sentence("with", argument, "", documented(schema, argument)));
+        }
+    }
+    if let (Some(schema), Some(next)) = (table.steps, row.next) {
+        lines.push(sentence("then", next, "", documented(schema, next)));
+    }
+    lines
+}
+
+fn sentence(word: &str, name: &str, value: &str, doc: &str) -> String {
+    let what = format!("{word} {name} {value}");
+    match doc.trim() {
+        "" => what.trim_end().to_owned(),
+        doc => format!("{}: {doc}", what.trim_end()),
+    }
+}
+
+/// The rows that fired before, the newest first: since when, for how long, which.
+#[must_use]
+pub fn rows(process: ProcessId, picture: &Picture, story: &Story) -> Section {
+    let info = &Ladder::processes()[process.position()];
+    let rows = story.rows(process, picture.tick.0);
+    let ends = rows.iter().skip(1).map(|row| row.tick).chain([picture.tick.0 + 1]);
+    let mut lines: Vec<Text> = rows.iter().zip(ends).map(|(row, end)| row_line(info, row, end)).collect();
+    lines.reverse();
+    Section::new("rows that fired, newest first: tick, for how long, table and row", lines)
+}
+
+fn row_line(info: &ProcessInfo, doing: &Doing, end: u64) -> Text {
+    let lasted = end.saturating_sub(doing.tick) as f64 * TICK_S;
+    let row = doing.decided.and_then(|decided| info.row(decided));
+    let text = row.map_or_else(
+        || "no row yet".to_owned(),
+        |(table, row)| {
+            let next = row.next.map_or_else(String::new, |next| format!(" -> {next}"));
+            format!("{} {}: {}{next}", table.name, row.number, row.call())
+        },
+    );
+    Text::plain(format!("  {:>7} {lasted:>8.2} s  {text}", doing.tick))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::{CommonMemory, Decided, ExternalInputs};
+    use rcs_core::tick::Tick;
+
+    fn picture(tick: u64, row: u8) -> Picture {
+        let mut memory = CommonMemory::default();
+        memory.grip.header.decided = Some(Decided { table: 1, row });
+        Picture { tick: Tick(tick), external: ExternalInputs::default(), memory, timing: None }
+    }
+
+    #[test]
+    fn the_row_that_fired_is_marked_and_explained() {
+        let section = table(ProcessId::Grip, &picture(1, 2), "");
+        let marked: Vec<_> = section.lines.iter().filter(|line| line.tone == Tone::Marked).collect();
+        assert_eq!(marked.len(), 1);
+        assert!(marked[0].text.starts_with(">   2  "), "{}", marked[0].text);
+        assert_eq!(section.lines.get(section.at), Some(marked[0]));
+        let action = section.lines.get(section.at + 1..).unwrap_or_default();
+        assert!(action.iter().any(|line| line.text.trim_start().starts_with("does ")), "{section:?}");
+        let rows = Ladder::processes()[ProcessId::Grip.position()].tables[0].rows.len();
+        assert!(section.lines.len() > rows);
+    }
+
+    #[test]
+    fn a_filter_leaves_lines_out() {
+        let all = table(ProcessId::Grip, &picture(1, 2), "").lines;
+        let some = table(ProcessId::Grip, &picture(1, 2), "DOES").lines;
+        assert!(!some.is_empty() && some.len() < all.len());
+    }
+
+    #[test]
+    fn a_process_without_a_row_names_its_tables() {
+        let mut picture = picture(1, 1);
+        picture.memory.grip.header.decided = None;
+        let section = table(ProcessId::Grip, &picture, "");
+        assert!(section.lines[0].text.contains("POSITION"), "{section:?}");
+    }
+
+    #[test]
+    fn rows_have_their_times() {
+        let mut story = Story::new(usize::MAX);
+        let pictures = [picture(1, 1), picture(2, 2), picture(3, 2), picture(4, 3)];
+        story.note(&pictures[0], &pictures[0]);
+        for pair in pictures.windows(2) {
+            story.note(&pair[0], &pair[1]);
+        }
+        let lines = rows(ProcessId::Grip, &pictures[3], &story).lines;
+        let front =
+            |at: usize| lines.get(at).map(|line: &Text| line.text.chars().take(21).collect::<String>());
+        assert_eq!(lines.len(), 3);
+        assert_eq!(front(0).as_deref(), Some("        4     0.04 s "));
+        assert_eq!(front(1).as_deref(), Some("        2     0.08 s "));
+    }
+}

@@ -1,0 +1,37 @@
+//! One screen as text: for scripts, tests and bug reports.
+
+use crate::{
+    cli::Cli,
+    error::ConsoleError,
+    model::{Model, Place, Screen},
+    source::{Live, Recorded, Source},
+    view::{LEAST, Look, Scene, compose},
+};
+
+/// Print a screen of the run or log that the command line names.
+///
+/// # Errors
+/// [`ConsoleError`] if it cannot be read, or if the tick is not there.
+pub fn print(cli: &Cli, screen: Screen) -> Result<(), ConsoleError> {
+    let (source, name): (Box<dyn Source>, String) = match (&cli.run, &cli.log) {
+        (Some(run), _) => (Box::new(Live::open(run, None)?), run.to_string()),
+        (None, Some(log)) => (Box::new(Recorded::open(log)?), String::new()),
+        (None, None) => return Err(ConsoleError::NothingNamed),
+    };
+    let (first, last) = source.range().ok_or(ConsoleError::NoPicture(name))?;
+    if let Some(tick) = cli.tick.filter(|tick| !(first..=last).contains(tick)) {
+        return Err(ConsoleError::NoTick { tick, first, last });
+    }
+    let mut model = Model::new(screen);
+    model.place = cli.tick.map_or(Place::Last, Place::At);
+    model.take(source.as_ref());
+    let text = screen_text(&model, source.as_ref(), cli.look());
+    os_io::console::answer(&text).map_err(ConsoleError::Output)
+}
+
+/// The screen of a model as lines of text, without colour, in the least size of a terminal.
+#[must_use]
+pub fn screen_text(model: &Model, source: &dyn Source, look: Look) -> String {
+    let (lines, _) = compose(&Scene::Source(model, source), look, LEAST.0.into(), LEAST.1.into());
+    lines.iter().map(|line| format!("{}\n", line.to_string().trim_end())).collect()
+}

@@ -1,0 +1,129 @@
+//! Everything that is shown of one tick.
+
+use executive::failure;
+use interfaces::{CommonMemory, ExternalInputs, Fault, ProcessId};
+use rcs_core::tick::{TICK_S, Tick};
+
+/// One tick: what came in, what the processes wrote, and how punctual it was. All of it belongs to the same tick.
+#[derive(Clone)]
+pub struct Picture {
+    /// The tick.
+    pub tick: Tick,
+    /// What the processes read from outside.
+    pub external: ExternalInputs,
+    /// What they wrote.
+    pub memory: CommonMemory,
+    /// How punctual the tick was; none in a log of a run in fast clock.
+    pub timing: Option<Timing>,
+}
+
+/// How punctual a tick was.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Timing {
+    /// Time that the controller took, nanoseconds.
+    pub controller_ns: u64,
+    /// Slots of the 40 ms grid that were skipped since the start of the run.
+    pub skipped: u64,
+    /// Heap allocations of the controller since the start; none where they are not known.
+    pub allocations: Option<u64>,
+}
+
+impl Picture {
+    /// Seconds since the start of the run.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.tick.0 as f64 * TICK_S
+    }
+
+    /// The command that a process has, in the manual's words; empty for none.
+    #[must_use]
+    pub fn command(&self, process: ProcessId) -> String {
+        failure::command(process, &self.external.hws, &self.memory)
+    }
+
+    /// Number of that command.
+    #[must_use]
+    pub fn command_number(&self, process: ProcessId) -> u32 {
+        self.memory.command_number(process).unwrap_or(self.external.hws.number)
+    }
+
+    /// Why a process failed; none if it did not.
+    #[must_use]
+    pub fn fault(&self, process: ProcessId) -> Option<Fault> {
+        Some(self.memory.said(process).fault).filter(|fault| !fault.is_none())
+    }
+
+    /// What keeps a process from deciding in this tick; none if it was stepped.
+    #[must_use]
+    pub fn absence(&self, process: ProcessId) -> Option<Absence> {
+        let header = self.memory.header(process);
+        let elsewhere = is_of_pedestal(process) && self.external.pedestal.elsewhere;
+        match (header.stamp == self.tick, header.republished) {
+            (false, _) => Some(Absence::Lost),
+            (true, true) if is_gripper(process) => Some(Absence::Dormant),
+            (true, true) => Some(Absence::Held),
+            (true, false) => elsewhere.then_some(Absence::Elsewhere),
+        }
+    }
+}
+
+/// What keeps a process from deciding in a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Absence {
+    /// Its gripper is not on the robot (II.2.3).
+    Dormant,
+    /// Its switch on the joystick box is on, or a recorded pose is looked at (III.3.3).
+    Held,
+    /// Nothing has come from it in this tick.
+    Lost,
+    /// It runs in another system.
+    Elsewhere,
+}
+
+impl Absence {
+    /// The word on the screen.
+    #[must_use]
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Dormant => "dormant",
+            Self::Held => "held",
+            Self::Lost => "lost",
+            Self::Elsewhere => "elsewhere",
+        }
+    }
+}
+
+const fn is_gripper(process: ProcessId) -> bool {
+    matches!(process, ProcessId::Grip | ProcessId::VGrip | ProcessId::ToolGrip)
+}
+
+const fn is_of_pedestal(process: ProcessId) -> bool {
+    matches!(process, ProcessId::Pedestal | ProcessId::Hand | ProcessId::RotaryTable)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_process_is_absent_for_one_reason() {
+        let mut picture = Picture {
+            tick: Tick(9),
+            external: ExternalInputs::default(),
+            memory: CommonMemory::default(),
+            timing: None,
+        };
+        for process in ProcessId::ALL {
+            picture.memory.header_mut(*process).stamp = Tick(9);
+        }
+        picture.memory.header_mut(ProcessId::VGrip).republished = true;
+        picture.memory.header_mut(ProcessId::Prim).republished = true;
+        picture.memory.header_mut(ProcessId::Task).stamp = Tick(8);
+        picture.external.pedestal.elsewhere = true;
+        let absences: Vec<_> =
+            [ProcessId::Emove, ProcessId::VGrip, ProcessId::Prim, ProcessId::Task, ProcessId::Hand]
+                .map(|process| picture.absence(process).map(Absence::text))
+                .into();
+        assert_eq!(absences, [None, Some("dormant"), Some("held"), Some("lost"), Some("elsewhere")]);
+    }
+}

@@ -1,0 +1,131 @@
+//! A running run as a source: its buffers in shared memory, and the last pictures of them.
+
+use std::{
+    collections::VecDeque,
+    time::{Duration, Instant},
+};
+
+use executive::memory::{
+    Attached, OnStuck, ReadError, RunName, SET_UP_LIMIT, SharedMemoryError, within_limit,
+};
+
+use super::{About, Parts, Source, State};
+use crate::{
+    picture::{Picture, Timing},
+    story::Story,
+};
+
+/// Pictures that are kept: ten seconds, if none is missed.
+const KEPT: usize = 250;
+/// Entries of the story that are kept.
+const STORY: usize = 4096;
+/// Attempts to read a picture of one tick. In a fast run the next tick may begin in the middle of one.
+const ATTEMPTS: usize = 10;
+/// A run without a new tick for this long is silent.
+const SILENCE: Duration = Duration::from_secs(1);
+
+/// A running run.
+pub struct Live {
+    run: Attached,
+    pictures: VecDeque<Picture>,
+    story: Story,
+    state: State,
+    news: Instant,
+}
+
+impl Live {
+    /// Attach to a run.
+    ///
+    /// # Errors
+    /// [`SharedMemoryError`] if there is no such run, if it was built from other sources, or if it cannot be read.
+    pub fn open(name: &RunName, on_stuck: Option<OnStuck>) -> Result<Self, SharedMemoryError> {
+        let run = within_limit(SET_UP_LIMIT, on_stuck, || Attached::open(name))?;
+        let mut live = Self {
+            run,
+            pictures: VecDeque::new(),
+            story: Story::new(STORY),
+            state: State::Runs,
+            news: Instant::now(),
+        };
+        live.refresh();
+        Ok(live)
+    }
+
+    /// A picture of one tick, and whether it is the last one of the run; none if the next tick began at every attempt,
+    /// or none has begun.
+    fn read(&self) -> Result<Option<(Picture, bool)>, ReadError> {
+        for _ in 0..ATTEMPTS {
+            let pulse = self.run.pulse()?;
+            let external = self.run.external()?;
+            let memory = self.run.memory()?;
+            let after = self.run.pulse()?;
+            if pulse.tick == after.tick {
+                let timing = Timing {
+                    controller_ns: pulse.controller_ns,
+                    skipped: pulse.skipped,
+                    allocations: Some(pulse.allocations),
+                };
+                let picture = Picture { tick: pulse.tick, external, memory, timing: Some(timing) };
+                return Ok(Some((picture, after.over)));
+            }
+        }
+        Ok(None)
+    }
+
+    fn take(&mut self, picture: Picture) {
+        let before = self.pictures.back().unwrap_or(&picture);
+        self.story.note(before, &picture);
+        self.story.remark(before, &picture);
+        if self.pictures.len() == KEPT {
+            self.pictures.pop_front();
+        }
+        self.pictures.push_back(picture);
+        self.news = Instant::now();
+    }
+}
+
+impl Source for Live {
+    fn about(&self) -> About<'_> {
+        About { name: self.run.name().as_str(), state: self.state, result: None, damage: None }
+    }
+
+    fn refresh(&mut self) {
+        if self.state == State::Over {
+            return;
+        }
+        let last = self.pictures.back().map_or(0, |picture| picture.tick.0);
+        let silent = self.news.elapsed();
+        self.state = match self.read() {
+            Ok(Some((picture, over))) => {
+                if picture.tick.0 > last {
+                    self.take(picture);
+                }
+                match over {
+                    true => State::Over,
+                    false if silent > SILENCE && self.news.elapsed() > SILENCE => {
+                        State::Silent(silent.as_secs())
+                    }
+                    false => State::Runs,
+                }
+            }
+            Ok(None) | Err(_) => State::Torn,
+        };
+    }
+
+    fn range(&self) -> Option<(u64, u64)> {
+        Some((self.pictures.front()?.tick.0, self.pictures.back()?.tick.0))
+    }
+
+    fn picture(&self, tick: u64) -> Option<Picture> {
+        let end = self.pictures.partition_point(|picture| picture.tick.0 <= tick);
+        self.pictures.get(end.checked_sub(1)?).cloned()
+    }
+
+    fn story(&self) -> &Story {
+        &self.story
+    }
+
+    fn parts(&self, _: u64) -> Parts {
+        Parts::NotPublished
+    }
+}

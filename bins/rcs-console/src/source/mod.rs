@@ -1,0 +1,68 @@
+//! Where pictures come from: a run that goes on, or a log.
+
+mod deltas;
+mod live;
+mod recorded;
+
+pub use live::Live;
+pub use recorded::Recorded;
+
+use crate::{picture::Picture, story::Story};
+
+/// A source of pictures. None of them ever writes to what it reads.
+pub trait Source {
+    /// What is looked at.
+    fn about(&self) -> About<'_>;
+
+    /// Take in what is new.
+    fn refresh(&mut self);
+
+    /// First and last tick that can be shown; none before there is one.
+    fn range(&self) -> Option<(u64, u64)>;
+
+    /// The last picture that is not later than a tick.
+    fn picture(&self, tick: u64) -> Option<Picture>;
+
+    /// What happened from tick to tick.
+    fn story(&self) -> &Story;
+
+    /// The parts in the cell as they were in a tick.
+    fn parts(&self, tick: u64) -> Parts;
+}
+
+/// What is looked at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct About<'a> {
+    /// Name of the run, or of the log file.
+    pub name: &'a str,
+    /// It is a log, or a run in some state.
+    pub state: State,
+    /// How the run ended, one line; none while it is not known.
+    pub result: Option<&'a str>,
+    /// What of a log cannot be read, in words.
+    pub damage: Option<String>,
+}
+
+/// A log, or what is known of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum State {
+    /// A log.
+    Log,
+    /// The run goes on.
+    Runs,
+    /// The run has ended, and has said so.
+    Over,
+    /// No new tick has come for so many seconds.
+    Silent(u64),
+    /// Its buffers were being written, or could not be read, at the last attempts.
+    Torn,
+}
+
+/// Where the parts are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Parts {
+    /// The source does not tell.
+    NotPublished,
+    /// Name and position in inches of each part that has moved or been delivered.
+    At(Vec<(String, [f64; 3])>),
+}

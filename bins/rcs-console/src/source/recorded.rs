@@ -1,0 +1,122 @@
+//! A log as a source: every tick, back and forth.
+
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+use record::{Log, ReadError};
+
+use super::{About, Parts, Source, State, deltas::Deltas};
+use crate::{error::ConsoleError, picture::Picture, story::Story};
+
+/// Metres to inches.
+const INCHES: f64 = 1.0 / 0.0254;
+/// Beginning of the names of the links that are parts.
+const PART: &str = "part_";
+
+/// Places of a link from ticks on, in inches.
+type Places = Vec<(u64, [f64; 3])>;
+
+/// A log.
+pub struct Recorded {
+    path: PathBuf,
+    name: String,
+    deltas: Deltas,
+    story: Story,
+    parts: BTreeMap<String, Places>,
+    result: Option<String>,
+    damage: Option<String>,
+}
+
+impl Recorded {
+    /// Read a log whole.
+    ///
+    /// # Errors
+    /// [`ConsoleError::Log`] if it is none, or was written by another program; [`ConsoleError::Empty`] if it has no
+    /// tick. What is damaged is left out, and told in [`About::damage`].
+    pub fn open(path: &Path) -> Result<Self, ConsoleError> {
+        let failed = |source: ReadError| ConsoleError::Log { path: path.to_owned(), source };
+        let log = Log::open(path).map_err(failed)?;
+        log.check_layout().map_err(failed)?;
+        let (mut deltas, mut story) = (Deltas::new(), Story::new(usize::MAX));
+        let mut damage = log.damage();
+        let mut before: Option<Picture> = None;
+        for logged in log.ticks() {
+            let damaged = |tick| format!("tick {tick} is damaged; what follows is missing");
+            let logged = match logged {
+                Ok(logged) => logged,
+                Err(error) => {
+                    damage.get_or_insert(error.to_string());
+                    break;
+                }
+            };
+            let tick = logged.tick;
+            let Ok(picture) = deltas.push(logged) else {
+                damage.get_or_insert(damaged(tick));
+                break;
+            };
+            story.note(before.as_ref().unwrap_or(&picture), &picture);
+            before = Some(picture);
+        }
+        story.tell(log.lines());
+        if deltas.range().is_none() {
+            return Err(ConsoleError::Empty(path.to_owned()));
+        }
+        let result = log.end.as_ref().and_then(|end| end.get("result")).cloned();
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        Ok(Self { path: path.to_owned(), name, deltas, story, parts: parts(&log), result, damage })
+    }
+
+    /// The file.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// Where the parts were, tick by tick.
+fn parts(log: &Log) -> BTreeMap<String, Places> {
+    let mut parts: BTreeMap<String, Places> = BTreeMap::new();
+    for (tick, moved) in log.places() {
+        for (link, place) in moved.into_iter().filter(|(link, _)| link.name.starts_with(PART)) {
+            parts.entry(link.name).or_default().push((tick.0, place.position.map(|metres| metres * INCHES)));
+        }
+    }
+    parts
+}
+
+impl Source for Recorded {
+    fn about(&self) -> About<'_> {
+        About {
+            name: &self.name,
+            state: State::Log,
+            result: self.result.as_deref(),
+            damage: self.damage.clone(),
+        }
+    }
+
+    fn refresh(&mut self) {}
+
+    fn range(&self) -> Option<(u64, u64)> {
+        self.deltas.range()
+    }
+
+    fn picture(&self, tick: u64) -> Option<Picture> {
+        self.deltas.picture(tick)
+    }
+
+    fn story(&self) -> &Story {
+        &self.story
+    }
+
+    fn parts(&self, tick: u64) -> Parts {
+        let at = |(name, places): (&String, &Places)| {
+            let end = places.partition_point(|(from, _)| *from <= tick);
+            let (_, place) = places.get(end.checked_sub(1)?)?;
+            // What has not been delivered yet stands at the origin of the world.
+            (*place != [0.0; 3]).then(|| (name.clone(), *place))
+        };
+        Parts::At(self.parts.iter().filter_map(at).collect())
+    }
+}

@@ -1,0 +1,383 @@
+//! What happened from tick to tick, kept by change: rows, commands, reports, failures, re-starts, messages.
+
+use executive::{
+    failure::{Failure, Watch},
+    histogram::Histogram,
+};
+use interfaces::{Decided, Fault, ProcessId};
+use levels::ladder::{Ladder, PROCESS_COUNT};
+use rcs_core::name::Name16;
+use record::{
+    Level,
+    channels::{HeaderPlace, headers},
+    reader::LogLine,
+    remarks,
+};
+
+use crate::picture::Picture;
+
+/// What a process does, from the tick on in which it began to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Doing {
+    /// The tick.
+    pub tick: u64,
+    /// Number of its command; 0 for T3 Interface, which gets a new one in every tick.
+    pub number: u32,
+    /// The row that decided last.
+    pub decided: Option<Decided>,
+    /// Step of the command after that row.
+    pub step: Option<Name16>,
+    /// `executing`, `done`, `not-detected` ...
+    pub report: &'static str,
+    /// Why it failed.
+    pub fault: Fault,
+}
+
+/// A failure that has arrived at Task.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Trouble {
+    /// Tick in which Task reported it first.
+    pub tick: u64,
+    /// The lowest process that reported it, when, and by which row.
+    pub failure: Failure,
+}
+
+/// A re-start of the link to the robot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Restart {
+    /// The tick.
+    pub tick: u64,
+    /// Why.
+    pub reason: String,
+}
+
+/// The first thing that went wrong.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Cause {
+    /// The tick.
+    pub tick: u64,
+    /// The process that knows why; none if it happened in the cell.
+    pub process: Option<ProcessId>,
+    /// What, in one sentence.
+    pub text: String,
+}
+
+/// The story of a run.
+pub struct Story {
+    doings: [Vec<Doing>; PROCESS_COUNT],
+    troubles: Vec<Trouble>,
+    restarts: Vec<Restart>,
+    lines: Vec<LogLine>,
+    times: Histogram,
+    watch: Box<Watch>,
+    headers: Vec<HeaderPlace>,
+    limit: usize,
+}
+
+impl Story {
+    /// A story that keeps at least the last `limit` entries of each kind.
+    #[must_use]
+    pub fn new(limit: usize) -> Self {
+        Self {
+            doings: Default::default(),
+            troubles: Vec::new(),
+            restarts: Vec::new(),
+            lines: Vec::new(),
+            times: Histogram::default(),
+            watch: Box::default(),
+            headers: headers(),
+            limit,
+        }
+    }
+
+    /// Take a tick in. `before` is the picture of the tick before.
+    pub fn note(&mut self, before: &Picture, now: &Picture) {
+        for process in ProcessId::ALL.iter().copied() {
+            let doing = doing(process, now);
+            let known = &mut self.doings[process.position()];
+            if known.last().is_none_or(|last| Doing { tick: last.tick, ..doing } != *last) {
+                keep(known, doing, self.limit);
+            }
+        }
+        self.watch.observe(now.tick, &now.external, &before.memory, &now.memory);
+        let failed = |picture: &Picture| picture.fault(ProcessId::Task);
+        if failed(now).is_some()
+            && failed(now) != failed(before)
+            && let Some(failure) = self.watch.failure(Ladder::processes())
+        {
+            keep(&mut self.troubles, Trouble { tick: now.tick.0, failure }, self.limit);
+        }
+        let counters = |picture: &Picture| picture.memory.t3i.status.counters.restarts;
+        if counters(now) > counters(before) {
+            keep(&mut self.restarts, Restart { tick: now.tick.0, reason: restart(before, now) }, self.limit);
+        }
+        if let Some(timing) = now.timing {
+            self.times.add(timing.controller_ns);
+        }
+    }
+
+    /// Take in what is said of a tick by comparing it with the one before: for a source that has no lines of its own.
+    pub fn remark(&mut self, before: &Picture, now: &Picture) {
+        let said = remarks::remarks(&self.headers, &now.external.hws, &before.memory, &now.memory);
+        for remark in said {
+            let line =
+                LogLine { tick: now.tick, level: remark.level, source: remark.source, text: remark.text };
+            keep(&mut self.lines, line, self.limit);
+        }
+    }
+
+    /// Take in the lines of a log.
+    pub fn tell(&mut self, lines: impl Iterator<Item = LogLine>) {
+        self.lines.extend(lines);
+        self.lines.sort_by_key(|line| line.tick);
+    }
+
+    /// What a process did in a tick, and since when.
+    #[must_use]
+    pub fn doing(&self, process: ProcessId, tick: u64) -> Option<&Doing> {
+        self.doings(process, tick).last()
+    }
+
+    /// What a process did up to a tick, oldest first.
+    #[must_use]
+    pub fn doings(&self, process: ProcessId, tick: u64) -> &[Doing] {
+        until(&self.doings[process.position()], tick, |doing| doing.tick)
+    }
+
+    /// The rows that decided in a process up to a tick, oldest first: what it did without its reports.
+    #[must_use]
+    pub fn rows(&self, process: ProcessId, tick: u64) -> Vec<Doing> {
+        let mut rows: Vec<Doing> = Vec::new();
+        for doing in self.doings(process, tick) {
+            let key = |doing: &Doing| (doing.decided, doing.step, doing.number);
+            if rows.last().is_none_or(|last| key(last) != key(doing)) {
+                rows.push(*doing);
+            }
+        }
+        rows
+    }
+
+    /// The next or the previous tick in which something changed in one of the processes.
+    #[must_use]
+    pub fn change(&self, processes: &[ProcessId], tick: u64, forward: bool) -> Option<u64> {
+        let ticks = |process: &ProcessId| self.doings[process.position()].iter().map(|doing| doing.tick);
+        nearest(processes.iter().flat_map(ticks), tick, forward)
+    }
+
+    /// The next or the previous tick in which trouble began: a process failed, or a warning came. The lowest process
+    /// that failed then, if one did.
+    #[must_use]
+    pub fn trouble(&self, tick: u64, forward: bool) -> Option<(u64, Option<ProcessId>)> {
+        let failed = ProcessId::ALL.iter().flat_map(|process| {
+            self.doings[process.position()]
+                .windows(2)
+                .filter_map(|pair| <&[Doing; 2]>::try_from(pair).ok())
+                .filter(|[was, is]| !is.fault.is_none() && was.fault != is.fault)
+                .map(|[_, is]| (is.tick, *process))
+        });
+        let failed: Vec<_> = failed.collect();
+        let warned = self.lines.iter().filter(|line| line.level >= Level::Warning).map(|line| line.tick.0);
+        let found = nearest(failed.iter().map(|(tick, _)| *tick).chain(warned), tick, forward)?;
+        let lowest = ProcessId::upward()
+            .find(|process| failed.iter().any(|(tick, of)| *tick == found && of == process));
+        Some((found, lowest))
+    }
+
+    /// The trouble of a picture: what Task reports, or what will arrive at Task in the next ticks of a log.
+    #[must_use]
+    pub fn present_trouble(&self, picture: &Picture) -> Option<&Trouble> {
+        let tick = picture.tick.0;
+        let is_told = picture.fault(ProcessId::Task).is_some();
+        let begun = until(&self.troubles, tick, |trouble| trouble.failure.tick.0);
+        begun.last().filter(|trouble| is_told || tick < trouble.tick)
+    }
+
+    /// The first cause of the last failure: what the cell or the robot controller said with an error before, else what
+    /// the lowest process says.
+    #[must_use]
+    pub fn first_cause(&self) -> Option<Cause> {
+        let failed = self.troubles.last().map(|Trouble { failure, .. }| Cause {
+            tick: failure.tick.0,
+            process: process_named(&failure.process),
+            text: failure.text.clone(),
+        });
+        // The cell tells with the next tick what happened in one.
+        let grave = self.lines.iter().find(|line| line.source == "cell" && line.level == Level::Error);
+        let world = grave.map(|line| Cause {
+            tick: line.tick.0.saturating_sub(1),
+            process: None,
+            text: line.text.clone(),
+        });
+        match (world, failed) {
+            (Some(world), Some(failed)) if world.tick <= failed.tick => Some(world),
+            (world, failed) => failed.or(world),
+        }
+    }
+
+    /// Re-starts of the link up to a tick, oldest first.
+    #[must_use]
+    pub fn restarts(&self, tick: u64) -> &[Restart] {
+        until(&self.restarts, tick, |restart| restart.tick)
+    }
+
+    /// Messages up to a tick, oldest first.
+    #[must_use]
+    pub fn lines(&self, tick: u64) -> &[LogLine] {
+        until(&self.lines, tick, |line| line.tick.0)
+    }
+
+    /// Times of the controller in all ticks that were seen.
+    #[must_use]
+    pub const fn times(&self) -> &Histogram {
+        &self.times
+    }
+}
+
+/// A process by the manual's name.
+#[must_use]
+pub fn process_named(name: &str) -> Option<ProcessId> {
+    let named = Ladder::processes().iter().zip(ProcessId::ALL).find(|(process, _)| process.name == name);
+    named.map(|(_, process)| *process)
+}
+
+fn doing(process: ProcessId, picture: &Picture) -> Doing {
+    let (header, said) = (picture.memory.header(process), picture.memory.said(process));
+    let number = if process == ProcessId::T3i { 0 } else { picture.command_number(process) };
+    Doing {
+        tick: picture.tick.0,
+        number,
+        decided: header.decided,
+        step: header.step,
+        report: said.report,
+        fault: said.fault,
+    }
+}
+
+/// Why the link was started again.
+fn restart(before: &Picture, now: &Picture) -> String {
+    if remarks::is_restart_ordered(&before.memory) {
+        return format!("Prim ordered it, as {} asks: no fault", before.command(ProcessId::Prim));
+    }
+    let fault = [now, before].into_iter().find_map(|picture| picture.fault(ProcessId::T3i));
+    match fault {
+        Some(fault) => fault.text().to_owned(),
+        None => "T3 Interface began the link anew".to_owned(),
+    }
+}
+
+/// Add an entry; the oldest go in bulk when there are twice as many as are to be kept.
+fn keep<T>(entries: &mut Vec<T>, entry: T, limit: usize) {
+    if entries.len() >= limit.saturating_mul(2) {
+        entries.drain(..entries.len() - limit);
+    }
+    entries.push(entry);
+}
+
+/// The entries that are not later than a tick.
+fn until<T>(entries: &[T], tick: u64, tick_of: impl Fn(&T) -> u64) -> &[T] {
+    &entries[..entries.partition_point(|entry| tick_of(entry) <= tick)]
+}
+
+/// The nearest tick after or before one.
+fn nearest(ticks: impl Iterator<Item = u64>, tick: u64, forward: bool) -> Option<u64> {
+    match forward {
+        true => ticks.filter(|other| *other > tick).min(),
+        false => ticks.filter(|other| *other < tick).max(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use interfaces::{CommonMemory, ExternalInputs, Reason, t3i::LinkFault};
+    use rcs_core::tick::Tick;
+
+    fn story(changes: &[fn(&mut CommonMemory)]) -> (Story, Picture) {
+        let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
+        let mut now = Picture { tick: Tick(0), external, memory, timing: None };
+        let mut story = Story::new(usize::MAX);
+        for change in changes {
+            let before = now.clone();
+            now.tick = before.tick.next();
+            change(&mut now.memory);
+            story.note(&before, &now);
+            story.remark(&before, &now);
+        }
+        (story, now)
+    }
+
+    fn failing() -> (Story, Picture) {
+        story(&[
+            |_| {},
+            |memory| memory.emove.header.decided = Some(Decided { table: 1, row: 1 }),
+            |memory| memory.emove.status.reason = Reason::NothingSeen,
+            |memory| memory.subtask.status.reason = Reason::NothingSeen,
+            |memory| memory.task.status.reason = Reason::NothingSeen,
+            |_| {},
+        ])
+    }
+
+    #[test]
+    fn changes_are_kept_and_nothing_else() {
+        let (story, _) = failing();
+        let ticks: Vec<_> = story.doings(ProcessId::Emove, 99).iter().map(|doing| doing.tick).collect();
+        assert_eq!(ticks, [1, 2, 3]);
+        assert_eq!(story.rows(ProcessId::Emove, 99).len(), 2, "a report is no row");
+        assert_eq!(story.doing(ProcessId::Emove, 2).map(|doing| doing.tick), Some(2));
+        assert_eq!(story.change(&[ProcessId::Emove], 1, true), Some(2));
+        assert_eq!(story.change(&[ProcessId::Emove, ProcessId::Task], 6, false), Some(5));
+        assert_eq!(story.change(&[ProcessId::Emove], 3, true), None);
+    }
+
+    #[test]
+    fn trouble_has_its_cause_below() {
+        let (story, picture) = failing();
+        let trouble = story.present_trouble(&picture).expect("Task reports a failure");
+        assert_eq!((trouble.tick, trouble.failure.tick), (5, Tick(3)));
+        let at = |tick| {
+            let (external, memory) = (ExternalInputs::default(), CommonMemory::default());
+            story.present_trouble(&Picture { tick: Tick(tick), external, memory, timing: None })
+        };
+        assert_eq!(at(2), None);
+        assert_eq!(at(3), Some(trouble), "it is on its way to Task");
+        let cause = story.first_cause().expect("there is a failure");
+        assert_eq!((cause.tick, cause.process), (3, Some(ProcessId::Emove)));
+        assert_eq!(story.trouble(0, true), Some((3, Some(ProcessId::Emove))));
+        assert_eq!(story.trouble(99, false), Some((5, Some(ProcessId::Task))));
+    }
+
+    #[test]
+    fn what_went_wrong_in_the_cell_before_a_failure_is_its_cause() {
+        let (mut story, _) = failing();
+        let line = |tick, source: &str| LogLine {
+            tick: Tick(tick),
+            level: Level::Error,
+            source: source.to_owned(),
+            text: "contact".to_owned(),
+        };
+        story.tell([line(9, "cell")].into_iter());
+        assert_eq!(story.first_cause().map(|cause| cause.tick), Some(3), "it came later");
+        story.tell([line(3, "cell"), line(1, "Task")].into_iter());
+        let cause = story.first_cause().expect("there is a failure");
+        assert_eq!((cause.tick, cause.process, cause.text.as_str()), (2, None, "contact"));
+    }
+
+    #[test]
+    fn a_restart_has_its_reason() {
+        let (story, _) = story(&[
+            |memory| memory.t3i.status.fault = LinkFault::Checksum,
+            |memory| memory.t3i.status.counters.restarts = 1,
+        ]);
+        let restart = story.restarts(9).first().expect("the link was started again");
+        assert_eq!((restart.tick, restart.reason.as_str()), (2, "checksum error"));
+        assert!(story.restarts(1).is_empty());
+    }
+
+    #[test]
+    fn a_long_story_keeps_its_end() {
+        let mut entries = Vec::new();
+        (0..100).for_each(|entry| keep(&mut entries, entry, 10));
+        assert!((10..=20).contains(&entries.len()), "{}", entries.len());
+        assert_eq!(entries.last(), Some(&99));
+    }
+}

@@ -1,0 +1,299 @@
+//! The terminal: keys in, frames out, and everything as it was before at the end, whatever the end is.
+//!
+//! The terminal is restored by quitting, by an error, by a panic (the hook of `ratatui`) and by the signals that ask a
+//! program to end.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
+};
+
+use executive::memory::{self, RunName};
+use ratatui::{
+    DefaultTerminal,
+    crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers},
+};
+use signal_hook::{
+    consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM},
+    flag,
+};
+
+use crate::{
+    cli::Cli,
+    error::ConsoleError,
+    model::{Effect, Key, Model, Place, Screen},
+    source::{Live, Recorded, Source, State},
+    view::{Look, Scene, Waiting, draw},
+};
+
+/// A run is looked at once a tick.
+const LOOK_AT: Duration = Duration::from_millis(40);
+/// The screen is drawn every other tick (VI.6).
+const DRAW: Duration = Duration::from_millis(80);
+/// Runs are looked for this often.
+const SEARCH: Duration = Duration::from_secs(1);
+
+/// Show what the command line names until it is quit.
+///
+/// # Errors
+/// [`ConsoleError`] if it cannot be read, or if the terminal cannot be used.
+pub fn show(cli: &Cli) -> Result<(), ConsoleError> {
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGTERM, SIGHUP, SIGINT, SIGQUIT] {
+        flag::register(signal, Arc::clone(&stop)).map_err(ConsoleError::Signals)?;
+    }
+    // What cannot be read is told before the terminal changes.
+    let scene = Console::open(cli)?;
+    let terminal = ratatui::try_init().map_err(ConsoleError::Terminal)?;
+    let ended =
+        Session { console: scene, look: cli.look(), stop, drawn: None, log: cli.log.clone() }.run(terminal);
+    ratatui::try_restore().map_err(ConsoleError::Terminal)?;
+    ended
+}
+
+/// What is shown.
+enum Console {
+    /// A run or a log.
+    Source(Box<Model>, Box<dyn Source>),
+    /// The choice of a run.
+    Waiting(Waiting, Instant),
+}
+
+impl Console {
+    fn open(cli: &Cli) -> Result<Self, ConsoleError> {
+        let mut model = Model::new(Screen::Ladder);
+        let source: Box<dyn Source> = match (&cli.run, &cli.log) {
+            (Some(run), _) => Box::new(Live::open(run, Some(stuck))?),
+            (None, Some(log)) => {
+                let log = Recorded::open(log)?;
+                model.place = cli.tick.map_or(Place::Last, Place::At);
+                Box::new(log)
+            }
+            (None, None) => return Ok(Self::search()),
+        };
+        Ok(Self::Source(Box::new(model), source))
+    }
+
+    fn search() -> Self {
+        let mut waiting = Waiting::default();
+        look_for_runs(&mut waiting);
+        Self::Waiting(waiting, Instant::now())
+    }
+}
+
+/// End this program: a run's shared memory is damaged, and opening it does not return.
+fn stuck(limit: Duration) {
+    ratatui::restore();
+    os_io::stderr_line!(
+        "rcs-console: the shared memory of the run could not be opened within {} s: another program has damaged it",
+        limit.as_secs()
+    );
+    std::process::exit(2);
+}
+
+fn look_for_runs(waiting: &mut Waiting) {
+    match memory::list() {
+        Ok(runs) => waiting.take(runs.into_iter().filter(|run| run.alive).map(|run| run.name).collect()),
+        Err(error) => waiting.refused = Some(error.to_string()),
+    }
+}
+
+/// The console at work.
+struct Session {
+    console: Console,
+    look: Look,
+    stop: Arc<AtomicBool>,
+    /// When the screen was drawn last.
+    drawn: Option<Instant>,
+    /// The log of the run, if it was named.
+    log: Option<PathBuf>,
+}
+
+impl Session {
+    fn run(mut self, mut terminal: DefaultTerminal) -> Result<(), ConsoleError> {
+        while !self.stop.load(Ordering::Relaxed) {
+            self.refresh();
+            if self.drawn.is_none_or(|drawn| drawn.elapsed() >= DRAW) {
+                self.draw(&mut terminal).map_err(ConsoleError::Terminal)?;
+            }
+            match event::poll(LOOK_AT) {
+                Ok(false) => {}
+                Ok(true) => {
+                    let event = event::read().map_err(ConsoleError::Terminal)?;
+                    if self.take(&event) == Effect::Quit {
+                        return Ok(());
+                    }
+                    self.drawn = None;
+                }
+                // A signal: the flag tells what it was.
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(ConsoleError::Terminal(error)),
+            }
+        }
+        Ok(())
+    }
+
+    /// Look at the source, or for runs.
+    fn refresh(&mut self) {
+        match &mut self.console {
+            Console::Source(model, source) => {
+                source.refresh();
+                model.take(source.as_ref());
+            }
+            Console::Waiting(waiting, looked) => {
+                if looked.elapsed() >= SEARCH {
+                    look_for_runs(waiting);
+                    *looked = Instant::now();
+                }
+                if let [only] = &waiting.runs[..]
+                    && waiting.refused.is_none()
+                {
+                    let only = only.clone();
+                    self.attach(&only);
+                }
+            }
+        }
+    }
+
+    fn attach(&mut self, run: &RunName) {
+        match (Live::open(run, Some(stuck)), &mut self.console) {
+            (Ok(live), _) => {
+                self.console = Console::Source(Box::new(Model::new(Screen::Ladder)), Box::new(live))
+            }
+            (Err(error), Console::Waiting(waiting, _)) => waiting.refused = Some(error.to_string()),
+            (Err(_), Console::Source(..)) => {}
+        }
+    }
+
+    fn draw(&mut self, terminal: &mut DefaultTerminal) -> io::Result<()> {
+        let mut reach = None;
+        terminal.draw(|frame| {
+            let scene = match &self.console {
+                Console::Source(model, source) => Scene::Source(model, source.as_ref()),
+                Console::Waiting(waiting, _) => Scene::Waiting(waiting),
+            };
+            reach = Some(draw(frame, &scene, self.look));
+        })?;
+        if let (Some(reach), Console::Source(model, _)) = (reach, &mut self.console) {
+            model.limit_scroll(reach.up, reach.down);
+        }
+        self.drawn = Some(Instant::now());
+        Ok(())
+    }
+
+    fn take(&mut self, event: &Event) -> Effect {
+        let Event::Key(pressed) = event else { return Effect::Draw };
+        let Some(key) = key(pressed) else { return Effect::Draw };
+        let effect = match &mut self.console {
+            Console::Source(model, source) => model.key(key, source.as_ref()),
+            Console::Waiting(..) => return self.choose(key),
+        };
+        if effect == Effect::OpenLog {
+            self.open_log();
+        }
+        effect
+    }
+
+    /// A key while there is a choice of runs.
+    fn choose(&mut self, key: Key) -> Effect {
+        let Console::Waiting(waiting, _) = &mut self.console else { return Effect::Draw };
+        match key {
+            Key::Char('q') | Key::Interrupt => return Effect::Quit,
+            Key::Char('j') | Key::Down => {
+                waiting.cursor = (waiting.cursor + 1).min(waiting.runs.len().saturating_sub(1))
+            }
+            Key::Char('k') | Key::Up => waiting.cursor = waiting.cursor.saturating_sub(1),
+            Key::Enter => {
+                if let Some(run) = waiting.chosen().cloned() {
+                    waiting.refused = None;
+                    self.attach(&run);
+                }
+            }
+            _ => {}
+        }
+        Effect::Draw
+    }
+
+    /// Open the log of the run that is shown, at the first cause of its failure.
+    fn open_log(&mut self) {
+        let Console::Source(model, source) = &mut self.console else { return };
+        match log_of(source.as_ref(), self.log.as_deref()) {
+            Ok(log) => {
+                let cause = log.story().first_cause();
+                let tick = cause.as_ref().map_or(model.tick(), |cause| cause.tick);
+                model.show(Place::At(tick), cause.and_then(|cause| cause.process));
+                *source = Box::new(log);
+            }
+            Err(why) => model.answer = Some(why),
+        }
+    }
+}
+
+/// The log of a run: the one that was named, or the one of its job in `runs/`. It must have the last tick of the run,
+/// bit for bit: a log of an older run of the same job is not taken for it.
+fn log_of(source: &dyn Source, named: Option<&Path>) -> Result<Recorded, String> {
+    let about = source.about();
+    if about.state == State::Log {
+        return Err("this is a log already; c goes to the first cause".to_owned());
+    }
+    if about.state != State::Over {
+        return Err("the log is complete when the run has ended; p freezes the picture meanwhile".to_owned());
+    }
+    let (job, _) = about.name.rsplit_once('-').unwrap_or((about.name, ""));
+    let path = named.map_or_else(|| Path::new("runs").join(job).with_extension("mcap"), Path::to_owned);
+    let log = Recorded::open(&path).map_err(|error| format!("{error}; name it with --log FILE"))?;
+    let last = source.range().and_then(|(_, last)| source.picture(last));
+    let same = last
+        .is_some_and(|last| log.picture(last.tick.0).is_some_and(|picture| picture.memory == last.memory));
+    if same {
+        Ok(log)
+    } else {
+        Err(format!("{} is of another run; name the log with --log FILE", path.display()))
+    }
+}
+
+/// A key of the terminal; none for what the console does not know.
+fn key(pressed: &KeyEvent) -> Option<Key> {
+    if pressed.kind == KeyEventKind::Release {
+        return None;
+    }
+    Some(match pressed.code {
+        KeyCode::Char('c') if pressed.modifiers.contains(KeyModifiers::CONTROL) => Key::Interrupt,
+        KeyCode::Char(_) if pressed.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT) => {
+            return None;
+        }
+        KeyCode::Char(typed) => Key::Char(typed),
+        KeyCode::Enter => Key::Enter,
+        KeyCode::Esc => Key::Esc,
+        KeyCode::Tab => Key::Tab,
+        KeyCode::BackTab => Key::BackTab,
+        KeyCode::Up => Key::Up,
+        KeyCode::Down => Key::Down,
+        KeyCode::PageUp => Key::PageUp,
+        KeyCode::PageDown => Key::PageDown,
+        KeyCode::Home => Key::Home,
+        KeyCode::End => Key::End,
+        KeyCode::Backspace => Key::Backspace,
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_with_control_are_not_letters() {
+        let event = |code, modifiers| KeyEvent::new(code, modifiers);
+        assert_eq!(key(&event(KeyCode::Char('q'), KeyModifiers::NONE)), Some(Key::Char('q')));
+        assert_eq!(key(&event(KeyCode::Char('c'), KeyModifiers::CONTROL)), Some(Key::Interrupt));
+        assert_eq!(key(&event(KeyCode::Char('q'), KeyModifiers::CONTROL)), None);
+        assert_eq!(key(&event(KeyCode::Char('N'), KeyModifiers::SHIFT)), Some(Key::Char('N')));
+        assert_eq!(key(&event(KeyCode::F(1), KeyModifiers::NONE)), None);
+    }
+}

@@ -1,0 +1,40 @@
+//! The page with the keys.
+
+use ratatui::text::Line;
+
+use super::Look;
+use crate::model::Tone;
+
+/// What each key does.
+const KEYS: [(&str, &str); 14] = [
+    ("1 2 3 4", "screens: ladder, process, link and time, cell"),
+    ("j k, arrows, PgUp PgDn", "choose a process; scroll"),
+    ("Enter, Esc", "the process under the cursor; back to the ladder"),
+    ("Tab", "next pane of the process screen"),
+    ("/", "show only lines with a text; Esc shows all again"),
+    ("p", "freeze the picture; the run goes on"),
+    ("[ ]  { }  Home End", "back and on: a tick, a second, the first and the last tick"),
+    ("g", "go to a tick by its number"),
+    ("n N", "next, previous change; on screen 2 of that process"),
+    ("t T", "next, previous trouble: a failure or a warning"),
+    ("c", "to the first cause of the last failure"),
+    ("a", "acknowledge the alarm in the line above the keys"),
+    ("o", "open the log of this run, at the first cause"),
+    ("q, Control-C", "quit; the run does not notice"),
+];
+
+/// What each mark says.
+const MARKS: &str =
+    " !! trouble   * gripper that is on   - not stepped or lost   > new since the last picture";
+
+/// The page.
+pub fn lines(look: Look) -> Vec<Line<'static>> {
+    let keys = KEYS.iter().map(|(key, does)| look.line(Tone::Plain, format!(" {key:<24} {does}")));
+    let words = [
+        "",
+        MARKS,
+        " A row with seconds behind it was chosen that long ago.",
+        " This program only reads: no key changes the run.",
+    ];
+    keys.chain(words.map(|text| look.line(Tone::Plain, text))).collect()
+}

@@ -1,0 +1,258 @@
+//! The model as a frame of text.
+//!
+//! Line 1 has the screens, line 2 the run, line 3 is a rule; the last line has the keys, the one before it the newest
+//! thing to know. What a colour says, a mark or a word says too.
+
+mod help;
+mod ladder;
+mod panes;
+mod text;
+mod waiting;
+
+use ratatui::{
+    Frame,
+    style::{Color, Modifier, Style},
+    text::{Line, Span},
+    widgets::Paragraph,
+};
+use record::Level;
+
+use crate::{
+    model::{Model, Place, Prompt, Screen, Tone, cell, ladder as lines, link},
+    source::{About, Source, State},
+};
+use text::{fit, rule};
+pub use waiting::Waiting;
+
+/// The least size of a terminal: columns and lines.
+pub const LEAST: (u16, u16) = (80, 24);
+/// Lines above and below the body.
+const FRAME: usize = 5;
+
+/// How a terminal wants its text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Look {
+    /// With colours.
+    pub colour: bool,
+    /// Without signs that ASCII does not have.
+    pub ascii: bool,
+}
+
+impl Look {
+    fn style(self, tone: Tone) -> Style {
+        let colour = match tone {
+            _ if !self.colour => return Style::default(),
+            Tone::Plain => return Style::default(),
+            Tone::Trouble => Color::Red,
+            Tone::Marked => Color::Cyan,
+            Tone::Faint => Color::DarkGray,
+        };
+        Style::default().fg(colour)
+    }
+
+    fn line(self, tone: Tone, text: impl Into<String>) -> Line<'static> {
+        Line::styled(self.signs(text.into()), self.style(tone))
+    }
+
+    /// The text with signs that the terminal has.
+    fn signs(self, text: String) -> String {
+        let sign = |sign: char| match sign {
+            '─' => '-',
+            '│' => '|',
+            '├' | '└' => '+',
+            '…' => '~',
+            other if other.is_ascii() => other,
+            _ => '?',
+        };
+        if self.ascii { text.chars().map(sign).collect() } else { text }
+    }
+}
+
+/// How far the body can be scrolled up and down from where it stands by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reach {
+    /// Lines above.
+    pub up: usize,
+    /// Lines below.
+    pub down: usize,
+}
+
+/// What is on the screen.
+pub enum Scene<'a> {
+    /// A run or a log.
+    Source(&'a Model, &'a dyn Source),
+    /// No run yet.
+    Waiting(&'a Waiting),
+}
+
+/// Draw the screen; says how far its body can be scrolled.
+pub fn draw(frame: &mut Frame<'_>, scene: &Scene<'_>, look: Look) -> Reach {
+    let area = frame.area();
+    let (lines, reach) = compose(scene, look, area.width.into(), area.height.into());
+    frame.render_widget(Paragraph::new(lines), area);
+    reach
+}
+
+/// The lines of a screen of a size.
+#[must_use]
+pub fn compose(scene: &Scene<'_>, look: Look, width: usize, height: usize) -> (Vec<Line<'static>>, Reach) {
+    let (columns, rows) = (usize::from(LEAST.0), usize::from(LEAST.1));
+    if width < columns || height < rows {
+        let text =
+            format!("rcs-console needs {columns} x {rows} characters; this terminal has {width} x {height}");
+        return (
+            text::wrap(&text, width.max(1)).into_iter().map(|line| look.line(Tone::Plain, line)).collect(),
+            Reach::default(),
+        );
+    }
+    match scene {
+        Scene::Waiting(waiting) => (waiting.compose(look, width, height), Reach::default()),
+        Scene::Source(model, source) => screen(model, *source, look, width, height),
+    }
+}
+
+fn screen(
+    model: &Model,
+    source: &dyn Source,
+    look: Look,
+    width: usize,
+    height: usize,
+) -> (Vec<Line<'static>>, Reach) {
+    let about = source.about();
+    let mut all = vec![
+        tabs(model.screen, look, width),
+        look.line(state_tone(about.state), fit(&run(model, source, &about, width), width)),
+        look.line(Tone::Plain, rule("", width)),
+    ];
+    let room = height - FRAME;
+    let (body, reach) = match (&model.picture, model.help) {
+        (_, true) => (help::lines(look), Reach::default()),
+        (None, false) => {
+            (vec![look.line(Tone::Plain, " The run has published no tick yet.")], Reach::default())
+        }
+        (Some(picture), false) => match model.screen {
+            Screen::Ladder => (ladder::body(model, picture, source, look, width, room), Reach::default()),
+            Screen::Process => panes::process(model, picture, source, look, width, room),
+            Screen::Link => panes::column(&link::sections(picture, source.story()), model, look, width, room),
+            Screen::Cell => {
+                let parts = source.parts(picture.tick.0);
+                panes::column(&cell::sections(picture, &parts), model, look, width, room)
+            }
+        },
+    };
+    all.extend(body.into_iter().take(room));
+    all.resize(height - 2, Line::default());
+    all.push(news(model, source, &about, look, width));
+    all.push(look.line(Tone::Plain, fit(keys(model, about.state), width)));
+    (all, reach)
+}
+
+fn tabs(screen: Screen, look: Look, width: usize) -> Line<'static> {
+    let mut spans = Vec::new();
+    let mut used = 0;
+    for (number, tab) in (1..).zip(Screen::ALL) {
+        let mark = if tab == screen { '>' } else { ' ' };
+        let text = format!("{mark}{number} {}  ", tab.name());
+        used += text.chars().count();
+        let style =
+            if tab == screen { Style::default().add_modifier(Modifier::BOLD) } else { Style::default() };
+        spans.push(Span::styled(look.signs(text), style));
+    }
+    let right = "?=help q=quit ";
+    spans.push(Span::raw(format!("{right:>rest$}", rest = width.saturating_sub(used))));
+    Line::from(spans)
+}
+
+const fn state_tone(state: State) -> Tone {
+    match state {
+        State::Silent(_) | State::Torn => Tone::Trouble,
+        State::Log | State::Runs | State::Over => Tone::Plain,
+    }
+}
+
+/// The line about the run: its name, the tick, the knob, and in which state it is.
+fn run(model: &Model, source: &dyn Source, about: &About<'_>, width: usize) -> String {
+    let (_, last) = source.range().unwrap_or_default();
+    let knob = model.picture.as_ref().map_or(0, |picture| picture.external.devices.joystick.velocity / 10);
+    let seconds = model.picture.as_ref().map_or(0.0, crate::picture::Picture::seconds);
+    let tick = model.tick();
+    let place = format!("tick {tick}  {seconds:.2} s  knob {knob} %");
+    let (left, right) = match about.state {
+        State::Log => {
+            (format!(" LOG {}  tick {tick} of {last}  {seconds:.2} s  knob {knob} %", about.name), "RECORDED")
+        }
+        State::Over => (format!(" {}  ENDED at tick {last}  {place}", about.name), "LOOK ONLY"),
+        State::Silent(silent) => {
+            (format!(" {}  {place}  NO NEW TICK FOR {silent} s", about.name), "LOOK ONLY")
+        }
+        State::Torn => (format!(" {}  {place}  TORN: not of one tick, look again", about.name), "LOOK ONLY"),
+        State::Runs if model.place != Place::Last => {
+            (format!(" {}  {place}  FROZEN, live is {last}", about.name), "LOOK ONLY")
+        }
+        State::Runs => (format!(" {}  {place}", about.name), "LOOK ONLY"),
+    };
+    let room = width.saturating_sub(right.len() + 1);
+    format!("{} {right}", fit(&left, room))
+}
+
+/// The newest thing to know: what is typed, the answer to a key, an alarm, the end of the run.
+fn news(model: &Model, source: &dyn Source, about: &About<'_>, look: Look, width: usize) -> Line<'static> {
+    let line = |tone, text: &str| look.line(tone, fit(text, width));
+    match &model.prompt {
+        Some(Prompt::Filter(text)) => {
+            return line(Tone::Marked, &format!(" show lines with: {text}_   Enter  Esc"));
+        }
+        Some(Prompt::Tick(text)) => return line(Tone::Marked, &format!(" go to tick: {text}_   Enter  Esc")),
+        None => {}
+    }
+    if let Some(answer) = &model.answer {
+        return line(Tone::Marked, &format!(" {answer}"));
+    }
+    let tick = model.tick();
+    let said = source.story().lines(tick);
+    let alarm =
+        said.iter().rev().find(|line| line.level >= Level::Warning && line.tick.0 > model.acknowledged);
+    if let Some(alarm) = alarm {
+        return line(Tone::Trouble, &link::message(alarm).text);
+    }
+    if let Some(damage) = &about.damage {
+        return line(Tone::Trouble, &format!("!! {damage}"));
+    }
+    let is_last = source.range().is_some_and(|(_, last)| tick == last);
+    match (about.result, about.state) {
+        (Some(result), _) if is_last => line(Tone::Plain, &format!(" the run ended: {result}")),
+        (None, State::Over) => line(Tone::Plain, &format!(" the run ended: {}", ending(model))),
+        (None, State::Log) if is_last => line(Tone::Trouble, "!! the log has no end: its program was killed"),
+        _ => {
+            let text = said.iter().rev().find(|line| line.level >= Level::Info).map(link::message);
+            line(Tone::Plain, &text.unwrap_or_default().text)
+        }
+    }
+}
+
+/// How a run ended that has said only that it has.
+fn ending(model: &Model) -> String {
+    let Some(picture) = &model.picture else { return "before its first tick".to_owned() };
+    let status = &picture.memory.task.status;
+    let commands = lines::present_commands(picture);
+    format!("Task says {}; {commands}", status.report)
+}
+
+fn keys(model: &Model, state: State) -> &'static str {
+    match (model.help, model.screen, state) {
+        (true, ..) => " any key goes back",
+        (_, Screen::Ladder, State::Over) => " Enter=process  o=open its log at the cause  j k=choose  q=quit",
+        (_, Screen::Ladder, State::Log) => {
+            " Enter=process  j k=choose  [ ] { }=tick, second  n=change  t=trouble  c=cause"
+        }
+        (_, Screen::Ladder, _) => {
+            " Enter=process  j k=choose  p=freeze  [ ]=tick  n=change  t=trouble  a=ack"
+        }
+        (_, Screen::Process, _) => {
+            " Esc=back  Tab=pane  j k=scroll  /=filter  [ ]=tick  n=its change  t=trouble"
+        }
+        (_, Screen::Link | Screen::Cell, _) => {
+            " Esc=back  j k=scroll  [ ] { }=tick, second  n=change  t=trouble  g=go to tick"
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Sections below each other: in panes that share the height, or in one column that scrolls.
+
+use ratatui::text::Line;
+
+use super::{
+    Look, Reach,
+    text::{rule, wrap},
+};
+use crate::{
+    model::{Model, Pane, Section, Text, Tone, buffers, process},
+    picture::Picture,
+    source::Source,
+};
+
+/// Least lines of a pane that does not have the keys.
+const LEAST: usize = 2;
+
+/// The process screen: table, rows, buffers. The pane that has the keys gets the most lines.
+pub fn process(
+    model: &Model,
+    picture: &Picture,
+    source: &dyn Source,
+    look: Look,
+    width: usize,
+    room: usize,
+) -> (Vec<Line<'static>>, Reach) {
+    let command = picture.command(model.process);
+    let command = if command.is_empty() { "no command".to_owned() } else { command };
+    let report = picture.memory.said(model.process).report;
+    let head =
+        format!("{}: {command}, number {}, {report}", model.process, picture.command_number(model.process));
+    let filter =
+        if model.filter.is_empty() { String::new() } else { format!("  (lines with {:?})", model.filter) };
+    let mut lines = vec![look.line(Tone::Plain, super::fit(&format!(" {head}{filter}"), width))];
+    let room = room.saturating_sub(lines.len());
+    let (last, story) = (model.last.as_ref(), source.story());
+    let sections = [
+        process::table(model.process, picture, &model.filter),
+        process::rows(model.process, picture, story),
+        buffers::section(model.process, picture, last, &model.filter),
+    ];
+    let text = room.saturating_sub(Pane::ALL.len());
+    let small = (text / 5).max(LEAST);
+    let mut reach = Reach::default();
+    for (pane, section) in Pane::ALL.into_iter().zip(&sections) {
+        let chosen = pane == model.pane;
+        let height = if chosen { text.saturating_sub(2 * small) } else { small };
+        let body = body(section, width);
+        let at = at(section, width).saturating_sub(1).min(body.len().saturating_sub(height));
+        let start = if chosen { scrolled(at, model.scroll, body.len(), height, &mut reach) } else { at };
+        let mark = if chosen { "> " } else { "" };
+        let more = more(start, body.len(), height);
+        lines.push(look.line(Tone::Plain, rule(&format!("{mark}{}{more}", section.title), width)));
+        let shown: Vec<_> = body.into_iter().skip(start).take(height).collect();
+        let missing = height - shown.len();
+        lines.extend(shown.into_iter().map(|Text { tone, text }| look.line(tone, text)));
+        lines.extend(std::iter::repeat_n(Line::default(), missing));
+    }
+    (lines, reach)
+}
+
+/// Sections in one column.
+pub fn column(
+    sections: &[Section],
+    model: &Model,
+    look: Look,
+    width: usize,
+    room: usize,
+) -> (Vec<Line<'static>>, Reach) {
+    let mut all = Vec::new();
+    for section in sections {
+        all.push(Text::plain(rule(&section.title, width)));
+        all.extend(body(section, width));
+    }
+    let mut reach = Reach::default();
+    // A line says how much is left, where not all is seen.
+    let height = if all.len() > room { room - 1 } else { room };
+    let start = scrolled(0, model.scroll, all.len(), height, &mut reach);
+    let length = all.len();
+    let shown = all.into_iter().skip(start).take(height);
+    let mut lines: Vec<_> = shown.map(|Text { tone, text }| look.line(tone, text)).collect();
+    if length > room {
+        let below = length.saturating_sub(start + height);
+        let text =
+            format!(" lines {} to {} of {length}; {below} more below", start + 1, length.min(start + height));
+        lines.push(look.line(Tone::Faint, text));
+    }
+    (lines, reach)
+}
+
+/// The lines of a section in the width.
+fn body(section: &Section, width: usize) -> Vec<Text> {
+    let wrapped = |line: &Text| {
+        let tone = line.tone;
+        wrap(&line.text, width).into_iter().map(move |text| Text { tone, text }).collect::<Vec<_>>()
+    };
+    section.lines.iter().flat_map(wrapped).collect()
+}
+
+/// Where the line that must be seen stands in the width.
+fn at(section: &Section, width: usize) -> usize {
+    section.lines.iter().take(section.at).map(|line| wrap(&line.text, width).len()).sum()
+}
+
+/// The first line that is shown, if the pane stands at a line by itself.
+fn scrolled(at: usize, scroll: isize, length: usize, height: usize, reach: &mut Reach) -> usize {
+    let most = length.saturating_sub(height).max(at);
+    *reach = Reach { up: at, down: most - at };
+    at.saturating_add_signed(scroll).min(most)
+}
+
+/// How many lines of a pane are not seen.
+fn more(start: usize, length: usize, height: usize) -> String {
+    match (start, length.saturating_sub(start + height)) {
+        (0, 0) => String::new(),
+        (above, below) => format!(" ({above} lines above, {below} below)"),
+    }
+}

@@ -1,0 +1,303 @@
+//! Every screen and state as text, from the log of a short run that fails: no blank lies on the tray.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::LazyLock,
+};
+
+use interfaces::ProcessId;
+use ratatui::{Terminal, backend::TestBackend};
+use rcs_console::{
+    model::{Effect, Key, Model, Pane, Place, Screen},
+    picture::Picture,
+    source::{About, Parts, Recorded, Source, State},
+    story::Story,
+    view::{Look, Scene, Waiting, draw},
+};
+use runtime::{Ending, LogTarget, Observer, Run, RunConfig};
+
+const PLAIN: Look = Look { colour: false, ascii: false };
+/// The tick in which E-move gives up.
+const FAILURE: u64 = 623;
+
+struct Silent;
+
+impl Observer for Silent {
+    fn message(&mut self, _: &str) {}
+}
+
+/// The log of the run, written once for all tests.
+static LOG: LazyLock<(tempfile::TempDir, PathBuf)> = LazyLock::new(|| {
+    let directory = tempfile::tempdir().expect("a directory can be made");
+    let path = directory.path().join("missing.mcap");
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+    let faults = Some(data.join("faults/blank-missing.toml"));
+    let log = LogTarget::File(path.clone());
+    let config = RunConfig { faults, log, shared_memory: false, ..RunConfig::new(data, "linkbar") };
+    let outcome = Run::new(config, Box::new(Silent)).expect("the run begins").complete();
+    assert!(matches!(outcome.ending, Ending::Failed(_)), "the run is to fail");
+    (directory, path)
+});
+
+fn log() -> Recorded {
+    Recorded::open(&LOG.1).expect("the log can be read")
+}
+
+/// The log as if it were a run in some state.
+struct As(Recorded, State);
+
+impl Source for As {
+    fn about(&self) -> About<'_> {
+        About { name: "demo", state: self.1, result: None, damage: None }
+    }
+
+    fn refresh(&mut self) {}
+
+    fn range(&self) -> Option<(u64, u64)> {
+        self.0.range()
+    }
+
+    fn picture(&self, tick: u64) -> Option<Picture> {
+        self.0.picture(tick)
+    }
+
+    fn story(&self) -> &Story {
+        self.0.story()
+    }
+
+    fn parts(&self, _: u64) -> Parts {
+        Parts::NotPublished
+    }
+}
+
+/// A screen that shows a tick after the one before it.
+fn model(screen: Screen, process: ProcessId, tick: u64, source: &dyn Source) -> Model {
+    let mut model = Model::new(screen);
+    model.process = process;
+    for shown in [tick - 1, tick] {
+        model.place = Place::At(shown);
+        model.take(source);
+    }
+    model
+}
+
+fn keys(model: &mut Model, source: &dyn Source, keys: &str) -> Effect {
+    let mut effect = Effect::Draw;
+    for key in keys.chars() {
+        let key = match key {
+            '\n' => Key::Enter,
+            '\t' => Key::Tab,
+            '\x1b' => Key::Esc,
+            other => Key::Char(other),
+        };
+        effect = model.key(key, source);
+        model.take(source);
+    }
+    effect
+}
+
+fn drawn(scene: &Scene<'_>, look: Look, width: u16, height: u16) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("there is a screen");
+    terminal.draw(|frame| _ = draw(frame, scene, look)).expect("the screen can be drawn");
+    terminal.backend().to_string()
+}
+
+fn screen(model: &Model, source: &dyn Source) -> String {
+    drawn(&Scene::Source(model, source), PLAIN, 80, 24)
+}
+
+#[test]
+fn ladder() {
+    let log = log();
+    insta::assert_snapshot!("ladder", screen(&model(Screen::Ladder, ProcessId::Emove, 300, &log), &log));
+}
+
+#[test]
+fn ladder_with_a_failure_on_its_way_up() {
+    let log = log();
+    insta::assert_snapshot!(
+        "ladder-failure",
+        screen(&model(Screen::Ladder, ProcessId::Emove, FAILURE, &log), &log)
+    );
+}
+
+#[test]
+fn a_wide_ladder_has_the_text_of_the_rows() {
+    let log = log();
+    let model = model(Screen::Ladder, ProcessId::Emove, FAILURE + 2, &log);
+    insta::assert_snapshot!("ladder-wide", drawn(&Scene::Source(&model, &log), PLAIN, 160, 30));
+}
+
+#[test]
+fn process() {
+    let log = log();
+    insta::assert_snapshot!(
+        "process",
+        screen(&model(Screen::Process, ProcessId::Emove, FAILURE, &log), &log)
+    );
+}
+
+#[test]
+fn process_with_its_buffers() {
+    let log = log();
+    let mut model = model(Screen::Process, ProcessId::Grip, 100, &log);
+    keys(&mut model, &log, "\t\t/force\n");
+    assert_eq!(model.pane, Pane::Buffers);
+    insta::assert_snapshot!("process-buffers", screen(&model, &log));
+}
+
+#[test]
+fn process_with_its_rows() {
+    let log = log();
+    let mut model = model(Screen::Process, ProcessId::Prim, FAILURE, &log);
+    keys(&mut model, &log, "\t");
+    insta::assert_snapshot!("process-rows", screen(&model, &log));
+}
+
+#[test]
+fn link() {
+    let log = log();
+    insta::assert_snapshot!("link", screen(&model(Screen::Link, ProcessId::Task, FAILURE, &log), &log));
+}
+
+#[test]
+fn cell() {
+    let log = log();
+    insta::assert_snapshot!("cell", screen(&model(Screen::Cell, ProcessId::Task, FAILURE, &log), &log));
+}
+
+#[test]
+fn help() {
+    let log = log();
+    let mut model = model(Screen::Ladder, ProcessId::Task, 300, &log);
+    keys(&mut model, &log, "?");
+    insta::assert_snapshot!("help", screen(&model, &log));
+    keys(&mut model, &log, "x");
+    assert!(!model.help, "any key goes back");
+}
+
+#[test]
+fn waiting() {
+    let mut waiting = Waiting::default();
+    insta::assert_snapshot!("waiting", drawn(&Scene::Waiting(&waiting), PLAIN, 80, 24));
+    waiting.take(vec!["clevis-12".parse().expect("a name"), "linkbar-11".parse().expect("a name")]);
+    waiting.cursor = 1;
+    insta::assert_snapshot!("choice", drawn(&Scene::Waiting(&waiting), PLAIN, 80, 24));
+}
+
+#[test]
+fn the_state_of_a_run_is_said() {
+    let line = |state, place, keys_typed: &str| {
+        let source = As(log(), state);
+        let mut model = Model::new(Screen::Ladder);
+        model.take(&source);
+        model.place = place;
+        model.take(&source);
+        keys(&mut model, &source, keys_typed);
+        screen(&model, &source)
+            .lines()
+            .map(|line| format!("{}\n", line.trim_matches('"').trim_end()))
+            .collect::<Vec<_>>()
+    };
+    let head = |state, place, keys| line(state, place, keys)[1].clone();
+    assert!(head(State::Runs, Place::Last, "").contains("demo  tick 625  25.00 s  knob 100 %"));
+    assert!(
+        head(State::Runs, Place::At(600), "").contains("tick 600  24.00 s  knob 100 %  FROZEN, live is 625")
+    );
+    assert!(head(State::Runs, Place::Last, "p").contains("FROZEN"));
+    assert!(!head(State::Runs, Place::Last, "pp").contains("FROZEN"));
+    assert!(head(State::Silent(4), Place::Last, "").contains("NO NEW TICK FOR 4 s"));
+    assert!(head(State::Torn, Place::Last, "").contains("TORN"));
+    assert!(head(State::Over, Place::Last, "").contains("ENDED at tick 625"));
+    let news = line(State::Over, Place::Last, "a")[22].clone();
+    assert!(news.contains("the run ended: Task says error"), "{news}");
+}
+
+#[test]
+fn an_alarm_stays_until_it_is_acknowledged() {
+    let log = log();
+    let mut model = model(Screen::Ladder, ProcessId::Task, 400, &log);
+    let news = |model: &Model| screen(model, &log).lines().nth(22).map(str::to_owned).unwrap_or_default();
+    assert!(news(&model).contains("!!    73"), "{}", news(&model));
+    keys(&mut model, &log, "a");
+    assert!(!news(&model).contains("!!"), "{}", news(&model));
+}
+
+#[test]
+fn keys_go_in_time() {
+    let log = log();
+    let mut model = model(Screen::Ladder, ProcessId::Task, 300, &log);
+    let mut go = |typed: &str| {
+        keys(&mut model, &log, typed);
+        model.tick()
+    };
+    assert_eq!([go("["), go("]"), go("}"), go("{")], [299, 300, 325, 300]);
+    assert_eq!(go("g450\n"), 450);
+    assert_eq!(go("gno\n"), 450, "what is no number goes nowhere");
+    assert_eq!(go("t"), FAILURE, "the next trouble");
+    assert_eq!(go("T"), 73, "the warning before it");
+    let change = go("n");
+    assert!((74..100).contains(&change), "{change}");
+    assert_eq!(go("N"), 73);
+    assert_eq!(go("c"), FAILURE, "the first cause");
+    assert_eq!(model.process, ProcessId::Emove, "the process that knows it is under the cursor");
+    assert_eq!(model.key(Key::Home, &log), Effect::Draw);
+    model.take(&log);
+    assert_eq!(model.tick(), 1);
+    assert_eq!(model.key(Key::End, &log), Effect::Draw);
+    model.take(&log);
+    assert_eq!(model.tick(), 625);
+}
+
+#[test]
+fn keys_turn_to_screens_and_out() {
+    let log = log();
+    let mut model = model(Screen::Ladder, ProcessId::Task, 300, &log);
+    for (key, screen) in
+        [("2", Screen::Process), ("3", Screen::Link), ("4", Screen::Cell), ("\x1b", Screen::Ladder)]
+    {
+        keys(&mut model, &log, key);
+        assert_eq!(model.screen, screen);
+    }
+    keys(&mut model, &log, "jj\n");
+    assert_eq!((model.screen, model.process), (Screen::Process, ProcessId::Pedestal));
+    assert_eq!(keys(&mut model, &log, "o"), Effect::OpenLog);
+    assert_eq!(keys(&mut model, &log, "q"), Effect::Quit);
+    assert_eq!(model.key(Key::Interrupt, &log), Effect::Quit);
+}
+
+#[test]
+fn ascii_has_no_other_signs() {
+    let log = log();
+    for kind in Screen::ALL {
+        let model = model(kind, ProcessId::Emove, FAILURE, &log);
+        let look = Look { ascii: true, colour: true };
+        let text = drawn(&Scene::Source(&model, &log), look, 80, 24);
+        assert!(text.is_ascii(), "{text}");
+    }
+}
+
+#[test]
+fn a_terminal_that_is_too_small_is_said() {
+    let log = log();
+    let model = model(Screen::Ladder, ProcessId::Task, 300, &log);
+    let small = |width, height| drawn(&Scene::Source(&model, &log), PLAIN, width, height);
+    assert!(small(79, 24).contains("needs 80 x 24 characters; this terminal has 79 x 24"));
+    assert!(small(80, 23).contains("this terminal has 80 x 23"));
+    assert!(small(1, 1).contains('r'));
+}
+
+#[test]
+fn colour_repeats_a_mark() {
+    let log = log();
+    let model = model(Screen::Ladder, ProcessId::Task, FAILURE, &log);
+    let scene = Scene::Source(&model, &log);
+    let mut terminal = Terminal::new(TestBackend::new(80, 24)).expect("there is a screen");
+    let look = Look { colour: true, ascii: false };
+    terminal.draw(|frame| _ = draw(frame, &scene, look)).expect("the screen can be drawn");
+    let buffer = terminal.backend().buffer();
+    let marked = (0..24).filter(|y| buffer[(0, *y)].symbol() == "!");
+    let red = |y: &u16| buffer[(0, *y)].fg == ratatui::style::Color::Red;
+    let (all, with_colour) = (marked.clone().count(), marked.filter(red).count());
+    assert!(all > 1 && all == with_colour, "{all} marks, {with_colour} in red");
+}

@@ -1,0 +1,197 @@
+//! The program in a terminal: over a pseudo-terminal, read back by a terminal parser.
+
+use std::{
+    fs::File,
+    io::{Read, Write},
+    num::NonZero,
+    os::fd::OwnedFd,
+    path::Path,
+    process::{Child, Command},
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    thread,
+    time::{Duration, Instant},
+};
+
+use runtime::{ClockKind, LogTarget, Observer, Run, RunConfig};
+use rustix::{
+    fs::{Mode, OFlags, open},
+    process::{Pid, Signal, kill_process},
+    pty,
+    termios::{Termios, Winsize, tcgetattr, tcsetwinsize},
+};
+
+/// The least terminal.
+const LINES: NonZero<u16> = NonZero::new(24).unwrap();
+const COLUMNS: NonZero<u16> = NonZero::new(80).unwrap();
+/// Longest time for anything to appear, on a machine that has much else to do.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+struct Silent;
+
+impl Observer for Silent {
+    fn message(&mut self, _: &str) {}
+}
+
+/// A program in a terminal.
+struct Terminal {
+    child: Child,
+    keys: File,
+    slave: OwnedFd,
+    parser: Arc<Mutex<vt100::Parser>>,
+    before: Termios,
+}
+
+impl Terminal {
+    fn start(arguments: &[&str], directory: &Path) -> Self {
+        let master = pty::openpt(pty::OpenptFlags::RDWR | pty::OpenptFlags::NOCTTY).unwrap();
+        pty::unlockpt(&master).unwrap();
+        let name = pty::ptsname(&master, Vec::new()).unwrap();
+        let slave = open(&*name, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap();
+        let size = Winsize { ws_row: LINES.get(), ws_col: COLUMNS.get(), ws_xpixel: 0, ws_ypixel: 0 };
+        tcsetwinsize(&slave, size).unwrap();
+        let before = tcgetattr(&slave).unwrap();
+        let end = || slave.try_clone().unwrap();
+        let child = Command::new(env!("CARGO_BIN_EXE_rcs-console"))
+            .args(arguments)
+            .current_dir(directory)
+            .env("LC_ALL", "C.UTF-8")
+            .stdin(end())
+            .stdout(end())
+            .stderr(end())
+            .spawn()
+            .unwrap();
+        let parser = Arc::new(Mutex::new(vt100::Parser::new(LINES, COLUMNS, 0)));
+        let mut screen = File::from(master.try_clone().unwrap());
+        let shown = Arc::clone(&parser);
+        thread::spawn(move || {
+            let mut bytes = [0; 4096];
+            while let Ok(count @ 1..) = screen.read(&mut bytes) {
+                locked(&shown).process(&bytes[..count]);
+            }
+        });
+        Self { child, keys: File::from(master), slave, parser, before }
+    }
+
+    fn screen(&self) -> String {
+        locked(&self.parser).screen().contents()
+    }
+
+    /// Wait until the screen holds a text.
+    fn wait_for(&self, text: &str) {
+        let begun = Instant::now();
+        while !self.screen().contains(text) {
+            assert!(begun.elapsed() < PATIENCE, "{text:?} did not appear:\n{}", self.screen());
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    fn press(&mut self, keys: &str) {
+        self.keys.write_all(keys.as_bytes()).unwrap();
+    }
+
+    /// Wait for the end; the terminal must be as it was before.
+    fn end(mut self) -> Option<i32> {
+        let begun = Instant::now();
+        let status = loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                break status;
+            }
+            assert!(begun.elapsed() < PATIENCE, "the console does not end:\n{}", self.screen());
+            thread::sleep(Duration::from_millis(20));
+        };
+        // The parser may have to read the last bytes yet.
+        let is_back = || {
+            let parser = locked(&self.parser);
+            !parser.screen().alternate_screen() && !parser.screen().hide_cursor()
+        };
+        while !is_back() {
+            assert!(begun.elapsed() < PATIENCE, "the screen is not what it was");
+            thread::sleep(Duration::from_millis(20));
+        }
+        let after = tcgetattr(&self.slave).unwrap();
+        let modes = |of: &Termios| (of.local_modes, of.input_modes, of.output_modes, of.control_modes);
+        assert_eq!(modes(&after), modes(&self.before), "the modes of the terminal are not what they were");
+        status.code()
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A run in real time for so many ticks, in a thread of its own.
+fn run(name: &str, log: &Path, ticks: u64) -> thread::JoinHandle<()> {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data");
+    let config = RunConfig {
+        clock: ClockKind::Real,
+        ticks: Some(ticks),
+        name: Some(name.parse().unwrap()),
+        log: LogTarget::File(log.to_owned()),
+        ..RunConfig::new(data, "linkbar")
+    };
+    thread::spawn(move || {
+        let _ = Run::new(config, Box::new(Silent)).unwrap().complete();
+    })
+}
+
+#[test]
+fn a_run_is_looked_at_on_all_screens_until_its_end_and_then_its_log() {
+    let directory = tempfile::tempdir().unwrap();
+    let log = directory.path().join("short.mcap");
+    let name = format!("console-{}", std::process::id());
+    let run = run(&name, &log, 250);
+    // A run is there when it has published its first tick.
+    let begun = Instant::now();
+    let listed =
+        || executive::memory::list().unwrap().iter().any(|run| run.name.as_str() == name && run.alive);
+    while !listed() {
+        assert!(begun.elapsed() < PATIENCE, "the run does not begin");
+        thread::sleep(Duration::from_millis(50));
+    }
+    thread::sleep(Duration::from_millis(200));
+    let mut console = Terminal::start(&["--run", &name, "--log", log.to_str().unwrap()], directory.path());
+    console.wait_for(">1 Ladder");
+    console.wait_for("LOOK ONLY");
+    console.wait_for("T3 Interface");
+    for (key, text) in [
+        ("2", "rows that fired"),
+        ("3", "DEPC link"),
+        ("4", "joints, by the resolvers"),
+        ("?", "acknowledge"),
+    ] {
+        console.press(key);
+        console.wait_for(text);
+    }
+    console.press("x1p");
+    console.wait_for("FROZEN, live is");
+    console.press("p");
+    run.join().unwrap();
+    console.wait_for("ENDED at tick 250");
+    console.press("o");
+    console.wait_for("LOG short.mcap");
+    console.wait_for("RECORDED");
+    console.press("q");
+    assert_eq!(console.end(), Some(0));
+}
+
+#[test]
+fn a_signal_leaves_the_terminal_as_it_was() {
+    let directory = tempfile::tempdir().unwrap();
+    for signal in [Signal::TERM, Signal::HUP, Signal::INT] {
+        let console = Terminal::start(&["--ascii"], directory.path());
+        console.wait_for("Looking for runs");
+        kill_process(Pid::from_child(&console.child), signal).unwrap();
+        assert_eq!(console.end(), Some(0), "{signal:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_read_is_said_before_the_terminal_changes() {
+    let directory = tempfile::tempdir().unwrap();
+    let console = Terminal::start(&["--log", "nowhere.mcap"], directory.path());
+    console.wait_for("rcs-console: nowhere.mcap:");
+    assert_eq!(console.end(), Some(2));
+    let console = Terminal::start(&["--run", "no-such-run"], directory.path());
+    console.wait_for("rcs-console: there is no run named no-such-run");
+    assert_eq!(console.end(), Some(2));
+}
