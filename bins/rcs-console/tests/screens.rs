@@ -9,6 +9,7 @@ use interfaces::ProcessId;
 use ratatui::{Terminal, backend::TestBackend};
 use rcs_console::{
     model::{Effect, Key, Model, Pane, Place, Screen},
+    once,
     picture::Picture,
     source::{About, Parts, Recorded, Source, State},
     story::Story,
@@ -166,6 +167,22 @@ fn cell() {
     insta::assert_snapshot!("cell", screen(&model(Screen::Cell, ProcessId::Task, FAILURE, &log), &log));
 }
 
+/// The pictures of the page are those of this run, with one process under the cursor.
+#[test]
+fn the_page_shows_these_screens() {
+    let log = log();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/console.md");
+    let page = std::fs::read_to_string(path).expect("the page is there");
+    let shown: Vec<&str> = page
+        .split("```text\n")
+        .skip(1)
+        .filter_map(|block| block.split_once("```").map(|(picture, _)| picture))
+        .collect();
+    let drawn =
+        Screen::ALL.map(|kind| once::screen_text(&model(kind, ProcessId::Emove, FAILURE, &log), &log, PLAIN));
+    assert_eq!(shown, drawn);
+}
+
 #[test]
 fn help() {
     let log = log();
@@ -236,9 +253,8 @@ fn keys_go_in_time() {
     assert_eq!(go("gno\n"), 450, "what is no number goes nowhere");
     assert_eq!(go("t"), FAILURE, "the next trouble");
     assert_eq!(go("T"), 73, "the warning before it");
-    let change = go("n");
-    assert!((74..100).contains(&change), "{change}");
-    assert_eq!(go("N"), 73);
+    let (next, previous) = (go("n"), go("N"));
+    assert!((74..100).contains(&next) && (50..74).contains(&previous), "{next}, {previous}");
     assert_eq!(go("c"), FAILURE, "the first cause");
     assert_eq!(model.process, ProcessId::Emove, "the process that knows it is under the cursor");
     assert_eq!(model.key(Key::Home, &log), Effect::Draw);

@@ -104,7 +104,7 @@ pub fn section(process: ProcessId, picture: &Picture, last: Option<&Picture>, fi
     let lines: Vec<Text> = lines("in ", inputs(process, picture, last))
         .chain(lines("out", outputs(process, picture, last)))
         .collect();
-    Section::new(format!("buffers: {} fields, inputs and outputs", lines.len()), lines)
+    Section::new(format!("buffers, {} fields", lines.len()), lines)
 }
 
 fn holds(field: &Field, filter: &str) -> bool {

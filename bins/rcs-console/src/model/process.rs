@@ -27,7 +27,7 @@ pub fn table(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     };
     let number = header.decided.map_or(0, |decided| decided.table);
     let step = header.step.unwrap_or_default();
-    let after = if step.is_empty() { String::new() } else { format!(", step after it: {step}") };
+    let after = if step.is_empty() { String::new() } else { format!(", then {step}") };
     let mut lines: Vec<Text> = Vec::new();
     let mut at = 0;
     for row in table.rows {
@@ -43,7 +43,7 @@ pub fn table(process: ProcessId, picture: &Picture, filter: &str) -> Section {
     let shown = |line: &Text| line.text.to_lowercase().contains(&filter);
     let at = lines.iter().take(at).filter(|line| shown(line)).count();
     lines.retain(shown);
-    let title = format!("table {number}, {}: row {} fired{after}", table.name, fired.number);
+    let title = format!("table {number} {}, row {} fired{after}", table.name, fired.number);
     Section { title, lines, at }
 }
 
@@ -91,7 +91,7 @@ pub fn rows(process: ProcessId, picture: &Picture, story: &Story) -> Section {
     let ends = rows.iter().skip(1).map(|row| row.tick).chain([picture.tick.0 + 1]);
     let mut lines: Vec<Text> = rows.iter().zip(ends).map(|(row, end)| row_line(info, row, end)).collect();
     lines.reverse();
-    Section::new("rows that fired, newest first: tick, for how long, table and row", lines)
+    Section::new("rows that fired, newest first", lines)
 }
 
 fn row_line(info: &ProcessInfo, doing: &Doing, end: u64) -> Text {

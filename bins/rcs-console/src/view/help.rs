@@ -13,7 +13,7 @@ const KEYS: [(&str, &str); 14] = [
     ("Tab", "next pane of the process screen"),
     ("/", "show only lines with a text; Esc shows all again"),
     ("p", "freeze the picture; the run goes on"),
-    ("[ ]  { }  Home End", "back and on: a tick, a second, the first and the last tick"),
+    ("[ ]  { }  Home End", "a tick, a second, first and last tick"),
     ("g", "go to a tick by its number"),
     ("n N", "next, previous change; on screen 2 of that process"),
     ("t T", "next, previous trouble: a failure or a warning"),
@@ -24,8 +24,7 @@ const KEYS: [(&str, &str); 14] = [
 ];
 
 /// What each mark says.
-const MARKS: &str =
-    " !! trouble   * gripper that is on   - not stepped or lost   > new since the last picture";
+const MARKS: &str = " !! trouble   * gripper on the robot   - not stepped, or lost   > new";
 
 /// The page.
 pub fn lines(look: Look) -> Vec<Line<'static>> {

@@ -113,6 +113,6 @@ fn scrolled(at: usize, scroll: isize, length: usize, height: usize, reach: &mut 
 fn more(start: usize, length: usize, height: usize) -> String {
     match (start, length.saturating_sub(start + height)) {
         (0, 0) => String::new(),
-        (above, below) => format!(" ({above} lines above, {below} below)"),
+        (above, below) => format!(" ({above} above, {below} below)"),
     }
 }
