@@ -43,8 +43,8 @@ pub fn received(bytes: &[u8]) -> Vec<String> {
     })
 }
 
-/// Frames from the front on. Bytes from where no frame begins are told as they are: the receivers drop them, or wait for
-/// the rest of a frame.
+/// Frames from the front on. Bytes from where no frame begins are told as they are: the receivers drop them, or
+/// wait for the rest of a frame.
 fn split(mut bytes: &[u8], frame: impl Fn(&[u8]) -> Option<(String, usize)>) -> Vec<String> {
     let mut found = Vec::new();
     while let Some((text, length)) = frame(bytes) {

@@ -88,11 +88,11 @@ impl Model {
             Key::Char('}') => self.go(self.tick() + SECOND, source),
             Key::Home => self.go(0, source),
             Key::End => self.place = Place::Last,
-            Key::Char('n') => self.to_change(true, source),
-            Key::Char('N') => self.to_change(false, source),
-            Key::Char('t') => self.to_trouble(true, source),
-            Key::Char('T') => self.to_trouble(false, source),
-            Key::Char('c') => self.to_cause(source),
+            Key::Char('n') => self.go_to_change(true, source),
+            Key::Char('N') => self.go_to_change(false, source),
+            Key::Char('t') => self.go_to_trouble(true, source),
+            Key::Char('T') => self.go_to_trouble(false, source),
+            Key::Char('c') => self.go_to_cause(source),
             Key::Char('j') | Key::Down => self.down(1),
             Key::Char('k') | Key::Up => self.up(1),
             Key::PageDown => self.down(PAGE),
@@ -160,7 +160,7 @@ impl Model {
     }
 
     /// Go to the next or the previous change: on the process screen of this process, else of any.
-    fn to_change(&mut self, forward: bool, source: &dyn Source) {
+    fn go_to_change(&mut self, forward: bool, source: &dyn Source) {
         let processes = match self.screen {
             Screen::Process => std::slice::from_ref(&self.process),
             _ => ProcessId::ALL,
@@ -171,7 +171,7 @@ impl Model {
         }
     }
 
-    fn to_trouble(&mut self, forward: bool, source: &dyn Source) {
+    fn go_to_trouble(&mut self, forward: bool, source: &dyn Source) {
         match source.story().trouble(self.tick(), forward) {
             Some((tick, process)) => {
                 self.go(tick, source);
@@ -182,7 +182,7 @@ impl Model {
     }
 
     /// Go to the first cause of the last failure, and to the process that knows it.
-    fn to_cause(&mut self, source: &dyn Source) {
+    fn go_to_cause(&mut self, source: &dyn Source) {
         match source.story().first_cause() {
             Some(cause) => {
                 self.go(cause.tick, source);

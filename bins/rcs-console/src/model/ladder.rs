@@ -172,7 +172,7 @@ fn process_line(branch: Branch, process: ProcessId, picture: &Picture, story: &S
 fn age(process: ProcessId, picture: &Picture, story: &Story) -> Option<f64> {
     picture.memory.header(process).decided?;
     let ticks = picture.tick.0.saturating_sub(story.rows(process, picture.tick.0).last()?.tick);
-    (ticks > 0).then(|| ticks as f64 * TICK_S)
+    (ticks > 0).then_some(ticks as f64 * TICK_S)
 }
 
 /// The gripper that is on the robot, as the id pins say (VI.2).
@@ -275,7 +275,7 @@ pub fn neighbour(process: ProcessId, by: usize, down: bool) -> ProcessId {
     };
     let at = processes().position(|other| other == process).unwrap_or_default();
     let wanted = if down { at + by } else { at.saturating_sub(by) };
-    processes().nth(wanted).or(processes().last()).unwrap_or(process)
+    processes().take(wanted + 1).last().unwrap_or(process)
 }
 
 /// What the process under the cursor does and why, in a sentence each.
