@@ -12,17 +12,17 @@ use rcs_core::name::Name10;
 use taskdata::files::{PoseId, TaskData};
 
 use super::{
-    back::Back,
     fingers::{gripper_on, sizes},
     gripper::Gripper,
     locate::view_of,
     relative::{self, Relative},
     robot_place::place_named,
-    route::{Goal, Planning, Route},
+    route::{Goal, Planning},
     state::State,
     tables::{
         Attached, Coupling, Exchange, HolsterData, Knowledge, Ordered, Record, Request, Target, ToolWork,
     },
+    way::Flight,
 };
 use crate::execution::Asked;
 
@@ -75,7 +75,7 @@ impl State {
     pub(super) fn look_up(&mut self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Request {
         let (memory, data) = (inputs.memory, inputs.data);
         let planned = self.plan(command, inputs);
-        (self.route, self.back) = planned.unwrap_or_default();
+        Flight { route: self.route, back: self.back, rejoin: self.rejoin } = planned.unwrap_or_default();
         (self.ordered, self.uses_prim) = (Ordered::Nothing, false);
         (self.tries, self.undetected) = (0, 0);
         self.carrying = self.beliefs.held.is_some();
@@ -100,11 +100,7 @@ impl State {
     }
 
     /// The way of a motion command.
-    fn plan(
-        &self,
-        command: &EmoveCommand,
-        inputs: &Inputs<'_, TaskData<'_>>,
-    ) -> Result<(Option<Route>, Option<Back>), Planning> {
+    fn plan(&self, command: &EmoveCommand, inputs: &Inputs<'_, TaskData<'_>>) -> Result<Flight, Planning> {
         match command.command {
             EmoveVerb::MovToLoc
             | EmoveVerb::MovToObj
@@ -113,11 +109,13 @@ impl State {
             | EmoveVerb::MovToHol => {
                 let base = self.base_frame(command, inputs)?;
                 let goal = Goal::new(command, &base, inputs.data)?;
-                let (route, back) = self.flight(command, &goal, inputs)?;
-                let bare = Gripper::attached(inputs.memory) == Gripper::None;
-                Ok((Some(if bare { Route { opening: None, ..route } } else { route }), back))
+                let mut flight = self.flight(command, &goal, inputs)?;
+                if let (Some(route), Gripper::None) = (&mut flight.route, Gripper::attached(inputs.memory)) {
+                    route.opening = None;
+                }
+                Ok(flight)
             }
-            _ => Ok((None, None)),
+            _ => Ok(Flight::default()),
         }
     }
 

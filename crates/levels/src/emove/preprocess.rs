@@ -141,13 +141,13 @@ impl State {
         }
     }
 
-    /// Where in its command E-move is, beside the state variables: the points that were sent, on and back,
-    /// and the pictures that were tried. Above bit 40, which the number of the state variables does not
-    /// reach.
+    /// Where in its command E-move is, beside the state variables: the points that were sent, on, back and onto
+    /// the way, and the pictures that were tried. Above bit 40, which the number of the state variables does
+    /// not reach.
     fn progress(&self) -> u64 {
         let back = self.back.map_or(0, |back| u64::from(back.next & 0xFF) << 1 | u64::from(back.complete));
         let on = self.route.map_or(0, |route| u64::from(route.commanded & 0xFF));
-        (back << 10 | on << 2 | u64::from(self.tries & 0x3)) << 40
+        (u64::from(self.rejoin.is_some()) << 19 | back << 10 | on << 2 | u64::from(self.tries & 0x3)) << 40
     }
 
     /// Follow the echoes until the first command, and count how long Prim has not detected anything.

@@ -8,7 +8,7 @@
 //! ```
 
 use geometry::{
-    frame::{Frame, norm},
+    frame::{Frame, norm, rotation_by, rotation_vector},
     pose::Pose,
 };
 use interfaces::emove::{EmoveCommand, EmoveVerb, GoneTo, Leg as Part, ObjectGrip, RobotPlace};
@@ -57,6 +57,8 @@ pub enum Planning {
 /// What lies ahead on the route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Plain)]
 pub enum Ahead {
+    /// The point of the way beside which a person has left the robot.
+    Beside,
     /// Nothing: the robot is at the goal, or has been sent there.
     Nothing,
     /// A point to go through.
@@ -183,13 +185,21 @@ pub fn near(a: &Frame, b: &Frame, inches: f64, radians: f64) -> bool {
     distance.inches <= inches && distance.radians <= radians
 }
 
-/// How far a frame is from a straight segment, in.
+/// The frame of a straight segment that is nearest to a frame: its position, and as much of the segment's
+/// turn as of its length lies before it.
 #[must_use]
-pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
+pub fn foot(present: &Frame, start: &Frame, end: &Frame) -> Frame {
     let (along, offset) = (end.position - start.position, present.position - start.position);
     let length = along.dot(&along);
     let share = if length > 0.0 { (along.dot(&offset) / length).clamp(0.0, 1.0) } else { 0.0 };
-    norm(&(offset - along * share))
+    let turn = rotation_vector(&(end.rotation * start.rotation.inverse())) * share;
+    Frame { position: start.position + along * share, rotation: rotation_by(&turn) * start.rotation }
+}
+
+/// How far a frame is from a straight segment, in.
+#[must_use]
+pub fn beside(present: &Frame, start: &Frame, end: &Frame) -> f64 {
+    norm(&(present.position - foot(present, start, end).position))
 }
 
 impl Route {

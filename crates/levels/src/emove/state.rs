@@ -10,6 +10,7 @@ use super::{
     route::Route,
     surroundings::Surroundings,
     tables::{Ordered, Step},
+    way::Rejoin,
 };
 use crate::execution::Execution;
 
@@ -38,6 +39,8 @@ pub struct State {
     pub route: Option<Route>,
     /// The part of an interrupted way that is flown back first.
     pub back: Option<Back>,
+    /// The point of an interrupted way that is gone to at first.
+    pub rejoin: Option<Rejoin>,
     /// What is believed of the world: an output, adopted again after a restart.
     pub beliefs: Beliefs,
     /// The beliefs of the time before the start have been adopted.

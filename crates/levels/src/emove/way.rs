@@ -7,7 +7,8 @@
 //! ```
 //!
 //! The robot goes on to the same goal, or back along the way to the end of the depart leg and from there to
-//! another goal. Stopped inside the depart leg it goes out of it. The way itself is not remembered point by
+//! another goal. Stopped inside the depart leg it goes out of it. Where a person has moved it beside the way with
+//! the joystick it comes back to the way at first, and stops there: the goal may be a nest that is closed beside it. The way itself is not remembered point by
 //! point: it follows from its two ends and the task data.
 
 use geometry::{frame::Frame, pose::Pose};
@@ -17,12 +18,16 @@ use interfaces::{
     prim::{PrimReport, PrimVerb},
     process::Inputs,
 };
-use taskdata::files::TaskData;
+use rcs_core::Plain;
+use taskdata::files::{TaskData, TrajParaId};
 
 use super::{
     back::Back,
     robot_place::{commanded_pose, place, present_frame},
-    route::{Ahead, Goal, Leg, Planning, Route, THERE_INCHES, THERE_RADIANS, beside, near, same_location},
+    route::{
+        Ahead, Goal, Leg, LegGoal, Planning, Route, THERE_INCHES, THERE_RADIANS, beside, foot, near,
+        same_location,
+    },
     state::State,
     tables::resume::{Beginning, GoalOf, LegNow, Robot, Start, WayBack, resume},
     whereabouts::{LOST_INCHES, LOST_RADIANS},
@@ -36,6 +41,26 @@ const STEP_RADIANS: f64 = 0.05;
 /// line, and the robot controller, which ramps down.
 const CUT_OFF_TICKS: f64 = 5.0;
 
+/// How a motion command is carried out from where the robot is.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Flight {
+    /// The way to its goal.
+    pub route: Option<Route>,
+    /// The part of an interrupted way that is flown back before.
+    pub back: Option<Back>,
+    /// The point of an interrupted way that is gone to at first.
+    pub rejoin: Option<Rejoin>,
+}
+
+/// The point at which a robot that a person has moved beside its way comes back to it.
+#[derive(Clone, Copy, Debug, PartialEq, Plain)]
+pub struct Rejoin {
+    /// Where it is.
+    pub foot: Pose,
+    /// Parameters of the motion: those of the segment.
+    pub parameters: TrajParaId,
+}
+
 /// The route of a way, from its ends.
 fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
     if way.straight {
@@ -46,21 +71,36 @@ fn route_of(way: &Way, data: &TaskData<'_>) -> Result<Route, Planning> {
     }
 }
 
-/// Is a frame on the segment of the way that the robot is on? Points are passed within their break distance.
-fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<bool> {
+/// The segment of the way that the robot is on: its start, its end, and the records of both.
+fn segment(way: &Way, data: &TaskData<'_>) -> Option<(Frame, Frame, [TrajParaId; 2])> {
     let route = route_of(way, data).ok()?;
     let (end, parameters) = route.point(way.next, data)?;
     let (start, passed) = match way.next.checked_sub(1) {
         Some(point) => route.point(point, data)?,
         None => (way.from.pose.to_frame().ok()?, parameters),
     };
+    Some((start, end, [passed, parameters]))
+}
+
+/// Is a frame on the segment of the way that the robot is on? Points are passed within their break distance.
+fn is_in_corridor(present: &Frame, way: &Way, data: &TaskData<'_>) -> Option<bool> {
+    let (start, end, passed) = segment(way, data)?;
     let brk_dst = |id| data.traj_para(id).map_or(0, |parameters| parameters.brk_dst.max(0));
-    let cut = f64::from(brk_dst(parameters).max(brk_dst(passed))) / 100.0;
+    let cut = f64::from(passed.map(brk_dst).into_iter().max()?) / 100.0;
     let turn = start.distance(&end).radians;
     let (before, after) = (present.distance(&start).radians, present.distance(&end).radians);
     // On the shorter turn from one to the other, with the same tolerance.
     let turned = before + after <= turn + LOST_RADIANS;
     Some(beside(present, &start, &end) <= cut + LOST_INCHES && turned)
+}
+
+/// The point to which a robot is led that a person has moved beside its way: the nearest one of its segment.
+fn rejoin(way: &Way, inputs: &Inputs<'_, TaskData<'_>>) -> Option<Rejoin> {
+    let present = present_frame(inputs.memory).filter(|_| way.by_hand)?;
+    let (start, end, [_, parameters]) = segment(way, inputs.data)?;
+    let foot = foot(&present, &start, &end);
+    let beside = !near(&present, &foot, THERE_INCHES, THERE_RADIANS);
+    beside.then(|| Rejoin { foot: Pose::from_frame(&foot), parameters })
 }
 
 /// Does Prim still move the robot for its order, or for the one before? A GO-THRU is done before it is at
@@ -147,34 +187,39 @@ impl State {
         command: &EmoveCommand,
         goal: &Goal,
         inputs: &Inputs<'_, TaskData<'_>>,
-    ) -> Result<(Route, Option<Back>), Planning> {
+    ) -> Result<Flight, Planning> {
         let data = inputs.data;
         let (to, way) = (goal.place(command), self.on_way(inputs));
+        let rejoin = way.as_ref().and_then(|way| rejoin(way, inputs));
+        let flight = |route, back| Flight { route: Some(route), back, rejoin };
         let beginning = resume((), &self.start(&to, way.as_ref(), data)).action;
         match (beginning, self.place(), way) {
-            (Beginning::Depart, Some(from), _) => Ok((Route::plan(command, goal, &from, data)?, None)),
+            (Beginning::Depart, Some(from), _) => {
+                Ok(Flight { rejoin: None, ..flight(Route::plan(command, goal, &from, data)?, None) })
+            }
             (Beginning::GoOn, _, Some(way)) => {
                 let on = Route { commanded: way.next, opening: goal.opening, ..route_of(&way, data)? };
-                Ok((on, None))
+                Ok(flight(on, None))
             }
             (Beginning::GoOut, _, Some(way)) => {
                 let out = Route::between(&way.from, &to, data)?;
-                Ok((Route { commanded: way.next, opening: goal.opening, ..out }, None))
+                Ok(flight(Route { commanded: way.next, opening: goal.opening, ..out }, None))
             }
             (Beginning::GoBack, _, Some(way)) => {
                 let (route, then) = (route_of(&way, data)?, Route::between(&way.from, &to, data)?);
                 let back = Back { route, next: way.next, complete: false };
                 let commanded = route.depart_points(data);
-                Ok((Route { commanded, opening: goal.opening, ..then }, Some(back)))
+                Ok(flight(Route { commanded, opening: goal.opening, ..then }, Some(back)))
             }
             (Beginning::RefuseBack, ..) => Err(Planning::ForwardOnly),
             _ => Err(Planning::NoStart),
         }
     }
 
-    /// What lies ahead: first the way back, then the route.
+    /// What lies ahead: first the way itself, if the robot is beside it, then the way back, then the route.
     pub(super) fn ahead(&self, data: &TaskData<'_>) -> Ahead {
         match (&self.back, &self.route) {
+            _ if self.rejoin.is_some() => Ahead::Beside,
             (Some(back), _) if !back.complete => {
                 if back.leg(data).is_some() {
                     Ahead::Through
@@ -187,16 +232,22 @@ impl State {
         }
     }
 
-    /// True while the fingers must not move yet: on the way back, and as long as the next point is a depart
+    /// True while the fingers must not move yet: beside the way, on the way back, and as long as the next point is a depart
     /// point (docs/design/motion.md "Finger opening").
     pub(super) fn departing(&self, data: &TaskData<'_>) -> bool {
         let back = self.back.is_some_and(|back| !back.complete);
-        back || self.route.is_some_and(|route| route.departing(data))
+        self.rejoin.is_some() || back || self.route.is_some_and(|route| route.departing(data))
     }
 
     /// The next leg, which is noted as commanded, with the way that the robot is then on.
     pub(super) fn next_leg(&mut self, memory: &CommonMemory, data: &TaskData<'_>) -> Option<Leg> {
         let rest = commanded_pose(memory).unwrap_or_default();
+        if let Some(Rejoin { foot, parameters }) = self.rejoin.take() {
+            if let Some(way) = &mut self.beliefs.way {
+                way.rest = rest;
+            }
+            return Some(Leg { at: LegGoal::Computed(foot.to_frame().ok()?), parameters });
+        }
         let way = |route: &Route, next, direction| Way {
             from: route.from,
             to: route.to,

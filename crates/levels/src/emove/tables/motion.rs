@@ -20,10 +20,15 @@ decision_table! {
             6: ahead: Stop | Nothing, opening: Departing | Moving => Wait;
             7: ahead: Stop                                        => GotoPt -> Stopping;
             8: ahead: Nothing                                     => Arrive;
+            9: ahead: Beside                                      => GotoPt -> Rejoining;
         }
         /// On the final motion.
         Stopping {
-            9: work: Over                                         => Arrive;
+            10: work: Over                                        => Arrive;
+        }
+        /// Back to the way beside which a person has left the robot.
+        Rejoining {
+            11: work: Over                                        => Wait -> Moving;
         }
     }
 }

@@ -370,6 +370,42 @@ fn a_nudge_in_the_corridor_leaves_the_robot_on_its_way() {
 }
 
 #[test]
+fn a_robot_beside_its_way_comes_back_to_it_first() {
+    for aside in [0.1, 0.3, -2.0] {
+        let mut bench = Bench::ready("HOME", 0);
+        bench.prim.by_steps = true;
+        bench.write(MovToLoc, "", 0, "VISE", 0);
+        // On the first leg: no point was passed beside yet.
+        bench.steps(20);
+        let before = bench.world.frame.position;
+        bench.steps(1);
+        let along = (bench.world.frame.position - before).normalize();
+        paused(&mut bench);
+        bench.world.joystick = true;
+        bench.steps(4);
+        let left = bench.world.frame.position;
+        bench.world.frame.position += along.cross(&Vector::new(0.0, 0.0, 1.0)).normalize() * aside;
+        bench.steps(4);
+        bench.world.joystick = false;
+        bench.steps(8);
+        bench.write(MovToLoc, "", 0, "VISE", 0);
+        let mut stopped = false;
+        for _ in 0..200 {
+            bench.steps(1);
+            let offset = bench.world.frame.position - left;
+            let beside = (offset - along * along.dot(&offset)).norm();
+            stopped = beside < 0.02 && bench.memory.prim.status.report == PrimReport::Done;
+            assert!(along.dot(&offset).abs() < 0.1, "{aside}: {offset:?}");
+            if stopped {
+                break;
+            }
+        }
+        assert!(stopped, "{aside}");
+        assert_eq!(bench.finish(), DONE, "{aside}");
+    }
+}
+
+#[test]
 fn a_robot_that_a_lost_link_stopped_short_is_on_its_way() {
     for (short, aside, end) in
         [(1.5, 0.0, DONE), (1.5, 4.5, error(Reason::UnknownStart)), (4.0, 0.0, error(Reason::UnknownStart))]
